@@ -1,0 +1,274 @@
+"""Friction laws: the coefficient mu(|v|) at sliding speed |v|, and its slope dmu/d|v|.
+
+Each law is one plain formula ``law(v, p)`` and its derivative ``law_slope(v, p)`` of the speed v >= 0 and the law's
+coefficients p. The same functions serve NumPy arrays here and are compiled by the transient engine, so they use only
+arithmetic and NumPy functions. By convention p[0] is the static limit, the coefficient a sticking contact can reach.
+"""
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import numpy as np
+
+from squealbox.parameters import DataSheet, ParameterError, parameter
+
+Formula = Callable[..., Any]
+
+
+class FrictionLaw(DataSheet):
+    """Base of the laws: `mu`, `slope` and `coefficients`; a subclass names its two formulas."""
+
+    formula: ClassVar[Formula]
+    slope_formula: ClassVar[Formula]
+
+    def coefficients(self) -> tuple[Any, ...]:
+        """The coefficients p of the formula; p[0] is the static limit. Scalars, or arrays with leading axes."""
+        raise NotImplementedError
+
+    def mu(self, velocity: Any) -> Any:
+        """Friction coefficient [-] at sliding velocity [m/s] of either sign; array in, array out."""
+        return type(self).formula(np.abs(velocity), self.coefficients())
+
+    def slope_at(self, velocity: Any) -> Any:
+        """Slope dmu/d|v| [s/m] at sliding velocity [m/s] of either sign; negative means weakening."""
+        return type(self).slope_formula(np.abs(velocity), self.coefficients())
+
+    @property
+    def static_limit(self) -> Any:
+        """The largest |friction force| / normal force a sticking contact can carry [-]."""
+        return self.coefficients()[0]
+
+
+def coulomb(v: Any, p: Any) -> Any:
+    """mu = kinetic, p = (static, kinetic)."""
+    return p[1] + 0.0 * v
+
+
+def coulomb_slope(v: Any, p: Any) -> Any:
+    """dmu/dv = 0."""
+    return 0.0 * v + 0.0 * p[1]
+
+
+class Coulomb(FrictionLaw):
+    """Constant friction while sliding, mu = kinetic, with a static limit that may be higher.
+
+    `kinetic` left out means kinetic = static.
+
+    >>> float(Coulomb(0.4, 0.25).mu(1.0))
+    0.25
+    """
+
+    static: float = parameter("-", 0.0, 10.0, meaning="static limit; also the sliding coefficient when kinetic is left out")
+    kinetic: float | None = parameter("-", 0.0, 10.0, default=None, optional=True, meaning="coefficient while sliding")
+
+    formula = staticmethod(coulomb)
+    slope_formula = staticmethod(coulomb_slope)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _not_above(self, "kinetic", self.kinetic, self.static)
+
+    def coefficients(self) -> tuple[Any, ...]:
+        return (self.static, self.static if self.kinetic is None else self.kinetic)
+
+
+def linear_slope(v: Any, p: Any) -> Any:
+    """mu = max(static + slope v, floor), p = (static, slope, floor)."""
+    return np.maximum(p[0] + p[1] * v, p[2])
+
+
+def linear_slope_slope(v: Any, p: Any) -> Any:
+    """dmu/dv = slope above the floor, 0 on it."""
+    return np.where(p[0] + p[1] * v > p[2], p[1], 0.0)
+
+
+class LinearSlope(FrictionLaw):
+    """mu = static + slope |v|, clipped at `floor` when one is given.
+
+    Source: Eq. (2) of the drum-brake paper of 2011 (Journal of Vibroengineering 13(2), paper 632) with slope = -alpha.
+    Without a floor the coefficient turns negative beyond |v| = -static/slope: the formula as printed.
+
+    >>> float(LinearSlope(0.45, -0.05).mu(1.0))
+    0.4
+    """
+
+    static: float = parameter("-", 0.0, 10.0, meaning="coefficient at zero sliding speed")
+    slope: float = parameter("s/m", meaning="dmu/d|v|; negative = weakening with speed")
+    floor: float | None = parameter("-", 0.0, 10.0, default=None, optional=True, meaning="least coefficient; none = not clipped")
+
+    formula = staticmethod(linear_slope)
+    slope_formula = staticmethod(linear_slope_slope)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _not_above(self, "floor", self.floor, self.static)
+
+    def coefficients(self) -> tuple[Any, ...]:
+        return (self.static, self.slope, -np.inf if self.floor is None else self.floor)
+
+
+def stribeck(v: Any, p: Any) -> Any:
+    """mu = kinetic + (static - kinetic) exp(-v/speed), p = (static, kinetic, speed)."""
+    return p[1] + (p[0] - p[1]) * np.exp(-v / p[2])
+
+
+def stribeck_slope(v: Any, p: Any) -> Any:
+    """dmu/dv = -(static - kinetic)/speed exp(-v/speed)."""
+    return -(p[0] - p[1]) / p[2] * np.exp(-v / p[2])
+
+
+class Stribeck(FrictionLaw):
+    """Exponential decay from static to kinetic over the Stribeck speed.
+
+    mu = kinetic + (static - kinetic) exp(-|v|/speed).
+
+    >>> round(float(Stribeck(0.5, 0.3, 0.1).mu(0.1)), 6)
+    0.373576
+    """
+
+    static: float = parameter("-", 0.0, 10.0, meaning="coefficient at zero sliding speed")
+    kinetic: float = parameter("-", 0.0, 10.0, meaning="coefficient at high sliding speed")
+    speed: float = parameter("m/s", 0.0, low_open=True, meaning="Stribeck speed, over which friction falls by 1/e")
+
+    formula = staticmethod(stribeck)
+    slope_formula = staticmethod(stribeck_slope)
+
+    def coefficients(self) -> tuple[Any, ...]:
+        return (self.static, self.kinetic, self.speed)
+
+
+def hyperbolic(v: Any, p: Any) -> Any:
+    """mu = static/(1 + delta v), p = (static, delta)."""
+    return p[0] / (1.0 + p[1] * v)
+
+
+def hyperbolic_slope(v: Any, p: Any) -> Any:
+    """dmu/dv = -static delta/(1 + delta v)^2."""
+    return -p[0] * p[1] / ((1.0 + p[1] * v) * (1.0 + p[1] * v))
+
+
+class Hyperbolic(FrictionLaw):
+    """mu = static/(1 + delta |v|).
+
+    Source: Leine, van Campen, de Kraker and van den Steen 1998, Nonlinear Dynamics 16, 41-54.
+
+    >>> float(Hyperbolic(1.0, 3.0).mu(1.0))
+    0.25
+    """
+
+    static: float = parameter("-", 0.0, 10.0, meaning="coefficient at zero sliding speed")
+    delta: float = parameter("s/m", 0.0, meaning="decay of friction with speed")
+
+    formula = staticmethod(hyperbolic)
+    slope_formula = staticmethod(hyperbolic_slope)
+
+    def coefficients(self) -> tuple[Any, ...]:
+        return (self.static, self.delta)
+
+
+def cubic(v: Any, p: Any) -> Any:
+    """mu = static - 3/2 (static - least) (r - r^3/3), r = v/speed, p = (static, least, speed)."""
+    r = v / p[2]
+    return p[0] - 1.5 * (p[0] - p[1]) * (r - r * r * r / 3.0)
+
+
+def cubic_slope(v: Any, p: Any) -> Any:
+    """dmu/dv = -3/2 (static - least) (1 - r^2)/speed."""
+    r = v / p[2]
+    return -1.5 * (p[0] - p[1]) * (1.0 - r * r) / p[2]
+
+
+class Cubic(FrictionLaw):
+    """Cubic curve with its least value at `speed`; friction rises again beyond it.
+
+    mu = static - 3/2 (static - kinetic) (r - r^3/3) with r = |v|/speed, so mu(speed) = kinetic.
+    Source: Thomsen and Fidlin 2003, International Journal of Non-Linear Mechanics 38, 389-403, Eq. (2).
+
+    >>> round(float(Cubic(0.4, 0.25, 0.5).mu(0.5)), 12)
+    0.25
+    """
+
+    static: float = parameter("-", 0.0, 10.0, meaning="coefficient at zero sliding speed")
+    kinetic: float = parameter("-", 0.0, 10.0, meaning="least coefficient, reached at `speed`")
+    speed: float = parameter("m/s", 0.0, low_open=True, meaning="sliding speed of least friction")
+
+    formula = staticmethod(cubic)
+    slope_formula = staticmethod(cubic_slope)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _not_above(self, "kinetic", self.kinetic, self.static)
+
+    def coefficients(self) -> tuple[Any, ...]:
+        return (self.static, self.kinetic, self.speed)
+
+
+def table(v: Any, p: Any) -> Any:
+    """Monotone cubic through measured points; p = (mu at v=0, count, speeds, coefficients, slopes).
+
+    Written as the first value plus the increment of each interval, clipped to it, so no branch and no search is needed.
+    """
+    count = int(p[1])
+    mu = p[2 + count] + 0.0 * v
+    for i in range(count - 1):
+        width = p[3 + i] - p[2 + i]
+        rise = p[3 + count + i] - p[2 + count + i]
+        left = width * p[2 + 2 * count + i]
+        right = width * p[3 + 2 * count + i]
+        s = np.minimum(np.maximum((v - p[2 + i]) / width, 0.0), 1.0)
+        mu = mu + s * (left + s * (3.0 * rise - 2.0 * left - right + s * (left + right - 2.0 * rise)))
+    return mu
+
+
+def table_slope(v: Any, p: Any) -> Any:
+    """Derivative of the monotone cubic; 0 outside the measured range."""
+    count = int(p[1])
+    slope = 0.0 * v
+    for i in range(count - 1):
+        width = p[3 + i] - p[2 + i]
+        rise = p[3 + count + i] - p[2 + count + i]
+        left = width * p[2 + 2 * count + i]
+        right = width * p[3 + 2 * count + i]
+        s = (v - p[2 + i]) / width
+        inside = (left + s * (2.0 * (3.0 * rise - 2.0 * left - right) + s * 3.0 * (left + right - 2.0 * rise))) / width
+        slope = slope + np.where((s >= 0.0) & (s < 1.0), inside, 0.0)
+    return slope
+
+
+class Table(FrictionLaw):
+    """Measured points, joined by the monotone cubic of Fritsch and Carlson; constant beyond the first and last point.
+
+    Uses `scipy.interpolate.PchipInterpolator` for the slopes at the points, so no overshoot is invented between them.
+
+    >>> float(Table([0.0, 1.0, 2.0], [0.5, 0.4, 0.3]).mu(1.0))
+    0.4
+    """
+
+    speeds: Any = parameter("m/s", 0.0, meaning="sliding speeds of the measured points, increasing")
+    values: Any = parameter("-", 0.0, 10.0, meaning="measured coefficients, one for each speed")
+
+    formula = staticmethod(table)
+    slope_formula = staticmethod(table_slope)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        speeds, values = np.atleast_1d(self.speeds), np.atleast_1d(self.values)
+        if speeds.ndim != 1 or speeds.size < 2 or np.any(np.diff(speeds) <= 0):
+            raise ParameterError("Table", "speeds", self.speeds, "two or more increasing speeds in m/s")
+        if values.shape != speeds.shape:
+            raise ParameterError("Table", "values", self.values, f"{speeds.size} coefficients, one for each speed")
+
+    def coefficients(self) -> tuple[Any, ...]:
+        from scipy.interpolate import PchipInterpolator
+
+        slopes = PchipInterpolator(self.speeds, self.values).derivative()(self.speeds)
+        start = float(self.values[0])
+        return tuple(float(x) for x in (start, len(slopes), *self.speeds, *self.values, *slopes))
+
+
+LAWS: tuple[type[FrictionLaw], ...] = (Coulomb, LinearSlope, Stribeck, Hyperbolic, Cubic, Table)
+
+
+def _not_above(law: FrictionLaw, name: str, value: Any, limit: Any) -> None:
+    if value is not None and np.any(np.asarray(value) > np.asarray(limit)):
+        raise ParameterError(type(law).__name__, name, value, f"at most static = {limit}")

@@ -1,0 +1,150 @@
+"""What every result carries: its arrays, the inputs and settings that made them, an outcome and its provenance.
+
+A result is frozen. Its arrays are declared with :func:`quantity` (dimensions, unit, meaning), and from that one
+declaration come the labelled dataset, the file and the reading back. Files are NetCDF 4, written by xarray and
+h5netcdf; nothing in them is ever executed.
+"""
+
+import dataclasses
+import json
+import os
+import platform
+import tempfile
+from collections.abc import Mapping
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+
+from squealbox.parameters import from_plain, to_plain
+
+if TYPE_CHECKING:
+    import xarray
+
+COMPLETED = "completed"
+
+
+class Outcome(str):
+    """How a computation ended: a name that compares as a string, a sentence, and the evidence.
+
+    >>> Outcome("step_underflow", "the step fell below 1e-18 s", time=0.01) == "step_underflow"
+    True
+    """
+
+    message: str
+    evidence: Mapping[str, Any]
+
+    def __new__(cls, name: str = COMPLETED, message: str = "", **evidence: Any) -> Self:
+        self = super().__new__(cls, name)
+        self.message = message
+        self.evidence = evidence
+        return self
+
+    @property
+    def ok(self) -> bool:
+        """True when the computation reached its end."""
+        return self == COMPLETED
+
+    def to_plain(self) -> dict[str, Any]:
+        """Name, message and evidence as plain data."""
+        return {"name": str(self), "message": self.message, "evidence": to_plain(self.evidence)}
+
+    @classmethod
+    def from_plain(cls, data: Mapping[str, Any]) -> Self:
+        """The inverse of `to_plain`."""
+        return cls(data["name"], data["message"], **data["evidence"])
+
+
+class ResultFileError(OSError):
+    """A file could not be read as a result; the message names the file and what is wrong with it."""
+
+
+def quantity(dims: str, unit: str, meaning: str = "") -> Any:
+    """Declare an array of a result: dimensions (``"time dof"``; a leading ``...`` is allowed), unit and meaning."""
+    return dataclasses.field(metadata={"dims": tuple(dims.split()), "unit": unit, "meaning": meaning})
+
+
+def provenance() -> dict[str, str]:
+    """Versions of what computed a result; no host name, user or date, so equal inputs give equal files."""
+    versions = {name: metadata.version(name) for name in ("squealbox", "numpy", "scipy")}
+    return {**versions, "python": platform.python_version()}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
+class Result:
+    """Base of all results. Subclasses add arrays declared with :func:`quantity`."""
+
+    inputs: Mapping[str, Any] = dataclasses.field(default_factory=dict)
+    settings: Mapping[str, Any] = dataclasses.field(default_factory=dict)
+    outcome: Outcome = dataclasses.field(default_factory=Outcome)
+    provenance: Mapping[str, str] = dataclasses.field(default_factory=provenance)
+
+    kinds: ClassVar[dict[str, type["Result"]]] = {}
+
+    def __init_subclass__(cls, **keywords: Any) -> None:
+        super().__init_subclass__(**keywords)
+        Result.kinds[cls.__name__] = cls
+
+    def to_dataset(self) -> "xarray.Dataset":
+        """The arrays as a labelled `xarray.Dataset`, with units, inputs, settings, outcome and versions as attributes."""
+        import xarray
+
+        variables = {}
+        for field in _quantities(type(self)):
+            array = np.asarray(getattr(self, field.name))
+            about = {"units": field.metadata["unit"], "long_name": field.metadata["meaning"]}
+            variables[field.name] = (_dims(field.metadata["dims"], array.ndim), array, about)
+        attributes = {name: json.dumps(to_plain(value)) for name, value in self._plain().items()}
+        return xarray.Dataset(variables, attrs={"kind": type(self).__name__, **attributes})
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the result to a NetCDF file, whole or not at all; returns the path."""
+        path = Path(path)
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
+        os.close(handle)
+        try:
+            self.to_dataset().to_netcdf(temporary, engine="h5netcdf", invalid_netcdf=True)
+            os.replace(temporary, path)
+        finally:
+            Path(temporary).unlink(missing_ok=True)
+        return path
+
+    @classmethod
+    def from_dataset(cls, dataset: "xarray.Dataset") -> Self:
+        """The inverse of `to_dataset`."""
+        kind = Result.kinds.get(dataset.attrs.get("kind", ""))
+        if kind is None or not issubclass(kind, cls):
+            raise ResultFileError(f"holds {dataset.attrs.get('kind', 'no result')!r}, not a {cls.__name__}")
+        plain = {name: json.loads(value) for name, value in dataset.attrs.items() if name != "kind"}
+        plain["outcome"] = Outcome.from_plain(plain["outcome"])
+        plain["inputs"] = from_plain(plain["inputs"])
+        arrays = {field.name: dataset[field.name].values for field in _quantities(kind)}
+        return kind(**arrays, **plain)  # type: ignore[return-value]
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Read a result written by `save`. Raises `ResultFileError` naming the file and what is wrong."""
+        import xarray
+
+        try:
+            with xarray.open_dataset(path, engine="h5netcdf") as dataset:
+                return cls.from_dataset(dataset.load())
+        except (OSError, ValueError, KeyError, TypeError, RuntimeError) as error:
+            raise ResultFileError(f"{path}: not a readable {cls.__name__}: {error}") from error
+
+    def _plain(self) -> dict[str, Any]:
+        arrays = {field.name for field in _quantities(type(self))}
+        others = {f.name: getattr(self, f.name) for f in dataclasses.fields(self) if f.name not in arrays}
+        return {**others, "outcome": self.outcome.to_plain()}
+
+
+def _quantities(kind: type[Result]) -> list[dataclasses.Field[Any]]:
+    return [field for field in dataclasses.fields(kind) if "dims" in field.metadata]
+
+
+def _dims(declared: tuple[str, ...], ndim: int) -> tuple[str, ...]:
+    if declared[:1] != ("...",):
+        return declared
+    named = declared[1:]
+    return (*(f"axis_{i}" for i in range(ndim - len(named))), *named)

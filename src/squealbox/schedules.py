@@ -1,0 +1,236 @@
+"""What varies in time: a speed V(t), a normal force N(t), a load f(t).
+
+A schedule is a data sheet with one plain formula ``value(t, p)`` and its rate, run by NumPy here and compiled by the
+transient engine. `breaks` names the instants at which the formula has a kink, so an integrator can step onto them.
+Schedules add, and multiply by a number or an array: ``load1 * [sin, -cos] + load2 * [-sin, cos]`` is a load vector.
+"""
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import numpy as np
+
+from squealbox.parameters import DataSheet, ParameterError, parameter
+
+Formula = Callable[..., Any]
+
+
+class Schedule(DataSheet):
+    """Base of the schedules: `value`, `rate`, `breaks`, and the arithmetic of loads."""
+
+    formula: ClassVar[Formula]
+    rate_formula: ClassVar[Formula]
+
+    def coefficients(self) -> tuple[Any, ...]:
+        """The coefficients p of the formula."""
+        raise NotImplementedError
+
+    def value(self, time: Any) -> Any:
+        """The value at `time` [s]."""
+        return type(self).formula(np.asarray(time, dtype=float), self.coefficients())
+
+    def rate(self, time: Any) -> Any:
+        """The time derivative at `time` [s]; at a kink, the one from the right."""
+        return type(self).rate_formula(np.asarray(time, dtype=float), self.coefficients())
+
+    def breaks(self) -> tuple[float, ...]:
+        """Instants [s] at which the formula is not smooth."""
+        return ()
+
+    def terms(self) -> tuple[tuple[Any, "Schedule"], ...]:
+        """The schedule as a sum of factor times simple schedule."""
+        return ((1.0, self),)
+
+    def __mul__(self, factor: Any) -> "Sum":
+        factor = np.asarray(factor, dtype=float)
+        return Sum(tuple((weight * factor, part) for weight, part in self.terms()))
+
+    __rmul__ = __mul__
+
+    def __add__(self, other: "Schedule") -> "Sum":
+        if not isinstance(other, Schedule):
+            return NotImplemented
+        return Sum((*self.terms(), *other.terms()))
+
+    def __neg__(self) -> "Sum":
+        return self * -1.0
+
+
+class Sum(Schedule):
+    """A sum of factor times schedule; made by ``+`` and ``*``. The factors may be arrays: a load vector."""
+
+    parts: tuple[tuple[Any, Schedule], ...]
+
+    def __post_init__(self) -> None:
+        parts = tuple((np.asarray(weight, dtype=float), part) for weight, part in self.parts)
+        object.__setattr__(self, "parts", parts)
+
+    def value(self, time: Any) -> Any:
+        return sum(weight * part.value(time) for weight, part in self.parts)
+
+    def rate(self, time: Any) -> Any:
+        return sum(weight * part.rate(time) for weight, part in self.parts)
+
+    def breaks(self) -> tuple[float, ...]:
+        return tuple(sorted({instant for _, part in self.parts for instant in part.breaks()}))
+
+    def terms(self) -> tuple[tuple[Any, Schedule], ...]:
+        return self.parts
+
+
+def constant(t: Any, p: Any) -> Any:
+    """p = (value,)."""
+    return p[0] + 0.0 * t
+
+
+def constant_rate(t: Any, p: Any) -> Any:
+    """0."""
+    return 0.0 * t + 0.0 * p[0]
+
+
+class Constant(Schedule):
+    """The same value at all times.
+
+    >>> float(Constant(0.2).value(1.0))
+    0.2
+    """
+
+    level: float = parameter("", meaning="the value")
+
+    formula = staticmethod(constant)
+    rate_formula = staticmethod(constant_rate)
+
+    def coefficients(self) -> tuple[Any, ...]:
+        return (self.level,)
+
+
+def ramp(t: Any, p: Any) -> Any:
+    """start + slope * clip(t - begin, 0, length), p = (start, slope, begin, length)."""
+    return p[0] + p[1] * np.minimum(np.maximum(t - p[2], 0.0), p[3])
+
+
+def ramp_rate(t: Any, p: Any) -> Any:
+    """slope between begin and begin + length, else 0."""
+    return np.where((t >= p[2]) & (t < p[2] + p[3]), p[1], 0.0)
+
+
+class Ramp(Schedule):
+    """Braking: from `start` with a constant rate until `stop` (standstill) is reached, then constant.
+
+    ``stop=None`` lets it run on through zero.
+
+    >>> [round(float(x), 12) for x in Ramp(start=0.2, slope=-4.0).value([0.0, 0.02, 0.06])]
+    [0.2, 0.12, 0.0]
+    """
+
+    start: float = parameter("", meaning="value before the ramp begins")
+    slope: float = parameter("", meaning="rate of change per second; negative brakes")
+    stop: float | None = parameter("", default=0.0, optional=True, meaning="value at which it stays; 0 is standstill")
+    begin: float = parameter("s", default=0.0, meaning="instant at which the ramp begins")
+
+    formula = staticmethod(ramp)
+    rate_formula = staticmethod(ramp_rate)
+
+    def coefficients(self) -> tuple[Any, ...]:
+        return (self.start, self.slope, self.begin, self.length)
+
+    @property
+    def length(self) -> float:
+        """How long the ramp runs [s]; inf when it never reaches `stop`."""
+        if self.stop is None or self.slope == 0.0:
+            return np.inf
+        length = (self.stop - self.start) / self.slope
+        return float(length) if length >= 0.0 else np.inf
+
+    def breaks(self) -> tuple[float, ...]:
+        return tuple(t for t in (self.begin, self.begin + self.length) if np.isfinite(t))
+
+
+def sinusoid(t: Any, p: Any) -> Any:
+    """mean + amplitude sin(2 pi frequency t + phase), p = (mean, amplitude, frequency, phase)."""
+    return p[0] + p[1] * np.sin(2.0 * np.pi * p[2] * t + p[3])
+
+
+def sinusoid_rate(t: Any, p: Any) -> Any:
+    """2 pi frequency amplitude cos(2 pi frequency t + phase)."""
+    return 2.0 * np.pi * p[2] * p[1] * np.cos(2.0 * np.pi * p[2] * t + p[3])
+
+
+class Sinusoid(Schedule):
+    """Dither or run-out: a mean with a harmonic on top.
+
+    >>> round(float(Sinusoid(mean=1.0, amplitude=0.5, frequency=50.0).value(0.005)), 12)
+    1.5
+    """
+
+    mean: float = parameter("", meaning="mean value")
+    amplitude: float = parameter("", meaning="amplitude of the harmonic")
+    frequency: float = parameter("Hz", 0.0, meaning="frequency of the harmonic")
+    phase: float = parameter("rad", default=0.0, meaning="phase at t = 0")
+
+    formula = staticmethod(sinusoid)
+    rate_formula = staticmethod(sinusoid_rate)
+
+    def coefficients(self) -> tuple[Any, ...]:
+        return (self.mean, self.amplitude, self.frequency, self.phase)
+
+
+def table(t: Any, p: Any) -> Any:
+    """Straight lines through points; p = (count, times, values)."""
+    count = int(p[0])
+    value = p[1 + count] + 0.0 * t
+    for i in range(count - 1):
+        s = np.minimum(np.maximum((t - p[1 + i]) / (p[2 + i] - p[1 + i]), 0.0), 1.0)
+        value = value + s * (p[2 + count + i] - p[1 + count + i])
+    return value
+
+
+def table_rate(t: Any, p: Any) -> Any:
+    """Slope of the line the instant lies on; 0 outside."""
+    count = int(p[0])
+    rate = 0.0 * t
+    for i in range(count - 1):
+        line = (p[2 + count + i] - p[1 + count + i]) / (p[2 + i] - p[1 + i])
+        rate = rate + np.where((t >= p[1 + i]) & (t < p[2 + i]), line, 0.0)
+    return rate
+
+
+class Table(Schedule):
+    """Measured points joined by straight lines; constant before the first and after the last.
+
+    >>> float(Table([0.0, 1.0], [0.0, 2.0]).value(0.25))
+    0.5
+    """
+
+    times: Any = parameter("s", meaning="instants of the points, increasing")
+    values: Any = parameter("", meaning="value at each instant")
+
+    formula = staticmethod(table)
+    rate_formula = staticmethod(table_rate)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        times, values = np.atleast_1d(self.times), np.atleast_1d(self.values)
+        if times.ndim != 1 or times.size < 2 or np.any(np.diff(times) <= 0):
+            raise ParameterError("Table", "times", self.times, "two or more increasing instants in s")
+        if values.shape != times.shape:
+            raise ParameterError("Table", "values", self.values, f"{times.size} values, one for each instant")
+
+    def coefficients(self) -> tuple[Any, ...]:
+        return tuple(float(x) for x in (len(self.times), *self.times, *self.values))
+
+    def breaks(self) -> tuple[float, ...]:
+        return tuple(float(t) for t in self.times)
+
+
+SCHEDULES: tuple[type[Schedule], ...] = (Constant, Ramp, Sinusoid, Table)
+
+
+def as_schedule(value: Any) -> Schedule:
+    """A schedule as it is; a number or array becomes `Constant`."""
+    return value if isinstance(value, Schedule) else Constant(value)
+
+
+def value_at(value: Any, time: Any) -> Any:
+    """The value of a number or a schedule at `time` [s]."""
+    return value.value(time) if isinstance(value, Schedule) else value

@@ -1,0 +1,1 @@
+"""Is steady sliding stable? Depends on: system, result."""

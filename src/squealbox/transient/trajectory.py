@@ -1,0 +1,83 @@
+"""The result of a transient: what moved, what each contact did, and where the energy went."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.result import Result, quantity
+from squealbox.system import System, mechanical_energy
+
+OPEN = 2  # contact modes: +1 and -1 slip with sgn(v), 0 stick, OPEN lifted off
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EnergyAudit:
+    """Where the energy went, from t[0] to each instant [J].
+
+    stored (k,) change of kinetic plus strain energy; friction (k, contacts) work of each contact's friction on the
+    motion; load (k,), circulation (k,) work of f(t) and of the skew part of K; dissipated (k,) taken out by C;
+    impact (k,) lost in impacts; residual (k,) = stored - friction - load - circulation + dissipated + impact.
+    """
+
+    stored: Any
+    friction: Any
+    load: Any
+    circulation: Any
+    dissipated: Any
+    impact: Any
+    residual: Any
+
+    @property
+    def relative_residual(self) -> float:
+        """Largest |residual| over the largest energy turned over by any term [-]."""
+        terms = (self.stored, self.load, self.circulation, self.dissipated, self.impact, *np.moveaxis(self.friction, -1, 0))
+        scale = max(float(np.max(np.abs(term), initial=0.0)) for term in terms)
+        worst = float(np.max(np.abs(self.residual), initial=0.0))
+        return worst / scale if scale > 0.0 else worst
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trajectory(Result):
+    """A motion q(t), with contact states and the energy audit, as :func:`squealbox.transient.simulate` returns it."""
+
+    t: Any = quantity("time", "s", "time")
+    q: Any = quantity("time dof", "m", "displacement")
+    qd: Any = quantity("time dof", "m/s", "velocity")
+    normal_force: Any = quantity("time contact", "N", "normal force N")
+    sliding_velocity: Any = quantity("time contact", "m/s", "sliding velocity v = V - t.q'")
+    friction_force: Any = quantity("time contact", "N", "friction force on d")
+    mode: Any = quantity("time contact", "1", "+1 or -1 slip with sgn(v), 0 stick, 2 open")
+    work_friction: Any = quantity("time contact", "J", "work of friction since the start")
+    work_load: Any = quantity("time", "J", "work of the load since the start")
+    work_circulation: Any = quantity("time", "J", "work of the skew part of K since the start")
+    work_dissipated: Any = quantity("time", "J", "energy dissipated by C since the start")
+    work_impact: Any = quantity("time", "J", "energy lost in impacts since the start")
+    event_time: Any = quantity("event", "s", "instants of stick, slip, reversal, lift-off and landing")
+    event_contact: Any = quantity("event", "1", "contact of each event")
+    event_mode: Any = quantity("event", "1", "mode the contact takes at the event")
+    steps: int = 0
+    rejected: int = 0
+    evaluations: int = 0
+
+    @property
+    def system(self) -> System:
+        """The system that moved."""
+        system: System = self.inputs["system"]
+        return system
+
+    @property
+    def energy(self) -> EnergyAudit:
+        """The energy audit from the start to each instant of `t`."""
+        stored = mechanical_energy(self.system, self.q, self.qd)
+        stored = stored - stored[:1]
+        given = np.sum(self.work_friction, axis=-1) + self.work_load + self.work_circulation
+        return EnergyAudit(
+            stored=stored,
+            friction=self.work_friction,
+            load=self.work_load,
+            circulation=self.work_circulation,
+            dissipated=self.work_dissipated,
+            impact=self.work_impact,
+            residual=stored - given + self.work_dissipated + self.work_impact,
+        )
