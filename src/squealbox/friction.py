@@ -58,7 +58,7 @@ class Coulomb(FrictionLaw):
     0.25
     """
 
-    static: float = parameter("-", 0.0, 10.0, meaning="static limit; also the sliding coefficient when kinetic is left out")
+    static: float = parameter("-", 0.0, 10.0, meaning="static limit; kinetic when that is left out")
     kinetic: float | None = parameter("-", 0.0, 10.0, default=None, optional=True, meaning="coefficient while sliding")
 
     formula = staticmethod(coulomb)
@@ -94,7 +94,7 @@ class LinearSlope(FrictionLaw):
 
     static: float = parameter("-", 0.0, 10.0, meaning="coefficient at zero sliding speed")
     slope: float = parameter("s/m", meaning="dmu/d|v|; negative = weakening with speed")
-    floor: float | None = parameter("-", 0.0, 10.0, default=None, optional=True, meaning="least coefficient; none = not clipped")
+    floor: float | None = parameter("-", 0.0, 10.0, default=None, optional=True, meaning="least coefficient, if any")
 
     formula = staticmethod(linear_slope)
     slope_formula = staticmethod(linear_slope_slope)

@@ -68,7 +68,7 @@ def parameter(
     optional: bool = False,
     schedule: bool = False,
 ) -> Any:
-    """Declare one field of a data sheet: unit, range, default, meaning, source, whether it may be None or a schedule."""
+    """Declare a field of a data sheet: unit, range, default, meaning, source; may it be None, or a schedule?"""
     about = Parameter(unit, low, high, low_open, high_open, meaning, source, optional, schedule)
     if default_factory is not dataclasses.MISSING:
         return dataclasses.field(default_factory=default_factory, metadata={"parameter": about})
@@ -117,8 +117,7 @@ class DataSheet:
         for path, value in {**(changes or {}), **keywords}.items():
             head, _, rest = path.partition(".")
             for name in self.aliases.get(head, (head,)):
-                if name not in self.names():
-                    raise ParameterError(type(self).__name__, path, value, known_names(head, [*self.names(), *self.aliases]))
+                self._check_known(path, head, name, value)
                 if rest:
                     nested.setdefault(name, {})[rest] = value
                 else:
@@ -134,10 +133,14 @@ class DataSheet:
         """The value behind a dotted name; an alias gives the value of its first field."""
         head, _, rest = path.partition(".")
         name = self.aliases.get(head, (head,))[0]
-        if name not in self.names():
-            raise ParameterError(type(self).__name__, path, None, known_names(head, [*self.names(), *self.aliases]))
+        self._check_known(path, head, name, None)
         value = getattr(self, name)
         return value.value_of(rest) if rest else value
+
+    def _check_known(self, path: str, head: str, name: str, value: Any) -> None:
+        names = self.field_names()
+        if name not in names:
+            raise ParameterError(type(self).__name__, path, value, known_names(head, [*names, *self.aliases]))
 
     @classmethod
     def kind(cls) -> str:
@@ -145,7 +148,7 @@ class DataSheet:
         return f"{cls.__module__.rpartition('.')[2]}.{cls.__name__}"
 
     @classmethod
-    def names(cls) -> list[str]:
+    def field_names(cls) -> list[str]:
         """The names of the fields, in order."""
         return [field.name for field in dataclasses.fields(cls)]  # type: ignore[arg-type]
 
@@ -158,7 +161,7 @@ class DataSheet:
     def leaves(self, prefix: str = "") -> Iterator[tuple[str, Parameter, Any]]:
         """Every declared parameter with its dotted name and value, nested sheets included."""
         about = self.parameters()
-        for name in self.names():
+        for name in self.field_names():
             value = getattr(self, name)
             if isinstance(value, DataSheet):
                 yield from value.leaves(f"{prefix}{name}.")
@@ -169,7 +172,7 @@ class DataSheet:
 def to_plain(value: Any) -> Any:
     """`value` as lists, numbers, strings and dictionaries; a data sheet becomes a dictionary with its ``kind``."""
     if isinstance(value, DataSheet):
-        return {"kind": value.kind(), **{name: to_plain(getattr(value, name)) for name in value.names()}}
+        return {"kind": value.kind(), **{name: to_plain(getattr(value, name)) for name in value.field_names()}}
     if isinstance(value, Mapping):
         return {str(key): to_plain(item) for key, item in value.items()}
     if isinstance(value, (tuple, list)):
@@ -222,7 +225,7 @@ def _checked(sheet: DataSheet, name: str, about: Parameter) -> Any:
 
 
 def _values(sheet: DataSheet) -> list[Any]:
-    return [getattr(sheet, name) for name in sheet.names()]
+    return [getattr(sheet, name) for name in sheet.field_names()]
 
 
 def _same(a: Any, b: Any) -> bool:

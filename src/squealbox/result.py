@@ -87,7 +87,7 @@ class Result:
         Result.kinds[cls.__name__] = cls
 
     def to_dataset(self) -> "xarray.Dataset":
-        """The arrays as a labelled `xarray.Dataset`, with units, inputs, settings, outcome and versions as attributes."""
+        """The arrays as a labelled `xarray.Dataset`; units, inputs, settings, outcome and versions are attributes."""
         import xarray
 
         variables = {}
@@ -119,8 +119,8 @@ class Result:
         plain = {name: json.loads(value) for name, value in dataset.attrs.items() if name != "kind"}
         plain["outcome"] = Outcome.from_plain(plain["outcome"])
         plain["inputs"] = from_plain(plain["inputs"])
-        arrays = {field.name: dataset[field.name].values for field in _quantities(kind)}
-        return kind(**arrays, **plain)  # type: ignore[return-value]
+        arrays: dict[str, Any] = {field.name: dataset[field.name].values for field in _quantities(kind)}
+        return kind(**arrays, **plain)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:

@@ -10,7 +10,7 @@ A contact senses along n (normal force, N/m) and t (sliding), and acts along d. 
     C_eff = C + sum N_c(q0) mu'(|V|) d t'     indefinite where friction weakens with speed
 
 because v = V - t.q' gives d(mu sgn(v))/dq' = -mu' t' at fixed sgn(v). Every array may carry leading axes, so that one
-system can be a whole map of systems: M is (..., n, n), n and d and t are (..., n), N0, V and the law's parameters (...).
+system can be a whole map of systems: M is (..., n, n), n, d and t are (..., n), N0, V and the law's parameters (...).
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ from squealbox.schedules import Schedule, value_at
 
 
 class InvalidSystem(ValueError):
-    """Matrices, vectors or contacts do not make a system; the message names the array, its shape and what was expected."""
+    """Matrices, vectors or contacts do not make a system; the message names array, shape and what was expected."""
 
 
 class Contact(DataSheet):
@@ -192,7 +192,7 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
 
 
 def linearise(system: System, time: float = 0.0) -> Linearised:
-    """K_eff and C_eff about steady sliding at `time`; an open unilateral contact contributes only its missing stiffness."""
+    """K_eff and C_eff about steady sliding at `time` [s]; an open contact only takes its stiffness out."""
     state = equilibrium(system, time)
     shape, size = system.shape, system.size
     damping = np.array(np.broadcast_to(system.C, (*shape, size, size)))
@@ -213,8 +213,8 @@ def linearise(system: System, time: float = 0.0) -> Linearised:
 def contact_state(system: System, time: Any, q: Any, qd: Any) -> tuple[Any, Any, Any]:
     """Normal force N [N], sliding velocity v [m/s] and sliding friction force mu sgn(v) N [N] of each contact.
 
-    `q` and `qd` are (..., n) at instants `time` (...); the results are (..., contacts). Where v = 0 the force is 0: what
-    a sticking contact carries is known only to the analysis that holds it there.
+    `q` and `qd` are (..., n) at instants `time` (...); the results are (..., contacts). Where v = 0 the force is 0:
+    what a sticking contact carries is known only to the analysis that holds it there.
     """
     normals, speeds, forces = [], [], []
     for contact in system.contacts:

@@ -23,6 +23,7 @@ from squealbox.schedules import as_schedule
 from squealbox.system import Contact, System
 
 TABLE = "nomenclature of the 2011 paper"
+THETA1, THETA2 = np.deg2rad(35.0), np.deg2rad(115.0)
 DEFAULT_SLOPE = -0.05  # alpha is not in the paper; 0.05 s/m is an assumption, see docs/papers/drum_brake_2011
 
 
@@ -53,8 +54,8 @@ class DrumBrake(Design):
     k4: float = parameter("N/m", 0.0, default=11e7, meaning="contact stiffness of shoe 2", source=TABLE)
     load1: Any = parameter("N", 0.0, default=1000.0, schedule=True, meaning="normal load on shoe 1", source=TABLE)
     load2: Any = parameter("N", 0.0, default=1000.0, schedule=True, meaning="normal load on shoe 2", source=TABLE)
-    theta1: float = parameter("rad", -np.pi, np.pi, default=np.deg2rad(35.0), meaning="centre of pressure, shoe 1", source=TABLE)
-    theta2: float = parameter("rad", -np.pi, np.pi, default=np.deg2rad(115.0), meaning="centre of pressure, shoe 2", source=TABLE)
+    theta1: float = parameter("rad", -np.pi, np.pi, default=THETA1, meaning="centre of pressure, shoe 1", source=TABLE)
+    theta2: float = parameter("rad", -np.pi, np.pi, default=THETA2, meaning="centre of pressure, shoe 2", source=TABLE)
     sliding_speed: Any = parameter("m/s", default=0.2, schedule=True, meaning="speed of the belts, V_B", source=TABLE)
     friction: FrictionLaw = LinearSlope(0.30, DEFAULT_SLOPE)
     reading: str = "consistent"
@@ -194,4 +195,5 @@ def _vector(a: Any, b: Any) -> Any:
 
 
 def _matrix(a: Any, b: Any, c: Any, d: Any) -> Any:
-    return np.stack([_vector(a, b), _vector(c, d)], axis=-2) if np.ndim(a) == np.ndim(b) else _matrix(*np.broadcast_arrays(a, b, c, d))
+    a, b, c, d = np.broadcast_arrays(a, b, c, d)
+    return np.stack([_vector(a, b), _vector(c, d)], axis=-2)

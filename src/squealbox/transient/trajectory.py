@@ -31,7 +31,8 @@ class EnergyAudit:
     @property
     def relative_residual(self) -> float:
         """Largest |residual| over the largest energy turned over by any term [-]."""
-        terms = (self.stored, self.load, self.circulation, self.dissipated, self.impact, *np.moveaxis(self.friction, -1, 0))
+        terms = [self.stored, self.load, self.circulation, self.dissipated, self.impact]
+        terms += list(np.moveaxis(self.friction, -1, 0))
         scale = max(float(np.max(np.abs(term), initial=0.0)) for term in terms)
         worst = float(np.max(np.abs(self.residual), initial=0.0))
         return worst / scale if scale > 0.0 else worst

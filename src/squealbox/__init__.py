@@ -1,0 +1,11 @@
+"""Friction-induced vibration of brakes: stability, transients and limit cycles of systems with sliding contacts.
+
+The public names are listed in ``__init__.pyi``, in the order of the story: laws and schedules, the system, designs,
+what is asked of them, and pictures. Each is loaded when it is first used, so importing the package is quick.
+"""
+
+import lazy_loader
+
+__version__ = "0.1.0"
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,41 @@
+# The public names in the order of the story. `lazy_loader` reads the imports; people, editors and type checkers read both.
+# A room with more names than the story needs is public as a whole: `squealbox.friction.Table`, `squealbox.schedules.Table`.
+
+from . import designs, friction, schedules
+from .designs import DrumBrake
+from .friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stribeck
+from .parameters import ParameterError
+from .result import Outcome, Result
+from .schedules import Constant, Ramp, Schedule, Sinusoid
+from .system import Contact, System, equilibrium, linearise
+
+__version__: str
+
+__all__ = [
+    # friction laws: mu(|v|) and its slope
+    "friction",
+    "FrictionLaw",
+    "Coulomb",
+    "LinearSlope",
+    "Stribeck",
+    "Hyperbolic",
+    "Cubic",
+    # what varies in time
+    "schedules",
+    "Schedule",
+    "Constant",
+    "Ramp",
+    "Sinusoid",
+    # the equation, its steady sliding state and its linearisation
+    "System",
+    "Contact",
+    "equilibrium",
+    "linearise",
+    # brakes on paper
+    "designs",
+    "DrumBrake",
+    # what every analysis hands back, and what a bad number raises
+    "Result",
+    "Outcome",
+    "ParameterError",
+]
