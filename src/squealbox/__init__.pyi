@@ -7,6 +7,7 @@ from .friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stri
 from .parameters import ParameterError
 from .result import Outcome, Result
 from .schedules import Constant, Ramp, Schedule, Sinusoid
+from .stability import ComplexModes, CriticalValue, complex_modes, critical_value
 from .system import Contact, System, equilibrium, linearise
 
 __version__: str
@@ -34,6 +35,11 @@ __all__ = [
     # brakes on paper
     "designs",
     "DrumBrake",
+    # is steady sliding stable, and from which value is it not?
+    "complex_modes",
+    "ComplexModes",
+    "critical_value",
+    "CriticalValue",
     # what every analysis hands back, and what a bad number raises
     "Result",
     "Outcome",

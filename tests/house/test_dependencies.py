@@ -1,0 +1,41 @@
+"""What the package imports is what it says it depends on."""
+
+import ast
+import sys
+import tomllib
+
+import pytest
+
+from house.rooms import PACKAGE, PROJECT
+
+DISTRIBUTIONS = {"dask": "distributed"}  # import name to the name it is installed by, where they differ
+PROJECT_TABLE = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]
+# Rooms that may use an extra, and which one.
+EXTRAS = {"studies": "studies", "workbench": "workbench"}
+
+
+def declared(requirements) -> set[str]:
+    """The bare names of a list of requirements."""
+    return {item.replace("[", ">").split(">")[0].strip() for item in requirements}
+
+
+def third_party(text: str) -> set[str]:
+    """Top-level packages the source imports, without the standard library and this package."""
+    found = set()
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            found |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            found.add(node.module.split(".")[0])
+    return {DISTRIBUTIONS.get(name, name) for name in found - set(sys.stdlib_module_names) - {"squealbox"}}
+
+
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_imports_are_declared(path):
+    room = path.relative_to(PACKAGE).parts[0]
+    extra = PROJECT_TABLE["optional-dependencies"].get(EXTRAS.get(room, ""), [])
+    assert third_party(path.read_text()) <= declared(PROJECT_TABLE["dependencies"]) | declared(extra)
+
+
+def test_an_undeclared_import_is_seen():
+    assert third_party("import numpy\nimport os\ndef f():\n    from plotly.io import show\n") == {"numpy", "plotly"}

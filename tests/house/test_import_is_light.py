@@ -1,0 +1,29 @@
+"""Importing the package, and asking it the first question, loads only what is needed for it."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+HEAVY = {
+    "numba", "llvmlite", "matplotlib", "xarray", "pandas", "h5py", "pydantic", "pint", "rich", "cyclopts", "dask",
+    "distributed", "jinja2",
+}  # fmt: skip
+STEADY = "import squealbox as sb; sb.linearise(sb.DrumBrake(friction=sb.LinearSlope(0.45, -0.05)).system())"
+
+
+def loaded_by(code: str) -> set[str]:
+    """The heavy packages a fresh interpreter has loaded after running `code`."""
+    script = f"{code}\nimport json, sys; print(json.dumps(sorted(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60)
+    return HEAVY & set(json.loads(done.stdout.splitlines()[-1]))
+
+
+@pytest.mark.parametrize("code", ["import squealbox", "from squealbox import *", STEADY])
+def test_nothing_heavy_is_loaded(code):
+    assert loaded_by(code) == set()
+
+
+def test_a_heavy_import_is_seen():
+    assert loaded_by("import jinja2") == {"jinja2"}
