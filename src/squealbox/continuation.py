@@ -1,0 +1,258 @@
+"""Follow the roots of residual(x, p) = 0 as the parameter p varies, through folds: pseudo-arclength continuation.
+
+Knows no physics. With y = (x, p), each step predicts along the tangent and corrects on the plane normal to it,
+
+    residual(y) = 0,   tangent . (y - y_predicted) = 0      (both in scaled variables)
+
+so the path may turn back in p. A :class:`Follower` is walked like any iterator; when it ends, `outcome` says why.
+Source: Keller 1977, "Numerical solution of bifurcation and nonlinear eigenvalue problems".
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from squealbox.result import COMPLETED, Outcome
+
+Residual = Callable[[Any, float], Any]
+Jacobian = Callable[[Any, float], tuple[Any, Any]]
+
+
+@dataclass(frozen=True)
+class StepControl:
+    """Tolerances of the follower: lengths are arclengths in scaled variables.
+
+    first, smallest, largest : step lengths
+    tolerance : Newton stops when the scaled correction falls below it
+    residual_tolerance : and, when finite, when the residual's largest entry is also below it
+    newton_steps : most Newton steps before a step is refused
+    wanted_steps : Newton steps at which the step length is kept
+    largest_turn : [rad] a step over which the tangent turns by more is refused
+    most_points : the walk ends after this many points
+    """
+
+    first: float = 1e-2
+    smallest: float = 1e-8
+    largest: float = 1e-1
+    tolerance: float = 1e-10
+    residual_tolerance: float = np.inf
+    newton_steps: int = 8
+    wanted_steps: int = 3
+    largest_turn: float = 0.35
+    most_points: int = 2000
+
+
+@dataclass(frozen=True, eq=False)
+class PathPoint:
+    """A point on the path.
+
+    x (n,), p; tangent (n + 1,) in scaled variables, of length 1; arclength from the start; step that led here; Newton
+    iterations; largest |residual|; fold when p turned back since the last point; branching when the determinant of
+    the bordered Jacobian changed sign, as it does where another path crosses.
+    """
+
+    x: Any
+    p: float
+    tangent: Any
+    arclength: float
+    step: float
+    iterations: int
+    residual: float
+    fold: bool = False
+    branching: bool = False
+    sign: float = field(default=1.0, repr=False)
+
+
+class Follower:
+    """The path through (x, p), as an iterator over :class:`PathPoint`; see :func:`follow`."""
+
+    def __init__(self, residual: Residual, x: Any, p: float, **options: Any) -> None:
+        self.residual = residual
+        self.jacobian: Jacobian | None = options.pop("jacobian", None)
+        self.control: StepControl = options.pop("control", StepControl())
+        self.direction: float = options.pop("direction", 1.0)
+        self.bounds: tuple[float, float] = options.pop("bounds", (-np.inf, np.inf))
+        self.closes: bool = options.pop("closes", True)
+        self.tangent: Any = options.pop("tangent", None)
+        x = np.atleast_1d(np.asarray(x, dtype=float))
+        x_scale = np.broadcast_to(np.asarray(options.pop("x_scale", 1.0), dtype=float), x.shape)
+        self.scale = np.append(x_scale, options.pop("p_scale", 1.0))
+        if options:
+            raise TypeError(f"follow() has no option {sorted(options)}")
+        self.start = np.append(x, float(p)) / self.scale
+        self.outcome = Outcome("not_finished", "the walk has not been ended")
+
+    def __iter__(self) -> Iterator[PathPoint]:
+        point = self._first()
+        if point is None:
+            return
+        yield point
+        origin, step, furthest = point, self.control.first, 0.0
+        for _ in range(self.control.most_points - 1):
+            advanced = self._advance(point, step)
+            if advanced is None:
+                message = f"no step above {self.control.smallest:g} could be taken at p = {point.p:.10g}"
+                self.outcome = Outcome("step_underflow", message, p=point.p, arclength=point.arclength)
+                return
+            previous, (point, step) = point, advanced
+            if not self.bounds[0] <= point.p <= self.bounds[1]:
+                yield from self._landing(previous, point)
+                return
+            distance = self._distance(origin, point)
+            if self.closes and furthest > 2.0 * point.step and self._returned(origin, previous, point):
+                self.outcome = Outcome(COMPLETED, "the path closed on itself", closed=True)
+                return
+            furthest = max(furthest, distance)
+            yield point
+        self.outcome = Outcome("most_points", f"ended after {self.control.most_points} points", p=point.p)
+
+    def _first(self) -> PathPoint | None:
+        fixed_p = np.append(np.zeros(self.start.size - 1), 1.0)
+        y, iterations, size = self._correct(self.start, fixed_p, 4 * self.control.newton_steps)
+        if y is None:
+            message = f"Newton's method found no root at the start, p = {self.start[-1] * self.scale[-1]:.10g}"
+            self.outcome = Outcome("no_start", message, residual=size)
+            return None
+        tangent, sign = self._tangent(y, fixed_p if self.tangent is None else np.asarray(self.tangent, dtype=float))
+        if self.tangent is None:
+            along = tangent[-1] if tangent[-1] != 0.0 else 1.0
+            tangent = tangent * np.sign(along) * np.sign(self.direction)
+            sign = self._sign(y, tangent)
+        return self._point(y, tangent, 0.0, 0.0, iterations, size, sign=sign)
+
+    def _advance(self, point: PathPoint, step: float) -> tuple[PathPoint, float] | None:
+        """The next point and the step to try after it, or None when the step length fell below the smallest."""
+        control = self.control
+        y = np.append(point.x, point.p) / self.scale
+        while step >= control.smallest:
+            found, iterations, size = self._correct(y + step * point.tangent, point.tangent, control.newton_steps)
+            if found is not None and np.linalg.norm(found - y) < 2.0 * step:
+                tangent, sign = self._tangent(found, point.tangent)
+                turn = np.arccos(np.clip(tangent @ point.tangent, -1.0, 1.0))
+                if turn <= control.largest_turn:
+                    grown = self._grown(step, iterations, turn)
+                    marks = {"fold": tangent[-1] * point.tangent[-1] < 0.0, "branching": sign != point.sign}
+                    length = point.arclength + step
+                    return self._point(found, tangent, length, step, iterations, size, sign=sign, **marks), grown
+            step *= 0.5
+        return None
+
+    def _grown(self, step: float, iterations: int, turn: float) -> float:
+        by_newton = 2.0 ** ((self.control.wanted_steps - iterations) / 2.0)
+        by_turn = 0.7 * self.control.largest_turn / max(turn, 1e-12)
+        return float(np.clip(step * min(by_newton, by_turn, 2.0), self.control.smallest, self.control.largest))
+
+    def _landing(self, previous: PathPoint, beyond: PathPoint) -> Iterator[PathPoint]:
+        """The point on the bound that was stepped over."""
+        bound = self.bounds[0] if beyond.p < self.bounds[0] else self.bounds[1]
+        self.outcome = Outcome(COMPLETED, f"reached the bound p = {bound:.10g}", bound=bound)
+        if previous.p == bound:
+            return
+        share = (bound - previous.p) / (beyond.p - previous.p)
+        ends = [np.append(point.x, point.p) / self.scale for point in (previous, beyond)]
+        guess = ends[0] + share * (ends[1] - ends[0])
+        guess[-1] = bound / self.scale[-1]
+        fixed_p = np.append(np.zeros(guess.size - 1), 1.0)
+        y, iterations, size = self._correct(guess, fixed_p, 2 * self.control.newton_steps)
+        if y is None:
+            message = f"Newton's method found no root on the bound p = {bound:.10g}"
+            self.outcome = Outcome("no_landing", message, p=previous.p, residual=size)
+            return
+        tangent, sign = self._tangent(y, previous.tangent)
+        step = share * beyond.step
+        yield self._point(y, tangent, previous.arclength + step, step, iterations, size, sign=sign)
+
+    def _correct(self, guess: Any, normal: Any, most: int) -> tuple[Any, int, float]:
+        """Newton on the plane through `guess` with that normal: the root or None, steps, largest |residual|."""
+        y, size = guess.copy(), np.inf
+        for iteration in range(1, most + 1):
+            value = self._value(y)
+            size = float(np.max(np.abs(value)))
+            if not np.isfinite(size):
+                return None, iteration, size
+            bordered = np.vstack([self._derivative(y), normal])
+            try:
+                change = np.linalg.solve(bordered, np.append(value, normal @ (y - guess)))
+            except np.linalg.LinAlgError:
+                return None, iteration, size
+            y = y - change
+            if np.max(np.abs(change)) <= self.control.tolerance:
+                size = float(np.max(np.abs(self._value(y))))
+                if size <= self.control.residual_tolerance:
+                    return y, iteration, size
+        return None, most, size
+
+    def _tangent(self, y: Any, along: Any) -> tuple[Any, float]:
+        """Unit null vector of the derivative on the side of `along` (NaN when not finite), sign of the bordered determinant."""
+        derivative = self._derivative(y)
+        if not np.all(np.isfinite(derivative)):
+            return np.full(y.size, np.nan), 0.0
+        _, _, rows = np.linalg.svd(derivative)
+        tangent = rows[-1] if rows[-1] @ along >= 0.0 else -rows[-1]
+        return tangent, float(np.linalg.slogdet(np.vstack([derivative, tangent]))[0])
+
+    def _sign(self, y: Any, tangent: Any) -> float:
+        return float(np.linalg.slogdet(np.vstack([self._derivative(y), tangent]))[0])
+
+    def _value(self, y: Any) -> Any:
+        x = y * self.scale
+        return np.atleast_1d(np.asarray(self.residual(x[:-1], float(x[-1])), dtype=float))
+
+    def _derivative(self, y: Any) -> Any:
+        """d residual / d y, shape (n, n + 1): the caller's Jacobian, or central differences."""
+        if self.jacobian is not None:
+            x = y * self.scale
+            by_x, by_p = self.jacobian(x[:-1], float(x[-1]))
+            return np.column_stack([np.atleast_2d(by_x), np.atleast_1d(by_p)]) * self.scale
+        step = np.cbrt(np.finfo(float).eps) * np.maximum(1.0, np.abs(y))
+        columns = []
+        for i in range(y.size):
+            shift = np.zeros(y.size)
+            shift[i] = step[i]
+            columns.append((self._value(y + shift) - self._value(y - shift)) / (2.0 * step[i]))
+        return np.column_stack(columns)
+
+    def _point(self, y: Any, tangent: Any, *numbers: Any, **marks: Any) -> PathPoint:
+        x = y * self.scale
+        return PathPoint(x[:-1], float(x[-1]), tangent, *numbers, **marks)
+
+    def _distance(self, a: PathPoint, b: PathPoint) -> float:
+        return float(np.linalg.norm((np.append(b.x, b.p) - np.append(a.x, a.p)) / self.scale))
+
+    def _returned(self, origin: PathPoint, previous: PathPoint, point: PathPoint) -> bool:
+        """True when the start lies between the last two points, on the same strand and in the same direction."""
+        start, a, b = ((np.append(q.x, q.p)) / self.scale for q in (origin, previous, point))
+        span = b - a
+        along = (start - a) @ span / (span @ span)
+        off = np.linalg.norm(start - a - along * span)
+        same_way = origin.tangent @ point.tangent > 0.0
+        return bool(0.0 < along <= 1.0 and off < 0.3 * np.linalg.norm(span) and same_way)
+
+
+def follow(residual: Residual, x: Any, p: float, **options: Any) -> Follower:
+    """Follow the root of residual(x, p) = 0 nearest to x at p; returns a :class:`Follower` to iterate over.
+
+    Parameters
+    ----------
+    residual : function of x (n,) and p that returns (n,)
+    x, p : start, corrected at fixed p before the walk
+    jacobian : function of x and p that returns (d residual/dx (n, n), d residual/dp (n,)); default central differences
+    control : :class:`StepControl`
+    direction : +1 walks towards larger p first, -1 towards smaller
+    tangent : (n + 1,) in scaled variables, to start along instead of by `direction`
+    bounds : (low, high) of p; the walk lands on the bound it meets
+    x_scale, p_scale : typical sizes; all lengths and tolerances are relative to them
+    closes : end when the path comes back to its start
+
+    When the iteration ends, `outcome` is "completed" (bound reached or path closed), "most_points", "step_underflow"
+    (a corner, an end or a noisy residual), "no_landing", or "no_start" (then there was no point at all).
+
+    >>> circle = follow(lambda x, p: x**2 + p**2 - 1.0, 1.0, 0.0)
+    >>> len([point for point in circle if point.fold])
+    2
+    >>> circle.outcome.evidence
+    {'closed': True}
+    """
+    return Follower(residual, x, p, **options)
