@@ -1,0 +1,29 @@
+"""What a signal holds: spectrum, peaks, spectrogram, frequency, growth rate, sound. Depends on: result.
+
+Every function takes an array with its times ``t`` [s] or its sampling rate [Hz], or anything with ``.t`` and ``.q``,
+such as a trajectory, of which ``dof`` names one column. Fourier methods need equal time steps and refuse others.
+"""
+
+from squealbox.signals.growth import GrowthRate, dominant_frequency, growth_rate, slope
+from squealbox.signals.samples import Samples, SignalError, column, samples, values
+from squealbox.signals.spectra import Peaks, Spectrogram, Spectrum, peaks, spectrogram, spectrum
+from squealbox.signals.wav import sound
+
+__all__ = [
+    "GrowthRate",
+    "Peaks",
+    "Samples",
+    "SignalError",
+    "Spectrogram",
+    "Spectrum",
+    "column",
+    "dominant_frequency",
+    "growth_rate",
+    "peaks",
+    "samples",
+    "slope",
+    "sound",
+    "spectrogram",
+    "spectrum",
+    "values",
+]

@@ -1,0 +1,100 @@
+"""Equally spaced samples of a signal: what every function of this room starts from."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+JITTER = 1e-3  # of a step: disturbs a line at half the sampling rate by 0.3 %, any other less
+
+
+class SignalError(ValueError):
+    """A signal cannot be analysed as given; the message says what was given and what is expected."""
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Equally spaced samples: `t` (k,) [s], `x` (k,), `rate` [Hz]."""
+
+    t: Any
+    x: Any
+    rate: float
+
+    @property
+    def duration(self) -> float:
+        """Time the samples stand for, k/rate [s]."""
+        return float(self.x.size / self.rate)
+
+
+def samples(
+    signal: Any,
+    t: Any = None,
+    *,
+    rate: float | None = None,
+    dof: int | str = 0,
+    begin: float | None = None,
+    end: float | None = None,
+) -> Samples:
+    """The equally spaced samples behind a signal, cut to begin <= t <= end [s].
+
+    Raises `SignalError` for unequal steps, a value that is not finite, fewer than 8 samples, or missing times.
+    """
+    times, x = values(signal, t, dof=dof, rate=rate)
+    keep = (times >= (-np.inf if begin is None else begin)) & (times <= (np.inf if end is None else end))
+    times, x = times[keep], x[keep]
+    if x.size < 8:
+        raise SignalError(
+            f"the signal has {x.size} samples between begin = {begin} and end = {end}: expected 8 or more"
+        )
+    step = (times[-1] - times[0]) / (times.size - 1)
+    steps = np.diff(times)
+    if np.max(np.abs(times - times[0] - step * np.arange(times.size))) > JITTER * step:
+        raise SignalError(
+            f"the times are not equally spaced: steps from {steps.min():g} to {steps.max():g} s; expected equal steps, "
+            "such as simulate(..., times=np.linspace(begin, end, count)) gives"
+        )
+    return Samples(times, x, float(1.0 / step))
+
+
+def values(signal: Any, t: Any = None, *, dof: int | str = 0, rate: float | None = None) -> tuple[Any, Any]:
+    """Times (k,) [s] and values (k,) of a signal, which need not be equally spaced.
+
+    `signal` is an array (k,) with `t` or `rate`, or has ``.t`` and ``.q`` (k, n); `dof` is then an index or a name.
+    """
+    if hasattr(signal, "q") and hasattr(signal, "t"):
+        t, x = signal.t, np.asarray(signal.q, dtype=float)
+        x = x[:, column(signal, dof)] if x.ndim == 2 else x
+    else:
+        x = np.asarray(signal, dtype=float)
+    if t is None:
+        if rate is None or not rate > 0.0:
+            raise SignalError(f"t is missing and rate = {rate}: expected the times t [s] or a sampling rate > 0 [Hz]")
+        t = np.arange(x.size) / rate
+    times = np.asarray(t, dtype=float)
+    if x.ndim != 1 or times.shape != x.shape:
+        raise SignalError(f"signal of shape {x.shape} with t of shape {times.shape}: expected one value for each time")
+    if not (np.all(np.isfinite(x)) and np.all(np.isfinite(times))):
+        first = int(np.argmin(np.isfinite(x) & np.isfinite(times)))
+        raise SignalError(
+            f"sample {first} is not finite (t = {times[first]:g}, value {x[first]:g}): expected finite values"
+        )
+    if np.any(np.diff(times) <= 0.0):
+        raise SignalError("the times do not increase: expected increasing times in s")
+    return times, x
+
+
+def column(motion: Any, dof: int | str) -> int:
+    """The index of a degree of freedom given by index or by its name in ``motion.system.names``."""
+    count = np.shape(motion.q)[1]
+    names = tuple(motion.system.names) if isinstance(dof, str) else ()
+    index = names.index(dof) if dof in names else dof
+    if isinstance(index, str) or not -count <= index < count:
+        known = f"one of {', '.join(names)}" if names else f"an index from 0 to {count - 1}"
+        raise SignalError(f"dof = {dof!r}: expected {known}")
+    return int(index)
+
+
+def given(cut: Mapping[str, Any]) -> dict[str, Any]:
+    """The choices that were made, for a result's settings."""
+    return {name: value for name, value in cut.items() if value is not None}
