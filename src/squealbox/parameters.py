@@ -51,7 +51,12 @@ class ParameterError(ValueError):
 
     def __init__(self, owner: str, name: str, value: object, expected: str) -> None:
         self.owner, self.name, self.value, self.expected = owner, name, value, expected
-        super().__init__(f"{owner}.{name} = {_shown(value)}: expected {expected}")
+        super().__init__(f"{owner}.{name} = {_shown(value)}: {self.expectation}")
+
+    @property
+    def expectation(self) -> str:
+        """What was expected, as the end of a sentence."""
+        return self.expected if self.expected.startswith("did you mean") else f"expected {self.expected}"
 
 
 def parameter(
@@ -75,10 +80,23 @@ def parameter(
     return dataclasses.field(default=default, metadata={"parameter": about})
 
 
+@dataclasses.dataclass(frozen=True)
+class Choice:
+    """What is known of a field that holds one of several words."""
+
+    options: tuple[str, ...]
+    meaning: str = ""
+
+
+def choice(*options: str, default: Any = dataclasses.MISSING, meaning: str = "") -> Any:
+    """Declare a field that holds one of the words `options`."""
+    return dataclasses.field(default=default, metadata={"choice": Choice(options, meaning)})
+
+
 _SHEETS: dict[str, type["DataSheet"]] = {}
 
 
-@dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(parameter, dataclasses.field))
+@dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(parameter, choice, dataclasses.field))
 class DataSheet:
     """Base of every frozen noun with parameters: laws, schedules and designs.
 
@@ -98,6 +116,10 @@ class DataSheet:
             about = field.metadata.get("parameter")
             if about is not None:
                 object.__setattr__(self, field.name, _checked(self, field.name, about))
+        for name, words in self.choices().items():
+            value = getattr(self, name)
+            if value not in words.options:
+                raise ParameterError(type(self).__name__, name, value, known_names(str(value), list(words.options)))
 
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):
@@ -157,6 +179,12 @@ class DataSheet:
         """Name to :class:`Parameter` for each declared field of this sheet, in order."""
         fields = dataclasses.fields(cls)  # type: ignore[arg-type]
         return {field.name: field.metadata["parameter"] for field in fields if "parameter" in field.metadata}
+
+    @classmethod
+    def choices(cls) -> dict[str, Choice]:
+        """Name to :class:`Choice` for each field that holds one of several words."""
+        fields = dataclasses.fields(cls)  # type: ignore[arg-type]
+        return {field.name: field.metadata["choice"] for field in fields if "choice" in field.metadata}
 
     def leaves(self, prefix: str = "") -> Iterator[tuple[str, Parameter, Any]]:
         """Every declared parameter with its dotted name and value, nested sheets included."""

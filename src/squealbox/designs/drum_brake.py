@@ -18,7 +18,7 @@ import numpy as np
 
 from squealbox.designs.base import Design
 from squealbox.friction import FrictionLaw, LinearSlope
-from squealbox.parameters import ParameterError, known_names, parameter
+from squealbox.parameters import ParameterError, choice, parameter
 from squealbox.schedules import as_schedule
 from squealbox.system import Contact, System
 
@@ -58,12 +58,18 @@ class DrumBrake(Design):
     theta2: float = parameter("rad", -np.pi, np.pi, default=THETA2, meaning="centre of pressure, shoe 2", source=TABLE)
     sliding_speed: Any = parameter("m/s", default=0.2, schedule=True, meaning="speed of the belts, V_B", source=TABLE)
     friction: FrictionLaw = LinearSlope(0.30, DEFAULT_SLOPE)
-    reading: str = "consistent"
+    reading: str = choice(
+        "eq1_printed",
+        "eq3",
+        "eq3_signed",
+        "componentwise",
+        "consistent",
+        default="consistent",
+        meaning="how the paper's friction is read",
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.reading not in READINGS:
-            raise ParameterError("DrumBrake", "reading", self.reading, known_names(str(self.reading), list(READINGS)))
         if not isinstance(self.friction, FrictionLaw):
             raise ParameterError("DrumBrake", "friction", self.friction, "a friction law")
 
