@@ -1,0 +1,165 @@
+"""What a design file may ask of its design: the sections [modes], [onset], [map] and [simulate].
+
+Each section is a data sheet, declared with units and ranges like any other, so the file reader, the JSON schema and the
+command line know it from here.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from squealbox.designs import Design
+from squealbox.files.arrays import Vector
+from squealbox.files.document import Document
+from squealbox.files.lines import Key
+from squealbox.files.numbers import WRONG, read_number, wrong
+from squealbox.files.sheets import read_sheet
+from squealbox.parameters import DataSheet, Parameter, ParameterError, known_names, parameter
+
+
+class Modes(DataSheet):
+    """[modes]: complex eigenvalues of steady sliding."""
+
+    time: float = parameter("s", default=0.0, meaning="instant at which schedules are taken")
+
+
+class Simulate(DataSheet):
+    """[simulate]: a transient."""
+
+    duration: float = parameter("s", 0.0, low_open=True, default=0.05, meaning="how long the motion is followed")
+    method: str = "bogacki-shampine"
+    contact: str = "exact"
+    rtol: float = parameter("-", 1e-13, 0.1, default=1e-3, meaning="relative tolerance of a step")
+    q: Vector = parameter("m", default=None, optional=True, meaning="displacement at the start; left out, zero")
+    qd: Vector = parameter("m/s", default=None, optional=True, meaning="velocity at the start; left out, zero")
+
+
+class Axis(DataSheet):
+    """One parameter and the values it takes; `low` and `high` are in the parameter's own SI unit."""
+
+    aliases: ClassVar[dict[str, tuple[str, ...]]] = {"parameter": ("name",)}
+
+    name: str
+    low: float = parameter("")
+    high: float = parameter("")
+    points: int = parameter("-", 2, 20_001, default=201, meaning="number of values")
+
+    @property
+    def values(self) -> np.ndarray:
+        """The values, equally spaced, shape (points,)."""
+        return np.linspace(self.low, self.high, int(self.points))
+
+
+@dataclass(frozen=True)
+class Onset:
+    """[onset]: the critical value of a parameter in a range."""
+
+    axis: Axis
+
+
+@dataclass(frozen=True)
+class Map:
+    """[map]: stability over two parameters."""
+
+    x: Axis
+    y: Axis
+
+
+def quantity_of(design: Design, name: str) -> Parameter:
+    """Unit and range of the scalar parameter `name` of `design`; `ParameterError` names those there are."""
+    known = scalar_parameters(design)
+    if name not in known:
+        raise ParameterError("design", "parameter", name, known_names(name[:60], list(known)))
+    return known[name]
+
+
+def scalar_parameters(design: Design) -> dict[str, Parameter]:
+    """The parameters of a design that a study can vary, nested ones with dots, aliases included."""
+    known = {name: about for name, about, value in design.leaves() if np.ndim(value) == 0}
+    own = design.parameters()
+    for alias, names in design.aliases.items():
+        if all(name in own for name in names):
+            known[alias] = own[names[0]]
+    return known
+
+
+def read_modes(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Modes | None:
+    """The section [modes]."""
+    return read_sheet(document, Modes, table, key)
+
+
+def read_simulate(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Simulate | None:
+    """The section [simulate]; the start must have as many numbers as the design has degrees of freedom."""
+    section = read_sheet(document, Simulate, table, key)
+    if section is None or design is None:
+        return section
+    size = design.system().size
+    for name in ("q", "qd"):
+        value = getattr(section, name)
+        if value is not None and value.shape != (size,):
+            document.problem((*key, name), f"{len(value)} numbers: expected {size}, one for each degree of freedom")
+    return section
+
+
+def read_onset(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Onset | None:
+    """The section [onset]: ``parameter = "friction.static"`` and ``range = [0, 1]``."""
+    axis = read_axis(document, table, key, design)
+    return Onset(axis) if axis else None
+
+
+def read_map(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Map | None:
+    """The section [map]: ``x`` and ``y``, each a table of parameter, range and points."""
+    axes: dict[str, Axis | None] = {}
+    for name in table:
+        if name not in ("x", "y"):
+            document.problem((*key, name), f"unknown key, {known_names(name[:60], ['x', 'y'])}")
+    for name in ("x", "y"):
+        value = table.get(name)
+        if not isinstance(value, Mapping):
+            example = "a table such as { parameter = 'friction.static', range = [0, 1], points = 201 }"
+            wrong(document, (*key, name), value, example) if name in table else document.problem(
+                key, f"the key '{name}' is missing, expected {example}"
+            )
+        else:
+            axes[name] = read_axis(document, value, (*key, name), design)
+    x, y = axes.get("x"), axes.get("y")
+    return None if x is None or y is None else Map(x, y)
+
+
+def read_axis(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Axis | None:
+    """A parameter of the design and a range in its unit."""
+    if "range" not in table:
+        document.problem(key, "the key 'range' is missing, expected two values such as [0, 1]")
+    given = {name: value for name, value in table.items() if name != "range"}
+    ends = _ends(document, table.get("range"), (*key, "range"), _about(document, table, key, design))
+    low, high = ends or (0.0, 1.0)
+    axis = read_sheet(document, Axis, {**given, "low": low, "high": high}, key)
+    return axis if ends else None
+
+
+def _about(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Parameter | None:
+    name = table.get("parameter")
+    if design is None or not isinstance(name, str) or name.partition(".")[0] in document.faulty:
+        return None
+    try:
+        return quantity_of(design, name)
+    except ParameterError as error:
+        document.problem((*key, "parameter"), f"unknown parameter {name[:60]!r}, {error.expectation}")
+        return None
+
+
+def _ends(document: Document, value: Any, key: Key, about: Parameter | None) -> tuple[float, float] | None:
+    if value is None or about is None:
+        return None
+    if not isinstance(value, list) or len(value) != 2:
+        wrong(document, key, value, "two values such as [0, 1]")
+        return None
+    low, high = (read_number(document, end, about, (*key, i)) for i, end in enumerate(value))
+    if low is WRONG or high is WRONG:
+        return None
+    if not low < high:
+        wrong(document, key, value, "the lower value first and the higher one second")
+        return None
+    return low, high

@@ -1,0 +1,94 @@
+"""From a design file to a design and what is asked of it."""
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squealbox.designs import DESIGNS, Design
+from squealbox.files import analyses
+from squealbox.files.document import Document, open_document
+from squealbox.files.numbers import WRONG, read_choice, wrong
+from squealbox.files.own_brake import OwnBrake
+from squealbox.files.sheets import read_sheet
+from squealbox.parameters import ParameterError, known_names
+from squealbox.system import InvalidSystem
+
+BRAKES: dict[str, type[Design]] = {**DESIGNS, "own": OwnBrake}
+SECTIONS: dict[str, Callable[..., Any]] = {
+    "modes": analyses.read_modes,
+    "onset": analyses.read_onset,
+    "map": analyses.read_map,
+    "simulate": analyses.read_simulate,
+}
+
+
+@dataclass(frozen=True)
+class DesignFile:
+    """A design and the sections of its file; a section that is not there is None."""
+
+    path: Path
+    design: Design
+    modes: analyses.Modes | None = None
+    onset: analyses.Onset | None = None
+    map: analyses.Map | None = None
+    simulate: analyses.Simulate | None = None
+
+
+def read_design(path: str | os.PathLike[str]) -> Design:
+    """The brake that the file at `path` describes.
+
+    Raises `DesignFileError`, whose `problems` are all that is wrong with the file, each with line, key and a sentence.
+    """
+    return read_file(path).design
+
+
+def read_file(path: str | os.PathLike[str]) -> DesignFile:
+    """The brake that the file at `path` describes, and its sections [modes], [onset], [map] and [simulate].
+
+    Raises `DesignFileError`, whose `problems` are all that is wrong with the file, each with line, key and a sentence.
+    """
+    document = open_document(Path(path))
+    tables = dict(document.tables)
+    asked = {name: tables.pop(name) for name in SECTIONS if name in tables}
+    design = _design(document, tables)
+    known = design or _without_problems(document, tables)
+    sections = {name: _section(document, name, table, known) for name, table in asked.items()}
+    if design is None or document.problems:
+        raise document.error()
+    return DesignFile(document.path, design, **sections)
+
+
+def _design(document: Document, tables: Mapping[str, Any]) -> Design | None:
+    if "brake" not in tables:
+        document.problem((), f"the key 'brake' is missing, expected {known_names('', list(BRAKES))}")
+        return None
+    kind = read_choice(document, tables["brake"], BRAKES, ("brake",))
+    if kind is WRONG:
+        return None
+    rest = {name: value for name, value in tables.items() if name != "brake"}
+    design: Design | None = read_sheet(document, kind, rest, (), beside=tuple(SECTIONS))
+    if design is None:
+        return None
+    try:
+        with np.errstate(all="ignore"):  # an overflow is reported by the system as a value that is not finite
+            design.system()
+    except (InvalidSystem, ParameterError) as error:
+        document.problem((), str(error))
+        return None
+    return design
+
+
+def _without_problems(document: Document, tables: Mapping[str, Any]) -> Design | None:
+    """The design of a faulty file with the faulty keys left out, to check its sections against in the same go."""
+    good = {name: value for name, value in tables.items() if name not in document.faulty}
+    return _design(Document(document.path, document.text, good), good)
+
+
+def _section(document: Document, name: str, table: Any, design: Design | None) -> Any:
+    if not isinstance(table, Mapping):
+        return wrong(document, (name,), table, f"a section [{name}]")
+    return SECTIONS[name](document, table, (name,), design)

@@ -1,0 +1,141 @@
+"""The JSON schema of a design file, for editors that complete keys and mark mistakes while one types."""
+
+import dataclasses
+import math
+import typing
+from typing import Any
+
+from squealbox.files.analyses import Axis, Modes, Simulate
+from squealbox.files.reading import BRAKES
+from squealbox.files.sheets import LAW_NAMES, SCHEDULE_NAMES, field_type, is_required
+from squealbox.friction import FrictionLaw
+from squealbox.parameters import DataSheet, Parameter
+
+Schema = dict[str, Any]
+QUANTITY = r"^ *[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)? *[^0-9]?.*$|^none$"
+
+
+def json_schema() -> Schema:
+    """The schema (draft 7) of a design file, made from the declarations of designs, laws, schedules and sections."""
+    definitions = {
+        **{f"law.{name}": _sheet(law, first={"law": {"const": name}}) for name, law in LAW_NAMES.items()},
+        **{f"schedule.{name}": _sheet(schedule) for name, schedule in SCHEDULE_NAMES.items()},
+        "law": {"type": "object", "required": ["law"], "oneOf": [_ref(f"law.{name}") for name in LAW_NAMES]},
+        "schedule": {"type": "object", "oneOf": [_one_key(name, _ref(f"schedule.{name}")) for name in SCHEDULE_NAMES]},
+        "axis": _axis(),
+    }
+    sections = {
+        "modes": _sheet(Modes),
+        "simulate": _sheet(Simulate),
+        "onset": _ref("axis"),
+        "map": {
+            "type": "object",
+            "description": "[map]: stability over two parameters",
+            "properties": {"x": _ref("axis"), "y": _ref("axis")},
+            "required": ["x", "y"],
+            "additionalProperties": False,
+        },
+    }
+    brakes = [_sheet(brake, first={"brake": {"const": name}}, more=sections) for name, brake in BRAKES.items()]
+    return {
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "title": "squealbox design file",
+        "type": "object",
+        "properties": {"brake": {"enum": list(BRAKES), "description": "which brake the file describes"}},
+        "required": ["brake"],
+        "oneOf": brakes,
+        "definitions": definitions,
+    }
+
+
+def _sheet(sheet: type[DataSheet], *, first: Schema | None = None, more: Schema | None = None) -> Schema:
+    properties = dict(first or {})
+    required = list(first or {})
+    for field in dataclasses.fields(sheet):  # type: ignore[arg-type]
+        properties[field.name] = _field(sheet, field.name)
+        if is_required(field):
+            required.append(field.name)
+    for alias, names in sheet.aliases.items():
+        properties[alias] = {**properties[names[0]], "description": f"sets {' and '.join(names)} together"}
+        required = [name for name in required if name not in names]
+    schema: Schema = {
+        "type": "object",
+        "description": (sheet.__doc__ or "").strip().partition("\n")[0],
+        "properties": {**properties, **(more or {})},
+        "additionalProperties": False,
+    }
+    return {**schema, "required": required} if required else schema
+
+
+def _field(sheet: type[DataSheet], name: str) -> Schema:
+    declared, about = field_type(sheet, name), sheet.parameters().get(name)
+    if typing.get_origin(declared) is typing.Annotated:
+        return _array(about or Parameter("-"), declared.__metadata__[0])
+    if about is not None:
+        return _several(about) if declared is Any and not about.schedule else _number(about, whole=declared is int)
+    words = sheet.choices().get(name)
+    if words is not None:
+        return {"enum": list(words.options), "description": words.meaning}
+    if typing.get_origin(declared) is tuple:
+        item = typing.get_args(declared)[0]
+        return {"type": "array", "items": {"type": "string"} if item is str else _sheet(item)}
+    if isinstance(declared, type) and issubclass(declared, FrictionLaw):
+        return _ref("law")
+    return {"type": "boolean" if declared is bool else "string"}
+
+
+def _number(about: Parameter, *, whole: bool = False) -> Schema:
+    """A number in SI, or a number with a unit in quotes; the range is checked of the first."""
+    schema: Schema = {"type": "integer" if whole else ["number", "string"], "description": _description(about)}
+    if not whole:
+        schema["pattern"] = QUANTITY
+    for limit, is_open, word in ((about.low, about.low_open, "Minimum"), (about.high, about.high_open, "Maximum")):
+        if math.isfinite(limit):
+            schema[f"exclusive{word}" if is_open else word.lower()] = limit
+    if about.schedule:
+        return {"description": _description(about), "anyOf": [schema, _ref("schedule")]}
+    return schema
+
+
+def _several(about: Parameter) -> Schema:
+    return {"description": _description(about), "anyOf": [_number(about), {"type": "array", "items": _number(about)}]}
+
+
+def _array(about: Parameter, ndim: int) -> Schema:
+    row = {"type": "array", "items": _number(about)}
+    inline = {"type": "array", "items": row} if ndim == 2 else row
+    file = {"type": "string", "description": "a .npy, .mtx or .csv file beside this one"}
+    table = {
+        "type": "object",
+        "properties": {"file": file, "unit": {"type": "string"}},
+        "required": ["file"],
+        "additionalProperties": False,
+    }
+    return {"description": _description(about), "anyOf": [inline, file, table]}
+
+
+def _axis() -> Schema:
+    end = {"type": ["number", "string"], "pattern": QUANTITY}
+    return {
+        "type": "object",
+        "description": "a parameter and the range it is varied over",
+        "properties": {
+            "parameter": {"type": "string", "description": "dotted name, such as friction.static"},
+            "range": {"type": "array", "items": end, "minItems": 2, "maxItems": 2, "description": "low and high"},
+            "points": _number(Axis.parameters()["points"], whole=True),
+        },
+        "required": ["parameter", "range"],
+        "additionalProperties": False,
+    }
+
+
+def _one_key(name: str, value: Schema) -> Schema:
+    return {"type": "object", "properties": {name: value}, "required": [name], "additionalProperties": False}
+
+
+def _description(about: Parameter) -> str:
+    return "; ".join(part for part in (about.meaning, about.range, about.source) if part)
+
+
+def _ref(name: str) -> Schema:
+    return {"$ref": f"#/definitions/{name}"}
