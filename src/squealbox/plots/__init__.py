@@ -1,0 +1,30 @@
+"""One function for each kind of result; each returns a matplotlib figure. Depends on: the results it draws.
+
+`plot(result)` chooses the function by the kind of result. Every function takes ``axes=`` to draw into a panel of a
+larger figure made with `panels`. Matplotlib is loaded at the first drawing.
+"""
+
+from squealbox.plots.dispatch import plot
+from squealbox.plots.laws import friction_curve
+from squealbox.plots.maps import stability_map
+from squealbox.plots.modes import coalescence
+from squealbox.plots.motion import amplitude_course, energy, motion_overview, phase_plane, time_history
+from squealbox.plots.spectra import spectrogram, spectrum
+from squealbox.plots.style import letters, panels, save
+
+__all__ = [
+    "amplitude_course",
+    "coalescence",
+    "energy",
+    "friction_curve",
+    "letters",
+    "motion_overview",
+    "panels",
+    "phase_plane",
+    "plot",
+    "save",
+    "spectrogram",
+    "spectrum",
+    "stability_map",
+    "time_history",
+]

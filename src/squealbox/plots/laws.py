@@ -1,0 +1,49 @@
+"""Friction coefficient against sliding speed."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.friction import FrictionLaw
+from squealbox.plots.dispatch import plot
+from squealbox.plots.style import drawing, figure_of, line, quantity_label
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@plot.register(FrictionLaw)
+@plot.register(Mapping)
+def friction_curve(
+    law: FrictionLaw | Mapping[str, FrictionLaw],
+    *,
+    upto: float = 1.0,
+    operating: tuple[float, float] | None = None,
+    speed: float | None = None,
+    title: str = "",
+    axes: Any = None,
+) -> "Figure":
+    """mu(v) of one law, or of several given by name, up to a sliding speed [m/s].
+
+    `operating` is a range of sliding speeds to shade, `speed` the one of steady sliding, where the slope is written.
+    """
+    laws = law if isinstance(law, Mapping) else {"": law}
+    speeds = np.linspace(0.0, upto, 401)
+    with drawing(axes) as panel:
+        if operating is not None:
+            panel.axvspan(*operating, facecolor="#e6e6e6", edgecolor="none", label="operating range", zorder=0)
+        for i, (name, each) in enumerate(laws.items()):
+            look = line(i, marker=len(laws) > 1, count=speeds.size)
+            panel.plot(speeds, each.mu(speeds), label=name or None, **look)
+            if speed is not None:
+                label = f"dµ/dv = {float(each.slope_at(speed)):.3g} s/m at {speed:.3g} m/s"
+                panel.plot(speed, each.mu(speed), "o", color=look["color"], label=f"{name} {label}".strip())
+        lowest = min(float(np.min(each.mu(speeds))) for each in laws.values())
+        panel.set_xlim(0.0, upto)
+        panel.set_ylim(bottom=min(0.0, 1.1 * lowest))
+        panel.set(xlabel=quantity_label("sliding speed", "m/s"), ylabel=quantity_label("friction coefficient µ", ""))
+        panel.set_title(title)
+        if panel.get_legend_handles_labels()[1]:
+            panel.legend(loc="best")
+        return figure_of(panel)

@@ -1,0 +1,64 @@
+"""A map over two parameters: where steady sliding, or a run, is unstable."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.plots.style import drawing, figure_of, quantity_label
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def stability_map(
+    x: Any,
+    y: Any,
+    growth: Any,
+    *,
+    x_name: str = "x",
+    x_unit: str = "",
+    y_name: str = "y",
+    y_unit: str = "",
+    value_name: str = "growth rate",
+    value_unit: str = "1/s",
+    title: str = "",
+    axes: Any = None,
+) -> "Figure":
+    """Unstable region over two parameters: shaded by growth rate, hatched, and bounded by a line.
+
+    Parameters
+    ----------
+    x, y : (nx,), (ny,), increasing, in the units named; convert angles to degrees first
+    growth : (ny, nx), unstable where > 0; NaN, drawn as crosses, where nothing is known. Booleans (True = unstable) are
+        drawn without shades
+    x_name, x_unit, y_name, y_unit, value_name, value_unit : for the axes and the bar
+    """
+    grid = np.asarray(growth)
+    if grid.shape != (np.size(y), np.size(x)):
+        raise ValueError(f"growth of shape {grid.shape}: expected ({np.size(y)}, {np.size(x)}), one row for each y")
+    boolean = grid.dtype == bool
+    level = np.where(grid, 1.0, -1.0) if boolean else grid.astype(float)
+    unknown = ~np.isfinite(level)
+    top = float(np.nanmax(level, initial=-np.inf))
+    with drawing(axes, width=4.0, height=3.4) as panel:
+        if top > 0.0:
+            _shade(panel, x, y, np.ma.masked_invalid(level), top, None if boolean else (value_name, value_unit))
+        if np.any(unknown):
+            panel.contourf(x, y, unknown.astype(float), levels=[0.5, 1.5], colors=["#dddddd"], hatches=["xxx"])
+        panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
+        panel.set_facecolor("white")
+        panel.tick_params(color="#000000")
+        return figure_of(panel)
+
+
+def _shade(panel: Any, x: Any, y: Any, level: Any, top: float, bar: tuple[str, str] | None) -> None:
+    from matplotlib.ticker import MaxNLocator
+
+    rounded = np.asarray(MaxNLocator(7).tick_values(0.0, top))
+    steps = rounded[rounded >= 0.0] if bar else np.array([0.0, 2.0])
+    palette = {"cmap": "Oranges"} if bar else {"colors": ["#f3d9c7"]}
+    shade = panel.contourf(x, y, level, levels=steps, extend="neither", zorder=1, **palette)
+    panel.contourf(x, y, level, levels=[0.0, 1e300], colors="none", hatches=["////"], zorder=2)
+    panel.contour(x, y, level, levels=[0.0], colors=["#000000"], linewidths=1.2, zorder=3)
+    if bar:
+        figure_of(panel).colorbar(shade, ax=panel, pad=0.02).set_label(quantity_label(*bar))

@@ -1,0 +1,89 @@
+"""Frequencies and growth rates of the modes against a parameter: coalescence."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.plots.style import UNSTABLE, drawing, figure_of, line, note, quantity_label, scaled
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def coalescence(
+    parameter: Any,
+    modes: Any,
+    *,
+    name: str = "friction coefficient",
+    unit: str = "",
+    frequency_unit: str | None = None,
+    title: str = "",
+    axes: Any = None,
+) -> "Figure":
+    """Frequency (above) and growth rate (below) of each mode against a parameter, unstable stretches hatched.
+
+    Parameters
+    ----------
+    parameter : (k,), increasing values
+    modes : batched complex modes, or their eigenvalues (k, 2n) [1/s]
+    name, unit : of the parameter, for the axis
+    frequency_unit : "kHz", "Hz", "rad/s" or "10³ rad/s"; by default what suits the numbers
+    axes : a pair of panels
+    """
+    values = np.asarray(parameter, dtype=float)
+    eigenvalues = np.asarray(getattr(modes, "eigenvalues", modes))
+    if eigenvalues.ndim != 2 or eigenvalues.shape[0] != values.size:
+        raise ValueError(
+            f"eigenvalues of shape {eigenvalues.shape} for {values.size} values: expected (k, 2n), a row for each"
+        )
+    branches = followed(eigenvalues)
+    branches = np.where(np.imag(branches) >= 0.0, branches, np.nan)
+    branches = branches[:, np.any(np.isfinite(branches), axis=0)]
+    frequency, growth = np.imag(branches) / (2.0 * np.pi), np.real(branches)
+    hertz, read = scaled("Hz", frequency, to=frequency_unit)
+    worst = np.max(np.real(eigenvalues), axis=-1)
+    with drawing(axes, rows=2, height=3.8, sharex=True) as (above, below):
+        for i in range(branches.shape[1]):
+            look = {**line(i, marker=True, count=values.size), "linewidth": 1.2}
+            above.plot(values, frequency[:, i] / hertz, label=f"mode {i + 1}", **look)
+            below.plot(values, growth[:, i], **look)
+        below.axhline(0.0, color="#000000", linewidth=0.5)
+        for panel in (above, below):
+            for left, right in unstable_stretches(values, worst):
+                panel.axvspan(left, right, zorder=0, **UNSTABLE)
+            panel.set_xlim(values[0], values[-1])
+        onsets = [left for left, _ in unstable_stretches(values, worst) if left > values[0]]
+        if onsets:
+            note(above, "unstable from " + ", ".join(f"{x:.4g}" for x in onsets) + f" {unit}".rstrip(), "lower left")
+        above.set(ylabel=quantity_label("frequency", read), title=title)
+        below.set(xlabel=quantity_label(name, unit), ylabel=quantity_label("growth rate", "1/s"))
+        above.legend(loc="upper right")
+        return figure_of(above)
+
+
+def followed(eigenvalues: Any) -> Any:
+    """The rows of `eigenvalues` (k, m) reordered so that each column runs on smoothly.
+
+    Each row is matched to the straight continuation of the two before it, by the assignment of least total distance.
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    rows = np.array(eigenvalues, dtype=complex)
+    for k in range(1, len(rows)):
+        expected = rows[k - 1] if k < 2 else 2.0 * rows[k - 1] - rows[k - 2]
+        if not (np.all(np.isfinite(expected)) and np.all(np.isfinite(rows[k]))):
+            continue
+        _, order = linear_sum_assignment(np.abs(expected[:, None] - rows[k][None, :]))
+        rows[k] = rows[k][order]
+    return rows
+
+
+def unstable_stretches(values: Any, growth: Any) -> list[tuple[float, float]]:
+    """Stretches of `values` where `growth` > 0; their ends by straight lines between the points."""
+    crossing = [
+        float(values[i] - growth[i] * (values[i + 1] - values[i]) / (growth[i + 1] - growth[i]))
+        for i in range(len(values) - 1)
+        if (growth[i] > 0.0) != (growth[i + 1] > 0.0)
+    ]
+    ends = [float(values[0])] * bool(growth[0] > 0.0) + crossing + [float(values[-1])] * bool(growth[-1] > 0.0)
+    return list(zip(ends[::2], ends[1::2], strict=True))

@@ -1,0 +1,154 @@
+"""Figures of a motion: time history, phase plane, energy audit, and all of them together."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.plots.dispatch import plot
+from squealbox.plots.style import drawing, figure_of, line, note, panels, quantity_label, scaled
+from squealbox.signals import SignalError, column, values
+from squealbox.transient.trajectory import Trajectory
+from squealbox.transient.verdict import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def time_history(
+    motion: Any,
+    t: Any = None,
+    *,
+    dof: Any = 0,
+    verdict: Verdict | None = None,
+    name: str = "displacement",
+    unit: str | None = None,
+    time_unit: str | None = None,
+    title: str = "",
+    axes: Any = None,
+) -> "Figure":
+    """Displacement against time.
+
+    Parameters
+    ----------
+    motion, t : a trajectory, or an array (k,) in m with its times [s]
+    dof : index or name, or a list of them
+    verdict : draws the course of its amplitude about the last mean, and its sentence's numbers in the corner
+    name : what the axis calls the value
+    unit, time_unit : "mm", "ms" and the like; by default what makes the largest value one or more
+    axes : draw here instead of in a new figure
+    """
+    columns = list(dof) if isinstance(dof, (list, tuple)) else [dof]
+    curves = [values(motion, t, dof=which) for which in columns]
+    factor, read = scaled("m", *(x for _, x in curves), to=unit)
+    second, clock = scaled("s", curves[0][0], to=time_unit)
+    with drawing(axes) as panel:
+        for i, (times, x) in enumerate(curves):
+            label = _dof_name(motion, columns[i]) if len(columns) > 1 else None
+            panel.plot(times / second, x / factor, label=label, **{**line(i), "linewidth": 0.7})
+        if verdict is not None:
+            for sign in (-1.0, 1.0):
+                hull = (verdict.offset + sign * verdict.envelope) / factor
+                panel.plot(verdict.envelope_time / second, hull, **{**line(2), "linewidth": 1.1})
+            note(panel, _verdict_note(verdict))
+        panel.set_xlim(curves[0][0][0] / second, curves[0][0][-1] / second)
+        panel.set(xlabel=quantity_label("time", clock), ylabel=quantity_label(name, read), title=title)
+        if len(columns) > 1:
+            panel.legend(loc="upper right")
+        return figure_of(panel)
+
+
+def phase_plane(
+    motion: Any,
+    *,
+    dof: int | str = 0,
+    part: float = 0.25,
+    unit: str | None = None,
+    speed_unit: str | None = None,
+    title: str = "",
+    axes: Any = None,
+) -> "Figure":
+    """Velocity against displacement: the last `part` of the time dark, what came before pale, the start as a ring."""
+    times, x = values(motion, dof=dof)
+    velocity = np.asarray(motion.qd)[:, column(motion, dof)]
+    factor, read = scaled("m", x, to=unit)
+    speed, clock = scaled("m/s", velocity, to=speed_unit)
+    late = times >= times[-1] - part * (times[-1] - times[0])
+    with drawing(axes, height=2.8) as panel:
+        panel.plot(x / factor, velocity / speed, color="#b0b0b0", linewidth=0.4)
+        panel.plot(x[late] / factor, velocity[late] / speed, color="#000000", linewidth=0.8)
+        panel.plot(x[0] / factor, velocity[0] / speed, "o", color="#D55E00", markerfacecolor="white", zorder=3)
+        panel.set(xlabel=quantity_label("displacement", read), ylabel=quantity_label("velocity", clock), title=title)
+        panel.margins(0.08)
+        return figure_of(panel)
+
+
+def energy(trajectory: Trajectory, *, unit: str | None = None, title: str = "", axes: Any = None) -> "Figure":
+    """Where the energy went, and by how much the audit fails to close; `axes` is a pair of panels.
+
+    Above: work of the friction of each contact, of the load and of the skew stiffness, energy dissipated (negative) and
+    stored. Below: the residual over the largest energy turned over.
+    """
+    audit, times = trajectory.energy, trajectory.t
+    names = [contact.name or f"contact {i + 1}" for i, contact in enumerate(trajectory.system.contacts)]
+    terms = [(f"friction, {name}", audit.friction[:, i]) for i, name in enumerate(names)]
+    terms += [("load", audit.load), ("circulation", audit.circulation), ("dissipated", -audit.dissipated)]
+    terms += [("opening of contacts", audit.opening), ("stored", audit.stored)]
+    terms = [(name, term) for name, term in terms if np.any(term)]
+    factor, read = scaled("J", *(term for _, term in terms), to=unit)
+    second, clock = scaled("s", times)
+    with drawing(axes, rows=2, width=4.6, height=4.0, sharex=True, height_ratios=[3, 1]) as (above, below):
+        for i, (name, term) in enumerate(terms):
+            above.plot(times / second, term / factor, label=name, **line(i, marker=True, count=times.size))
+        above.set(ylabel=quantity_label("energy since the start", read), title=title)
+        above.legend(loc="best")
+        largest = max((float(np.max(np.abs(term))) for _, term in terms), default=0.0) or 1.0
+        below.plot(times / second, audit.residual / largest, **line(0))
+        below.set(xlabel=quantity_label("time", clock), ylabel=quantity_label("residual", ""))
+        below.set_xlim(times[0] / second, times[-1] / second)
+        return figure_of(above)
+
+
+@plot.register(Trajectory)
+def motion_overview(trajectory: Trajectory, *, dof: int | str = 0, title: str = "") -> "Figure":
+    """Time history with the verdict, phase plane and spectrum of one degree of freedom."""
+    from squealbox.plots.spectra import spectrum
+    from squealbox.transient.verdict import verdict
+
+    figure, axes = panels(1, 3, height=2.5, width_ratios=[1.5, 1.0, 1.2])
+    time_history(trajectory, dof=dof, verdict=verdict(trajectory, dof=dof), axes=axes[0])
+    phase_plane(trajectory, dof=dof, axes=axes[1])
+    spectrum(trajectory, dof=dof, axes=axes[2])
+    figure.suptitle(title, fontsize=8)
+    return figure
+
+
+@plot.register(Verdict)
+def amplitude_course(verdict: Verdict, *, unit: str | None = None, title: str = "", axes: Any = None) -> "Figure":
+    """Course of the amplitude behind a verdict, on a logarithmic scale, with its sentence."""
+    factor, read = scaled("m", verdict.envelope, to=unit)
+    second, clock = scaled("s", verdict.envelope_time)
+    with drawing(axes) as panel:
+        panel.semilogy(verdict.envelope_time / second, verdict.envelope / factor, **line(0))
+        if np.isfinite(verdict.settled_at):
+            panel.axvline(float(verdict.settled_at) / second, **{**line(2), "linewidth": 0.8})
+        note(panel, _verdict_note(verdict))
+        panel.set(xlabel=quantity_label("time", clock), ylabel=quantity_label("half peak to peak", read), title=title)
+        return figure_of(panel)
+
+
+def _verdict_note(verdict: Verdict) -> str:
+    text = verdict.kind.replace("_", " ")
+    if verdict.kind == "settles_on_cycle":
+        factor, read = scaled("m", verdict.amplitude)
+        return f"{text}: {verdict.amplitude / factor:.3g} {read}, {verdict.frequency / 1e3:.4g} kHz"
+    if np.isfinite(verdict.growth_rate):
+        return f"{text}: {verdict.growth_rate:.3g} ± {verdict.growth_rate_error:.1g} 1/s"
+    return text
+
+
+def _dof_name(motion: Any, dof: int | str) -> str:
+    if isinstance(dof, str):
+        return dof
+    if isinstance(motion, Trajectory):
+        return motion.system.names[dof]
+    raise SignalError(f"dof = {dof}: several degrees of freedom need a trajectory that names them")

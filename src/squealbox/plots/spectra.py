@@ -1,0 +1,105 @@
+"""Figures of a spectrum and of a spectrogram."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox import signals
+from squealbox.plots.dispatch import plot
+from squealbox.plots.style import drawing, figure_of, line, note, quantity_label, scaled
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def spectrum(
+    signal: Any,
+    t: Any = None,
+    *,
+    peaks: int = 3,
+    upto: float | None = None,
+    logarithmic: bool = False,
+    unit: str | None = None,
+    frequency_unit: str | None = None,
+    name: str = "amplitude",
+    title: str = "",
+    axes: Any = None,
+    **cut: Any,
+) -> "Figure":
+    """One-sided amplitude spectrum of a signal, or a `Spectrum` already made, with its highest peaks named.
+
+    Parameters
+    ----------
+    signal, t : a `Spectrum`, a trajectory, or an array (k,) in m with its times [s]
+    peaks : how many peaks to name
+    upto : highest frequency drawn [Hz]; by default twice that of the highest peak
+    logarithmic : draw the amplitude over five decades on a logarithmic scale
+    unit, frequency_unit : "mm", "µm", "kHz", "rad/s", "10³ rad/s" ...; by default what suits the numbers
+    cut : `dof`, `begin`, `end`, `window` ... of :func:`squealbox.signals.spectrum`
+    """
+    lines = signal if isinstance(signal, signals.Spectrum) else signals.spectrum(signal, t, **cut)
+    found = signals.peaks(lines, peaks)
+    limit = upto or 2.0 * float(found.frequency[0] if found.frequency.size else lines.frequency[-1] / 2.0)
+    shown = lines.frequency <= limit
+    hertz, read = scaled("Hz", lines.frequency[shown], to=frequency_unit)
+    factor, size = scaled("m", lines.amplitude[shown], to=unit)
+    with drawing(axes) as panel:
+        draw = panel.semilogy if logarithmic else panel.plot
+        draw(lines.frequency[shown] / hertz, lines.amplitude[shown] / factor, **{**line(0), "linewidth": 0.8})
+        top = float(np.max(lines.amplitude[shown])) / factor or 1.0
+        panel.set_ylim(*((1e-5 * top, 3.0 * top) if logarithmic else (0.0, 1.25 * top)))
+        panel.set_xlim(0.0, limit / hertz)
+        for frequency, amplitude in zip(found.frequency, found.amplitude, strict=True):
+            if frequency <= limit:
+                _name_peak(panel, frequency / hertz, amplitude / factor)
+        panel.set(xlabel=quantity_label("frequency", read), ylabel=quantity_label(name, size), title=title)
+        note(panel, f"{lines.window} window\nresolution {lines.resolution / hertz:.2g} {read}")
+        return figure_of(panel)
+
+
+def _name_peak(panel: Any, x: float, y: float) -> None:
+    panel.plot(x, y, "v", color="#D55E00", markersize=3, zorder=3)
+    panel.annotate(f"{x:.4g}", (x, y), textcoords="offset points", xytext=(0, 4), ha="center", fontsize=6.5)
+
+
+def spectrogram(
+    signal: Any,
+    t: Any = None,
+    *,
+    upto: float | None = None,
+    decades: float = 3.0,
+    unit: str | None = None,
+    frequency_unit: str | None = None,
+    title: str = "",
+    axes: Any = None,
+    **cut: Any,
+) -> "Figure":
+    """Amplitude over time and frequency, dark where it is large, over `decades` below the largest.
+
+    `signal` is a `Spectrogram`, a trajectory, or an array (k,) in m with its times `t` [s]; `upto` [Hz] is the highest
+    frequency drawn; `cut` goes to :func:`squealbox.signals.spectrogram`.
+    """
+    from matplotlib.colors import LogNorm
+
+    grid = signal if isinstance(signal, signals.Spectrogram) else signals.spectrogram(signal, t, **cut)
+    strongest = grid.frequency[np.argmax(np.max(grid.amplitude[1:], axis=1)) + 1]
+    shown = grid.frequency <= (upto or 2.0 * strongest)
+    hertz, read = scaled("Hz", grid.frequency[shown], to=frequency_unit)
+    factor, size = scaled("m", grid.amplitude[shown], to=unit)
+    second, clock = scaled("s", grid.time)
+    top = float(np.max(grid.amplitude[shown])) / factor
+    with drawing(axes, height=2.6) as panel:
+        shade = LogNorm(top * 10.0**-decades, top)
+        floor = np.maximum(grid.amplitude[shown] / factor, top * 10.0**-decades)
+        mesh = panel.pcolormesh(
+            grid.time / second, grid.frequency[shown] / hertz, floor, norm=shade, cmap="cividis_r", rasterized=True
+        )
+        bar = figure_of(panel).colorbar(mesh, ax=panel, pad=0.02)
+        bar.set_label(quantity_label("amplitude", size))
+        panel.set(xlabel=quantity_label("time", clock), ylabel=quantity_label("frequency", read), title=title)
+        note(panel, f"pieces of {grid.segment / second:.3g} {clock}, resolution {grid.resolution / hertz:.2g} {read}")
+        return figure_of(panel)
+
+
+plot.register(signals.Spectrum, spectrum)
+plot.register(signals.Spectrogram, spectrogram)

@@ -1,0 +1,191 @@
+"""One look for every figure: readable in grey, safe for colour-blind readers, a unit on every axis.
+
+Lines differ by dash and marker as well as by colour, areas by hatching as well as by shade. Figures are made with
+matplotlib's objects, never with pyplot, so none is left open and no display is needed.
+"""
+
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+WIDTH = 7.0  # inches: the text width of a journal page
+COLUMN = 3.4  # one column of two
+ROW = 2.1  # height of a row of panels
+
+# The colours of Okabe and Ito, in an order whose greys also differ; each with its own dash and marker.
+LINES: tuple[tuple[str, Any, str], ...] = (
+    ("#000000", "solid", "o"),
+    ("#0072B2", (0, (5, 1.5)), "s"),
+    ("#D55E00", (0, (1.2, 1.2)), "^"),
+    ("#009E73", (0, (6, 1.5, 1.2, 1.5)), "D"),
+    ("#CC79A7", (0, (3, 1, 1, 1, 1, 1)), "v"),
+    ("#56B4E9", (0, (8, 3)), "P"),
+    ("#E69F00", (0, (2, 2)), "X"),
+)
+UNSTABLE = {"facecolor": "#f3d9c7", "hatch": "////", "edgecolor": "#b9a79a", "linewidth": 0.0}
+
+PREFIXES: dict[str, tuple[tuple[float, str], ...]] = {
+    "m": ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")),
+    "s": ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs")),
+    "Hz": ((1e6, "MHz"), (1e3, "kHz"), (1.0, "Hz")),
+    "rad/s": ((1e3, "10³ rad/s"), (1.0, "rad/s")),
+    "N": ((1e6, "MN"), (1e3, "kN"), (1.0, "N"), (1e-3, "mN")),
+    "Pa": ((1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1.0, "Pa")),
+    "J": ((1e3, "kJ"), (1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"), (1e-9, "nJ")),
+    "m/s": ((1.0, "m/s"), (1e-3, "mm/s"), (1e-6, "µm/s")),
+    "rad": ((np.pi / 180.0, "°"),),
+}
+
+RC: dict[str, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 8.0,
+    "mathtext.fontset": "dejavusans",
+    "axes.titlesize": 8.0,
+    "axes.labelsize": 8.0,
+    "axes.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "axes.formatter.limits": (-3, 4),
+    "axes.formatter.use_mathtext": True,
+    "axes.unicode_minus": True,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "lines.linewidth": 1.0,
+    "lines.markersize": 3.5,
+    "legend.fontsize": 7.0,
+    "legend.frameon": True,
+    "legend.framealpha": 0.9,
+    "legend.edgecolor": "none",
+    "legend.handlelength": 3.0,
+    "hatch.linewidth": 0.4,
+    "path.simplify": True,
+    "path.simplify_threshold": 0.2,
+    "figure.dpi": 100.0,
+    "savefig.dpi": 200.0,
+    "savefig.facecolor": "white",
+    "svg.fonttype": "path",
+    "svg.hashsalt": "squealbox",
+}
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """The house's look while it lasts; matplotlib's own settings come back afterwards."""
+    from matplotlib import style
+
+    with style.context(["default", RC]):
+        yield
+
+
+@contextmanager
+def drawing(axes: Any, rows: int = 1, columns: int = 1, **size: Any) -> Iterator[Any]:
+    """The axes to draw on, in the house's look: those given, or the panels of a new figure.
+
+    One panel comes as itself, several as an array of `rows` x `columns` with its single axes squeezed out.
+    """
+    with styled():
+        if axes is None:
+            axes = panels(rows, columns, **size)[1]
+        yield axes
+
+
+def panels(
+    rows: int = 1, columns: int = 1, *, width: float | None = None, height: float | None = None, **keywords: Any
+) -> "tuple[Figure, Any]":
+    """A figure of rows x columns panels; width and height in inches. Keywords go to ``Figure.subplots``.
+
+    Returns the figure and its axes: one, or an array. Hand each to a function of this room as ``axes=``.
+    """
+    from matplotlib.figure import Figure
+
+    size = (width or (COLUMN if columns == 1 else WIDTH), height or ROW * rows + 0.3)
+    with styled():
+        figure = Figure(figsize=size, layout="constrained")
+        axes = figure.subplots(rows, columns, **keywords)
+    return figure, axes
+
+
+def figure_of(axes: Any) -> "Figure":
+    """The whole figure that one of the axes belongs to."""
+    return np.ravel(np.asarray(axes, dtype=object))[0].get_figure(root=True)
+
+
+def letters(axes: Any) -> None:
+    """Name the panels (a), (b), (c) ... in the order given, before their titles."""
+    with styled():
+        for i, panel in enumerate(np.ravel(np.asarray(axes, dtype=object))):
+            panel.set_title(f"({chr(ord('a') + i)})", loc="left")
+
+
+def line(index: int, *, marker: bool = False, count: int = 0) -> dict[str, Any]:
+    """Colour, dash and, if asked for, about eight markers along `count` points, of the line with this index."""
+    colour, dash, shape = LINES[index % len(LINES)]
+    look = {"color": colour, "linestyle": dash}
+    if marker:
+        stride = max(count // 8, 1)
+        look |= {"marker": shape, "markevery": (index * stride // 4 % stride, stride), "markerfacecolor": "white"}
+    return look
+
+
+def scaled(unit: str, *arrays: Any, to: str | None = None) -> tuple[float, str]:
+    """What to divide SI values by, and the unit then read, so that the largest is one or more: (1e-3, "mm").
+
+    `to` asks for one unit of the list; a unit without a list stays as it is. Raises `ValueError` for an unknown one.
+    """
+    choices = PREFIXES.get(unit, ((1.0, unit),))
+    if unit == "Hz":
+        choices = (*choices, (0.5 / np.pi, "rad/s"), (500.0 / np.pi, "10³ rad/s"))
+    if to is not None:
+        for factor, name in choices:
+            if name == to:
+                return factor, name
+        known = ", ".join(name for _, name in choices)
+        raise ValueError(f"unit = {to!r}: expected one of {known}, for a value in {unit}")
+    largest = max((float(np.nanmax(np.abs(a), initial=0.0)) for a in map(np.asarray, arrays)), default=0.0)
+    choices = PREFIXES.get(unit, ((1.0, unit),))
+    if largest == 0.0 or not np.isfinite(largest):
+        return choices[0]
+    return next(((factor, name) for factor, name in choices if largest >= 0.999 * factor), choices[-1])
+
+
+def quantity_label(name: str, unit: str) -> str:
+    """``displacement [mm]``; a pure number is marked ``[-]``."""
+    return f"{name} [{unit or '-'}]"
+
+
+def save(figure: "Figure", path: str | os.PathLike[str], formats: Sequence[str] = ("png", "svg")) -> list[Path]:
+    """Write a figure as path.png and path.svg (or other `formats`); returns the paths.
+
+    The files hold no date and no version, so equal figures give equal files.
+    """
+    stem = Path(path)
+    stem = stem.with_suffix("") if stem.suffix.lstrip(".") in formats else stem
+    nameless = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}, "pdf": {"CreationDate": None}}
+    written = []
+    with styled():
+        for kind in formats:
+            written.append(stem.with_name(f"{stem.name}.{kind}"))
+            figure.savefig(written[-1], format=kind, metadata=nameless.get(kind))
+    return written
+
+
+def note(axes: "Axes", text: str, where: str = "upper right") -> None:
+    """A small remark inside a panel, on a white ground."""
+    vertical, horizontal = where.split()
+    x, y = {"left": 0.03, "right": 0.97, "center": 0.5}[horizontal], {"upper": 0.95, "lower": 0.05}[vertical]
+    ground = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.0}
+    top = "top" if vertical == "upper" else "bottom"
+    axes.text(x, y, text, transform=axes.transAxes, fontsize=6.5, bbox=ground, ha=horizontal, va=top)
