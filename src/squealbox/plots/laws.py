@@ -7,7 +7,7 @@ import numpy as np
 
 from squealbox.friction import FrictionLaw
 from squealbox.plots.dispatch import plot
-from squealbox.plots.style import drawing, figure_of, line, quantity_label
+from squealbox.plots.style import drawing, figure_of, line, number, quantity_label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -35,10 +35,13 @@ def friction_curve(
             panel.axvspan(*operating, facecolor="#e6e6e6", edgecolor="none", label="operating range", zorder=0)
         for i, (name, each) in enumerate(laws.items()):
             look = line(i, marker=len(laws) > 1, count=speeds.size)
-            panel.plot(speeds, each.mu(speeds), label=name or None, **look)
+            label = name
             if speed is not None:
-                label = f"dµ/dv = {float(each.slope_at(speed)):.3g} s/m at {speed:.3g} m/s"
-                panel.plot(speed, each.mu(speed), "o", color=look["color"], label=f"{name} {label}".strip())
+                label = f"{name}, slope {number(each.slope_at(speed), 3)} s/m".removeprefix(", ")
+                panel.plot(speed, each.mu(speed), "o", color=look["color"], markersize=4.5, zorder=3)
+            panel.plot(speeds, each.mu(speeds), label=label or None, **look)
+        if speed is not None:
+            panel.axvline(speed, color="#808080", linewidth=0.6, label=f"steady sliding, {number(speed, 3)} m/s")
         lowest = min(float(np.min(each.mu(speeds))) for each in laws.values())
         panel.set_xlim(0.0, upto)
         panel.set_ylim(bottom=min(0.0, 1.1 * lowest))

@@ -6,6 +6,9 @@ import numpy as np
 
 from squealbox.plots.style import drawing, figure_of, quantity_label
 
+HATCH = "\\\\\\\\"  # against the slope that bands of coalescence usually have
+PALE = "#f6e6da"
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -33,7 +36,7 @@ def stability_map(
         drawn without shades
     x_name, x_unit, y_name, y_unit, value_name, value_unit : for the axes and the bar
     """
-    grid = np.asarray(growth)
+    x, y, grid = np.asarray(x, dtype=float), np.asarray(y, dtype=float), np.asarray(growth)
     if grid.shape != (np.size(y), np.size(x)):
         raise ValueError(f"growth of shape {grid.shape}: expected ({np.size(y)}, {np.size(x)}), one row for each y")
     boolean = grid.dtype == bool
@@ -45,10 +48,30 @@ def stability_map(
             _shade(panel, x, y, np.ma.masked_invalid(level), top, None if boolean else (value_name, value_unit))
         if np.any(unknown):
             panel.contourf(x, y, unknown.astype(float), levels=[0.5, 1.5], colors=["#dddddd"], hatches=["xxx"])
+        _legend(panel, level > 0.0, unknown)
         panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
         panel.set_facecolor("white")
         panel.tick_params(color="#000000")
         return figure_of(panel)
+
+
+def _legend(panel: Any, unstable: Any, unknown: Any) -> None:
+    """What white, hatched and crossed areas mean, in the corner that hides least of them."""
+    from matplotlib.patches import Patch
+
+    edge: dict[str, Any] = {"edgecolor": "#000000", "linewidth": 0.5}
+    handles = [Patch(facecolor="white", label="stable", **edge)]
+    handles += [Patch(facecolor=PALE, hatch=HATCH, label="unstable", **edge)] * bool(np.any(unstable))
+    handles += [Patch(facecolor="#dddddd", hatch="xxx", label="not known", **edge)] * bool(np.any(unknown))
+    taken = unstable | unknown
+    rows, columns = max(taken.shape[0] // 4, 1), max(taken.shape[1] // 3, 1)
+    corners = {
+        "upper right": taken[-rows:, -columns:],
+        "lower left": taken[:rows, :columns],
+        "upper left": taken[-rows:, :columns],
+        "lower right": taken[:rows, -columns:],
+    }
+    panel.legend(handles=handles, loc=min(corners, key=lambda place: float(np.mean(corners[place]))), handlelength=2.0)
 
 
 def _shade(panel: Any, x: Any, y: Any, level: Any, top: float, bar: tuple[str, str] | None) -> None:
@@ -56,9 +79,9 @@ def _shade(panel: Any, x: Any, y: Any, level: Any, top: float, bar: tuple[str, s
 
     rounded = np.asarray(MaxNLocator(7).tick_values(0.0, top))
     steps = rounded[rounded >= 0.0] if bar else np.array([0.0, 2.0])
-    palette = {"cmap": "Oranges"} if bar else {"colors": ["#f3d9c7"]}
+    palette = {"cmap": "Oranges"} if bar else {"colors": [PALE]}
     shade = panel.contourf(x, y, level, levels=steps, extend="neither", zorder=1, **palette)
-    panel.contourf(x, y, level, levels=[0.0, 1e300], colors="none", hatches=["////"], zorder=2)
+    panel.contourf(x, y, level, levels=[0.0, 1e300], colors="none", hatches=[HATCH], zorder=2)
     panel.contour(x, y, level, levels=[0.0], colors=["#000000"], linewidths=1.2, zorder=3)
     if bar:
         figure_of(panel).colorbar(shade, ax=panel, pad=0.02).set_label(quantity_label(*bar))

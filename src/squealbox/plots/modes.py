@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.plots.style import UNSTABLE, drawing, figure_of, line, note, quantity_label, scaled
+from squealbox.plots.style import UNSTABLE, drawing, figure_of, line, note, number, quantity_label, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -54,7 +54,7 @@ def coalescence(
             panel.set_xlim(values[0], values[-1])
         onsets = [left for left, _ in unstable_stretches(values, worst) if left > values[0]]
         if onsets:
-            note(above, "unstable from " + ", ".join(f"{x:.4g}" for x in onsets) + f" {unit}".rstrip(), "lower left")
+            note(below, "unstable from " + ", ".join(number(x) for x in onsets) + f" {unit}".rstrip(), "upper left")
         above.set(ylabel=quantity_label("frequency", read), title=title)
         below.set(xlabel=quantity_label(name, unit), ylabel=quantity_label("growth rate", "1/s"))
         above.legend(loc="upper right")

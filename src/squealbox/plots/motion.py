@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.plots.dispatch import plot
-from squealbox.plots.style import drawing, figure_of, line, note, panels, quantity_label, scaled
+from squealbox.plots.style import drawing, figure_of, line, note, number, panels, quantity_label, scaled, uncertain
 from squealbox.signals import SignalError, column, values
 from squealbox.transient.trajectory import Trajectory
 from squealbox.transient.verdict import Verdict
@@ -140,9 +140,9 @@ def _verdict_note(verdict: Verdict) -> str:
     text = verdict.kind.replace("_", " ")
     if verdict.kind == "settles_on_cycle":
         factor, read = scaled("m", verdict.amplitude)
-        return f"{text}: {verdict.amplitude / factor:.3g} {read}, {verdict.frequency / 1e3:.4g} kHz"
+        return f"{text}: {number(verdict.amplitude / factor, 3)} {read}, {number(verdict.frequency / 1e3)} kHz"
     if np.isfinite(verdict.growth_rate):
-        return f"{text}: {verdict.growth_rate:.3g} ± {verdict.growth_rate_error:.1g} 1/s"
+        return f"{text}: {uncertain(verdict.growth_rate, verdict.growth_rate_error)} 1/s"
     return text
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from squealbox import signals
 from squealbox.plots.dispatch import plot
-from squealbox.plots.style import drawing, figure_of, line, note, quantity_label, scaled
+from squealbox.plots.style import drawing, figure_of, line, note, number, quantity_label, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,19 +47,25 @@ def spectrum(
         draw = panel.semilogy if logarithmic else panel.plot
         draw(lines.frequency[shown] / hertz, lines.amplitude[shown] / factor, **{**line(0), "linewidth": 0.8})
         top = float(np.max(lines.amplitude[shown])) / factor or 1.0
-        panel.set_ylim(*((1e-5 * top, 3.0 * top) if logarithmic else (0.0, 1.25 * top)))
+        panel.set_ylim(*((1e-5 * top, 100.0 * top) if logarithmic else (0.0, 1.4 * top)))
         panel.set_xlim(0.0, limit / hertz)
         for frequency, amplitude in zip(found.frequency, found.amplitude, strict=True):
             if frequency <= limit:
                 _name_peak(panel, frequency / hertz, amplitude / factor)
         panel.set(xlabel=quantity_label("frequency", read), ylabel=quantity_label(name, size), title=title)
-        note(panel, f"{lines.window} window\nresolution {lines.resolution / hertz:.2g} {read}")
+        note(panel, f"{lines.window.capitalize()} window, resolution {_fine(lines.resolution, read)}")
         return figure_of(panel)
+
+
+def _fine(resolution: float, read: str) -> str:
+    if "rad" in read:
+        return f"{number(2.0 * np.pi * resolution, 3)} rad/s"
+    return f"{number(resolution, 3)} Hz"
 
 
 def _name_peak(panel: Any, x: float, y: float) -> None:
     panel.plot(x, y, "v", color="#D55E00", markersize=3, zorder=3)
-    panel.annotate(f"{x:.4g}", (x, y), textcoords="offset points", xytext=(0, 4), ha="center", fontsize=6.5)
+    panel.annotate(number(x), (x, y), textcoords="offset points", xytext=(0, 4), ha="center", fontsize=6.5)
 
 
 def spectrogram(
@@ -92,12 +98,13 @@ def spectrogram(
         shade = LogNorm(top * 10.0**-decades, top)
         floor = np.maximum(grid.amplitude[shown] / factor, top * 10.0**-decades)
         mesh = panel.pcolormesh(
-            grid.time / second, grid.frequency[shown] / hertz, floor, norm=shade, cmap="cividis_r", rasterized=True
+            grid.time / second, grid.frequency[shown] / hertz, floor, norm=shade, cmap="Blues", rasterized=True
         )
         bar = figure_of(panel).colorbar(mesh, ax=panel, pad=0.02)
         bar.set_label(quantity_label("amplitude", size))
         panel.set(xlabel=quantity_label("time", clock), ylabel=quantity_label("frequency", read), title=title)
-        note(panel, f"pieces of {grid.segment / second:.3g} {clock}, resolution {grid.resolution / hertz:.2g} {read}")
+        pieces = f"pieces of {number(grid.segment / second, 3)} {clock}"
+        note(panel, f"{grid.window.capitalize()} window, {pieces}, resolution {_fine(grid.resolution, read)}")
         return figure_of(panel)
 
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+MINUS = "\N{MINUS SIGN}"
 WIDTH = 7.0  # inches: the text width of a journal page
 COLUMN = 3.4  # one column of two
 ROW = 2.1  # height of a row of panels
@@ -30,7 +31,7 @@ LINES: tuple[tuple[str, Any, str], ...] = (
     ("#56B4E9", (0, (8, 3)), "P"),
     ("#E69F00", (0, (2, 2)), "X"),
 )
-UNSTABLE = {"facecolor": "#f3d9c7", "hatch": "////", "edgecolor": "#b9a79a", "linewidth": 0.0}
+UNSTABLE = {"facecolor": "#f6e6da", "hatch": "////", "edgecolor": "#c9b8ab", "linewidth": 0.0}
 
 PREFIXES: dict[str, tuple[tuple[float, str], ...]] = {
     "m": ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")),
@@ -159,6 +160,29 @@ def scaled(unit: str, *arrays: Any, to: str | None = None) -> tuple[float, str]:
     if largest == 0.0 or not np.isfinite(largest):
         return choices[0]
     return next(((factor, name) for factor, name in choices if largest >= 0.999 * factor), choices[-1])
+
+
+def number(value: float, digits: int = 4) -> str:
+    """A number as a reader writes it: plain up to 99999, a true minus, no trailing zeros."""
+    value = float(value)
+    plain = value == 0.0 or 1e-4 <= abs(value) < 1e5
+    text = (
+        f"{value:.{max(digits - 1 - int(np.floor(np.log10(abs(value) or 1.0))), 0)}f}"
+        if plain
+        else f"{value:.{digits}g}"
+    )
+    text = text.rstrip("0").rstrip(".") if "." in text and "e" not in text else text
+    return text.replace("-", MINUS)
+
+
+def uncertain(value: float, error: float) -> str:
+    """The error to one digit, such as 20 beside 117, and the value to the same place."""
+    if not (np.isfinite(error) and error > 0.0):
+        return number(value)
+    place = int(np.floor(np.log10(error)))
+    shown = round(error, -place)
+    decimals = max(-place, 0)
+    return f"{round(float(value), -place):.{decimals}f} ± {shown:.{decimals}f}".replace("-", MINUS)
 
 
 def quantity_label(name: str, unit: str) -> str:

@@ -147,7 +147,7 @@ def spectrogram(
 
     A piece is `segment` [s] long, by default an eighth of the record; the resolution is 1/segment [Hz]. Only pieces
     that lie whole inside the record are kept, so `time` starts and ends half a piece inside it. Each piece is taken
-    about its own mean.
+    about its own mean under the window.
     """
     from scipy.signal import ShortTimeFFT, get_window
 
@@ -160,9 +160,14 @@ def spectrogram(
         )
     hop = max(1, round(length * (1.0 - overlap)))
     scale = {"scale_to": "magnitude", "fft_mode": "onesided2X"}
-    transform = ShortTimeFFT(get_window(window, length), hop, data.rate, mfft=4 * length, **scale)
+    weights = get_window(window, length)
+    transform = ShortTimeFFT(weights, hop, data.rate, mfft=4 * length, **scale)
     first, last = transform.lower_border_end[1], transform.upper_border_begin(data.x.size)[1]
-    pieces = transform.stft_detrend(data.x, "constant", first, last)
+
+    def about_mean(piece: Any) -> Any:
+        return piece - np.average(piece, weights=weights, axis=-1)
+
+    pieces = transform.stft_detrend(data.x, about_mean, first, last)
     return Spectrogram(
         time=data.t[0] + transform.t(data.x.size, first, last),
         frequency=transform.f,
