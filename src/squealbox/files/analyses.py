@@ -6,7 +6,7 @@ command line know it from here.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar, get_origin
 
 import numpy as np
 
@@ -15,8 +15,10 @@ from squealbox.files.arrays import Vector
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_number, wrong
-from squealbox.files.sheets import read_sheet
-from squealbox.parameters import DataSheet, Parameter, ParameterError, known_names, parameter
+from squealbox.files.sheets import field_type, read_sheet
+from squealbox.parameters import DataSheet, Parameter, ParameterError, choice, known_names, parameter
+from squealbox.transient.methods import TABLEAUX
+from squealbox.transient.simulate import SCHEMES
 
 
 class Modes(DataSheet):
@@ -29,11 +31,15 @@ class Simulate(DataSheet):
     """[simulate]: a transient."""
 
     duration: float = parameter("s", 0.0, low_open=True, default=0.05, meaning="how long the motion is followed")
-    method: str = "bogacki-shampine"
-    contact: str = "exact"
-    rtol: float = parameter("-", 1e-13, 0.1, default=1e-3, meaning="relative tolerance of a step")
-    q: Vector = parameter("m", default=None, optional=True, meaning="displacement at the start; left out, zero")
+    start: str = choice("rest", "sliding", default="rest", meaning="where it starts: at zero, or in steady sliding")
+    q: Vector = parameter("m", default=None, optional=True, meaning="displacement added at the start; left out, none")
     qd: Vector = parameter("m/s", default=None, optional=True, meaning="velocity at the start; left out, zero")
+    method: str = choice(*TABLEAUX, default="dormand-prince-8", meaning="Runge-Kutta pair")
+    rtol: float | None = parameter("-", 1e-14, 0.1, default=None, optional=True, meaning="left out, the method's own")
+    contact: str = choice(*SCHEMES, default="exact", meaning="events (exact), plain sgn (raw) or a smoothed sgn")
+    width: float = parameter("m/s", 0.0, low_open=True, default=1e-3, meaning="speed over which sgn is smoothed")
+    begin: float = parameter("s", default=0.0, meaning="instant at which the schedules begin")
+    points: int = parameter("-", 2, 1_000_000, default=5001, meaning="number of instants kept")
 
 
 class Axis(DataSheet):
@@ -50,13 +56,6 @@ class Axis(DataSheet):
     def values(self) -> np.ndarray:
         """The values, equally spaced, shape (points,)."""
         return np.linspace(self.low, self.high, int(self.points))
-
-
-@dataclass(frozen=True)
-class Onset:
-    """[onset]: the critical value of a parameter in a range."""
-
-    axis: Axis
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,9 @@ def quantity_of(design: Design, name: str) -> Parameter:
 
 def scalar_parameters(design: Design) -> dict[str, Parameter]:
     """The parameters of a design that a study can vary, nested ones with dots, aliases included."""
-    known = {name: about for name, about, value in design.leaves() if np.ndim(value) == 0}
+    arrays = {name for name in design.parameters() if get_origin(field_type(type(design), name)) is Annotated}
+    leaves = ((name, about) for name, about, value in design.leaves() if np.ndim(value) == 0)
+    known = {name: about for name, about in leaves if name not in arrays}
     own = design.parameters()
     for alias, names in design.aliases.items():
         if all(name in own for name in names):
@@ -99,14 +100,13 @@ def read_simulate(document: Document, table: Mapping[str, Any], key: Key, design
     for name in ("q", "qd"):
         value = getattr(section, name)
         if value is not None and value.shape != (size,):
-            document.problem((*key, name), f"{len(value)} numbers: expected {size}, one for each degree of freedom")
+            document.problem((*key, name), f"{value.size} numbers: expected {size}, one for each degree of freedom")
     return section
 
 
-def read_onset(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Onset | None:
+def read_onset(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Axis | None:
     """The section [onset]: ``parameter = "friction.static"`` and ``range = [0, 1]``."""
-    axis = read_axis(document, table, key, design)
-    return Onset(axis) if axis else None
+    return read_axis(document, table, key, design)
 
 
 def read_map(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Map | None:

@@ -1,5 +1,6 @@
 """A brake of one's own, given by its matrices: what a design file with ``brake = "own"`` describes."""
 
+import re
 from typing import Any, ClassVar
 
 import numpy as np
@@ -64,6 +65,9 @@ class OwnBrake(Design):
             raise ParameterError("OwnBrake", "load", self.load, f"{size} forces, one for each degree of freedom")
         if self.names and len(self.names) != size:
             raise ParameterError("OwnBrake", "names", self.names, f"{size} names, one for each degree of freedom")
+        for name in self.names:
+            if not re.fullmatch("[A-Za-z][A-Za-z0-9_]{0,39}", name) or self.names.count(name) > 1:
+                raise ParameterError("OwnBrake", "names", name, "different names of letters, digits and _")
         for i, contact in enumerate(self.contacts):
             for name in ("n", "d", "t", "normal"):
                 value = getattr(contact, name)

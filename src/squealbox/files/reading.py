@@ -33,7 +33,7 @@ class DesignFile:
     path: Path
     design: Design
     modes: analyses.Modes | None = None
-    onset: analyses.Onset | None = None
+    onset: analyses.Axis | None = None
     map: analyses.Map | None = None
     simulate: analyses.Simulate | None = None
 

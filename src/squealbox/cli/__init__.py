@@ -1,0 +1,88 @@
+"""The command line. Depends on: everything, each command only on what it needs.
+
+One table names the commands; it makes the first page of help without loading anything, and a command's module is
+imported only when that command is called. Exit codes: 0 done, 1 the computation failed with a named outcome, 2 bad
+input, 130 stopped by the user.
+"""
+
+import difflib
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+DONE, FAILED, BAD_INPUT, STOPPED = 0, 1, 2, 130
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command: the module and function that do it, and one line about it."""
+
+    module: str
+    function: str
+    about: str
+
+
+COMMANDS = {
+    "init": Command("starter", "init", "write a commented example file that runs"),
+    "list": Command("catalogue", "list_", "designs with their parameters, friction laws, schedules, methods, papers"),
+    "modes": Command("stability", "modes", "is steady sliding stable? complex eigenvalues of a design file"),
+    "onset": Command("stability", "onset", "the value of a parameter at which squeal begins, and how"),
+    "map": Command("stability", "map_", "stability over two parameters"),
+    "simulate": Command("transient", "simulate", "what happens in time: a transient with verdict, figures and data"),
+    "paper": Command("papers", "paper", "reproduce a published study: figures, claims and one page"),
+    "schema": Command("starter", "schema", "the JSON schema of a design file, for editors"),
+}
+
+EXAMPLES = """\
+examples:
+  squealbox init brake                       a folder with a first design file
+  squealbox modes brake/brake.toml           is it stable?
+  squealbox onset brake/brake.toml --parameter friction.static --range 0 1
+  squealbox simulate brake/brake.toml --out run
+  squealbox paper drum-brake-2011 --out study"""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit code. Errors go to stderr, one sentence each, without a traceback."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    if not words or words[0] in ("--help", "-h", "help"):
+        print(overview())
+        return DONE
+    if words[0] in ("--version", "-V"):
+        from squealbox import __version__
+
+        print(f"squealbox {__version__}")
+        return DONE
+    name = words[0]
+    if name not in COMMANDS:
+        print(f"squealbox: {_unknown(name)}", file=sys.stderr)
+        return BAD_INPUT
+    from squealbox.cli.running import run
+
+    return run(name, COMMANDS[name], words[1:])
+
+
+def overview() -> str:
+    """The first page of help."""
+    width = max(len(name) for name in COMMANDS)
+    lines = [f"  {name.ljust(width)}  {command.about}" for name, command in COMMANDS.items()]
+    return "\n".join([
+        "squealbox: friction-induced vibration of brakes",
+        "",
+        "usage: squealbox COMMAND [OPTIONS]",
+        "",
+        "commands:",
+        *lines,
+        "",
+        EXAMPLES,
+        "",
+        "squealbox COMMAND --help tells more of one; squealbox --version",
+    ])  # fmt: skip
+
+
+def _unknown(name: str) -> str:
+    known = ", ".join(COMMANDS)
+    kind = "option" if name.startswith("-") else "command"
+    near = difflib.get_close_matches(name[:40].lower(), COMMANDS, n=1)
+    hint = f"did you mean '{near[0]}'?" if near else "squealbox --help lists them"
+    return f"unknown {kind} {name[:40]!r}: {hint}; the commands are {known}"

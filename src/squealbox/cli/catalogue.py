@@ -1,0 +1,94 @@
+"""`squealbox list`: what there is, and what each thing is made of."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from squealbox.cli.running import UsageError
+from squealbox.parameters import DataSheet, Parameter, known_names
+
+
+def list_(name: str | None = None) -> None:
+    """Print what there is: designs, friction laws, schedules, methods and papers.
+
+    Parameters
+    ----------
+    name
+        a design, law or schedule, to see its parameters with unit, default, range, meaning and source
+    """
+    print("\n".join(_overview() if name is None else _sheet(name)))
+
+
+def _overview() -> Iterator[str]:
+    from squealbox.files import BRAKES
+    from squealbox.files.sheets import LAW_NAMES, SCHEDULE_NAMES
+    from squealbox.transient.methods import TABLEAUX
+
+    yield from _section("designs (brake = ...)", {name: sheet.title for name, sheet in BRAKES.items()})
+    yield from _section("friction laws (law = ...)", {name: _first_line(sheet) for name, sheet in LAW_NAMES.items()})
+    yield from _section(
+        "schedules, in place of a number", {n: _first_line(sheet) for n, sheet in SCHEDULE_NAMES.items()}
+    )
+    yield from _section("methods (method = ...)", {name: make().title for name, make in TABLEAUX.items()})
+    yield from _section("papers (squealbox paper ...)", _papers())
+    yield "squealbox list NAME shows the parameters of a design, law or schedule"
+
+
+def _papers() -> dict[str, str]:
+    from squealbox.cli.papers import PAPERS
+
+    return {name: paper.title for name, paper in PAPERS.items()}
+
+
+def _section(title: str, rows: dict[str, str]) -> Iterator[str]:
+    width = max((len(name) for name in rows), default=0)
+    yield f"{title}:"
+    for name, about in rows.items():
+        yield f"  {name.ljust(width)}  {about}".rstrip()
+    yield ""
+
+
+def _sheet(name: str) -> Iterator[str]:
+    from squealbox.files import BRAKES
+    from squealbox.files.sheets import LAW_NAMES, SCHEDULE_NAMES
+
+    known: dict[str, type[DataSheet]] = {**SCHEDULE_NAMES, **LAW_NAMES, **BRAKES}
+    if name not in known:
+        raise UsageError(f"{name[:40]!r} is not listed: {known_names(name[:40], list(known))}")
+    both = [sheets[name] for sheets in (BRAKES, LAW_NAMES, SCHEDULE_NAMES) if name in sheets]
+    for sheet in both:
+        yield from _parameters(name, sheet)
+
+
+def _parameters(name: str, sheet: type[DataSheet]) -> Iterator[str]:
+    title = getattr(sheet, "title", "") or _first_line(sheet)
+    source = getattr(sheet, "source", "")
+    yield f"{name}: {title}" + (f" [{source}]" if source else "")
+    rows = [("parameter", "default", "range", "meaning")]
+    rows += [
+        (field, _default(sheet, field), about.range, _meaning(about)) for field, about in sheet.parameters().items()
+    ]
+    widths = [max(len(row[i]) for row in rows) for i in range(3)]
+    for row in rows:
+        yield "  " + "  ".join([*(cell.ljust(width) for cell, width in zip(row[:3], widths, strict=True)), row[3]])
+    for field, words in sheet.choices().items():
+        yield f"  {field} = {' | '.join(words.options)}: {words.meaning}"
+    for alias, fields in sheet.aliases.items():
+        yield f"  {alias} sets {' and '.join(fields)} together"
+    yield ""
+
+
+def _default(sheet: type[DataSheet], field: str) -> str:
+    value = getattr(sheet, field, "required")
+    if value is None:
+        return "none"
+    return f"{value:g}" if isinstance(value, (int, float, np.number)) else str(value)
+
+
+def _meaning(about: Parameter) -> str:
+    notes = [about.meaning, "may be a schedule" if about.schedule else "", about.source]
+    return "; ".join(note for note in notes if note)
+
+
+def _first_line(sheet: type[DataSheet]) -> str:
+    return (sheet.__doc__ or "").strip().partition("\n")[0]

@@ -1,0 +1,112 @@
+"""What commands share: a design file with changes from the command line, ranges, and folders for what is written."""
+
+import dataclasses
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import cyclopts
+import numpy as np
+
+from squealbox.cli.running import UsageError
+from squealbox.designs import Design
+from squealbox.files import DesignFile, read_file
+from squealbox.files.analyses import Axis, quantity_of
+from squealbox.files.units import UnitError, in_si
+from squealbox.parameters import Parameter, ParameterError
+
+Changes = Annotated[tuple[str, ...], cyclopts.Parameter(name="--set", negative="", consume_multiple=True)]
+Ends = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
+
+
+def read(file: Path, changes: Sequence[str] = ()) -> DesignFile:
+    """The design file with ``--set friction.static=0.4`` and the like applied."""
+    found = read_file(file)
+    for change in changes:
+        name, equals, text = change.partition("=")
+        if not equals:
+            raise UsageError(f"--set {change[:60]}: expected NAME=VALUE, such as friction.static=0.4")
+        found = dataclasses.replace(found, design=_changed(found.design, name.strip(), text.strip(), change))
+    return found
+
+
+@dataclasses.dataclass(frozen=True)
+class Option:
+    """How an axis is named on the command line: the word before its ends, and the whole of it."""
+
+    word: str
+    usage: str
+
+
+RANGE = Option("--range", "--parameter NAME --range LOW HIGH")
+
+
+def axis(design: Design, given: Axis | None, name: str | None, ends: tuple[str, str] | None, option: Option) -> Axis:
+    """The axis of the file, or the one the options name."""
+    name = name if name is not None else given.name if given else None
+    if name is None:
+        raise UsageError(f"nothing says what is varied: give {option.usage}, or a section in the file")
+    if ends is None:
+        if given is None or given.name != name:
+            raise UsageError(f"nothing says over which range: give {option.usage}")
+        return given
+    label = f"{option.word} {' '.join(ends)[:60]}"
+    about = _quantity(design, name, option.word)
+    low, high = (_number(end, about.unit, label) for end in ends)
+    if not about.accepts(np.array([low, high])):
+        raise UsageError(f"{label}: expected finite numbers in {about.range}")
+    if not low < high:
+        raise UsageError(f"{label}: expected the lower value first")
+    return Axis(name, low, high) if given is None else given.replace(name=name, low=low, high=high)
+
+
+def with_points(given: Axis, points: int | None) -> Axis:
+    """The axis with another number of values."""
+    try:
+        return given if points is None else given.replace(points=points)
+    except ParameterError as error:
+        raise UsageError(f"--points {points}: {error.expectation}") from error
+
+
+def readable(design: Design, varied: Axis, values: Any) -> tuple[Any, str]:
+    """Values of a parameter in the unit people read it in, and that unit: angles in degrees, the rest in SI."""
+    unit = quantity_of(design, varied.name).unit
+    if unit == "rad":
+        return np.rad2deg(values), "deg"
+    return values, "" if unit == "-" else unit
+
+
+def time_of(option: str, text: str) -> float:
+    """A time [s] from the command line."""
+    return _number(text, "s", f"{option} {text[:60]}")
+
+
+def folder(path: Path) -> Path:
+    """The folder, made when it is not there."""
+    path.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def _changed(design: Design, name: str, text: str, change: str) -> Design:
+    label = f"--set {change[:60]}"
+    try:
+        if name in design.choices():
+            return design.replace({name: text})
+        about = _quantity(design, name, label)
+        return design.replace({name: _number(text, about.unit, label)})
+    except ParameterError as error:
+        raise UsageError(f"{label}: {error.expectation}") from error
+
+
+def _quantity(design: Design, name: str, label: str) -> Parameter:
+    try:
+        return quantity_of(design, name)
+    except ParameterError as error:
+        raise UsageError(f"{label}: unknown parameter, {error.expectation}") from error
+
+
+def _number(text: str, unit: str, label: str) -> float:
+    try:
+        return in_si(text, unit)
+    except UnitError as error:
+        raise UsageError(f"{label}: {error}") from error

@@ -1,0 +1,89 @@
+"""One command from its words to its exit code."""
+
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+
+from squealbox.cli import BAD_INPUT, DONE, FAILED, STOPPED, Command
+from squealbox.result import Outcome
+
+TRACEBACK = "SQUEALBOX_TRACEBACK"  # set in the environment, an error inside the program shows where it arose
+
+
+class UsageError(ValueError):
+    """An option or argument that does not make sense; the message is one sentence."""
+
+
+class ComputationFailed(Exception):
+    """A computation that ended with a named outcome other than "completed"."""
+
+    def __init__(self, outcome: Outcome) -> None:
+        self.outcome = outcome
+        super().__init__(f"{outcome}: {outcome.message}" if outcome.message else str(outcome))
+
+
+def run(name: str, command: Command, words: Sequence[str]) -> int:
+    """Read the words of a command, do it, and turn what may go wrong into a sentence and an exit code."""
+    try:
+        code = _call(name, command, words)
+        sys.stdout.flush()
+        return code
+    except KeyboardInterrupt:
+        _say(name, "stopped")
+        return STOPPED
+    except BrokenPipeError:  # the reader, such as `head`, has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+    except ComputationFailed as error:
+        _say(name, str(error))
+        return STOPPED if error.outcome == "interrupted" else FAILED
+    except Exception as error:
+        if os.environ.get(TRACEBACK):
+            raise
+        return _explain(name, error)
+
+
+def _call(name: str, command: Command, words: Sequence[str]) -> int:
+    import cyclopts
+
+    function = getattr(importlib.import_module(f"squealbox.cli.{command.module}"), command.function)
+    app = cyclopts.App(
+        name=f"squealbox {name}", help_format="plaintext", version_flags=(), result_action="return_value"
+    )
+    app.default(function)
+    try:
+        code = app(words, exit_on_error=False, print_error=False)
+    except cyclopts.CycloptsError as error:
+        raise UsageError(_one_sentence(str(error))) from error
+    return code if isinstance(code, int) else DONE
+
+
+def _explain(name: str, error: Exception) -> int:
+    """Say what was wrong; only errors of kinds that are about the input are put down to the user."""
+    from squealbox.files import DesignFileError, NotWritable
+    from squealbox.parameters import ParameterError
+    from squealbox.system import InvalidSystem
+
+    if isinstance(error, DesignFileError):
+        print("\n".join(str(problem) for problem in error.problems), file=sys.stderr)
+        return BAD_INPUT
+    if isinstance(error, (UsageError, ParameterError, InvalidSystem, NotWritable)):
+        _say(name, str(error))
+        return BAD_INPUT
+    if isinstance(error, OSError) and error.filename is not None:
+        _say(name, f"{error.filename}: {error.strerror}")
+        return BAD_INPUT
+    _say(
+        name,
+        f"an error inside the program, {type(error).__name__}: {_one_sentence(str(error))}; {TRACEBACK}=1 tells where",
+    )
+    return FAILED
+
+
+def _one_sentence(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _say(name: str, text: str) -> None:
+    print(f"squealbox {name}: {text}", file=sys.stderr)

@@ -1,0 +1,192 @@
+"""`squealbox modes`, `onset` and `map`: is steady sliding stable?"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from cyclopts import Parameter
+
+from squealbox.cli.inputs import RANGE, Changes, Ends, Option, axis, folder, read, readable, with_points
+from squealbox.cli.progress import Progress
+from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.tables import write_csv, written
+from squealbox.stability import ComplexModes, CriticalValue, complex_modes, critical_value
+
+if TYPE_CHECKING:
+    from squealbox.designs import Design
+    from squealbox.files import DesignFile
+    from squealbox.files.analyses import Axis
+
+Span = Annotated[tuple[str, str, str] | None, Parameter(negative="")]
+ACROSS, UP = Option("--x", "--x NAME LOW HIGH"), Option("--y", "--y NAME LOW HIGH")
+
+
+def modes(file: Path, *, changes: Changes = (), out: Path | None = None) -> None:
+    """Is steady sliding stable? Complex eigenvalues: frequency, growth rate and damping of each mode.
+
+    Parameters
+    ----------
+    file
+        design file; squealbox init writes a first one
+    changes
+        other values for this run: --set friction.static=0.4 load="2 kN"
+    out
+        folder for modes.csv and modes.nc
+    """
+    found = read(file, changes)
+    spectrum = complex_modes(found.design, time=found.modes.time if found.modes else 0.0)
+    if not spectrum.outcome.ok:
+        raise ComputationFailed(spectrum.outcome)
+    print(f"{found.design.title}, {file}")
+    print(spectrum.summary())
+    if out is not None:
+        folder(out)
+        print(written(spectrum.save(out / "modes.nc"), write_csv(out / "modes.csv", _mode_columns(spectrum))))
+
+
+def onset(
+    file: Path,
+    *,
+    parameter: str | None = None,
+    range: Ends = None,
+    changes: Changes = (),
+    out: Path | None = None,
+) -> None:
+    """The value of a parameter at which steady sliding changes its stability: where squeal begins.
+
+    Parameters
+    ----------
+    file
+        design file; its section [onset] says what is varied, unless the options do
+    parameter
+        dotted name, such as friction.static
+    range
+        lowest and highest value, with or without a unit: 0 1, or 20deg 160deg
+    changes
+        other values for this run: --set friction.static=0.4 load="2 kN"
+    out
+        folder for a figure of frequencies and growth rates over the range, and its numbers
+    """
+    found = read(file, changes)
+    varied = axis(found.design, found.onset, parameter, range, RANGE)
+    with Progress("looking for the onset"):
+        critical = critical_value(found.design, varied.name, (varied.low, varied.high))
+    if critical.outcome.ok:
+        print(f"{found.design.title}, {file}\n{_onset_sentence(critical, found.design, varied)}")
+    if out is not None:
+        print(written(*_coalescence(found, varied, critical, folder(out))))
+    if not critical.outcome.ok:
+        raise ComputationFailed(critical.outcome)
+
+
+def map_(
+    file: Path,
+    *,
+    x: Span = None,
+    y: Span = None,
+    points: int | None = None,
+    changes: Changes = (),
+    out: Path | None = None,
+) -> None:
+    """Stability over two parameters: which part of the plane squeals, and how fast it grows there.
+
+    Parameters
+    ----------
+    file
+        design file; its section [map] says what is varied, unless the options do
+    x
+        parameter, lowest and highest value: friction.static 0 1
+    y
+        the same for the other axis: theta1 20deg 160deg
+    points
+        number of values along each axis
+    changes
+        other values for this run: --set friction.static=0.4 load="2 kN"
+    out
+        folder for the figure and its numbers
+    """
+    found = read(file, changes)
+    given = found.map
+    across = with_points(axis(found.design, given.x if given else None, *_split(x), ACROSS), points)
+    up = with_points(axis(found.design, given.y if given else None, *_split(y), UP), points)
+    if across.name == up.name:
+        raise UsageError(f"x and y are both {up.name}: expected two different parameters")
+    with Progress(f"{int(across.points)} x {int(up.points)} points"):
+        growth = _growth_rates(found.design, across, up)
+    print(f"{found.design.title}, {file}\n{_map_sentence(found.design, growth, across, up)}")
+    if out is not None:
+        print(written(*_map_files(found, across, up, growth, folder(out))))
+
+
+def _split(span: tuple[str, str, str] | None) -> tuple[str | None, tuple[str, str] | None]:
+    return (None, None) if span is None else (span[0], (span[1], span[2]))
+
+
+def _mode_columns(spectrum: ComplexModes) -> dict[str, Any]:
+    half = spectrum.eigenvalues.shape[-1] // 2
+    return {
+        "mode": np.arange(1, half + 1),
+        "frequency [Hz]": spectrum.frequency[:half],
+        "growth rate [1/s]": spectrum.growth_rate[:half],
+        "damping ratio [-]": spectrum.damping_ratio[:half],
+        "angular frequency [rad/s]": spectrum.angular_frequency[:half],
+    }
+
+
+def _onset_sentence(critical: CriticalValue, design: "Design", varied: "Axis") -> str:
+    value, unit = readable(design, varied, critical.value)
+    side = "above" if critical.direction == "destabilising" else "below"
+    return (
+        f"{varied.name} = {float(value):.7g}{unit and f' {unit}'}: steady sliding is unstable {side} it, "
+        f"in a mode of {critical.frequency:.6g} Hz"
+    )
+
+
+def _coalescence(found: "DesignFile", varied: "Axis", critical: CriticalValue, out: Path) -> list[Path]:
+    """Figure and table of the modes over the range, the critical value itself among the points."""
+    from squealbox import plots
+
+    points = np.append(varied.values, [critical.value] if critical.outcome.ok else [])
+    spectra = complex_modes(found.design.replace({varied.name: np.sort(points)}))
+    values, unit = readable(found.design, varied, np.sort(points))
+    figure = plots.coalescence(values, spectra, name=varied.name, unit=unit, title=found.path.name)
+    half = spectra.eigenvalues.shape[-1] // 2
+    columns = {f"{varied.name} [{unit or '-'}]": values}
+    columns |= {f"frequency {i + 1} [Hz]": spectra.frequency[:, i] for i in range(half)}
+    columns |= {f"growth rate {i + 1} [1/s]": spectra.growth_rate[:, i] for i in range(half)}
+    return [*plots.save(figure, out / "onset"), write_csv(out / "onset.csv", columns)]
+
+
+def _growth_rates(design: "Design", across: "Axis", up: "Axis") -> Any:
+    """The largest growth rate [1/s], shape (y, x); NaN where there is no steady sliding."""
+    x, y = np.meshgrid(across.values, up.values)
+    spectra = complex_modes(design.replace({across.name: x, up.name: y}))
+    if not np.any(spectra.exists):
+        raise ComputationFailed(spectra.outcome)
+    return spectra.largest_growth_rate
+
+
+def _map_sentence(design: "Design", growth: Any, across: "Axis", up: "Axis") -> str:
+    known = np.count_nonzero(np.isfinite(growth))
+    unstable = np.count_nonzero(growth > 0.0)
+    row, column = np.unravel_index(np.nanargmax(growth), growth.shape)
+    (x, x_unit), (y, y_unit) = (readable(design, axis, axis.values) for axis in (across, up))
+    place = f"{across.name} = {x[column]:.5g} {x_unit}".rstrip() + f", {up.name} = {y[row]:.5g} {y_unit}".rstrip()
+    text = f"{unstable} of {known} points are unstable ({100.0 * unstable / known:.1f} %)"
+    text += f"; the largest growth rate is {growth[row, column]:+.5g} 1/s at {place}"
+    missing = growth.size - known
+    return f"{text}; {missing} more points have no steady sliding" if missing else text
+
+
+def _map_files(found: "DesignFile", across: "Axis", up: "Axis", growth: Any, out: Path) -> list[Path]:
+    from squealbox import plots
+
+    (x, x_unit), (y, y_unit) = (readable(found.design, axis, axis.values) for axis in (across, up))
+    labels = {"x_name": across.name, "x_unit": x_unit, "y_name": up.name, "y_unit": y_unit}
+    figure = plots.stability_map(x, y, growth, **labels, title=found.path.name)
+    columns = {
+        f"{across.name} [{x_unit or '-'}]": np.tile(x, len(y)),
+        f"{up.name} [{y_unit or '-'}]": np.repeat(y, len(x)),
+        "growth rate [1/s]": growth.ravel(),
+    }
+    return [*plots.save(figure, out / "map"), write_csv(out / "map.csv", columns)]

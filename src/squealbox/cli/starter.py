@@ -1,0 +1,87 @@
+"""`squealbox init` and `squealbox schema`: a first file, and help for the editor that changes it."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from squealbox.cli.running import UsageError
+from squealbox.parameters import known_names
+
+if TYPE_CHECKING:
+    from squealbox.designs import Design
+
+FILE = "brake.toml"
+STUDIES = """
+# What is asked of this brake. Each section has a command of its own and may be left out; so may every key with a
+# default. A number without a unit is in SI.
+
+[modes]                         # squealbox modes {file}
+time = "0 s"                    # instant at which schedules are taken
+
+[onset]                         # squealbox onset {file}
+parameter = "friction.static"   # any parameter above by its dotted name
+range = [0, 1]
+
+[map]                           # squealbox map {file}
+x = {{ parameter = "friction.static", range = [0, 1], points = 101 }}
+y = {{ parameter = "sliding_speed", range = ["0.1 m/s", "2 m/s"], points = 101 }}
+
+[simulate]                      # squealbox simulate {file} --out run
+duration = "50 ms"
+start = "rest"                  # rest (loads applied suddenly) or sliding
+points = 5001                   # number of instants kept
+"""
+
+
+def init(directory: Path, *, brake: str = "drum_brake") -> None:
+    """Write a commented example file that runs.
+
+    Parameters
+    ----------
+    directory
+        folder to put brake.toml into; made when it is not there
+    brake
+        which design to begin with, "own" for matrices of your own; squealbox list names them
+    """
+    from squealbox.files import write_design
+
+    design = _example(brake)
+    path = directory / FILE
+    if path.exists():
+        raise UsageError(f"{path} is there already, and init overwrites nothing")
+    directory.mkdir(parents=True, exist_ok=True)
+    write_design(design, path, sections=STUDIES.format(file=path))
+    print(f"{path} describes a brake. Next:\n  squealbox modes {path}\n  squealbox simulate {path} --out run")
+
+
+def schema() -> None:
+    """Print the JSON schema of a design file.
+
+    Save it and point your editor to it: keys are then completed and mistakes marked while you type.
+    """
+    from squealbox.files import json_schema
+
+    print(json.dumps(json_schema(), indent=1))
+
+
+def _example(brake: str) -> "Design":
+    from squealbox.designs import DrumBrake
+    from squealbox.files import BRAKES, OwnBrake, OwnContact
+    from squealbox.friction import Coulomb, LinearSlope
+
+    if brake not in BRAKES:
+        raise UsageError(f"--brake {brake[:40]}: {known_names(brake[:40], list(BRAKES))}")
+    if BRAKES[brake] is DrumBrake:
+        return DrumBrake(friction=LinearSlope(0.45, -0.05))
+    if BRAKES[brake] is OwnBrake:
+        contact = OwnContact(n=[0.0, 1e6, 0.0], d=[1.0, 0.0, 0.0], name="pad")
+        return OwnBrake(
+            M=[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 2.0]],
+            K=[[2e6, -1e6, 0.0], [-1e6, 2.5e6, -0.5e6], [0.0, -0.5e6, 3e6]],
+            C=[[10.0, 0.0, 0.0], [0.0, 10.0, 0.0], [0.0, 0.0, 10.0]],
+            friction=Coulomb(0.5),
+            normal_force=500.0,
+            contacts=(contact,),
+            names=("pad_x", "pad_y", "disc_y"),
+        )
+    return BRAKES[brake]()

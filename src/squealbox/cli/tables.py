@@ -1,0 +1,35 @@
+"""Numbers as a CSV file that spreadsheets open: a first line with names and units, then one row each."""
+
+import csv
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+
+def write_csv(path: Path, columns: Mapping[str, Any]) -> Path:
+    """Write columns of equal length to `path`, whole or not at all; the keys are the first line."""
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="") as stream:
+            writer = csv.writer(stream, lineterminator="\n")
+            writer.writerow(columns)
+            arrays = [np.asarray(column) for column in columns.values()]
+            writer.writerows(zip(*(_cells(array) for array in arrays), strict=True))
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    finally:
+        Path(temporary).unlink(missing_ok=True)
+    return path
+
+
+def written(*paths: Path) -> str:
+    """A line that says which files there are now."""
+    return f"written to {paths[0].parent}: {', '.join(path.name for path in paths)}"
+
+
+def _cells(array: Any) -> list[Any]:
+    return [f"{value:.10g}" for value in array] if array.dtype.kind == "f" else array.tolist()

@@ -1,0 +1,131 @@
+"""`squealbox simulate`: what happens in time."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.cli.inputs import Changes, folder, read, time_of
+from squealbox.cli.progress import Progress
+from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.tables import write_csv, written
+from squealbox.files.analyses import Simulate
+from squealbox.parameters import ParameterError
+from squealbox.system import InvalidSystem, System, equilibrium
+
+if TYPE_CHECKING:
+    from squealbox.transient.trajectory import Trajectory
+
+MOST_FIGURES = 4  # degrees of freedom that are drawn: those that move most
+
+
+def simulate(
+    file: Path,
+    *,
+    out: Path,
+    duration: str | None = None,
+    start: str | None = None,
+    method: str | None = None,
+    contact: str | None = None,
+    changes: Changes = (),
+) -> None:
+    """Follow the motion in time, say what becomes of it, and write figures and data.
+
+    Parameters
+    ----------
+    file
+        design file; its section [simulate] says how, unless the options do
+    out
+        folder for the verdict, figures (PNG and SVG), motion.csv and motion.nc
+    duration
+        how long the motion is followed: 50ms
+    start
+        rest (loads applied suddenly) or sliding
+    method
+        Runge-Kutta pair; squealbox list names them
+    contact
+        exact (stick, slip and lift-off by events), raw (plain sgn), smooth or tanh
+    changes
+        other values for this run: --set friction.static=0.4 load="2 kN"
+    """
+    found = read(file, changes)
+    options = {"start": start, "method": method, "contact": contact}
+    settings = _settings(found.simulate or Simulate(), duration, options)
+    system = found.design.system()
+    beginning = _beginning(system, settings)
+    with Progress("simulating (the first run compiles the engine)"):
+        motion = _motion(system, settings, beginning)
+    with Progress("drawing"):
+        text, paths = _results(motion, file.name, folder(out))
+    print(f"{found.design.title}, {file}\n{text}\n{written(*paths)}")
+    if not motion.outcome.ok:
+        raise ComputationFailed(motion.outcome)
+
+
+def _settings(given: Simulate, duration: str | None, options: dict[str, str | None]) -> Simulate:
+    changed: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
+    if duration is not None:
+        changed["duration"] = time_of("--duration", duration)
+    try:
+        return given.replace(changed)
+    except ParameterError as error:
+        raise UsageError(f"--{error.name} {options.get(error.name) or duration}: {error.expectation}") from error
+
+
+def _beginning(system: System, settings: Simulate) -> tuple[Any, Any]:
+    """Displacement and velocity at the start: rest or steady sliding, and what the file adds to it."""
+    q = qd = np.zeros(system.size)
+    if settings.start == "sliding":
+        state = equilibrium(system, settings.begin)
+        if not state.exists:
+            raise InvalidSystem(f"there is no steady sliding to start from: {state.outcome.message}")
+        q = state.q
+    return q + (0.0 if settings.q is None else settings.q), qd + (0.0 if settings.qd is None else settings.qd)
+
+
+def _motion(system: System, settings: Simulate, beginning: tuple[Any, Any]) -> "Trajectory":
+    from squealbox.transient import simulate as follow
+
+    return follow(
+        system,
+        settings.duration,
+        start=beginning,
+        times=int(settings.points),
+        method=settings.method,
+        contact=settings.contact,
+        rtol=settings.rtol,
+        width=settings.width,
+        start_time=settings.begin,
+    )
+
+
+def _results(motion: "Trajectory", title: str, out: Path) -> tuple[str, list[Path]]:
+    """The verdict on each degree of freedom in words, and the files written."""
+    from squealbox import plots
+    from squealbox.signals import SignalError
+    from squealbox.transient import verdict
+
+    paths = [motion.save(out / "motion.nc"), write_csv(out / "motion.csv", _columns(motion))]
+    try:
+        judged = [verdict(motion, dof=i) for i in range(motion.system.size)]
+    except SignalError as error:
+        return f"the motion is too short to be judged or drawn: {error}", paths
+    text = "\n".join(f"{name}: {each}" for name, each in zip(motion.system.names, judged, strict=True))
+    (out / "verdict.txt").write_text(f"{text}\n", encoding="utf-8")
+    liveliest = sorted(range(len(judged)), key=lambda i: -float(judged[i].amplitude))[:MOST_FIGURES]
+    for i in sorted(liveliest):
+        name = motion.system.names[i]
+        paths += plots.save(plots.plot(motion, dof=i, title=f"{title}: {name}"), out / f"motion_{name}")
+    paths += plots.save(plots.energy(motion, title=title), out / "energy")
+    return text, [out / "verdict.txt", *paths]
+
+
+def _columns(motion: "Trajectory") -> dict[str, Any]:
+    names = motion.system.names
+    contacts = [contact.name or f"contact {i + 1}" for i, contact in enumerate(motion.system.contacts)]
+    columns = {"t [s]": motion.t}
+    columns |= {f"{name} [m]": motion.q[:, i] for i, name in enumerate(names)}
+    columns |= {f"d{name}/dt [m/s]": motion.qd[:, i] for i, name in enumerate(names)}
+    columns |= {f"normal force, {name} [N]": motion.normal_force[:, i] for i, name in enumerate(contacts)}
+    columns |= {f"friction force, {name} [N]": motion.friction_force[:, i] for i, name in enumerate(contacts)}
+    return columns | {f"mode, {name}": motion.mode[:, i] for i, name in enumerate(contacts)}
