@@ -185,7 +185,7 @@ class Follower:
         return None, most, size
 
     def _tangent(self, y: Any, along: Any) -> tuple[Any, float]:
-        """Unit null vector of the derivative on the side of `along` (NaN when not finite), sign of the bordered determinant."""
+        """Unit null vector of the derivative on the side of `along` (or NaN), and the bordered determinant's sign."""
         derivative = self._derivative(y)
         if not np.all(np.isfinite(derivative)):
             return np.full(y.size, np.nan), 0.0

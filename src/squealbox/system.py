@@ -176,11 +176,15 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
     singular = np.zeros(shape, dtype=bool)
     converged = np.zeros(shape, dtype=bool)
     scale = np.max(np.abs(base), axis=(-1, -2))
+    linear = not any(contact.unilateral for contact in system.contacts)
     for _ in range(2 + 2 * len(system.contacts) ** 2):
         residual, jacobian = _residual(system, time, q, force, speed, mu, base)
         step, bad = _solve(jacobian, residual)
         singular |= bad
         q = q - step
+        if linear:  # one step is exact
+            converged = np.all(np.isfinite(q), axis=-1)
+            break
         size_of_step = scale * np.max(np.abs(step), axis=-1)
         converged = size_of_step <= 1e-12 * (scale * np.max(np.abs(q), axis=-1) + 1e-300)
         if np.all(converged | singular):
@@ -289,10 +293,18 @@ def _residual(system: System, time: float, q: Any, force: Any, speed: Any, mu: A
 def _solve(jacobian: Any, residual: Any) -> tuple[Any, Any]:
     """Solve, with the entries whose matrix is singular to working precision set to a zero step and marked."""
     with np.errstate(all="ignore"):
-        singular = ~(np.linalg.cond(jacobian) < 1.0 / np.finfo(float).eps)
+        singular = ~(_condition(jacobian) < 1.0 / np.finfo(float).eps)
     safe = np.where(singular[..., None, None], np.eye(jacobian.shape[-1]), jacobian)
     step = np.linalg.solve(safe, residual[..., None])[..., 0]
     return np.where(singular[..., None], 0.0, step), singular
+
+
+def _condition(matrix: Any) -> Any:
+    """Condition number; of 2 x 2 matrices in closed form (Frobenius norm), which is many times faster on a map."""
+    if matrix.shape[-1] != 2:
+        return np.linalg.cond(matrix)
+    determinant = matrix[..., 0, 0] * matrix[..., 1, 1] - matrix[..., 0, 1] * matrix[..., 1, 0]
+    return np.sum(matrix**2, axis=(-1, -2)) / np.abs(determinant)
 
 
 def _normal_forces(system: System, time: float, q: Any) -> Any:

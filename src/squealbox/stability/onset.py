@@ -1,31 +1,39 @@
-"""At which value of a parameter does steady sliding lose (or regain) its stability?
+"""At which values of a parameter does steady sliding lose, or regain, its stability, and by which mechanism?"""
 
-The largest growth rate is scanned over the range in one batched call and each change of sign is refined by Brent's
-method. A system without any damping is neutral up to its onset, so no growth rate changes sign there; for it the
-refined function is the square of the distance of two squared eigenvalues, which is analytic through the coalescence.
-"""
-
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from squealbox.result import Outcome, Result, quantity
-from squealbox.stability.eigenvalues import spectrum
-from squealbox.system import Equilibrium, Linearised, as_system, linearise
+from squealbox.stability.eigenvalues import modes_of, spectrum
+from squealbox.stability.family import Family, entry
+from squealbox.stability.mechanism import Mechanism, mechanism_at
+from squealbox.stability.scan import Scan, merging, scan
 
-RELATIVE = 1e-12
+BESIDE = 1e-6  # share of the range by which the mechanism of a neutral system is looked at beyond its onset
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CriticalValue(Result):
-    """The value of a parameter at which stability changes, as :func:`critical_value` returns it."""
+    """One value of a parameter at which a mode crosses zero growth, as :func:`critical_value` returns it.
+
+    direction is "destabilising" (the mode grows above) or "stabilising" (it grows below); mechanism is flutter,
+    negative_slope, divergence or mixed, with base, circulation and slope [1/s] the terms behind the name.
+    """
 
     value: Any = quantity("", "", "critical value of the parameter, in its own unit; NaN when there is none")
     eigenvalue: Any = quantity("", "1/s", "eigenvalue on the boundary")
+    shape: Any = quantity("dof", "1", "mode that crosses, |u| = 1")
     parameter: str = ""
     direction: str = ""
+    mechanism: str = ""
+    base: float = float("nan")
+    circulation: float = float("nan")
+    slope: float = float("nan")
+    unstable_below: int = 0
+    unstable_above: int = 0
 
     @property
     def angular_frequency(self) -> float:
@@ -37,10 +45,63 @@ class CriticalValue(Result):
         """|Im lambda| / (2 pi) at the onset [Hz]."""
         return self.angular_frequency / (2.0 * np.pi)
 
-    def __repr__(self) -> str:
+    @property
+    def changes_stability(self) -> bool:
+        """True when the system as a whole is stable on one side and unstable on the other."""
+        return (self.unstable_below == 0) != (self.unstable_above == 0)
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Shares of the two parts of friction in what feeds the mode, each 0 to 1."""
+        why = Mechanism(self.mechanism, self.base, self.circulation, self.slope)
+        return {"flutter": why.flutter_share, "negative_slope": why.negative_slope_share}
+
+    def summary(self) -> str:
+        """One line: the value, where it leads, the frequency and the mechanism with its shares."""
         if not self.outcome.ok:
-            return f"{self.parameter}: {self.outcome}, {self.outcome.message}"
-        return f"{self.parameter} = {float(self.value):.10g} ({self.direction}) at {self.frequency:.6g} Hz"
+            return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
+        why = Mechanism(self.mechanism, self.base, self.circulation, self.slope)
+        return f"{self.parameter} = {float(self.value):.10g} ({self.direction}), {self.frequency:.6g} Hz, {why}"
+
+    def __repr__(self) -> str:
+        return self.summary()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CriticalValues(Result):
+    """All crossings in a range, in rising order; iterate for :class:`CriticalValue`, or use the arrays as a table."""
+
+    value: Any = quantity("crossing", "", "critical values of the parameter, in its own unit")
+    eigenvalue: Any = quantity("crossing", "1/s", "eigenvalue on the boundary")
+    shape: Any = quantity("crossing dof", "1", "mode that crosses, |u| = 1")
+    direction: Any = quantity("crossing", "1", "destabilising or stabilising")
+    mechanism: Any = quantity("crossing", "1", "flutter, negative_slope, divergence or mixed")
+    base: Any = quantity("crossing", "1/s", "growth rate without what feeds it")
+    circulation: Any = quantity("crossing", "1/s", "brought by circulatory forces")
+    slope: Any = quantity("crossing", "1/s", "brought by the damping part of friction")
+    unstable_below: Any = quantity("crossing", "1", "unstable modes just below")
+    unstable_above: Any = quantity("crossing", "1", "unstable modes just above")
+    parameter: str = ""
+
+    def __len__(self) -> int:
+        return len(self.value)
+
+    def __iter__(self) -> Iterator[CriticalValue]:
+        names = ("value", "eigenvalue", "shape", "base", "circulation", "slope", "unstable_below", "unstable_above")
+        for i in range(len(self)):
+            arrays = {name: getattr(self, name)[i] for name in names}
+            labels: dict[str, Any] = {name: str(getattr(self, name)[i]) for name in ("direction", "mechanism")}
+            about: dict[str, Any] = {"parameter": self.parameter, "inputs": self.inputs, "settings": self.settings}
+            yield CriticalValue(**arrays, **labels, **about)
+
+    def summary(self) -> str:
+        """A line for each crossing, ready for an e-mail."""
+        if len(self) == 0:
+            return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
+        return "\n".join(crossing.summary() for crossing in self)
+
+    def __repr__(self) -> str:
+        return self.summary()
 
 
 def critical_value(
@@ -50,132 +111,105 @@ def critical_value(
 
     Parameters
     ----------
-    design : a design whose ``replace({parameter: values})`` makes it a batch, or a callable of one value that returns a
+    design : a design whose ``replace({parameter: values})`` makes a batch, or a function of one value that returns a
         design or a system
-    parameter : dotted name, such as "friction.static"; for a callable, what the result calls it
+    parameter : dotted name, such as "friction.static"; for a function, what the result calls it
     bounds : (low, high) in the parameter's own unit
-    points : number of values scanned; two changes between neighbours are not seen
+    points : number of values scanned before narrow windows are looked for
     time : instant of schedules [s]
 
-    Returns `CriticalValue`: value good to 1e-12 relative, the eigenvalue there, and direction "destabilising" (unstable
-    above) or "stabilising" (stable above). Without a change the outcome is "no_onset" with the growth rates at both
-    ends as evidence; "no_equilibrium" when steady sliding exists nowhere in the range.
+    Returns a `CriticalValue`, good to 1e-12 relative. Without a change the outcome is "no_onset", with the growth rates
+    at both ends as evidence; "no_equilibrium" when steady sliding exists nowhere in the range. Bad bounds are a
+    `ValueError`.
     """
+    every = _crossings(Family(design, [parameter], time), bounds, points, first=True)
+    if not every.outcome.ok:
+        nothing: dict[str, Any] = {"value": np.nan, "eigenvalue": complex(np.nan), "shape": np.array([])}
+        about: dict[str, Any] = {"inputs": every.inputs, "settings": every.settings, "outcome": every.outcome}
+        return CriticalValue(**nothing, **about, parameter=parameter)
+    return next(iter(every))
+
+
+def critical_values(
+    design: Any, parameter: str, bounds: tuple[float, float], *, points: int = 401, time: float = 0.0
+) -> CriticalValues:
+    """Every value between `bounds` at which any mode crosses zero growth; arguments as for :func:`critical_value`.
+
+    For a system without damping only changes of the stability of the whole are seen: its modes merge, none crosses.
+    """
+    return _crossings(Family(design, [parameter], time), bounds, points, first=False)
+
+
+def _crossings(family: Family, bounds: tuple[float, float], points: int, *, first: bool) -> CriticalValues:
     low, high = _checked(bounds, points)
-    at = _at(design, parameter, time)
-    values = np.linspace(low, high, points)
-    measure = _measure(at(values))
-    inputs = {"system": None if _is_recipe(design) else design, "time": time}
+    found = scan(family, low, high, points)
+    rows = []
+    for i, k in found.brackets():
+        if first and k > 0:
+            continue
+        rows.append(_crossing(found, i, k, high - low))
+        if first:
+            break
+    rows.sort(key=lambda row: row["value"])
+    outcome = Outcome() if rows else _no_onset(family, found, low, high)
+    size = rows[0]["shape"].size if rows else 0
+    empty = {"value": 0.0, "eigenvalue": 0j, "shape": np.zeros(size), "direction": "", "mechanism": "", "base": 0.0}
+    empty |= {"circulation": 0.0, "slope": 0.0, "unstable_below": 0, "unstable_above": 0}
+    columns: dict[str, Any] = {
+        name: np.array([row[name] for row in rows]) if rows else np.array([like])[:0] for name, like in empty.items()
+    }
     settings = {"bounds": [low, high], "points": points}
-    found = _first_bracket(measure)
-    if found is None:
-        outcome = _no_onset(at(values[[0, -1]]), measure)
-        nothing: dict[str, Any] = {"value": np.nan, "eigenvalue": complex(np.nan), "parameter": parameter}
-        return CriticalValue(**nothing, inputs=inputs, settings=settings, outcome=outcome)
-    value = _root(at, values[found], values[found + 1], _neutral(at(values[[found, found + 1]])))
-    direction = "destabilising" if measure[found] >= 0.0 else "stabilising"
-    eigenvalue = _on_the_axis(spectrum(at(np.array([value])))[0])
-    found_there: dict[str, Any] = {"value": value, "eigenvalue": eigenvalue, "direction": direction}
-    return CriticalValue(**found_there, parameter=parameter, inputs=inputs, settings=settings)
+    return CriticalValues(
+        **columns, parameter=family.parameters[0], inputs=family.inputs, settings=settings, outcome=outcome
+    )
+
+
+def _crossing(found: Scan, i: int, k: int, width: float) -> dict[str, Any]:
+    value = found.root(i, k)
+    rising = bool(found.functions[i + 1, k] > 0.0)
+    steady = found.family.at(np.array([value]))
+    modes = modes_of(steady)
+    half = modes.eigenvalues.shape[-1] // 2
+    if found.neutral:
+        eigenvalue = merging(modes.eigenvalues[0])
+        place = int(np.argmin(np.abs(modes.eigenvalues[0, :half] - eigenvalue)))
+        beside = value + (BESIDE if rising else -BESIDE) * width
+        why = mechanism_at(entry(found.family.at(np.array([beside])), (0,)), eigenvalue.imag)
+        counts = (int(found.functions[i, 0] > 0.0), int(rising))
+    else:
+        place = int(np.argmin(np.abs(modes.growth_rate[0, :half] - found.at(value)[k])))
+        eigenvalue = complex(modes.eigenvalues[0, place])
+        rank = int(np.sum(modes.growth_rate[0, :half] > modes.growth_rate[0, place]))
+        why = mechanism_at(entry(steady, (0,)), eigenvalue.imag, rank=rank)
+        counts = (k, k + 1) if rising else (k + 1, k)
+    return {
+        "value": value,
+        "eigenvalue": eigenvalue,
+        "shape": modes.right[0, :, place],
+        "direction": "destabilising" if rising else "stabilising",
+        "mechanism": why.name,
+        "base": why.base,
+        "circulation": why.circulation,
+        "slope": why.slope,
+        "unstable_below": counts[0],
+        "unstable_above": counts[1],
+    }
 
 
 def _checked(bounds: tuple[float, float], points: int) -> tuple[float, float]:
     low, high = (float(b) for b in bounds)
     if not (np.isfinite(low) and np.isfinite(high) and low < high):
         raise ValueError(f"bounds = {bounds}: expected two finite numbers (low, high) with low < high")
-    if points < 2:
-        raise ValueError(f"points = {points}: expected at least 2")
+    if points < 3:
+        raise ValueError(f"points = {points}: expected at least 3")
     return low, high
 
 
-def _is_recipe(design: Any) -> bool:
-    return callable(design) and not hasattr(design, "replace")
-
-
-def _at(design: Any, parameter: str, time: float) -> Callable[[Any], Linearised]:
-    """The linearised matrices at an array of parameter values, shape (values, n, n)."""
-    if not _is_recipe(design):
-        return lambda values: linearise(as_system(design.replace({parameter: np.asarray(values)})), time)
-
-    def one_by_one(values: Any) -> Linearised:
-        parts = [linearise(as_system(design(float(value))), time) for value in values]
-        return stacked(parts)
-
-    return one_by_one
-
-
-def stacked(parts: list[Linearised]) -> Linearised:
-    """Linearised systems of one size as a batch along a new first axis."""
-    states = [part.equilibrium for part in parts]
-    worst = next((state.outcome for state in states if not state.outcome.ok), states[0].outcome)
-    names = ("q", "normal_force", "sliding_speed", "friction", "exists")
-    state = Equilibrium(**{name: np.stack([getattr(s, name) for s in states]) for name in names}, outcome=worst)
-    return Linearised(**{name: np.stack([getattr(part, name) for part in parts]) for name in "MCK"}, equilibrium=state)
-
-
-def _measure(about: Linearised) -> Any:
-    """A measure that is positive where stable, negative where a mode grows; NaN without equilibrium."""
-    eigenvalues = spectrum(about)
-    growth = -np.max(eigenvalues.real, axis=-1)
-    neutral = _neutral(about)
-    return np.where(neutral, coalescence(eigenvalues), growth)
-
-
-def coalescence(eigenvalues: Any) -> Any:
-    """For spectra symmetric in lambda -> -lambda: negative where a mode grows, zero at coalescence or divergence.
-
-    With s = lambda^2, min over pairs of Re (s_i - s_j)^2 is negative just where two s are a conjugate pair, and
-    -s negative where a root is real; both are analytic in a parameter where the eigenvalues themselves are not.
-    """
-    half = eigenvalues.shape[-1] // 2
-    squares = eigenvalues[..., :half] ** 2
-    scale = np.max(np.abs(squares), axis=-1, keepdims=True)
-    squares = squares / np.where(scale > 0.0, scale, 1.0)
-    nearest = np.min(-squares.real, axis=-1)
-    for i in range(half):
-        for j in range(i):
-            nearest = np.minimum(nearest, np.real((squares[..., i] - squares[..., j]) ** 2))
-    return nearest
-
-
-def _neutral(about: Linearised) -> Any:
-    """True where the spectrum is symmetric in lambda -> -lambda: no damping at all, or purely gyroscopic coupling."""
-    scale = np.max(np.abs(about.K), axis=(-1, -2)) ** 0.5 * np.max(np.abs(about.M), axis=(-1, -2)) ** 0.5
-    none = np.max(np.abs(about.C), axis=(-1, -2)) <= 1e-15 * scale
-    skew = np.max(np.abs(about.C + np.swapaxes(about.C, -1, -2)), axis=(-1, -2)) <= 1e-15 * scale
-    uneven = np.max(np.abs(about.K - np.swapaxes(about.K, -1, -2)), axis=(-1, -2))
-    symmetric = uneven <= 1e-15 * np.max(np.abs(about.K), axis=(-1, -2))
-    return none | (skew & symmetric)
-
-
-def _first_bracket(measure: Any) -> int | None:
-    growing = measure < 0.0
-    known = np.isfinite(measure)
-    changes = np.nonzero((growing[1:] != growing[:-1]) & known[1:] & known[:-1])[0]
-    return int(changes[0]) if changes.size else None
-
-
-def _root(at: Callable[[Any], Linearised], low: float, high: float, neutral: Any) -> float:
-    from scipy.optimize import brentq
-
-    def measure(value: float) -> float:
-        about = at(np.array([value]))
-        eigenvalues = spectrum(about)[0]
-        return float(coalescence(eigenvalues) if np.all(neutral) else -np.max(eigenvalues.real))
-
-    root: float = brentq(measure, low, high, xtol=RELATIVE * max(abs(low), abs(high)), rtol=RELATIVE)
-    return root
-
-
-def _on_the_axis(eigenvalues: Any) -> complex:
-    """The eigenvalue with the largest growth rate; its real part is what the root finder left."""
-    half = len(eigenvalues) // 2
-    return complex(eigenvalues[:half][np.argmax(eigenvalues[:half].real)])
-
-
-def _no_onset(ends: Linearised, measure: Any) -> Outcome:
-    if not np.any(np.isfinite(measure)):
+def _no_onset(family: Family, found: Scan, low: float, high: float) -> Outcome:
+    ends = family.at(np.array([low, high]))
+    known = np.isfinite(found.functions)
+    if not np.any(known):
         return Outcome("no_equilibrium", f"no steady sliding in the range: {ends.equilibrium.outcome.message}")
     growth = [float(g) for g in np.max(spectrum(ends).real, axis=-1)]
-    state = "unstable" if np.nanmin(measure) < 0.0 else "stable"
+    state = "unstable" if np.any(found.functions[known] > 0.0) else "stable"
     return Outcome("no_onset", f"{state} in the whole range", growth_rate_low=growth[0], growth_rate_high=growth[1])

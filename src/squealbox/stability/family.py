@@ -1,0 +1,86 @@
+"""A design with some parameters left free: values in, linearised matrices out, in one batched call."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.system import Equilibrium, Linearised, System, as_system, linearise
+
+
+@dataclass(frozen=True)
+class Steady(Linearised):
+    """The linearised matrices and, beside C_eff, the damping C of the structure alone, all (..., n, n)."""
+
+    structural: Any
+
+
+def steady_sliding(design_or_system: Any, time: float = 0.0) -> Steady:
+    """M, C_eff, K_eff and the structure's own C about steady sliding at `time` [s]."""
+    system: System = as_system(design_or_system)
+    about = linearise(system, time)
+    return Steady(about.M, about.C, about.K, about.equilibrium, np.broadcast_to(system.C, about.C.shape))
+
+
+class Family:
+    """Systems over one or more parameters.
+
+    Parameters
+    ----------
+    design : a design, whose ``replace({name: array})`` makes a batch; or a callable of one float for each parameter
+        that returns a design or a system, called point by point
+    parameters : dotted names, such as "friction.static"; for a callable, what results call its arguments
+    time : instant of schedules [s]
+    """
+
+    def __init__(self, design: Any, parameters: Sequence[str], time: float = 0.0) -> None:
+        self.design, self.parameters, self.time = design, tuple(parameters), time
+        self.recipe: Callable[..., Any] | None = None
+        if callable(design) and not hasattr(design, "replace"):
+            self.recipe = design
+        elif isinstance(design, System):
+            raise TypeError(
+                "a System has no named parameters to vary: give a design, or a function that makes the system"
+            )
+
+    @property
+    def inputs(self) -> dict[str, Any]:
+        """What a result keeps of the family; a callable cannot be written to a file and is left out."""
+        return {"system": None if self.recipe else self.design, "parameters": list(self.parameters), "time": self.time}
+
+    def at(self, *values: Any) -> Steady:
+        """The matrices at arrays of values, one array for each parameter, broadcast to a common shape."""
+        arrays = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in values))
+        shape = arrays[0].shape
+        if self.recipe is None:
+            named = dict(zip(self.parameters, arrays, strict=True))
+            steady = steady_sliding(self.design.replace(named), self.time)
+            if steady.K.shape[:-2] == shape:
+                return steady
+            return _joined([steady], lambda parts, rank: np.broadcast_to(parts[0], shape + _tail(parts[0], rank)))
+        points = zip(*(array.ravel() for array in arrays), strict=True)
+        parts = [steady_sliding(self.recipe(*(float(x) for x in point)), self.time) for point in points]
+        return _joined(parts, lambda parts, rank: np.stack(parts).reshape(shape + _tail(parts[0], rank)))
+
+
+def entry(steady: Steady, index: tuple[int, ...]) -> Steady:
+    """One system out of a batch."""
+    return _joined([steady], lambda parts, rank: parts[0][index])
+
+
+_STATE = {"q": 1, "normal_force": 1, "sliding_speed": 1, "friction": 1, "exists": 0}
+_MATRICES = {"M": 2, "C": 2, "K": 2, "structural": 2}
+
+
+def _tail(array: Any, rank: int) -> tuple[int, ...]:
+    return np.shape(array)[np.ndim(array) - rank :]
+
+
+def _joined(parts: list[Steady], join: Callable[[list[Any], int], Any]) -> Steady:
+    """Every array of the parts handed to `join` with the number of its own axes."""
+    states = [part.equilibrium for part in parts]
+    worst = next((state.outcome for state in states if not state.outcome.ok), states[0].outcome)
+    state = {name: join([getattr(s, name) for s in states], rank) for name, rank in _STATE.items()}
+    matrices = {name: join([getattr(part, name) for part in parts], rank) for name, rank in _MATRICES.items()}
+    return Steady(**matrices, equilibrium=Equilibrium(**state, outcome=worst))

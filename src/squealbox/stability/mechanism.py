@@ -1,0 +1,147 @@
+"""Why steady sliding is lost: how much of the growth rate the circulatory and the damping part of friction each bring.
+
+Split the linearised system into a passive base and the two parts that can feed a vibration,
+
+    K_eff = K_sym + K_skew         K_skew: circulatory, lets two modes merge: flutter
+    C_eff = C_plus + C_rest        C_rest: friction that changes with speed, and negative dampers: negative slope
+
+with K_sym the symmetric part and C_plus the positive semidefinite part of the structure's own damping. Growth is not a
+sum over parts, because each changes the modes on which the other acts. So both are switched on together,
+K_sym + s K_skew and C_plus + s C_rest for s = 0 ... 1, and each step of the growth rate is credited to the two parts by
+the mean over the two orders of taking it. That gives
+
+    growth rate = base + circulation + slope
+
+exactly, without order or label (the Aumann-Shapley value of cost sharing). An unstable state is called by the share of
+what feeds it: flutter or negative slope from 60 % on, mixed between, divergence where the growing eigenvalue is real.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.stability.eigenvalues import MARGINAL, spectrum
+from squealbox.stability.family import Steady, steady_sliding
+from squealbox.stability.spectra import Engine, largest_growth
+from squealbox.system import Linearised
+
+NAMES = ("stable", "flutter", "negative_slope", "divergence", "mixed")
+STABLE, FLUTTER, NEGATIVE_SLOPE, DIVERGENCE, MIXED, UNKNOWN = 0, 1, 2, 3, 4, -1
+DOMINANT = 0.6  # share from which one part gives the name: three to two
+STATIC = 1e-9  # |Im lambda| below this share of the largest |lambda| is no oscillation
+STEPS = 8  # of s; shares change by about 1 % from 8 to 256
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """How one mode loses its stability: a name and the terms of its growth rate [1/s] (module's head)."""
+
+    name: str
+    base: float
+    circulation: float
+    slope: float
+
+    @property
+    def flutter_share(self) -> float:
+        """Share of circulation in what feeds the mode, 0 to 1; NaN when nothing does."""
+        return float(share(self.circulation, self.slope))
+
+    @property
+    def negative_slope_share(self) -> float:
+        """Share of the damping part of friction in what feeds the mode, 0 to 1; NaN when nothing does."""
+        return 1.0 - self.flutter_share
+
+    def __str__(self) -> str:
+        if self.name in ("stable", "divergence", "unknown"):
+            return self.name
+        shares = f"{self.flutter_share:.0%} circulation, {self.negative_slope_share:.0%} negative slope"
+        return f"{self.name.replace('_', ' ')} ({shares})"
+
+
+def share(circulation: Any, slope: Any) -> Any:
+    """circulation+ / (circulation+ + slope+), NaN where both are negative."""
+    feeding, weakening = np.maximum(circulation, 0.0), np.maximum(slope, 0.0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return feeding / (feeding + weakening)
+
+
+def contributions(
+    steady: Steady, *, rank: int = 0, steps: int = STEPS, engine: Engine = "auto"
+) -> tuple[Any, Any, Any]:
+    """Base, circulation and slope [1/s], (...) each: the terms of the `rank`-th largest growth rate."""
+    symmetric = 0.5 * (steady.K + np.swapaxes(steady.K, -1, -2))
+    skew = steady.K - symmetric
+    passive = positive_part(0.5 * (steady.structural + np.swapaxes(steady.structural, -1, -2)))
+    rest = steady.C - passive
+
+    def growth(a: float, b: float) -> Any:
+        part = Linearised(steady.M, passive + b * rest, symmetric + a * skew, steady.equilibrium)
+        return ranked_growth(part, rank, engine)
+
+    base = before = growth(0.0, 0.0)
+    circulation, slope = np.zeros(base.shape), np.zeros(base.shape)
+    for i in range(steps):
+        low, high = i / steps, (i + 1) / steps
+        after, first, second = growth(high, high), growth(high, low), growth(low, high)
+        circulation = circulation + 0.5 * (first - before + after - second)
+        slope = slope + 0.5 * (second - before + after - first)
+        before = after
+    return base, circulation, slope
+
+
+def ranked_growth(about: Linearised, rank: int, engine: Engine = "auto") -> Any:
+    """The `rank`-th largest growth rate [1/s] among the n modes (conjugates counted once), (...)."""
+    if rank == 0:
+        return largest_growth(about, engine)[0]
+    values = spectrum(about)
+    return -np.sort(-values[..., : values.shape[-1] // 2].real, axis=-1)[..., rank]
+
+
+def mechanism_codes(growth: Any, angular_frequency: Any, circulation: Any, slope: Any, scale: Any) -> Any:
+    """Codes into `NAMES`: 0 stable, 1 flutter, 2 negative slope, 3 divergence, 4 mixed; -1 without a spectrum."""
+    flutter = share(circulation, slope)
+    conditions = [
+        ~np.isfinite(growth),
+        growth <= MARGINAL * scale,
+        (angular_frequency <= STATIC * scale) | np.isnan(flutter),
+        flutter >= DOMINANT,
+        flutter <= 1.0 - DOMINANT,
+    ]
+    return np.select(conditions, [UNKNOWN, STABLE, DIVERGENCE, FLUTTER, NEGATIVE_SLOPE], MIXED).astype(np.int8)
+
+
+def mechanism_at(steady: Steady, angular_frequency: float, *, rank: int = 0, steps: int = STEPS) -> Mechanism:
+    """The mechanism by which the `rank`-th mode of one system grows, also at the onset where it only just does."""
+    base, circulation, slope = (float(x) for x in contributions(steady, rank=rank, steps=steps, engine="numpy"))
+    scale = float(np.max(np.abs(spectrum(steady))))
+    code = mechanism_codes(np.float64(scale), np.float64(angular_frequency), circulation, slope, scale)
+    return Mechanism(NAMES[int(code)], base, circulation, slope)
+
+
+def mechanism(design_or_system: Any, time: float = 0.0) -> Mechanism:
+    """Why one system is unstable at `time` [s]; "stable" when it is not, "unknown" without steady sliding.
+
+    >>> from squealbox.system import System
+    >>> coupled = System(M=[[1.0, 0.0], [0.0, 1.0]], C=[[0.0] * 2] * 2, K=[[2.0, 1.0], [-1.0, 2.0]])
+    >>> mechanism(coupled).name
+    'flutter'
+    """
+    steady = steady_sliding(design_or_system, time)
+    if steady.K.ndim > 2:
+        raise ValueError(f"leading axes {steady.K.shape[:-2]}: mechanism() is for one system, stability_map() for many")
+    growth, omega = (float(x) for x in largest_growth(steady, "numpy"))
+    if not np.isfinite(growth):
+        return Mechanism("unknown", *(float("nan"),) * 3)
+    found = mechanism_at(steady, omega)
+    scale = float(np.max(np.abs(spectrum(steady))))
+    return found if growth > MARGINAL * scale else Mechanism("stable", found.base, found.circulation, found.slope)
+
+
+def positive_part(symmetric: Any) -> Any:
+    """The positive semidefinite part of symmetric matrices (..., n, n)."""
+    diagonal = np.diagonal(symmetric, axis1=-2, axis2=-1)
+    if np.all(symmetric == diagonal[..., None] * np.eye(symmetric.shape[-1])):
+        return np.maximum(symmetric, 0.0)
+    values, vectors = np.linalg.eigh(symmetric)
+    return (vectors * np.maximum(values, 0.0)[..., None, :]) @ np.swapaxes(vectors, -1, -2)

@@ -1,0 +1,90 @@
+"""Which arithmetic answers a batch: NumPy's eigvals, or the compiled kernels when the batch is worth loading numba for.
+
+Both give the same numbers to round-off (a test compares them); `engine` chooses by name, and "auto" by size.
+"""
+
+from typing import Any, Literal
+
+import numpy as np
+
+from squealbox.stability.eigenvalues import state_matrix
+from squealbox.system import Linearised
+
+Engine = Literal["auto", "numpy", "compiled"]
+WORTH_IT = 5000  # systems in a batch from which loading the compiled kernels (about 1 s) pays
+LARGEST_COMPILED = 24  # state variables above which LAPACK's blocked code is as fast
+
+
+def largest_growth(about: Linearised, engine: Engine = "auto") -> tuple[Any, Any]:
+    """Largest growth rate [1/s] and the angular frequency [rad/s] of its mode, (...) each; NaN without a spectrum."""
+    if about.M.shape[-1] == 2 and _compiled(about, engine):
+        return _two_dof(about)
+    values = eigenvalues(about, engine)
+    place = np.argmax(np.where(np.isfinite(values.real), values.real, -np.inf), axis=-1)[..., None]
+    worst = np.take_along_axis(values, place, axis=-1)[..., 0]
+    return worst.real, np.abs(worst.imag)
+
+
+def asymptotically_stable(about: Linearised, engine: Engine = "auto") -> Any:
+    """True where every growth rate is negative, (...); an undamped or missing system is False."""
+    if about.M.shape[-1] == 2 and _compiled(about, engine):
+        from squealbox.stability import kernels_two_dof as kernels
+
+        mass, damping, stiffness, shape, usable = _flat(about)
+        flags = np.empty(damping.size // 4, dtype=np.uint8)
+        run = kernels.flags_shared_mass if mass.size == 4 else kernels.flags_own_mass
+        run(mass, damping, stiffness, flags)
+        return flags.astype(bool).reshape(shape) & usable
+    growth, _ = largest_growth(about, engine)
+    return growth < 0.0
+
+
+def eigenvalues(about: Linearised, engine: Engine = "auto") -> Any:
+    """All eigenvalues (..., 2n) [1/s] in no particular order; NaN without a spectrum."""
+    matrix, rate, usable, _ = state_matrix(about)
+    size = matrix.shape[-1]
+    safe = np.where(usable[..., None, None], matrix, np.eye(size))
+    if size > LARGEST_COMPILED or not _compiled(about, engine):
+        values = np.linalg.eigvals(safe).astype(complex)
+    else:
+        values = compiled_eigenvalues(safe.reshape(-1, size, size)).reshape(*safe.shape[:-1])
+    return np.where(usable[..., None], values * rate[..., None], np.nan)
+
+
+def compiled_eigenvalues(matrices: Any) -> Any:
+    """Eigenvalues (count, n) of real matrices (count, n, n), as `numpy.linalg.eigvals`; NaN where QR fails."""
+    from squealbox.stability import kernels_spectrum
+
+    matrices = np.require(matrices, float, ["C", "W"])
+    count, size = matrices.shape[:2]
+    values = np.empty((count, size), dtype=complex)
+    kernels_spectrum.spectra(matrices, np.empty((size, size)), np.empty(size), np.empty(size), values)
+    return values
+
+
+def _compiled(about: Linearised, engine: Engine) -> bool:
+    if engine not in ("auto", "numpy", "compiled"):
+        raise ValueError(f"engine = {engine!r}: expected 'auto', 'numpy' or 'compiled'")
+    return engine == "compiled" or (engine == "auto" and about.K.size >= WORTH_IT * about.K.shape[-1] ** 2)
+
+
+def _two_dof(about: Linearised) -> tuple[Any, Any]:
+    from squealbox.stability import kernels_two_dof as kernels
+
+    mass, damping, stiffness, shape, usable = _flat(about)
+    growth, omega = np.empty(damping.size // 4), np.empty(damping.size // 4)
+    kernels.growth_and_frequency(mass, damping, stiffness, 0 if mass.size == 4 else 4, growth, omega)
+    missing = ~usable
+    return np.where(missing, np.nan, growth.reshape(shape)), np.where(missing, np.nan, omega.reshape(shape))
+
+
+def _flat(about: Linearised) -> tuple[Any, Any, Any, tuple[int, ...], Any]:
+    """The matrices as flat arrays, M once when it is shared, the leading shape, and where there is a spectrum."""
+    shape = about.K.shape[:-2]
+    shared = all(stride == 0 for stride in about.M.strides[:-2]) or about.M.ndim == 2
+    mass = about.M[(0,) * (about.M.ndim - 2)] if shared else about.M
+    determinant = mass[..., 0, 0] * mass[..., 1, 1] - mass[..., 0, 1] * mass[..., 1, 0]
+    usable = np.asarray(about.equilibrium.exists) & (np.abs(determinant) > 1e-15 * np.max(np.abs(mass)) ** 2)
+    # writable copies where needed, so that the kernels are compiled for one kind of array only
+    mass, damping, stiffness = (np.require(a, float, ["C", "W"]).reshape(-1) for a in (mass, about.C, about.K))
+    return mass, damping, stiffness, shape, usable
