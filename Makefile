@@ -2,6 +2,7 @@
 # make test   lint, import floors, types and tests
 # make docs   the documentation, into docs/_build/html
 # make bench  the benchmarks
+# make format, make picture, make clean: tidy the code, draw the README's picture, remove what was made
 #
 # Python 3.11 or newer and make are all that is assumed; uv is used when it is there, because it installs faster.
 # Another interpreter: make demo PYTHON=python3.12
@@ -21,11 +22,11 @@ CREATE  = $(PYTHON) -m venv $(VENV)
 INSTALL = $(BIN)/python -m pip install --quiet --disable-pip-version-check
 endif
 
-.PHONY: help demo test lint floors types tests format docs bench clean
+.PHONY: help demo test lint floors types tests format docs picture bench clean
 .DEFAULT_GOAL := help
 
 help:
-	@sed -n '1,7s/^# \{0,1\}//p' Makefile
+	@sed -n '1,8s/^# \{0,1\}//p' Makefile
 
 demo: $(VENV)/.installed
 	$(BIN)/squealbox paper drum-brake-2011 --out $(OUT)
@@ -53,6 +54,9 @@ format: $(VENV)/.installed-dev
 docs: $(VENV)/.installed-docs
 	$(BIN)/python -m sphinx --fail-on-warning -b html docs docs/_build/html
 	@echo "The documentation is at $(abspath docs/_build/html)/index.html"
+
+picture: $(VENV)/.installed
+	$(BIN)/python docs/images/draw.py
 
 bench: $(VENV)/.installed-bench
 	@for each in benchmarks/bench_*.py; do echo "== $$each"; $(BIN)/python $$each || exit 1; done

@@ -23,7 +23,9 @@ def test_the_example_runs_and_is_short(tmp_path):
 
 
 def test_the_commands_exist():
-    for target in set(re.findall(r"make (\w+)", README)):
+    commands = re.findall(r"(?:`|^)make (\w+)", README, flags=re.MULTILINE)
+    assert {"demo", "test"} <= set(commands)
+    for target in commands:
         assert re.search(rf"^{target}:", MAKEFILE, flags=re.MULTILINE), f"README names make {target}"
 
 

@@ -1,0 +1,55 @@
+"""The pages keep their word: every cell runs, and every room has its place in the house and in the reference."""
+
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+
+from house.rooms import PACKAGE, PROJECT
+
+DOCS = PROJECT / "docs"
+PAGES = sorted(path for path in DOCS.rglob("*.md") if "_build" not in path.parts)
+REFERENCE = (DOCS / "api.md").read_text()
+HOUSE = (DOCS / "house.md").read_text()
+ROOMS = sorted({path.stem for path in PACKAGE.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()})
+
+
+def cells(text: str) -> str:
+    """The code cells of a page, one after the other, without the notebook's own commands."""
+    found = re.findall(r"^```\{code-cell\}[^\n]*\n(.*?)^```", text, flags=re.DOTALL | re.MULTILINE)
+    lines = "\n".join(found).splitlines()
+    return "\n".join(line for line in lines if not line.startswith((":tags:", "%")))
+
+
+@pytest.mark.parametrize("path", [p for p in PAGES if "{code-cell}" in p.read_text()], ids=lambda path: path.stem)
+def test_cells_run(path, tmp_path):
+    code = cells(path.read_text())
+    environment = {**os.environ, "MPLBACKEND": "Agg"}
+    command = [sys.executable, "-W", "error", "-c", code]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=200)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
+def test_links_lead_somewhere(path):
+    targets = re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", path.read_text())
+    assert [target for target in targets if not (path.parent / target).exists()] == []
+
+
+@pytest.mark.parametrize("room", [room for room in ROOMS if not room.startswith("_")])
+def test_a_room_is_described(room):
+    assert re.search(rf"^`{room}(\.py|/)`$", HOUSE, flags=re.MULTILINE), f"docs/house.md does not describe {room}"
+
+
+# The command line and the papers are used by their commands, not from Python.
+@pytest.mark.parametrize("room", [room for room in ROOMS if not room.startswith("_") and room not in ("cli", "papers")])
+def test_a_room_is_in_the_reference(room):
+    assert f".. automodule:: squealbox.{room}\n" in REFERENCE, f"docs/api.md does not list {room}"
+
+
+def test_the_floors_of_the_page_are_those_of_the_contract():
+    contract = (PROJECT / ".importlinter").read_text().partition("layers =")[2].partition("exhaustive")[0]
+    kept = [line.strip().replace("(", "").replace(")", "") for line in contract.splitlines() if line.strip()]
+    assert "\n".join(f"    {line}" for line in kept) in HOUSE
