@@ -141,8 +141,11 @@ def read_axis(document: Document, table: Mapping[str, Any], key: Key, design: De
 
 def _about(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Parameter | None:
     name = table.get("parameter")
-    if design is None or not isinstance(name, str) or name.partition(".")[0] in document.faulty:
+    if design is None or not isinstance(name, str):
         return None
+    first = name.partition(".")[0]
+    if first in document.faulty and first in [*design.field_names(), *design.aliases]:
+        return None  # what it names has been reported itself
     try:
         return quantity_of(design, name)
     except ParameterError as error:

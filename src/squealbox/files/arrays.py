@@ -53,7 +53,8 @@ def read_array(document: Document, value: Any, about: Parameter, key: Key, ndim:
 
 def _inline(document: Document, value: Any, about: Parameter, key: Key, ndim: int) -> Any:
     expected = "a list of rows, [[1, 0], [0, 1]], or a file" if ndim == 2 else "a list of numbers, [1, 0], or a file"
-    if not isinstance(value, list) or not value or (ndim == 2 and not all(isinstance(row, list) for row in value)):
+    rows_missing = ndim == 2 and isinstance(value, list) and not all(isinstance(row, list) and row for row in value)
+    if not isinstance(value, list) or not value or rows_missing:
         document.problem(key, f"{shown(value)}: expected {expected}")
         return WRONG
     if ndim == 2:

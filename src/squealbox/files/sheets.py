@@ -168,7 +168,8 @@ def _report_missing(document: Document, sheet: type[DataSheet], values: Mapping[
         if is_required(field) and field.name not in values:
             about = parameters.get(field.name)
             what = f" ({about.meaning}), expected a number in {about.range}" if about else ""
-            document.problem(key, f"the key '{field.name}' is missing{what}")
+            given = next((alias for alias, names in sheet.aliases.items() if names == (field.name,)), field.name)
+            document.problem(key, f"the key '{given}' is missing{what}")
 
 
 def _path(name: str) -> Key:
