@@ -5,10 +5,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.plots.dispatch import plot
+from squealbox.plots.spectra import spectrum
 from squealbox.plots.style import drawing, figure_of, line, note, number, panels, quantity_label, scaled, uncertain
-from squealbox.signals import SignalError, column, values
+from squealbox.signals import LEAST, SignalError, column, equal_steps, values
+from squealbox.transient.envelope import smooth_curve
 from squealbox.transient.trajectory import Trajectory
-from squealbox.transient.verdict import Verdict
+from squealbox.transient.verdict import Verdict, verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,8 +49,10 @@ def time_history(
             panel.plot(times / second, x / factor, label=label, **{**line(i), "linewidth": 0.7})
         if verdict is not None:
             for sign in (-1.0, 1.0):
-                hull = (verdict.offset + sign * verdict.envelope) / factor
+                hull = (verdict.envelope_centre + sign * verdict.envelope) / factor
                 panel.plot(verdict.envelope_time / second, hull, **{**line(2), "linewidth": 1.1})
+            low, high = panel.get_ylim()
+            panel.set_ylim(low, high + 0.15 * (high - low))
             note(panel, _verdict_note(verdict))
         panel.set_xlim(curves[0][0][0] / second, curves[0][0][-1] / second)
         panel.set(xlabel=quantity_label("time", clock), ylabel=quantity_label(name, read), title=title)
@@ -110,21 +114,30 @@ def energy(trajectory: Trajectory, *, unit: str | None = None, title: str = "", 
 
 @plot.register(Trajectory)
 def motion_overview(trajectory: Trajectory, *, dof: int | str = 0, title: str = "") -> "Figure":
-    """Time history with the verdict, phase plane and spectrum of one degree of freedom."""
-    from squealbox.plots.spectra import spectrum
-    from squealbox.transient.verdict import verdict
+    """Time history with the verdict, phase plane and spectrum of one degree of freedom.
 
-    figure, axes = panels(1, 3, height=2.5, width_ratios=[1.5, 1.0, 1.2])
-    time_history(trajectory, dof=dof, verdict=verdict(trajectory, dof=dof), axes=axes[0])
+    The spectrum of a run with unequal steps is that of a smooth curve through them, and says so. A run too short to
+    judge is drawn without verdict and spectrum.
+    """
+    short = np.size(trajectory.t) < LEAST
+    figure, axes = panels(1, 2 if short else 3, height=2.5, width_ratios=[1.5, 1.0, 1.2][: 2 if short else 3])
+    time_history(trajectory, dof=dof, verdict=None if short else verdict(trajectory, dof=dof), axes=axes[0])
     phase_plane(trajectory, dof=dof, axes=axes[1])
-    spectrum(trajectory, dof=dof, axes=axes[2])
-    figure.suptitle(title, fontsize=8)
+    if not short:
+        even = equal_steps(trajectory.t)
+        times, x = values(trajectory, dof=dof) if even else smooth_curve(trajectory, dof=dof).even()
+        spectrum(x, times, axes=axes[2], title="" if even else "of a smooth curve through unequal steps")
+    if title or not trajectory.outcome.ok:
+        ended = "" if trajectory.outcome.ok else f"{trajectory.outcome}: {trajectory.outcome.message}"
+        figure.suptitle(". ".join(filter(None, (title, ended))), fontsize=8)
     return figure
 
 
 @plot.register(Verdict)
 def amplitude_course(verdict: Verdict, *, unit: str | None = None, title: str = "", axes: Any = None) -> "Figure":
     """Course of the amplitude behind a verdict, on a logarithmic scale, with its sentence."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
     factor, read = scaled("m", verdict.envelope, to=unit)
     second, clock = scaled("s", verdict.envelope_time)
     with drawing(axes) as panel:
@@ -132,6 +145,11 @@ def amplitude_course(verdict: Verdict, *, unit: str | None = None, title: str = 
         if np.isfinite(verdict.settled_at):
             panel.axvline(float(verdict.settled_at) / second, **{**line(2), "linewidth": 0.8})
         note(panel, _verdict_note(verdict))
+        low, high = panel.get_ylim()
+        panel.set_ylim(low, 2.0 * high)
+        panel.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 100.0 * low else (1.0,)))
+        panel.yaxis.set_major_formatter(lambda value, _: number(value, 2))
+        panel.yaxis.set_minor_formatter(NullFormatter())
         panel.set(xlabel=quantity_label("time", clock), ylabel=quantity_label("half peak to peak", read), title=title)
         return figure_of(panel)
 

@@ -8,6 +8,8 @@ from squealbox import signals
 from squealbox.plots.dispatch import plot
 from squealbox.plots.style import drawing, figure_of, line, note, number, quantity_label, scaled
 
+NAMED = 0.03  # share of the highest peak from which a peak is named
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -31,14 +33,14 @@ def spectrum(
     Parameters
     ----------
     signal, t : a `Spectrum`, a trajectory, or an array (k,) in m with its times [s]
-    peaks : how many peaks to name
+    peaks : how many peaks to name at most
     upto : highest frequency drawn [Hz]; by default twice that of the highest peak
     logarithmic : draw the amplitude over five decades on a logarithmic scale
     unit, frequency_unit : "mm", "µm", "kHz", "rad/s", "10³ rad/s" ...; by default what suits the numbers
     cut : `dof`, `begin`, `end`, `window` ... of :func:`squealbox.signals.spectrum`
     """
     lines = signal if isinstance(signal, signals.Spectrum) else signals.spectrum(signal, t, **cut)
-    found = signals.peaks(lines, peaks)
+    found = signals.peaks(lines, least=NAMED)
     limit = upto or 2.0 * float(found.frequency[0] if found.frequency.size else lines.frequency[-1] / 2.0)
     shown = lines.frequency <= limit
     hertz, read = scaled("Hz", lines.frequency[shown], to=frequency_unit)
@@ -49,12 +51,21 @@ def spectrum(
         top = float(np.max(lines.amplitude[shown])) / factor or 1.0
         panel.set_ylim(*((1e-5 * top, 100.0 * top) if logarithmic else (0.0, 1.4 * top)))
         panel.set_xlim(0.0, limit / hertz)
-        for frequency, amplitude in zip(found.frequency, found.amplitude, strict=True):
-            if frequency <= limit:
-                _name_peak(panel, frequency / hertz, amplitude / factor)
+        for frequency, amplitude in _named(found, peaks, limit, 4.0 * lines.resolution):
+            _name_peak(panel, frequency / hertz, amplitude / factor)
         panel.set(xlabel=quantity_label("frequency", read), ylabel=quantity_label(name, size), title=title)
         note(panel, f"{lines.window.capitalize()} window, resolution {_fine(lines.resolution, read)}")
         return figure_of(panel)
+
+
+def _named(found: signals.Peaks, count: int, limit: float, drift: float) -> list[tuple[float, float]]:
+    """The peaks to name: the highest, none slower than `drift` and no two so close that their names would touch."""
+    chosen: list[tuple[float, float]] = []
+    for frequency, amplitude in zip(found.frequency, found.amplitude, strict=True):
+        clear = all(abs(frequency - other) > 0.07 * limit for other, _ in chosen)
+        if drift <= frequency <= limit and clear and len(chosen) < count:
+            chosen.append((frequency, amplitude))
+    return chosen
 
 
 def _fine(resolution: float, read: str) -> str:

@@ -182,7 +182,8 @@ def uncertain(value: float, error: float) -> str:
     place = int(np.floor(np.log10(error)))
     shown = round(error, -place)
     decimals = max(-place, 0)
-    return f"{round(float(value), -place):.{decimals}f} ± {shown:.{decimals}f}".replace("-", MINUS)
+    text = f"{round(float(value), -place) + 0.0:.{decimals}f}"
+    return f"{text} ± {shown:.{decimals}f}".replace("-", MINUS)
 
 
 def quantity_label(name: str, unit: str) -> str:

@@ -5,11 +5,12 @@ such as a trajectory, of which ``dof`` names one column. Fourier methods need eq
 """
 
 from squealbox.signals.growth import GrowthRate, dominant_frequency, growth_rate, slope
-from squealbox.signals.samples import Samples, SignalError, column, samples, values
+from squealbox.signals.samples import LEAST, Samples, SignalError, column, equal_steps, samples, values
 from squealbox.signals.spectra import Peaks, Spectrogram, Spectrum, peaks, spectrogram, spectrum
 from squealbox.signals.wav import sound
 
 __all__ = [
+    "LEAST",
     "GrowthRate",
     "Peaks",
     "Samples",
@@ -18,6 +19,7 @@ __all__ = [
     "Spectrum",
     "column",
     "dominant_frequency",
+    "equal_steps",
     "growth_rate",
     "peaks",
     "samples",

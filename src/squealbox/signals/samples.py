@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+LEAST = 8  # fewer samples say nothing
 JITTER = 1e-3  # of a step: disturbs a line at half the sampling rate by 0.3 %, any other less
 
 
@@ -43,18 +44,24 @@ def samples(
     times, x = values(signal, t, dof=dof, rate=rate)
     keep = (times >= (-np.inf if begin is None else begin)) & (times <= (np.inf if end is None else end))
     times, x = times[keep], x[keep]
-    if x.size < 8:
+    if x.size < LEAST:
         raise SignalError(
-            f"the signal has {x.size} samples between begin = {begin} and end = {end}: expected 8 or more"
+            f"the signal has {x.size} samples between begin = {begin} and end = {end}: expected {LEAST} or more"
         )
-    step = (times[-1] - times[0]) / (times.size - 1)
-    steps = np.diff(times)
-    if np.max(np.abs(times - times[0] - step * np.arange(times.size))) > JITTER * step:
+    if not equal_steps(times):
+        steps = np.diff(times)
         raise SignalError(
             f"the times are not equally spaced: steps from {steps.min():g} to {steps.max():g} s; expected equal steps, "
             "such as simulate(..., times=np.linspace(begin, end, count)) gives"
         )
-    return Samples(times, x, float(1.0 / step))
+    return Samples(times, x, float((times.size - 1) / (times[-1] - times[0])))
+
+
+def equal_steps(t: Any) -> bool:
+    """True when the times (k,) are equally spaced, to a thousandth of a step."""
+    times = np.asarray(t, dtype=float)
+    even = np.linspace(times[0], times[-1], times.size)
+    return bool(np.max(np.abs(times - even)) <= JITTER * (even[1] - even[0]))
 
 
 def values(signal: Any, t: Any = None, *, dof: int | str = 0, rate: float | None = None) -> tuple[Any, Any]:

@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.signals import SignalError, column, values
+from squealbox.signals import LEAST, SignalError, column, values
 
-PERIODS = 2.0  # in a window: one holds a crest and a trough; the second leaves room for an error of the period
+PERIODS = 2  # in a window: one holds a crest and a trough; the second leaves room for an error of the period
+LONGEST = 6  # periods of the dominant frequency after which a cycle may repeat: subharmonics down to a sixth
 WINDOWS = 400  # at most, however long the run
 
 
@@ -41,33 +42,40 @@ class Curve:
         """Mean over a stretch."""
         return float(self.total(right) - self.total(left)) / (right - left)
 
-    def even(self, left: float, right: float) -> tuple[Any, Any]:
+    def even(self, left: float | None = None, right: float | None = None) -> tuple[Any, Any]:
         """Equally spaced samples of a stretch, about four for each turning point and as many as were given."""
+        left = self.begin if left is None else left
+        right = self.end if right is None else right
         given = np.count_nonzero((self.t >= left) & (self.t <= right))
         turns = np.count_nonzero((self.turns >= left) & (self.turns <= right))
         times = np.linspace(left, right, max(given, 4 * turns, 64))
         return times, self.spline(times)
 
-    def half_range(self, left: float, right: float, period: float) -> float:
-        """Half peak to peak in a window, about the line through the means of its first and its last period."""
+    def swing(self, left: float, right: float, period: float) -> tuple[float, float]:
+        """Half peak to peak and mid-height in a window, about a line through the means of its first and last period."""
         inside = slice(*np.searchsorted(self.points, (left, right)))
         points = np.concatenate([self.points[inside], (left, right)])
         heights = np.concatenate([self.heights[inside], self.spline((left, right))])
         if right - left > 1.5 * period:
             rise = self.mean(right - period, right) - self.mean(left, left + period)
-            heights = heights - rise / (right - left - period) * (points - left)
-        return 0.5 * float(np.ptp(heights))
+            heights = heights - rise / (right - left - period) * (points - 0.5 * (left + right))
+        low, high = float(np.min(heights)), float(np.max(heights))
+        return 0.5 * (high - low), 0.5 * (high + low)
 
 
-def smooth_curve(motion: Any, t: Any, dof: int | str, begin: float | None, end: float | None) -> Curve:
+def smooth_curve(
+    motion: Any, t: Any = None, *, dof: int | str = 0, begin: float | None = None, end: float | None = None
+) -> Curve:
     """The curve through a trajectory, or an array and its times, between `begin` and `end` [s]."""
     from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
     times, x = values(motion, t, dof=dof)
     keep = (times >= (-np.inf if begin is None else begin)) & (times <= (np.inf if end is None else end))
     count = np.count_nonzero(keep)
-    if count < 8:
-        raise SignalError(f"the motion has {count} samples between begin = {begin} and end = {end}: expected 8 or more")
+    if count < LEAST:
+        raise SignalError(
+            f"the motion has {count} samples from begin = {begin} to end = {end}: expected {LEAST} or more"
+        )
     times, x = times[keep], x[keep]
     velocity = getattr(motion, "qd", None)
     if velocity is None:
@@ -83,11 +91,38 @@ def smooth_curve(motion: Any, t: Any, dof: int | str, begin: float | None, end: 
     return Curve(times, x, spline, spline.antiderivative(), turns, points[order], heights)
 
 
-def envelope(curve: Curve, frequency: float) -> tuple[Any, Any]:
-    """Middle of each window [s] and half peak to peak in it, for a motion of the given frequency [Hz]."""
+def repetition(curve: Curve, left: float, right: float, frequency: float) -> tuple[int, float]:
+    """After how many periods of `frequency` [Hz] the motion repeats best, and how badly it then does.
+
+    The misfit is the root mean square of x(t + P) - x(t) over that of two unrelated motions of the same strength: 0 for
+    a cycle, about 1 for noise. Of nearly equal misfits the shortest period counts.
+    """
+    times = np.linspace(left, right, max(curve.even(left, right)[0].size, 512))
+    strength = float(np.sqrt(2.0) * np.std(curve.spline(times))) or 1.0
+    misfits = []
+    for count in range(1, LONGEST + 1):
+        early = times[times <= right - count / frequency]
+        if early.size < 64 or right - left < 2.0 * count / frequency:
+            break
+        change = curve.spline(early + count / frequency) - curve.spline(early)
+        misfits.append(float(np.sqrt(np.mean(change**2))) / strength)
+    if not misfits:
+        return 1, 1.0
+    best = next(i for i, misfit in enumerate(misfits) if misfit <= 1.1 * min(misfits) + 0.02)
+    return best + 1, misfits[best]
+
+
+def envelope(curve: Curve, frequency: float, repeat: int = 1) -> tuple[Any, Any, Any]:
+    """Middle of each window [s], half peak to peak and mid-height in it.
+
+    `frequency` [Hz] is the dominant one; the motion repeats after `repeat` of its periods, and a window holds that many
+    or a multiple.
+    """
     length = curve.end - curve.begin
-    count = int(np.clip(length * frequency / PERIODS, 4, WINDOWS))
+    periods = repeat * -(-PERIODS // repeat)
+    count = int(np.clip(length * frequency / periods, 4, WINDOWS))
     edges = np.linspace(curve.begin, curve.end, count + 1)
     middle = 0.5 * (edges[1:] + edges[:-1])
-    half = 0.5 * min(PERIODS / frequency, length / count)
-    return middle, np.array([curve.half_range(m - half, m + half, 1.0 / frequency) for m in middle])
+    half = 0.5 * min(periods / frequency, length / count)
+    swings = np.array([curve.swing(m - half, m + half, repeat / frequency) for m in middle])
+    return middle, swings[:, 0], swings[:, 1]

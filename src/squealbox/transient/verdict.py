@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from squealbox.result import Outcome, Result, quantity
-from squealbox.signals import dominant_frequency, slope
-from squealbox.transient.envelope import Curve, envelope, smooth_curve
+from squealbox.signals import LEAST, dominant_frequency, slope
+from squealbox.transient.envelope import Curve, envelope, repetition, smooth_curve
 
 DECAYS, GROWS, SETTLES_ON_CYCLE, NOT_DECIDED = "decays", "grows", "settles_on_cycle", "not_decided"
+MISFIT = 0.1  # a motion that misses itself by more after its period is no cycle; 2 % of change adds 0.02
 ONE_RATE = 0.8  # a decay at one rate keeps it from one part to the next; an approach to a cycle slows down
 
 
@@ -33,6 +34,7 @@ class Verdict(Result):
     offset: Any = quantity("", "m", "mean over the last part")
     envelope_time: Any = quantity("window", "s", "middle of each window")
     envelope: Any = quantity("window", "m", "half peak to peak in each window")
+    envelope_centre: Any = quantity("window", "m", "mid-height in each window")
     kind: str
     text: str
 
@@ -83,12 +85,15 @@ def verdict(
     >>> verdict(np.exp(-100.0 * t) * np.sin(2 * np.pi * 2000.0 * t), t).kind
     'decays'
     """
-    curve = smooth_curve(motion, t, dof, begin, end)
     outcome = getattr(motion, "outcome", None) or Outcome()
-    course = _course(curve, part, gone)
-    kind, why = _judged(course, part, steady, gone, least_periods)
-    if not outcome.ok:
-        kind, why = NOT_DECIDED, f"the run ended early ({outcome}: {outcome.message})"
+    if not outcome.ok and np.size(motion.t) < LEAST:
+        course = _nothing(motion)
+    else:
+        course = _course(smooth_curve(motion, t, dof=dof, begin=begin, end=end), part, gone)
+    if outcome.ok:
+        kind, why = _judged(course, part, steady, gone, least_periods)
+    else:
+        kind, why = NOT_DECIDED, f"the run ended early, {outcome}: {outcome.message}"
     settled = _settled_at(course, kind, band)
     return Verdict(
         amplitude=course.amplitude,
@@ -99,6 +104,7 @@ def verdict(
         offset=course.offset,
         envelope_time=course.time,
         envelope=course.envelope,
+        envelope_centre=course.centre,
         kind=kind,
         text=_sentence(kind, why, course, settled),
         outcome=outcome,
@@ -115,12 +121,14 @@ class _Course:
     late: float
     time: Any
     envelope: Any
+    centre: Any
     amplitude: float
     frequency: float
     rate: float
     rate_error: float
     offset: float
     turns: int
+    misfit: float
 
     def stretch(self, left: float, right: float) -> tuple[float, float]:
         """Rate and error of the logarithm of the envelope between shares `left` and `right` of the run."""
@@ -137,18 +145,36 @@ def _course(curve: Curve, part: float, gone: float) -> _Course:
     if still or np.count_nonzero(curve.turns > half) < 2:
         return _without_oscillation(curve, late, half, turns)
     overall = _frequency(curve, curve.begin, curve.end)
-    time, heights = envelope(curve, overall)
+    time, heights, centre = envelope(curve, overall)
+    frequency, repeat, misfit = overall, 1, 1.0
     if np.max(heights[time > late]) > gone * np.max(heights):
         frequency = _frequency(curve, late, curve.end)
-        if frequency < 0.7 * overall:
-            time, heights = envelope(curve, frequency)
-    else:
-        frequency = overall
+        repeat, misfit = repetition(curve, late, curve.end, frequency)
+        time, heights, centre = envelope(curve, min(frequency, overall), repeat)
     strong = (time > half) & (heights > gone * np.max(heights))
     rate, error = slope(time[strong], np.log(heights[strong])) if np.count_nonzero(strong) > 2 else (np.nan, np.nan)
-    amplitude = curve.half_range(late, curve.end, 1.0 / frequency)
-    offset = curve.mean(late, curve.end)
-    return _Course(curve.begin, curve.end, late, time, heights, amplitude, frequency, rate, error, offset, turns)
+    return _Course(
+        begin=curve.begin,
+        end=curve.end,
+        late=late,
+        time=time,
+        envelope=heights,
+        centre=centre,
+        amplitude=curve.swing(late, curve.end, 1.0 / frequency)[0],
+        frequency=frequency,
+        rate=rate,
+        rate_error=error,
+        offset=curve.mean(late, curve.end),
+        turns=turns,
+        misfit=misfit,
+    )
+
+
+def _nothing(motion: Any) -> _Course:
+    """A run that failed before there was anything to measure."""
+    begin, end = (float(motion.t[i]) for i in (0, -1)) if np.size(motion.t) else (np.nan, np.nan)
+    none = np.empty(0)
+    return _Course(begin, end, np.nan, none, none, none, np.nan, np.nan, np.nan, np.nan, np.nan, 0, np.nan)
 
 
 def _frequency(curve: Curve, left: float, right: float) -> float:
@@ -162,9 +188,21 @@ def _without_oscillation(curve: Curve, late: float, half: float, turns: int) -> 
     speed = np.abs(curve.spline.derivative()(times))
     moving = (times > half) & (speed > 0.0)
     rate, error = slope(times[moving], np.log(speed[moving])) if np.ptp(x) > 0.0 else (np.nan, np.nan)
-    amplitude = 0.5 * float(np.ptp(x[times > late]))
-    offset = curve.mean(late, curve.end)
-    return _Course(curve.begin, curve.end, late, times, speed, amplitude, np.nan, rate, error, offset, turns)
+    return _Course(
+        begin=curve.begin,
+        end=curve.end,
+        late=late,
+        time=times,
+        envelope=speed,
+        centre=x,
+        amplitude=0.5 * float(np.ptp(x[times > late])),
+        frequency=np.nan,
+        rate=rate,
+        rate_error=error,
+        offset=curve.mean(late, curve.end),
+        turns=turns,
+        misfit=np.nan,
+    )
 
 
 def _judged(course: _Course, part: float, steady: float, gone: float, least_periods: float) -> tuple[str, str]:
@@ -186,6 +224,8 @@ def _judged(course: _Course, part: float, steady: float, gone: float, least_peri
         one_rate = abs(now) > error and abs(before) > before_error and ONE_RATE < before / now < 1.0 / ONE_RATE
         if one_rate and abs(change) > gone:
             return (DECAYS if now < 0.0 else GROWS), "slowly, at one rate"
+        if course.misfit > MISFIT:
+            return NOT_DECIDED, "its amplitude is steady, but the motion does not repeat"
         return SETTLES_ON_CYCLE, ""
     if _slows(course, part, ONE_RATE) and _slows(course, 0.5 * part, np.sqrt(ONE_RATE)):
         return NOT_DECIDED, f"its amplitude is still settling, by {100.0 * change:+.2g} % over the last part"
@@ -214,7 +254,7 @@ def _trend(course: _Course) -> tuple[str, str]:
     until, until_error = course.stretch(0.0, share)
     if share > 0.5 and until - until_error > 0.0:
         return GROWS, "while beating"
-    return NOT_DECIDED, "its amplitude beats, and no trend stands out"
+    return NOT_DECIDED, "its amplitude rises and falls, and no trend stands out"
 
 
 def _one_way(course: _Course) -> tuple[str, str]:
@@ -243,6 +283,8 @@ def _sentence(kind: str, why: str, course: _Course, settled: float) -> str:
     text = words[kind] + (f" ({why})" if why else "")
     if np.isfinite(course.rate) and kind != SETTLES_ON_CYCLE:
         text += f", growth rate {course.rate:.4g} +- {course.rate_error:.1g} 1/s"
+    if np.isnan(course.amplitude):
+        return text + "."
     last = 1e3 * (course.end - course.late)
     text += f"; half peak to peak {1e3 * course.amplitude:.3g} mm over the last {last:.3g} ms"
     if np.isfinite(course.frequency):
