@@ -53,3 +53,25 @@ def test_the_floors_of_the_page_are_those_of_the_contract():
     contract = (PROJECT / ".importlinter").read_text().partition("layers =")[2].partition("exhaustive")[0]
     kept = [line.strip().replace("(", "").replace(")", "") for line in contract.splitlines() if line.strip()]
     assert "\n".join(f"    {line}" for line in kept) in HOUSE
+
+
+def stated(room: str) -> set[str] | None:
+    """The rooms the page says this one depends on; None where it says so in words."""
+    text = re.search(rf"^`{room}(?:\.py|/)`\n: (.*?)(?=\n\n)", HOUSE, flags=re.DOTALL | re.MULTILINE)[1]
+    names = set(re.split(r",\s+", " ".join(text.rpartition("*Depends on:*")[2].split()).rstrip(".")))
+    return names if names <= {*ROOMS, "nothing"} else None
+
+
+def imported(room: str) -> set[str]:
+    """The other rooms this one imports, anywhere in its files."""
+    path = PACKAGE / room
+    files = sorted(path.rglob("*.py")) if path.is_dir() else [path.with_suffix(".py")]
+    found = re.findall(r"^\s*(?:from|import) squealbox\.(\w+)", "\n".join(f.read_text() for f in files), re.MULTILINE)
+    return set(found) - {room}
+
+
+@pytest.mark.parametrize("room", [room for room in ROOMS if not room.startswith("_")])
+def test_a_room_depends_on_what_the_page_says(room):
+    said = stated(room)
+    if said is not None:
+        assert imported(room) <= said
