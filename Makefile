@@ -59,7 +59,7 @@ picture: $(VENV)/.installed
 	$(BIN)/python docs/images/draw.py
 
 bench: $(VENV)/.installed-bench
-	@for each in benchmarks/bench_*.py; do echo "== $$each"; $(BIN)/python $$each || exit 1; done
+	@for each in benchmarks/*.py; do echo "== $$each"; $(BIN)/python $$each || exit 1; done
 
 # One stamp for each set of extras; pip and uv run again only after pyproject.toml changed.
 $(BIN)/python:
