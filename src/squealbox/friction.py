@@ -79,7 +79,7 @@ def linear_slope(v: Any, p: Any) -> Any:
 
 def linear_slope_slope(v: Any, p: Any) -> Any:
     """dmu/dv = slope above the floor, 0 on it."""
-    return np.where(p[0] + p[1] * v > p[2], p[1], 0.0)
+    return p[1] * (p[0] + p[1] * v > p[2])
 
 
 class LinearSlope(FrictionLaw):
@@ -231,7 +231,7 @@ def table_slope(v: Any, p: Any) -> Any:
         right = width * p[3 + 2 * count + i]
         s = (v - p[2 + i]) / width
         inside = (left + s * (2.0 * (3.0 * rise - 2.0 * left - right) + s * 3.0 * (left + right - 2.0 * rise))) / width
-        slope = slope + np.where((s >= 0.0) & (s < 1.0), inside, 0.0)
+        slope = slope + inside * ((s >= 0.0) & (s < 1.0))
     return slope
 
 

@@ -11,6 +11,7 @@ import os
 import platform
 import tempfile
 from collections.abc import Mapping
+from functools import cache
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
@@ -67,8 +68,13 @@ def quantity(dims: str, unit: str, meaning: str = "") -> Any:
 
 def provenance() -> dict[str, str]:
     """Versions of what computed a result; no host name, user or date, so equal inputs give equal files."""
-    versions = {name: metadata.version(name) for name in ("squealbox", "numpy", "scipy")}
-    return {**versions, "python": platform.python_version()}
+    return dict(_versions())
+
+
+@cache
+def _versions() -> tuple[tuple[str, str], ...]:
+    names = ("squealbox", "numpy", "scipy")
+    return (*((name, metadata.version(name)) for name in names), ("python", platform.python_version()))
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)

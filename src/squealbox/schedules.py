@@ -111,7 +111,7 @@ def ramp(t: Any, p: Any) -> Any:
 
 def ramp_rate(t: Any, p: Any) -> Any:
     """slope between begin and begin + length, else 0."""
-    return np.where((t >= p[2]) & (t < p[2] + p[3]), p[1], 0.0)
+    return p[1] * ((t >= p[2]) & (t < p[2] + p[3]))
 
 
 class Ramp(Schedule):
@@ -124,7 +124,7 @@ class Ramp(Schedule):
     """
 
     start: float = parameter("", meaning="value before the ramp begins")
-    slope: float = parameter("", meaning="rate of change per second; negative brakes")
+    slope: float = parameter("/s", meaning="rate of change per second; negative brakes")
     stop: float | None = parameter("", default=0.0, optional=True, meaning="value at which it stays; 0 is standstill")
     begin: float = parameter("s", default=0.0, meaning="instant at which the ramp begins")
 
@@ -191,7 +191,7 @@ def table_rate(t: Any, p: Any) -> Any:
     rate = 0.0 * t
     for i in range(count - 1):
         line = (p[2 + count + i] - p[1 + count + i]) / (p[2 + i] - p[1 + i])
-        rate = rate + np.where((t >= p[1 + i]) & (t < p[2 + i]), line, 0.0)
+        rate = rate + line * ((t >= p[1 + i]) & (t < p[2 + i]))
     return rate
 
 

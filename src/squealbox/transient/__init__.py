@@ -1,1 +1,8 @@
-"""What happens in time? Depends on: system, friction, schedules, result; numba only when a kernel is needed."""
+"""What happens in time? Depends on: system, signals, friction, schedules, result; numba only when a kernel is needed.
+
+The names are listed in ``__init__.pyi``; each is loaded when it is first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -16,8 +16,9 @@ class EnergyAudit:
     """Where the energy went, from t[0] to each instant [J].
 
     stored (k,) change of kinetic plus strain energy; friction (k, contacts) work of each contact's friction on the
-    motion; load (k,), circulation (k,) work of f(t) and of the skew part of K; dissipated (k,) taken out by C;
-    impact (k,) lost in impacts; residual (k,) = stored - friction - load - circulation + dissipated + impact.
+    motion; load (k,), circulation (k,) work of f(t) and of the skew part of K; opening (k,) work of taking an open
+    contact's reaction out of K; dissipated (k,) taken out by C;
+    residual (k,) = stored - friction - load - circulation - opening + dissipated.
     """
 
     stored: Any
@@ -25,13 +26,13 @@ class EnergyAudit:
     load: Any
     circulation: Any
     dissipated: Any
-    impact: Any
+    opening: Any
     residual: Any
 
     @property
     def relative_residual(self) -> float:
         """Largest |residual| over the largest energy turned over by any term [-]."""
-        terms = [self.stored, self.load, self.circulation, self.dissipated, self.impact]
+        terms = [self.stored, self.load, self.circulation, self.dissipated, self.opening]
         terms += list(np.moveaxis(self.friction, -1, 0))
         scale = max(float(np.max(np.abs(term), initial=0.0)) for term in terms)
         worst = float(np.max(np.abs(self.residual), initial=0.0))
@@ -53,7 +54,7 @@ class Trajectory(Result):
     work_load: Any = quantity("time", "J", "work of the load since the start")
     work_circulation: Any = quantity("time", "J", "work of the skew part of K since the start")
     work_dissipated: Any = quantity("time", "J", "energy dissipated by C since the start")
-    work_impact: Any = quantity("time", "J", "energy lost in impacts since the start")
+    work_opening: Any = quantity("time", "J", "work of taking out the reaction of open contacts since the start")
     event_time: Any = quantity("event", "s", "instants of stick, slip, reversal, lift-off and landing")
     event_contact: Any = quantity("event", "1", "contact of each event")
     event_mode: Any = quantity("event", "1", "mode the contact takes at the event")
@@ -72,13 +73,13 @@ class Trajectory(Result):
         """The energy audit from the start to each instant of `t`."""
         stored = mechanical_energy(self.system, self.q, self.qd)
         stored = stored - stored[:1]
-        given = np.sum(self.work_friction, axis=-1) + self.work_load + self.work_circulation
+        given = np.sum(self.work_friction, axis=-1) + self.work_load + self.work_circulation + self.work_opening
         return EnergyAudit(
             stored=stored,
             friction=self.work_friction,
             load=self.work_load,
             circulation=self.work_circulation,
             dissipated=self.work_dissipated,
-            impact=self.work_impact,
-            residual=stored - given + self.work_dissipated + self.work_impact,
+            opening=self.work_opening,
+            residual=stored - given + self.work_dissipated,
         )

@@ -1,0 +1,161 @@
+"""The one door to the compiler: plain functions in, compiled functions out, kept on disk between runs.
+
+The sources of the laws, the schedules and the march are joined into one file, named by the hash of its content, and that
+file is compiled by numba with its on-disk cache. So a change of any source makes a new file, and nothing stale is run.
+`plain=True` runs the very same file without the compiler, which the tests use to compare the two.
+"""
+
+import ast
+import hashlib
+import importlib.util
+import inspect
+import os
+import re
+import sys
+import tempfile
+import warnings
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from squealbox.friction import LAWS
+from squealbox.schedules import SCHEDULES
+from squealbox.transient import _events, _march, _motion, _runge_kutta
+
+ENTRY = "march"
+HEADER = '"""Made by squealbox; safe to delete."""\n\nimport numpy as np\n\n{decorators}'
+COMPILED = """from numba import njit
+
+OPTIONS = dict(error_model="numpy", fastmath={{"contract", "nsz"}}, nogil=True)
+inner = njit(forceinline={inline}, **OPTIONS)
+entry = njit(cache=True, **OPTIONS)
+"""
+PLAIN = """
+
+def inner(function):
+    return function
+
+
+entry = inner
+"""
+
+
+@cache
+def kernel(events: bool, plain: bool = False) -> Callable[..., int]:
+    """`_march.march`, compiled for each new room of its records at first use, then read from disk."""
+    march: Callable[..., int] = _module(source(events, plain)).march
+    return march
+
+
+def source(events: bool, plain: bool = False) -> str:
+    """The text of the generated file."""
+    decorators = PLAIN if plain else COMPILED.format(inline=not events)
+    parts = [HEADER.format(decorators=decorators)]
+    parts += _dispatcher("law_mu", [law.formula for law in LAWS], "v")
+    parts += _dispatcher("law_slope", [law.slope_formula for law in LAWS], "v")
+    parts += _dispatcher("schedule_value", [schedule.formula for schedule in SCHEDULES], "t")
+    parts += _dispatcher("schedule_rate", [schedule.rate_formula for schedule in SCHEDULES], "t")
+    for module in (_motion, _runge_kutta, *((_events,) if events else ()), _march):
+        parts += _definitions(module, events)
+    return "\n\n".join(parts) + "\n"
+
+
+def cache_folder() -> Path:
+    """Where compiled code is kept: $SQUEALBOX_CACHE, else the user's cache folder."""
+    chosen = os.environ.get("SQUEALBOX_CACHE")
+    if chosen:
+        return Path(chosen)
+    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(base) / "squealbox" / "kernels"
+
+
+def _dispatcher(name: str, formulas: list[Callable[..., Any]], argument: str) -> list[str]:
+    """Each formula under a name of its own, and one function that chooses by kind."""
+    parts = []
+    lines = ["@inner", f"def {name}(kind, {argument}, p):"]
+    for i, formula in enumerate(formulas):
+        text = re.sub(r"^def \w+", f"def {name}_{i}", inspect.getsource(formula), count=1)
+        parts.append("@inner\n" + text.rstrip().replace(": Any", "").replace(" -> Any", ""))
+        lines.append(f"    if kind == {i}:\n        return float({name}_{i}({argument}, p))")
+    lines.append("    return np.nan")
+    return [*parts, "\n".join(lines)]
+
+
+def _definitions(module: ModuleType, events: bool) -> list[str]:
+    """Constants and functions of a plain module, in order, with their decorators."""
+    parts = []
+    for node in ast.parse(inspect.getsource(module)).body:
+        if isinstance(node, ast.Assign):
+            parts.append(ast.unparse(node))
+        elif isinstance(node, ast.FunctionDef):
+            chosen = ast.unparse(_Chosen(events).visit(node))
+            parts.append(("@entry\n" if node.name == ENTRY else "@inner\n") + chosen)
+    return parts
+
+
+class _Chosen(ast.NodeTransformer):
+    """Keep only the branches of ``if WITH_EVENTS`` that this file is made for, so the others are never compiled."""
+
+    def __init__(self, events: bool) -> None:
+        self.events = events
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        """WITH_EVENTS becomes its value."""
+        return ast.Constant(self.events) if node.id == "WITH_EVENTS" else node
+
+    def visit_BoolOp(self, node: ast.BoolOp) -> ast.expr:
+        """``True and x`` is x, ``False and x`` is False."""
+        self.generic_visit(node)
+        first = node.values[0]
+        if isinstance(node.op, ast.And) and isinstance(first, ast.Constant):
+            rest = node.values[1:]
+            return (rest[0] if len(rest) == 1 else ast.BoolOp(node.op, rest)) if first.value else first
+        return node
+
+    def visit_If(self, node: ast.If) -> Any:
+        """A statement whose test is now constant becomes its branch."""
+        self.generic_visit(node)
+        if isinstance(node.test, ast.Constant):
+            return node.body if node.test.value else node.orelse
+        return node
+
+    def visit_IfExp(self, node: ast.IfExp) -> ast.expr:
+        """An expression whose test is now constant becomes its branch."""
+        self.generic_visit(node)
+        if isinstance(node.test, ast.Constant):
+            return node.body if node.test.value else node.orelse
+        return node
+
+
+def _module(text: str) -> ModuleType:
+    name = f"squealbox_kernel_{hashlib.sha256(text.encode()).hexdigest()[:20]}"
+    path = _written(name, text)
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise ImportError(f"{path}: cannot be imported")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def _written(name: str, text: str) -> Path:
+    folder = cache_folder()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        return _write_once(folder / f"{name}.py", text)
+    except OSError as error:
+        warnings.warn(f"{folder} is not writable ({error}): compiled code is not kept", RuntimeWarning, stacklevel=2)
+        return _write_once(Path(tempfile.mkdtemp(prefix="squealbox-")) / f"{name}.py", text)
+
+
+def _write_once(path: Path, text: str) -> Path:
+    if path.exists() and path.read_text() == text:
+        return path
+    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".part")
+    with os.fdopen(handle, "w") as file:
+        file.write(text)
+    os.replace(temporary, path)
+    return path

@@ -1,0 +1,397 @@
+"""Where a contact changes its mode, and which mode it takes; plain loops compiled by `_engine`.
+
+Each contact has an event function that is positive while its mode holds: the speed in its sense of slip, the margin of
+static friction while it sticks, the opening (-N) while it is open; a unilateral contact that slips has a second one, its
+normal force. A step is searched on the dense output. Five values of an event function define a quartic; when all its
+Bernstein coefficients are positive the quartic has no root in the interval, otherwise the interval is halved. So two
+crossings inside one step are not missed.
+"""
+
+# ruff: noqa: F821
+# mypy: disable-error-code="name-defined,no-untyped-def"
+
+import numpy as np
+
+from squealbox.transient._motion import (
+    OPEN,
+    STICK,
+    contact_kinematics,
+    derivative,
+    evaluate_signals,
+    solve,
+)
+from squealbox.transient._runge_kutta import dense_stages, interpolate, take_step
+
+NO_EVENT = 2.0  # any theta above 1
+FRESH = 1e-2  # the part of a step after an event in which the contact that changed is not searched again
+
+
+def event_values(p, t, y, mode, s, phi):
+    """Event functions of all contacts: phi[c] for its mode, phi[contacts + c] for lift-off of a slipping contact."""
+    m = p.contacts
+    any_stick = False
+    for c in range(m):
+        any_stick = any_stick or mode[c] == STICK
+    if any_stick:
+        derivative(p, t, y, mode, s, s.dy)
+    else:
+        if p.varying:
+            evaluate_signals(p, t, s)
+        contact_kinematics(p, y, s)
+    for c in range(m):
+        phi[m + c] = 1.0
+        if mode[c] == OPEN:
+            phi[c] = -s.normal[c]
+        elif mode[c] == STICK:
+            phi[c] = p.static[c] * s.normal[c] - abs(s.force[c])
+        else:
+            phi[c] = mode[c] * s.speed[c]
+            if p.unilateral[c]:
+                phi[m + c] = s.normal[c]
+
+
+def surely_none(p, h, mode, fresh, y, y_new, stage, last, phi0, phi1):
+    """True when every contact slips and its speed's Hermite cubic stays well away from zero over the step."""
+    n = p.mk.shape[0]
+    for c in range(p.contacts):
+        if mode[c] == STICK or mode[c] == OPEN or fresh[c] or p.unilateral[c] or p.varying:
+            return False
+        rate0 = 0.0
+        rate1 = 0.0
+        for i in range(n):
+            rate0 -= p.t[c, i] * stage[0, n + i]
+            rate1 -= p.t[c, i] * stage[last, n + i]
+        b1 = phi0[c] + mode[c] * rate0 * h / 3.0
+        b2 = phi1[c] - mode[c] * rate1 * h / 3.0
+        margin = 0.2 * (abs(phi1[c] - phi0[c]) + abs(b1 - phi0[c]) + abs(b2 - phi1[c]))
+        if not (phi0[c] > margin and phi1[c] > margin and b1 > margin and b2 > margin):
+            return False
+    return True
+
+
+def first_event(p, r, t, h, y, y_new, mode, s, stage):
+    """(theta, j): the first root of an event function in the step, or NO_EVENT; j < contacts or contacts + c.
+
+    s.phi0 holds the event functions at the start. theta = 0 means that a mode does not hold even there.
+    """
+    m = p.contacts
+    event_values(p, t + h, y_new, mode, s, s.phi1)
+    for c in range(m):
+        if not s.fresh[c] and not s.phi0[c] > 0.0:
+            return 0.0, c
+    if surely_none(p, h, mode, s.fresh, y, y_new, stage, r.stages, s.phi0, s.phi1):
+        return NO_EVENT, -1
+    s.count[2] += dense_stages(p, r, t, h, y, mode, s, stage)
+    for i in range(1, 4):
+        interpolate(r, 0.25 * i, h, y, stage, s.y_dense)
+        event_values(p, t + 0.25 * i * h, s.y_dense, mode, s, s.phi)
+        for j in range(2 * m):
+            s.nodes[i, j] = s.phi[j]
+    for j in range(2 * m):
+        s.nodes[0, j] = s.phi0[j]
+        s.nodes[4, j] = s.phi1[j]
+    theta = NO_EVENT
+    which = -1
+    for j in range(2 * m):
+        found = first_root(p, r, t, h, y, mode, s, stage, j)
+        if found < theta:
+            theta = found
+            which = j
+    return theta, which
+
+
+def value_inside(p, r, t, h, y, mode, s, stage, theta, j):
+    """Event function j on the dense output."""
+    interpolate(r, theta, h, y, stage, s.y_dense)
+    event_values(p, t + theta * h, s.y_dense, mode, s, s.phi)
+    return s.phi[j]
+
+
+def first_root(p, r, t, h, y, mode, s, stage, j):
+    """First theta at which event function j turns negative, by Bernstein exclusion and halving; NO_EVENT when none."""
+    start = 0.0
+    if j < p.contacts and s.fresh[j]:
+        start = FRESH
+        for i in range(4):
+            theta = FRESH + (1.0 - FRESH) * 0.25 * i
+            s.nodes[i, j] = value_inside(p, r, t, h, y, mode, s, stage, theta, j)
+        if not s.nodes[0, j] > 0.0:
+            return 0.0
+    stack = s.stack
+    stack[0, 0] = start
+    stack[0, 1] = 1.0
+    for i in range(5):
+        stack[0, 2 + i] = s.nodes[i, j]
+    top = 1
+    while top > 0:
+        top -= 1
+        a = stack[top, 0]
+        b = stack[top, 1]
+        changes, lowest = bernstein(r, stack[top])
+        if lowest > 0.0:
+            continue
+        left = stack[top, 2]
+        right = stack[top, 6]
+        if changes == 1 and left > 0.0 and not right > 0.0:
+            return bracketed_root(p, r, t, h, y, mode, s, stage, j, a, b, left, right)
+        if b - a < 1e-7 or top + 2 >= stack.shape[0]:
+            if not right > 0.0:
+                return b
+            continue
+        split(p, r, t, h, y, mode, s, stage, j, top)
+        top += 2
+    return NO_EVENT
+
+
+def bernstein(r, row):
+    """(sign changes, least) of the Bernstein coefficients of the quartic through the five values of a stack row."""
+    lowest = np.inf
+    changes = 0
+    before = 0.0
+    for i in range(5):
+        total = 0.0
+        for k in range(5):
+            total += r.bernstein[i, k] * row[2 + k]
+        lowest = min(lowest, total)
+        if i > 0 and (total > 0.0) != (before > 0.0):
+            changes += 1
+        before = total
+    return changes, lowest
+
+
+def split(p, r, t, h, y, mode, s, stage, j, top):
+    """Replace the interval on the stack by its right and left halves, the left one on top."""
+    stack = s.stack
+    a = stack[top, 0]
+    b = stack[top, 1]
+    middle = 0.5 * (a + b)
+    f0, f1, f2, f3, f4 = stack[top, 2], stack[top, 3], stack[top, 4], stack[top, 5], stack[top, 6]
+    width = b - a
+    new = (
+        value_inside(p, r, t, h, y, mode, s, stage, a + 0.125 * width, j),
+        value_inside(p, r, t, h, y, mode, s, stage, a + 0.375 * width, j),
+        value_inside(p, r, t, h, y, mode, s, stage, a + 0.625 * width, j),
+        value_inside(p, r, t, h, y, mode, s, stage, a + 0.875 * width, j),
+    )
+    right = (middle, b, f2, new[2], f3, new[3], f4)
+    left = (a, middle, f0, new[0], f1, new[1], f2)
+    for k in range(7):
+        stack[top, k] = right[k]
+        stack[top + 1, k] = left[k]
+
+
+def bracketed_root(p, r, t, h, y, mode, s, stage, j, a, b, fa, fb):
+    """Root in [a, b] with fa > 0 >= fb by the Illinois rule, to 1e-15 of the step."""
+    side = 0
+    x = b
+    for _ in range(80):
+        if b - a <= 1e-15 or fb == 0.0:
+            return b
+        x = (a * fb - b * fa) / (fb - fa)
+        if not a < x < b:
+            x = 0.5 * (a + b)
+        fx = value_inside(p, r, t, h, y, mode, s, stage, x, j)
+        if fx > 0.0:
+            a = x
+            fa = fx
+            if side == 1:
+                fb *= 0.5
+            side = 1
+        else:
+            b = x
+            fb = fx
+            if side == -1:
+                fa *= 0.5
+            side = -1
+    return x
+
+
+def step_onto(p, r, t, h, theta, j, y, y_new, mode, s, stage):
+    """Step from y exactly to the event near theta h: secant iteration on the length of a real step. Returns that length.
+
+    The dense output only proposes the instant; what is accepted is a step of the method itself, so the event inherits
+    the method's order.
+    """
+    x0 = theta * h
+    f0 = value_after(p, r, t, x0, y, y_new, mode, s, stage, j)
+    x1 = x0 * (1.0 + 1e-6) if theta > 1e-9 else x0 + 1e-9 * h
+    best = x0
+    smallest = abs(f0)
+    for _ in range(12):
+        f1 = value_after(p, r, t, x1, y, y_new, mode, s, stage, j)
+        if abs(f1) < smallest:
+            best = x1
+            smallest = abs(f1)
+        if f1 == f0 or f1 == 0.0:
+            break
+        x2 = x1 - f1 * (x1 - x0) / (f1 - f0)
+        if not (0.0 < x2 <= 1.01 * h) or abs(x2 - theta * h) > 0.05 * h:
+            break
+        moved = abs(x2 - x1)
+        x0 = x1
+        f0 = f1
+        x1 = x2
+        if moved <= 2e-16 * (abs(t) + x2):
+            break
+    f1 = value_after(p, r, t, x1, y, y_new, mode, s, stage, j)
+    if abs(f1) <= smallest:
+        return x1
+    value_after(p, r, t, best, y, y_new, mode, s, stage, j)
+    return best
+
+
+def value_after(p, r, t, h, y, y_new, mode, s, stage, j):
+    """Event function j at the end of a real step of length h."""
+    evaluations, _ = take_step(p, r, t, h, y, mode, s, stage, y_new)
+    s.count[2] += evaluations
+    event_values(p, t + h, y_new, mode, s, s.phi1)
+    return s.phi1[j]
+
+
+def slip_tolerance(p, c, y, s):
+    """Speed below which a contact counts as being at zero together with another: round-off of its own terms."""
+    total = abs(s.signal[c])
+    for i in range(p.mk.shape[0]):
+        total += abs(p.t[c, i] * y[p.mk.shape[0] + i])
+    return 1e-12 * total
+
+
+def apply_event(p, t, y, mode, s, j):
+    """Change modes at an event of function j; False when no consistent set of modes exists."""
+    m = p.contacts
+    derivative(p, t, y, mode, s, s.dy)
+    for c in range(m):
+        s.old[c] = mode[c]
+        s.forced[c] = 0
+        s.at_zero[c] = mode[c] == STICK or (mode[c] != OPEN and abs(s.speed[c]) <= slip_tolerance(p, c, y, s))
+    c = j if j < m else j - m
+    if j >= m:
+        mode[c] = OPEN
+        s.at_zero[c] = 0
+    elif mode[c] == OPEN:
+        s.at_zero[c] = abs(s.speed[c]) <= slip_tolerance(p, c, y, s)
+        mode[c] = 1 if s.speed[c] >= 0.0 else -1
+    elif mode[c] == STICK:
+        s.forced[c] = 1 if s.force[c] > 0.0 else -1
+    else:
+        s.at_zero[c] = 1
+    return settle(p, t, y, mode, s)
+
+
+def start_modes(p, t, y, mode, s):
+    """Modes at the start of a run: open where N < 0 may open, sliding where v is not zero, otherwise decided."""
+    if p.varying:
+        evaluate_signals(p, t, s)
+    contact_kinematics(p, y, s)
+    for c in range(p.contacts):
+        s.forced[c] = 0
+        s.at_zero[c] = 0
+        mode[c] = 1 if s.speed[c] >= 0.0 else -1
+        if p.unilateral[c] and s.normal[c] < 0.0:
+            mode[c] = OPEN
+        elif abs(s.speed[c]) <= slip_tolerance(p, c, y, s):
+            s.at_zero[c] = 1
+        s.old[c] = mode[c]
+    return settle(p, t, y, mode, s)
+
+
+def settle(p, t, y, mode, s):
+    """Solve for the modes of all contacts at zero speed together, then remove the drift of those that stick."""
+    if not decide(p, t, y, mode, s):
+        return False
+    sticking = 0
+    contact_kinematics(p, y, s)
+    for c in range(p.contacts):
+        s.fresh[c] = s.at_zero[c] != 0 and mode[c] != STICK
+        if mode[c] == STICK:
+            s.stuck[sticking] = c
+            sticking += 1
+    return remove_drift(p, y, s, sticking)
+
+
+def remove_drift(p, y, s, sticking):
+    """Bring the sliding velocity of the sticking contacts to zero by impulses along their own d."""
+    for a in range(sticking):
+        s.right[a] = s.speed[s.stuck[a]]
+        for b in range(sticking):
+            s.matrix[a, b] = p.g[s.stuck[a], s.stuck[b]]
+    if sticking > 0 and not solve(s.matrix, s.right, sticking):
+        return False
+    for a in range(sticking):
+        for i in range(p.mk.shape[0]):
+            y[p.mk.shape[0] + i] += p.md[s.stuck[a], i] * s.right[a]
+    return True
+
+
+def decide(p, t, y, mode, s):
+    """Modes of the contacts at zero speed: each sticks with |force| <= static N, or slips with v' in its sense.
+
+    One complementarity problem in all of them, solved by Murty's least-index principal pivoting from all sticking; when
+    static exceeds kinetic friction it may cycle, and then all combinations are tried, sticking first.
+    """
+    for c in range(p.contacts):
+        if s.at_zero[c]:
+            mode[c] = first_guess(p, c, mode, s)
+    for _ in range(20 + 10 * p.contacts * p.contacts):
+        if not derivative(p, t, y, mode, s, s.dy):
+            return False
+        changed = False
+        for c in range(p.contacts):
+            wanted = wanted_mode(p, c, mode, s)
+            if wanted != mode[c]:
+                mode[c] = wanted
+                changed = True
+                break
+        if not changed:
+            return True
+    return enumerate_modes(p, t, y, mode, s)
+
+
+def first_guess(p, c, mode, s):
+    """Sticking, unless a release is forced or the contact is in tension and so can only pass through zero speed."""
+    if s.forced[c] != 0:
+        return s.forced[c]
+    if s.normal[c] > 0.0:
+        return STICK
+    return -mode[c] if mode[c] != STICK else (1 if s.force[c] > 0.0 else -1)
+
+
+def wanted_mode(p, c, mode, s):
+    """The mode contact c would rather have, given the forces and accelerations just computed."""
+    if not s.at_zero[c] or s.forced[c] != 0:
+        return mode[c]
+    if mode[c] == STICK:
+        if abs(s.force[c]) <= p.static[c] * s.normal[c] * (1.0 + 1e-12):
+            return STICK
+        return 1 if s.force[c] > 0.0 else -1
+    rate = s.signal[p.signals + c]
+    size = abs(rate)
+    for i in range(p.mk.shape[0]):
+        rate -= p.t[c, i] * s.dy[p.mk.shape[0] + i]
+        size += abs(p.t[c, i] * s.dy[p.mk.shape[0] + i])
+    if mode[c] * rate >= -1e-12 * size:
+        return mode[c]
+    return STICK if s.normal[c] > 0.0 else -mode[c]
+
+
+def enumerate_modes(p, t, y, mode, s):
+    """Try all 3^k combinations of the k contacts at zero speed, k <= 8; False when none is consistent."""
+    k = 0
+    for c in range(p.contacts):
+        if s.at_zero[c]:
+            s.chosen[k] = c
+            k += 1
+    if k > 8:
+        return False
+    for code in range(3**k):
+        rest = code
+        for a in range(k):
+            mode[s.chosen[a]] = (STICK, 1, -1)[rest % 3]
+            rest //= 3
+        if derivative(p, t, y, mode, s, s.dy):
+            consistent = True
+            for c in range(p.contacts):
+                consistent = consistent and wanted_mode(p, c, mode, s) == mode[c]
+            if consistent:
+                return True
+    return False

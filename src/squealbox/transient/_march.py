@@ -1,0 +1,253 @@
+"""The march through time: steps, step control, events, output and its named ends; compiled by `_engine`.
+
+The whole state of a march lies in the scratch arrays, so it can stop after a budget of steps, be looked at, and go on.
+"""
+
+# ruff: noqa: F821
+# mypy: disable-error-code="name-defined,no-untyped-def"
+
+import numpy as np
+
+from squealbox.transient._events import apply_event, event_values, first_event, remove_drift, start_modes, step_onto
+from squealbox.transient._motion import RAW, STICK, contact_kinematics, derivative, evaluate_signals
+from squealbox.transient._runge_kutta import dense_stages, error_norm, first_step, interpolate, take_step
+
+# how a call of `march` ended
+COMPLETED, RUNNING, UNDERFLOW, NOT_FINITE, CHATTERING, ZENO, INCONSISTENT, STEP_LIMIT = 0, 1, 2, 3, 4, 5, 6, 7
+# s.clock: time, proposed step, logarithm of the previous error, end of the smooth piece, start of the window in which events are counted,
+# last instant inside the piece
+TIME, STEP, LOG_ERROR, PIECE, WINDOW, INSIDE = 0, 1, 2, 3, 4, 5
+# s.count: accepted, rejected, evaluations, events, rows written, next requested time, next break, events in the window,
+# steps whose ends differ in the sign of a sliding velocity among the last ones, 1 after a rejected step
+ACCEPTED, REJECTED, EVALUATIONS, EVENTS, ROWS, NEXT, BREAK, IN_WINDOW, FLIPS, CAUTIOUS = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
+
+
+def begin(p, r, s, times, rows, limit):
+    """Modes, first derivative, first step and first output row; returns RUNNING or how it failed."""
+    t0 = s.clock[TIME]
+    next_piece(p, s, t0)
+    evaluate_signals(p, t0, s)
+    if WITH_EVENTS:
+        if not start_modes(p, t0, s.state, s.mode, s):
+            return INCONSISTENT
+    derivative(p, t0, s.state, s.mode, s, s.stage[0])
+    if WITH_EVENTS:
+        event_values(p, t0, s.state, s.mode, s, s.phi0)
+    if s.clock[STEP] == 0.0:
+        s.clock[STEP] = first_step(p, r, t0, s.state, s.mode, s, s.stage, limit)
+    s.count[EVALUATIONS] += 2
+    if p.every_step or times[0] <= t0:
+        derivative(p, t0, s.state, s.mode, s, s.dy)
+        write_row(p, s, rows, t0, s.state)
+        s.count[NEXT] += 1
+    return RUNNING
+
+
+def march(p, r, s, times, rows, events, t_end, largest, least, step_limit, budget):
+    """Advance until t_end, until `budget` steps are done or the output is full (RUNNING), or until it cannot go on."""
+    if s.count[EVALUATIONS] == 0:
+        code = begin(p, r, s, times, rows, largest)
+        if code != RUNNING:
+            return code
+    for _ in range(budget):
+        t = s.clock[TIME]
+        if t >= t_end:
+            return COMPLETED
+        if t >= s.clock[PIECE]:
+            next_piece(p, s, t)
+            restart(p, s, t)
+        if output_full(p, s, rows, events):
+            return RUNNING
+        if s.count[ACCEPTED] + s.count[REJECTED] >= step_limit:
+            return CHATTERING if s.count[FLIPS] > 50 else STEP_LIMIT
+        end = min(t_end, s.clock[PIECE])
+        h = min(s.clock[STEP], largest)
+        last = t + h >= end - 1e-12 * h
+        h = end - t if last else h
+        evaluations, solved = take_step(p, r, t, h, s.state, s.mode, s, s.stage, s.state_new)
+        s.count[EVALUATIONS] += evaluations
+        error = error_norm(p, r, h, s.state, s.state_new, s, s.stage) if solved else np.inf
+        if not error <= 1.0:
+            code = reject(r, s, h, error, least)
+            if code != RUNNING:
+                return code
+            continue
+        code = accept(p, r, s, times, rows, events, t, h, end if last else t + h, error, last)
+        if code != RUNNING:
+            return code
+    return RUNNING
+
+
+def output_full(p, s, rows, events):
+    """True when one more step might not find room for its row or its events."""
+    full = p.every_step and s.count[ROWS] >= rows.shape[0]
+    return full or s.count[EVENTS] + p.contacts > events.shape[0]
+
+
+def reject(r, s, h, error, least):
+    """Shrink the step; a step below the least one ends the march with the reason."""
+    s.count[REJECTED] += 1
+    s.count[CAUTIOUS] = 1
+    finite = error < np.inf
+    s.clock[STEP] = h * (max(0.2, 0.9 * error ** (-1.0 / (r.error_order + 1.0))) if finite else 0.1)
+    s.clock[LOG_ERROR] = 0.0
+    if s.clock[STEP] > least + 4e-16 * abs(s.clock[TIME]):
+        return RUNNING
+    if not finite:
+        return NOT_FINITE
+    return CHATTERING if s.count[FLIPS] > 50 else UNDERFLOW
+
+
+def accept(p, r, s, times, rows, events, t, h, t_new, error, last):
+    """Take the step, or the part of it up to the first event; control the next step; write output."""
+    next_step = h * step_factor(r, s, error)
+    if WITH_EVENTS:
+        theta, which = first_event(p, r, t, h, s.state, s.state_new, s.mode, s, s.stage)
+        if theta <= 1.0:
+            if theta > 0.0:
+                h = step_onto(p, r, t, h, theta, which, s.state, s.state_new, s.mode, s, s.stage)
+                t_new = t + h
+                finish_step(p, r, s, times, rows, t, h, t_new)
+            else:
+                t_new = t
+            s.clock[STEP] = max(next_step, s.clock[STEP]) if not last else s.clock[STEP]
+            return change_modes(p, s, events, t_new, which)
+    count_flips(p, s)
+    finish_step(p, r, s, times, rows, t, h, t_new)
+    s.clock[STEP] = next_step if not last else max(next_step, s.clock[STEP])
+    if WITH_EVENTS:
+        for c in range(p.contacts):
+            s.fresh[c] = 0
+        if p.varying:
+            keep_sticking(p, s, t_new)
+        event_values(p, t_new, s.state, s.mode, s, s.phi0)
+    return RUNNING
+
+
+def step_factor(r, s, error):
+    """Proportional-integral control (Gustafsson 1991), limited to [0.2, r.growth]; no growth after a rejected step."""
+    log_error = np.log(max(error, 1e-8))
+    factor = 0.9 * np.exp((0.4 * s.clock[LOG_ERROR] - 0.7 * log_error) / (r.error_order + 1.0))
+    s.clock[LOG_ERROR] = max(log_error, -9.0)
+    growth = 1.0 if s.count[CAUTIOUS] else r.growth
+    s.count[CAUTIOUS] = 0
+    return min(max(factor, 0.2), growth)
+
+
+def finish_step(p, r, s, times, rows, t, h, t_new):
+    """Write the output due in the step, then make its end the present state."""
+    if not p.every_step and s.count[NEXT] < times.shape[0] and times[s.count[NEXT]] <= t_new:
+        s.count[EVALUATIONS] += dense_stages(p, r, t, h, s.state, s.mode, s, s.stage)
+        while s.count[NEXT] < times.shape[0] and times[s.count[NEXT]] <= t_new:
+            at = times[s.count[NEXT]]
+            interpolate(r, min((at - t) / h, 1.0), h, s.state, s.stage, s.y_dense)
+            derivative(p, at, s.y_dense, s.mode, s, s.dy)
+            write_row(p, s, rows, at, s.y_dense)
+            s.count[NEXT] += 1
+    for k in range(s.state.shape[0]):
+        s.state[k] = s.state_new[k]
+        s.stage[0, k] = s.stage[r.stages, k]
+    s.clock[TIME] = t_new
+    s.count[ACCEPTED] += 1
+    if p.every_step:
+        if WITH_EVENTS:
+            derivative(p, t_new, s.state, s.mode, s, s.dy)
+        write_row(p, s, rows, t_new, s.state)
+
+
+def write_row(p, s, rows, t, y):
+    """One row of output: time, state, energy integrals, then N, v, force and mode of each contact as last computed."""
+    row = rows[s.count[ROWS]]
+    row[0] = t
+    room = p.mk.shape[0]
+    for k in range(p.size):
+        row[1 + k] = y[k]
+        row[1 + p.size + k] = y[room + k]
+    for k in range(p.contacts + 4):
+        row[1 + 2 * p.size + k] = y[2 * room + k]
+    first = 5 + 2 * p.size + p.contacts
+    for c in range(p.contacts):
+        row[first + c] = s.normal[c]
+        row[first + p.contacts + c] = s.speed[c]
+        row[first + 2 * p.contacts + c] = s.force[c]
+        row[first + 3 * p.contacts + c] = row_mode(p, s, c)
+    s.count[ROWS] += 1
+
+
+def row_mode(p, s, c):
+    """The mode as output: that of the exact scheme, else the sign of the sliding velocity."""
+    if WITH_EVENTS:
+        return s.mode[c]
+    if p.unilateral[c] != 0 and s.normal[c] <= 0.0:
+        return 2
+    return int(np.sign(s.speed[c]))
+
+
+def change_modes(p, s, events, t, which):
+    """An event: new modes, a fresh derivative, and the bound on events that ends a Zeno sequence."""
+    ok = apply_event(p, t, s.state, s.mode, s, which)
+    for c in range(p.contacts):
+        if s.mode[c] != s.old[c]:
+            events[s.count[EVENTS], 0] = t
+            events[s.count[EVENTS], 1] = c
+            events[s.count[EVENTS], 2] = s.mode[c]
+            s.count[EVENTS] += 1
+    if not ok:
+        return INCONSISTENT
+    restart(p, s, t)
+    s.count[IN_WINDOW] += 1
+    if t - s.clock[WINDOW] > p.window:
+        s.clock[WINDOW] = t
+        s.count[IN_WINDOW] = 0
+    return ZENO if s.count[IN_WINDOW] > 40 * (p.contacts + 1) else RUNNING
+
+
+def restart(p, s, t):
+    """Derivative and event functions anew after a change of mode or of a schedule's piece."""
+    derivative(p, t, s.state, s.mode, s, s.stage[0])
+    s.count[EVALUATIONS] += 1
+    s.clock[LOG_ERROR] = 0.0
+    if WITH_EVENTS:
+        event_values(p, t, s.state, s.mode, s, s.phi0)
+
+
+def next_piece(p, s, t):
+    """The next instant at which a schedule has a kink."""
+    while s.count[BREAK] < p.break_count and p.breaks[s.count[BREAK]] <= t:
+        s.count[BREAK] += 1
+    s.clock[PIECE] = p.breaks[s.count[BREAK]] if s.count[BREAK] < p.break_count else np.inf
+    s.clock[INSIDE] = np.nextafter(s.clock[PIECE], -np.inf)
+
+
+def keep_sticking(p, s, t):
+    """Under a varying speed the quadrature of V' drifts from V: put sticking contacts back on it."""
+    evaluate_signals(p, t, s)
+    contact_kinematics(p, s.state, s)
+    sticking = 0
+    for c in range(p.contacts):
+        if s.mode[c] == STICK:
+            s.stuck[sticking] = c
+            sticking += 1
+    if sticking > 0:
+        remove_drift(p, s.state, s, sticking)
+        derivative(p, t, s.state, s.mode, s, s.stage[0])
+        s.count[EVALUATIONS] += 1
+
+
+def count_flips(p, s):
+    """Of plain sgn: how many recent steps ended with a sliding velocity of the other sign."""
+    if p.scheme != RAW:
+        return
+    flipped = False
+    n = p.mk.shape[0]
+    for c in range(p.contacts):
+        before = s.signal[c]
+        after = s.signal[c]
+        for i in range(n):
+            before -= p.t[c, i] * s.state[n + i]
+            after -= p.t[c, i] * s.state_new[n + i]
+        flipped = flipped or (before > 0.0) != (after > 0.0)
+    if flipped:
+        s.count[FLIPS] += 1
+    elif s.count[ACCEPTED] % 10 == 0 and s.count[FLIPS] > 0:
+        s.count[FLIPS] -= 1

@@ -1,0 +1,189 @@
+"""The equation of motion as plain loops, compiled by `_engine` and run as they stand by the tests.
+
+The leading axis of p.mk is the room for degrees of freedom, a constant to the compiler, so loops over it are unrolled; the
+rows beyond p.size are zero. Loops over contacts run to the count.
+
+Every function here takes the records of `packing`: the problem (p) and the scratch (s). The state y holds q, q' and
+then the running energy integrals: work of each contact's friction, of the load, of the skew stiffness, energy taken out
+by damping, and work of taking out an open contact's reaction. `mode[c]` is +1 or -1 while contact c slips in that sense,
+0 while it sticks and 2 while it is open; only the exact scheme uses it.
+"""
+
+# ruff: noqa: F821  (law_mu, law_slope, schedule_value, schedule_rate and WITH_EVENTS are written by _engine)
+# mypy: disable-error-code="name-defined,no-untyped-def"
+
+import numpy as np
+
+RAW, EXACT, TANH, ARCTAN = 0, 1, 2, 3  # WITH_EVENTS is true in the file compiled for EXACT
+STICK, OPEN = 0, 2
+
+
+def evaluate_signals(p, t, s):
+    """Speeds, preloads, load and the rates of the speeds at time t, each a sum of weighted schedules.
+
+    s.clock[5] is the last instant of the present smooth piece, so the end of a step onto a kink sees the left side.
+    """
+    signal = s.signal
+    t = min(t, s.clock[5])
+    for i in range(p.signals):
+        total = 0.0
+        rate = 0.0
+        for k in range(p.signal_start[i], p.signal_start[i + 1]):
+            kind = p.term_kind[k]
+            coefficients = p.term_coefficients[k]
+            total += p.term_weight[k] * schedule_value(kind, t, coefficients)
+            if i < p.contacts:
+                rate += p.term_weight[k] * schedule_rate(kind, t, coefficients)
+        signal[i] = total
+        if i < p.contacts:
+            signal[p.signals + i] = rate
+
+
+def sliding_coefficient(p, c, v):
+    """mu(v) of contact c at sliding speed v, continued by its tangent below zero.
+
+    A trial step may end a little beyond a reversal; the tangent keeps the right-hand side smooth there.
+    """
+    coefficients = p.law_coefficients[c]
+    if v >= 0.0:
+        return law_mu(p.law_kind[c], v, coefficients)
+    return law_mu(p.law_kind[c], 0.0, coefficients) + v * law_slope(p.law_kind[c], 0.0, coefficients)
+
+
+def sliding_force(p, c, v, normal, sense):
+    """Friction force of a contact that slides: exact with a given sense, raw sgn, or smoothed."""
+    if WITH_EVENTS:
+        return sense * sliding_coefficient(p, c, sense * v) * normal
+    mu = law_mu(p.law_kind[c], abs(v), p.law_coefficients[c])
+    if p.scheme == RAW:
+        return mu * normal * ((v > 0.0) - (v < 0.0))
+    if p.scheme == TANH:
+        return mu * np.tanh(v / p.smoothing) * normal
+    return mu * (2.0 / np.pi) * np.arctan(v / p.smoothing) * normal
+
+
+def contact_kinematics(p, y, s):
+    """Normal force and sliding velocity of every contact, into s.normal and s.speed."""
+    n = p.mk.shape[0]
+    for c in range(p.contacts):
+        normal = s.signal[p.contacts + c]
+        speed = s.signal[c]
+        for i in range(n):
+            normal += p.n[c, i] * y[i]
+            speed -= p.t[c, i] * y[n + i]
+        s.normal[c] = normal
+        s.speed[c] = speed
+
+
+def derivative(p, t, y, mode, s, dy):
+    """dy = y' with the contacts in the given modes; leaves their forces in s.force. True when sticking could be solved."""
+    n = p.mk.shape[0]
+    if p.varying:
+        evaluate_signals(p, t, s)
+    contact_kinematics(p, y, s)
+    for i in range(n):
+        dy[i] = y[n + i]
+        a = s.signal[2 * p.contacts + i]
+        for j in range(n):
+            a -= p.mk[i, j] * y[j] + p.mc[i, j] * y[n + j]
+        dy[n + i] = a
+    sticking = 0
+    opening = 0.0
+    for c in range(p.contacts):
+        force = 0.0
+        is_open = mode[c] == OPEN if WITH_EVENTS else p.unilateral[c] != 0 and s.normal[c] <= 0.0
+        if is_open:
+            for i in range(n):
+                dy[n + i] += p.mw[c, i] * s.normal[c]
+                opening += p.w[c, i] * y[n + i] * s.normal[c]
+        elif WITH_EVENTS and mode[c] == STICK:
+            s.stuck[sticking] = c
+            sticking += 1
+        else:
+            force = sliding_force(p, c, s.speed[c], s.normal[c], float(mode[c]))
+            for i in range(n):
+                dy[n + i] += p.md[c, i] * force
+        s.force[c] = force
+    solved = True
+    if WITH_EVENTS and sticking > 0:
+        solved = hold(p, s, sticking, dy)
+    energy_rates(p, y, s, opening, dy)
+    return solved
+
+
+def hold(p, s, sticking, dy):
+    """Forces of the sticking contacts from t_c . q'' = V_c', added to the accelerations in dy."""
+    n = p.mk.shape[0]
+    for a in range(sticking):
+        c = s.stuck[a]
+        right = -s.signal[p.signals + c]
+        for i in range(n):
+            right += p.t[c, i] * dy[n + i]
+        s.right[a] = -right
+        for b in range(sticking):
+            s.matrix[a, b] = p.g[c, s.stuck[b]]
+    solved = solve(s.matrix, s.right, sticking)
+    for a in range(sticking):
+        c = s.stuck[a]
+        s.force[c] = s.right[a]
+        for i in range(n):
+            dy[n + i] += p.md[c, i] * s.right[a]
+    return solved
+
+
+def solve(matrix, right, size):
+    """Gaussian elimination with partial pivoting, in place; False when a pivot is lost."""
+    scale = 0.0
+    for i in range(size):
+        for j in range(size):
+            scale = max(scale, abs(matrix[i, j]))
+    for k in range(size):
+        best = k
+        for i in range(k + 1, size):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        if not abs(matrix[best, k]) > 1e-13 * scale:
+            return False
+        for j in range(k, size):
+            matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
+        right[k], right[best] = right[best], right[k]
+        for i in range(k + 1, size):
+            factor = matrix[i, k] / matrix[k, k]
+            for j in range(k, size):
+                matrix[i, j] -= factor * matrix[k, j]
+            right[i] -= factor * right[k]
+    for k in range(size - 1, -1, -1):
+        for j in range(k + 1, size):
+            right[k] -= matrix[k, j] * right[j]
+        right[k] /= matrix[k, k]
+    return True
+
+
+def energy_rates(p, y, s, opening, dy):
+    """Powers of friction, load, skew stiffness, damping and opening, as derivatives of the energy integrals."""
+    n = p.mk.shape[0]
+    m = p.contacts
+    load = 0.0
+    skew = 0.0
+    damping = 0.0
+    for i in range(n):
+        v = y[n + i]
+        load += s.signal[2 * m + n + i] * v
+        row = 0.0
+        for j in range(n):
+            row += p.c[i, j] * y[n + j]
+        damping += v * row
+        if p.circulatory:
+            row = 0.0
+            for j in range(n):
+                row += p.ka[i, j] * y[j]
+            skew -= v * row
+    for c in range(m):
+        along = 0.0
+        for i in range(n):
+            along += p.d[c, i] * y[n + i]
+        dy[2 * n + c] = s.force[c] * along
+    dy[2 * n + m] = load
+    dy[2 * n + m + 1] = skew
+    dy[2 * n + m + 2] = damping
+    dy[2 * n + m + 3] = opening

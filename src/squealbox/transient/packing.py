@@ -1,0 +1,257 @@
+"""A system and a method as the records the compiled march works on.
+
+A record is one element of a structured array: the compiler passes it by its address, and reads its fields like
+attributes. The room of each field is a power of two, so that few sizes are ever compiled; the loops run to the counts.
+"""
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from squealbox.friction import LAWS
+from squealbox.schedules import SCHEDULES, Constant, Schedule
+from squealbox.system import InvalidSystem, System
+from squealbox.transient.methods import Method, Tableau, tableau
+
+UNIT = Constant(1.0)
+STAGES, DEGREE = 16, 7  # room in the record of a tableau
+
+
+def pack(system: System, method: Method, scheme: int, width: float, every_step: bool) -> Any:
+    """The record of one system; raises `InvalidSystem` for a map of systems or a singular mass matrix."""
+    if system.shape != ():
+        raise InvalidSystem(f"the system has leading axes {system.shape}: simulate takes one system at a time")
+    n, contacts = system.size, system.contacts
+    inverse = _inverse(system.M)
+    d, t, normal = (_rows([getattr(c, name) for c in contacts], n) for name in ("d", "t", "n"))
+    w = _rows([np.zeros(n) if c.normal is None else c.normal for c in contacts], n)
+    laws = [np.array(c.law.coefficients(), dtype=float) for c in contacts]
+    stiffness = inverse @ system.K
+    highest = highest_frequency(stiffness)
+    values: dict[str, Any] = {
+        "size": n,
+        "contacts": len(contacts),
+        "mk": stiffness,
+        "mc": inverse @ system.C,
+        "c": system.C,
+        "ka": 0.5 * (system.K - system.K.T),
+        "circulatory": np.any(system.K != system.K.T),
+        "md": d @ inverse.T,
+        "mw": w @ inverse.T,
+        "d": d,
+        "t": t,
+        "n": normal,
+        "w": w,
+        "g": t @ inverse @ d.T,
+        "unilateral": np.array([c.unilateral for c in contacts], dtype=np.int64),
+        "static": np.array([c.law.static_limit for c in contacts], dtype=float),
+        "law_kind": np.array([LAWS.index(type(c.law)) for c in contacts], dtype=np.int64),
+        "law_coefficients": _padded(laws),
+        **_signals(system, inverse),
+        "scheme": scheme,
+        "smoothing": width,
+        "window": 1e-3 * 2.0 * np.pi / highest,
+        "rtol": method.rtol,
+        "every_step": every_step,
+    }
+    record = _record(_layout(values), values)
+    room = len(record["mk"])
+    atol = absolute_tolerances(system, method, highest)
+    record["atol"][:] = 1.0
+    record["atol"][:n], record["atol"][room : room + n] = atol[:n], atol[n:]
+    return record
+
+
+def _layout(values: dict[str, Any]) -> np.dtype[Any]:
+    rooms = (values["size"], values["contacts"], values["law_coefficients"].shape[1])
+    rooms += (len(values["term_kind"]), values["term_coefficients"].shape[1], len(values["breaks"]))
+    least = (2, 2, 4, 32, 4, 8)
+    return problem_type(*(_room(count, low) for count, low in zip(rooms, least, strict=True)))
+
+
+@cache
+def problem_type(n: int, m: int, law: int, terms: int, term: int, breaks: int) -> np.dtype[Any]:
+    """The layout of a problem with room for n degrees of freedom, m contacts, their coefficients, terms and kinks."""
+    integers = ("size", "contacts", "circulatory", "signals", "varying", "break_count", "scheme", "every_step")
+    arrays: dict[str, tuple[str, tuple[int, ...]]] = {
+        "mk": ("f8", (n, n)), "mc": ("f8", (n, n)), "c": ("f8", (n, n)), "ka": ("f8", (n, n)),
+        "md": ("f8", (m, n)), "mw": ("f8", (m, n)), "d": ("f8", (m, n)), "t": ("f8", (m, n)),
+        "n": ("f8", (m, n)), "w": ("f8", (m, n)), "g": ("f8", (m, m)),
+        "unilateral": ("i8", (m,)), "static": ("f8", (m,)), "law_kind": ("i8", (m,)),
+        "law_coefficients": ("f8", (m, law)), "signal_start": ("i8", (2 * (m + n) + 1,)),
+        "term_weight": ("f8", (terms,)), "term_kind": ("i8", (terms,)),
+        "term_coefficients": ("f8", (terms, term)), "breaks": ("f8", (breaks,)), "atol": ("f8", (2 * n,)),
+    }  # fmt: skip
+    return np.dtype(
+        [(name, "i8") for name in integers]
+        + [(name, "f8") for name in ("smoothing", "window", "rtol")]
+        + [(name, kind, shape) for name, (kind, shape) in arrays.items()]
+    )
+
+
+@cache
+def rule(name: str) -> Any:
+    """The record of the named tableau."""
+    method: Tableau = tableau(name)
+    kinds = [(key, "i8") for key in ("stages", "dense_stages", "degree", "error_order", "blended")] + [("growth", "f8")]
+    kinds += [("a", "f8", (STAGES, STAGES)), ("p", "f8", (STAGES, DEGREE)), ("bernstein", "f8", (5, 5))]  # type: ignore[list-item]
+    kinds += [(key, "f8", (STAGES,)) for key in ("b", "c", "e", "e3")]  # type: ignore[misc]
+    values = {
+        "stages": method.stages,
+        "dense_stages": len(method.p),
+        "degree": method.p.shape[1],
+        "error_order": method.error_order,
+        "blended": method.e3 is not None,
+        "growth": method.growth,
+        "bernstein": bernstein_matrix(),
+        **{key: getattr(method, key) for key in ("a", "p", "b", "c", "e")},
+        "e3": np.zeros(1) if method.e3 is None else method.e3,
+    }
+    return _record(np.dtype(kinds), values)
+
+
+def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> Any:
+    """The record of working arrays of one march, with the start in place; first_step 0 leaves it to the march."""
+    n, m = problem["atol"].shape[0] // 2, problem["static"].shape[0]
+    width = 2 * n + m + 4
+    floats: dict[str, tuple[int, ...]] = {
+        "signal": (2 * (m + n) + m,), "normal": (m,), "speed": (m,), "force": (m,), "right": (m,), "matrix": (m, m),
+        "state": (width,), "state_new": (width,), "y": (width,), "y_dense": (width,), "dy": (width,),
+        "stage": (STAGES, width), "phi": (2 * m,), "phi0": (2 * m,), "phi1": (2 * m,), "nodes": (5, 2 * m),
+        "stack": (128, 7), "clock": (6,),
+    }  # fmt: skip
+    integers = dict.fromkeys(("stuck", "mode", "old", "forced", "at_zero", "fresh", "chosen"), m) | {"count": 10}
+    kinds = tuple((name, "f8", shape) for name, shape in floats.items())
+    kinds += tuple((name, "i8", (size,)) for name, size in integers.items())
+    state = np.zeros(2 * n)
+    state[: len(q)], state[n : n + len(qd)] = q, qd
+    return _record(_dtype(kinds), {"state": state, "clock": np.array([time, first_step, 0.0, 0.0, time, np.inf])})
+
+
+def row_width(problem: Any) -> int:
+    """Columns of an output row: t, the state with its energy integrals, then N, v, force and mode of each contact."""
+    return int(5 + 2 * problem["size"] + 5 * problem["contacts"])
+
+
+def highest_frequency(stiffness: Any) -> float:
+    """Highest angular frequency [rad/s] of M^-1 K, without friction; 1 when it is zero."""
+    highest = float(np.sqrt(np.max(np.abs(np.linalg.eigvals(stiffness)), initial=0.0)))
+    return highest if highest > 0.0 else 1.0
+
+
+def absolute_tolerances(system: System, method: Method, highest: float) -> Any:
+    """atol of the 2n states: as given, or from the fastest sliding speed, scaled so that both kinds weigh alike."""
+    n = system.size
+    if method.atol is not None and np.ndim(method.atol) == 1:
+        if np.shape(method.atol) != (2 * n,):
+            raise InvalidSystem(f"atol has shape {np.shape(method.atol)}: expected a number or {2 * n} values")
+        return np.array(method.atol, dtype=float)
+    velocity = _usual_tolerance(system, method) if method.atol is None else float(method.atol)
+    return np.concatenate([np.full(n, velocity / highest), np.full(n, velocity)])
+
+
+def bernstein_matrix() -> Any:
+    """Bernstein coefficients of the quartic through values at 0, 1/4, 1/2, 3/4, 1, shape (5, 5)."""
+    from scipy.special import comb
+
+    nodes = np.arange(5) / 4.0
+    values = np.array([[comb(4, k) * x**k * (1.0 - x) ** (4 - k) for k in range(5)] for x in nodes])
+    return np.linalg.inv(values)
+
+
+def _usual_tolerance(system: System, method: Method) -> float:
+    fastest = 0.0
+    for contact in system.contacts:
+        speed = contact.V
+        if isinstance(speed, Schedule):
+            speed = speed.value(np.array([0.0, *speed.breaks()]))
+        fastest = max(fastest, float(np.max(np.abs(speed))))
+    return 1e-3 * method.rtol * (fastest or 1.0)
+
+
+@cache
+def _dtype(fields: tuple[Any, ...]) -> np.dtype[Any]:
+    return np.dtype(list(fields))
+
+
+def _record(kind: np.dtype[Any], values: dict[str, Any]) -> Any:
+    """One element of a structured array; an array shorter than its room fills the front of it."""
+    record = np.zeros(1, dtype=kind)[0]
+    for name, value in values.items():
+        room = record[name]
+        if np.ndim(room) == 0:
+            record[name] = value
+        else:
+            room[tuple(slice(0, size) for size in np.shape(value))] = value
+    return record
+
+
+def _room(count: int, least: int = 2) -> int:
+    """The next power of two."""
+    return max(least, 1 << (int(count) - 1).bit_length())
+
+
+def _signals(system: System, inverse: Any) -> dict[str, Any]:
+    """The varying quantities V, N0, M^-1 f and f, each a sum of weighted schedules: term k belongs to signal i for
+    signal_start[i] <= k < signal_start[i + 1]."""
+    n, contacts = system.size, system.contacts
+    load = _load_terms(system)
+    lists = [_terms(c.V) for c in contacts] + [_terms(c.N0) for c in contacts]
+    lists += [[((inverse @ weight)[i], part) for weight, part in load] for i in range(n)]
+    lists += [[(weight[i], part) for weight, part in load] for i in range(n)]
+    terms = [term for group in lists for term in group]
+    coefficients = [np.array(part.coefficients(), dtype=float).ravel() for _, part in terms]
+    breaks = sorted({t for _, part in terms for t in part.breaks()})
+    return {
+        "signals": len(lists),
+        "signal_start": _starts(lists),
+        "term_weight": np.array([float(weight) for weight, _ in terms]),
+        "term_kind": np.array([SCHEDULES.index(type(part)) for _, part in terms], dtype=np.int64),
+        "term_coefficients": _padded(coefficients),
+        "varying": any(SCHEDULES.index(type(part)) != 0 for _, part in terms),
+        "break_count": len(breaks),
+        "breaks": np.array(breaks, dtype=float),
+    }
+
+
+def _load_terms(system: System) -> list[tuple[Any, Schedule]]:
+    if not isinstance(system.load, Schedule):
+        return [(np.asarray(system.load), UNIT)]
+    terms = []
+    for weight, part in system.load.terms():
+        if np.ndim(part.coefficients()[0]) != 0:
+            raise InvalidSystem("load: write a vector load as a schedule times a vector, such as Ramp(...) * [1, 0]")
+        terms.append((np.broadcast_to(np.asarray(weight, dtype=float), (system.size,)), part))
+    return terms
+
+
+def _terms(value: Any) -> list[tuple[Any, Schedule]]:
+    """A number or a schedule as weights of simple schedules."""
+    return list(value.terms()) if isinstance(value, Schedule) else [(value, UNIT)]
+
+
+def _inverse(mass: Any) -> Any:
+    try:
+        inverse = np.linalg.inv(mass)
+    except np.linalg.LinAlgError:
+        inverse = np.full_like(mass, np.inf)
+    size = float(np.max(np.abs(mass)) * np.max(np.abs(inverse)))
+    if not size < 1e14:
+        raise InvalidSystem("M is singular: a transient needs a mass for every degree of freedom")
+    return inverse
+
+
+def _rows(vectors: list[Any], n: int) -> Any:
+    return np.array(vectors, dtype=float).reshape(len(vectors), n)
+
+
+def _starts(groups: list[Any]) -> Any:
+    return np.concatenate([[0], np.cumsum([len(group) for group in groups])]).astype(np.int64)
+
+
+def _padded(rows: list[Any]) -> Any:
+    table = np.zeros((len(rows), max((len(row) for row in rows), default=1)))
+    for i, row in enumerate(rows):
+        table[i, : len(row)] = row
+    return table

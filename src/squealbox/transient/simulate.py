@@ -1,0 +1,222 @@
+"""What happens in time: one transient of one system."""
+
+from typing import Any
+
+import numpy as np
+
+from squealbox.parameters import ParameterError, known_names
+from squealbox.result import COMPLETED, Outcome
+from squealbox.system import InvalidSystem, System, as_system, equilibrium
+from squealbox.transient import _march, packing
+from squealbox.transient._motion import ARCTAN, EXACT, RAW, TANH
+from squealbox.transient.methods import Method
+from squealbox.transient.trajectory import Trajectory
+
+SCHEMES = {"exact": EXACT, "raw": RAW, "tanh": TANH, "smooth": ARCTAN, "arctan": ARCTAN}
+USUAL_RTOL = {"bogacki-shampine": 1e-6, "dormand-prince": 1e-8, "tsitouras": 1e-8, "dormand-prince-8": 1e-9}
+BUDGET = 50_000  # steps between two looks at the keyboard, about 20 ms
+
+MESSAGES = {
+    _march.UNDERFLOW: ("step_underflow", "no step was small enough for the tolerance"),
+    _march.NOT_FINITE: ("not_finite", "the motion left the range of finite numbers"),
+    _march.CHATTERING: ("chattering", "sgn(v) switches at almost every step: the contact sticks, which this scheme cannot hold"),
+    _march.ZENO: ("zeno", "events accumulate at one instant"),
+    _march.INCONSISTENT: ("inconsistent_contact", "no set of stick and slip modes satisfies the contacts together"),
+    _march.STEP_LIMIT: ("step_limit", "the largest number of steps was reached"),
+}
+
+
+def simulate(
+    design_or_system: Any,
+    duration: float,
+    start: Any = None,
+    times: Any = None,
+    method: str | Method = "dormand-prince-8",
+    contact: str = "exact",
+    *,
+    rtol: float | None = None,
+    atol: Any = None,
+    width: float = 1e-3,
+    start_time: float = 0.0,
+) -> Trajectory:
+    """Integrate the equation of motion over `duration` seconds.
+
+    Parameters
+    ----------
+    design_or_system : a design, or a `System` without leading axes
+    duration : [s], > 0
+    start : (q, qd), shapes (n,) and (n,) [m], [m/s]; "rest" (the default: q = qd = 0, loads applied suddenly) or
+        "sliding" (steady sliding without vibration)
+    times : instants of output [s] within the run, shape (k,), increasing; a whole number k for k equidistant instants;
+        None for every step taken. They do not influence the steps.
+    method : name of a tableau or a `Method` with tolerances
+    contact : "exact" (stick, slip and lift-off by events), "raw" (plain sgn), "smooth" = "arctan"
+        ((2/pi) arctan(v/width)) or "tanh" (tanh(v/width))
+    rtol, atol : override those of `method`
+    width : [m/s] of the smoothed sgn
+    start_time : [s], where the schedules begin
+
+    Returns
+    -------
+    Trajectory, whose outcome is "completed" or names why the run could not go on ("step_underflow", "not_finite",
+    "chattering", "zeno", "inconsistent_contact", "step_limit", "interrupted"); it then holds what was reached.
+
+    Raises `ParameterError` or `InvalidSystem` for input that does not make sense.
+
+    >>> from squealbox import DrumBrake
+    >>> simulate(DrumBrake(), duration=1e-3).outcome
+    'completed'
+    """
+    system = as_system(design_or_system)
+    chosen = _method(method, rtol, atol)
+    if contact not in SCHEMES:
+        raise ParameterError("simulate", "contact", contact, known_names(str(contact), list(SCHEMES)))
+    for name, value, low in (("duration", duration, 0.0), ("width", width, 0.0), ("start_time", start_time, -np.inf)):
+        if not (np.isfinite(value) and value > low):
+            raise ParameterError("simulate", name, value, f"a finite number in ({low:g}, inf)")
+    requested = _times(times, start_time, duration)
+    q, qd = _start(system, start, start_time)
+    run = _Run(system, chosen, SCHEMES[contact], width, q, qd, start_time, requested)
+    outcome = run.to(start_time + duration, duration)
+    settings = {
+        "duration": duration, "start": [q.tolist(), qd.tolist()], "start_time": start_time, "contact": contact,
+        "width": width, "tableau": chosen.tableau, "rtol": chosen.rtol, "atol": run.atol.tolist(),
+    }  # fmt: skip
+    return run.trajectory(settings, outcome)
+
+
+class _Run:
+    """One march with its records and output, resumed until it ends."""
+
+    def __init__(self, system: System, method: Method, scheme: int, width: float, q: Any, qd: Any, time: float, times: Any) -> None:
+        self.system, self.method = system, method
+        self.problem = packing.pack(system, method, scheme, width, times is None)
+        self.rule = packing.rule(method.tableau)
+        self.scratch = packing.scratch(self.problem, q, qd, time, method.first_step or 0.0)
+        self.times = np.full(1, np.inf) if times is None else times
+        self.rows = np.zeros((4096 if times is None else len(times), packing.row_width(self.problem)))
+        self.events = np.zeros((256, 3))
+        self.period = 1e3 * float(self.problem["window"])
+        room = len(self.problem["mk"])
+        self.atol = self.problem["atol"].reshape(2, room)[:, : system.size].ravel()
+
+    def to(self, end: float, span: float) -> Outcome:
+        """March from the start to `end`, `span` seconds later."""
+        from squealbox.transient._engine import kernel
+
+        events = bool(self.problem["scheme"] == EXACT and self.problem["contacts"] > 0)
+        march = kernel(events)
+        largest = self.method.largest_step or (min(span, self.period / 6.0) if events else span)
+        records = (self.problem, self.rule, self.scratch, self.times)
+        limits = (end, largest, 1e-14 * self.period, self.method.most_steps, BUDGET)
+        code = _march.RUNNING
+        try:
+            while code == _march.RUNNING:
+                self._make_room()
+                code = march(*records, self.rows, self.events, *limits)
+        except KeyboardInterrupt:
+            reached = float(self.scratch["clock"][_march.TIME])
+            return Outcome("interrupted", f"stopped by the user at t = {reached:g} s", time=reached)
+        return self._outcome(code, end)
+
+    def _make_room(self) -> None:
+        count = self.scratch["count"]
+        if self.problem["every_step"] and count[_march.ROWS] >= len(self.rows):
+            self.rows = np.concatenate([self.rows, np.zeros_like(self.rows)])
+        if count[_march.EVENTS] + self.problem["contacts"] > len(self.events):
+            more = np.zeros((len(self.events) + int(self.problem["contacts"]), 3))
+            self.events = np.concatenate([self.events, more])
+
+    def _outcome(self, code: int, end: float) -> Outcome:
+        if code == _march.COMPLETED:
+            return Outcome(COMPLETED)
+        name, why = MESSAGES[code]
+        s, n, room = self.scratch, self.system.size, len(self.problem["mk"])
+        reached, step = float(s["clock"][_march.TIME]), float(s["clock"][_march.STEP])
+        evidence = {
+            "time": reached,
+            "step": step,
+            "q": s["state"][:n].tolist(),
+            "qd": s["state"][room : room + n].tolist(),
+            "sliding_velocity": s["speed"][: len(self.system.contacts)].tolist(),
+            "accepted": int(s["count"][_march.ACCEPTED]),
+        }
+        return Outcome(name, f"{why}; reached t = {reached:.9g} s of {end:g} s with a step of {step:.3g} s", **evidence)
+
+    def trajectory(self, settings: dict[str, Any], outcome: Outcome) -> Trajectory:
+        """The output so far as a result."""
+        n, m = self.system.size, len(self.system.contacts)
+        count = [int(x) for x in self.scratch["count"]]
+        rows = self.rows[: count[_march.ROWS]]
+        events = self.events[: count[_march.EVENTS]]
+        widths = [1, n, n, m, 1, 1, 1, 1, m, m, m, m]
+        columns = np.split(rows, np.cumsum(widths)[:-1], axis=1)
+        t, q, qd, friction, load, circulation, dissipated, opening, normal, speed, force, mode = columns
+        return Trajectory(
+            inputs={"system": self.system},
+            settings=settings,
+            outcome=outcome,
+            t=t[:, 0],
+            q=q,
+            qd=qd,
+            normal_force=normal,
+            sliding_velocity=speed,
+            friction_force=force,
+            mode=mode.astype(np.int8),
+            work_friction=friction,
+            work_load=load[:, 0],
+            work_circulation=circulation[:, 0],
+            work_dissipated=dissipated[:, 0],
+            work_opening=opening[:, 0],
+            event_time=events[:, 0],
+            event_contact=events[:, 1].astype(np.int64),
+            event_mode=events[:, 2].astype(np.int8),
+            steps=count[_march.ACCEPTED],
+            rejected=count[_march.REJECTED],
+            evaluations=count[_march.EVALUATIONS],
+        )
+
+
+def _method(method: str | Method, rtol: float | None, atol: Any) -> Method:
+    chosen = method if isinstance(method, Method) else Method(method, rtol=USUAL_RTOL.get(method, 1e-6))
+    return Method(
+        chosen.tableau,
+        chosen.rtol if rtol is None else rtol,
+        chosen.atol if atol is None else atol,
+        chosen.first_step,
+        chosen.largest_step,
+        chosen.most_steps,
+    )
+
+
+def _times(times: Any, start_time: float, duration: float) -> Any:
+    if times is None:
+        return None
+    if np.ndim(times) == 0:
+        if int(times) != times or times < 2:
+            raise ParameterError("simulate", "times", times, "a whole number of at least 2, or an array of instants")
+        return np.linspace(start_time, start_time + duration, int(times))
+    instants = np.asarray(times, dtype=float)
+    end = start_time + duration
+    inside = np.all((instants >= start_time) & (instants <= end * (1.0 + 1e-12)))
+    if instants.ndim != 1 or not inside or np.any(np.diff(instants) < 0.0):
+        raise ParameterError("simulate", "times", times, f"increasing instants within [{start_time:g}, {end:g}] s")
+    return np.minimum(instants, end)
+
+
+def _start(system: System, start: Any, time: float) -> tuple[Any, Any]:
+    n = system.size
+    if start is None or (isinstance(start, str) and start == "rest"):
+        return np.zeros(n), np.zeros(n)
+    if isinstance(start, str) and start == "sliding":
+        state = equilibrium(system, time)
+        if not state.exists:
+            raise InvalidSystem(f"there is no steady sliding to start from: {state.outcome.message}")
+        return state.q, np.zeros(n)
+    try:
+        q, qd = (np.array(x, dtype=float).reshape(n) for x in start)
+    except (TypeError, ValueError) as error:
+        raise ParameterError("simulate", "start", start, f'(q, qd) with {n} values each, "rest" or "sliding"') from error
+    if not (np.all(np.isfinite(q)) and np.all(np.isfinite(qd))):
+        raise ParameterError("simulate", "start", start, "finite displacements and velocities")
+    return q, qd
