@@ -81,6 +81,7 @@ def growth_rate(
     starts = np.linspace(0, data.x.size - length, count).round().astype(int)
     weights = get_window("hann", length)
     carrier = np.exp(-2j * np.pi * line * np.arange(length) / data.rate) * weights
+    carrier = carrier - weights * (np.sum(carrier) / np.sum(weights))  # blind to an offset
     pieces = np.array([np.dot(carrier, data.x[start : start + length]) for start in starts])
     pieces = pieces * np.exp(-2j * np.pi * line * starts / data.rate) * 2.0 / np.sum(weights)
     if np.any(pieces == 0.0):

@@ -22,8 +22,8 @@ ONE_RATE = 0.8  # a decay at one rate keeps it from one part to the next; an app
 class Verdict(Result):
     """What became of a motion, in one word and one sentence, with the numbers it rests on.
 
-    `kind` is "decays", "grows", "settles_on_cycle" or "not_decided". `outcome` is the run's own: a run that failed is
-    not decided, and the numbers tell what was reached. A number that does not apply is NaN.
+    `fate`, also called `kind`, is "decays", "grows", "settles_on_cycle" or "not_decided". `outcome` is the run's own: a
+    run that failed is not decided, and the numbers tell what was reached. A number that does not apply is NaN.
     """
 
     amplitude: Any = quantity("", "m", "half peak to peak over the last part")
@@ -35,8 +35,13 @@ class Verdict(Result):
     envelope_time: Any = quantity("window", "s", "middle of each window")
     envelope: Any = quantity("window", "m", "half peak to peak in each window")
     envelope_centre: Any = quantity("window", "m", "mid-height in each window")
-    kind: str
+    fate: str
     text: str
+
+    @property
+    def kind(self) -> str:
+        """The one word: `fate`."""
+        return self.fate
 
     def __str__(self) -> str:
         return self.text
@@ -105,7 +110,7 @@ def verdict(
         envelope_time=course.time,
         envelope=course.envelope,
         envelope_centre=course.centre,
-        kind=kind,
+        fate=kind,
         text=_sentence(kind, why, course, settled),
         outcome=outcome,
         settings={"dof": dof, "part": part, "steady": steady, "band": band, "gone": gone, "periods": least_periods},

@@ -1,0 +1,185 @@
+"""Signals with closed-form answers: each estimator against the number put in, and a twin that must fail."""
+
+import numpy as np
+import pytest
+from scipy.io import wavfile
+from scipy.signal import find_peaks
+
+from squealbox.signals import (
+    SignalError,
+    dominant_frequency,
+    growth_rate,
+    peaks,
+    samples,
+    slope,
+    sound,
+    spectrogram,
+    spectrum,
+)
+
+RATE = 100e3
+T = np.arange(4000) / RATE
+BIN = RATE / T.size
+
+
+def sine(frequency, amplitude=1.0, phase=0.3, growth=0.0, t=T):
+    return amplitude * np.exp(growth * t) * np.sin(2.0 * np.pi * frequency * t + phase)
+
+
+class Motion:
+    def __init__(self, t, q, names=("x", "y")):
+        self.t, self.q, self.system = t, q, type("System", (), {"names": names})
+
+
+def test_a_line_has_the_height_of_its_sinusoid_and_the_mean_is_apart():
+    found = spectrum(3.0 + sine(80 * BIN, 2.0), T)
+    # On a frequency of the grid Hann's transform has no leakage: rounding only.
+    assert np.max(found.amplitude) == pytest.approx(2.0, rel=1e-12)
+    assert found.mean == pytest.approx(3.0, rel=1e-12)
+    assert found.amplitude[0] == pytest.approx(0.0, abs=1e-12)
+    # The top of a flat-top window ripples by 0.01 dB, or 0.1 %.
+    assert np.max(spectrum(sine(80 * BIN, 2.0), T, window="flattop").amplitude) == pytest.approx(2.0, rel=1e-3)
+
+
+def test_what_a_window_resolves_is_stated():
+    hann, boxcar = spectrum(sine(2000.0), T), spectrum(sine(2000.0), T, window="boxcar", pad=1)
+    assert (hann.window, boxcar.window) == ("hann", "boxcar")
+    assert hann.resolution == boxcar.resolution == pytest.approx(25.0)
+    assert hann.angular_resolution == pytest.approx(50.0 * np.pi)
+    # Equivalent noise bandwidths of textbooks (Harris 1978): 1.5 bins and 1 bin; exact for periodic windows.
+    assert hann.noise_bandwidth == pytest.approx(1.5 * BIN, rel=1e-12)
+    assert boxcar.noise_bandwidth == pytest.approx(BIN, rel=1e-12)
+    # The paper's 0.05 s resolve 126 rad/s.
+    assert spectrum(np.ones(5000) + sine(2e3, t=np.arange(5000) / RATE), rate=RATE).angular_resolution == pytest.approx(
+        2.0 * np.pi / 0.05
+    )
+
+
+@pytest.mark.parametrize("shift", np.linspace(0.0, 1.0, 11))
+def test_peak_between_the_grid_is_found_and_the_grid_alone_is_not_enough(shift):
+    frequency = (80 + shift) * BIN
+    found = spectrum(sine(frequency), T)
+    line = peaks(found)
+    # The parabola through a Hann line padded four times misses by less than 2e-4 of a resolution (measured).
+    assert line.frequency.size == 1
+    assert line.frequency[0] == pytest.approx(frequency, abs=4e-4 * BIN)
+    assert line.amplitude[0] == pytest.approx(1.0, rel=2e-4)
+    if shift == 0.5:
+        coarse = spectrum(sine(frequency), T, pad=1)
+        assert abs(coarse.frequency[np.argmax(coarse.amplitude)] - frequency) > 0.4 * BIN
+
+
+def test_side_lobes_are_no_lines_and_two_lines_are_two():
+    one = spectrum(sine(2013.0), T)
+    assert peaks(one, least=1e-4).frequency.size == 1
+    assert len(find_peaks(one.amplitude, height=1e-4 * one.amplitude.max())[0]) > 10  # the twin: lobes are there
+    two = peaks(spectrum(sine(2013.0) + sine(2613.0, 0.1), T))
+    assert two.frequency == pytest.approx([2013.0, 2613.0], abs=0.01 * BIN)
+    assert two.amplitude == pytest.approx([1.0, 0.1], rel=1e-2)
+    assert peaks(spectrum(sine(2013.0) + sine(2023.0), T)).frequency.size == 1  # closer than the resolution
+
+
+@pytest.mark.parametrize("growth", [-300.0, 0.0, 80.0, 700.0])
+def test_frequency_and_growth_rate_of_one_exponential(growth):
+    x = 1e-4 + sine(2067.7, 1e-5, growth=growth)
+    # What is left is the mirror line at -f: worst at 700 1/s, where only the last 3 periods count. A bin is 1.2 %.
+    assert dominant_frequency(x, T) == pytest.approx(2067.7, rel=3e-6)
+    found = growth_rate(x, T)
+    assert found.rate == pytest.approx(growth, rel=1e-4, abs=1e-3)
+    assert found.frequency == pytest.approx(2067.7, rel=1e-6)
+    assert found.rate_error < 0.05
+
+
+def test_growth_rate_knows_what_it_does_not_know():
+    t = np.arange(5000) / RATE
+    beating = sine(2000.0, t=t, growth=-40.0) + sine(2089.0, 0.8, t=t, growth=-40.0)
+    found = growth_rate(beating, t)
+    assert found.rate_error > 10.0
+    assert abs(found.rate + 40.0) < found.rate_error
+    rng = np.random.default_rng(1)
+    inside = 0
+    for phase in range(60):
+        noisy = growth_rate(sine(2067.0, t=t, growth=-40.0, phase=phase) + 0.05 * rng.normal(size=t.size), t)
+        inside += abs(noisy.rate + 40.0) <= noisy.rate_error
+    # 95 % is meant; 60 draws of it fall below 49 once in 10^4, and neighbouring pieces share half their samples.
+    assert inside >= 49
+
+
+def test_slope_of_a_line_is_exact_and_of_two_points_is_unsure():
+    t = np.linspace(0.0, 1.0, 20)
+    assert slope(t, 2.0 - 3.0 * t)[0] == pytest.approx(-3.0, rel=1e-12)
+    assert slope(t[:2], t[:2])[1] == np.inf
+
+
+def test_spectrogram_follows_a_sweep():
+    t = np.arange(20000) / RATE
+    grid = spectrogram(np.sin(2.0 * np.pi * (1000.0 * t + 0.5 * 5000.0 * t**2)), t, segment=0.02)
+    ridge = grid.frequency[np.argmax(grid.amplitude, axis=0)]
+    # A quarter of the resolution is the step of the frequency grid.
+    assert np.max(np.abs(ridge - (1000.0 + 5000.0 * grid.time))) <= 0.26 * grid.resolution
+    steady = spectrogram(sine(2000.0, 0.7), T, segment=0.01)
+    assert np.max(steady.amplitude, axis=0) == pytest.approx(0.7, rel=1e-9)
+
+
+def test_sound_has_true_pitch_and_does_not_clip(tmp_path):
+    t = np.arange(100_000) / RATE
+    path = sound(1e-4 + sine(2067.7, 1e-4, t=t, growth=-1.0) + sine(30e3, 1e-4, t=t), tmp_path / "a.wav", t)
+    sampling, wave = wavfile.read(path)
+    assert (sampling, wave.dtype, wave.ndim) == (44100, np.int16, 1)
+    assert np.max(np.abs(wave.astype(int))) == round(0.9 * 32767)
+    assert wave[0] == wave[-1] == 0
+    heard = spectrum(wave.astype(float), rate=sampling)
+    assert peaks(heard, 1).frequency[0] == pytest.approx(2067.7, rel=1e-6)
+    # 30 kHz cannot be written at 44.1 kHz: left in, it would be heard at 14.1 kHz.
+    alias = np.abs(heard.frequency - (44100 - 30e3)) < 100.0
+    assert np.max(heard.amplitude[alias]) < 1e-2 * np.max(heard.amplitude)
+    _, low = wavfile.read(sound(sine(2000.0, t=t), tmp_path / "b.wav", t, slower=2.0))
+    assert low.size == pytest.approx(2 * 44100, abs=2)
+    assert dominant_frequency(low.astype(float), rate=44100.0) == pytest.approx(1000.0, rel=1e-6)
+
+
+def test_a_trajectory_is_taken_by_index_and_by_name():
+    motion = Motion(T, np.column_stack([sine(2000.0), sine(3000.0)]))
+    assert peaks(spectrum(motion, dof="y"), 1).frequency[0] == pytest.approx(3000.0, abs=0.01)
+    assert peaks(spectrum(motion, dof=0, begin=0.01, end=0.03), 1).frequency[0] == pytest.approx(2000.0, abs=0.1)
+    assert samples(motion, begin=0.01, end=0.03).t[[0, -1]] == pytest.approx([0.01, 0.03])
+
+
+@pytest.mark.parametrize(
+    ("signal", "keywords", "words"),
+    [
+        (sine(2000.0), {"t": T**1.1}, "not equally spaced: steps from .* expected equal steps, such as simulate"),
+        (sine(2000.0), {}, "t is missing and rate = None"),
+        (sine(2000.0), {"rate": -1.0}, "rate = -1.0: expected"),
+        (np.r_[sine(2000.0)[:-1], np.nan], {"t": T}, "sample 3999 is not finite"),
+        (sine(2000.0), {"t": T[:-1]}, "one value for each time"),
+        (sine(2000.0), {"t": T[::-1]}, "do not increase"),
+        (sine(2000.0), {"t": T, "begin": 0.04}, "has 0 samples between begin = 0.04"),
+        (Motion(T, np.zeros((T.size, 2))), {"dof": 2}, "dof = 2: expected an index from 0 to 1"),
+        (Motion(T, np.zeros((T.size, 2))), {"dof": "z"}, "dof = 'z': expected one of x, y"),
+    ],
+)
+def test_bad_signals_are_refused_in_one_sentence(signal, keywords, words):
+    with pytest.raises(SignalError, match=words):
+        spectrum(signal, **keywords)
+
+
+def test_nothing_is_made_of_nothing(tmp_path):
+    still = np.full(T.size, 2.0)
+    with pytest.raises(SignalError, match="it has no frequency"):
+        dominant_frequency(still, T)
+    with pytest.raises(SignalError, match="nothing to hear"):
+        sound(still, tmp_path / "still.wav", T)
+    with pytest.raises(SignalError, match="expected 20 periods or more"):
+        growth_rate(sine(100.0), T)
+    with pytest.raises(SignalError, match=r"expected 8e-05 s to 0\.04 s"):
+        spectrogram(sine(2000.0), T, segment=1.0)
+    with pytest.raises(SignalError, match="level = 2"):
+        sound(sine(2000.0), tmp_path / "loud.wav", T, level=2.0)
+
+
+def test_results_are_saved_and_read_back(tmp_path):
+    for result in (spectrum(sine(2000.0), T), spectrogram(sine(2000.0), T), growth_rate(sine(2000.0), T)):
+        back = type(result).load(result.save(tmp_path / f"{type(result).__name__}.nc"))
+        assert back.amplitude.tolist() == result.amplitude.tolist() if hasattr(result, "amplitude") else back.rate
+        assert back.settings == result.settings
