@@ -10,7 +10,7 @@ from squealbox.cli.inputs import RANGE, Changes, Ends, Option, axis, folder, rea
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
-from squealbox.stability import ComplexModes, CriticalValue, complex_modes, critical_value
+from squealbox.stability import ComplexModes, CriticalValue, CriticalValues, complex_modes, critical_values, mechanism
 
 if TYPE_CHECKING:
     from squealbox.designs import Design
@@ -34,11 +34,13 @@ def modes(file: Path, *, changes: Changes = (), out: Path | None = None) -> None
         folder for modes.csv and modes.nc
     """
     found = read(file, changes)
-    spectrum = complex_modes(found.design, time=found.modes.time if found.modes else 0.0)
+    time = found.modes.time if found.modes else 0.0
+    spectrum = complex_modes(found.design, time)
     if not spectrum.outcome.ok:
         raise ComputationFailed(spectrum.outcome)
-    print(f"{found.design.title}, {file}")
-    print(spectrum.summary())
+    print(f"{found.design.title}, {file}\n{spectrum.summary()}")
+    if not spectrum.stable:
+        print(f"What drives it: {mechanism(found.design, time)}")
     if out is not None:
         folder(out)
         print(written(spectrum.save(out / "modes.nc"), write_csv(out / "modes.csv", _mode_columns(spectrum))))
@@ -70,13 +72,13 @@ def onset(
     found = read(file, changes)
     varied = axis(found.design, found.onset, parameter, range, RANGE)
     with Progress("looking for the onset"):
-        critical = critical_value(found.design, varied.name, (varied.low, varied.high))
-    if critical.outcome.ok:
-        print(f"{found.design.title}, {file}\n{_onset_sentence(critical, found.design, varied)}")
+        crossings = critical_values(found.design, varied.name, (varied.low, varied.high))
+    if not crossings.outcome.ok:
+        raise ComputationFailed(crossings.outcome)
+    print(f"{found.design.title}, {file}")
+    print("\n".join(_crossing(crossing, found.design, varied) for crossing in crossings))
     if out is not None:
-        print(written(*_coalescence(found, varied, critical, folder(out))))
-    if not critical.outcome.ok:
-        raise ComputationFailed(critical.outcome)
+        print(written(*_onset_files(found, varied, crossings, folder(out))))
 
 
 def map_(
@@ -133,20 +135,23 @@ def _mode_columns(spectrum: ComplexModes) -> dict[str, Any]:
     }
 
 
-def _onset_sentence(critical: CriticalValue, design: "Design", varied: "Axis") -> str:
-    value, unit = readable(design, varied, critical.value)
-    side = "above" if critical.direction == "destabilising" else "below"
+def _crossing(crossing: CriticalValue, design: "Design", varied: "Axis") -> str:
+    value, unit = readable(design, varied, crossing.value)
+    side = "above" if crossing.direction == "destabilising" else "below"
+    shares = ", ".join(f"{name.replace('_', ' ')} {100.0 * share:.0f} %" for name, share in crossing.shares.items())
+    first = "squeal begins" if crossing.changes_stability else "one more mode"
+    place = f"{varied.name} = {float(value):.7g} {unit}".rstrip()
     return (
-        f"{varied.name} = {float(value):.7g}{unit and f' {unit}'}: steady sliding is unstable {side} it, "
-        f"in a mode of {critical.frequency:.6g} Hz"
+        f"{place}: {first}; {side} it a mode of {crossing.frequency:.6g} Hz grows, "
+        f"mechanism {crossing.mechanism.replace('_', ' ')} ({shares})"
     )
 
 
-def _coalescence(found: "DesignFile", varied: "Axis", critical: CriticalValue, out: Path) -> list[Path]:
-    """Figure and table of the modes over the range, the critical value itself among the points."""
+def _onset_files(found: "DesignFile", varied: "Axis", crossings: CriticalValues, out: Path) -> list[Path]:
+    """The crossings, and a figure and table of the modes over the range with the crossings among its points."""
     from squealbox import plots
 
-    points = np.append(varied.values, [critical.value] if critical.outcome.ok else [])
+    points = np.append(varied.values, crossings.value)
     spectra = complex_modes(found.design.replace({varied.name: np.sort(points)}))
     values, unit = readable(found.design, varied, np.sort(points))
     figure = plots.coalescence(values, spectra, name=varied.name, unit=unit, title=found.path.name)
@@ -154,7 +159,7 @@ def _coalescence(found: "DesignFile", varied: "Axis", critical: CriticalValue, o
     columns = {f"{varied.name} [{unit or '-'}]": values}
     columns |= {f"frequency {i + 1} [Hz]": spectra.frequency[:, i] for i in range(half)}
     columns |= {f"growth rate {i + 1} [1/s]": spectra.growth_rate[:, i] for i in range(half)}
-    return [*plots.save(figure, out / "onset"), write_csv(out / "onset.csv", columns)]
+    return [crossings.save(out / "onset.nc"), *plots.save(figure, out / "onset"), write_csv(out / "onset.csv", columns)]
 
 
 def _growth_rates(design: "Design", across: "Axis", up: "Axis") -> Any:

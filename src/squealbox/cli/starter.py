@@ -74,12 +74,12 @@ def _example(brake: str) -> "Design":
     if BRAKES[brake] is DrumBrake:
         return DrumBrake(friction=LinearSlope(0.45, -0.05))
     if BRAKES[brake] is OwnBrake:
-        contact = OwnContact(n=[0.0, 1e6, 0.0], d=[1.0, 0.0, 0.0], name="pad")
+        contact = OwnContact(n=[0.0, 3e6, 0.0], d=[1.0, 0.0, 0.0], name="pad", unilateral=True, normal=[0.0, 1.0, 0.0])
         return OwnBrake(
             M=[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 2.0]],
-            K=[[2e6, -1e6, 0.0], [-1e6, 2.5e6, -0.5e6], [0.0, -0.5e6, 3e6]],
+            K=[[3.8e6, 1e6, 0.0], [1e6, 4e6, -0.5e6], [0.0, -0.5e6, 2e6]],
             C=[[10.0, 0.0, 0.0], [0.0, 10.0, 0.0], [0.0, 0.0, 10.0]],
-            friction=Coulomb(0.5),
+            friction=Coulomb(0.6),
             normal_force=500.0,
             contacts=(contact,),
             names=("pad_x", "pad_y", "disc_y"),

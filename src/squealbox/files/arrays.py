@@ -12,6 +12,7 @@ import csv
 import io
 from collections.abc import Mapping
 from pathlib import Path
+from tokenize import TokenError
 from typing import Annotated, Any
 
 import numpy as np
@@ -43,9 +44,7 @@ def read_array(document: Document, value: Any, about: Parameter, key: Key, ndim:
         return WRONG
     if array.size and not about.accepts(array):
         bad = np.argwhere(~np.isfinite(array))
-        where = (
-            f"entry {tuple(int(i) for i in bad[0])} is {array[tuple(bad[0])]}" if bad.size else "an entry is outside"
-        )
+        where = f"entry {bad[0].tolist()} is {array[tuple(bad[0])]}" if bad.size else "an entry is outside"
         document.problem(key, f"{where}: expected finite numbers in {about.range}")
         return WRONG
     return array
@@ -132,7 +131,7 @@ def _npy(raw: bytes) -> np.ndarray:
         version = np.lib.format.read_magic(stream)
         read_header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
         shape, _, dtype = read_header(stream)
-    except (ValueError, TypeError, OSError, SyntaxError, RecursionError, MemoryError) as error:
+    except (ValueError, TypeError, OSError, SyntaxError, RecursionError, MemoryError, TokenError) as error:
         raise ArrayFileError("is not a NumPy .npy file") from error
     if dtype.hasobject or dtype.kind not in "fiu":
         raise ArrayFileError(f"holds {dtype}, expected real numbers")

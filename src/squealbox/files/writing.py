@@ -5,6 +5,7 @@ import json
 import os
 import tempfile
 import textwrap
+import typing
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.files.document import LARGEST
 from squealbox.files.reading import BRAKES
-from squealbox.files.sheets import SCHEDULE_NAMES, name_of, unit_in
+from squealbox.files.sheets import SCHEDULE_NAMES, field_type, name_of, unit_in
 from squealbox.files.units import in_si
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import Choice, DataSheet, Parameter
@@ -92,6 +93,7 @@ def _lines(sheet: DataSheet, *, inline_laws: bool = False) -> Iterator[str]:
             if about:
                 yield from _commented(f"# {field.name} =", _comment(about))
         elif about:
+            _check_single(sheet, field.name, value)
             unit = unit_in(type(sheet), about, "")
             yield from _commented(f"{field.name} = {_text(value, unit, field.name)}", _comment(about))
         elif field.name in words:
@@ -142,9 +144,20 @@ def _inline(sheet: DataSheet, unit: str) -> str:
     for field in dataclasses.fields(sheet):  # type: ignore[arg-type]
         value = getattr(sheet, field.name)
         if not (value is None and field.default is None):
+            _check_single(sheet, field.name, value)
             own = unit_in(type(sheet), parameters[field.name], unit)
             parts.append(f"{field.name} = {_text(value, own, field.name)}")
     return f"{{ {', '.join(parts)} }}"
+
+
+def _check_single(sheet: DataSheet, name: str, value: Any) -> None:
+    """Only a field declared as an array may hold one; elsewhere an array is a map of many brakes."""
+    declared = field_type(type(sheet), name)
+    several = typing.get_origin(declared) is typing.Annotated or (
+        declared is Any and not sheet.parameters()[name].schedule
+    )
+    if np.ndim(value) > 0 and not several:
+        raise NotWritable(f"{name} has the shape {np.shape(value)}: a file holds one brake, not a map of them")
 
 
 def _schedule_name(schedule: Schedule, name: str) -> str:
