@@ -1,14 +1,27 @@
 # The public names in the order of the story. `lazy_loader` reads the imports; people, editors and type checkers read both.
 # A room with more names than the story needs is public as a whole: `squealbox.friction.Table`, `squealbox.schedules.Table`.
 
-from . import designs, friction, schedules
+from . import designs, friction, plots, schedules, signals
+from .continuation import Follower, follow
 from .designs import DrumBrake
 from .friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stribeck
 from .parameters import ParameterError
+from .plots import plot
 from .result import Outcome, Result
 from .schedules import Constant, Ramp, Schedule, Sinusoid
-from .stability import ComplexModes, CriticalValue, complex_modes, critical_value
+from .signals import peaks, sound, spectrogram, spectrum
+from .stability import (
+    ComplexModes,
+    CriticalValue,
+    CriticalValues,
+    Mechanism,
+    complex_modes,
+    critical_value,
+    critical_values,
+    mechanism,
+)
 from .system import Contact, System, equilibrium, linearise
+from .transient import Method, Trajectory, Verdict, simulate, verdict
 
 __version__: str
 
@@ -40,6 +53,28 @@ __all__ = [
     "ComplexModes",
     "critical_value",
     "CriticalValue",
+    "critical_values",
+    "CriticalValues",
+    "mechanism",
+    "Mechanism",
+    # what happens in time, and what became of it?
+    "simulate",
+    "Method",
+    "Trajectory",
+    "verdict",
+    "Verdict",
+    # follow the roots of any residual(x, p)
+    "follow",
+    "Follower",
+    # what a signal holds
+    "signals",
+    "spectrum",
+    "peaks",
+    "spectrogram",
+    "sound",
+    # any result as a figure
+    "plots",
+    "plot",
     # what every analysis hands back, and what a bad number raises
     "Result",
     "Outcome",
