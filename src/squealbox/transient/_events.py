@@ -23,7 +23,6 @@ from squealbox.transient._motion import (
 from squealbox.transient._runge_kutta import dense_stages, interpolate, take_step
 
 NO_EVENT = 2.0  # any theta above 1
-FRESH = 1e-2  # the part of a step after an event in which the contact that changed is not searched again
 
 
 def event_values(p, t, y, mode, s, phi):
@@ -100,25 +99,42 @@ def first_event(p, r, t, h, y, y_new, mode, s, stage):
     return theta, which
 
 
-def value_inside(p, r, t, h, y, mode, s, stage, theta, j):
-    """Event function j on the dense output."""
+def value_inside(p, r, t, h, y, mode, s, stage, theta, j, power):
+    """Event function j on the dense output, over theta^power."""
     interpolate(r, theta, h, y, stage, s.y_dense)
     event_values(p, t + theta * h, s.y_dense, mode, s, s.phi)
-    return s.phi[j]
+    return s.phi[j] / theta**power
+
+
+def start_power(p, h, mode, s, stage, c):
+    """(power, first value) of a contact that has just begun to slip, whose speed is zero at the start of the step.
+
+    Its speed over theta tends to its acceleration times h there. After a release without a drop of friction that is zero
+    too, and the speed over theta squared is searched instead.
+    """
+    rate = s.signal[p.signals + c]
+    for i in range(p.mk.shape[0]):
+        rate -= p.t[c, i] * stage[0, p.mk.shape[0] + i]
+    rate *= mode[c] * h
+    size = 0.0
+    for i in range(1, 5):
+        size = max(size, abs(s.nodes[i, c]))
+    return (1, rate) if abs(rate) > 1e-8 * size else (2, 0.0)
 
 
 def first_root(p, r, t, h, y, mode, s, stage, j):
     """First theta at which event function j turns negative, by Bernstein exclusion and halving; NO_EVENT when none."""
-    start = 0.0
+    power = 0
     if j < p.contacts and s.fresh[j]:
-        start = FRESH
-        for i in range(4):
-            theta = FRESH + (1.0 - FRESH) * 0.25 * i
-            s.nodes[i, j] = value_inside(p, r, t, h, y, mode, s, stage, theta, j)
+        power, s.nodes[0, j] = start_power(p, h, mode, s, stage, j)
+        if power == 2:
+            s.nodes[0, j] = value_inside(p, r, t, h, y, mode, s, stage, 1e-3, j, 2)
         if not s.nodes[0, j] > 0.0:
             return 0.0
+        for i in range(1, 5):
+            s.nodes[i, j] /= (0.25 * i) ** power
     stack = s.stack
-    stack[0, 0] = start
+    stack[0, 0] = 0.0
     stack[0, 1] = 1.0
     for i in range(5):
         stack[0, 2 + i] = s.nodes[i, j]
@@ -133,12 +149,12 @@ def first_root(p, r, t, h, y, mode, s, stage, j):
         left = stack[top, 2]
         right = stack[top, 6]
         if changes == 1 and left > 0.0 and not right > 0.0:
-            return bracketed_root(p, r, t, h, y, mode, s, stage, j, a, b, left, right)
-        if b - a < 1e-7 or top + 2 >= stack.shape[0]:
+            return bracketed_root(p, r, t, h, y, mode, s, stage, j, power, a, b, left, right)
+        if b - a < 1e-10 or top + 2 >= stack.shape[0]:
             if not right > 0.0:
                 return b
             continue
-        split(p, r, t, h, y, mode, s, stage, j, top)
+        split(p, r, t, h, y, mode, s, stage, j, power, top)
         top += 2
     return NO_EVENT
 
@@ -159,7 +175,7 @@ def bernstein(r, row):
     return changes, lowest
 
 
-def split(p, r, t, h, y, mode, s, stage, j, top):
+def split(p, r, t, h, y, mode, s, stage, j, power, top):
     """Replace the interval on the stack by its right and left halves, the left one on top."""
     stack = s.stack
     a = stack[top, 0]
@@ -168,10 +184,10 @@ def split(p, r, t, h, y, mode, s, stage, j, top):
     f0, f1, f2, f3, f4 = stack[top, 2], stack[top, 3], stack[top, 4], stack[top, 5], stack[top, 6]
     width = b - a
     new = (
-        value_inside(p, r, t, h, y, mode, s, stage, a + 0.125 * width, j),
-        value_inside(p, r, t, h, y, mode, s, stage, a + 0.375 * width, j),
-        value_inside(p, r, t, h, y, mode, s, stage, a + 0.625 * width, j),
-        value_inside(p, r, t, h, y, mode, s, stage, a + 0.875 * width, j),
+        value_inside(p, r, t, h, y, mode, s, stage, a + 0.125 * width, j, power),
+        value_inside(p, r, t, h, y, mode, s, stage, a + 0.375 * width, j, power),
+        value_inside(p, r, t, h, y, mode, s, stage, a + 0.625 * width, j, power),
+        value_inside(p, r, t, h, y, mode, s, stage, a + 0.875 * width, j, power),
     )
     right = (middle, b, f2, new[2], f3, new[3], f4)
     left = (a, middle, f0, new[0], f1, new[1], f2)
@@ -180,17 +196,17 @@ def split(p, r, t, h, y, mode, s, stage, j, top):
         stack[top + 1, k] = left[k]
 
 
-def bracketed_root(p, r, t, h, y, mode, s, stage, j, a, b, fa, fb):
-    """Root in [a, b] with fa > 0 >= fb by the Illinois rule, to 1e-15 of the step."""
+def bracketed_root(p, r, t, h, y, mode, s, stage, j, power, a, b, fa, fb):
+    """Root in [a, b] with fa > 0 >= fb by the Illinois rule, to 1e-8 of the step: a real step refines it."""
     side = 0
     x = b
     for _ in range(80):
-        if b - a <= 1e-15 or fb == 0.0:
+        if b - a <= 1e-8 or fb == 0.0:
             return b
         x = (a * fb - b * fa) / (fb - fa)
         if not a < x < b:
             x = 0.5 * (a + b)
-        fx = value_inside(p, r, t, h, y, mode, s, stage, x, j)
+        fx = value_inside(p, r, t, h, y, mode, s, stage, x, j, power)
         if fx > 0.0:
             a = x
             fa = fx
@@ -207,37 +223,38 @@ def bracketed_root(p, r, t, h, y, mode, s, stage, j, a, b, fa, fb):
 
 
 def step_onto(p, r, t, h, theta, j, y, y_new, mode, s, stage):
-    """Step from y exactly to the event near theta h: secant iteration on the length of a real step. Returns that length.
+    """Step from y exactly to the event near theta h: Newton on the length of a real step. Returns that length.
 
-    The dense output only proposes the instant; what is accepted is a step of the method itself, so the event inherits
-    the method's order.
+    The dense output proposes the instant and the slope; what is accepted is a step of the method itself, so the event
+    inherits the method's order.
     """
-    x0 = theta * h
-    f0 = value_after(p, r, t, x0, y, y_new, mode, s, stage, j)
-    x1 = x0 * (1.0 + 1e-6) if theta > 1e-9 else x0 + 1e-9 * h
-    best = x0
-    smallest = abs(f0)
-    for _ in range(12):
-        f1 = value_after(p, r, t, x1, y, y_new, mode, s, stage, j)
-        if abs(f1) < smallest:
-            best = x1
-            smallest = abs(f1)
-        if f1 == f0 or f1 == 0.0:
+    before = max(theta - 1e-4, 0.5 * theta)
+    f1 = value_inside(p, r, t, h, y, mode, s, stage, theta, j, 0)
+    f0 = value_inside(p, r, t, h, y, mode, s, stage, before, j, 0)
+    slope = (f1 - f0) / ((theta - before) * h)
+    x = theta * h
+    f = value_after(p, r, t, x, y, y_new, mode, s, stage, j)
+    for _ in range(8):
+        if f == 0.0 or slope == 0.0:
             break
-        x2 = x1 - f1 * (x1 - x0) / (f1 - f0)
-        if not (0.0 < x2 <= 1.01 * h) or abs(x2 - theta * h) > 0.05 * h:
+        new = x - f / slope
+        if not (0.0 < new <= 1.01 * h) or abs(new - theta * h) > 0.05 * h or abs(new - x) <= 2e-16 * (abs(t) + x):
             break
-        moved = abs(x2 - x1)
-        x0 = x1
-        f0 = f1
-        x1 = x2
-        if moved <= 2e-16 * (abs(t) + x2):
-            break
-    f1 = value_after(p, r, t, x1, y, y_new, mode, s, stage, j)
-    if abs(f1) <= smallest:
-        return x1
-    value_after(p, r, t, best, y, y_new, mode, s, stage, j)
-    return best
+        f_new = value_after(p, r, t, new, y, y_new, mode, s, stage, j)
+        if not abs(f_new) < 0.5 * abs(f):
+            return keep_better(p, r, t, x, f, new, f_new, y, y_new, mode, s, stage, j)
+        slope = (f_new - f) / (new - x)
+        x = new
+        f = f_new
+    return x
+
+
+def keep_better(p, r, t, x, f, new, f_new, y, y_new, mode, s, stage, j):
+    """End the iteration on the shorter residual; at round-off neither improves."""
+    if abs(f_new) <= abs(f):
+        return new
+    value_after(p, r, t, x, y, y_new, mode, s, stage, j)
+    return x
 
 
 def value_after(p, r, t, h, y, y_new, mode, s, stage, j):
