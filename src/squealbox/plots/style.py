@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.signals import with_error
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -176,14 +178,8 @@ def number(value: float, digits: int = 4) -> str:
 
 
 def uncertain(value: float, error: float) -> str:
-    """The error to one digit, such as 20 beside 117, and the value to the same place."""
-    if not (np.isfinite(error) and error > 0.0):
-        return number(value)
-    place = int(np.floor(np.log10(error)))
-    shown = round(error, -place)
-    decimals = max(-place, 0)
-    text = f"{round(float(value), -place) + 0.0:.{decimals}f}"
-    return f"{text} ± {shown:.{decimals}f}".replace("-", MINUS)
+    """A value with its error as a reader writes it."""
+    return with_error(value, error).replace("+-", "±").replace("-", MINUS)
 
 
 def quantity_label(name: str, unit: str) -> str:

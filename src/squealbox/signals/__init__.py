@@ -4,7 +4,7 @@ Every function takes an array with its times ``t`` [s] or its sampling rate [Hz]
 such as a trajectory, of which ``dof`` names one column. Fourier methods need equal time steps and refuse others.
 """
 
-from squealbox.signals.growth import GrowthRate, dominant_frequency, growth_rate, slope
+from squealbox.signals.growth import GrowthRate, dominant_frequency, growth_rate, slope, with_error
 from squealbox.signals.samples import LEAST, Samples, SignalError, column, equal_steps, samples, values
 from squealbox.signals.spectra import Peaks, Spectrogram, Spectrum, peaks, spectrogram, spectrum
 from squealbox.signals.wav import sound
@@ -28,4 +28,5 @@ __all__ = [
     "spectrogram",
     "spectrum",
     "values",
+    "with_error",
 ]

@@ -21,6 +21,9 @@ class GrowthRate(Result):
     frequency: float
     frequency_error: float
 
+    def __str__(self) -> str:
+        return f"{with_error(self.rate, self.rate_error)} 1/s at {self.frequency:.7g} Hz"
+
 
 def dominant_frequency(signal: Any, t: Any = None, *, above: float | None = None, **cut: Any) -> float:
     """Frequency [Hz] of the strongest component, much finer than one over the length of the record.
@@ -98,6 +101,19 @@ def growth_rate(
         frequency_error=drift_error / (2.0 * np.pi),
         settings={"periods": periods, **given(cut)},
     )
+
+
+def with_error(value: float, error: float) -> str:
+    """A value and its error, the error to one digit and the value to the same place.
+
+    >>> with_error(-117.3, 18.0)
+    '-120 +- 20'
+    """
+    if not (np.isfinite(error) and error > 0.0):
+        return f"{value:.5g}"
+    place = int(np.floor(np.log10(error)))
+    decimals = max(-place, 0)
+    return f"{round(float(value), -place) + 0.0:.{decimals}f} +- {round(float(error), -place):.{decimals}f}"
 
 
 def slope(t: Any, y: Any) -> tuple[float, float]:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.result import Outcome, Result, quantity
-from squealbox.signals import LEAST, dominant_frequency, slope
+from squealbox.signals import LEAST, dominant_frequency, slope, with_error
 from squealbox.transient.envelope import Curve, envelope, repetition, smooth_curve
 
 DECAYS, GROWS, SETTLES_ON_CYCLE, NOT_DECIDED = "decays", "grows", "settles_on_cycle", "not_decided"
@@ -287,13 +287,21 @@ def _sentence(kind: str, why: str, course: _Course, settled: float) -> str:
     words = {DECAYS: "Decays", GROWS: "Grows", SETTLES_ON_CYCLE: "Settles on a cycle", NOT_DECIDED: "Not decided"}
     text = words[kind] + (f" ({why})" if why else "")
     if np.isfinite(course.rate) and kind != SETTLES_ON_CYCLE:
-        text += f", growth rate {course.rate:.4g} +- {course.rate_error:.1g} 1/s"
+        text += f", growth rate {with_error(course.rate, course.rate_error)} 1/s"
     if np.isnan(course.amplitude):
         return text + "."
-    last = 1e3 * (course.end - course.late)
-    text += f"; half peak to peak {1e3 * course.amplitude:.3g} mm over the last {last:.3g} ms"
+    last = _read(course.end - course.late, "s")
+    text += f"; half peak to peak {_read(course.amplitude, 'm')} over the last {last}"
     if np.isfinite(course.frequency):
         text += f" at {course.frequency:.5g} Hz"
     if np.isfinite(settled):
-        text += f"; settled at {1e3 * settled:.3g} ms" if settled > course.begin else "; settled from the start"
+        text += f"; settled at {_read(settled, 's')}" if settled > course.begin else "; settled from the start"
     return text + "."
+
+
+def _read(value: float, unit: str) -> str:
+    """A value with the prefix that leaves one to three digits before the point."""
+    for factor, prefix in ((1.0, ""), (1e-3, "m"), (1e-6, "u")):
+        if abs(value) >= 0.9995 * factor:
+            return f"{value / factor:.3g} {prefix}{unit}"
+    return f"{value / 1e-9:.3g} n{unit}"
