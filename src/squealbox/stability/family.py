@@ -64,8 +64,8 @@ class Family:
         return _joined(parts, lambda parts, rank: np.stack(parts).reshape(shape + _tail(parts[0], rank)))
 
 
-def entry(steady: Steady, index: tuple[int, ...]) -> Steady:
-    """One system out of a batch."""
+def entry(steady: Steady, index: Any) -> Steady:
+    """One system out of a batch, or several: `index` is a tuple or a mask over the leading axes."""
     return _joined([steady], lambda parts, rank: parts[0][index])
 
 

@@ -15,6 +15,7 @@ from numba import njit
 FAST = {"contract", "nsz", "arcp", "reassoc", "afn"}  # not nnan or ninf: they would remove the tests for lost points
 BLOCK = 64
 TINY = 1e-300
+MARGINAL = 1e-12  # growth below this share of the largest |lambda| is round-off, not growth
 
 
 @njit(forceinline=True, error_model="numpy", fastmath=FAST)
@@ -112,7 +113,7 @@ def rightmost_of_quadratic(p: float, q: float) -> Any:
 
 @njit(forceinline=True, error_model="numpy", fastmath=FAST)
 def rightmost(a4: float, a3: float, a2: float, a1: float, a0: float) -> Any:
-    """Real and imaginary part of the root of the quartic with the largest real part."""
+    """Real and imaginary part of the root of the quartic with the largest real part, and how many pairs grow."""
     inverse = 1.0 / a4
     a3, a2, a1, a0 = a3 * inverse, a2 * inverse, a1 * inverse, a0 * inverse
     scale = math.sqrt(max(a3 * a3, max(abs(a2), math.sqrt(abs(a0)))))
@@ -145,12 +146,61 @@ def rightmost(a4: float, a3: float, a2: float, a1: float, a0: float) -> Any:
     g1, w1 = rightmost_of_quadratic(p1, q1)
     g2, w2 = rightmost_of_quadratic(p2, q2)
     first = g1 >= g2
-    return (g1 if first else g2) * scale, (w1 if first else w2) * scale
+    growing = (1.0 if g1 > MARGINAL else 0.0) + (1.0 if g2 > MARGINAL else 0.0)
+    return (g1 if first else g2) * scale, (w1 if first else w2) * scale, growing
+
+
+@njit(forceinline=True, error_model="numpy", fastmath=FAST)
+def solve_block(a: Any, out: Any) -> None:
+    """The quartics of a block, a (5, BLOCK), into out (3, BLOCK): a loop of fixed length over contiguous rows."""
+    for b in range(BLOCK):
+        out[0, b], out[1, b], out[2, b] = rightmost(a[0, b], a[1, b], a[2, b], a[3, b], a[4, b])
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def growth_and_frequency(m: Any, c: Any, k: Any, stride: int, growth: Any, omega: Any) -> None:
-    """Largest real part and its |imaginary part| for each of the systems; `stride` is 0 when M is shared, else 4."""
-    for i in range(len(growth)):
-        a4, a3, a2, a1, a0 = polynomial(m, c, k, stride * i, 4 * i)
-        growth[i], omega[i] = rightmost(a4, a3, a2, a1, a0)
+def growth_and_frequency(m: Any, c: Any, k: Any, stride: int, growth: Any, omega: Any, count: Any) -> None:
+    """Largest real part, its |imaginary part| and the number of growing pairs of each system.
+
+    `stride` is 0 when M is shared, else 4. The last block is filled up with its last system.
+    """
+    a = np.empty((5, BLOCK))
+    out = np.empty((3, BLOCK))
+    number = len(growth)
+    for start in range(0, number, BLOCK):
+        for b in range(BLOCK):
+            i = min(start + b, number - 1)
+            a[0, b], a[1, b], a[2, b], a[3, b], a[4, b] = polynomial(m, c, k, stride * i, 4 * i)
+        solve_block(a, out)
+        for b in range(min(BLOCK, number - start)):
+            growth[start + b] = out[0, b]
+            omega[start + b] = out[1, b]
+            count[start + b] = out[2, b]
+
+
+@njit(forceinline=True, error_model="numpy", fastmath=FAST)
+def polynomial_of_part(m: Any, p: Any, c: Any, k: Any, j: int, i: int, x: float, y: float) -> Any:
+    """`polynomial` with K = K_sym + x K_skew and C = P + y (C - P)."""
+    mass = (m[j], m[j + 1], m[j + 2], m[j + 3])
+    damping = (
+        p[i] + y * (c[i] - p[i]),
+        p[i + 1] + y * (c[i + 1] - p[i + 1]),
+        p[i + 2] + y * (c[i + 2] - p[i + 2]),
+        p[i + 3] + y * (c[i + 3] - p[i + 3]),
+    )
+    mean, skew = 0.5 * (k[i + 1] + k[i + 2]), 0.5 * (k[i + 1] - k[i + 2])
+    return polynomial(mass, damping, (k[i], mean + x * skew, mean - x * skew, k[i + 3]), 0, 0)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def growth_of_parts(m: Any, p: Any, c: Any, k: Any, stride: int, x: float, y: float, growth: Any) -> None:
+    """Largest real part of each system with K = K_sym + x K_skew and C = P + y (C - P)."""
+    a = np.empty((5, BLOCK))
+    out = np.empty((3, BLOCK))
+    number = len(growth)
+    for start in range(0, number, BLOCK):
+        for b in range(BLOCK):
+            i = min(start + b, number - 1)
+            a[0, b], a[1, b], a[2, b], a[3, b], a[4, b] = polynomial_of_part(m, p, c, k, stride * i, 4 * i, x, y)
+        solve_block(a, out)
+        for b in range(min(BLOCK, number - start)):
+            growth[start + b] = out[0, b]

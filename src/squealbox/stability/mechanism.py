@@ -23,7 +23,7 @@ import numpy as np
 
 from squealbox.stability.eigenvalues import MARGINAL, spectrum
 from squealbox.stability.family import Steady, steady_sliding
-from squealbox.stability.spectra import Engine, largest_growth
+from squealbox.stability.spectra import Engine, compiled, growth_of_parts, largest_growth
 from squealbox.system import Linearised
 
 NAMES = ("stable", "flutter", "negative_slope", "divergence", "mixed")
@@ -75,10 +75,12 @@ def contributions(
     passive = positive_part(0.5 * (steady.structural + np.swapaxes(steady.structural, -1, -2)))
     rest = steady.C - passive
 
-    def growth(a: float, b: float) -> Any:
-        part = Linearised(steady.M, passive + b * rest, symmetric + a * skew, steady.equilibrium)
+    def plain(x: float, y: float) -> Any:
+        part = Linearised(steady.M, passive + y * rest, symmetric + x * skew, steady.equilibrium)
         return ranked_growth(part, rank, engine)
 
+    fast = rank == 0 and steady.K.shape[-1] == 2 and compiled(steady, engine)
+    growth = growth_of_parts(steady, passive) if fast else plain
     base = before = growth(0.0, 0.0)
     circulation, slope = np.zeros(base.shape), np.zeros(base.shape)
     for i in range(steps):
@@ -130,7 +132,7 @@ def mechanism(design_or_system: Any, time: float = 0.0) -> Mechanism:
     steady = steady_sliding(design_or_system, time)
     if steady.K.ndim > 2:
         raise ValueError(f"leading axes {steady.K.shape[:-2]}: mechanism() is for one system, stability_map() for many")
-    growth, omega = (float(x) for x in largest_growth(steady, "numpy"))
+    growth, omega, _ = (float(x) for x in largest_growth(steady, "numpy"))
     if not np.isfinite(growth):
         return Mechanism("unknown", *(float("nan"),) * 3)
     found = mechanism_at(steady, omega)

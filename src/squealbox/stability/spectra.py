@@ -3,11 +3,12 @@
 Both give the same numbers to round-off (a test compares them); `engine` chooses by name, and "auto" by size.
 """
 
+from collections.abc import Callable
 from typing import Any, Literal
 
 import numpy as np
 
-from squealbox.stability.eigenvalues import state_matrix
+from squealbox.stability.eigenvalues import MARGINAL, state_matrix
 from squealbox.system import Linearised
 
 Engine = Literal["auto", "numpy", "compiled"]
@@ -15,19 +16,26 @@ WORTH_IT = 5000  # systems in a batch from which loading the compiled kernels (a
 LARGEST_COMPILED = 24  # state variables above which LAPACK's blocked code is as fast
 
 
-def largest_growth(about: Linearised, engine: Engine = "auto") -> tuple[Any, Any]:
-    """Largest growth rate [1/s] and the angular frequency [rad/s] of its mode, (...) each; NaN without a spectrum."""
-    if about.M.shape[-1] == 2 and _compiled(about, engine):
+def largest_growth(about: Linearised, engine: Engine = "auto") -> tuple[Any, Any, Any]:
+    """Largest growth rate [1/s], the angular frequency [rad/s] of its mode and the number of growing modes, (...) each.
+
+    NaN, NaN and 0 where there is no spectrum.
+    """
+    if about.M.shape[-1] == 2 and compiled(about, engine):
         return _two_dof(about)
     values = eigenvalues(about, engine)
-    place = np.argmax(np.where(np.isfinite(values.real), values.real, -np.inf), axis=-1)[..., None]
+    known = np.isfinite(values.real)
+    place = np.argmax(np.where(known, values.real, -np.inf), axis=-1)[..., None]
     worst = np.take_along_axis(values, place, axis=-1)[..., 0]
-    return worst.real, np.abs(worst.imag)
+    scale = np.max(np.abs(values), axis=-1, keepdims=True)
+    growing = known & (values.real > MARGINAL * scale)
+    pairs = np.sum(growing & (values.imag > 0.0), axis=-1) + np.sum(growing & (values.imag == 0.0), axis=-1)
+    return worst.real, np.abs(worst.imag), pairs
 
 
 def asymptotically_stable(about: Linearised, engine: Engine = "auto") -> Any:
     """True where every growth rate is negative, (...); an undamped or missing system is False."""
-    if about.M.shape[-1] == 2 and _compiled(about, engine):
+    if about.M.shape[-1] == 2 and compiled(about, engine):
         from squealbox.stability import kernels_two_dof as kernels
 
         mass, damping, stiffness, shape, usable = _flat(about)
@@ -35,8 +43,7 @@ def asymptotically_stable(about: Linearised, engine: Engine = "auto") -> Any:
         run = kernels.flags_shared_mass if mass.size == 4 else kernels.flags_own_mass
         run(mass, damping, stiffness, flags)
         return flags.astype(bool).reshape(shape) & usable
-    growth, _ = largest_growth(about, engine)
-    return growth < 0.0
+    return largest_growth(about, engine)[0] < 0.0
 
 
 def eigenvalues(about: Linearised, engine: Engine = "auto") -> Any:
@@ -44,7 +51,7 @@ def eigenvalues(about: Linearised, engine: Engine = "auto") -> Any:
     matrix, rate, usable, _ = state_matrix(about)
     size = matrix.shape[-1]
     safe = np.where(usable[..., None, None], matrix, np.eye(size))
-    if size > LARGEST_COMPILED or not _compiled(about, engine):
+    if size > LARGEST_COMPILED or not compiled(about, engine):
         values = np.linalg.eigvals(safe).astype(complex)
     else:
         values = compiled_eigenvalues(safe.reshape(-1, size, size)).reshape(*safe.shape[:-1])
@@ -62,20 +69,41 @@ def compiled_eigenvalues(matrices: Any) -> Any:
     return values
 
 
-def _compiled(about: Linearised, engine: Engine) -> bool:
+def compiled(about: Linearised, engine: Engine) -> bool:
+    """True when `engine` asks for the compiled kernels, or leaves it open and the batch is large enough."""
     if engine not in ("auto", "numpy", "compiled"):
         raise ValueError(f"engine = {engine!r}: expected 'auto', 'numpy' or 'compiled'")
     return engine == "compiled" or (engine == "auto" and about.K.size >= WORTH_IT * about.K.shape[-1] ** 2)
 
 
-def _two_dof(about: Linearised) -> tuple[Any, Any]:
+def growth_of_parts(about: Linearised, passive: Any) -> Callable[[float, float], Any]:
+    """The largest growth rate of K_sym + x K_skew and P + y (C - P), P = `passive`, as a compiled function of x and y.
+
+    For two degrees of freedom; the matrices are read once, whatever the number of calls.
+    """
+    from squealbox.stability import kernels_two_dof as kernels
+
+    mass, damping, stiffness, shape, _ = _flat(about)
+    flat = np.require(np.broadcast_to(passive, about.C.shape), float, ["C", "W"]).reshape(-1)
+
+    def growth(x: float, y: float) -> Any:
+        out = np.empty(damping.size // 4)
+        kernels.growth_of_parts(mass, flat, damping, stiffness, 0 if mass.size == 4 else 4, x, y, out)
+        return out.reshape(shape)
+
+    return growth
+
+
+def _two_dof(about: Linearised) -> tuple[Any, Any, Any]:
     from squealbox.stability import kernels_two_dof as kernels
 
     mass, damping, stiffness, shape, usable = _flat(about)
-    growth, omega = np.empty(damping.size // 4), np.empty(damping.size // 4)
-    kernels.growth_and_frequency(mass, damping, stiffness, 0 if mass.size == 4 else 4, growth, omega)
-    missing = ~usable
-    return np.where(missing, np.nan, growth.reshape(shape)), np.where(missing, np.nan, omega.reshape(shape))
+    number = damping.size // 4
+    growth, omega, count = np.empty(number), np.empty(number), np.empty(number)
+    kernels.growth_and_frequency(mass, damping, stiffness, 0 if mass.size == 4 else 4, growth, omega, count)
+    known = usable & np.isfinite(growth.reshape(shape))
+    growth, omega = (np.where(known, values.reshape(shape), np.nan) for values in (growth, omega))
+    return growth, omega, np.where(known, count.reshape(shape), 0.0).astype(np.int64)
 
 
 def _flat(about: Linearised) -> tuple[Any, Any, Any, tuple[int, ...], Any]:

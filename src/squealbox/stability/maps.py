@@ -1,0 +1,145 @@
+"""Stability over a grid of parameters: growth rate, frequency, number of growing modes and mechanism at each point.
+
+The grid is computed in blocks, so a map of millions of points needs no more memory than its own arrays, and a point
+without steady sliding is a missing value, not an error. The boundary as curves is `boundary.stability_boundary`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.result import Outcome, Result, quantity
+from squealbox.stability.eigenvalues import MARGINAL
+from squealbox.stability.family import Family, Steady, entry
+from squealbox.stability.mechanism import NAMES, STEPS, contributions, mechanism_codes
+from squealbox.stability.spectra import Engine, largest_growth
+
+if TYPE_CHECKING:
+    import xarray
+
+CHUNK = 1 << 15  # points computed together: their arrays stay in the processor's cache
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StabilityMap(Result):
+    """Stability over a grid, one axis for each parameter in the order given, as :func:`stability_map` returns it.
+
+    mechanism holds codes into `mechanism_names`: 0 stable, 1 flutter, 2 negative_slope, 3 divergence, 4 mixed, -1 none;
+    circulation and slope [1/s] are what the two parts of friction bring to the growth rate (0 where stable).
+    """
+
+    growth_rate: Any = quantity("...", "1/s", "largest growth rate")
+    frequency: Any = quantity("...", "Hz", "frequency of the mode with the largest growth rate")
+    unstable_modes: Any = quantity("...", "1", "number of growing modes")
+    mechanism: Any = quantity("...", "1", "0 stable, 1 flutter, 2 negative slope, 3 divergence, 4 mixed, -1 none")
+    circulation: Any = quantity("...", "1/s", "brought by circulatory forces")
+    slope: Any = quantity("...", "1/s", "brought by the damping part of friction")
+    axes: Mapping[str, Any]
+
+    mechanism_names = NAMES
+
+    @property
+    def unstable(self) -> Any:
+        """True where a mode grows."""
+        return self.unstable_modes > 0
+
+    @property
+    def exists(self) -> Any:
+        """True where there is steady sliding."""
+        return np.isfinite(self.growth_rate)
+
+    def summary(self) -> str:
+        """How much of the map is unstable, by which mechanism, and where it is worst."""
+        total, known = self.growth_rate.size, int(np.sum(self.exists))
+        if known == 0:
+            return f"no steady sliding at any of {total} points"
+        unstable = int(np.sum(self.unstable))
+        names = [(name, int(np.sum(self.mechanism == code))) for code, name in enumerate(NAMES) if code > 0]
+        parts = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in names if count)
+        place = np.unravel_index(int(np.nanargmax(self.growth_rate)), self.growth_rate.shape)
+        where = ", ".join(f"{n} = {np.asarray(v)[i]:.6g}" for (n, v), i in zip(self.axes.items(), place, strict=True))
+        lines = [f"{unstable} of {known} points unstable ({unstable / known:.2%}){': ' + parts if parts else ''}"]
+        lines += [f"largest growth rate {self.growth_rate[place]:+.6g} 1/s at {self.frequency[place]:.6g} Hz, {where}"]
+        if known < total:
+            lines.append(f"{total - known} points without steady sliding")
+        return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        return self.summary()
+
+    def to_dataset(self) -> "xarray.Dataset":
+        """The arrays with the parameters as named coordinates."""
+        dataset = super().to_dataset()
+        names = {f"axis_{i}": name for i, name in enumerate(self.axes)}
+        return dataset.rename(names).assign_coords({name: np.asarray(values) for name, values in self.axes.items()})
+
+
+def stability_map(
+    design: Any,
+    axes: Mapping[str, Any],
+    *,
+    mechanism: bool = True,
+    time: float = 0.0,
+    steps: int = STEPS,
+    engine: Engine = "auto",
+) -> StabilityMap:
+    """Growth rate, frequency, number of growing modes and mechanism over any number of parameters.
+
+    Parameters
+    ----------
+    design : a design, or a function of one float for each parameter that returns a design or a system
+    axes : name to values, such as ``{"friction.static": mus, "load": loads}``; one axis of the map for each, in order
+    mechanism : also why each unstable point is unstable; without it the map takes a fifth of the time
+    time : instant of schedules [s]
+    steps : of the mechanism's split, see `squealbox.stability.mechanism`
+    engine : "auto" (compiled kernels for large maps), "numpy" or "compiled"
+
+    Raises `ParameterError` for a name or value the design refuses, `ValueError` for an empty axis.
+    """
+    names = list(axes)
+    values = [np.atleast_1d(np.asarray(axes[name], dtype=float)) for name in names]
+    for name, array in zip(names, values, strict=True):
+        if array.ndim != 1 or array.size == 0:
+            raise ValueError(f"axes[{name!r}] has shape {array.shape}: expected one or more values")
+    if not names:
+        raise ValueError("axes is empty: expected at least one parameter")
+    family = Family(design, names, time)
+    shape = tuple(array.size for array in values)
+    count = int(np.prod(shape))
+    columns = {name: np.empty(count) for name in ("growth_rate", "frequency", "circulation", "slope")}
+    columns |= {"unstable_modes": np.empty(count, dtype=np.int64), "mechanism": np.empty(count, dtype=np.int8)}
+    worst = Outcome()
+    chosen = "compiled" if engine == "auto" and count > CHUNK else engine
+    for start in range(0, count, CHUNK):
+        places = np.unravel_index(np.arange(start, min(start + CHUNK, count)), shape)
+        steady = family.at(*(array[i] for array, i in zip(values, places, strict=True)))
+        worst = worst if steady.equilibrium.outcome.ok or not worst.ok else steady.equilibrium.outcome
+        for name, part in _block(steady, mechanism, steps, chosen).items():
+            columns[name][start : start + CHUNK] = part
+    arrays: dict[str, Any] = {name: column.reshape(shape) for name, column in columns.items()}
+    outcome = worst if not np.any(np.isfinite(arrays["growth_rate"])) else Outcome()
+    settings = {"mechanism": mechanism, "steps": steps, "engine": engine}
+    named = dict(zip(names, values, strict=True))
+    return StabilityMap(**arrays, axes=named, inputs=family.inputs, settings=settings, outcome=outcome)
+
+
+def _block(steady: Steady, mechanism: bool, steps: int, engine: Engine) -> dict[str, Any]:
+    growth, omega, growing = largest_growth(steady, engine)
+    circulation, slope = np.zeros(growth.shape), np.zeros(growth.shape)
+    unstable = growing > 0
+    if mechanism and np.any(unstable):
+        _, circulation[unstable], slope[unstable] = contributions(entry(steady, unstable), steps=steps, engine=engine)
+    scale = np.hypot(growth, omega)
+    codes = mechanism_codes(np.where(unstable, scale, -scale), omega, circulation, slope, scale * (1.0 - MARGINAL))
+    if not mechanism:
+        codes = np.where(unstable, -1, codes)
+    return {
+        "growth_rate": growth,
+        "frequency": omega / (2.0 * np.pi),
+        "circulation": circulation,
+        "slope": slope,
+        "unstable_modes": growing,
+        "mechanism": codes,
+    }
