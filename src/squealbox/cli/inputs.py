@@ -15,7 +15,9 @@ from squealbox.files.analyses import Axis, quantity_of
 from squealbox.files.units import UnitError, in_si
 from squealbox.parameters import Parameter, ParameterError
 
-Changes = Annotated[tuple[str, ...], cyclopts.Parameter(name="--set", negative="", consume_multiple=True)]
+Changes = Annotated[
+    tuple[str, ...], cyclopts.Parameter(name="--set", negative="", consume_multiple=True, show_default=False)
+]
 Ends = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
 
 

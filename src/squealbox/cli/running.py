@@ -49,11 +49,18 @@ def _call(name: str, command: Command, words: Sequence[str]) -> int:
 
     function = getattr(importlib.import_module(f"squealbox.cli.{command.module}"), command.function)
     app = cyclopts.App(
-        name=f"squealbox {name}", help_format="plaintext", version_flags=(), result_action="return_value"
+        name=f"squealbox {name}",
+        help_format="plaintext",
+        version_flags=(),
+        result_action="return_value",
+        suppress_keyboard_interrupt=False,
     )
     app.default(function)
+    app["--help"].group = "Parameters"
     try:
         code = app(words, exit_on_error=False, print_error=False)
+    except cyclopts.UnusedCliTokensError as error:
+        raise UsageError(f"unexpected words: {' '.join(error.unused_tokens or ())[:60]}") from error
     except cyclopts.CycloptsError as error:
         raise UsageError(_one_sentence(str(error))) from error
     return code if isinstance(code, int) else DONE

@@ -71,6 +71,8 @@ def onset(
     """
     found = read(file, changes)
     varied = axis(found.design, found.onset, parameter, range, RANGE)
+    if out is not None:
+        folder(out)
     with Progress("looking for the onset"):
         crossings = critical_values(found.design, varied.name, (varied.low, varied.high))
     if not crossings.outcome.ok:
@@ -78,7 +80,7 @@ def onset(
     print(f"{found.design.title}, {file}")
     print("\n".join(_crossing(crossing, found.design, varied) for crossing in crossings))
     if out is not None:
-        print(written(*_onset_files(found, varied, crossings, folder(out))))
+        print(written(*_onset_files(found, varied, crossings, out)))
 
 
 def map_(
@@ -113,11 +115,13 @@ def map_(
     up = with_points(axis(found.design, given.y if given else None, *_split(y), UP), points)
     if across.name == up.name:
         raise UsageError(f"x and y are both {up.name}: expected two different parameters")
+    if out is not None:
+        folder(out)
     with Progress(f"{int(across.points)} x {int(up.points)} points"):
         growth = _growth_rates(found.design, across, up)
     print(f"{found.design.title}, {file}\n{_map_sentence(found.design, growth, across, up)}")
     if out is not None:
-        print(written(*_map_files(found, across, up, growth, folder(out))))
+        print(written(*_map_files(found, across, up, growth, out)))
 
 
 def _split(span: tuple[str, str, str] | None) -> tuple[str | None, tuple[str, str] | None]:

@@ -79,7 +79,7 @@ def _example(brake: str) -> "Design":
             M=[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 2.0]],
             K=[[3.8e6, 1e6, 0.0], [1e6, 4e6, -0.5e6], [0.0, -0.5e6, 2e6]],
             C=[[10.0, 0.0, 0.0], [0.0, 10.0, 0.0], [0.0, 0.0, 10.0]],
-            friction=Coulomb(0.6),
+            friction=Coulomb(0.3),
             normal_force=500.0,
             contacts=(contact,),
             names=("pad_x", "pad_y", "disc_y"),

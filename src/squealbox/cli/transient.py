@@ -53,10 +53,11 @@ def simulate(
     settings = _settings(found.simulate or Simulate(), duration, options)
     system = found.design.system()
     beginning = _beginning(system, settings)
+    folder(out)
     with Progress("simulating (the first run compiles the engine)"):
         motion = _motion(system, settings, beginning)
     with Progress("drawing"):
-        text, paths = _results(motion, file.name, folder(out))
+        text, paths = _results(motion, file.name, out)
     print(f"{found.design.title}, {file}\n{text}\n{written(*paths)}")
     if not motion.outcome.ok:
         raise ComputationFailed(motion.outcome)
