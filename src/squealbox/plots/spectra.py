@@ -51,8 +51,11 @@ def spectrum(
         top = float(np.max(lines.amplitude[shown])) / factor or 1.0
         panel.set_ylim(*((1e-5 * top, 100.0 * top) if logarithmic else (0.0, 1.4 * top)))
         panel.set_xlim(0.0, limit / hertz)
-        for frequency, amplitude in _named(found, peaks, limit, 4.0 * lines.resolution):
-            _name_peak(panel, frequency / hertz, amplitude / factor)
+        named = _named(found, peaks, limit, 4.0 * lines.resolution)
+        for frequency, amplitude in named:
+            beside = [other for other, _ in named if 0.0 < abs(other - frequency) < 0.15 * limit]
+            side = "center" if not beside else "right" if frequency < min(beside) else "left"
+            _name_peak(panel, frequency / hertz, amplitude / factor, side)
         panel.set(xlabel=quantity_label("frequency", read), ylabel=quantity_label(name, size), title=title)
         note(panel, f"{lines.window.capitalize()} window, resolution {_fine(lines.resolution, read)}")
         return figure_of(panel)
@@ -61,8 +64,8 @@ def spectrum(
 def _named(found: signals.Peaks, count: int, limit: float, drift: float) -> list[tuple[float, float]]:
     """The peaks to name: the highest, none slower than `drift` and no two so close that their names would touch."""
     chosen: list[tuple[float, float]] = []
-    for frequency, amplitude in zip(found.frequency, found.amplitude, strict=True):
-        clear = all(abs(frequency - other) > 0.07 * limit for other, _ in chosen)
+    for frequency, amplitude in found:
+        clear = all(abs(frequency - other) > 0.02 * limit for other, _ in chosen)
         if drift <= frequency <= limit and clear and len(chosen) < count:
             chosen.append((frequency, amplitude))
     return chosen
@@ -74,9 +77,16 @@ def _fine(resolution: float, read: str) -> str:
     return f"{number(resolution, 3)} Hz"
 
 
-def _name_peak(panel: Any, x: float, y: float) -> None:
+def _name_peak(panel: Any, x: float, y: float, side: str) -> None:
     panel.plot(x, y, "v", color="#D55E00", markersize=3, zorder=3)
-    panel.annotate(number(x), (x, y), textcoords="offset points", xytext=(0, 4), ha="center", fontsize=6.5)
+    panel.annotate(
+        number(x),
+        (x, y),
+        textcoords="offset points",
+        xytext=({"left": 2, "center": 0, "right": -2}[side], 4),
+        ha=side,
+        fontsize=6.5,
+    )
 
 
 def spectrogram(

@@ -1,5 +1,6 @@
 """Amplitude spectrum, its peaks, and the spectrogram."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -95,10 +96,13 @@ def spectrum(signal: Any, t: Any = None, *, window: str = "hann", pad: int = 4, 
 
 @dataclass(frozen=True)
 class Peaks:
-    """Lines of a spectrum, highest first: `frequency` (m,) [Hz] and `amplitude` (m,)."""
+    """Lines of a spectrum, highest first: `frequency` (m,) [Hz] and `amplitude` (m,); iterates over the pairs."""
 
     frequency: Any
     amplitude: Any
+
+    def __iter__(self) -> Iterator[tuple[float, float]]:
+        return iter(zip(self.frequency.tolist(), self.amplitude.tolist(), strict=True))
 
 
 def peaks(spectrum: Spectrum, count: int | None = None, *, least: float = 0.03) -> Peaks:
