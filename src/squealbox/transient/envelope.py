@@ -46,8 +46,8 @@ class Curve:
         """Equally spaced samples of a stretch, about four for each turning point and as many as were given."""
         left = self.begin if left is None else left
         right = self.end if right is None else right
-        given = np.count_nonzero((self.t >= left) & (self.t <= right))
-        turns = np.count_nonzero((self.turns >= left) & (self.turns <= right))
+        given = int(np.count_nonzero((self.t >= left) & (self.t <= right)))
+        turns = int(np.count_nonzero((self.turns >= left) & (self.turns <= right)))
         times = np.linspace(left, right, max(given, 4 * turns, 64))
         return times, self.spline(times)
 
