@@ -38,6 +38,12 @@ def test_links_lead_somewhere(path):
     assert [target for target in targets if not (path.parent / target).exists()] == []
 
 
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
+def test_a_page_is_in_the_contents(path):
+    name = str(path.relative_to(DOCS).with_suffix(""))
+    assert name == "index" or name in (DOCS / "index.md").read_text().splitlines()
+
+
 @pytest.mark.parametrize("room", [room for room in ROOMS if not room.startswith("_")])
 def test_a_room_is_described(room):
     assert re.search(rf"^`{room}(\.py|/)`$", HOUSE, flags=re.MULTILINE), f"docs/house.md does not describe {room}"
