@@ -10,7 +10,8 @@ HEAVY = {
     "numba", "llvmlite", "matplotlib", "xarray", "pandas", "h5py", "pydantic", "pint", "rich", "cyclopts", "dask",
     "distributed", "jinja2",
 }  # fmt: skip
-STEADY = "import squealbox as sb; sb.linearise(sb.DrumBrake(friction=sb.LinearSlope(0.45, -0.05)).system())"
+BRAKE = "import squealbox as sb; brake = sb.DrumBrake(friction=sb.LinearSlope(0.45, -0.05))\n"
+FIRST_QUESTIONS = BRAKE + "sb.complex_modes(brake); sb.critical_value(brake, 'friction.static', (0.0, 0.6))"
 
 
 def loaded_by(code: str) -> set[str]:
@@ -20,7 +21,7 @@ def loaded_by(code: str) -> set[str]:
     return HEAVY & set(json.loads(done.stdout.splitlines()[-1]))
 
 
-@pytest.mark.parametrize("code", ["import squealbox", "from squealbox import *", STEADY])
+@pytest.mark.parametrize("code", ["import squealbox", "from squealbox import *", FIRST_QUESTIONS])
 def test_nothing_heavy_is_loaded(code):
     assert loaded_by(code) == set()
 
