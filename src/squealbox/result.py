@@ -141,7 +141,8 @@ class Result:
 
     def _plain(self) -> dict[str, Any]:
         arrays = {field.name for field in _quantities(type(self))}
-        others = {f.name: getattr(self, f.name) for f in dataclasses.fields(self) if f.name not in arrays}
+        kept = [f.name for f in dataclasses.fields(self) if not f.metadata.get("transient")]
+        others = {name: getattr(self, name) for name in kept if name not in arrays}
         return {**others, "outcome": self.outcome.to_plain()}
 
 

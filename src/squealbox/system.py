@@ -353,4 +353,7 @@ def _outer(a: Any, b: Any) -> Any:
 
 
 def _form(a: Any, matrix: Any, b: Any) -> Any:
-    return np.einsum("...i,...ij,...j->...", a, matrix, b)
+    """a . matrix b over leading axes; one matrix for all rows goes through one matrix product."""
+    a, b = np.asarray(a), np.asarray(b)
+    product = b @ matrix.T if np.ndim(matrix) == 2 else np.einsum("...ij,...j->...i", matrix, b)
+    return np.sum(a * product, axis=-1)

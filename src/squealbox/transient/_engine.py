@@ -1,7 +1,7 @@
 """The one door to the compiler: plain functions in, compiled functions out, kept on disk between runs.
 
-The sources of the laws, the schedules and the march are joined into one file, named by the hash of its content, and that
-file is compiled by numba with its on-disk cache. So a change of any source makes a new file, and nothing stale is run.
+The sources of the laws, the schedules and the march are joined into one file, named by the hash of its content, and
+that file is compiled by numba with its on-disk cache. So a change of any source makes a new file, and nothing stale is run.
 `plain=True` runs the very same file without the compiler, which the tests use to compare the two.
 """
 
@@ -22,9 +22,9 @@ from typing import Any
 
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
-from squealbox.transient import _events, _march, _motion, _runge_kutta
+from squealbox.transient import _events, _march, _modes, _motion, _runge_kutta, _time_stepping
 
-ENTRY = "march"
+ENTRIES = ("march", "time_stepping")
 HEADER = '"""Made by squealbox; safe to delete."""\n\nimport numpy as np\n\n{decorators}'
 COMPILED = """from numba import njit
 
@@ -43,6 +43,14 @@ entry = inner
 
 
 @cache
+def time_stepping_kernel(plain: bool = False) -> Callable[..., Any]:
+    """`_time_stepping.time_stepping`, compiled at first use."""
+    parts = _head(inline=True, plain=plain) + _definitions(_time_stepping, events=False)
+    stepping: Callable[..., Any] = _module("\n\n".join(parts) + "\n").time_stepping
+    return stepping
+
+
+@cache
 def kernel(events: bool, plain: bool = False) -> Callable[..., int]:
     """`_march.march`, compiled for each new room of its records at first use, then read from disk."""
     march: Callable[..., int] = _module(source(events, plain)).march
@@ -51,15 +59,19 @@ def kernel(events: bool, plain: bool = False) -> Callable[..., int]:
 
 def source(events: bool, plain: bool = False) -> str:
     """The text of the generated file."""
-    decorators = PLAIN if plain else COMPILED.format(inline=not events)
-    parts = [HEADER.format(decorators=decorators)]
+    parts = _head(inline=not events, plain=plain)
+    for module in (_motion, _runge_kutta, *((_modes, _events) if events else ()), _march):
+        parts += _definitions(module, events)
+    return "\n\n".join(parts) + "\n"
+
+
+def _head(inline: bool, plain: bool) -> list[str]:
+    """Decorators, and the laws and schedules behind one function each."""
+    parts = [HEADER.format(decorators=PLAIN if plain else COMPILED.format(inline=inline))]
     parts += _dispatcher("law_mu", [law.formula for law in LAWS], "v")
     parts += _dispatcher("law_slope", [law.slope_formula for law in LAWS], "v")
     parts += _dispatcher("schedule_value", [schedule.formula for schedule in SCHEDULES], "t")
-    parts += _dispatcher("schedule_rate", [schedule.rate_formula for schedule in SCHEDULES], "t")
-    for module in (_motion, _runge_kutta, *((_events,) if events else ()), _march):
-        parts += _definitions(module, events)
-    return "\n\n".join(parts) + "\n"
+    return parts + _dispatcher("schedule_rate", [schedule.rate_formula for schedule in SCHEDULES], "t")
 
 
 def cache_folder() -> Path:
@@ -91,7 +103,7 @@ def _definitions(module: ModuleType, events: bool) -> list[str]:
             parts.append(ast.unparse(node))
         elif isinstance(node, ast.FunctionDef):
             chosen = ast.unparse(_Chosen(events).visit(node))
-            parts.append(("@entry\n" if node.name == ENTRY else "@inner\n") + chosen)
+            parts.append(("@entry\n" if node.name in ENTRIES else "@inner\n") + chosen)
     return parts
 
 

@@ -1,25 +1,17 @@
-"""Where a contact changes its mode, and which mode it takes; plain loops compiled by `_engine`.
+"""Where in a step a contact changes its mode; plain loops compiled by `_engine`.
 
 Each contact has an event function that is positive while its mode holds: the speed in its sense of slip, the margin of
-static friction while it sticks, the opening (-N) while it is open; a unilateral contact that slips has a second one, its
-normal force. A step is searched on the dense output. Five values of an event function define a quartic; when all its
-Bernstein coefficients are positive the quartic has no root in the interval, otherwise the interval is halved. So two
-crossings inside one step are not missed.
+static friction while it sticks, the opening (-N) while it is open; a unilateral contact that slips has a second one,
+its normal force. A step is searched on the dense output. Five values of an event function define a quartic; when all
+its Bernstein coefficients are positive the quartic has no root in the interval, otherwise the interval is halved. So
+two crossings inside one step are not missed.
 """
 
-# ruff: noqa: F821
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
 import numpy as np
 
-from squealbox.transient._motion import (
-    OPEN,
-    STICK,
-    contact_kinematics,
-    derivative,
-    evaluate_signals,
-    solve,
-)
+from squealbox.transient._motion import OPEN, STICK, contact_kinematics, derivative, evaluate_signals
 from squealbox.transient._runge_kutta import dense_stages, interpolate, take_step
 
 NO_EVENT = 2.0  # any theta above 1
@@ -109,8 +101,8 @@ def value_inside(p, r, t, h, y, mode, s, stage, theta, j, power):
 def start_power(p, h, mode, s, stage, c):
     """(power, first value) of a contact that has just begun to slip, whose speed is zero at the start of the step.
 
-    Its speed over theta tends to its acceleration times h there. After a release without a drop of friction that is zero
-    too, and the speed over theta squared is searched instead.
+    Its speed over theta tends to its acceleration times h there. After a release without a drop of friction that is
+    zero too, and the speed over theta squared is searched instead.
     """
     rate = s.signal[p.signals + c]
     for i in range(p.mk.shape[0]):
@@ -263,152 +255,3 @@ def value_after(p, r, t, h, y, y_new, mode, s, stage, j):
     s.count[2] += evaluations
     event_values(p, t + h, y_new, mode, s, s.phi1)
     return s.phi1[j]
-
-
-def slip_tolerance(p, c, y, s):
-    """Speed below which a contact counts as being at zero together with another: round-off of its own terms."""
-    total = abs(s.signal[c])
-    for i in range(p.mk.shape[0]):
-        total += abs(p.t[c, i] * y[p.mk.shape[0] + i])
-    return 1e-12 * total
-
-
-def apply_event(p, t, y, mode, s, j):
-    """Change modes at an event of function j; False when no consistent set of modes exists."""
-    m = p.contacts
-    derivative(p, t, y, mode, s, s.dy)
-    for c in range(m):
-        s.old[c] = mode[c]
-        s.forced[c] = 0
-        s.at_zero[c] = mode[c] == STICK or (mode[c] != OPEN and abs(s.speed[c]) <= slip_tolerance(p, c, y, s))
-    c = j if j < m else j - m
-    if j >= m:
-        mode[c] = OPEN
-        s.at_zero[c] = 0
-    elif mode[c] == OPEN:
-        s.at_zero[c] = abs(s.speed[c]) <= slip_tolerance(p, c, y, s)
-        mode[c] = 1 if s.speed[c] >= 0.0 else -1
-    elif mode[c] == STICK:
-        s.forced[c] = 1 if s.force[c] > 0.0 else -1
-    else:
-        s.at_zero[c] = 1
-    return settle(p, t, y, mode, s)
-
-
-def start_modes(p, t, y, mode, s):
-    """Modes at the start of a run: open where N < 0 may open, sliding where v is not zero, otherwise decided."""
-    if p.varying:
-        evaluate_signals(p, t, s)
-    contact_kinematics(p, y, s)
-    for c in range(p.contacts):
-        s.forced[c] = 0
-        s.at_zero[c] = 0
-        mode[c] = 1 if s.speed[c] >= 0.0 else -1
-        if p.unilateral[c] and s.normal[c] < 0.0:
-            mode[c] = OPEN
-        elif abs(s.speed[c]) <= slip_tolerance(p, c, y, s):
-            s.at_zero[c] = 1
-        s.old[c] = mode[c]
-    return settle(p, t, y, mode, s)
-
-
-def settle(p, t, y, mode, s):
-    """Solve for the modes of all contacts at zero speed together, then remove the drift of those that stick."""
-    if not decide(p, t, y, mode, s):
-        return False
-    sticking = 0
-    contact_kinematics(p, y, s)
-    for c in range(p.contacts):
-        s.fresh[c] = s.at_zero[c] != 0 and mode[c] != STICK
-        if mode[c] == STICK:
-            s.stuck[sticking] = c
-            sticking += 1
-    return remove_drift(p, y, s, sticking)
-
-
-def remove_drift(p, y, s, sticking):
-    """Bring the sliding velocity of the sticking contacts to zero by impulses along their own d."""
-    for a in range(sticking):
-        s.right[a] = s.speed[s.stuck[a]]
-        for b in range(sticking):
-            s.matrix[a, b] = p.g[s.stuck[a], s.stuck[b]]
-    if sticking > 0 and not solve(s.matrix, s.right, sticking):
-        return False
-    for a in range(sticking):
-        for i in range(p.mk.shape[0]):
-            y[p.mk.shape[0] + i] += p.md[s.stuck[a], i] * s.right[a]
-    return True
-
-
-def decide(p, t, y, mode, s):
-    """Modes of the contacts at zero speed: each sticks with |force| <= static N, or slips with v' in its sense.
-
-    One complementarity problem in all of them, solved by Murty's least-index principal pivoting from all sticking; when
-    static exceeds kinetic friction it may cycle, and then all combinations are tried, sticking first.
-    """
-    for c in range(p.contacts):
-        if s.at_zero[c]:
-            mode[c] = first_guess(p, c, mode, s)
-    for _ in range(20 + 10 * p.contacts * p.contacts):
-        if not derivative(p, t, y, mode, s, s.dy):
-            return False
-        changed = False
-        for c in range(p.contacts):
-            wanted = wanted_mode(p, c, mode, s)
-            if wanted != mode[c]:
-                mode[c] = wanted
-                changed = True
-                break
-        if not changed:
-            return True
-    return enumerate_modes(p, t, y, mode, s)
-
-
-def first_guess(p, c, mode, s):
-    """Sticking, unless a release is forced or the contact is in tension and so can only pass through zero speed."""
-    if s.forced[c] != 0:
-        return s.forced[c]
-    if s.normal[c] > 0.0:
-        return STICK
-    return -mode[c] if mode[c] != STICK else (1 if s.force[c] > 0.0 else -1)
-
-
-def wanted_mode(p, c, mode, s):
-    """The mode contact c would rather have, given the forces and accelerations just computed."""
-    if not s.at_zero[c] or s.forced[c] != 0:
-        return mode[c]
-    if mode[c] == STICK:
-        if abs(s.force[c]) <= p.static[c] * s.normal[c] * (1.0 + 1e-12):
-            return STICK
-        return 1 if s.force[c] > 0.0 else -1
-    rate = s.signal[p.signals + c]
-    size = abs(rate)
-    for i in range(p.mk.shape[0]):
-        rate -= p.t[c, i] * s.dy[p.mk.shape[0] + i]
-        size += abs(p.t[c, i] * s.dy[p.mk.shape[0] + i])
-    if mode[c] * rate >= -1e-12 * size:
-        return mode[c]
-    return STICK if s.normal[c] > 0.0 else -mode[c]
-
-
-def enumerate_modes(p, t, y, mode, s):
-    """Try all 3^k combinations of the k contacts at zero speed, k <= 8; False when none is consistent."""
-    k = 0
-    for c in range(p.contacts):
-        if s.at_zero[c]:
-            s.chosen[k] = c
-            k += 1
-    if k > 8:
-        return False
-    for code in range(3**k):
-        rest = code
-        for a in range(k):
-            mode[s.chosen[a]] = (STICK, 1, -1)[rest % 3]
-            rest //= 3
-        if derivative(p, t, y, mode, s, s.dy):
-            consistent = True
-            for c in range(p.contacts):
-                consistent = consistent and wanted_mode(p, c, mode, s) == mode[c]
-            if consistent:
-                return True
-    return False

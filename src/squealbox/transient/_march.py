@@ -8,18 +8,20 @@ The whole state of a march lies in the scratch arrays, so it can stop after a bu
 
 import numpy as np
 
-from squealbox.transient._events import apply_event, event_values, first_event, remove_drift, start_modes, step_onto
-from squealbox.transient._motion import RAW, STICK, contact_kinematics, derivative, evaluate_signals
+from squealbox.transient._events import event_values, first_event, step_onto
+from squealbox.transient._modes import apply_event, remove_drift, start_modes
+from squealbox.transient._motion import STICK, contact_kinematics, derivative, evaluate_signals
 from squealbox.transient._runge_kutta import dense_stages, error_norm, first_step, interpolate, take_step
 
 # how a call of `march` ended
 COMPLETED, RUNNING, UNDERFLOW, NOT_FINITE, CHATTERING, ZENO, INCONSISTENT, STEP_LIMIT = 0, 1, 2, 3, 4, 5, 6, 7
-# s.clock: time, proposed step, logarithm of the previous error, end of the smooth piece, start of the window in which events are counted,
-# last instant inside the piece
+# s.clock: time, proposed step, logarithm of the previous error, end of the smooth piece, start of the window in which
+# events are counted, last instant inside the piece
 TIME, STEP, LOG_ERROR, PIECE, WINDOW, INSIDE = 0, 1, 2, 3, 4, 5
 # s.count: accepted, rejected, evaluations, events, rows written, next requested time, next break, events in the window,
-# steps whose ends differ in the sign of a sliding velocity among the last ones, 1 after a rejected step
+# steps over a reversal of sliding among the last ones, 1 after a rejected step, steps over a reversal in all
 ACCEPTED, REJECTED, EVALUATIONS, EVENTS, ROWS, NEXT, BREAK, IN_WINDOW, FLIPS, CAUTIOUS = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
+REVERSALS = 10
 
 
 def begin(p, r, s, times, rows, limit):
@@ -27,9 +29,8 @@ def begin(p, r, s, times, rows, limit):
     t0 = s.clock[TIME]
     next_piece(p, s, t0)
     evaluate_signals(p, t0, s)
-    if WITH_EVENTS:
-        if not start_modes(p, t0, s.state, s.mode, s):
-            return INCONSISTENT
+    if WITH_EVENTS and not start_modes(p, t0, s.state, s.mode, s):
+        return INCONSISTENT
     derivative(p, t0, s.state, s.mode, s, s.stage[0])
     if WITH_EVENTS:
         event_values(p, t0, s.state, s.mode, s, s.phi0)
@@ -112,7 +113,8 @@ def accept(p, r, s, times, rows, events, t, h, t_new, error, last):
                 t_new = t
             s.clock[STEP] = max(next_step, s.clock[STEP]) if not last else s.clock[STEP]
             return change_modes(p, s, events, t_new, which)
-    count_flips(p, s)
+    else:
+        count_flips(p, s)
     finish_step(p, r, s, times, rows, t, h, t_new)
     s.clock[STEP] = next_step if not last else max(next_step, s.clock[STEP])
     if WITH_EVENTS:
@@ -235,9 +237,7 @@ def keep_sticking(p, s, t):
 
 
 def count_flips(p, s):
-    """Of plain sgn: how many recent steps ended with a sliding velocity of the other sign."""
-    if p.scheme != RAW:
-        return
+    """How many steps, in all and of late, ended with a sliding velocity of the other sign."""
     flipped = False
     n = p.mk.shape[0]
     for c in range(p.contacts):
@@ -249,5 +249,6 @@ def count_flips(p, s):
         flipped = flipped or (before > 0.0) != (after > 0.0)
     if flipped:
         s.count[FLIPS] += 1
+        s.count[REVERSALS] += 1
     elif s.count[ACCEPTED] % 10 == 0 and s.count[FLIPS] > 0:
         s.count[FLIPS] -= 1

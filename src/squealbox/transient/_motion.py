@@ -1,12 +1,12 @@
 """The equation of motion as plain loops, compiled by `_engine` and run as they stand by the tests.
 
-The leading axis of p.mk is the room for degrees of freedom, a constant to the compiler, so loops over it are unrolled; the
-rows beyond p.size are zero. Loops over contacts run to the count.
+The leading axis of p.mk is the room for degrees of freedom, a constant to the compiler, so loops over it are unrolled;
+the rows beyond p.size are zero. Loops over contacts run to the count.
 
 Every function here takes the records of `packing`: the problem (p) and the scratch (s). The state y holds q, q' and
-then the running energy integrals: work of each contact's friction, of the load, of the skew stiffness, energy taken out
-by damping, and work of taking out an open contact's reaction. `mode[c]` is +1 or -1 while contact c slips in that sense,
-0 while it sticks and 2 while it is open; only the exact scheme uses it.
+then the running energy integrals: work of each contact's friction, of the load, of the skew stiffness, energy taken
+out by damping, and work of taking out an open contact's reaction. `mode[c]` is +1 or -1 while contact c slips in that
+sense, 0 while it sticks and 2 while it is open; only the exact scheme uses it.
 """
 
 # ruff: noqa: F821  (law_mu, law_slope, schedule_value, schedule_rate and WITH_EVENTS are written by _engine)
@@ -76,7 +76,7 @@ def contact_kinematics(p, y, s):
 
 
 def derivative(p, t, y, mode, s, dy):
-    """dy = y' with the contacts in the given modes; leaves their forces in s.force. True when sticking could be solved."""
+    """dy = y' with the contacts in the given modes, their forces in s.force; True when sticking could be solved."""
     n = p.mk.shape[0]
     if p.varying:
         evaluate_signals(p, t, s)

@@ -1,6 +1,5 @@
 """One embedded Runge-Kutta step, its error and its dense output, for any tableau; plain loops compiled by `_engine`."""
 
-# ruff: noqa: F821
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
 import numpy as np

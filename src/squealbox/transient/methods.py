@@ -56,7 +56,7 @@ class Method:
     atol: Any = None
     first_step: float | None = None
     largest_step: float | None = None
-    most_steps: int = 5_000_000
+    most_steps: int = 2_000_000
 
     def __post_init__(self) -> None:
         if self.tableau not in TABLEAUX:
@@ -75,7 +75,7 @@ class Method:
 
 @cache
 def bogacki_shampine() -> Tableau:
-    """Bogacki and Shampine's 3(2) pair, Applied Mathematics Letters 2(4), 321-325 (1989): the method of the 2011 paper."""
+    """Bogacki and Shampine's 3(2) pair, Applied Mathematics Letters 2(4), 321-325 (1989), used in 2011."""
     a = _lower([[], [1 / 2], [0, 3 / 4], [2 / 9, 1 / 3, 4 / 9]])
     p = np.array([[1, -4 / 3, 5 / 9], [0, 1, -2 / 3], [0, 4 / 3, -8 / 9], [0, -1, 1]])
     e = np.array([5 / 72, -1 / 12, -1 / 9, 1 / 8])

@@ -64,8 +64,8 @@ def pack(system: System, method: Method, scheme: int, width: float, every_step: 
 
 
 def _layout(values: dict[str, Any]) -> np.dtype[Any]:
-    rooms = (values["size"], values["contacts"], values["law_coefficients"].shape[1])
-    rooms += (len(values["term_kind"]), values["term_coefficients"].shape[1], len(values["breaks"]))
+    laws, terms = values["law_coefficients"].shape[1], values["term_coefficients"].shape
+    rooms = (values["size"], values["contacts"], laws, *terms, len(values["breaks"]))
     least = (2, 2, 4, 32, 4, 8)
     return problem_type(*(_room(count, low) for count, low in zip(rooms, least, strict=True)))
 
@@ -121,7 +121,7 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
         "stage": (STAGES, width), "phi": (2 * m,), "phi0": (2 * m,), "phi1": (2 * m,), "nodes": (5, 2 * m),
         "stack": (128, 7), "clock": (6,),
     }  # fmt: skip
-    integers = dict.fromkeys(("stuck", "mode", "old", "forced", "at_zero", "fresh", "chosen"), m) | {"count": 10}
+    integers = dict.fromkeys(("stuck", "mode", "old", "forced", "at_zero", "fresh", "chosen"), m) | {"count": 11}
     kinds = tuple((name, "f8", shape) for name, shape in floats.items())
     kinds += tuple((name, "i8", (size,)) for name, size in integers.items())
     state = np.zeros(2 * n)
@@ -194,12 +194,14 @@ def _room(count: int, least: int = 2) -> int:
 
 def _signals(system: System, inverse: Any) -> dict[str, Any]:
     """The varying quantities V, N0, M^-1 f and f, each a sum of weighted schedules: term k belongs to signal i for
-    signal_start[i] <= k < signal_start[i + 1]."""
+    signal_start[i] <= k < signal_start[i + 1].
+    """
     n, contacts = system.size, system.contacts
     load = _load_terms(system)
     lists = [_terms(c.V) for c in contacts] + [_terms(c.N0) for c in contacts]
-    lists += [[((inverse @ weight)[i], part) for weight, part in load] for i in range(n)]
-    lists += [[(weight[i], part) for weight, part in load] for i in range(n)]
+    spare: list[list[Any]] = [[] for _ in range(_room(n) - n)]  # the march counts loads by the room, not by the size
+    lists += [[((inverse @ weight)[i], part) for weight, part in load] for i in range(n)] + spare
+    lists += [[(weight[i], part) for weight, part in load] for i in range(n)] + spare
     terms = [term for group in lists for term in group]
     coefficients = [np.array(part.coefficients(), dtype=float).ravel() for _, part in terms]
     breaks = sorted({t for _, part in terms for t in part.breaks()})

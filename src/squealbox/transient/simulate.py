@@ -7,19 +7,23 @@ import numpy as np
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
-from squealbox.transient import _march, packing
+from squealbox.transient import _march, moreau, packing
 from squealbox.transient._motion import ARCTAN, EXACT, RAW, TANH
 from squealbox.transient.methods import Method
 from squealbox.transient.trajectory import Trajectory
 
 SCHEMES = {"exact": EXACT, "raw": RAW, "tanh": TANH, "smooth": ARCTAN, "arctan": ARCTAN}
+TIME_STEPPING = "time-stepping"
 USUAL_RTOL = {"bogacki-shampine": 1e-6, "dormand-prince": 1e-8, "tsitouras": 1e-8, "dormand-prince-8": 1e-9}
 BUDGET = 50_000  # steps between two looks at the keyboard, about 20 ms
 
 MESSAGES = {
     _march.UNDERFLOW: ("step_underflow", "no step was small enough for the tolerance"),
     _march.NOT_FINITE: ("not_finite", "the motion left the range of finite numbers"),
-    _march.CHATTERING: ("chattering", "sgn(v) switches at almost every step: the contact sticks, which this scheme cannot hold"),
+    _march.CHATTERING: (
+        "chattering",
+        "sgn(v) switches at almost every step: the contact sticks, which this scheme cannot hold",
+    ),
     _march.ZENO: ("zeno", "events accumulate at one instant"),
     _march.INCONSISTENT: ("inconsistent_contact", "no set of stick and slip modes satisfies the contacts together"),
     _march.STEP_LIMIT: ("step_limit", "the largest number of steps was reached"),
@@ -37,6 +41,7 @@ def simulate(
     rtol: float | None = None,
     atol: Any = None,
     width: float = 1e-3,
+    step: float | None = None,
     start_time: float = 0.0,
 ) -> Trajectory:
     """Integrate the equation of motion over `duration` seconds.
@@ -51,9 +56,10 @@ def simulate(
         None for every step taken. They do not influence the steps.
     method : name of a tableau or a `Method` with tolerances
     contact : "exact" (stick, slip and lift-off by events), "raw" (plain sgn), "smooth" = "arctan"
-        ((2/pi) arctan(v/width)) or "tanh" (tanh(v/width))
+        ((2/pi) arctan(v/width)), "tanh" (tanh(v/width)) or "time-stepping" (Moreau, fixed step, for many contacts)
     rtol, atol : override those of `method`
     width : [m/s] of the smoothed sgn
+    step : [s] of time stepping; None takes 1/400 of the shortest period. The other schemes choose their steps.
     start_time : [s], where the schedules begin
 
     Returns
@@ -69,13 +75,15 @@ def simulate(
     """
     system = as_system(design_or_system)
     chosen = _method(method, rtol, atol)
-    if contact not in SCHEMES:
-        raise ParameterError("simulate", "contact", contact, known_names(str(contact), list(SCHEMES)))
+    if contact not in (*SCHEMES, TIME_STEPPING):
+        raise ParameterError("simulate", "contact", contact, known_names(str(contact), [*SCHEMES, TIME_STEPPING]))
     for name, value, low in (("duration", duration, 0.0), ("width", width, 0.0), ("start_time", start_time, -np.inf)):
         if not (np.isfinite(value) and value > low):
             raise ParameterError("simulate", name, value, f"a finite number in ({low:g}, inf)")
     requested = _times(times, start_time, duration)
     q, qd = _start(system, start, start_time)
+    if contact == TIME_STEPPING:
+        return moreau.time_stepping(system, duration, q, qd, start_time, requested, step)
     run = _Run(system, chosen, SCHEMES[contact], width, q, qd, start_time, requested)
     outcome = run.to(start_time + duration, duration)
     settings = {
@@ -88,7 +96,9 @@ def simulate(
 class _Run:
     """One march with its records and output, resumed until it ends."""
 
-    def __init__(self, system: System, method: Method, scheme: int, width: float, q: Any, qd: Any, time: float, times: Any) -> None:
+    def __init__(
+        self, system: System, method: Method, scheme: int, width: float, q: Any, qd: Any, time: float, times: Any
+    ) -> None:
         self.system, self.method = system, method
         self.problem = packing.pack(system, method, scheme, width, times is None)
         self.rule = packing.rule(method.tableau)
@@ -171,10 +181,22 @@ class _Run:
             event_time=events[:, 0],
             event_contact=events[:, 1].astype(np.int64),
             event_mode=events[:, 2].astype(np.int8),
+            caution=_caution(settings, count[_march.REVERSALS]),
             steps=count[_march.ACCEPTED],
             rejected=count[_march.REJECTED],
             evaluations=count[_march.EVALUATIONS],
         )
+
+
+def _caution(settings: dict[str, Any], reversals: int) -> str:
+    """What a reader must know of a run that did not locate the reversals of its contacts."""
+    if reversals == 0 or settings["contact"] == "exact":
+        return ""
+    advice = 'compare with contact="exact"'
+    if settings["contact"] == "raw":
+        return f"plain sgn was stepped over {reversals} times: no tolerance bounds the error there; {advice}"
+    width = settings["width"]
+    return f"sliding reversed {reversals} times inside a smoothing of {width:g} m/s: sticking became creep; {advice}"
 
 
 def _method(method: str | Method, rtol: float | None, atol: Any) -> Method:
@@ -216,7 +238,9 @@ def _start(system: System, start: Any, time: float) -> tuple[Any, Any]:
     try:
         q, qd = (np.array(x, dtype=float).reshape(n) for x in start)
     except (TypeError, ValueError) as error:
-        raise ParameterError("simulate", "start", start, f'(q, qd) with {n} values each, "rest" or "sliding"') from error
+        raise ParameterError(
+            "simulate", "start", start, f'(q, qd) with {n} values each, "rest" or "sliding"'
+        ) from error
     if not (np.all(np.isfinite(q)) and np.all(np.isfinite(qd))):
         raise ParameterError("simulate", "start", start, "finite displacements and velocities")
     return q, qd

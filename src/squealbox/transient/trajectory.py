@@ -58,6 +58,7 @@ class Trajectory(Result):
     event_time: Any = quantity("event", "s", "instants of stick, slip, reversal, lift-off and landing")
     event_contact: Any = quantity("event", "1", "contact of each event")
     event_mode: Any = quantity("event", "1", "mode the contact takes at the event")
+    caution: str = ""
     steps: int = 0
     rejected: int = 0
     evaluations: int = 0
