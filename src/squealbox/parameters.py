@@ -7,7 +7,9 @@ A field may hold an array with leading axes, so one sheet can stand for a whole 
 
 import dataclasses
 import difflib
+import importlib
 import math
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Self, dataclass_transform
 
@@ -166,8 +168,8 @@ class DataSheet:
 
     @classmethod
     def kind(cls) -> str:
-        """The name a file knows this class by, such as ``friction.LinearSlope``."""
-        return f"{cls.__module__.rpartition('.')[2]}.{cls.__name__}"
+        """The name a file knows this class by, its place in the package: ``friction.LinearSlope``."""
+        return f"{cls.__module__.removeprefix('squealbox.')}.{cls.__name__}"
 
     @classmethod
     def field_names(cls) -> list[str]:
@@ -216,10 +218,21 @@ def from_plain(value: Any) -> Any:
         items = {key: from_plain(item) for key, item in value.items() if key != "kind"}
         if "kind" not in value:
             return items
-        if value["kind"] not in _SHEETS:
-            raise ParameterError("file", "kind", value["kind"], known_names(str(value["kind"]), sorted(_SHEETS)))
-        return _SHEETS[value["kind"]](**items)
+        return _sheet_class(value["kind"])(**items)
     return [from_plain(item) for item in value] if isinstance(value, list) else value
+
+
+def _sheet_class(kind: object) -> type[DataSheet]:
+    """The class of that kind; its module is loaded when it was not yet, and no module but this package's is."""
+    name = kind if isinstance(kind, str) else ""
+    if name not in _SHEETS and re.fullmatch(r"[a-z_]+(\.[a-z0-9_]+)*\.[A-Za-z0-9]+", name):
+        try:
+            importlib.import_module(f"squealbox.{name.rpartition('.')[0]}")
+        except ImportError as error:
+            raise ParameterError("file", "kind", kind, known_names(name, sorted(_SHEETS))) from error
+    if name not in _SHEETS:
+        raise ParameterError("file", "kind", kind, known_names(name, sorted(_SHEETS)))
+    return _SHEETS[name]
 
 
 def known_names(given: str, names: list[str]) -> str:

@@ -1,6 +1,9 @@
 """What is written reads back equal: every design, law and schedule; what cannot be written is said."""
 
 import dataclasses
+import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -11,6 +14,7 @@ from squealbox import Coulomb, Cubic, DrumBrake, Hyperbolic, LinearSlope, Parame
 from squealbox.files import BRAKES, NotWritable, OwnBrake, OwnContact, read_design, read_file, write_design
 from squealbox.files.sheets import LAW_NAMES, SCHEDULE_NAMES
 from squealbox.friction import Table
+from squealbox.parameters import from_plain, to_plain
 from squealbox.schedules import Constant
 from squealbox.schedules import Table as TimeTable
 
@@ -87,6 +91,24 @@ def test_any_drum_brake_reads_back_equal(tmp_path_factory, data):
         number = st.floats(low, high, exclude_min=about.low_open, allow_subnormal=False)
         design = design.replace({name: data.draw(number, label=name)})
     assert back(design, tmp_path_factory.mktemp("any")) == design
+
+
+@pytest.mark.parametrize("name", BRAKES)
+def test_every_design_survives_being_made_plain(name):
+    assert from_plain(json.loads(json.dumps(to_plain(example(name))))) == example(name)
+
+
+@pytest.mark.parametrize("kind", ["designs.drum_brake.DrumBrake", "files.own_brake.OwnContact"])
+def test_a_kind_is_found_before_its_module_is_loaded(kind):
+    code = f"from squealbox.parameters import _sheet_class; print(_sheet_class({kind!r}).__name__)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+    assert done.stdout.strip() == kind.rpartition(".")[2]
+
+
+@pytest.mark.parametrize("kind", ["os.path", "..os.X", "no.such.Thing", "stability.maps.StabilityMap", 3, None, ["a"]])
+def test_no_other_kind_is_made(kind):
+    with pytest.raises(ParameterError, match="file.kind"):
+        from_plain({"kind": kind})
 
 
 def test_another_design_does_not_read_back_equal(tmp_path):

@@ -132,7 +132,7 @@ def test_a_bad_file_says_all_its_problems(said, tmp_path):
 
 
 @pytest.mark.parametrize("name", BRAKES)
-def test_init_writes_an_example_that_runs(name, said, tmp_path):
+def test_init_writes_an_example_that_runs(name, said, tmp_path, undrawn):
     code, out, _ = said("init", tmp_path / "new" / "folder", "--brake", name)
     path = tmp_path / "new" / "folder" / "brake.toml"
     assert code == 0
@@ -140,6 +140,7 @@ def test_init_writes_an_example_that_runs(name, said, tmp_path):
     found = read_file(path)
     assert None not in (found.modes, found.onset, found.map, found.simulate)
     assert said("modes", path)[0] == 0
+    assert said("simulate", path, "--out", tmp_path / "out")[0] == 0
 
 
 def test_init_overwrites_nothing(said, brake):
@@ -228,7 +229,7 @@ def test_map(said, brake, tmp_path):
     assert float(table[-1]["growth rate [1/s]"]) == pytest.approx(growth, rel=1e-9)
     unstable = sum(float(row["growth rate [1/s]"]) > 0.0 for row in table)
     assert f"{unstable} of 49 points are unstable" in out
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {"map.png", "map.svg", "map.csv"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"map.nc", "map.png", "map.svg", "map.csv"}
 
 
 def test_map_by_the_file(said, brake):

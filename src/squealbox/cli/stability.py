@@ -11,6 +11,7 @@ from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.stability import ComplexModes, CriticalValue, CriticalValues, complex_modes, critical_values, mechanism
+from squealbox.stability.maps import StabilityMap, stability_map
 
 if TYPE_CHECKING:
     from squealbox.designs import Design
@@ -118,10 +119,12 @@ def map_(
     if out is not None:
         folder(out)
     with Progress(f"{int(across.points)} x {int(up.points)} points"):
-        growth = _growth_rates(found.design, across, up)
-    print(f"{found.design.title}, {file}\n{_map_sentence(found.design, growth, across, up)}")
+        result = stability_map(found.design, {axis.name: axis.values for axis in (across, up)})
+    if not result.outcome.ok:
+        raise ComputationFailed(result.outcome)
+    print(f"{found.design.title}, {file}\n{_map_summary(result, found.design, across, up)}")
     if out is not None:
-        print(written(*_map_files(found, across, up, growth, out)))
+        print(written(*_map_files(result, found, across, up, out)))
 
 
 def _split(span: tuple[str, str, str] | None) -> tuple[str | None, tuple[str, str] | None]:
@@ -166,36 +169,33 @@ def _onset_files(found: "DesignFile", varied: "Axis", crossings: CriticalValues,
     return [crossings.save(out / "onset.nc"), *plots.save(figure, out / "onset"), write_csv(out / "onset.csv", columns)]
 
 
-def _growth_rates(design: "Design", across: "Axis", up: "Axis") -> Any:
-    """The largest growth rate [1/s], shape (y, x); NaN where there is no steady sliding."""
-    x, y = np.meshgrid(across.values, up.values)
-    spectra = complex_modes(design.replace({across.name: x, up.name: y}))
-    if not np.any(spectra.exists):
-        raise ComputationFailed(spectra.outcome)
-    return spectra.largest_growth_rate
-
-
-def _map_sentence(design: "Design", growth: Any, across: "Axis", up: "Axis") -> str:
-    known = np.count_nonzero(np.isfinite(growth))
-    unstable = np.count_nonzero(growth > 0.0)
-    row, column = np.unravel_index(np.nanargmax(growth), growth.shape)
+def _map_summary(found: StabilityMap, design: "Design", across: "Axis", up: "Axis") -> str:
+    """How much of the plane squeals, by which mechanism, and where it is worst, in units one reads."""
+    known, unstable = np.count_nonzero(found.exists), np.count_nonzero(found.unstable)
+    counts = [(name, np.count_nonzero(found.mechanism == code)) for code, name in enumerate(found.mechanism_names)]
+    parts = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in counts[1:] if count)
+    column, row = np.unravel_index(np.nanargmax(found.growth_rate), found.growth_rate.shape)
     (x, x_unit), (y, y_unit) = (readable(design, axis, axis.values) for axis in (across, up))
     place = f"{across.name} = {x[column]:.5g} {x_unit}".rstrip() + f", {up.name} = {y[row]:.5g} {y_unit}".rstrip()
-    text = f"{unstable} of {known} points are unstable ({100.0 * unstable / known:.1f} %)"
-    text += f"; the largest growth rate is {growth[row, column]:+.5g} 1/s at {place}"
-    missing = growth.size - known
-    return f"{text}; {missing} more points have no steady sliding" if missing else text
+    text = f"{unstable} of {known} points are unstable ({100.0 * unstable / known:.1f} %){parts and f': {parts}'}\n"
+    text += f"the largest growth rate is {found.growth_rate[column, row]:+.5g} 1/s "
+    text += f"at {found.frequency[column, row]:.5g} Hz, {place}"
+    missing = found.growth_rate.size - known
+    return f"{text}\n{missing} more points have no steady sliding" if missing else text
 
 
-def _map_files(found: "DesignFile", across: "Axis", up: "Axis", growth: Any, out: Path) -> list[Path]:
+def _map_files(found: StabilityMap, file: "DesignFile", across: "Axis", up: "Axis", out: Path) -> list[Path]:
     from squealbox import plots
 
-    (x, x_unit), (y, y_unit) = (readable(found.design, axis, axis.values) for axis in (across, up))
+    (x, x_unit), (y, y_unit) = (readable(file.design, axis, axis.values) for axis in (across, up))
     labels = {"x_name": across.name, "x_unit": x_unit, "y_name": up.name, "y_unit": y_unit}
-    figure = plots.stability_map(x, y, growth, **labels, title=found.path.name)
+    figure = plots.stability_map(x, y, found.growth_rate.T, **labels, title=file.path.name)
     columns = {
-        f"{across.name} [{x_unit or '-'}]": np.tile(x, len(y)),
-        f"{up.name} [{y_unit or '-'}]": np.repeat(y, len(x)),
-        "growth rate [1/s]": growth.ravel(),
+        f"{across.name} [{x_unit or '-'}]": np.repeat(x, len(y)),
+        f"{up.name} [{y_unit or '-'}]": np.tile(y, len(x)),
+        "growth rate [1/s]": found.growth_rate.ravel(),
+        "frequency [Hz]": found.frequency.ravel(),
+        "growing modes": found.unstable_modes.ravel(),
+        "mechanism": np.array([*found.mechanism_names, "none"])[found.mechanism.ravel()],
     }
-    return [*plots.save(figure, out / "map"), write_csv(out / "map.csv", columns)]
+    return [found.save(out / "map.nc"), *plots.save(figure, out / "map"), write_csv(out / "map.csv", columns)]

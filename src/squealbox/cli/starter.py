@@ -4,6 +4,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from squealbox.cli.running import UsageError
 from squealbox.parameters import known_names
 
@@ -27,7 +29,7 @@ x = {{ parameter = "friction.static", range = [0, 1], points = 101 }}
 y = {{ parameter = "sliding_speed", range = ["0.1 m/s", "2 m/s"], points = 101 }}
 
 [simulate]                      # squealbox simulate {file} --out run
-duration = "50 ms"
+duration = "{duration}"
 start = "rest"                  # rest (loads applied suddenly) or sliding
 points = 5001                   # number of instants kept
 """
@@ -50,7 +52,7 @@ def init(directory: Path, *, brake: str = "drum_brake") -> None:
     if path.exists():
         raise UsageError(f"{path} is there already, and init overwrites nothing")
     directory.mkdir(parents=True, exist_ok=True)
-    write_design(design, path, sections=STUDIES.format(file=path))
+    write_design(design, path, sections=STUDIES.format(file=path, duration=_duration(design)))
     print(f"{path} describes a brake. Next:\n  squealbox modes {path}\n  squealbox simulate {path} --out run")
 
 
@@ -62,6 +64,14 @@ def schema() -> None:
     from squealbox.files import json_schema
 
     print(json.dumps(json_schema(), indent=1))
+
+
+def _duration(design: "Design") -> str:
+    """Long enough for a hundred periods of the slowest mode."""
+    from squealbox.stability import complex_modes
+
+    slowest = float(np.min(complex_modes(design).frequency))
+    return f"{100e3 / slowest:.1g} ms"
 
 
 def _example(brake: str) -> "Design":

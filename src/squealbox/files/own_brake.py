@@ -55,6 +55,8 @@ class OwnBrake(Design):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        object.__setattr__(self, "contacts", tuple(self.contacts))
+        object.__setattr__(self, "names", tuple(self.names))
         size = self._square("M", None)
         for name in ("K", "C"):
             if getattr(self, name) is not None:
