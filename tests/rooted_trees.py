@@ -55,5 +55,5 @@ def worst_condition(a, b, nodes, theta=1.0):
 
 
 def worst_of_estimate(a, e, nodes):
-    """Largest |e . u| over the trees of so many nodes: zero as long as both methods of a pair satisfy the conditions."""
+    """Largest |e . u| over the trees of so many nodes: zero where both methods of a pair satisfy the conditions."""
     return max(abs(e @ stage_products(a, t)) for t in trees(nodes))

@@ -7,8 +7,8 @@ add up over the run's few dozen steps, and the motion neither grows nor decays m
 import numpy as np
 import pytest
 from scipy.linalg import expm
-from small_systems import METHODS, block_on_belt, two_masses
 
+from small_systems import METHODS, block_on_belt, two_masses
 from squealbox import Constant, Contact, Coulomb, LinearSlope, Ramp, Sinusoid, System, simulate
 from squealbox.schedules import Table
 

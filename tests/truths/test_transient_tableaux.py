@@ -6,8 +6,8 @@ about 16 digits, so the same holds for them.
 
 import numpy as np
 import pytest
-from rooted_trees import density, trees, worst_condition, worst_of_estimate
 
+from rooted_trees import density, trees, worst_condition, worst_of_estimate
 from squealbox.transient.methods import TABLEAUX, tableau
 
 NAMES = tuple(TABLEAUX)
