@@ -66,7 +66,7 @@ def pack(system: System, method: Method, scheme: int, width: float, every_step: 
 def _layout(values: dict[str, Any]) -> np.dtype[Any]:
     laws, terms = values["law_coefficients"].shape[1], values["term_coefficients"].shape
     rooms = (values["size"], values["contacts"], laws, *terms, len(values["breaks"]))
-    least = (2, 2, 4, 32, 4, 8)
+    least = (2, 2, 16, 32, 8, 8)  # tables of up to four points share the code of the other laws and schedules
     return problem_type(*(_room(count, low) for count, low in zip(rooms, least, strict=True)))
 
 
