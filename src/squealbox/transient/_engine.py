@@ -45,23 +45,27 @@ entry = inner
 @cache
 def time_stepping_kernel(plain: bool = False) -> Callable[..., Any]:
     """`_time_stepping.time_stepping`, compiled at first use."""
-    parts = _head(inline=True, plain=plain) + _definitions(_time_stepping, events=False)
+    parts = _head(inline=True, plain=plain) + _definitions(_time_stepping, {})
     stepping: Callable[..., Any] = _module("\n\n".join(parts) + "\n").time_stepping
     return stepping
 
 
 @cache
-def kernel(events: bool, plain: bool = False) -> Callable[..., int]:
-    """`_march.march`, compiled for each new room of its records at first use, then read from disk."""
-    march: Callable[..., int] = _module(source(events, plain)).march
+def kernel(events: bool, plain: bool = False, counts: tuple[tuple[str, int], ...] = ()) -> Callable[..., int]:
+    """`_march.march`, compiled for each new room of its records at first use, then read from disk.
+
+    `counts` fixes numbers such as ``("p.contacts", 2)`` in the text, which lets the compiler unroll the loops over them.
+    """
+    march: Callable[..., int] = _module(source(events, plain, counts)).march
     return march
 
 
-def source(events: bool, plain: bool = False) -> str:
+def source(events: bool, plain: bool = False, counts: tuple[tuple[str, int], ...] = ()) -> str:
     """The text of the generated file."""
+    fixed = {"WITH_EVENTS": events, **dict(counts)}
     parts = _head(inline=not events, plain=plain)
     for module in (_motion, _runge_kutta, *((_modes, _events) if events else ()), _march):
-        parts += _definitions(module, events)
+        parts += _definitions(module, fixed)
     return "\n\n".join(parts) + "\n"
 
 
@@ -95,27 +99,32 @@ def _dispatcher(name: str, formulas: list[Callable[..., Any]], argument: str) ->
     return [*parts, "\n".join(lines)]
 
 
-def _definitions(module: ModuleType, events: bool) -> list[str]:
+def _definitions(module: ModuleType, fixed: dict[str, int]) -> list[str]:
     """Constants and functions of a plain module, in order, with their decorators."""
     parts = []
     for node in ast.parse(inspect.getsource(module)).body:
         if isinstance(node, ast.Assign):
             parts.append(ast.unparse(node))
         elif isinstance(node, ast.FunctionDef):
-            chosen = ast.unparse(_Chosen(events).visit(node))
+            chosen = ast.unparse(ast.fix_missing_locations(_Fixed(fixed).visit(node)))
             parts.append(("@entry\n" if node.name in ENTRIES else "@inner\n") + chosen)
     return parts
 
 
-class _Chosen(ast.NodeTransformer):
-    """Keep only the branches of ``if WITH_EVENTS`` that this file is made for, so the others are never compiled."""
+class _Fixed(ast.NodeTransformer):
+    """Put numbers for names, and keep only the branches they leave, so the others are never compiled."""
 
-    def __init__(self, events: bool) -> None:
-        self.events = events
+    def __init__(self, fixed: dict[str, int]) -> None:
+        self.fixed = fixed
 
     def visit_Name(self, node: ast.Name) -> ast.expr:
-        """WITH_EVENTS becomes its value."""
-        return ast.Constant(self.events) if node.id == "WITH_EVENTS" else node
+        """A fixed name becomes its value."""
+        return ast.Constant(self.fixed[node.id]) if node.id in self.fixed else node
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
+        """A fixed attribute such as p.contacts becomes its value."""
+        name = ast.unparse(node)
+        return ast.Constant(self.fixed[name]) if name in self.fixed else node
 
     def visit_BoolOp(self, node: ast.BoolOp) -> ast.expr:
         """``True and x`` is x, ``False and x`` is False."""

@@ -67,7 +67,7 @@ def march(p, r, s, times, rows, events, t_end, largest, least, step_limit, budge
         h = end - t if last else h
         evaluations, solved = take_step(p, r, t, h, s.state, s.mode, s, s.stage, s.state_new)
         s.count[EVALUATIONS] += evaluations
-        error = error_norm(p, r, h, s.state, s.state_new, s, s.stage) if solved else np.inf
+        error = error_norm(p, r, h, s.state, s.state_new, s.stage) if solved else np.inf
         if not error <= 1.0:
             code = reject(r, s, h, error, least)
             if code != RUNNING:

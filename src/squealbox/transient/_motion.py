@@ -62,17 +62,27 @@ def sliding_force(p, c, v, normal, sense):
     return mu * (2.0 / np.pi) * np.arctan(v / p.smoothing) * normal
 
 
+def normal_force(p, c, y, s):
+    """N0 + n . q of contact c."""
+    normal = s.signal[p.contacts + c]
+    for i in range(p.mk.shape[0]):
+        normal += p.n[c, i] * y[i]
+    return normal
+
+
+def sliding_velocity(p, c, y, s):
+    """V - t . q' of contact c."""
+    speed = s.signal[c]
+    for i in range(p.mk.shape[0]):
+        speed -= p.t[c, i] * y[p.mk.shape[0] + i]
+    return speed
+
+
 def contact_kinematics(p, y, s):
     """Normal force and sliding velocity of every contact, into s.normal and s.speed."""
-    n = p.mk.shape[0]
     for c in range(p.contacts):
-        normal = s.signal[p.contacts + c]
-        speed = s.signal[c]
-        for i in range(n):
-            normal += p.n[c, i] * y[i]
-            speed -= p.t[c, i] * y[n + i]
-        s.normal[c] = normal
-        s.speed[c] = speed
+        s.normal[c] = normal_force(p, c, y, s)
+        s.speed[c] = sliding_velocity(p, c, y, s)
 
 
 def derivative(p, t, y, mode, s, dy):
@@ -80,35 +90,50 @@ def derivative(p, t, y, mode, s, dy):
     n = p.mk.shape[0]
     if p.varying:
         evaluate_signals(p, t, s)
-    contact_kinematics(p, y, s)
+    sticking = 0
+    opened = False
+    for c in range(p.contacts):
+        normal = normal_force(p, c, y, s)
+        speed = sliding_velocity(p, c, y, s)
+        force = 0.0
+        is_open = mode[c] == OPEN if WITH_EVENTS else p.unilateral[c] != 0 and normal <= 0.0
+        if is_open:
+            opened = True
+        elif WITH_EVENTS and mode[c] == STICK:
+            s.stuck[sticking] = c
+            sticking += 1
+        else:
+            force = sliding_force(p, c, speed, normal, float(mode[c]))
+        s.normal[c] = normal
+        s.speed[c] = speed
+        s.force[c] = force
     for i in range(n):
         dy[i] = y[n + i]
         a = s.signal[2 * p.contacts + i]
         for j in range(n):
             a -= p.mk[i, j] * y[j] + p.mc[i, j] * y[n + j]
+        for c in range(p.contacts):
+            a += p.md[c, i] * s.force[c]
         dy[n + i] = a
-    sticking = 0
-    opening = 0.0
-    for c in range(p.contacts):
-        force = 0.0
-        is_open = mode[c] == OPEN if WITH_EVENTS else p.unilateral[c] != 0 and s.normal[c] <= 0.0
-        if is_open:
-            for i in range(n):
-                dy[n + i] += p.mw[c, i] * s.normal[c]
-                opening += p.w[c, i] * y[n + i] * s.normal[c]
-        elif WITH_EVENTS and mode[c] == STICK:
-            s.stuck[sticking] = c
-            sticking += 1
-        else:
-            force = sliding_force(p, c, s.speed[c], s.normal[c], float(mode[c]))
-            for i in range(n):
-                dy[n + i] += p.md[c, i] * force
-        s.force[c] = force
+    opening = release_open(p, y, mode, s, dy) if opened else 0.0
     solved = True
     if WITH_EVENTS and sticking > 0:
         solved = hold(p, s, sticking, dy)
     energy_rates(p, y, s, opening, dy)
     return solved
+
+
+def release_open(p, y, mode, s, dy):
+    """Take the reaction of open contacts, held in K and the load, out of the accelerations; returns its power."""
+    n = p.mk.shape[0]
+    power = 0.0
+    for c in range(p.contacts):
+        is_open = mode[c] == OPEN if WITH_EVENTS else p.unilateral[c] != 0 and s.normal[c] <= 0.0
+        if is_open:
+            for i in range(n):
+                dy[n + i] += p.mw[c, i] * s.normal[c]
+                power += p.w[c, i] * y[n + i] * s.normal[c]
+    return power
 
 
 def hold(p, s, sticking, dy):

@@ -24,40 +24,36 @@ def take_step(p, r, t, h, y, mode, s, stage, y_new):
 def combine(weights, count, h, y, stage, out):
     """out = y + h sum_j weights[j] stage[j]."""
     for k in range(out.shape[0]):
-        out[k] = y[k]
-    for j in range(count):
-        w = h * weights[j]
-        for k in range(out.shape[0]):
-            out[k] += w * stage[j, k]
+        total = 0.0
+        for j in range(count):
+            total += weights[j] * stage[j, k]
+        out[k] = y[k] + h * total
 
 
-def error_norm(p, r, h, y, y_new, s, stage):
+def error_norm(p, r, h, y, y_new, stage):
     """Root mean square of the embedded error over atol + rtol max(|y|, |y_new|); at most 1 is accepted.
 
     Dormand and Prince's 8(5,3) blends two estimates as in Hairer, Norsett and Wanner, Solving Ordinary Differential
     Equations I, section II.10; the other pairs have one.
     """
-    first = scaled_error(p, r.e, r.stages + 1, y, y_new, s.y, stage)
+    first = scaled_error(p, r.e, r.stages + 1, y, y_new, stage)
     states = 2.0 * p.size
     if not r.blended:
         return abs(h) * np.sqrt(first / states)
-    second = scaled_error(p, r.e3, r.stages + 1, y, y_new, s.y, stage)
+    second = scaled_error(p, r.e3, r.stages + 1, y, y_new, stage)
     if first == 0.0 and second == 0.0:
         return 0.0
     return abs(h) * first / np.sqrt((first + 0.01 * second) * states)
 
 
-def scaled_error(p, weights, count, y, y_new, error, stage):
+def scaled_error(p, weights, count, y, y_new, stage):
     """Sum of squares of sum_j weights[j] stage[j] over the tolerances of the displacements and velocities."""
-    state = 2 * p.mk.shape[0]
-    for k in range(state):
-        error[k] = 0.0
-    for j in range(count):
-        for k in range(state):
-            error[k] += weights[j] * stage[j, k]
     total = 0.0
-    for k in range(state):
-        total += (error[k] / (p.atol[k] + p.rtol * max(abs(y[k]), abs(y_new[k])))) ** 2
+    for k in range(2 * p.mk.shape[0]):
+        error = 0.0
+        for j in range(count):
+            error += weights[j] * stage[j, k]
+        total += (error / (p.atol[k] + p.rtol * max(abs(y[k]), abs(y_new[k])))) ** 2
     return total
 
 

@@ -115,7 +115,7 @@ class _Run:
         from squealbox.transient._engine import kernel
 
         events = bool(self.problem["scheme"] == EXACT and self.problem["contacts"] > 0)
-        march = kernel(events)
+        march = kernel(events, counts=() if events else self._counts())
         largest = self.method.largest_step or (min(span, self.period / 6.0) if events else span)
         records = (self.problem, self.rule, self.scratch, self.times)
         limits = (end, largest, 1e-14 * self.period, self.method.most_steps, BUDGET)
@@ -128,6 +128,11 @@ class _Run:
             reached = float(self.scratch["clock"][_march.TIME])
             return Outcome("interrupted", f"stopped by the user at t = {reached:g} s", time=reached)
         return self._outcome(code, end)
+
+    def _counts(self) -> tuple[tuple[str, int], ...]:
+        """What the kernel without events is compiled for; the one with events takes longer to compile and stays general."""
+        problem = [(f"p.{name}", int(self.problem[name])) for name in ("size", "contacts")]
+        return (*problem, *((f"r.{name}", int(self.rule[name])) for name in ("stages", "blended")))
 
     def _make_room(self) -> None:
         count = self.scratch["count"]
