@@ -107,6 +107,8 @@ def _results(motion: "Trajectory", title: str, out: Path) -> tuple[str, list[Pat
     from squealbox.transient import verdict
 
     paths = [motion.save(out / "motion.nc"), write_csv(out / "motion.csv", _columns(motion))]
+    if len(motion.t) < 2:
+        return "nothing was reached that could be judged or drawn", paths
     try:
         judged = [verdict(motion, dof=i) for i in range(motion.system.size)]
     except SignalError as error:

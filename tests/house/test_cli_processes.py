@@ -1,0 +1,116 @@
+"""The command line as people run it: a process with files, signals and pipes, and every hostile file from outside."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from faults.hostile_files import HOSTILE
+from house.rooms import PROJECT
+from squealbox.cli import main
+from squealbox.files import read_file
+from squealbox.result import Result
+
+COMMAND = [sys.executable, "-c", "import sys; from squealbox.cli import main; sys.exit(main())"]
+EXAMPLES = sorted((PROJECT / "examples").glob("*.toml"))
+
+
+def run(*words, **keywords) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([*COMMAND, *map(str, words)], capture_output=True, text=True, timeout=120, **keywords)
+
+
+def test_a_whole_session(tmp_path):
+    assert run("init", "brake", cwd=tmp_path).returncode == 0
+    done = run("modes", "brake/brake.toml", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "Steady sliding is UNSTABLE" in done.stdout
+
+
+def test_a_bad_file_from_outside(tmp_path):
+    (tmp_path / "brake.toml").write_text('brake = "drum_brake"\nload = "1 kg"\n')
+    done = run("simulate", "brake.toml", "--out", "out", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "brake.toml:2: load: '1 kg' has the unit kg (a mass), expected N (a force)\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["brake.toml"]
+
+
+def test_a_reader_that_leaves_early_is_no_error():
+    words = " ".join(f"'{word}'" for word in [*COMMAND, "list"])
+    done = subprocess.run(f"{words} | head -1", shell=True, capture_output=True, text=True, timeout=60)
+    assert (done.stdout, done.stderr) == ("designs (brake = ...):\n", "")
+
+
+def test_ctrl_c_keeps_what_was_reached(tmp_path):
+    assert main(["init", str(tmp_path)]) == 0
+    words = [*COMMAND, "simulate", str(tmp_path / "brake.toml"), "--out", str(tmp_path / "out"), "--duration", "1e4 s"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        # The folder is made when the file has been understood; the engine may be compiled for some seconds after that.
+        for _ in range(600):
+            time.sleep(0.1)
+            if (tmp_path / "out").exists():
+                break
+        time.sleep(3.0)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=120)
+    assert process.returncode == 130, err
+    assert "Traceback" not in err
+    if (tmp_path / "out" / "motion.nc").exists():  # otherwise it was stopped before it began to march
+        assert Result.load(tmp_path / "out" / "motion.nc").outcome == "interrupted"
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_an_example_runs(path, capsys):
+    found = read_file(path)
+    assert main(["modes", str(path)]) == 0
+    for section in ("onset", "map"):
+        if getattr(found, section) is not None:
+            assert main([section, str(path)]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_there_are_examples():
+    assert len(EXAMPLES) >= 3
+
+
+def test_every_hostile_file_is_refused_with_two_and_writes_nothing(tmp_path, capsys):
+    path = tmp_path / "brake.toml"
+    for name, (content, _, _, words) in HOSTILE.items():
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        assert main(["simulate", str(path), "--out", str(tmp_path / "out")]) == 2, name
+        out, err = capsys.readouterr()
+        assert out == "", name
+        assert words in err, name
+        assert "Traceback" not in err, name
+        assert "inside the program" not in err, name
+        assert list(tmp_path.iterdir()) == [path], name
+
+
+@pytest.mark.skipif(not hasattr(os, "openpty"), reason="needs a terminal")
+def test_progress_is_shown_on_a_terminal_only():
+    code = (
+        "import time\nfrom squealbox.cli.progress import Progress\n"
+        "with Progress('waiting') as progress:\n    progress('half way', 0.5)\n    time.sleep(2.5)\n"
+    )
+    silent = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert (silent.stdout, silent.stderr) == ("", "")
+    leader, follower = os.openpty()
+    shown = subprocess.run([sys.executable, "-c", code], stderr=follower, stdout=subprocess.PIPE, timeout=60)
+    os.close(follower)
+    text = os.read(leader, 65536).decode()
+    os.close(leader)
+    assert shown.stdout == b""
+    assert "half way" in text
+
+
+def test_a_quick_command_shows_no_progress():
+    leader, follower = os.openpty()
+    code = "from squealbox.cli.progress import Progress\nwith Progress('quick'): pass"
+    subprocess.run([sys.executable, "-c", code], stderr=follower, check=True, timeout=60)
+    os.set_blocking(leader, False)
+    with pytest.raises(BlockingIOError):
+        os.read(leader, 1)
+    os.close(leader)
+    os.close(follower)
