@@ -20,8 +20,9 @@ from .stability import (
     critical_values,
     mechanism,
 )
+from .stability.maps import StabilityMap, stability_map
 from .system import Contact, System, equilibrium, linearise
-from .transient import Method, Trajectory, Verdict, simulate, verdict
+from .transient import Method, Trajectory, Verdict, compare_contact, simulate, verdict
 
 __version__: str
 
@@ -57,10 +58,13 @@ __all__ = [
     "CriticalValues",
     "mechanism",
     "Mechanism",
+    "stability_map",
+    "StabilityMap",
     # what happens in time, and what became of it?
     "simulate",
     "Method",
     "Trajectory",
+    "compare_contact",
     "verdict",
     "Verdict",
     # follow the roots of any residual(x, p)
