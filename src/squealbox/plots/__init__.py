@@ -4,6 +4,7 @@
 larger figure made with `panels`. Matplotlib is loaded at the first drawing.
 """
 
+from squealbox.plots.contact import contact_comparison
 from squealbox.plots.dispatch import plot
 from squealbox.plots.laws import friction_curve
 from squealbox.plots.maps import stability_map
@@ -15,6 +16,7 @@ from squealbox.plots.style import letters, panels, save
 __all__ = [
     "amplitude_course",
     "coalescence",
+    "contact_comparison",
     "energy",
     "friction_curve",
     "letters",
