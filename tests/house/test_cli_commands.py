@@ -327,3 +327,29 @@ def test_a_folder_that_cannot_be_made_is_said(place, said, brake, tmp_path):
     assert (code, out) == (2, "")
     assert err.startswith(f"squealbox onset: {place}: ")
     assert err.count("\n") == 1
+
+
+def test_paper(said, tmp_path, monkeypatch):
+    from squealbox.papers import drum_brake_2011
+
+    def reproduce(out, progress=None):
+        progress("half of it", 0.5)
+        (out / "index.html").write_text("a page")
+        return out / "index.html"
+
+    monkeypatch.setattr(drum_brake_2011, "reproduce", reproduce)
+    code, out, err = said("paper", "drum-brake-2011", "--out", tmp_path / "deep" / "study")
+    assert (code, err) == (0, "")
+    assert out == f"The page is at {tmp_path / 'deep' / 'study' / 'index.html'}\n"
+    monkeypatch.chdir(tmp_path)
+    assert said("paper", "drum-brake-2011")[1] == "The page is at drum-brake-2011/index.html\n"
+
+
+def test_every_paper_listed_can_be_reproduced():
+    import inspect
+    from importlib import import_module
+
+    from squealbox.cli.papers import PAPERS
+
+    for paper in PAPERS.values():
+        assert list(inspect.signature(import_module(paper.module).reproduce).parameters) == ["out", "progress"]
