@@ -1,0 +1,129 @@
+"""Figs. 3 to 9 of the paper for one reading: what was printed there, computed again, raw and exact together."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox import plots
+from squealbox.papers.drum_brake_2011 import steady
+from squealbox.papers.drum_brake_2011.by_eigenvalues import ZONE
+from squealbox.papers.drum_brake_2011.by_transients import STRETCH
+from squealbox.papers.drum_brake_2011.cases import DURATION, Case
+from squealbox.papers.drum_brake_2011.motions import BRAKE, Motion, Run, Studies
+from squealbox.papers.drum_brake_2011.steady import PressureMap
+from squealbox.plots.style import drawing, scaled
+from squealbox.signals import spectrum
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FRICTION_SHOWN = tuple(Run("friction", mu) for mu in (0.10, 0.39, 0.40, 0.50))
+LOAD_SHOWN = tuple(Run("load", load) for load in (5e3, 10e3, 15e3, 25e3))
+UPTO = 4000.0  # Hz, drawn; the paper looks at 0 to 5 kHz
+PUBLISHED_FREQUENCIES = ((0.10, 11240.0), (0.10, 14570.0), (0.40, 13140.0), (0.50, 12190.0))  # mu, rad/s
+LAST = 0.04  # of the run, drawn dark in phase planes: four cycles
+EXACT_LINE: dict[str, Any] = {"color": "#D55E00", "linestyle": (0, (4, 2)), "linewidth": 0.9}
+MARK: dict[str, Any] = {
+    "color": "#CC79A7",
+    "markeredgecolor": "#000000",
+    "markersize": 5.5,
+    "linestyle": "none",
+    "zorder": 4,
+}
+
+
+def time_series(runs: tuple[Run, ...], raw: Studies, exact: Studies) -> "Figure":
+    """Figs. 3 and 6: time series of x as the paper integrated it, the exact envelope on it, and both spectra."""
+    figure, rows = plots.panels(len(runs), 2, width=7.4, height=1.6 * len(runs) + 0.3)
+    for run, (left, right) in zip(runs, rows, strict=True):
+        _history(left, str(run), raw[run], exact[run])
+        _spectra(right, raw[run], exact[run])
+        if run != runs[-1]:
+            left.set_xlabel("")
+            right.set_xlabel("")
+    return figure
+
+
+def phase_planes(runs: tuple[Run, ...], raw: Studies, exact: Studies) -> "Figure":
+    """Figs. 4 and 7: phase planes of x, the last raw cycles black, the last exact cycle dashed."""
+    figure, panels = plots.panels(1, len(runs), width=9.0, height=2.5)
+    for panel, run in zip(panels, runs, strict=True):
+        _phase_plane(panel, str(run), raw[run], exact[run])
+    return figure
+
+
+def coalescence(case: Case) -> "Figure":
+    """Fig. 5: frequencies and growth rates over the friction coefficient, with the published frequencies."""
+    mu = np.linspace(0.0, 0.6, 301)
+    figure, axes = plots.panels(2, 1, width=4.6, height=4.2, sharex=True)
+    plots.coalescence(mu, steady.modes(case, mu=mu), frequency_unit="10³ rad/s", axes=axes)
+    with drawing(axes[0]) as panel:
+        panel.plot(*(np.array(PUBLISHED_FREQUENCIES).T * [[1.0], [1e-3]]), marker="*", label="published", **MARK)
+        panel.legend(loc="best", ncols=3)
+    return figure
+
+
+def braking(raw: Studies, exact: Studies) -> "Figure":
+    """Fig. 8: braking from 0.2 m/s at 4 m/s^2: time series, spectrum and phase plane of x."""
+    figure, (left, middle, right) = plots.panels(1, 3, width=9.0, height=2.7)
+    _history(left, "", raw[BRAKE], exact[BRAKE])
+    low, high = (1e3 * t for t in STRETCH)
+    left.axvspan(low, high, facecolor="#e6e6e6", edgecolor="none", zorder=0)
+    _spectra(middle, raw[BRAKE], exact[BRAKE])
+    _phase_plane(right, "", raw[BRAKE], exact[BRAKE])
+    return figure
+
+
+def pressure_maps(maps: dict[float, PressureMap]) -> "Figure":
+    """Fig. 9: growth over both centres of pressure for some friction coefficients, with the published zone."""
+    from matplotlib.patches import Rectangle
+
+    figure, panels = plots.panels(1, len(maps), width=4.4 * len(maps), height=3.6)
+    for panel, (mu, found) in zip(np.ravel(panels), maps.items(), strict=True):
+        plots.stability_map(
+            found.angles, found.angles, found.growth.T, x_name=r"$\theta_1$", x_unit="deg", y_name=r"$\theta_2$",
+            y_unit="deg", title=f"mu = {mu:.2f}", axes=panel,
+        )  # fmt: skip
+        with drawing(panel):
+            (left, right), (low, high) = ZONE
+            box = Rectangle((left, low), right - left, high - low, fill=False, edgecolor="#0072B2", linewidth=1.4)
+            panel.add_patch(box)
+            panel.annotate("published zone", (left, high), color="#0072B2", fontsize=7, ha="right", va="bottom")
+    return figure
+
+
+def _history(panel: Any, name: str, raw: Motion, exact: Motion) -> None:
+    """The raw series, the course of the exact amplitude on it, and the exact verdict in the corner."""
+    title = f"{name}: raw {raw.words}".removeprefix(": ")
+    course = exact.verdict if exact.completed and not exact.runs_away else None
+    plots.time_history(raw.trajectory, dof="x", verdict=course, name="x", time_unit="ms", title=title, axes=panel)
+    for text in panel.texts:
+        text.set_text(f"exact {text.get_text()}")
+    panel.set_xlim(0.0, 1e3 * DURATION)
+    if not raw.completed:
+        panel.axvline(1e3 * raw.trajectory.t[-1], **EXACT_LINE)
+
+
+def _spectra(panel: Any, raw: Motion, exact: Motion) -> None:
+    """The spectrum of the raw series with its peaks named, the exact one dashed."""
+    lines = spectrum(exact.trajectory, dof="x")
+    shown = lines.frequency <= UPTO
+    factor, unit = scaled("m", lines.amplitude[shown])
+    plots.spectrum(
+        raw.trajectory, dof="x", upto=UPTO, peaks=2, unit=unit, frequency_unit="10³ rad/s", title="raw; exact dashed",
+        axes=panel,
+    )  # fmt: skip
+    panel.plot(1e-3 * lines.angular_frequency[shown], lines.amplitude[shown] / factor, **EXACT_LINE)
+
+
+def _phase_plane(panel: Any, name: str, raw: Motion, exact: Motion) -> None:
+    """The raw phase plane, its last part black; the last period of the exact one dashed."""
+    factor, unit = scaled("m", raw.trajectory.q[:, 0])
+    speed, clock = scaled("m/s", raw.trajectory.qd[:, 0])
+    plots.phase_plane(raw.trajectory, dof="x", part=LAST, unit=unit, speed_unit=clock, title=name, axes=panel)
+    hertz = float(exact.verdict.frequency) if exact.verdict else np.nan
+    period = 1.0 / hertz if np.isfinite(hertz) else LAST * DURATION
+    late = exact.trajectory.t >= exact.trajectory.t[-1] - period
+    x, velocity = exact.trajectory.q[late, 0] / factor, exact.trajectory.qd[late, 0] / speed
+    panel.plot(x, velocity, **EXACT_LINE)
+    panel.set_xlabel(f"x [{unit}]")

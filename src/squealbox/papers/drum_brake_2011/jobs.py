@@ -1,0 +1,127 @@
+"""The paper's computation as independent jobs, run by a few worker processes.
+
+Drawing and eigenvalues hold Python's lock, so threads would not help; and processes that Python's multiprocessing
+starts import the caller's script again, which a user's plain script does not survive. So a worker is
+``python -m squealbox.papers.drum_brake_2011.jobs``: one job a line in, one answer a line out, as JSON.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
+from pathlib import Path
+from queue import SimpleQueue
+from typing import Any
+
+from squealbox.papers.drum_brake_2011.cases import DEFAULT_READING, Case
+
+MOST_WORKERS = 4  # each holds about 300 MB
+Job = dict[str, Any]
+Progress = Callable[[str, float], None]
+Idle = SimpleQueue[subprocess.Popen[str]]
+
+
+class JobFailed(RuntimeError):
+    """A worker could not finish a job; the message names the job."""
+
+
+def run(jobs: list[Job], progress: Progress | None = None) -> list[Any]:
+    """The answers to all jobs, in their order; `progress` hears what was done and the share of jobs done."""
+    answers: list[Any] = [None] * len(jobs)
+    with _workers(min(_processors(), MOST_WORKERS, len(jobs))) as idle, ThreadPoolExecutor(MOST_WORKERS) as threads:
+        waiting = {threads.submit(_ask, idle, job): i for i, job in enumerate(jobs)}
+        try:
+            for done, future in enumerate(as_completed(waiting), start=1):
+                i = waiting[future]
+                answers[i] = future.result()
+                if progress is not None:
+                    progress(jobs[i]["label"], done / len(jobs))
+        except BaseException:
+            for future in waiting:
+                future.cancel()
+            raise
+    return answers
+
+
+def everything(
+    readings: Sequence[str], figures: Path, progress: Progress | None = None
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Study and search of every reading, by reading; the default reading's figures go to `figures` itself."""
+    studies: list[Job] = [
+        {
+            "kind": "study",
+            "reading": reading,
+            "folder": str(figures if reading == DEFAULT_READING else figures / reading),
+            "label": f"study of {reading}",
+        }
+        for reading in readings
+    ]
+    searches: list[Job] = [{"kind": "search", "reading": each, "label": f"search in {each}"} for each in readings]
+    answers = run(studies + searches, progress)
+    count = len(studies)
+    return dict(zip(readings, answers[:count], strict=True)), dict(zip(readings, answers[count:], strict=True))
+
+
+def do(job: Job) -> Any:
+    """One job: the study or the search of one reading."""
+    from squealbox.papers.drum_brake_2011 import reading, search
+
+    if job["kind"] == "study":
+        return reading.study(Case(job["reading"]), Path(job["folder"]))
+    return search.search(job["reading"])
+
+
+def _processors() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextmanager
+def _workers(count: int) -> Iterator[Idle]:
+    """A queue of idle workers; they are stopped at the end, whatever happens. What goes wrong in them is printed."""
+    idle: Idle = SimpleQueue()
+    command = [sys.executable, "-m", "squealbox.papers.drum_brake_2011.jobs"]
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # the matrices are 4 x 4: threads only get in the way
+    pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "encoding": "utf-8"}
+    started = []
+    try:
+        for _ in range(count):
+            started.append(subprocess.Popen(command, env=environment, **pipes))
+            idle.put(started[-1])
+        yield idle
+    finally:
+        for worker in started:
+            worker.kill()
+            worker.communicate()
+
+
+def _ask(idle: Idle, job: Job) -> Any:
+    worker = idle.get()
+    assert worker.stdin is not None
+    assert worker.stdout is not None
+    try:
+        worker.stdin.write(json.dumps(job) + "\n")
+        worker.stdin.flush()
+        answer = worker.stdout.readline()
+    except BrokenPipeError:
+        answer = ""
+    finally:
+        idle.put(worker)
+    if not answer:
+        raise JobFailed(f"{job['label']}: its process ended with code {worker.wait()}; what it wrote stands above")
+    return json.loads(answer)
+
+
+def _work() -> None:
+    """Answer jobs until the input ends. What libraries print goes to standard error, not between the answers."""
+    answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    for line in sys.stdin:
+        answers.write(json.dumps(do(json.loads(line))) + "\n")
+        answers.flush()
+
+
+if __name__ == "__main__":
+    _work()

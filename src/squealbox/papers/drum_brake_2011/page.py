@@ -1,0 +1,201 @@
+"""The one page of the study: the claims first, then what is assumed, the figures of every reading, and the search."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from squealbox.papers.drum_brake_2011 import record, search_results
+from squealbox.papers.drum_brake_2011.cases import ALPHA, DEFAULT_READING, PRINTED, SPEED
+from squealbox.papers.drum_brake_2011.claims import AGREE, DISAGREE, EXACT, RAW, ROADS, UNDECIDED, claims, paper
+from squealbox.papers.drum_brake_2011.motions import METHODS
+from squealbox.report import Cell, Code, Page, Picture, Points, Section, Table, Text, Tiles
+
+READING_MEANS = {
+    "eq1_printed": "Eq. (1) as printed: friction along x proportional to x, along y to y",
+    "eq3": "the linear form of Eq. (3): friction along x proportional to y and the other way round, sliding always +",
+    "eq3_signed": "the same with the sign of each sliding component: shoe 2 turns in x",
+    "componentwise": "friction proportional to the whole spring compression, its sign by component",
+    "consistent": "one contact a shoe, along its tangent, with the load in the contact: what a free-body diagram gives",
+    PRINTED: "the matrices of Eq. (3) with their alpha terms, exactly as printed: linear, so eigenvalues only",
+}
+CAPTIONS = {
+    "fig1": "Fig. 1. The model, angles to scale. Eq. (1) has the loads along (sin, -cos), not along the springs.",
+    "fig2": "Fig. 2. The friction law for three coefficients at rest. The slope is an assumption.",
+    "fig3": "Fig. 3. Time series and spectra over the friction coefficient. Black: raw, as in the paper. Dotted: "
+    "envelope of the exact motion; dashed: its spectrum.",
+    "fig4": "Fig. 4. Phase planes over the friction coefficient. Black: last cycles, raw. Dashed: last cycle, exact.",
+    "fig5": "Fig. 5. Frequencies and growth rates over the friction coefficient. Stars: the published frequencies.",
+    "fig6": "Fig. 6. Time series and spectra over the load. Black: raw; dotted and dashed: exact.",
+    "fig7": "Fig. 7. Phase planes over the load. Black: last cycles, raw. Dashed: last cycle, exact.",
+    "fig8": "Fig. 8. Braking from 0.2 m/s to rest in 0.05 s. Grey: where the paper sees a constant amplitude.",
+    "fig9": "Fig. 9. Growth rate over both centres of pressure in steps of 1 deg. Blue: the published unstable zone.",
+}
+SIGNS = {AGREE: "✓", DISAGREE: "✗", UNDECIDED: "?"}
+
+
+def page(folder: Path, studies: Mapping[str, Any], found: list[record.Record], searched: Mapping[str, Any]) -> Page:
+    """The page of the study whose figures are in `folder`."""
+    default = studies[DEFAULT_READING]
+    lead = (
+        f"Every claim of the paper beside what this program computes, for {len(studies)} readings of its contradictory "
+        "equations. No reading meets all claims, and none was tuned to."
+    )
+    others = [name for name in studies if name != DEFAULT_READING]
+    return Page(
+        title=paper()["title"],
+        lead=f"{paper()['source']}. {lead}",
+        sections=(
+            Section("Claims", _claims(list(studies), found)),
+            Section("What the raw integration changes", _raw_and_exact(studies, found)),
+            Section("Assumptions and contradictions", _assumptions()),
+            Section("Model and friction law", (_picture(folder, "fig1"), _picture(folder, "fig2"))),
+            Section(f"Reading {DEFAULT_READING} (the default)", _reading(DEFAULT_READING, default, found, folder)),
+            Section("The other readings", tuple(
+                Section(name, _reading(name, studies[name], found, folder / name), folded=True) for name in others
+            )),
+            Section("Which choices meet which claims", search_results.blocks(folder, searched)),
+            Section("Run it again", _again()),
+        ),
+        footer=f"Made by {', '.join(f'{name} {version}' for name, version in record.versions().items())}.",
+    )  # fmt: skip
+
+
+def _claims(readings: list[str], found: list[record.Record]) -> tuple[Any, ...]:
+    numbers = record.count(found)
+    tiles = tuple((str(number), f"of {len(found)} {verdict}", verdict) for verdict, number in numbers.items())
+    by = {(each["id"], each["reading"]): each for each in found}
+    rows = []
+    for claim in claims():
+        cells = [_verdict(by[claim.id, reading]) for reading in readings]
+        rows.append((Cell(claim.id, claim.statement), Cell(claim.published), *cells))
+    return (
+        Tiles(tiles),
+        Table(("claim", "published", *readings), tuple(rows), "A claim agrees when all of its parts that count do."),
+        Table(("reading", "what it is", "agree", "disagree", "not decidable", "parts that agree"), tuple(
+            _reading_row(reading, [each for each in found if each["reading"] == reading]) for reading in readings
+        ), "The readings."),
+    )  # fmt: skip
+
+
+def _verdict(each: record.Record) -> Cell:
+    counted = [
+        (part["part"].replace("_", " "), answer)
+        for part in each["parts"] for road, answer in part["roads"].items() if road in each["deciding"]
+    ]  # fmt: skip
+    names = [f"{name}: " if len(counted) > 1 else "" for name, _ in counted]
+    lines = [f"{SIGNS[a['verdict']]} {name}{a['shown']}" for name, (_, a) in zip(names, counted, strict=True)]
+    return Cell(each["verdict"], "\n".join(lines), each["verdict"])
+
+
+def _reading_row(reading: str, found: list[record.Record]) -> tuple[str, ...]:
+    numbers = record.count(found)
+    verdicts = [
+        part["roads"][road]["verdict"]
+        for each in found for part in each["parts"] for road in part["roads"] if road in each["deciding"]
+    ]  # fmt: skip
+    parts = f"{verdicts.count(AGREE)} of {len(verdicts)}"
+    return (reading, READING_MEANS[reading], *(str(number) for number in numbers.values()), parts)
+
+
+def _raw_and_exact(studies: Mapping[str, Any], found: list[record.Record]) -> tuple[Any, ...]:
+    rows = []
+    for each in found:
+        for part in each["parts"]:
+            raw, exact = part["roads"].get(RAW), part["roads"].get(EXACT)
+            if raw and exact and (raw["verdict"] != exact["verdict"] or not raw["trusted"]):
+                what = Cell(f"{each['id']} {part['part']}".replace("_", " "), part["meaning"])
+                rows.append((what, each["reading"], _answer(raw), _answer(exact)))
+    intro = (
+        "Raw runs integrate sgn() as it stands, as in 2011; exact runs locate each stick, slip and reversal. A raw "
+        "run tells something else when its verdict is another one, or the amplitude of what persists is more than 5 % "
+        "off; it is then marked as not to be trusted wherever it is used. The tolerance of 1e-3 damps: raw motions "
+        "that decay do so faster than the equation says."
+    )
+    summary = Table(
+        ("reading", "runs that tell something else", "decay rate, raw over exact", "steps, raw", "steps, exact"),
+        tuple(_raw_summary(reading, study["runs"]) for reading, study in studies.items() if study["runs"]),
+        "Raw beside exact, over all runs of a reading: least to greatest.",
+    )
+    if not rows:
+        return (Text(intro), summary, Text("No verdict on a claim depends on it."))
+    caption = "Parts of claims whose verdict changes, or whose raw value is not to be trusted."
+    return (Text(intro), summary, Table(("part of a claim", "reading", "raw", "exact"), tuple(rows), caption))
+
+
+def _raw_summary(reading: str, runs: list[dict[str, Any]]) -> tuple[str | Cell, ...]:
+    doubtful = [run["run"] for run in runs if run["doubt"]]
+    decaying = [run for run in runs if run[RAW]["verdict"] == run[EXACT]["verdict"] == "decays"]
+    rates = [run[RAW]["growth_rate"] / run[EXACT]["growth_rate"] for run in decaying]
+    steps = [
+        f"{min(counts)} to {max(counts)}" for counts in ([run[road]["steps"] for run in runs] for road in (RAW, EXACT))
+    ]
+    return (
+        reading,
+        Cell(f"{len(doubtful)} of {len(runs)}", ", ".join(doubtful)),
+        f"{min(rates):.2f} to {max(rates):.2f}" if rates else "nothing decays",
+        *steps,
+    )
+
+
+def _answer(answer: Mapping[str, Any] | None) -> Cell:
+    if answer is None:
+        return Cell("")
+    note = answer["note"] if answer["trusted"] else f"not to be trusted: {answer['note']}"
+    return Cell(f"{answer['shown']}: {answer['verdict']}", note, answer["verdict"])
+
+
+def _assumptions() -> tuple[Any, ...]:
+    return (
+        Section("Assumed", (Points(tuple(paper()["assumptions"])),)),
+        Section("Where the paper contradicts itself", (Points(tuple(paper()["contradictions"])),)),
+    )
+
+
+def _reading(name: str, study: Mapping[str, Any], found: list[record.Record], folder: Path) -> tuple[Any, ...]:
+    rows = []
+    for each in (each for each in found if each["reading"] == name):
+        for part in each["parts"]:
+            published = "yes" if part["published"] is True else f"{part['digits']} {part['unit']}".removesuffix(" -")
+            what = Cell(f"{each['id']} {part['part']}".replace("_", " "), part["meaning"])
+            by_road = [_answer(part["roads"].get(road)) for road in ROADS]
+            rows.append((what, Cell(published, f"{part['tolerance']}: {part['reason']}"), *by_road))
+    head = ("part of a claim", "published, tolerance", "eigenvalues", "raw (as in 2011)", "exact")
+    pictures = tuple(_picture(folder, figure) for figure in study["figures"])
+    table = Section("All numbers", (Table(head, tuple(rows)),), folded=True)
+    runs = (Section("All runs, raw beside exact", (_runs(study["runs"]),), folded=True),) if study["runs"] else ()
+    return (Text(f"{READING_MEANS[name][0].upper()}{READING_MEANS[name][1:]}."), table, *runs, *pictures)
+
+
+def _runs(runs: list[dict[str, Any]]) -> Table:
+    rows = tuple(
+        (
+            run["run"],
+            *(Cell(f"{run[road]['verdict']}, {run[road]['amplitude']:.3g} mm") for road in (RAW, EXACT)),
+            Cell(f"{run['distance']:.2g}", run["doubt"], DISAGREE if run["doubt"] else ""),
+            f"{run[RAW]['steps']}",
+            f"{run[EXACT]['steps']}",
+            f"{run[EXACT]['events']}",
+        )
+        for run in runs
+    )
+    head = ("run", "raw", "exact", "distance", "raw steps", "exact steps", "exact events")
+    return Table(
+        head, rows, "Distance: largest |x raw - x exact| over half the range of x. A cycle out of phase gives 2."
+    )
+
+
+def _again() -> tuple[Any, ...]:
+    methods = [f"{road}: {method.tableau}, relative tolerance {method.rtol:g}" for road, method in METHODS.items()]
+    return (
+        Code("squealbox paper drum-brake-2011 --out DIR"),
+        Code('from squealbox.papers.drum_brake_2011 import reproduce\n\nreproduce("DIR")'),
+        Text(
+            "DIR then holds this page, claims.json, claims.md, search.csv, and the figures as PNG and SVG in figures/. "
+            f"Assumed throughout, unless said otherwise: alpha = {ALPHA:g} s/m, V_B = {SPEED:g} m/s. Transients: "
+            f"{'; '.join(methods)}."
+        ),
+    )
+
+
+def _picture(folder: Path, name: str) -> Picture:
+    return Picture(folder / f"{name}.png", CAPTIONS[name])

@@ -1,0 +1,97 @@
+"""Everything about one reading: its findings by every road, its runs raw beside exact, and its figures."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.papers.drum_brake_2011 import by_eigenvalues, by_transients, figures, steady
+from squealbox.papers.drum_brake_2011.cases import FRICTION, Case
+from squealbox.papers.drum_brake_2011.claims import EIGENVALUES, EXACT, RAW, Finding
+from squealbox.papers.drum_brake_2011.motions import RUNS, Motion, Studies, distance, doubt, studies
+from squealbox.plots.style import styled
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+DOTS = 160  # per inch
+MAP_FRICTION = (FRICTION, 0.35)  # the paper compares its map with one measured at 0.35
+Drawer = Callable[[], "Figure"]
+
+
+def study(case: Case, folder: Path) -> dict[str, Any]:
+    """Findings, runs and figure files of one case, as plain data; the figures are written to `folder`."""
+    maps = {mu: steady.pressure_map(case, mu=mu) for mu in MAP_FRICTION}
+    found = {EIGENVALUES: by_eigenvalues.findings(case, maps[FRICTION])}
+    drawn: dict[str, Drawer] = {
+        "fig5": lambda: figures.coalescence(case),
+        "fig9": lambda: figures.pressure_maps(maps),
+    }
+    runs: list[dict[str, Any]] = []
+    if case.has_contacts:
+        raw, exact = studies(case, RAW), studies(case, EXACT)
+        found |= {RAW: by_transients.findings(raw, exact), EXACT: by_transients.findings(exact)}
+        runs = _runs(raw, exact)
+        drawn |= {
+            "fig3": lambda: figures.time_series(figures.FRICTION_SHOWN, raw, exact),
+            "fig4": lambda: figures.phase_planes(figures.FRICTION_SHOWN, raw, exact),
+            "fig6": lambda: figures.time_series(figures.LOAD_SHOWN, raw, exact),
+            "fig7": lambda: figures.phase_planes(figures.LOAD_SHOWN, raw, exact),
+            "fig8": lambda: figures.braking(raw, exact),
+        }
+    else:
+        found |= {RAW: by_transients.without_contacts(), EXACT: by_transients.without_contacts()}
+    for name, draw in sorted(drawn.items()):
+        save(draw(), folder / name)
+    return {"findings": {road: _plain(each) for road, each in found.items()}, "runs": runs, "figures": sorted(drawn)}
+
+
+def save(figure: "Figure", path: Path) -> None:
+    """Write PNG and SVG in the house's look, drawn once each: `Figure.savefig` would draw and lay out twice."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+    from matplotlib.ticker import ScalarFormatter
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with styled():
+        for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)):
+            formatter = axis.get_major_formatter()
+            if isinstance(formatter, ScalarFormatter):
+                formatter.set_useMathText(False)  # each tick would be parsed as a formula
+        layout = figure.get_layout_engine()
+        if layout is not None:
+            layout.execute(figure)
+            figure.set_layout_engine("none")
+        figure.set_dpi(DOTS)
+        FigureCanvasAgg(figure).print_png(path.with_suffix(".png"), metadata={"Software": None})
+        FigureCanvasSVG(figure).print_svg(path.with_suffix(".svg"), metadata={"Date": None, "Creator": None})
+
+
+def _plain(found: dict[str, Finding]) -> dict[str, Any]:
+    return {key: {"value": each.value, "note": each.note, "trusted": each.trusted} for key, each in found.items()}
+
+
+def _runs(raw: Studies, exact: Studies) -> list[dict[str, Any]]:
+    return [
+        {
+            "run": str(run),
+            "raw": _run(raw[run]),
+            "exact": _run(exact[run]),
+            "distance": distance(raw[run], exact[run]),
+            "doubt": doubt(raw[run], exact[run]),
+        }
+        for run in RUNS
+    ]
+
+
+def _run(motion: Motion) -> dict[str, Any]:
+    trajectory = motion.trajectory
+    return {
+        "outcome": str(trajectory.outcome),
+        "verdict": motion.words,
+        "amplitude": 1e3 * motion.amplitude,
+        "growth_rate": float(motion.verdict.growth_rate) if motion.verdict else np.nan,
+        "steps": int(trajectory.steps + trajectory.rejected),
+        "events": len(trajectory.event_time),
+    }

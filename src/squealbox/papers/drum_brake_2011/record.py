@@ -1,0 +1,160 @@
+"""The verdict on every claim in every reading, as plain data, as claims.json and as claims.md."""
+
+import json
+import math
+from collections.abc import Iterator, Mapping
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squealbox.papers.drum_brake_2011.claims import (
+    AGREE,
+    DISAGREE,
+    ROADS,
+    UNDECIDED,
+    Claim,
+    Finding,
+    Part,
+    claims,
+    combined,
+    judge,
+    paper,
+)
+from squealbox.result import provenance
+
+Record = dict[str, Any]
+
+
+def records(studies: Mapping[str, Any]) -> list[Record]:
+    """One record for each claim and reading, from the studies by reading that `reading.study` makes."""
+    return [_record(claim, reading, study["findings"]) for claim in claims() for reading, study in studies.items()]
+
+
+def count(found: list[Record]) -> dict[str, int]:
+    """How many records agree, disagree and cannot be decided."""
+    return {verdict: sum(each["verdict"] == verdict for each in found) for verdict in (AGREE, DISAGREE, UNDECIDED)}
+
+
+def versions() -> dict[str, str]:
+    """Versions of what computed and drew the study."""
+    return {**provenance(), **{name: metadata.version(name) for name in ("numba", "matplotlib")}}
+
+
+def write_json(path: Path, found: list[Record], searched: Mapping[str, Any]) -> Path:
+    """claims.json: the paper, the records, and the search. Values that are not finite are written as null."""
+    about = {
+        "paper": paper(),
+        "versions": versions(),
+        "summary": count(found),
+        "claims": found,
+        "search": searched,
+    }
+    path.write_text(json.dumps(_finite(about), indent=1, allow_nan=False, ensure_ascii=False) + "\n", encoding="utf-8")
+    return path
+
+
+def write_markdown(path: Path, found: list[Record]) -> Path:
+    """claims.md: one table of verdicts, and one table for each claim with all its numbers."""
+    path.write_text("\n".join(_markdown(found)) + "\n", encoding="utf-8")
+    return path
+
+
+def shown(part: Part | Mapping[str, Any], value: float | bool | None) -> str:
+    """A value as a reader reads it, with its unit."""
+    unit = part.unit if isinstance(part, Part) else part["unit"]
+    if value is None:
+        return "no answer"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if not math.isfinite(value):
+        return "none"
+    digits = 3 if unit == "mm" else 4
+    text = f"{value:.0f}" if unit == "rad/s" else np.format_float_positional(value, digits, fractional=False, trim="-")
+    return text if unit == "-" else f"{text} {unit}"
+
+
+def _record(claim: Claim, reading: str, findings: Mapping[str, Any]) -> Record:
+    parts = [_part(part, findings, claim) for part in claim.parts]
+    deciding = [(part, road) for part in parts for road in part["roads"] if road in claim.deciding]
+    by_road = {}
+    for road in ROADS:
+        verdicts = [part["roads"][road]["verdict"] for part in parts if road in part["roads"]]
+        by_road[road] = combined(verdicts) if verdicts else None
+    counted = [part for part, _ in deciding]
+    return {
+        "id": claim.id,
+        "reading": reading,
+        "statement": claim.statement,
+        "published": claim.published,
+        "computed": "; ".join(f"{part['part']} {part['roads'][road]['shown']}" for part, road in deciding),
+        "verdict": combined([part["roads"][road]["verdict"] for part, road in deciding]),
+        "tolerance": "; ".join(f"{part['part']} {part['tolerance']}" for part in counted),
+        "reason": "; ".join(dict.fromkeys(part["reason"] for part in counted)),
+        "deciding": list(claim.deciding),
+        "roads": by_road,
+        "parts": parts,
+    }
+
+
+def _part(part: Part, findings: Mapping[str, Any], claim: Claim) -> Record:
+    roads = {}
+    for road in part.roads:
+        finding = Finding(**findings[road][part.key])
+        roads[road] = {
+            "computed": finding.value,
+            "shown": shown(part, finding.value),
+            "verdict": judge(part, finding),
+            "note": finding.note,
+            "trusted": finding.trusted,
+        }
+    return {
+        "part": part.name,
+        "meaning": part.meaning,
+        "published": part.published if part.published is True else float(part.published),
+        "digits": "" if part.published is True else part.published,
+        "unit": part.unit,
+        "tolerance": part.tolerance,
+        "reason": part.reason,
+        "counts": any(road in claim.deciding for road in part.roads),
+        "roads": roads,
+    }
+
+
+def _markdown(found: list[Record]) -> Iterator[str]:
+    readings = list(dict.fromkeys(each["reading"] for each in found))
+    numbers = count(found)
+    yield f"# {paper()['title']}\n\n{paper()['source']}\n"
+    yield f"{len(found)} verdicts: {', '.join(f'{number} {verdict}' for verdict, number in numbers.items())}.\n"
+    yield f"| claim | published | {' | '.join(readings)} |"
+    yield "|---" * (2 + len(readings)) + "|"
+    by_claim = {claim.id: [each for each in found if each["id"] == claim.id] for claim in claims()}
+    for name, each in by_claim.items():
+        cells = [f"**{record['verdict']}** ({record['computed']})" for record in each]
+        yield f"| {name} | {each[0]['published']} | {' | '.join(cells)} |"
+    for name, each in by_claim.items():
+        yield f"\n## {name}\n\n{each[0]['statement']} Decided by: {' and '.join(each[0]['deciding'])}.\n"
+        yield "| reading | part | published | tolerance | eigenvalues | raw | exact |\n|---|---|---|---|---|---|---|"
+        for record in each:
+            for part in record["parts"]:
+                yield _markdown_row(record["reading"], part)
+
+
+def _markdown_row(reading: str, part: Record) -> str:
+    published = "yes" if part["published"] is True else f"{part['digits']} {part['unit']}".removesuffix(" -")
+    cells = []
+    for road in ROADS:
+        answer = part["roads"].get(road)
+        note = f" ({answer['note']})" if answer and answer["note"] else ""
+        cells.append(f"{answer['verdict']}: {answer['shown']}{note}" if answer else "")
+    tolerance = f"{part['tolerance']}: {part['reason']}"
+    return f"| {reading} | {part['meaning']} | {published} | {tolerance} | {' | '.join(cells)} |"
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,89 @@
+"""What eigenvalues say of steady sliding: onsets, frequency curves and the map of the centres of pressure."""
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from squealbox.papers.drum_brake_2011.cases import FRICTION, MAP_ANGLES, SPEED, Case
+from squealbox.stability import ComplexModes, complex_modes, critical_value
+from squealbox.stability.eigenvalues import spectrum
+from squealbox.system import as_system, linearise
+
+MU_RANGE = (0.01, 1.0)
+LOAD_RANGE = (100.0, 60e3)  # N; the paper goes to 25 kN
+
+
+@dataclass(frozen=True)
+class Onset:
+    """Where a parameter makes sliding unstable: its value and the distance of the two frequencies there [rad/s].
+
+    Without an onset in the range searched `value` is infinite and `separation` is not a number.
+    """
+
+    value: float = np.inf
+    separation: float = np.nan
+
+    @property
+    def exists(self) -> bool:
+        """False when sliding does not become unstable in the range."""
+        return bool(np.isfinite(self.value))
+
+
+@dataclass(frozen=True)
+class PressureMap:
+    """Largest growth rate [1/s] over the centres of pressure: `angles` [deg] of both, `growth` (theta1, theta2)."""
+
+    angles: Any
+    growth: Any
+
+    @property
+    def unstable(self) -> Any:
+        """True where a mode grows, shape (theta1, theta2)."""
+        return self.growth > 0.0
+
+
+@cache
+def onset_in_friction(case: Case) -> Onset:
+    """The friction coefficient at which sliding becomes unstable."""
+    if case.alpha == 0.0 and case.speed != SPEED:
+        return onset_in_friction(case.replace(speed=SPEED))  # without a slope the speed does not enter
+    return _onset(case.design(), "friction.static", MU_RANGE)
+
+
+@cache
+def onset_in_load(case: Case) -> Onset:
+    """The load [N] on both shoes at which sliding becomes unstable."""
+    return _onset(case.design(), "load", LOAD_RANGE)
+
+
+def pressure_map(case: Case, step: float = 1.0, mu: float = FRICTION) -> PressureMap:
+    """Growth over both centres of pressure from 20 to 160 deg in steps of `step` [deg]."""
+    low, high = MAP_ANGLES
+    angles = np.linspace(low, high, round((high - low) / step) + 1)
+    theta1, theta2 = np.meshgrid(np.deg2rad(angles), np.deg2rad(angles), indexing="ij")
+    return PressureMap(angles, growth(case.design(mu=mu, theta1=theta1, theta2=theta2)))
+
+
+def modes(case: Case, **parameters: Any) -> ComplexModes:
+    """Complex modes of steady sliding; parameters as in `Case.design`."""
+    return complex_modes(case.design(**parameters))
+
+
+def frequencies(modes: ComplexModes) -> Any:
+    """The two angular frequencies [rad/s], ascending, shape (..., 2)."""
+    return modes.angular_frequency[..., :2]
+
+
+def growth(design: Any) -> Any:
+    """The largest growth rate [1/s], shape of the design's arrays."""
+    return np.max(spectrum(linearise(as_system(design))).real, axis=-1)
+
+
+def _onset(design: Any, parameter: str, bounds: tuple[float, float]) -> Onset:
+    found = critical_value(design, parameter, bounds)
+    if not found.outcome.ok:
+        return Onset()
+    there = complex_modes(design.replace({parameter: float(found.value)}))
+    return Onset(float(found.value), float(np.diff(frequencies(there))[0]))
