@@ -222,14 +222,25 @@ def from_plain(value: Any) -> Any:
     return [from_plain(item) for item in value] if isinstance(value, list) else value
 
 
-def _sheet_class(kind: object) -> type[DataSheet]:
-    """The class of that kind; its module is loaded when it was not yet, and no module but this package's is."""
-    name = kind if isinstance(kind, str) else ""
-    if name not in _SHEETS and re.fullmatch(r"[a-z_]+(\.[a-z0-9_]+)*\.[A-Za-z0-9]+", name):
+def load_kind(kind: str) -> None:
+    """Load the module of this package that defines `kind`; a name of no such module is left for the caller to refuse.
+
+    A file names a class by its place in the package, and its module may not have been needed yet. Nothing outside the
+    package is ever loaded.
+    """
+    if re.fullmatch(r"[a-z_]+(\.[a-z0-9_]+)*\.[A-Za-z0-9]+", kind):
+        module = f"squealbox.{kind.rpartition('.')[0]}"
         try:
-            importlib.import_module(f"squealbox.{name.rpartition('.')[0]}")
-        except ImportError as error:
-            raise ParameterError("file", "kind", kind, known_names(name, sorted(_SHEETS))) from error
+            importlib.import_module(module)
+        except ModuleNotFoundError as error:
+            if not module.startswith(str(error.name)):
+                raise  # a module of the package that lacks one of its own dependencies
+
+
+def _sheet_class(kind: object) -> type[DataSheet]:
+    name = kind if isinstance(kind, str) else ""
+    if name not in _SHEETS:
+        load_kind(name)
     if name not in _SHEETS:
         raise ParameterError("file", "kind", kind, known_names(name, sorted(_SHEETS)))
     return _SHEETS[name]

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from squealbox.parameters import from_plain, to_plain
+from squealbox.parameters import from_plain, load_kind, to_plain
 
 if TYPE_CHECKING:
     import xarray
@@ -90,7 +90,12 @@ class Result:
 
     def __init_subclass__(cls, **keywords: Any) -> None:
         super().__init_subclass__(**keywords)
-        Result.kinds[cls.__name__] = cls
+        Result.kinds[cls.kind_name()] = cls
+
+    @classmethod
+    def kind_name(cls) -> str:
+        """The name a file knows this class by, its place in the package: ``transient.trajectory.Trajectory``."""
+        return f"{cls.__module__.removeprefix('squealbox.')}.{cls.__name__}"
 
     def to_dataset(self) -> "xarray.Dataset":
         """The arrays as a labelled `xarray.Dataset`; units, inputs, settings, outcome and versions are attributes."""
@@ -102,7 +107,7 @@ class Result:
             about = {"units": field.metadata["unit"], "long_name": field.metadata["meaning"]}
             variables[field.name] = (_dims(field.metadata["dims"], array.ndim), array, about)
         attributes = {name: json.dumps(to_plain(value)) for name, value in self._plain().items()}
-        return xarray.Dataset(variables, attrs={"kind": type(self).__name__, **attributes})
+        return xarray.Dataset(variables, attrs={"kind": self.kind_name(), **attributes})
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the result to a NetCDF file, whole or not at all; returns the path."""
@@ -111,6 +116,7 @@ class Result:
         os.close(handle)
         try:
             self.to_dataset().to_netcdf(temporary, engine="h5netcdf", invalid_netcdf=True)
+            os.chmod(temporary, 0o644)  # a temporary file is readable by its owner alone
             os.replace(temporary, path)
         finally:
             Path(temporary).unlink(missing_ok=True)
@@ -119,9 +125,12 @@ class Result:
     @classmethod
     def from_dataset(cls, dataset: "xarray.Dataset") -> Self:
         """The inverse of `to_dataset`."""
-        kind = Result.kinds.get(dataset.attrs.get("kind", ""))
+        name = str(dataset.attrs.get("kind", "no result"))
+        if name not in Result.kinds:
+            load_kind(name)
+        kind = Result.kinds.get(name)
         if kind is None or not issubclass(kind, cls):
-            raise ResultFileError(f"holds {dataset.attrs.get('kind', 'no result')!r}, not a {cls.__name__}")
+            raise ResultFileError(f"holds {name!r}, not a {cls.__name__}")
         plain = {name: json.loads(value) for name, value in dataset.attrs.items() if name != "kind"}
         plain["outcome"] = Outcome.from_plain(plain["outcome"])
         plain["inputs"] = from_plain(plain["inputs"])

@@ -114,3 +114,14 @@ def test_a_quick_command_shows_no_progress():
         os.read(leader, 1)
     os.close(leader)
     os.close(follower)
+
+
+LOAD = "import sys; from squealbox import Result; print(type(Result.load(sys.argv[1])).__name__)"
+
+
+def test_what_a_command_saved_is_read_in_a_new_session(tmp_path):
+    assert main(["init", str(tmp_path)]) == 0
+    assert main(["modes", str(tmp_path / "brake.toml"), "--out", str(tmp_path)]) == 0
+    words = [sys.executable, "-c", LOAD, str(tmp_path / "modes.nc")]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=60)
+    assert (done.stdout, done.stderr) == ("ComplexModes\n", "")
