@@ -56,7 +56,7 @@ def sliding_force(p, c, v, normal, sense):
         return sense * sliding_coefficient(p, c, sense * v) * normal
     mu = law_mu(p.law_kind[c], abs(v), p.law_coefficients[c])
     if p.scheme == RAW:
-        return mu * normal * (float(v > 0.0) - float(v < 0.0))
+        return mu * normal * (1.0 * (v > 0.0) - 1.0 * (v < 0.0))
     if p.scheme == TANH:
         return mu * np.tanh(v / p.smoothing) * normal
     return mu * (2.0 / np.pi) * np.arctan(v / p.smoothing) * normal
