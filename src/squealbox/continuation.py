@@ -110,13 +110,15 @@ class Follower:
 
     def _first(self) -> PathPoint | None:
         fixed_p = np.append(np.zeros(self.start.size - 1), 1.0)
-        y, iterations, size = self._correct(self.start, fixed_p, 4 * self.control.newton_steps)
+        given = self.tangent is not None
+        normal = np.asarray(self.tangent, dtype=float) if given else fixed_p
+        y, iterations, size = self._correct(self.start, normal, 4 * self.control.newton_steps)
         if y is None:
             message = f"Newton's method found no root at the start, p = {self.start[-1] * self.scale[-1]:.10g}"
             self.outcome = Outcome("no_start", message, residual=size)
             return None
-        tangent, sign = self._tangent(y, fixed_p if self.tangent is None else np.asarray(self.tangent, dtype=float))
-        if self.tangent is None:
+        tangent, sign = self._tangent(y, normal)
+        if not given:
             along = tangent[-1] if tangent[-1] != 0.0 else 1.0
             tangent = tangent * np.sign(along) * np.sign(self.direction)
             sign = self._sign(y, tangent)
@@ -237,7 +239,7 @@ def follow(residual: Residual, x: Any, p: float, **options: Any) -> Follower:
     Parameters
     ----------
     residual : function of x (n,) and p that returns (n,)
-    x, p : start, corrected at fixed p before the walk
+    x, p : start, corrected before the walk: at fixed p, or across `tangent` when that is given
     jacobian : function of x and p that returns (d residual/dx (n, n), d residual/dp (n,)); default central differences
     control : :class:`StepControl`
     direction : +1 walks towards larger p first, -1 towards smaller

@@ -12,6 +12,7 @@ from squealbox.stability.family import Family, entry
 from squealbox.stability.mechanism import Mechanism, mechanism_at
 from squealbox.stability.scan import Scan, merging, scan
 
+ASIDE = 1e-13  # share of the range by which a singular point is stepped aside
 BESIDE = 1e-6  # share of the range by which the mechanism of a neutral system is looked at beyond its onset
 
 
@@ -168,6 +169,8 @@ def _crossing(found: Scan, i: int, k: int, width: float) -> dict[str, Any]:
     value = found.root(i, k)
     rising = bool(found.functions[i + 1, k] > 0.0)
     steady = found.family.at(np.array([value]))
+    if not steady.equilibrium.exists[0]:  # a divergence exactly: K_eff is singular at the root itself
+        steady = found.family.at(np.array([value + ASIDE * width]))
     modes = modes_of(steady)
     half = modes.eigenvalues.shape[-1] // 2
     if found.neutral:

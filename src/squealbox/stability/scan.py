@@ -59,7 +59,7 @@ def scan(family: Family, low: float, high: float, points: int, refinements: int 
     about = family.at(values)
     eigenvalues = spectrum(about)
     known = np.isfinite(eigenvalues[..., 0])
-    neutral = bool(np.all(_neutral(about)[known])) if np.any(known) else False
+    neutral = bool(np.all(is_neutral(about)[known])) if np.any(known) else False
     undamped = 0 if neutral else _undamped(eigenvalues[known])
     found = Scan(family, values, _functions(about, neutral, undamped), neutral, undamped)
     for _ in range(refinements):
@@ -104,7 +104,20 @@ def _squares(eigenvalues: Any) -> tuple[Any, int]:
     return squares / np.where(scale > 0.0, scale, 1.0), half
 
 
+def on_divergence(about: Linearised) -> Any:
+    """True where K_eff is singular: steady sliding is not unique there, but an eigenvalue is known to be zero."""
+    state = about.equilibrium
+    if state.outcome != "singular":
+        return np.zeros(np.shape(state.exists), dtype=bool)
+    return ~np.asarray(state.exists) & np.all(state.sliding_speed != 0.0, axis=-1)
+
+
 def _functions(about: Linearised, neutral: bool, undamped: int) -> Any:
+    functions = _smooth_functions(about, neutral, undamped)
+    return np.where(on_divergence(about)[..., None], 0.0, functions)
+
+
+def _smooth_functions(about: Linearised, neutral: bool, undamped: int) -> Any:
     eigenvalues = spectrum(about)
     if neutral:
         return coalescence(eigenvalues)[..., None]
@@ -115,7 +128,7 @@ def _functions(about: Linearised, neutral: bool, undamped: int) -> Any:
     return -np.sort(-growth, axis=-1)
 
 
-def _neutral(about: Linearised) -> Any:
+def is_neutral(about: Linearised) -> Any:
     """True where the spectrum is symmetric in lambda -> -lambda: no damping at all, or purely gyroscopic coupling."""
     size = np.max(np.abs(about.K), axis=(-1, -2))
     scale = np.sqrt(size * np.max(np.abs(about.M), axis=(-1, -2)))

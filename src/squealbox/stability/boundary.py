@@ -1,0 +1,360 @@
+"""The boundary of stability over two parameters as curves, traced by continuation.
+
+Cells in which it may run are found first (`cells`), thin tongues and small islands included. From a crossed edge the
+curve is followed by pseudo-arclength steps (`continuation`) on the detector that vanishes there, a smooth function where
+the growth rate has kinks and flats. A step that leaves the boundary has met a corner, where another mode takes over; the
+curve is picked up again on a small circle about it. Every crossed edge that no curve passes starts the next one, so no
+component is lost. At the end all points are polished onto zero growth.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.continuation import StepControl, follow
+from squealbox.result import Outcome, Result, quantity
+from squealbox.stability.cells import Crossing, Samples, crossings
+from squealbox.stability.eigenvalues import spectrum
+from squealbox.stability.family import Family, Steady
+from squealbox.stability.scan import coalescence, is_neutral, on_divergence
+
+STEPS = tuple(  # ever shorter towards a corner
+    StepControl(first=longest / 10.0, smallest=2e-6, largest=longest, tolerance=1e-8, largest_turn=0.2, most_points=60)
+    for longest in (4e-2, 2e-3, 1e-4)
+)
+CIRCLE = 2e-5  # radius on which a curve is picked up again after a corner
+SHIFT = 1e-6  # of the central differences for the gradient, in shares of the axes
+SHIFTS = SHIFT * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+HALVINGS = 24  # of a crossed edge, down to 1e-9 of the axes
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Boundary(Result):
+    """Curves of zero growth over two parameters, as :func:`stability_boundary` returns them.
+
+    Points of one curve follow each other, with the unstable side on the left (first parameter to the right, second up).
+    """
+
+    x: Any = quantity("point", "", "first parameter, in its own unit")
+    y: Any = quantity("point", "", "second parameter, in its own unit")
+    curve: Any = quantity("point", "1", "number of the curve the point is on")
+    growth_rate: Any = quantity("point", "1/s", "largest growth rate at the point: what is left of zero")
+    frequency: Any = quantity("point", "Hz", "frequency of the mode on the boundary")
+    parameters: tuple[str, ...] = ()
+
+    @property
+    def curves(self) -> list[Any]:
+        """Each curve as an array (points, 2) of the two parameters."""
+        points = np.column_stack([self.x, self.y])
+        return [points[self.curve == i] for i in range(int(np.max(self.curve, initial=-1)) + 1)]
+
+    def closed(self, curve: int) -> bool:
+        """True when that curve ends where it begins: an island."""
+        points = self.curves[curve]
+        return bool(len(points) > 2 and np.array_equal(points[0], points[-1]))
+
+    def summary(self) -> str:
+        """The curves in words: how many points, open or closed, and where they run."""
+        if len(self.x) == 0:
+            return f"{self.outcome}: {self.outcome.message}"
+        lines = []
+        for i, points in enumerate(self.curves):
+            low, high = points.min(axis=0), points.max(axis=0)
+            spans = ", ".join(
+                f"{name} {a:.6g} to {b:.6g}" for name, a, b in zip(self.parameters, low, high, strict=True)
+            )
+            lines.append(f"curve {i + 1} ({'closed' if self.closed(i) else 'open'}, {len(points)} points): {spans}")
+        return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        return self.summary()
+
+
+def stability_boundary(
+    design: Any, bounds: dict[str, tuple[float, float]], *, cells: int = 32, time: float = 0.0
+) -> Boundary:
+    """Curves on which stability changes, over two parameters.
+
+    Parameters
+    ----------
+    design : a design, or a function of two floats that returns a design or a system
+    bounds : name to (low, high) for two parameters, such as ``{"theta1": (0.3, 2.8), "theta2": (0.3, 2.8)}``
+    cells : cells along each axis at the start; each is halved up to 7 times where something may hide in it
+    time : instant of schedules [s]
+
+    Returns a `Boundary`. The outcome is "no_boundary" when the whole rectangle is stable or unstable. Raises
+    `ValueError` unless `bounds` names two parameters with low < high.
+    """
+    rectangle = _Rectangle(design, bounds, time)
+    edges = crossings(rectangle.sample, cells)
+    curves: list[Any] = []
+    tangents: list[Any] = []
+    for start, gradient in rectangle.starts(edges):
+        if not _passed(start, gradient, curves, tangents):
+            points, directions = _traced(rectangle, start, gradient)
+            curves.append(points)
+            tangents.append(directions)
+    return rectangle.result(curves, {"cells": cells})
+
+
+class _Rectangle:
+    """Two parameters scaled to the unit square, and the functions on it."""
+
+    def __init__(self, design: Any, bounds: dict[str, tuple[float, float]], time: float) -> None:
+        if len(bounds) != 2:
+            raise ValueError(f"bounds names {list(bounds)}: expected two parameters")
+        for name, (low, high) in bounds.items():
+            if not (np.isfinite(low) and np.isfinite(high) and low < high):
+                raise ValueError(f"bounds[{name!r}] = {(low, high)}: expected two finite numbers with low < high")
+        self.family = Family(design, list(bounds), time)
+        self.low = np.array([float(low) for low, _ in bounds.values()])
+        self.width = np.array([float(high) for _, high in bounds.values()]) - self.low
+        middle = self.family.at(*(self.low + 0.5 * self.width)[:, None])
+        self.neutral = bool(is_neutral(middle)[0])
+        size = np.nanmax(np.abs(spectrum(middle)), initial=0.0)
+        self.reference = float(size) if size > 0.0 else 1.0
+        self.scale = 1.0
+
+    def level(self, points: Any) -> Any:
+        """Positive where a mode grows, at points (k, 2) of the unit square; outside, the value on its edge."""
+        u = np.clip(np.asarray(points), 0.0, 1.0)
+        return self._level(self.family.at(*(self.low + self.width * u).T))[0] / self.scale
+
+    def _level(self, about: Steady) -> tuple[Any, Any]:
+        eigenvalues = spectrum(about)
+        level = coalescence(eigenvalues) if self.neutral else np.max(eigenvalues.real, axis=-1)
+        return np.where(on_divergence(about), 0.0, level), eigenvalues
+
+    def sample(self, u: Any, v: Any) -> Samples:
+        """Level and detectors at points (u, v) of the unit square."""
+        about = self.family.at(self.low[0] + self.width[0] * u, self.low[1] + self.width[1] * v)
+        level, eigenvalues = self._level(about)
+        if np.any(np.isfinite(level)):
+            self.scale = max(self.scale, float(np.nanmedian(np.abs(level)))) if not self.neutral else 1.0
+        return Samples(level, self._detectors(eigenvalues))
+
+    def _detectors(self, eigenvalues: Any) -> Any:
+        """Smooth functions of the parameters (2, points) that vanish on the boundary; see the module `cells`."""
+        scaled = eigenvalues / self.reference
+        values = scaled[..., : scaled.shape[-1] // 2] ** 2 if self.neutral else scaled
+        product = np.ones(values.shape[:-1], dtype=complex)
+        for i in range(values.shape[-1]):
+            for j in range(i):
+                a, b = values[..., i], values[..., j]
+                product = product * ((a - b) ** 2 if self.neutral else a + b)
+        return np.stack([product.real, np.prod(scaled, axis=-1).real])
+
+    def gradient(self, points: Any) -> Any:
+        """Gradient of the level at points (k, 2), by central differences in one call."""
+        values = self.level((points[:, None, :] + SHIFTS).reshape(-1, 2)).reshape(-1, 4)
+        return np.stack([values[:, 0] - values[:, 1], values[:, 2] - values[:, 3]], axis=-1) / (2.0 * SHIFT)
+
+    def stencil(self, point: Any) -> tuple[Any, Any, bool]:
+        """Detectors (k,) at one point, their gradients (k, 2), and whether stability changes about it, in one call."""
+        points = np.clip(point + np.vstack([np.zeros((1, 2)), SHIFTS]), 0.0, 1.0)
+        level, eigenvalues = self._level(self.family.at(*(self.low + self.width * points).T))
+        values = self._detectors(eigenvalues)
+        gradients = np.column_stack([values[:, 1] - values[:, 2], values[:, 3] - values[:, 4]]) / (2.0 * SHIFT)
+        centre = values[:, 0] if np.all(np.isfinite(values[:, 0])) else np.mean(values[:, 1:], axis=1)  # K_eff singular
+        return centre, gradients, bool(np.any(level > 0.0) and np.any(level <= 0.0))
+
+    def starts(self, edges: list[Crossing]) -> list[tuple[Any, Any]]:
+        """The point of the boundary on each crossed edge, by halving all edges together, with the gradient there.
+
+        Coarse edges and those inside the square come first. An edge on which something is unknown is left out.
+        """
+        if not edges:
+            return []
+        stable, unstable = (np.array([getattr(edge, name) for edge in edges]) for name in ("stable", "unstable"))
+        for _ in range(HALVINGS):
+            middle = 0.5 * (stable + unstable)
+            growing = (self.level(middle) > 0.0)[:, None]
+            stable, unstable = np.where(growing, stable, middle), np.where(growing, middle, unstable)
+        points = 0.5 * (stable + unstable)
+        gradients = self.gradient(points)
+        known = np.all(np.isfinite(gradients), axis=-1) & np.any(gradients != 0.0, axis=-1)
+        border = np.min(np.minimum(points, 1.0 - points), axis=-1) <= SHIFT
+        order = np.lexsort((-np.array([edge.size for edge in edges]), border))
+        return [(points[i], gradients[i]) for i in order if known[i]]
+
+    def polished(self, points: Any) -> Any:
+        """Points moved along the gradient onto the boundary as far as round-off lets them."""
+        best, size = points.copy(), np.abs(self.level(points))
+        for _ in range(8):
+            gradient = self.gradient(best)
+            square = np.sum(gradient**2, axis=-1)
+            with np.errstate(all="ignore"):
+                trial = best - (self.level(best) / square)[:, None] * gradient
+            trial = np.clip(np.where(np.isfinite(trial), trial, best), 0.0, 1.0)
+            left = np.abs(self.level(trial))
+            better = (left < size) & (np.max(np.abs(trial - best), axis=-1) < 1e-3)
+            best[better], size[better] = trial[better], left[better]
+        return best
+
+    def result(self, curves: list[Any], settings: dict[str, Any]) -> Boundary:
+        number = np.concatenate([np.full(len(points), i) for i, points in enumerate(curves)] or [np.array([], int)])
+        points = np.concatenate(curves or [np.zeros((0, 2))])
+        if len(points):
+            points = self.polished(points)
+            for i in range(len(curves)):  # a closed curve stays closed
+                own = np.nonzero(number == i)[0]
+                if np.array_equal(curves[i][0], curves[i][-1]):
+                    points[own[-1]] = points[own[0]]
+        values = self.low + self.width * points
+        about = self.family.at(*values.T) if len(points) else None
+        eigenvalues = np.zeros((0, 2), complex) if about is None else spectrum(about)
+        if about is not None:
+            eigenvalues[on_divergence(about)] = 0.0
+        half = max(eigenvalues.shape[-1] // 2, 1)
+        place = np.argmax(eigenvalues[:, :half].real, axis=-1)[:, None]
+        worst = np.take_along_axis(eigenvalues, place, axis=-1)[:, 0]
+        outcome = Outcome() if len(points) else Outcome("no_boundary", "stability does not change in the rectangle")
+        spans = zip(self.family.parameters, self.low, self.width, strict=True)
+        bounds = {name: [float(low), float(low + width)] for name, low, width in spans}
+        return Boundary(
+            x=values[:, 0],
+            y=values[:, 1],
+            curve=number,
+            growth_rate=worst.real,
+            frequency=np.abs(worst.imag) / (2.0 * np.pi),
+            parameters=self.family.parameters,
+            inputs=self.family.inputs,
+            settings={**settings, "bounds": bounds},
+            outcome=outcome,
+        )
+
+
+def _traced(rectangle: _Rectangle, start: Any, gradient: Any) -> tuple[Any, Any]:
+    """The whole curve through `start`, with tangents; unstable on the left; first point repeated when closed."""
+    heading = np.array([gradient[1], -gradient[0]]) / np.linalg.norm(gradient)
+    points, tangents, closed = _walk(rectangle, start, heading, 1.0)
+    if not closed:
+        back, back_tangents, _ = _walk(rectangle, start, -heading, -1.0)
+        points = back[:0:-1] + points
+        tangents = [-t for t in back_tangents[:0:-1]] + tangents
+    return np.clip(np.array(points), 0.0, 1.0), np.array(tangents)
+
+
+def _walk(rectangle: _Rectangle, start: Any, heading: Any, side: float) -> tuple[list[Any], list[Any], bool]:
+    """Points and tangents from `start` along `heading` until the curve closes, ends, or leaves the square.
+
+    `side` is 1 with the unstable side on the left, -1 on the right.
+    """
+    points, tangents = [np.array(start)], [np.array(heading)]
+    point, along = np.array(start), np.array(heading)
+    for _ in range(200):  # corners
+        corner = len(points)
+        for here, tangent in _smooth_part(rectangle, point, along):
+            if np.any((here < 0.0) | (here > 1.0)):
+                return [*points, np.clip(here, 0.0, 1.0)], [*tangents, tangent], False
+            if _between(points[-1], here, points[0], tangents[0], tangent) and len(points) > 3:
+                return [*points, points[0]], [*tangents, tangents[0]], True
+            points.append(here)
+            tangents.append(tangent)
+        picked = _around_corner(rectangle, points[-1], tangents[-1], side)
+        if picked is None:
+            return points, tangents, False
+        if np.linalg.norm(picked[0] - points[0]) < 2.0 * CIRCLE and len(points) > 3:
+            return [*points, points[0]], [*tangents, tangents[0]], True
+        stuck = len(points) == corner
+        point, along = picked
+        points.append(point)
+        tangents.append(along)
+        if stuck and np.any((point <= 0.0) | (point >= 1.0)):
+            return points, tangents, False
+    return points, tangents, False
+
+
+def _smooth_part(rectangle: _Rectangle, point: Any, along: Any) -> Iterator[tuple[Any, Any]]:
+    """Points after `point` as far as one detector leads along the boundary, with shorter steps towards the corner."""
+    values, gradients, _ = rectangle.stencil(point)
+    which = int(np.argmin(np.abs(values) / (np.linalg.norm(gradients, axis=-1) + 1e-300)))
+    last: dict[tuple[float, float], Any] = {}
+
+    def at(x: Any, p: float) -> Any:
+        key = (float(x[0]), float(p))
+        if key not in last:
+            last.clear()
+            last[key] = rectangle.stencil(np.array(key))
+        return last[key]
+
+    size = float(np.linalg.norm(gradients[which])) + 1e-300
+    pace = 0
+    while pace < len(STEPS):
+        control = STEPS[pace]
+        path = follow(
+            lambda x, p: at(x, p)[0][which] / size,
+            point[:1],
+            point[1],
+            jacobian=lambda x, p: tuple(at(x, p)[1][which] / size),
+            tangent=along,
+            control=control,
+            closes=False,
+        )
+        for i, found in enumerate(path):
+            if i == 0:
+                continue
+            here = np.array([found.x[0], found.p])
+            if not at(found.x, found.p)[2]:
+                break
+            point, along = here, found.tangent
+            yield point, along
+        pace = 0 if path.outcome == "most_points" else pace + 1
+
+
+def _around_corner(rectangle: _Rectangle, point: Any, along: Any, side: float) -> tuple[Any, Any] | None:
+    """Where the boundary leaves a small circle about a corner, and the direction.
+
+    Seen from the centre, the unstable side is on the left of the way on and on the right of the way back, so the two
+    are told apart however sharp the corner.
+    """
+    heading = float(np.arctan2(along[1], along[0]))
+    angles = heading + np.linspace(-np.pi, np.pi, 361)
+    ring = point + CIRCLE * np.column_stack([np.cos(angles), np.sin(angles)])
+    values = side * rectangle.level(ring)
+    ways = [i for i in range(360) if values[i] <= 0.0 < values[i + 1]]
+    if not ways:
+        return None
+    best = min(ways, key=lambda i: abs(0.5 * (angles[i] + angles[i + 1]) - heading))
+    low, high = angles[best], angles[best + 1]
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        ahead = point + CIRCLE * np.array([[np.cos(middle), np.sin(middle)]])
+        low, high = (low, middle) if side * float(rectangle.level(ahead)[0]) > 0.0 else (middle, high)
+    direction = np.array([np.cos(low), np.sin(low)])
+    return point + CIRCLE * direction, direction
+
+
+def _between(a: Any, b: Any, start: Any, first: Any, tangent: Any) -> bool:
+    """True when the start lies on the step from a to b, which goes the same way."""
+    span = b - a
+    share = (start - a) @ span / (span @ span)
+    off = np.linalg.norm(start - a - share * span)
+    return bool(0.0 < share <= 1.0 and off < 0.1 * np.linalg.norm(span) and first @ tangent > 0.0)
+
+
+def _passed(point: Any, gradient: Any, curves: list[Any], tangents: list[Any]) -> bool:
+    """True when a traced curve runs through `point` with its unstable side on the same side."""
+    for points, directions in zip(curves, tangents, strict=True):
+        chord = points[1:] - points[:-1]
+        length = np.linalg.norm(chord, axis=-1)
+        near = np.linalg.norm(0.5 * (points[1:] + points[:-1]) - point, axis=-1) < 0.6 * length + 1e-4
+        for i in np.nonzero(near)[0]:
+            s = np.linspace(0.0, 1.0, 33)[:, None]
+            curve = _hermite(points[i], points[i + 1], directions[i] * length[i], directions[i + 1] * length[i], s)
+            distance = np.linalg.norm(curve - point, axis=-1)
+            left = np.array([-chord[i, 1], chord[i, 0]])
+            if np.min(distance) < 0.02 * length[i] + 1e-6 + 2.0 * CIRCLE and left @ gradient > 0.0:
+                return True
+    return False
+
+
+def _hermite(a: Any, b: Any, slope_a: Any, slope_b: Any, s: Any) -> Any:
+    return (
+        (2.0 * s**3 - 3.0 * s**2 + 1.0) * a
+        + (s**3 - 2.0 * s**2 + s) * slope_a
+        + (3.0 * s**2 - 2.0 * s**3) * b
+        + (s**3 - s**2) * slope_b
+    )
