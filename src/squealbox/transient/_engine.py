@@ -1,7 +1,7 @@
 """The one door to the compiler: plain functions in, compiled functions out, kept on disk between runs.
 
 The sources of the laws, the schedules and the march are joined into one file, named by the hash of its content, and
-that file is compiled by numba with its on-disk cache. So a change of any source makes a new file, and nothing stale is run.
+that file is compiled by numba with its on-disk cache. So a change of any source makes a new file; nothing stale runs.
 `plain=True` runs the very same file without the compiler, which the tests use to compare the two.
 """
 
@@ -54,7 +54,7 @@ def time_stepping_kernel(plain: bool = False) -> Callable[..., Any]:
 def kernel(events: bool, plain: bool = False, counts: tuple[tuple[str, int], ...] = ()) -> Callable[..., int]:
     """`_march.march`, compiled for each new room of its records at first use, then read from disk.
 
-    `counts` fixes numbers such as ``("p.contacts", 2)`` in the text, which lets the compiler unroll the loops over them.
+    `counts` fixes numbers such as ``("p.contacts", 2)`` in the text, so the compiler unrolls the loops over them.
     """
     march: Callable[..., int] = _module(source(events, plain, counts)).march
     return march

@@ -130,7 +130,7 @@ class _Run:
         return self._outcome(code, end)
 
     def _counts(self) -> tuple[tuple[str, int], ...]:
-        """What the kernel without events is compiled for; the one with events takes longer to compile and stays general."""
+        """What the kernel without events is compiled for; the one with events compiles longer and stays general."""
         problem = [(f"p.{name}", int(self.problem[name])) for name in ("size", "contacts")]
         return (*problem, *((f"r.{name}", int(self.rule[name])) for name in ("stages", "blended")))
 
