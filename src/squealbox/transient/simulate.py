@@ -8,7 +8,7 @@ from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
 from squealbox.transient import _march, moreau, packing
-from squealbox.transient._motion import ARCTAN, EXACT, RAW, TANH
+from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
 from squealbox.transient.methods import Method
 from squealbox.transient.trajectory import Trajectory
 
@@ -174,7 +174,7 @@ class _Run:
             t=t[:, 0],
             q=q,
             qd=qd,
-            normal_force=normal,
+            normal_force=np.where(mode == OPEN, 0.0, normal),
             sliding_velocity=speed,
             friction_force=force,
             mode=mode.astype(np.int8),
