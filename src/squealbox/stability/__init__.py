@@ -1,17 +1,51 @@
 """Is steady sliding stable? Depends on: system, continuation, result; numba only when a kernel is needed."""
 
+from squealbox.stability.boundary import Boundary, stability_boundary
 from squealbox.stability.eigenvalues import ComplexModes, Mode, complex_modes
+from squealbox.stability.energy import ModeEnergy, mode_energy
+from squealbox.stability.exceptional import DampingSplit, ExceptionalPoints, damping_split, exceptional_points
+from squealbox.stability.indices import damping_ratio_from, indices, logarithmic_decrement, loss_factor, squeal_index
+from squealbox.stability.maps import StabilityMap, stability_map
 from squealbox.stability.mechanism import Mechanism, mechanism
+from squealbox.stability.nonnormal import TransientGrowth, pseudospectrum, transient_growth
 from squealbox.stability.onset import CriticalValue, CriticalValues, critical_value, critical_values
+from squealbox.stability.routh_hurwitz import routh_hurwitz
+from squealbox.stability.sensitivity import Sensitivity, sensitivity
+from squealbox.stability.tracking import TrackedModes, TrackedPoint, track, tracked_modes
 
 __all__ = [
+    "Boundary",
     "ComplexModes",
     "CriticalValue",
     "CriticalValues",
+    "DampingSplit",
+    "ExceptionalPoints",
     "Mechanism",
     "Mode",
+    "ModeEnergy",
+    "Sensitivity",
+    "StabilityMap",
+    "TrackedModes",
+    "TrackedPoint",
+    "TransientGrowth",
     "complex_modes",
     "critical_value",
     "critical_values",
+    "damping_ratio_from",
+    "damping_split",
+    "exceptional_points",
+    "indices",
+    "logarithmic_decrement",
+    "loss_factor",
     "mechanism",
+    "mode_energy",
+    "pseudospectrum",
+    "routh_hurwitz",
+    "sensitivity",
+    "squeal_index",
+    "stability_boundary",
+    "stability_map",
+    "track",
+    "tracked_modes",
+    "transient_growth",
 ]

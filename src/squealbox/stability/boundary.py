@@ -1,10 +1,10 @@
 """The boundary of stability over two parameters as curves, traced by continuation.
 
 Cells in which it may run are found first (`cells`), thin tongues and small islands included. From a crossed edge the
-curve is followed by pseudo-arclength steps (`continuation`) on the detector that vanishes there, a smooth function where
-the growth rate has kinks and flats. A step that leaves the boundary has met a corner, where another mode takes over; the
-curve is picked up again on a small circle about it. Every crossed edge that no curve passes starts the next one, so no
-component is lost. At the end all points are polished onto zero growth.
+curve is followed by pseudo-arclength steps (`continuation`) on the detector that vanishes there, a smooth function
+where the growth rate has kinks and flats. A step that leaves the boundary has met a corner, where another mode takes
+over; the curve is picked up again on a small circle about it. Every crossed edge that no curve passes starts the next
+one, so no component is lost. At the end all points are polished onto zero growth.
 """
 
 from collections.abc import Iterator

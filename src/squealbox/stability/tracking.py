@@ -1,0 +1,172 @@
+"""Every mode followed along a parameter, through crossings, veering and coalescence.
+
+Modes at two neighbouring values are paired by the bi-orthogonal criterion |w_i^H (lambda_i M + C + lambda_j M) u_j|
+|w_j^H (...) u_i|, 1 for the same mode and 0 for another, whatever their scaling, and by how near their eigenvalues are
+to those expected. Where the pairing is not clear the step is halved; where it stays unclear, at the coalescence itself,
+the nearest eigenvalue decides and the step is marked.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.result import Result, quantity
+from squealbox.stability.eigenvalues import ComplexModes, modes_of
+from squealbox.stability.family import Family, Steady
+
+if TYPE_CHECKING:
+    import xarray
+
+CLEAR = 0.8  # criterion from which a pairing counts as clear
+HALVINGS = 12
+
+
+@dataclass(frozen=True)
+class TrackedPoint:
+    """The modes at one value, in the order of the tracks.
+
+    eigenvalues (2n,), right and left (n, 2n), the criterion of each pairing (2n,), and `clear`, False where a pairing
+    was decided by the nearest eigenvalue.
+    """
+
+    value: float
+    eigenvalues: Any
+    right: Any
+    left: Any
+    criterion: Any
+    clear: bool
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TrackedModes(Result):
+    """Modes along a parameter, the same mode always in the same column, as :func:`tracked_modes` returns it."""
+
+    value: Any = quantity("value", "", "the parameter, in its own unit")
+    eigenvalues: Any = quantity("value mode", "1/s", "eigenvalue of each track")
+    right: Any = quantity("value dof mode", "1", "right modes, |u| = 1")
+    criterion: Any = quantity("value mode", "1", "bi-orthogonal criterion of the pairing with the value before")
+    clear: Any = quantity("value", "1", "False where a pairing was decided by the nearest eigenvalue")
+    parameter: str = ""
+
+    @property
+    def growth_rate(self) -> Any:
+        """Re lambda [1/s], (values, modes)."""
+        return np.real(self.eigenvalues)
+
+    @property
+    def frequency(self) -> Any:
+        """|Im lambda| / (2 pi) [Hz], (values, modes)."""
+        return np.abs(np.imag(self.eigenvalues)) / (2.0 * np.pi)
+
+    def to_dataset(self) -> "xarray.Dataset":
+        """The arrays with the parameter as coordinate."""
+        return super().to_dataset().set_coords("value")
+
+
+def track(design: Any, parameter: str, values: Any, *, time: float = 0.0) -> Iterator[TrackedPoint]:
+    """Walk along the values of a parameter with the modes always in the order of the first value.
+
+    Parameters
+    ----------
+    design : a design, or a function of one value that returns a design or a system
+    parameter : dotted name
+    values : increasing or decreasing values; where the pairing between two is unclear, values between are tried too
+
+    Values without steady sliding are passed over with NaN. Raises `ValueError` for fewer than one value.
+    """
+    array = np.atleast_1d(np.asarray(values, dtype=float))
+    if array.ndim != 1 or array.size == 0:
+        raise ValueError(f"values has shape {array.shape}: expected one or more values")
+    family = Family(design, [parameter], time)
+    steady = family.at(array)
+    modes = modes_of(steady)
+    last: _Place | None = None
+    for i, value in enumerate(array):
+        here = _Place.of(float(value), steady, modes, i)
+        if not bool(modes.exists[i]):
+            yield here.point(np.zeros(here.eigenvalues.size), False)
+            continue
+        if last is None:
+            last = here
+            yield here.point(np.ones(here.eigenvalues.size), True)
+            continue
+        last, criterion, clear = _followed(family, last, here, HALVINGS)
+        yield last.point(criterion, clear)
+
+
+def tracked_modes(design: Any, parameter: str, values: Any, *, time: float = 0.0) -> TrackedModes:
+    """The whole of :func:`track` as one result, a labelled dataset by ``to_dataset()``."""
+    points = list(track(design, parameter, values, time=time))
+    columns = {name: np.array([getattr(p, name) for p in points]) for name in ("value", "eigenvalues", "right")}
+    columns |= {name: np.array([getattr(p, name) for p in points]) for name in ("criterion", "clear")}
+    inputs = Family(design, [parameter], time).inputs
+    arrays: dict[str, Any] = columns
+    return TrackedModes(**arrays, parameter=parameter, inputs=inputs)
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Matrices and ordered modes at one value."""
+
+    value: float
+    mass: Any
+    damping: Any
+    eigenvalues: Any
+    right: Any
+    left: Any
+
+    @staticmethod
+    def of(value: float, steady: Steady, modes: ComplexModes, i: int) -> "_Place":
+        return _Place(value, steady.M[i], steady.C[i], modes.eigenvalues[i], modes.right[i], modes.left[i])
+
+    def ordered(self, order: Any) -> "_Place":
+        return _Place(
+            self.value, self.mass, self.damping, self.eigenvalues[order], self.right[:, order], self.left[:, order]
+        )
+
+    def point(self, criterion: Any, clear: bool) -> TrackedPoint:
+        return TrackedPoint(self.value, self.eigenvalues, self.right, self.left, criterion, clear)
+
+
+def _followed(family: Family, last: _Place, here: _Place, halvings: int) -> tuple[_Place, Any, bool]:
+    """`here` in the order of `last`, with the criterion of each pairing; unclear steps are halved."""
+    order, criterion = _paired(last, here)
+    if np.min(criterion) >= CLEAR or halvings == 0 or last.value == here.value:
+        return here.ordered(order), criterion, bool(np.min(criterion) >= CLEAR)
+    middle = 0.5 * (last.value + here.value)
+    steady = family.at(np.array([middle]))
+    modes = modes_of(steady)
+    if not modes.exists[0]:
+        return here.ordered(order), criterion, False
+    between, first, clear = _followed(family, last, _Place.of(middle, steady, modes, 0), halvings - 1)
+    after, second, clear_too = _followed(family, between, here, halvings - 1 if clear else 0)
+    return after, np.minimum(first, second), clear and clear_too
+
+
+def _paired(last: _Place, here: _Place) -> tuple[Any, Any]:
+    """Order of `here` that continues `last`, by the criterion, with the distance of eigenvalues to break ties."""
+    from scipy.optimize import linear_sum_assignment
+
+    forward = _products(last, here)
+    backward = _products(here, last).T
+    with np.errstate(all="ignore"):
+        criterion = np.clip(np.nan_to_num(np.abs(forward * backward)), 0.0, 1.0)
+    gaps = np.abs(last.eigenvalues[:, None] - here.eigenvalues[None, :])
+    scale = max(float(np.max(np.abs(last.eigenvalues))), 1e-300)
+    _, order = linear_sum_assignment(1.0 - criterion + gaps / scale)
+    chosen = criterion[np.arange(len(order)), order]
+    _, nearest = linear_sum_assignment(gaps)
+    if np.min(chosen) < CLEAR and not np.array_equal(order, nearest):
+        by_gap = gaps[np.arange(len(order)), nearest]
+        if np.max(by_gap) < 0.1 * np.max(gaps[np.arange(len(order)), order]):
+            order, chosen = nearest, criterion[np.arange(len(nearest)), nearest]
+    return order, chosen
+
+
+def _products(a: _Place, b: _Place) -> Any:
+    """w_i^H (lambda_i M + C + lambda_j M) u_j with w, lambda_i of a and u, lambda_j of b."""
+    left, right = np.conj(a.left).T, b.right
+    mass, damping = left @ a.mass @ right, left @ a.damping @ right
+    return (a.eigenvalues[:, None] + b.eigenvalues[None, :]) * mass + damping
