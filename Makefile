@@ -30,7 +30,6 @@ help:
 
 demo: $(VENV)/.installed
 	$(BIN)/squealbox paper drum-brake-2011 --out $(OUT)
-	@echo "The page is at $(abspath $(OUT))/index.html"
 
 test: lint floors types tests
 
