@@ -1,7 +1,7 @@
 # The public names in the order of the story. `lazy_loader` reads the imports; people, editors and type checkers read both.
 # A room with more names than the story needs is public as a whole: `squealbox.friction.Table`, `squealbox.schedules.Table`.
 
-from . import designs, friction, plots, schedules, signals
+from . import designs, friction, plots, schedules, signals, stability, transient
 from .continuation import Follower, follow
 from .designs import DrumBrake
 from .friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stribeck
@@ -11,16 +11,26 @@ from .result import Outcome, Result
 from .schedules import Constant, Ramp, Schedule, Sinusoid
 from .signals import peaks, sound, spectrogram, spectrum
 from .stability import (
+    Boundary,
     ComplexModes,
     CriticalValue,
     CriticalValues,
     Mechanism,
+    Mode,
+    ModeEnergy,
+    Sensitivity,
+    StabilityMap,
+    TrackedModes,
     complex_modes,
     critical_value,
     critical_values,
     mechanism,
+    mode_energy,
+    sensitivity,
+    stability_boundary,
+    stability_map,
+    tracked_modes,
 )
-from .stability.maps import StabilityMap, stability_map
 from .system import Contact, System, equilibrium, linearise
 from .transient import Method, Trajectory, Verdict, compare_contact, simulate, verdict
 
@@ -50,17 +60,28 @@ __all__ = [
     "designs",
     "DrumBrake",
     # is steady sliding stable, and from which value is it not?
+    "stability",
     "complex_modes",
     "ComplexModes",
+    "Mode",
     "critical_value",
     "CriticalValue",
     "critical_values",
     "CriticalValues",
     "mechanism",
     "Mechanism",
+    "sensitivity",
+    "Sensitivity",
+    "mode_energy",
+    "ModeEnergy",
+    "tracked_modes",
+    "TrackedModes",
     "stability_map",
     "StabilityMap",
+    "stability_boundary",
+    "Boundary",
     # what happens in time, and what became of it?
+    "transient",
     "simulate",
     "Method",
     "Trajectory",
