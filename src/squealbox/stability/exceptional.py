@@ -113,7 +113,7 @@ def _newton(family: Family, low: Any, width: Any, point: Any, pair: Any) -> tupl
         slopes = np.array([square[1] - square[2], square[3] - square[4]]) / (2.0 * step)
         jacobian = np.array([slopes.real, slopes.imag])
         change, *_ = np.linalg.lstsq(jacobian, np.array([square[0].real, square[0].imag]), rcond=1e-12)
-        size = np.linalg.norm(change)
+        size = float(np.linalg.norm(change))
         point = point - change * min(1.0, 0.2 / max(size, 1e-300))
         if np.any((point < -0.2) | (point > 1.2)):
             return None
