@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.papers.drum_brake_2011.cases import FRICTION, MAP_ANGLES, SPEED, Case
-from squealbox.stability import ComplexModes, complex_modes, critical_value
+from squealbox.stability import ComplexModes, complex_modes, critical_value, stability_map
 from squealbox.stability.eigenvalues import spectrum
 from squealbox.system import as_system, linearise
 
@@ -17,13 +17,16 @@ LOAD_RANGE = (100.0, 60e3)  # N; the paper goes to 25 kN
 
 @dataclass(frozen=True)
 class Onset:
-    """Where a parameter makes sliding unstable: its value and the distance of the two frequencies there [rad/s].
+    """Where a parameter makes sliding unstable: its value, the distance of the two frequencies there [rad/s], and why.
 
-    Without an onset in the range searched `value` is infinite and `separation` is not a number.
+    `mechanism` is "flutter", "negative_slope", "mixed" or "divergence", `feeding` says what feeds the mode. Without an
+    onset in the range searched `value` is infinite, `separation` is not a number and `mechanism` is empty.
     """
 
     value: float = np.inf
     separation: float = np.nan
+    mechanism: str = ""
+    feeding: str = ""
 
     @property
     def exists(self) -> bool:
@@ -62,8 +65,8 @@ def pressure_map(case: Case, step: float = 1.0, mu: float = FRICTION) -> Pressur
     """Growth over both centres of pressure from 20 to 160 deg in steps of `step` [deg]."""
     low, high = MAP_ANGLES
     angles = np.linspace(low, high, round((high - low) / step) + 1)
-    theta1, theta2 = np.meshgrid(np.deg2rad(angles), np.deg2rad(angles), indexing="ij")
-    return PressureMap(angles, growth(case.design(mu=mu, theta1=theta1, theta2=theta2)))
+    over = dict.fromkeys(("theta1", "theta2"), np.deg2rad(angles))
+    return PressureMap(angles, stability_map(case.design(mu=mu), over, mechanism=False).growth_rate)
 
 
 def modes(case: Case, **parameters: Any) -> ComplexModes:
@@ -86,4 +89,7 @@ def _onset(design: Any, parameter: str, bounds: tuple[float, float]) -> Onset:
     if not found.outcome.ok:
         return Onset()
     there = complex_modes(design.replace({parameter: float(found.value)}))
-    return Onset(float(found.value), float(np.diff(frequencies(there))[0]))
+    feeding = (
+        f"{found.shares['flutter']:.0%} of what feeds it is flutter, {found.shares['negative_slope']:.0%} the slope"
+    )
+    return Onset(float(found.value), float(np.diff(frequencies(there))[0]), found.mechanism, feeding)
