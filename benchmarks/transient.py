@@ -1,0 +1,126 @@
+"""Drum transients of 0.05 s: compiled against SciPy's solve_ivp, and exact contact against a tight reference.
+
+Part 1 runs the same equations, the same method (Bogacki-Shampine 3(2) with plain sgn) and the same tolerances in this
+one process. SciPy gets a right-hand side of a few whole-array operations. Part 2 runs exact stick and slip for every
+reading of the drum, with the preload of the design (none, but in `consistent`, where it is the load) and with 1000 N
+on each contact.
+
+Times are of the processor, after one run that compiles. `--quick` takes fewer repetitions.
+"""
+
+import os
+import sys
+import time
+
+# These choose other kernels of OpenBLAS and slow SciPy's small products down: the rival runs as it is shipped.
+UNWANTED = ("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE")
+if any(name in os.environ for name in UNWANTED):
+    os.execve(sys.executable, [sys.executable, *sys.argv], {k: v for k, v in os.environ.items() if k not in UNWANTED})
+
+import numpy as np  # noqa: E402
+from scipy.integrate import solve_ivp  # noqa: E402
+
+from squealbox import DrumBrake, LinearSlope, simulate  # noqa: E402
+
+DURATION = 0.05
+SLOPE = -0.05
+READINGS = ("eq1_printed", "eq3", "eq3_signed", "componentwise", "consistent")
+
+
+def seconds(function, repetitions):
+    """Processor time of each repetition, after one that does not count."""
+    function()
+    spent = []
+    for _ in range(repetitions):
+        start = time.process_time()
+        function()
+        spent.append(time.process_time() - start)
+    return np.array(spent)
+
+
+def right_hand_side(system):
+    """y' of a system of constant loads and speeds whose contacts share one LinearSlope, for SciPy."""
+    inverse = np.linalg.inv(system.M)
+    n = system.size
+    mass_stiffness, mass_damping, load = inverse @ system.K, inverse @ system.C, inverse @ system.load
+    act = inverse @ np.array([c.d for c in system.contacts]).T
+    along = np.array([c.t for c in system.contacts])
+    press = np.array([c.n for c in system.contacts])
+    preload = np.array([float(c.N0) for c in system.contacts])
+    speed = np.array([float(c.V) for c in system.contacts])
+    static, slope = (getattr(system.contacts[0].law, name) for name in ("static", "slope"))
+
+    def rates(_, y):
+        q, qd = y[:n], y[n:]
+        v = speed - along @ qd
+        force = (static + slope * np.abs(v)) * np.sign(v) * (preload + press @ q)
+        out = np.empty(2 * n)
+        out[:n] = qd
+        out[n:] = load - mass_stiffness @ q - mass_damping @ qd + act @ force
+        return out
+
+    return rates
+
+
+def against_scipy(friction, repetitions):
+    """One line: both times, their ratio and its spread."""
+    system = DrumBrake(friction=LinearSlope(friction, SLOPE)).system()
+    options = {"method": "bogacki-shampine", "contact": "raw", "rtol": 1e-3}
+    ours = simulate(system, DURATION, **options)
+    atol = np.array(ours.settings["atol"])
+    rates, start = right_hand_side(system), np.zeros(2 * system.size)
+
+    def rival():
+        return solve_ivp(rates, (0.0, DURATION), start, method="RK23", rtol=1e-3, atol=atol)
+
+    theirs = rival()
+    scipy_times = seconds(rival, repetitions)
+    our_times = seconds(lambda: simulate(system, DURATION, **options), 20 * repetitions)
+    ratio = np.median(scipy_times) / np.median(our_times)
+    low, high = np.min(scipy_times) / np.max(our_times), np.max(scipy_times) / np.min(our_times)
+    per_call = np.median(scipy_times) / theirs.nfev / (np.median(our_times) / ours.evaluations)
+    print(
+        f"mu = {friction:<5} SciPy RK23 {1e3 * np.median(scipy_times):8.1f} ms ({theirs.nfev} evaluations, "
+        f"{len(theirs.t) - 1} steps)   squealbox {1e3 * np.median(our_times):7.3f} ms ({ours.evaluations} evaluations, "
+        f"{ours.steps} steps, {ours.outcome})"
+    )
+    print(f"           ratio {ratio:.0f} (from {low:.0f} to {high:.0f}); per evaluation {per_call:.0f}")
+
+
+def exact_contact(reading, preload, repetitions):
+    """One line: time, error against a reference, audit and counts of an exact run."""
+    system = DrumBrake(friction=LinearSlope(0.44, SLOPE), reading=reading).system()
+    if preload is not None:
+        system = system.replace({"contacts": tuple(c.replace({"N0": preload}) for c in system.contacts)})
+    reference = simulate(system, DURATION, times=2, rtol=1e-13)
+    motion = simulate(system, DURATION, times=2)
+    spent = seconds(lambda: simulate(system, DURATION, times=2), repetitions)
+    error = np.nan
+    if len(motion.t) == len(reference.t) == 2:
+        error = np.max(np.abs(motion.q[-1] - reference.q[-1])) / np.max(np.abs(reference.q))
+    audit = simulate(system, DURATION).energy.relative_residual
+    print(
+        f"{reading:<14}{'design' if preload is None else format(preload, '.0f'):>9}{1e3 * np.median(spent):>9.2f}{1e3 * np.min(spent):>9.2f}{error:>10.1e}"
+        f"{audit:>10.1e}{motion.steps:>8d}{motion.evaluations:>9d}{len(motion.event_time):>8d}  "
+        f"{motion.outcome} / {reference.outcome}"
+    )
+
+
+def main():
+    """Print both parts."""
+    quick = "--quick" in sys.argv[1:]
+    print(f"Part 1: raw sgn, rtol 1e-3, same atol, {DURATION} s, reading consistent, alpha {-SLOPE} s/m")
+    for friction in (0.3, 0.45):
+        against_scipy(friction, 2 if quick else 5)
+    print(f"\nPart 2: exact contact, Dormand-Prince 8(5,3) at its usual rtol 1e-9, mu = 0.44, {DURATION} s")
+    print(
+        f"{'reading':<14}{'N0 [N]':>9}{'ms':>9}{'least':>9}{'error':>10}{'audit':>10}"
+        f"{'steps':>8}{'evals':>9}{'events':>8}  outcome / of the reference at rtol 1e-13"
+    )
+    for reading in READINGS:
+        for preload in (None, 1000.0):
+            exact_contact(reading, preload, 3 if quick else 15)
+
+
+if __name__ == "__main__":
+    main()
