@@ -129,7 +129,7 @@ class DataSheet:
         return all(_same(a, b) for a, b in zip(_values(self), _values(other), strict=True))
 
     def __hash__(self) -> int:
-        return hash((type(self), *(v.tobytes() if isinstance(v, np.ndarray) else v for v in _values(self))))
+        return hash((type(self), *(_hashable(value) for value in _values(self))))
 
     def replace(self, changes: Mapping[str, Any] | None = None, **keywords: Any) -> Self:
         """A copy with other values; dotted names reach into nested sheets: ``{"friction.static": 0.4}``.
@@ -283,7 +283,15 @@ def _values(sheet: DataSheet) -> list[Any]:
 def _same(a: Any, b: Any) -> bool:
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         return np.array_equal(a, b)
+    if isinstance(a, tuple) and isinstance(b, tuple):
+        return len(a) == len(b) and all(_same(x, y) for x, y in zip(a, b, strict=True))
     return bool(a == b)
+
+
+def _hashable(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return value.shape, value.tobytes()
+    return tuple(_hashable(item) for item in value) if isinstance(value, tuple) else value
 
 
 def _shown(value: object) -> str:

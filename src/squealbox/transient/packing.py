@@ -4,7 +4,7 @@ A record is one element of a structured array: the compiler passes it by its add
 attributes. The room of each field is a power of two, so that few sizes are ever compiled; the loops run to the counts.
 """
 
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,16 @@ STAGES, DEGREE = 16, 7  # room in the record of a tableau
 
 
 def pack(system: System, method: Method, scheme: int, width: float, every_step: bool) -> Any:
-    """The record of one system; raises `InvalidSystem` for a map of systems or a singular mass matrix."""
+    """The record of one system; raises `InvalidSystem` for a map of systems or a singular mass matrix.
+
+    Systems are frozen, so the records of the last few are kept for the next run from another start.
+    """
+    atol = method.atol if np.ndim(method.atol) == 0 else tuple(float(x) for x in method.atol)
+    return _packed(system, Method(method.tableau, method.rtol, atol), scheme, width, every_step)
+
+
+@lru_cache(maxsize=64)
+def _packed(system: System, method: Method, scheme: int, width: float, every_step: bool) -> Any:
     if system.shape != ():
         raise InvalidSystem(f"the system has leading axes {system.shape}: simulate takes one system at a time")
     n, contacts = system.size, system.contacts
