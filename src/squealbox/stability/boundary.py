@@ -151,14 +151,19 @@ class _Rectangle:
         values = self.level((points[:, None, :] + SHIFTS).reshape(-1, 2)).reshape(-1, 4)
         return np.stack([values[:, 0] - values[:, 1], values[:, 2] - values[:, 3]], axis=-1) / (2.0 * SHIFT)
 
-    def stencil(self, point: Any) -> tuple[Any, Any, bool]:
-        """Detectors (k,) at one point, their gradients (k, 2), and whether stability changes about it, in one call."""
+    def stencil(self, point: Any) -> tuple[Any, Any, Any]:
+        """Detectors (k,) at one point and their gradients (k, 2), in one call, and where the unstable side lies.
+
+        That is the gradient of the level, or zero where stability does not change about the point.
+        """
         points = np.clip(point + np.vstack([np.zeros((1, 2)), SHIFTS]), 0.0, 1.0)
         level, eigenvalues = self._level(self.family.at(*(self.low + self.width * points).T))
         values = self._detectors(eigenvalues)
         gradients = np.column_stack([values[:, 1] - values[:, 2], values[:, 3] - values[:, 4]]) / (2.0 * SHIFT)
         centre = values[:, 0] if np.all(np.isfinite(values[:, 0])) else np.mean(values[:, 1:], axis=1)  # K_eff singular
-        return centre, gradients, bool(np.any(level > 0.0) and np.any(level <= 0.0))
+        uphill = np.array([level[1] - level[2], level[3] - level[4]])
+        changes = bool(np.any(level > 0.0) and np.any(level <= 0.0))
+        return centre, gradients, uphill if changes else np.zeros(2)
 
     def starts(self, edges: list[Crossing]) -> list[tuple[Any, Any]]:
         """The point of the boundary on each crossed edge, by halving all edges together, with the gradient there.
@@ -246,7 +251,7 @@ def _walk(rectangle: _Rectangle, start: Any, heading: Any, side: float) -> tuple
     point, along = np.array(start), np.array(heading)
     for _ in range(200):  # corners
         corner = len(points)
-        for here, tangent in _smooth_part(rectangle, point, along):
+        for here, tangent in _smooth_part(rectangle, point, along, side):
             if np.any((here < 0.0) | (here > 1.0)):
                 return [*points, np.clip(here, 0.0, 1.0)], [*tangents, tangent], False
             if _between(points[-1], here, points[0], tangents[0], tangent) and len(points) > 3:
@@ -267,7 +272,7 @@ def _walk(rectangle: _Rectangle, start: Any, heading: Any, side: float) -> tuple
     return points, tangents, False
 
 
-def _smooth_part(rectangle: _Rectangle, point: Any, along: Any) -> Iterator[tuple[Any, Any]]:
+def _smooth_part(rectangle: _Rectangle, point: Any, along: Any, side: float) -> Iterator[tuple[Any, Any]]:
     """Points after `point` as far as one detector leads along the boundary, with shorter steps towards the corner."""
     values, gradients, _ = rectangle.stencil(point)
     which = int(np.argmin(np.abs(values) / (np.linalg.norm(gradients, axis=-1) + 1e-300)))
@@ -297,7 +302,8 @@ def _smooth_part(rectangle: _Rectangle, point: Any, along: Any) -> Iterator[tupl
             if i == 0:
                 continue
             here = np.array([found.x[0], found.p])
-            if not at(found.x, found.p)[2]:
+            left = np.array([-found.tangent[1], found.tangent[0]])
+            if not side * (at(found.x, found.p)[2] @ left) > 0.0:
                 break
             point, along = here, found.tangent
             yield point, along

@@ -106,10 +106,9 @@ class ComplexModes(Result):
 
     @property
     def unstable_modes(self) -> Any:
-        """Number of growing modes among the first n, shape (...)."""
+        """Number of growing modes, a complex pair counted once and real eigenvalues each, shape (...)."""
         scale = np.max(np.abs(self.eigenvalues), axis=-1, keepdims=True)
-        half = self.eigenvalues.shape[-1] // 2
-        return np.sum((self.growth_rate > MARGINAL * scale)[..., :half], axis=-1)
+        return np.sum((self.growth_rate > MARGINAL * scale) & (np.imag(self.eigenvalues) >= 0.0), axis=-1)
 
     @property
     def near_defective(self) -> Any:

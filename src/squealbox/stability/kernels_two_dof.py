@@ -102,18 +102,24 @@ def resolvent_root(p: float, q: float, r: float) -> float:
 
 @njit(forceinline=True, error_model="numpy", fastmath=FAST)
 def rightmost_of_quadratic(p: float, q: float) -> Any:
-    """Real and imaginary part of the root of s^2 + p s + q with the largest real part."""
+    """Real and imaginary part of the root of s^2 + p s + q with the largest real part, and how many roots grow.
+
+    A complex pair counts once.
+    """
     half = 0.5 * p
     d = half * half - q
     root = math.sqrt(abs(d))
     size = abs(half) + root
     real = -q / max(size, TINY) if half > 0.0 else size
-    return (-half if d < 0.0 else real), (root if d < 0.0 else 0.0)
+    real = -half if d < 0.0 else real
+    both = (d >= 0.0) & (q > MARGINAL * MARGINAL) & (half < 0.0)
+    growing = 0.0 if real <= MARGINAL else (2.0 if both else 1.0)
+    return real, (root if d < 0.0 else 0.0), growing
 
 
 @njit(forceinline=True, error_model="numpy", fastmath=FAST)
 def rightmost(a4: float, a3: float, a2: float, a1: float, a0: float) -> Any:
-    """Real and imaginary part of the root of the quartic with the largest real part, and how many pairs grow."""
+    """Real and imaginary part of the root of the quartic with the largest real part, and how many grow."""
     inverse = 1.0 / a4
     a3, a2, a1, a0 = a3 * inverse, a2 * inverse, a1 * inverse, a0 * inverse
     scale = math.sqrt(max(a3 * a3, max(abs(a2), math.sqrt(abs(a0)))))
@@ -143,11 +149,10 @@ def rightmost(a4: float, a3: float, a2: float, a1: float, a0: float) -> Any:
         over = 1.0 / det if abs(det) > 1e-200 else 0.0
         u, v = (r1 * dq - dp * r0) * over, ((dq - p1 * dp) * r0 + q1 * dp * r1) * over
         p1, q1, p2, q2 = p1 + u, q1 + v, p2 + r3 - u, q2 + r2 - dp * u - v
-    g1, w1 = rightmost_of_quadratic(p1, q1)
-    g2, w2 = rightmost_of_quadratic(p2, q2)
+    g1, w1, n1 = rightmost_of_quadratic(p1, q1)
+    g2, w2, n2 = rightmost_of_quadratic(p2, q2)
     first = g1 >= g2
-    growing = (1.0 if g1 > MARGINAL else 0.0) + (1.0 if g2 > MARGINAL else 0.0)
-    return (g1 if first else g2) * scale, (w1 if first else w2) * scale, growing
+    return (g1 if first else g2) * scale, (w1 if first else w2) * scale, n1 + n2
 
 
 @njit(forceinline=True, error_model="numpy", fastmath=FAST)
