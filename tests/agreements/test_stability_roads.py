@@ -116,7 +116,10 @@ def missed(design, bounds, resolution: int) -> tuple[int, float]:
     width = np.array([span[1] for span in bounds.values()]) - low
     grids = [np.linspace(a, a + w, resolution) for a, w in zip(low, width, strict=True)]
     unstable = stability_map(design, dict(zip(bounds, grids, strict=True)), mechanism=False).unstable
-    edges = [np.argwhere(unstable[1:] != unstable[:-1]) + [0.5, 0.0], np.argwhere(unstable[:, 1:] != unstable[:, :-1])]
+    edges = [
+        np.argwhere(unstable[1:] != unstable[:-1]) + np.array([0.5, 0.0]),
+        np.argwhere(unstable[:, 1:] != unstable[:, :-1]),
+    ]
     crossed = np.vstack([edges[0], edges[1] + np.array([0.0, 0.5])])
     if len(crossed) == 0:
         return 0, 0.0

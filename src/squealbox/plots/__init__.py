@@ -11,22 +11,38 @@ from squealbox.plots.maps import stability_map
 from squealbox.plots.modes import coalescence
 from squealbox.plots.motion import amplitude_course, energy, motion_overview, phase_plane, time_history
 from squealbox.plots.spectra import spectrogram, spectrum
+from squealbox.plots.stability import (
+    boundary_curves,
+    mechanism_map,
+    mode_energy,
+    root_locus,
+    sensitivity,
+    tracked_modes,
+    transient_growth,
+)
 from squealbox.plots.style import letters, panels, save
 
 __all__ = [
     "amplitude_course",
+    "boundary_curves",
     "coalescence",
     "contact_comparison",
     "energy",
     "friction_curve",
     "letters",
+    "mechanism_map",
+    "mode_energy",
     "motion_overview",
     "panels",
     "phase_plane",
     "plot",
+    "root_locus",
     "save",
+    "sensitivity",
     "spectrogram",
     "spectrum",
     "stability_map",
     "time_history",
+    "tracked_modes",
+    "transient_growth",
 ]

@@ -120,6 +120,7 @@ def mode_energy(design_or_system: Any, mode: Mode | int | None = None, time: flo
         slope.append(-0.5 * weight * np.real((np.conj(velocity) @ contact.d) * (contact.t @ velocity)))
         phase.append(np.angle((contact.n @ u) * np.conj(contact.t @ velocity)))
     own_skew = 0.5 * (structure - structure.T)
+    own_skew = np.where(np.max(np.abs(own_skew)) <= 1e-13 * np.max(np.abs(structure)), 0.0, own_skew)  # round-off
     symmetric = 0.5 * (steady.K + steady.K.T)
     return ModeEnergy(
         circulation=np.array(circulation),

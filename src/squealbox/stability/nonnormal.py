@@ -15,6 +15,9 @@ import numpy as np
 from squealbox.result import Outcome, Result, quantity
 from squealbox.stability.family import Steady, steady_sliding
 
+PER_PERIOD = 12  # instants of the envelope in the shortest period
+MOST_POINTS = 20000
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TransientGrowth(Result):
@@ -50,7 +53,7 @@ def transient_growth(
     ----------
     design_or_system : without leading axes
     duration : span searched [s]; by default eight decay times of the slowest mode, or ten periods without decay
-    points : instants of the envelope, between which the largest is refined
+    points : least number of instants of the envelope, between which the largest is refined; 12 in the shortest period
     at : instant of schedules [s]
 
     An unstable system grows without bound: the outcome is then "unstable" and the numbers hold for `duration`. Raises
@@ -62,7 +65,8 @@ def transient_growth(
     spectral, slowest = float(np.max(values.real)), float(np.min(np.abs(values)))
     if duration is None:
         duration = 8.0 / -spectral if spectral < -1e-9 * np.max(np.abs(values)) else 20.0 * np.pi / max(slowest, 1e-300)
-    instants = np.linspace(0.0, duration, points)
+    per_period = float(np.max(np.abs(values.imag))) * duration / (2.0 * np.pi) * PER_PERIOD
+    instants = np.linspace(0.0, duration, int(np.clip(per_period, points, MOST_POINTS)))
     envelope = _norms(matrix, instants)
     time, amplification = _largest(matrix, instants, envelope)
     from scipy.linalg import expm

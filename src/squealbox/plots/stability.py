@@ -1,0 +1,169 @@
+"""Figures of stability results: root locus, tracked modes, map of mechanisms, boundary, energy, sensitivity, growth.
+
+Parameters are drawn in the units of the design; `scales` gives a factor and a unit for an axis that reads better in
+another, such as ``{"theta1": (180 / pi, "°")}``.
+"""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.plots.dispatch import plot
+from squealbox.plots.modes import coalescence
+from squealbox.plots.style import LINES, drawing, figure_of, line, note, number, quantity_label
+from squealbox.stability import Boundary, ModeEnergy, Sensitivity, StabilityMap, TrackedModes, TransientGrowth
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Scales = Mapping[str, tuple[float, str]] | None
+# Shade and hatch of each mechanism: they differ in grey as well as in colour.
+AREAS = {
+    "flutter": ("#f0b27a", "////"),
+    "negative_slope": ("#a9cce3", "...."),
+    "divergence": ("#bbbbbb", "xxxx"),
+    "mixed": ("#f7e6a1", "\\\\\\\\"),
+}
+
+
+def root_locus(tracked: TrackedModes, *, title: str = "", axes: Any = None) -> "Figure":
+    """Eigenvalues with Im >= 0 in the complex plane as the parameter grows; a square marks the start, a dot the end."""
+    values = np.where(tracked.eigenvalues.imag >= 0.0, tracked.eigenvalues, np.nan)
+    with drawing(axes, height=3.0) as panel:
+        for i in np.nonzero(np.any(np.isfinite(values), axis=0))[0]:
+            track = values[:, i]
+            place = len(panel.get_lines()) // 3
+            panel.plot(track.real, track.imag / (2.0 * np.pi), **line(place))
+            known = track[np.isfinite(track)]
+            colour = LINES[place % len(LINES)][0]
+            panel.plot(known[0].real, known[0].imag / (2.0 * np.pi), "s", color=colour, markerfacecolor="white")
+            panel.plot(known[-1].real, known[-1].imag / (2.0 * np.pi), "o", color=colour)
+        panel.axvline(0.0, color="#000000", linewidth=0.5)
+        low, high = tracked.value[0], tracked.value[-1]
+        note(panel, f"□ {tracked.parameter} = {number(low)}\n● {tracked.parameter} = {number(high)}", "upper left")
+        panel.margins(x=0.1, y=0.25)
+        panel.set(xlabel=quantity_label("growth rate", "1/s"), ylabel=quantity_label("frequency", "Hz"), title=title)
+        return figure_of(panel)
+
+
+@plot.register(TrackedModes)
+def tracked_modes(tracked: TrackedModes, **keywords: Any) -> "Figure":
+    """Frequency and growth rate of every tracked mode against the parameter."""
+    keywords.setdefault("name", tracked.parameter)
+    return coalescence(tracked.value, tracked.eigenvalues, **keywords)
+
+
+@plot.register(StabilityMap)
+def mechanism_map(
+    found: StabilityMap, *, boundary: Boundary | None = None, scales: Scales = None, title: str = "", axes: Any = None
+) -> "Figure":
+    """Stable and unstable regions over two parameters, shaded and hatched by mechanism, with traced boundary curves.
+
+    A map of more or fewer than two parameters raises `ValueError`.
+    """
+    from matplotlib.patches import Patch
+
+    if len(found.axes) != 2:
+        raise ValueError(f"a map over {list(found.axes)}: expected two parameters")
+    (x_name, x), (y_name, y) = ((name, np.asarray(values)) for name, values in found.axes.items())
+    (x_factor, x_unit), (y_factor, y_unit) = (_scale(name, scales) for name in (x_name, y_name))
+    handles = [Patch(facecolor="white", edgecolor="#000000", linewidth=0.5, label="stable")]
+    with drawing(axes, width=4.0, height=3.4) as panel:
+        for name, (colour, hatch) in AREAS.items():
+            inside = (found.mechanism == found.mechanism_names.index(name)).T
+            if not np.any(inside):
+                continue
+            panel.contourf(
+                x_factor * x, y_factor * y, inside.astype(float), levels=[0.5, 1.5], colors=[colour], hatches=[hatch]
+            )
+            label = name.replace("_", " ")
+            handles.append(Patch(facecolor=colour, hatch=hatch, edgecolor="#000000", linewidth=0.5, label=label))
+        if not np.all(found.exists):
+            panel.contourf(
+                x_factor * x, y_factor * y, (~found.exists).T.astype(float), levels=[0.5, 1.5], colors=["#eeeeee"]
+            )
+            handles.append(Patch(facecolor="#eeeeee", label="no steady sliding"))
+        if boundary is None:
+            level = np.ma.masked_invalid(found.growth_rate.T)
+            if np.nanmin(found.growth_rate) < 0.0 < np.nanmax(found.growth_rate):
+                panel.contour(x_factor * x, y_factor * y, level, levels=[0.0], colors=["#000000"], linewidths=1.0)
+        else:
+            _curves(panel, boundary, x_factor, y_factor)
+        panel.legend(handles=handles, loc="best", handlelength=2.0)
+        panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
+        return figure_of(panel)
+
+
+@plot.register(Boundary)
+def boundary_curves(boundary: Boundary, *, scales: Scales = None, title: str = "", axes: Any = None) -> "Figure":
+    """The traced boundary alone: the curves and their points."""
+    x_name, y_name = boundary.parameters
+    (x_factor, x_unit), (y_factor, y_unit) = (_scale(name, scales) for name in (x_name, y_name))
+    with drawing(axes, width=4.0, height=3.4) as panel:
+        _curves(panel, boundary, x_factor, y_factor, marker=".")
+        panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
+        return figure_of(panel)
+
+
+@plot.register(ModeEnergy)
+def mode_energy(energy: ModeEnergy, *, title: str = "", axes: Any = None) -> "Figure":
+    """What each contact and damper adds to the growth rate of a mode, as bars; their sum is the growth rate."""
+    per = 1.0 / (2.0 * energy.total)
+    rows = [
+        (f"{name}: normal force", value) for name, value in zip(energy.contacts, energy.circulation * per, strict=True)
+    ]
+    rows += [(f"{name}: slope", value) for name, value in zip(energy.contacts, energy.slope * per, strict=True)]
+    rows += [(f"damping of {name}", -value) for name, value in zip(energy.dofs, energy.dissipated * per, strict=True)]
+    if float(energy.structure):
+        rows.append(("skew stiffness", float(energy.structure) * per))
+    rows.append(("sum = growth rate", energy.growth_rate))
+    return _bars(rows, "contribution to the growth rate", "1/s", title, axes)
+
+
+@plot.register(Sensitivity)
+def sensitivity(found: Sensitivity, *, most: int = 10, title: str = "", axes: Any = None) -> "Figure":
+    """Change of the growth rate for one per cent more of each parameter, the strongest first."""
+    rows = [(name, 0.01 * value) for name, value in found.ranked()[:most]]
+    return _bars(rows, "change of growth rate for +1 %", "1/s", title, axes)
+
+
+@plot.register(TransientGrowth)
+def transient_growth(found: TransientGrowth, *, title: str = "", axes: Any = None) -> "Figure":
+    """Largest amplification possible at each instant, with the decay the eigenvalues promise."""
+    with drawing(axes) as panel:
+        panel.plot(1e3 * found.instants, found.envelope, **line(0), label="largest possible")
+        promised = np.exp(float(found.spectral_abscissa) * found.instants)
+        panel.plot(1e3 * found.instants, promised, **line(1), label="by eigenvalues alone")
+        panel.plot(
+            1e3 * float(found.time), float(found.amplification), **{**line(0), "marker": "o", "linestyle": "none"}
+        )
+        panel.set(xlabel=quantity_label("time", "ms"), ylabel=quantity_label("amplification", ""), title=title)
+        lasting = found.instants[found.envelope >= 0.05 * float(found.amplification)]
+        panel.set_xlim(0.0, 1e3 * float(lasting[-1]))
+        panel.set_ylim(bottom=0.0)
+        panel.legend(loc="best")
+        return figure_of(panel)
+
+
+def _bars(rows: list[tuple[str, float]], name: str, unit: str, title: str, axes: Any) -> "Figure":
+    with drawing(axes, width=4.5, height=0.4 + 0.24 * len(rows) + 0.3) as panel:
+        values = np.array([value for _, value in rows])
+        colours = ["#D55E00" if value > 0.0 else "#0072B2" for value in values]
+        bars = panel.barh(np.arange(len(rows)), values, color=colours, edgecolor="#000000", linewidth=0.4, height=0.7)
+        panel.bar_label(bars, labels=[number(value, 3) for value in values], padding=2, fontsize=6.5)
+        panel.axvline(0.0, color="#000000", linewidth=0.5)
+        panel.set_yticks(np.arange(len(rows)), [label for label, _ in rows])
+        panel.invert_yaxis()
+        panel.margins(x=0.18)
+        panel.set(xlabel=quantity_label(name, unit), title=title)
+        return figure_of(panel)
+
+
+def _curves(panel: Any, boundary: Boundary, x_factor: float, y_factor: float, **look: Any) -> None:
+    for points in boundary.curves:
+        panel.plot(x_factor * points[:, 0], y_factor * points[:, 1], color="#000000", linewidth=1.2, **look)
+
+
+def _scale(name: str, scales: Scales) -> tuple[float, str]:
+    return (scales or {}).get(name, (1.0, ""))
