@@ -185,10 +185,10 @@ class _Rectangle:
         return [(points[i], gradients[i]) for i in order if known[i]]
 
     def polished(self, points: Any) -> Any:
-        """Points moved along the gradient onto the boundary as far as round-off lets them."""
+        """Points moved along the gradient onto the boundary as far as round-off lets them: Newton, then halving."""
         best, size = points.copy(), np.abs(self.level(points))
-        for _ in range(8):
-            gradient = self.gradient(best)
+        gradient = self.gradient(best)
+        for _ in range(4):
             square = np.sum(gradient**2, axis=-1)
             with np.errstate(all="ignore"):
                 trial = best - (self.level(best) / square)[:, None] * gradient
@@ -196,6 +196,21 @@ class _Rectangle:
             left = np.abs(self.level(trial))
             better = (left < size) & (np.max(np.abs(trial - best), axis=-1) < 1e-3)
             best[better], size[better] = trial[better], left[better]
+            gradient = self.gradient(best)
+        with np.errstate(all="ignore"):
+            normal = gradient / np.linalg.norm(gradient, axis=-1)[:, None]
+        for reach in (1e-12, 1e-9, 1e-6):
+            ends = [np.clip(best + side * reach * normal, 0.0, 1.0) for side in (-1.0, 1.0)]
+            crossing = (self.level(ends[0]) <= 0.0) & (self.level(ends[1]) > 0.0)
+            stable, unstable = ends[0][crossing], ends[1][crossing]
+            for _ in range(HALVINGS if len(stable) else 0):
+                middle = 0.5 * (stable + unstable)
+                growing = (self.level(middle) > 0.0)[:, None]
+                stable, unstable = np.where(growing, stable, middle), np.where(growing, middle, unstable)
+            left = np.abs(self.level(stable)) if len(stable) else np.zeros(0)
+            better = left < size[crossing]
+            place = np.nonzero(crossing)[0][better]
+            best[place], size[place] = stable[better], left[better]
         return best
 
     def result(self, curves: list[Any], settings: dict[str, Any]) -> Boundary:
