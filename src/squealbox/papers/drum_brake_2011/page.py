@@ -12,7 +12,7 @@ from squealbox.report import Cell, Code, Page, Picture, Points, Section, Table, 
 
 READING_MEANS = {
     "eq1_printed": "Eq. (1) as printed: friction along x proportional to x, along y to y",
-    "eq3": "the linear form of Eq. (3): friction along x proportional to y and the other way round, sliding always +",
+    "eq3": "the linear form of Eq. (3): friction along x proportional to y and the other way round, slip taken as +",
     "eq3_signed": "the same with the sign of each sliding component: shoe 2 turns in x",
     "componentwise": "friction proportional to the whole spring compression, its sign by component",
     "consistent": "one contact a shoe, along its tangent, with the load in the contact: what a free-body diagram gives",
@@ -38,14 +38,14 @@ def page(folder: Path, studies: Mapping[str, Any], found: list[record.Record], s
     default = studies[DEFAULT_READING]
     lead = (
         f"Every claim of the paper beside what this program computes, for {len(studies)} readings of its contradictory "
-        "equations. No reading meets all claims, and none was tuned to."
+        f"equations. {_all_met(found)} Nothing was tuned."
     )
     others = [name for name in studies if name != DEFAULT_READING]
     return Page(
         title=paper()["title"],
         lead=f"{paper()['source']}. {lead}",
         sections=(
-            Section("Claims", _claims(list(studies), found)),
+            Section("Claims", _claims(list(studies), found, searched)),
             Section("What the raw integration changes", _raw_and_exact(studies, found)),
             Section("Assumptions and contradictions", _assumptions()),
             Section("Model and friction law", (_picture(folder, "fig1"), _picture(folder, "fig2"))),
@@ -60,7 +60,7 @@ def page(folder: Path, studies: Mapping[str, Any], found: list[record.Record], s
     )  # fmt: skip
 
 
-def _claims(readings: list[str], found: list[record.Record]) -> tuple[Any, ...]:
+def _claims(readings: list[str], found: list[record.Record], searched: Mapping[str, Any]) -> tuple[Any, ...]:
     numbers = record.count(found)
     tiles = tuple((str(number), f"of {len(found)} {verdict}", verdict) for verdict, number in numbers.items())
     by = {(each["id"], each["reading"]): each for each in found}
@@ -70,11 +70,29 @@ def _claims(readings: list[str], found: list[record.Record]) -> tuple[Any, ...]:
         rows.append((Cell(claim.id, claim.statement), Cell(claim.published), *cells))
     return (
         Tiles(tiles),
+        Text(_most(readings, found, searched)),
         Table(("claim", "published", *readings), tuple(rows), "A claim agrees when all of its parts that count do."),
         Table(("reading", "what it is", "agree", "disagree", "not decidable", "parts that agree"), tuple(
             _reading_row(reading, [each for each in found if each["reading"] == reading]) for reading in readings
         ), "The readings."),
     )  # fmt: skip
+
+
+def _all_met(found: list[record.Record]) -> str:
+    failing = {each["reading"] for each in found if each["verdict"] != AGREE}
+    meeting = {each["reading"] for each in found} - failing
+    return f"All claims are met by {', '.join(sorted(meeting))}." if meeting else "No reading meets all claims."
+
+
+def _most(readings: list[str], found: list[record.Record], searched: Mapping[str, Any]) -> str:
+    agree = {reading: sum(r["reading"] == reading and r["verdict"] == AGREE for r in found) for reading in readings}
+    most = max(agree.values())
+    names = " and ".join(reading for reading, number in agree.items() if number == most)
+    beyond = max(len(search_results.met(row)) for row in search_results.rows_of(searched))
+    return (
+        f"With the choices assumed here the most that one reading meets is {most} of {len(claims())} claims ({names}). "
+        f"Over all choices of alpha, speed and floor that were tried it is {beyond}."
+    )
 
 
 def _verdict(each: record.Record) -> Cell:
@@ -158,12 +176,17 @@ def _reading(name: str, study: Mapping[str, Any], found: list[record.Record], fo
             published = "yes" if part["published"] is True else f"{part['digits']} {part['unit']}".removesuffix(" -")
             what = Cell(f"{each['id']} {part['part']}".replace("_", " "), part["meaning"])
             by_road = [_answer(part["roads"].get(road)) for road in ROADS]
-            rows.append((what, Cell(published, f"{part['tolerance']}: {part['reason']}"), *by_road))
+            rows.append((what, Cell(published, _why(part)), *by_road))
     head = ("part of a claim", "published, tolerance", "eigenvalues", "raw (as in 2011)", "exact")
     pictures = tuple(_picture(folder, figure) for figure in study["figures"])
     table = Section("All numbers", (Table(head, tuple(rows)),), folded=True)
     runs = (Section("All runs, raw beside exact", (_runs(study["runs"]),), folded=True),) if study["runs"] else ()
     return (Text(f"{READING_MEANS[name][0].upper()}{READING_MEANS[name][1:]}."), table, *runs, *pictures)
+
+
+def _why(part: record.Record) -> str:
+    """The tolerance and its reason; a statement needs no tolerance."""
+    return str(part["reason"]) if part["published"] is True else f"{part['tolerance']}: {part['reason']}"
 
 
 def _runs(runs: list[dict[str, Any]]) -> Table:
