@@ -99,8 +99,9 @@ def exact_contact(reading, preload, repetitions):
     if len(motion.t) == len(reference.t) == 2:
         error = np.max(np.abs(motion.q[-1] - reference.q[-1])) / np.max(np.abs(reference.q))
     audit = simulate(system, DURATION).energy.relative_residual
+    given = "design" if preload is None else f"{preload:.0f}"
     print(
-        f"{reading:<14}{'design' if preload is None else format(preload, '.0f'):>9}{1e3 * np.median(spent):>9.2f}{1e3 * np.min(spent):>9.2f}{error:>10.1e}"
+        f"{reading:<14}{given:>9}{1e3 * np.median(spent):>9.2f}{1e3 * np.min(spent):>9.2f}{error:>10.1e}"
         f"{audit:>10.1e}{motion.steps:>8d}{motion.evaluations:>9d}{len(motion.event_time):>8d}  "
         f"{motion.outcome} / {reference.outcome}"
     )

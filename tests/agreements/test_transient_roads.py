@@ -183,7 +183,8 @@ def test_energy_audit_closes(contact, tolerance, method):
 
 
 def test_energy_audit_of_plain_sgn_closes_while_nothing_sticks():
-    motion = simulate(drum(0.44, "eq3_signed"), 0.01, contact="raw", rtol=1e-8, method="dormand-prince")
+    motion = simulate(drum(0.3), 0.01, contact="raw", rtol=1e-8, method="dormand-prince")
+    assert motion.outcome == "completed"
     assert motion.energy.relative_residual < 1e-6
 
 
