@@ -124,7 +124,5 @@ def test_steps_of_an_adaptive_run_scale_with_the_tolerance():
     # steps ~ rtol^(-1/order): from 1e-6 to 1e-9 a method of error order q takes about 10^(3/(q+1)) times the steps
     plain, start = System(np.eye(2), np.zeros((2, 2)), np.diag([1.0, 2.0])), ([1.0, 1.0], [0.0, 0.0])
     for name, error_order in (("bogacki-shampine", 2), ("dormand-prince", 4), ("tsitouras", 4)):
-        few, many = (
-            simulate(plain, 200.0, start, method=name, rtol=r, atol=r).steps for r in (1e-6, 1e-9)
-        )
+        few, many = (simulate(plain, 200.0, start, method=name, rtol=r, atol=r).steps for r in (1e-6, 1e-9))
         assert np.log10(many / few) == pytest.approx(3.0 / (error_order + 1), rel=0.1)
