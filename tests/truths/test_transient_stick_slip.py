@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from small_systems import METHODS, block_on_belt, extremes
-from squealbox import Constant, Coulomb, Hyperbolic, Ramp, Sinusoid, simulate
+from small_systems import METHODS, block_on_belt, extremes, two_blocks_on_belt
+from squealbox import Constant, Contact, Coulomb, Hyperbolic, Ramp, Sinusoid, System, simulate
 from squealbox.schedules import Table
 
 DIGITS = 1e-9  # nine digits after the point are given
@@ -188,3 +188,27 @@ def test_constant_schedules_are_numbers():
     plain = simulate(block_on_belt(Coulomb(0.4, 0.25), 0.1), 9.0, times=7)
     dressed = simulate(block_on_belt(Coulomb(0.4, 0.25), Constant(0.1), normal=Constant(1.0)), 9.0, times=7)
     assert np.array_equal(plain.q, dressed.q)
+
+
+@pytest.mark.parametrize("law", [Coulomb(0.4, 0.25), Coulomb(0.4)], ids=["static above kinetic", "equal"])
+def test_parallel_contacts_act_as_one(law):
+    """Two contacts in one place with loads N and 2 N are one contact with 3 N: neither knows how the other shares.
+
+    The split of a sticking force between them is open, so the matrix of the sticking contacts is singular.
+    """
+    both = System([[1.0]], [[0.0]], [[1.0]], 0.0, tuple(Contact([0.0], [1.0], [1.0], n, 0.1, law) for n in (1.0, 2.0)))
+    motion = simulate(both, 20.0, times=101)
+    one = simulate(block_on_belt(law, 0.1, normal=3.0), 20.0, times=101)
+    assert motion.outcome.ok
+    assert np.any(motion.mode[:, 0] == 0)
+    # 1e-9 is the relative tolerance of each step; the regularised split adds less
+    np.testing.assert_allclose(motion.q, one.q, atol=1e-8)
+    sticking = motion.mode[:, 0] == 0
+    np.testing.assert_allclose(2.0 * motion.friction_force[sticking, 0], motion.friction_force[sticking, 1], rtol=1e-6)
+
+
+def test_contacts_on_different_bodies_do_not_share():
+    """The negative twin: two blocks are not one block under both loads."""
+    pair = simulate(two_blocks_on_belt(), 20.0, times=101)
+    one = simulate(block_on_belt(Coulomb(0.4, 0.25), 0.1, normal=2.3), 20.0, times=101)
+    assert np.max(np.abs(pair.q[:, 0] - one.q[:, 0])) > 1e-2

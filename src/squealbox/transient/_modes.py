@@ -6,7 +6,15 @@ together: each sticks with |force| <= static N, or slips with the acceleration o
 
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
-from squealbox.transient._motion import OPEN, STICK, contact_kinematics, derivative, evaluate_signals, solve
+from squealbox.transient._motion import (
+    OPEN,
+    STICK,
+    contact_kinematics,
+    contact_matrix,
+    derivative,
+    evaluate_signals,
+    solve,
+)
 
 
 def slip_tolerance(p, c, y, s):
@@ -33,10 +41,18 @@ def apply_event(p, t, y, mode, s, j):
         s.at_zero[c] = abs(s.speed[c]) <= slip_tolerance(p, c, y, s)
         mode[c] = 1 if s.speed[c] >= 0.0 else -1
     elif mode[c] == STICK:
-        s.forced[c] = 1 if s.force[c] > 0.0 else -1
+        force_releases(p, mode, s, c)
     else:
         s.at_zero[c] = 1
     return settle(p, t, y, mode, s)
+
+
+def force_releases(p, mode, s, which):
+    """Release contact `which`, and with it every other one that sticks at its limit to round-off."""
+    for c in range(p.contacts):
+        limit = p.static[c] * s.normal[c]
+        if c == which or (mode[c] == STICK and abs(s.force[c]) >= limit * (1.0 - 1e-9)):
+            s.forced[c] = 1 if s.force[c] > 0.0 else -1
 
 
 def start_modes(p, t, y, mode, s):
@@ -72,16 +88,21 @@ def settle(p, t, y, mode, s):
 
 def remove_drift(p, y, s, sticking):
     """Bring the sliding velocity of the sticking contacts to zero by impulses along their own d."""
+    if sticking == 0:
+        return True
     for a in range(sticking):
         s.right[a] = s.speed[s.stuck[a]]
-        for b in range(sticking):
-            s.matrix[a, b] = p.g[s.stuck[a], s.stuck[b]]
-    if sticking > 0 and not solve(s.matrix, s.right, sticking):
-        return False
+    contact_matrix(p, s, sticking, 0.0)
+    solved = solve(s.matrix, s.right, sticking)
+    if not solved:
+        for a in range(sticking):
+            s.right[a] = s.speed[s.stuck[a]]
+        contact_matrix(p, s, sticking, 1e-6)
+        solved = solve(s.matrix, s.right, sticking)
     for a in range(sticking):
         for i in range(p.mk.shape[0]):
             y[p.mk.shape[0] + i] += p.md[s.stuck[a], i] * s.right[a]
-    return True
+    return solved
 
 
 def decide(p, t, y, mode, s):

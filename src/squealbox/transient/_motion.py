@@ -137,23 +137,59 @@ def release_open(p, y, mode, s, dy):
 
 
 def hold(p, s, sticking, dy):
-    """Forces of the sticking contacts from t_c . q'' = V_c', added to the accelerations in dy."""
+    """Forces of the sticking contacts from t_c . q'' = V_c', added to the accelerations in dy.
+
+    Contacts that hold the same motion (parallel d and t) leave the split of the force open. It is then shared in
+    proportion to their static limits: the matrix is regularised so, and the residual is solved for again.
+    """
+    n = p.mk.shape[0]
+    for a in range(sticking):
+        s.force[s.stuck[a]] = 0.0
+    solved = correct_forces(p, s, sticking, dy, 0.0)
+    if not solved:
+        for a in range(sticking):
+            s.force[s.stuck[a]] = 0.0
+        solved = True
+        for _ in range(4):
+            solved = correct_forces(p, s, sticking, dy, 1e-6) and solved
+    for a in range(sticking):
+        c = s.stuck[a]
+        for i in range(n):
+            dy[n + i] += p.md[c, i] * s.force[c]
+    return solved
+
+
+def correct_forces(p, s, sticking, dy, share):
+    """One solve for what the forces of the sticking contacts still lack; False when the matrix is singular."""
     n = p.mk.shape[0]
     for a in range(sticking):
         c = s.stuck[a]
-        right = -s.signal[p.signals + c]
+        right = s.signal[p.signals + c]
         for i in range(n):
-            right += p.t[c, i] * dy[n + i]
-        s.right[a] = -right
+            right -= p.t[c, i] * dy[n + i]
         for b in range(sticking):
-            s.matrix[a, b] = p.g[c, s.stuck[b]]
-    solved = solve(s.matrix, s.right, sticking)
+            right -= p.g[c, s.stuck[b]] * s.force[s.stuck[b]]
+        s.right[a] = right
+    contact_matrix(p, s, sticking, share)
+    if not solve(s.matrix, s.right, sticking):
+        return False
+    for a in range(sticking):
+        s.force[s.stuck[a]] += s.right[a]
+    return True
+
+
+def contact_matrix(p, s, sticking, share):
+    """t . M^-1 d of the sticking contacts, its diagonal raised by `share` over each contact's static limit."""
+    largest = 0.0
+    for a in range(sticking):
+        largest = max(largest, p.static[s.stuck[a]] * s.normal[s.stuck[a]])
     for a in range(sticking):
         c = s.stuck[a]
-        s.force[c] = s.right[a]
-        for i in range(n):
-            dy[n + i] += p.md[c, i] * s.right[a]
-    return solved
+        for b in range(sticking):
+            s.matrix[a, b] = p.g[c, s.stuck[b]]
+        if share > 0.0:
+            limit = max(p.static[c] * s.normal[c], 1e-3 * largest)
+            s.matrix[a, a] += share * p.g[c, c] * (largest / limit if limit > 0.0 else 1.0)
 
 
 def solve(matrix, right, size):
