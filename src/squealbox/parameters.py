@@ -129,7 +129,11 @@ class DataSheet:
         return all(_same(a, b) for a, b in zip(_values(self), _values(other), strict=True))
 
     def __hash__(self) -> int:
-        return hash((type(self), *(_hashable(value) for value in _values(self))))
+        kept: int | None = self.__dict__.get("_hash")
+        if kept is None:
+            kept = hash((type(self), *(_hashable(value) for value in _values(self))))
+            object.__setattr__(self, "_hash", kept)
+        return kept
 
     def replace(self, changes: Mapping[str, Any] | None = None, **keywords: Any) -> Self:
         """A copy with other values; dotted names reach into nested sheets: ``{"friction.static": 0.4}``.

@@ -15,6 +15,7 @@ from squealbox.transient.trajectory import Trajectory
 SCHEMES = {"exact": EXACT, "raw": RAW, "tanh": TANH, "smooth": ARCTAN, "arctan": ARCTAN}
 TIME_STEPPING = "time-stepping"
 USUAL_RTOL = {"bogacki-shampine": 1e-6, "dormand-prince": 1e-8, "tsitouras": 1e-8, "dormand-prince-8": 1e-9}
+ROWS = 32_768  # room for steps at first; memory is touched only as rows are written
 BUDGET = 50_000  # steps between two looks at the keyboard, about 20 ms
 
 MESSAGES = {
@@ -104,7 +105,7 @@ class _Run:
         self.rule = packing.rule(method.tableau)
         self.scratch = packing.scratch(self.problem, q, qd, time, method.first_step or 0.0)
         self.times = np.full(1, np.inf) if times is None else times
-        self.rows = np.zeros((4096 if times is None else len(times), packing.row_width(self.problem)))
+        self.rows = np.empty((ROWS if times is None else len(times), packing.row_width(self.problem)))
         self.events = np.zeros((256, 3))
         self.period = 1e3 * float(self.problem["window"])
         room = len(self.problem["mk"])
@@ -137,7 +138,7 @@ class _Run:
     def _make_room(self) -> None:
         count = self.scratch["count"]
         if self.problem["every_step"] and count[_march.ROWS] >= len(self.rows):
-            self.rows = np.concatenate([self.rows, np.zeros_like(self.rows)])
+            self.rows = np.concatenate([self.rows, np.empty_like(self.rows)])
         if count[_march.EVENTS] + self.problem["contacts"] > len(self.events):
             more = np.zeros((len(self.events) + int(self.problem["contacts"]), 3))
             self.events = np.concatenate([self.events, more])
