@@ -79,8 +79,9 @@ def test_compiled_spectra_of_awkward_matrices() -> None:
     assert np.all(np.isnan(found[5]))
 
 
-def test_spectrum_of_more_degrees_of_freedom_in_both_engines() -> None:
-    about = steady_sliding(random_systems(50, 6, 2))
+@pytest.mark.parametrize("size", [2, 6])
+def test_spectrum_in_both_engines(size: int) -> None:
+    about = steady_sliding(random_systems(50, size, 2))
     plain, fast = eigenvalues(about, "numpy"), eigenvalues(about, "compiled")
     assert np.max(np.min(np.abs(plain[:, :, None] - fast[:, None, :]), axis=2)) < 1e-9
 

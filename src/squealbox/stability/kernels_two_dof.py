@@ -118,8 +118,8 @@ def rightmost_of_quadratic(p: float, q: float) -> Any:
 
 
 @njit(forceinline=True, error_model="numpy", fastmath=FAST)
-def rightmost(a4: float, a3: float, a2: float, a1: float, a0: float) -> Any:
-    """Real and imaginary part of the root of the quartic with the largest real part, and how many grow."""
+def factors(a4: float, a3: float, a2: float, a1: float, a0: float) -> Any:
+    """p1, q1, p2, q2 and a scale with quartic = a4 (s^2 + p1 s + q1)(s^2 + p2 s + q2) in s / scale."""
     inverse = 1.0 / a4
     a3, a2, a1, a0 = a3 * inverse, a2 * inverse, a1 * inverse, a0 * inverse
     scale = math.sqrt(max(a3 * a3, max(abs(a2), math.sqrt(abs(a0)))))
@@ -149,6 +149,13 @@ def rightmost(a4: float, a3: float, a2: float, a1: float, a0: float) -> Any:
         over = 1.0 / det if abs(det) > 1e-200 else 0.0
         u, v = (r1 * dq - dp * r0) * over, ((dq - p1 * dp) * r0 + q1 * dp * r1) * over
         p1, q1, p2, q2 = p1 + u, q1 + v, p2 + r3 - u, q2 + r2 - dp * u - v
+    return p1, q1, p2, q2, scale
+
+
+@njit(forceinline=True, error_model="numpy", fastmath=FAST)
+def rightmost(a4: float, a3: float, a2: float, a1: float, a0: float) -> Any:
+    """Real and imaginary part of the root of the quartic with the largest real part, and how many grow."""
+    p1, q1, p2, q2, scale = factors(a4, a3, a2, a1, a0)
     g1, w1, n1 = rightmost_of_quadratic(p1, q1)
     g2, w2, n2 = rightmost_of_quadratic(p2, q2)
     first = g1 >= g2
@@ -209,3 +216,31 @@ def growth_of_parts(m: Any, p: Any, c: Any, k: Any, stride: int, x: float, y: fl
         solve_block(a, out)
         for b in range(min(BLOCK, number - start)):
             growth[start + b] = out[0, b]
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def spectrum(m: Any, c: Any, k: Any, stride: int, values: Any) -> None:
+    """All four eigenvalues of each system, values (count, 4): two roots of each quadratic factor."""
+    a = np.empty((5, BLOCK))
+    out = np.empty((5, BLOCK))
+    number = len(values)
+    for start in range(0, number, BLOCK):
+        for b in range(BLOCK):
+            i = min(start + b, number - 1)
+            a[0, b], a[1, b], a[2, b], a[3, b], a[4, b] = polynomial(m, c, k, stride * i, 4 * i)
+        for b in range(BLOCK):
+            out[0, b], out[1, b], out[2, b], out[3, b], out[4, b] = factors(a[0, b], a[1, b], a[2, b], a[3, b], a[4, b])
+        for b in range(min(BLOCK, number - start)):
+            for pair in range(2):
+                half, q, scale = 0.5 * out[2 * pair, b], out[2 * pair + 1, b], out[4, b]
+                d = half * half - q
+                root = math.sqrt(abs(d)) * scale
+                place = start + b
+                if d < 0.0:
+                    values[place, 2 * pair] = complex(-half * scale, root)
+                    values[place, 2 * pair + 1] = complex(-half * scale, -root)
+                else:
+                    far = -half * scale - root if half > 0.0 else -half * scale + root
+                    near = q * scale * scale / far if far != 0.0 else far
+                    values[place, 2 * pair] = complex(far, 0.0)
+                    values[place, 2 * pair + 1] = complex(near, 0.0)

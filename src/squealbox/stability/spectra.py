@@ -48,6 +48,8 @@ def asymptotically_stable(about: Linearised, engine: Engine = "auto") -> Any:
 
 def eigenvalues(about: Linearised, engine: Engine = "auto") -> Any:
     """All eigenvalues (..., 2n) [1/s] in no particular order; NaN without a spectrum."""
+    if about.M.shape[-1] == 2 and compiled(about, engine):
+        return _two_dof_spectrum(about)
     matrix, rate, usable, _ = state_matrix(about)
     size = matrix.shape[-1]
     safe = np.where(usable[..., None, None], matrix, np.eye(size))
@@ -60,12 +62,11 @@ def eigenvalues(about: Linearised, engine: Engine = "auto") -> Any:
 
 def compiled_eigenvalues(matrices: Any) -> Any:
     """Eigenvalues (count, n) of real matrices (count, n, n), as `numpy.linalg.eigvals`; NaN where QR fails."""
-    from squealbox.stability import kernels_spectrum
+    from squealbox.stability import kernels_lanes
 
     matrices = np.require(matrices, float, ["C", "W"])
-    count, size = matrices.shape[:2]
-    values = np.empty((count, size), dtype=complex)
-    kernels_spectrum.spectra(matrices, np.empty((size, size)), np.empty(size), np.empty(size), values)
+    values = np.empty(matrices.shape[:2], dtype=complex)
+    kernels_lanes.spectra(matrices, values)
     return values
 
 
@@ -92,6 +93,15 @@ def growth_of_parts(about: Linearised, passive: Any) -> Callable[[float, float],
         return out.reshape(shape)
 
     return growth
+
+
+def _two_dof_spectrum(about: Linearised) -> Any:
+    from squealbox.stability import kernels_two_dof as kernels
+
+    mass, damping, stiffness, shape, usable = _flat(about)
+    values = np.empty((damping.size // 4, 4), dtype=complex)
+    kernels.spectrum(mass, damping, stiffness, 0 if mass.size == 4 else 4, values)
+    return np.where(usable[..., None], values.reshape(*shape, 4), np.nan)
 
 
 def _two_dof(about: Linearised) -> tuple[Any, Any, Any]:
