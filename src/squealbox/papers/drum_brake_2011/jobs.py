@@ -7,6 +7,7 @@ starts import the caller's script again, which a user's plain script does not su
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -16,7 +17,8 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
-from squealbox.papers.drum_brake_2011.cases import DEFAULT_READING, Case
+from squealbox.papers.drum_brake_2011.cases import DEFAULT_READING, PRINTED, Case
+from squealbox.papers.drum_brake_2011.claims import EXACT, RAW
 
 MOST_WORKERS = 4  # each holds about 300 MB
 Job = dict[str, Any]
@@ -28,50 +30,62 @@ class JobFailed(RuntimeError):
     """A worker could not finish a job; the message names the job."""
 
 
-def run(jobs: list[Job], progress: Progress | None = None) -> list[Any]:
-    """The answers to all jobs, in their order; `progress` hears what was done and the share of jobs done."""
+def run(jobs: list[Job], progress: Progress | None = None, first: int = 0) -> list[Any]:
+    """The answers to all jobs, in their order; `progress` hears what was done and the share of jobs done.
+
+    The first `first` jobs are finished before the others begin. Raises `JobFailed` with the first job that fails.
+    """
     answers: list[Any] = [None] * len(jobs)
-    with _workers(min(_processors(), MOST_WORKERS, len(jobs))) as idle, ThreadPoolExecutor(MOST_WORKERS) as threads:
-        waiting = {threads.submit(_ask, idle, job): i for i, job in enumerate(jobs)}
-        try:
-            for done, future in enumerate(as_completed(waiting), start=1):
-                i = waiting[future]
-                answers[i] = future.result()
-                if progress is not None:
-                    progress(jobs[i]["label"], done / len(jobs))
-        except BaseException:
-            for future in waiting:
-                future.cancel()
-            raise
+    done = 0
+    count = min(_processors(), MOST_WORKERS, len(jobs))
+    with ThreadPoolExecutor(count) as threads, _workers(count) as idle:
+        for batch in (range(first), range(first, len(jobs))):
+            waiting = {threads.submit(_ask, idle, jobs[i]): i for i in batch}
+            try:
+                for future in as_completed(waiting):
+                    answers[waiting[future]] = future.result()
+                    done += 1
+                    if progress is not None:
+                        progress(jobs[waiting[future]]["label"], done / len(jobs))
+            except BaseException:
+                for future in waiting:
+                    future.cancel()
+                raise
     return answers
 
 
 def everything(
     readings: Sequence[str], figures: Path, progress: Progress | None = None
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Study and search of every reading, by reading; the default reading's figures go to `figures` itself."""
-    studies: list[Job] = [
-        {
-            "kind": "study",
-            "reading": reading,
-            "folder": str(figures if reading == DEFAULT_READING else figures / reading),
-            "label": f"study of {reading}",
-        }
-        for reading in readings
-    ]
-    searches: list[Job] = [{"kind": "search", "reading": each, "label": f"search in {each}"} for each in readings]
-    answers = run(studies + searches, progress)
-    count = len(studies)
-    return dict(zip(readings, answers[:count], strict=True)), dict(zip(readings, answers[count:], strict=True))
+    """Study and search of every reading, by reading; the default reading's figures go to `figures` itself.
+
+    What the transients need is compiled first, once, beside the one reading that has none: two workers that start on
+    transients would each compile the same.
+    """
+    compiling = [{"kind": "compile", "contact": road, "label": f"compiled for {road} contact"} for road in (EXACT, RAW)]
+    tasks = [_task(kind, reading, figures) for kind in ("study", "search") for reading in readings]
+    alone = [task for task in tasks if task["reading"] == PRINTED]
+    others = [task for task in tasks if task["reading"] != PRINTED]
+    answers = run(compiling + alone + others, progress, len(compiling + alone))[len(compiling) :]
+    found = {(task["kind"], task["reading"]): answer for task, answer in zip(alone + others, answers, strict=True)}
+    return {name: found["study", name] for name in readings}, {name: found["search", name] for name in readings}
 
 
 def do(job: Job) -> Any:
-    """One job: the study or the search of one reading."""
-    from squealbox.papers.drum_brake_2011 import reading, search
+    """One job: the study or the search of one reading, or one run so that its kernel is compiled."""
+    from squealbox.papers.drum_brake_2011 import motions, reading, search
 
+    if job["kind"] == "compile":
+        return motions.studies(Case(DEFAULT_READING), job["contact"])[motions.RUNS[0]].words
     if job["kind"] == "study":
         return reading.study(Case(job["reading"]), Path(job["folder"]))
     return search.search(job["reading"])
+
+
+def _task(kind: str, reading: str, figures: Path) -> Job:
+    folder = figures if reading == DEFAULT_READING else figures / reading
+    label = f"{'study of' if kind == 'study' else 'search in'} {reading}"
+    return {"kind": kind, "reading": reading, "folder": str(folder), "label": label}
 
 
 def _processors() -> int:
@@ -116,6 +130,7 @@ def _ask(idle: Idle, job: Job) -> Any:
 
 def _work() -> None:
     """Answer jobs until the input ends. What libraries print goes to standard error, not between the answers."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the caller's: it stops the workers
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     for line in sys.stdin:
