@@ -7,7 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from squealbox.papers.drum_brake_2011 import by_eigenvalues, by_transients, jobs, reading, reproduce, search, steady
+from squealbox.papers.drum_brake_2011 import (
+    by_eigenvalues,
+    by_transients,
+    figures,
+    jobs,
+    reading,
+    reproduce,
+    search,
+    steady,
+)
 from squealbox.papers.drum_brake_2011.cases import ALL_READINGS, DEFAULT_READING, PRINTED, RESOLUTION, Case
 from squealbox.papers.drum_brake_2011.claims import AGREE, DISAGREE, EXACT, RAW, UNDECIDED, claims
 from squealbox.papers.drum_brake_2011.motions import FRICTION, Motion, Run, Studies, doubt, judged, studies
@@ -118,6 +127,15 @@ def test_the_search_judges_as_the_study_does() -> None:
     assert row["verdicts"]["mu-2"] == DISAGREE
     assert row["verdicts"]["mu-7"] == UNDECIDED
     assert found["skipped"] == 0
+
+
+def test_a_map_without_an_unstable_point_still_shows_its_angles() -> None:
+    """Reading `eq3` is stable all over; the published zone must stand in its place on the empty map."""
+    found = steady.pressure_map(Case("eq3"), step=5.0)
+    assert not found.unstable.any()
+    panel = figures.pressure_maps({0.30: found}).axes[0]
+    assert panel.get_xlim() == (20.0, 160.0)
+    assert panel.get_ylim() == (20.0, 160.0)
 
 
 @pytest.fixture(scope="module")

@@ -50,6 +50,7 @@ def stability_map(
             panel.contourf(x, y, unknown.astype(float), levels=[0.5, 1.5], colors=["#dddddd"], hatches=["xxx"])
         _legend(panel, level > 0.0, unknown)
         panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
+        panel.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))  # a map that is stable all over draws nothing else
         panel.set_facecolor("white")
         panel.tick_params(color="#000000")
         return figure_of(panel)
