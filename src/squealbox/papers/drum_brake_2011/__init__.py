@@ -19,7 +19,7 @@ def reproduce(out: str | os.PathLike[str], progress: Callable[[str, float], None
 
     `out` then holds index.html (self-contained), claims.json, claims.md, search.csv, and figures/ with Figs. 1 to 9 of
     the default reading, the other readings' in folders of their names, each as PNG and SVG. `progress` is called with
-    what was done and the share that is done. Takes about half a minute on 2 processors once the kernels are compiled.
+    what was done and the share that is done. Takes about 40 s on 2 processors once the kernels are compiled.
 
     Source: Journal of Vibroengineering 13(2), paper 632, June 2011.
     """

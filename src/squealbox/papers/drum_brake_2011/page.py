@@ -27,8 +27,8 @@ CAPTIONS = {
     "fig5": "Fig. 5. Frequencies and growth rates over the friction coefficient. Stars: the published frequencies.",
     "fig6": "Fig. 6. Time series and spectra over the load. Black: raw; dotted and dashed: exact.",
     "fig7": "Fig. 7. Phase planes over the load. Black: last cycles, raw. Dashed: last cycle, exact.",
-    "fig8": "Fig. 8. Braking from 0.2 m/s to rest in 0.05 s. Grey: where the paper sees a constant amplitude. A kick at "
-    "the end is the belt coming to rest.",
+    "fig8": "Fig. 8. Braking from 0.2 m/s to rest in 0.05 s. Grey: where the paper sees a constant amplitude. "
+    "The kick at the end is the belt coming to rest.",
     "fig9": "Fig. 9. Growth rate over both centres of pressure in steps of 1 deg. Blue: the published unstable zone.",
 }
 SIGNS = {AGREE: "✓", DISAGREE: "✗", UNDECIDED: "?"}
