@@ -17,8 +17,24 @@ MARGINAL = 1e-12  # growth below this share of the largest |lambda| is round-off
 NEAR_DEFECTIVE = 1e6  # condition number of an eigenvalue at which about 6 of 16 digits are lost
 
 
+class OneEigenvalue:
+    """What follows from the one eigenvalue a result carries."""
+
+    eigenvalue: Any
+
+    @property
+    def angular_frequency(self) -> float:
+        """|Im lambda| [rad/s]."""
+        return float(abs(np.imag(self.eigenvalue)))
+
+    @property
+    def frequency(self) -> float:
+        """|Im lambda| / (2 pi) [Hz]."""
+        return self.angular_frequency / (2.0 * np.pi)
+
+
 @dataclass(frozen=True, eq=False)
-class Mode:
+class Mode(OneEigenvalue):
     """One mode of one system, from which a simulation or a limit cycle can start.
 
     eigenvalue [1/s]; shape u (n,) with |u| = 1 and its largest part real; left w (n,), scaled so that
@@ -37,16 +53,6 @@ class Mode:
     def growth_rate(self) -> float:
         """Re lambda [1/s]; positive grows."""
         return float(np.real(self.eigenvalue))
-
-    @property
-    def angular_frequency(self) -> float:
-        """|Im lambda| [rad/s]."""
-        return float(abs(np.imag(self.eigenvalue)))
-
-    @property
-    def frequency(self) -> float:
-        """|Im lambda| / (2 pi) [Hz]."""
-        return self.angular_frequency / (2.0 * np.pi)
 
     @property
     def damping_ratio(self) -> float:

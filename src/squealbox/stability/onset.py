@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.result import Outcome, Result, quantity
-from squealbox.stability.eigenvalues import modes_of, spectrum
+from squealbox.stability.eigenvalues import OneEigenvalue, modes_of, spectrum
 from squealbox.stability.family import Family, entry
 from squealbox.stability.mechanism import Mechanism, mechanism_at
 from squealbox.stability.scan import Scan, merging, scan
@@ -17,7 +17,7 @@ BESIDE = 1e-6  # share of the range by which the mechanism of a neutral system i
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class CriticalValue(Result):
+class CriticalValue(OneEigenvalue, Result):
     """One value of a parameter at which a mode crosses zero growth, as :func:`critical_value` returns it.
 
     direction is "destabilising" (the mode grows above) or "stabilising" (it grows below); mechanism is flutter,
@@ -35,16 +35,6 @@ class CriticalValue(Result):
     slope: float = float("nan")
     unstable_below: int = 0
     unstable_above: int = 0
-
-    @property
-    def angular_frequency(self) -> float:
-        """|Im lambda| at the onset [rad/s]."""
-        return float(abs(np.imag(self.eigenvalue)))
-
-    @property
-    def frequency(self) -> float:
-        """|Im lambda| / (2 pi) at the onset [Hz]."""
-        return self.angular_frequency / (2.0 * np.pi)
 
     @property
     def changes_stability(self) -> bool:

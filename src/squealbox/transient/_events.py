@@ -11,7 +11,15 @@ two crossings inside one step are not missed.
 
 import numpy as np
 
-from squealbox.transient._motion import OPEN, STICK, contact_kinematics, derivative, evaluate_signals
+from squealbox.transient._motion import (
+    EVALUATIONS,
+    OPEN,
+    STICK,
+    contact_kinematics,
+    derivative,
+    evaluate_signals,
+    slip_acceleration,
+)
 from squealbox.transient._runge_kutta import dense_stages, interpolate, take_step
 
 NO_EVENT = 2.0  # any theta above 1
@@ -41,19 +49,13 @@ def event_values(p, t, y, mode, s, phi):
                 phi[m + c] = s.normal[c]
 
 
-def surely_none(p, h, mode, fresh, y, y_new, stage, last, phi0, phi1):
+def surely_none(p, h, mode, s, stage, last, phi0, phi1):
     """True when every contact slips and its speed's Hermite cubic stays well away from zero over the step."""
-    n = p.mk.shape[0]
     for c in range(p.contacts):
-        if mode[c] == STICK or mode[c] == OPEN or fresh[c] or p.unilateral[c] or p.varying:
+        if mode[c] == STICK or mode[c] == OPEN or s.fresh[c] or p.unilateral[c] or p.varying:
             return False
-        rate0 = 0.0
-        rate1 = 0.0
-        for i in range(n):
-            rate0 -= p.t[c, i] * stage[0, n + i]
-            rate1 -= p.t[c, i] * stage[last, n + i]
-        b1 = phi0[c] + mode[c] * rate0 * h / 3.0
-        b2 = phi1[c] - mode[c] * rate1 * h / 3.0
+        b1 = phi0[c] + mode[c] * slip_acceleration(p, c, stage[0], s) * h / 3.0
+        b2 = phi1[c] - mode[c] * slip_acceleration(p, c, stage[last], s) * h / 3.0
         margin = 0.2 * (abs(phi1[c] - phi0[c]) + abs(b1 - phi0[c]) + abs(b2 - phi1[c]))
         if not (phi0[c] > margin and phi1[c] > margin and b1 > margin and b2 > margin):
             return False
@@ -70,9 +72,9 @@ def first_event(p, r, t, h, y, y_new, mode, s, stage):
     for c in range(m):
         if not s.fresh[c] and not s.phi0[c] > 0.0:
             return 0.0, c
-    if surely_none(p, h, mode, s.fresh, y, y_new, stage, r.stages, s.phi0, s.phi1):
+    if surely_none(p, h, mode, s, stage, r.stages, s.phi0, s.phi1):
         return NO_EVENT, -1
-    s.count[2] += dense_stages(p, r, t, h, y, mode, s, stage)
+    s.count[EVALUATIONS] += dense_stages(p, r, t, h, y, mode, s, stage)
     for i in range(1, 4):
         interpolate(r, 0.25 * i, h, y, stage, s.y_dense)
         event_values(p, t + 0.25 * i * h, s.y_dense, mode, s, s.phi)
@@ -104,10 +106,7 @@ def start_power(p, h, mode, s, stage, c):
     Its speed over theta tends to its acceleration times h there. After a release without a drop of friction that is
     zero too, and the speed over theta squared is searched instead.
     """
-    rate = s.signal[p.signals + c]
-    for i in range(p.mk.shape[0]):
-        rate -= p.t[c, i] * stage[0, p.mk.shape[0] + i]
-    rate *= mode[c] * h
+    rate = mode[c] * h * slip_acceleration(p, c, stage[0], s)
     size = 0.0
     for i in range(1, 5):
         size = max(size, abs(s.nodes[i, c]))
@@ -252,6 +251,6 @@ def keep_better(p, r, t, x, f, new, f_new, y, y_new, mode, s, stage, j):
 def value_after(p, r, t, h, y, y_new, mode, s, stage, j):
     """Event function j at the end of a real step of length h."""
     evaluations, _ = take_step(p, r, t, h, y, mode, s, stage, y_new)
-    s.count[2] += evaluations
+    s.count[EVALUATIONS] += evaluations
     event_values(p, t + h, y_new, mode, s, s.phi1)
     return s.phi1[j]

@@ -10,18 +10,36 @@ import numpy as np
 
 from squealbox.transient._events import event_values, first_event, step_onto
 from squealbox.transient._modes import apply_event, remove_drift, start_modes
-from squealbox.transient._motion import STICK, contact_kinematics, derivative, evaluate_signals
+from squealbox.transient._motion import (
+    ACCEPTED,
+    BREAK,
+    CAUTIOUS,
+    EVALUATIONS,
+    EVENTS,
+    FLIPS,
+    IN_WINDOW,
+    INSIDE,
+    LOG_ERROR,
+    NEXT,
+    OPEN,
+    PIECE,
+    REJECTED,
+    REVERSALS,
+    ROWS,
+    STEP,
+    TIME,
+    WINDOW,
+    contact_kinematics,
+    derivative,
+    evaluate_signals,
+    is_open,
+    list_sticking,
+    sliding_velocity,
+)
 from squealbox.transient._runge_kutta import dense_stages, error_norm, first_step, interpolate, take_step
 
 # how a call of `march` ended
 COMPLETED, RUNNING, UNDERFLOW, NOT_FINITE, CHATTERING, ZENO, INCONSISTENT, STEP_LIMIT = 0, 1, 2, 3, 4, 5, 6, 7
-# s.clock: time, proposed step, logarithm of the previous error, end of the smooth piece, start of the window in which
-# events are counted, last instant inside the piece
-TIME, STEP, LOG_ERROR, PIECE, WINDOW, INSIDE = 0, 1, 2, 3, 4, 5
-# s.count: accepted, rejected, evaluations, events, rows written, next requested time, next break, events in the window,
-# steps over a reversal of sliding among the last ones, 1 after a rejected step, steps over a reversal in all
-ACCEPTED, REJECTED, EVALUATIONS, EVENTS, ROWS, NEXT, BREAK, IN_WINDOW, FLIPS, CAUTIOUS = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
-REVERSALS = 10
 
 
 def begin(p, r, s, times, rows, limit):
@@ -122,7 +140,10 @@ def accept(p, r, s, times, rows, events, t, h, t_new, error, last):
             s.fresh[c] = 0
         if p.varying:
             keep_sticking(p, s, t_new)
-        event_values(p, t_new, s.state, s.mode, s, s.phi0)
+            event_values(p, t_new, s.state, s.mode, s, s.phi0)
+        else:
+            for j in range(2 * p.contacts):
+                s.phi0[j] = s.phi1[j]
     return RUNNING
 
 
@@ -180,8 +201,8 @@ def row_mode(p, s, c):
     """The mode as output: that of the exact scheme, else the sign of the sliding velocity."""
     if WITH_EVENTS:
         return s.mode[c]
-    if p.unilateral[c] != 0 and s.normal[c] <= 0.0:
-        return 2
+    if is_open(p, c, s.mode, s.normal[c]):
+        return OPEN
     return int(np.sign(s.speed[c]))
 
 
@@ -225,11 +246,7 @@ def keep_sticking(p, s, t):
     """Under a varying speed the quadrature of V' drifts from V: put sticking contacts back on it."""
     evaluate_signals(p, t, s)
     contact_kinematics(p, s.state, s)
-    sticking = 0
-    for c in range(p.contacts):
-        if s.mode[c] == STICK:
-            s.stuck[sticking] = c
-            sticking += 1
+    sticking = list_sticking(p, s.mode, s)
     if sticking > 0:
         remove_drift(p, s.state, s, sticking)
         derivative(p, t, s.state, s.mode, s, s.stage[0])
@@ -239,13 +256,9 @@ def keep_sticking(p, s, t):
 def count_flips(p, s):
     """How many steps, in all and of late, ended with a sliding velocity of the other sign."""
     flipped = False
-    n = p.mk.shape[0]
     for c in range(p.contacts):
-        before = s.signal[c]
-        after = s.signal[c]
-        for i in range(n):
-            before -= p.t[c, i] * s.state[n + i]
-            after -= p.t[c, i] * s.state_new[n + i]
+        before = sliding_velocity(p, c, s.state, s)
+        after = sliding_velocity(p, c, s.state_new, s)
         flipped = flipped or (before > 0.0) != (after > 0.0)
     if flipped:
         s.count[FLIPS] += 1

@@ -13,6 +13,8 @@ from squealbox.transient._motion import (
     contact_matrix,
     derivative,
     evaluate_signals,
+    list_sticking,
+    slip_acceleration,
     solve,
 )
 
@@ -76,14 +78,10 @@ def settle(p, t, y, mode, s):
     """Solve for the modes of all contacts at zero speed together, then remove the drift of those that stick."""
     if not decide(p, t, y, mode, s):
         return False
-    sticking = 0
     contact_kinematics(p, y, s)
     for c in range(p.contacts):
         s.fresh[c] = s.at_zero[c] != 0 and mode[c] != STICK
-        if mode[c] == STICK:
-            s.stuck[sticking] = c
-            sticking += 1
-    return remove_drift(p, y, s, sticking)
+    return remove_drift(p, y, s, list_sticking(p, mode, s))
 
 
 def remove_drift(p, y, s, sticking):
@@ -146,10 +144,9 @@ def wanted_mode(p, c, mode, s):
         if abs(s.force[c]) <= p.static[c] * s.normal[c] * (1.0 + 1e-12):
             return STICK
         return 1 if s.force[c] > 0.0 else -1
-    rate = s.signal[p.signals + c]
-    size = abs(rate)
+    rate = slip_acceleration(p, c, s.dy, s)
+    size = abs(s.signal[p.signals + c])
     for i in range(p.mk.shape[0]):
-        rate -= p.t[c, i] * s.dy[p.mk.shape[0] + i]
         size += abs(p.t[c, i] * s.dy[p.mk.shape[0] + i])
     if mode[c] * rate >= -1e-12 * size:
         return mode[c]

@@ -16,15 +16,23 @@ import numpy as np
 
 RAW, EXACT, TANH, ARCTAN = 0, 1, 2, 3  # WITH_EVENTS is true in the file compiled for EXACT
 STICK, OPEN = 0, 2
+# s.clock: time, proposed step, logarithm of the previous error, end of the smooth piece, start of the window in which
+# events are counted, last instant inside the piece
+TIME, STEP, LOG_ERROR, PIECE, WINDOW, INSIDE = 0, 1, 2, 3, 4, 5
+# s.count: accepted, rejected, evaluations, events, rows written, next requested time, next break, events in the window,
+# steps over a reversal of sliding among the last ones, 1 after a rejected step, steps over a reversal in all
+ACCEPTED, REJECTED, EVALUATIONS, EVENTS, ROWS, NEXT, BREAK, IN_WINDOW, FLIPS, CAUTIOUS = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
+REVERSALS = 10
 
 
 def evaluate_signals(p, t, s):
     """Speeds, preloads, load and the rates of the speeds at time t, each a sum of weighted schedules.
 
-    s.clock[5] is the last instant of the present smooth piece, so the end of a step onto a kink sees the left side.
+    s.clock[INSIDE] is the last instant of the present smooth piece, so the end of a step onto a kink sees the left
+    side.
     """
     signal = s.signal
-    t = min(t, s.clock[5])
+    t = min(t, s.clock[INSIDE])
     for i in range(p.signals):
         total = 0.0
         rate = 0.0
@@ -78,6 +86,29 @@ def sliding_velocity(p, c, y, s):
     return speed
 
 
+def slip_acceleration(p, c, dy, s):
+    """V' - t . q'' of contact c."""
+    rate = s.signal[p.signals + c]
+    for i in range(p.mk.shape[0]):
+        rate -= p.t[c, i] * dy[p.mk.shape[0] + i]
+    return rate
+
+
+def is_open(p, c, mode, normal):
+    """Whether contact c is off: by its mode in the exact scheme, else by its normal force."""
+    return mode[c] == OPEN if WITH_EVENTS else p.unilateral[c] != 0 and normal <= 0.0
+
+
+def list_sticking(p, mode, s):
+    """The contacts that stick, into s.stuck; returns how many."""
+    sticking = 0
+    for c in range(p.contacts):
+        if mode[c] == STICK:
+            s.stuck[sticking] = c
+            sticking += 1
+    return sticking
+
+
 def contact_kinematics(p, y, s):
     """Normal force and sliding velocity of every contact, into s.normal and s.speed."""
     for c in range(p.contacts):
@@ -96,8 +127,7 @@ def derivative(p, t, y, mode, s, dy):
         normal = normal_force(p, c, y, s)
         speed = sliding_velocity(p, c, y, s)
         force = 0.0
-        is_open = mode[c] == OPEN if WITH_EVENTS else p.unilateral[c] != 0 and normal <= 0.0
-        if is_open:
+        if is_open(p, c, mode, normal):
             opened = True
         elif WITH_EVENTS and mode[c] == STICK:
             s.stuck[sticking] = c
@@ -128,8 +158,7 @@ def release_open(p, y, mode, s, dy):
     n = p.mk.shape[0]
     power = 0.0
     for c in range(p.contacts):
-        is_open = mode[c] == OPEN if WITH_EVENTS else p.unilateral[c] != 0 and s.normal[c] <= 0.0
-        if is_open:
+        if is_open(p, c, mode, s.normal[c]):
             for i in range(n):
                 dy[n + i] += p.mw[c, i] * s.normal[c]
                 power += p.w[c, i] * y[n + i] * s.normal[c]
@@ -161,12 +190,9 @@ def hold(p, s, sticking, dy):
 
 def correct_forces(p, s, sticking, dy, share):
     """One solve for what the forces of the sticking contacts still lack; False when the matrix is singular."""
-    n = p.mk.shape[0]
     for a in range(sticking):
         c = s.stuck[a]
-        right = s.signal[p.signals + c]
-        for i in range(n):
-            right -= p.t[c, i] * dy[n + i]
+        right = slip_acceleration(p, c, dy, s)
         for b in range(sticking):
             right -= p.g[c, s.stuck[b]] * s.force[s.stuck[b]]
         s.right[a] = right

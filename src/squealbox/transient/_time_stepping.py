@@ -25,8 +25,8 @@ def signal_value(z, i, t):
     return total
 
 
-def time_stepping(z, q, u, start, h, steps, sweeps, tolerance, keep, rows, work):
-    """March `steps` steps of length h; row k of `rows` holds the state after k keep steps.
+def time_stepping(z, q, u, start, h, steps, sweeps, tolerance, rows, work):
+    """March `steps` steps of length h; row k of `rows` holds the state after k steps.
 
     A row is t, q, u, N, v, force, work of each contact's friction. Returns (steps done, largest number of sweeps,
     largest remaining change of an impulse over its limit).
@@ -63,8 +63,7 @@ def time_stepping(z, q, u, start, h, steps, sweeps, tolerance, keep, rows, work)
             finite = finite and np.isfinite(u[i])
         if not finite:
             return step, worst_sweeps, worst_change
-        if (step + 1) % keep == 0:
-            write_impact_row(z, q, u, start + (step + 1) * h, h, work, rows[(step + 1) // keep])
+        write_impact_row(z, q, u, start + (step + 1) * h, h, work, rows[step + 1])
     return steps, worst_sweeps, worst_change
 
 

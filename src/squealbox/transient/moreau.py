@@ -6,6 +6,7 @@ import numpy as np
 
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Outcome
+from squealbox.schedules import value_at
 from squealbox.system import (
     InvalidSystem,
     System,
@@ -83,7 +84,7 @@ def time_stepping(
     rows = np.zeros((steps + 1, 1 + 2 * n + 4 * m))
     z = _stepping(system, problem)
     done, sweeps, change = time_stepping_kernel()(
-        z, q.copy(), qd.copy(), start_time, h, steps, SWEEPS, TOLERANCE, 1, rows, np.zeros(m)
+        z, q.copy(), qd.copy(), start_time, h, steps, SWEEPS, TOLERANCE, rows, np.zeros(m)
     )
     outcome = _outcome(done, steps, h, sweeps, change)
     settings = {
@@ -161,8 +162,6 @@ def _trajectory(
 
 
 def _power_of_opening(system: System, times: Any, q: Any, qd: Any) -> Any:
-    from squealbox.schedules import value_at
-
     total = np.zeros(len(q))
     for contact in system.contacts:
         if contact.unilateral:

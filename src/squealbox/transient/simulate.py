@@ -1,5 +1,6 @@
 """What happens in time: one transient of one system."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -7,7 +8,7 @@ import numpy as np
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
-from squealbox.transient import _march, moreau, packing
+from squealbox.transient import _march, _motion, moreau, packing
 from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
 from squealbox.transient.methods import Method
 from squealbox.transient.trajectory import Trajectory
@@ -126,7 +127,7 @@ class _Run:
                 self._make_room()
                 code = march(*records, self.rows, self.events, *limits)
         except KeyboardInterrupt:
-            reached = float(self.scratch["clock"][_march.TIME])
+            reached = float(self.scratch["clock"][_motion.TIME])
             return Outcome("interrupted", f"stopped by the user at t = {reached:g} s", time=reached)
         return self._outcome(code, end)
 
@@ -137,9 +138,9 @@ class _Run:
 
     def _make_room(self) -> None:
         count = self.scratch["count"]
-        if self.problem["every_step"] and count[_march.ROWS] >= len(self.rows):
+        if self.problem["every_step"] and count[_motion.ROWS] >= len(self.rows):
             self.rows = np.concatenate([self.rows, np.empty_like(self.rows)])
-        if count[_march.EVENTS] + self.problem["contacts"] > len(self.events):
+        if count[_motion.EVENTS] + self.problem["contacts"] > len(self.events):
             more = np.zeros((len(self.events) + int(self.problem["contacts"]), 3))
             self.events = np.concatenate([self.events, more])
 
@@ -148,14 +149,14 @@ class _Run:
             return Outcome(COMPLETED)
         name, why = MESSAGES[code]
         s, n, room = self.scratch, self.system.size, len(self.problem["mk"])
-        reached, step = float(s["clock"][_march.TIME]), float(s["clock"][_march.STEP])
+        reached, step = float(s["clock"][_motion.TIME]), float(s["clock"][_motion.STEP])
         evidence = {
             "time": reached,
             "step": step,
             "q": s["state"][:n].tolist(),
             "qd": s["state"][room : room + n].tolist(),
             "sliding_velocity": s["speed"][: len(self.system.contacts)].tolist(),
-            "accepted": int(s["count"][_march.ACCEPTED]),
+            "accepted": int(s["count"][_motion.ACCEPTED]),
         }
         return Outcome(name, f"{why}; reached t = {reached:.9g} s of {end:g} s with a step of {step:.3g} s", **evidence)
 
@@ -163,8 +164,8 @@ class _Run:
         """The output so far as a result."""
         n, m = self.system.size, len(self.system.contacts)
         count = [int(x) for x in self.scratch["count"]]
-        rows = self.rows[: count[_march.ROWS]]
-        events = self.events[: count[_march.EVENTS]]
+        rows = self.rows[: count[_motion.ROWS]]
+        events = self.events[: count[_motion.EVENTS]]
         widths = [1, n, n, m, 1, 1, 1, 1, m, m, m, m]
         columns = np.split(rows, np.cumsum(widths)[:-1], axis=1)
         t, q, qd, friction, load, circulation, dissipated, opening, normal, speed, force, mode = columns
@@ -187,10 +188,10 @@ class _Run:
             event_time=events[:, 0],
             event_contact=events[:, 1].astype(np.int64),
             event_mode=events[:, 2].astype(np.int8),
-            caution=_caution(settings, count[_march.REVERSALS]),
-            steps=count[_march.ACCEPTED],
-            rejected=count[_march.REJECTED],
-            evaluations=count[_march.EVALUATIONS],
+            caution=_caution(settings, count[_motion.REVERSALS]),
+            steps=count[_motion.ACCEPTED],
+            rejected=count[_motion.REJECTED],
+            evaluations=count[_motion.EVALUATIONS],
         )
 
 
@@ -207,14 +208,8 @@ def _caution(settings: dict[str, Any], reversals: int) -> str:
 
 def _method(method: str | Method, rtol: float | None, atol: Any) -> Method:
     chosen = method if isinstance(method, Method) else Method(method, rtol=USUAL_RTOL.get(method, 1e-6))
-    return Method(
-        chosen.tableau,
-        chosen.rtol if rtol is None else rtol,
-        chosen.atol if atol is None else atol,
-        chosen.first_step,
-        chosen.largest_step,
-        chosen.most_steps,
-    )
+    given = {"rtol": rtol, "atol": atol}
+    return replace(chosen, **{name: value for name, value in given.items() if value is not None})
 
 
 def _times(times: Any, start_time: float, duration: float) -> Any:
