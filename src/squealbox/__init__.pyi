@@ -32,7 +32,17 @@ from .stability import (
     tracked_modes,
 )
 from .system import Contact, System, equilibrium, linearise
-from .transient import Method, Trajectory, Verdict, compare_contact, simulate, verdict
+from .transient import (
+    Ensemble,
+    Method,
+    Observer,
+    Trajectory,
+    Verdict,
+    compare_contact,
+    simulate,
+    simulate_ensemble,
+    verdict,
+)
 
 __version__: str
 
@@ -83,6 +93,9 @@ __all__ = [
     # what happens in time, and what became of it?
     "transient",
     "simulate",
+    "simulate_ensemble",
+    "Ensemble",
+    "Observer",
     "Method",
     "Trajectory",
     "compare_contact",

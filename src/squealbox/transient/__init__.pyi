@@ -1,18 +1,24 @@
 from .comparison import ContactComparison, compare_contact
+from .ensemble import Ensemble, simulate_ensemble
 from .methods import TABLEAUX, Method, Tableau
+from .observers import OBSERVERS, Observer
 from .simulate import simulate
 from .trajectory import EnergyAudit, Trajectory
 from .verdict import Verdict, verdict
 
 __all__ = [
+    "OBSERVERS",
     "TABLEAUX",
     "ContactComparison",
     "EnergyAudit",
+    "Ensemble",
     "Method",
+    "Observer",
     "Tableau",
     "Trajectory",
     "Verdict",
     "compare_contact",
     "simulate",
+    "simulate_ensemble",
     "verdict",
 ]

@@ -45,8 +45,8 @@ entry = inner
 @cache
 def time_stepping_kernel(plain: bool = False) -> Callable[..., Any]:
     """`_time_stepping.time_stepping`, compiled at first use."""
-    parts = _head(inline=True, plain=plain) + _definitions(_time_stepping, {})
-    stepping: Callable[..., Any] = _module("\n\n".join(parts) + "\n").time_stepping
+    parts = head(inline=True, plain=plain) + definitions(_time_stepping, {})
+    stepping: Callable[..., Any] = load_module("\n\n".join(parts) + "\n").time_stepping
     return stepping
 
 
@@ -56,20 +56,20 @@ def kernel(events: bool, plain: bool = False, counts: tuple[tuple[str, int], ...
 
     `counts` fixes numbers such as ``("p.contacts", 2)`` in the text, so the compiler unrolls the loops over them.
     """
-    march: Callable[..., int] = _module(source(events, plain, counts)).march
+    march: Callable[..., int] = load_module(source(events, plain, counts)).march
     return march
 
 
 def source(events: bool, plain: bool = False, counts: tuple[tuple[str, int], ...] = ()) -> str:
     """The text of the generated file."""
     fixed = {"WITH_EVENTS": events, **dict(counts)}
-    parts = _head(inline=not events, plain=plain)
+    parts = head(inline=not events, plain=plain)
     for module in (_motion, _runge_kutta, *((_modes, _events) if events else ()), _march):
-        parts += _definitions(module, fixed)
+        parts += definitions(module, fixed)
     return "\n\n".join(parts) + "\n"
 
 
-def _head(inline: bool, plain: bool) -> list[str]:
+def head(inline: bool, plain: bool = False) -> list[str]:
     """Decorators, and the laws and schedules behind one function each."""
     parts = [HEADER.format(decorators=PLAIN if plain else COMPILED.format(inline=inline))]
     parts += _dispatcher("law_mu", [law.formula for law in LAWS], "v")
@@ -99,7 +99,7 @@ def _dispatcher(name: str, formulas: list[Callable[..., Any]], argument: str) ->
     return [*parts, "\n".join(lines)]
 
 
-def _definitions(module: ModuleType, fixed: dict[str, int]) -> list[str]:
+def definitions(module: ModuleType, fixed: dict[str, int], entries: tuple[str, ...] = ENTRIES) -> list[str]:
     """Constants and functions of a plain module, in order, with their decorators."""
     parts = []
     for node in ast.parse(inspect.getsource(module)).body:
@@ -107,7 +107,7 @@ def _definitions(module: ModuleType, fixed: dict[str, int]) -> list[str]:
             parts.append(ast.unparse(node))
         elif isinstance(node, ast.FunctionDef):
             chosen = ast.unparse(ast.fix_missing_locations(_Fixed(fixed).visit(node)))
-            parts.append(("@entry\n" if node.name in ENTRIES else "@inner\n") + chosen)
+            parts.append(("@entry\n" if node.name in entries else "@inner\n") + chosen)
     return parts
 
 
@@ -150,7 +150,7 @@ class _Fixed(ast.NodeTransformer):
         return node
 
 
-def _module(text: str) -> ModuleType:
+def load_module(text: str) -> ModuleType:
     name = f"squealbox_kernel_{hashlib.sha256(text.encode()).hexdigest()[:20]}"
     path = _written(name, text)
     spec = importlib.util.spec_from_file_location(name, path)

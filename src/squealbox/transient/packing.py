@@ -206,7 +206,7 @@ def _signals(system: System, inverse: Any) -> dict[str, Any]:
     signal_start[i] <= k < signal_start[i + 1].
     """
     n, contacts = system.size, system.contacts
-    load = _load_terms(system)
+    load = load_terms(system)
     lists = [_terms(c.V) for c in contacts] + [_terms(c.N0) for c in contacts]
     spare: list[list[Any]] = [[] for _ in range(_room(n) - n)]  # the march counts loads by the room, not by the size
     lists += [[((inverse @ weight)[i], part) for weight, part in load] for i in range(n)] + spare
@@ -226,7 +226,8 @@ def _signals(system: System, inverse: Any) -> dict[str, Any]:
     }
 
 
-def _load_terms(system: System) -> list[tuple[Any, Schedule]]:
+def load_terms(system: System) -> list[tuple[Any, Schedule]]:
+    """The load as vectors (..., n), each times a simple schedule."""
     if not isinstance(system.load, Schedule):
         return [(np.asarray(system.load), UNIT)]
     terms = []

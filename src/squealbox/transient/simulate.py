@@ -76,7 +76,7 @@ def simulate(
     'completed'
     """
     system = as_system(design_or_system)
-    chosen = _method(method, rtol, atol)
+    chosen = chosen_method(method, rtol, atol)
     if contact not in (*SCHEMES, TIME_STEPPING):
         raise ParameterError("simulate", "contact", contact, known_names(str(contact), [*SCHEMES, TIME_STEPPING]))
     for name, value, low in (("duration", duration, 0.0), ("width", width, 0.0), ("start_time", start_time, -np.inf)):
@@ -206,7 +206,8 @@ def _caution(settings: dict[str, Any], reversals: int) -> str:
     return f"sliding reversed {reversals} times inside a smoothing of {width:g} m/s: sticking became creep; {advice}"
 
 
-def _method(method: str | Method, rtol: float | None, atol: Any) -> Method:
+def chosen_method(method: str | Method, rtol: float | None, atol: Any) -> Method:
+    """A method with its usual tolerances, or those given."""
     chosen = method if isinstance(method, Method) else Method(method, rtol=USUAL_RTOL.get(method, 1e-6))
     given = {"rtol": rtol, "atol": atol}
     return replace(chosen, **{name: value for name, value in given.items() if value is not None})

@@ -1,0 +1,269 @@
+"""Many transients at once: sixteen trajectories in the lanes of each group, groups on all cores."""
+
+import os
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from squealbox.parameters import ParameterError, known_names
+from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.system import System, as_system
+from squealbox.transient import _march
+from squealbox.transient.lanes.work import HEAD, Progress, Work
+from squealbox.transient.methods import Method
+from squealbox.transient.observers import as_observers
+from squealbox.transient.simulate import MESSAGES, SCHEMES, chosen_method
+
+if TYPE_CHECKING:
+    import xarray
+
+USUAL_RTOL = 1e-7
+CODES = {_march.COMPLETED: COMPLETED} | {code: name for code, (name, _) in MESSAGES.items()}
+NOT_RUN = "not_run"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Ensemble(Result):
+    """What :func:`simulate_ensemble` returns; ``...`` are the axes of the parameters.
+
+    ended names the outcome of each trajectory ("completed", or as in `simulate`; "not_run" after an interruption).
+    observed maps each observer's name to its values, (..., n), (..., contacts) or (...), with k values each where it
+    returns several; parameters maps dotted names to what varied, (...). sample_q and sample_qd are (..., instants, n),
+    empty when no instants were asked for.
+    """
+
+    ended: Any = quantity("...", "", "how each trajectory ended")
+    time: Any = quantity("...", "s", "instant reached")
+    q: Any = quantity("... dof", "m", "displacement at that instant")
+    qd: Any = quantity("... dof", "m/s", "velocity at that instant")
+    steps: Any = quantity("...", "", "accepted steps")
+    tried: Any = quantity("...", "", "tried steps")
+    events: Any = quantity("...", "", "events: reversals, stick, slip, lift-off and landing")
+    sample_time: Any = quantity("instant", "s", "instants of the samples")
+    sample_q: Any = quantity("... instant dof", "m", "displacement at the samples")
+    sample_qd: Any = quantity("... instant dof", "m/s", "velocity at the samples")
+    parameters: Mapping[str, Any] = field(default_factory=dict, metadata={"transient": True})
+    observed: Mapping[str, Any] = field(default_factory=dict, metadata={"transient": True})
+    seconds: float = 0.0
+
+    def __getitem__(self, name: str) -> Any:
+        """The values of an observer."""
+        if name not in self.observed:
+            raise KeyError(f"{name!r} was not observed: there is {', '.join(self.observed) or 'nothing'}")
+        return self.observed[name]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Axes of the parameters."""
+        return tuple(np.shape(self.ended))
+
+    @property
+    def rate(self) -> float:
+        """Trajectories per second, compilation and parameters included."""
+        return float(np.sum(self.ended != NOT_RUN)) / self.seconds if self.seconds > 0.0 else np.nan
+
+    def to_dataset(self) -> "xarray.Dataset":
+        """As `Result.to_dataset`, with ``parameter_<name>`` for what varied and ``observed_<name>`` for each observer."""
+        dataset = super().to_dataset()
+        batch = len(self.shape)
+        for name, values in self.parameters.items():
+            dataset[f"parameter_{name}"] = ([f"axis_{i}" for i in range(batch)], np.broadcast_to(values, self.shape))
+        for name, values in self.observed.items():
+            own = [f"{name}_{i}" for i in range(np.ndim(values) - batch)]
+            dataset[f"observed_{name}"] = ([*(f"axis_{i}" for i in range(batch)), *own], values)
+        return dataset
+
+    @classmethod
+    def from_dataset(cls, dataset: "xarray.Dataset") -> Self:
+        """The inverse of `to_dataset`."""
+        ensemble = super().from_dataset(dataset)
+        kept: dict[str, dict[str, Any]] = {"parameter_": {}, "observed_": {}}
+        for variable in dataset.data_vars:
+            for prefix, found in kept.items():
+                if str(variable).startswith(prefix):
+                    found[str(variable).removeprefix(prefix)] = dataset[variable].values
+        ended = np.asarray(ensemble.ended, dtype=str)
+        return replace(ensemble, parameters=kept["parameter_"], observed=kept["observed_"], ended=ended)
+
+
+def simulate_ensemble(
+    design_or_system: Any,
+    parameters: Mapping[str, Any] | None = None,
+    duration: float = 0.05,
+    method: str | Method = "dormand-prince-8",
+    observe: Any = ("amplitude",),
+    *,
+    grid: bool = False,
+    contact: str = "exact",
+    start: Any = None,
+    times: Any = None,
+    rtol: float | None = None,
+    atol: Any = None,
+    width: float = 1e-3,
+    start_time: float = 0.0,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Ensemble:
+    """Integrate the same brake at many parameters, each trajectory with its own steps and events.
+
+    Parameters
+    ----------
+    design_or_system : a design whose `parameters` vary; a `System` with leading axes; or a sequence of designs or
+        systems of the same structure
+    parameters : dotted names, such as "friction.static", with arrays that are broadcast together; with ``grid=True``
+        each array is an axis of its own
+    duration : [s]
+    method : name of a tableau or a `Method`; "bogacki-shampine", "dormand-prince", "tsitouras" or "dormand-prince-8"
+    observe : names out of `OBSERVERS`, or `Observer`s; no trajectory is stored
+    contact : "exact", "raw", "smooth" = "arctan", or "tanh", as in `simulate`
+    start : "rest", "sliding", or (q, qd) whose arrays end with n and broadcast with the parameters
+    times : instants at which q and qd are sampled [s]; they do not influence the steps
+    rtol, atol, width, start_time : as in `simulate`
+    threads : how many; None takes one for each core
+    progress : called with (trajectories done, in all, seconds) about five times a second
+
+    Returns
+    -------
+    Ensemble. A trajectory that cannot go on says so in its own `ended`; the others are untouched. Ctrl-C returns what
+    is done. The result of a trajectory does not depend, bit for bit, on the others, on its place or on `threads`.
+
+    Memory: about 8 (parameters that vary + 2 n + observers' memory + 5) bytes for each trajectory, and as much for the
+    tables of 65,536 at a time.
+
+    Raises `ParameterError` or `InvalidSystem` for input that does not make sense.
+
+    >>> from squealbox import DrumBrake
+    >>> found = simulate_ensemble(DrumBrake(), {"friction.static": [0.1, 0.3]}, duration=1e-3)
+    >>> found["amplitude"].shape
+    (2, 2)
+    """
+    if contact not in SCHEMES:
+        raise ParameterError("simulate_ensemble", "contact", contact, known_names(str(contact), list(SCHEMES)))
+    for name, value, low in (("duration", duration, 0.0), ("width", width, 0.0), ("start_time", start_time, -np.inf)):
+        if not (np.isfinite(value) and value > low):
+            raise ParameterError("simulate_ensemble", name, value, f"a finite number in ({low:g}, inf)")
+    job = Work(
+        _method(method, rtol, atol), SCHEMES[contact], width, start, duration, start_time, as_observers(observe),
+        _instants(times, start_time, duration), _threads(threads), progress,
+    )  # fmt: skip
+    names, arrays, shape = _space(design_or_system, parameters, grid)
+    job.run(design_or_system, names, arrays, shape)
+    settings = {
+        "duration": duration, "start_time": start_time, "contact": contact, "width": width, "grid": grid,
+        "tableau": job.method.tableau, "rtol": job.method.rtol, "observe": [each.name for each in job.observers],
+    }  # fmt: skip
+    several = isinstance(design_or_system, (list, tuple))
+    inputs = {"systems": list(design_or_system)} if several else {"system": design_or_system}
+    return _result(job, dict(zip(names, arrays, strict=True)), shape, inputs, settings)
+
+
+def _result(
+    work: Work, parameters: dict[str, Any], shape: tuple[int, ...], inputs: dict[str, Any], settings: dict[str, Any]
+) -> Ensemble:
+    """The blocks as one result."""
+    assert work.system is not None
+    n, m = work.system.size, len(work.system.contacts)
+    total = int(np.prod(shape, dtype=int))
+    rows = np.concatenate(work.rows)
+    if len(rows) < total:
+        rest = np.full((total - len(rows), rows.shape[1]), np.nan)
+        rest[:, 0] = -1.0
+        rows = np.concatenate([rows, rest])
+    names = np.array([CODES.get(code, NOT_RUN) for code in range(-1, 9)])
+    ended = names[rows[:, 0].astype(int) + 1]
+    at, observed = HEAD + 2 * n, {}
+    for each in work.observers:
+        watch = each.watch()
+        copies, width = watch.copies(n, m), len(watch.start) + watch.coefficients
+        memory = rows[:, at : at + copies * width].reshape(total, copies, width)[..., : len(watch.start)]
+        values = each.value(memory)
+        values = values[:, 0] if each.of == "system" else values
+        observed[each.name] = values.reshape(*shape, *values.shape[1:])
+        at += copies * width
+    samples = np.concatenate(work.samples) if work.times.size else np.zeros((total, 0, 2 * n))
+    if len(samples) < total:
+        samples = np.concatenate([samples, np.full((total - len(samples), *samples.shape[1:]), np.nan)])
+    samples = samples.reshape(*shape, work.times.size, 2 * n)
+    return Ensemble(
+        inputs=inputs,
+        settings=settings,
+        outcome=_outcome(ended, work.interrupted),
+        ended=ended.reshape(shape),
+        time=rows[:, 1].reshape(shape),
+        q=rows[:, HEAD : HEAD + n].reshape(*shape, n),
+        qd=rows[:, HEAD + n : HEAD + 2 * n].reshape(*shape, n),
+        steps=_counts(rows[:, 2]).reshape(shape),
+        tried=_counts(rows[:, 3]).reshape(shape),
+        events=_counts(rows[:, 4]).reshape(shape),
+        sample_time=work.times,
+        sample_q=samples[..., :n],
+        sample_qd=samples[..., n:],
+        parameters=parameters,
+        observed=observed,
+        seconds=time.monotonic() - work.began,
+    )
+
+
+def _counts(column: Any) -> Any:
+    return np.nan_to_num(column).astype(np.int64)
+
+
+def _method(method: str | Method, rtol: float | None, atol: Any) -> Method:
+    """As given; a name alone takes the tolerance of an ensemble, where errors of 1e-6 serve and time counts."""
+    return chosen_method(method, USUAL_RTOL if rtol is None and isinstance(method, str) else rtol, atol)
+
+
+def _outcome(ended: Any, interrupted: bool) -> Outcome:
+    names, counts = np.unique(ended, return_counts=True)
+    found = {str(name): int(count) for name, count in zip(names, counts, strict=True)}
+    said = ", ".join(f"{count} {name}" for name, count in found.items())
+    if interrupted:
+        return Outcome("interrupted", f"stopped by the user: {said}", ended=found)
+    if set(found) <= {COMPLETED}:
+        return Outcome(COMPLETED)
+    return Outcome("some_failed", f"{said}: each says so in `ended`", ended=found)
+
+
+def _threads(threads: int | None) -> int:
+    if threads is None:
+        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if int(threads) != threads or threads < 1:
+        raise ParameterError("simulate_ensemble", "threads", threads, "a whole number of at least 1")
+    return int(threads)
+
+
+def _instants(times: Any, begin: float, duration: float) -> Any:
+    if times is None:
+        return np.zeros(0)
+    instants = np.atleast_1d(np.asarray(times, dtype=float))
+    end = begin + duration
+    inside = np.all((instants >= begin) & (instants <= end * (1.0 + 1e-12)))
+    if instants.ndim != 1 or not inside or np.any(np.diff(instants) < 0.0):
+        raise ParameterError("simulate_ensemble", "times", times, f"increasing instants within [{begin:g}, {end:g}] s")
+    return np.minimum(instants, end)
+
+
+def _space(design: Any, parameters: Mapping[str, Any] | None, grid: bool) -> tuple[tuple[str, ...], list[Any], Any]:
+    """Names, arrays and the common shape of the parameters."""
+    if not parameters:
+        if isinstance(design, (list, tuple)):
+            return (), [], (len(design),)
+        return (), [], as_system(design).shape
+    if isinstance(design, (System, list, tuple)):
+        raise ParameterError(
+            "simulate_ensemble", "parameters", list(parameters), "a design: a System has no named parameters to vary"
+        )
+    arrays = [np.asarray(value, dtype=float) for value in parameters.values()]
+    if grid:
+        arrays = list(np.meshgrid(*arrays, indexing="ij"))
+    try:
+        shape = np.broadcast_shapes(*(array.shape for array in arrays))
+    except ValueError as error:
+        shapes = {name: np.shape(value) for name, value in parameters.items()}
+        raise ParameterError(
+            "simulate_ensemble", "parameters", shapes, "shapes that broadcast, or grid=True for the outer product"
+        ) from error
+    return tuple(parameters), arrays, shape

@@ -1,0 +1,85 @@
+"""Batches of systems: many stacked into one with leading axes, and one out of many."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from squealbox.parameters import DataSheet
+from squealbox.schedules import Sum
+from squealbox.system import InvalidSystem, System, as_system
+
+
+def stacked(designs: Sequence[Any]) -> System:
+    """Systems of the same structure as one with a leading axis; `InvalidSystem` names one that differs."""
+    systems = [as_system(each) for each in designs]
+    first = systems[0]
+    for i, other in enumerate(systems):
+        alike = other.size == first.size and len(other.contacts) == len(first.contacts)
+        kinds = [(type(c.law), c.unilateral, type(c.V), type(c.N0)) for c in other.contacts]
+        if other.shape != () or not alike or kinds != [
+            (type(c.law), c.unilateral, type(c.V), type(c.N0)) for c in first.contacts
+        ]:  # fmt: skip
+            raise InvalidSystem(f"design {i} of the sequence has another structure than the first: run them apart")
+    plain = {name: np.stack([getattr(s, name) for s in systems]) for name in ("M", "C", "K")}
+    contacts = []
+    for c, contact in enumerate(first.contacts):
+        given: dict[str, Any] = {}
+        for name in ("n", "d", "t", "normal", "N0", "V"):
+            values = [getattr(s.contacts[c], name) for s in systems]
+            given[name] = np.stack(values) if isinstance(values[0], np.ndarray) else _same(values, name)
+        laws = [s.contacts[c].law for s in systems]
+        given["law"] = _stacked_law(laws)
+        contacts.append(contact.replace(given))
+    loads = [s.load for s in systems]
+    load = np.stack(loads) if isinstance(loads[0], np.ndarray) else _same(loads, "load")
+    return first.replace({**plain, "load": load, "contacts": tuple(contacts)})
+
+
+def _same(values: list[Any], name: str) -> Any:
+    if any(value != values[0] for value in values):
+        raise InvalidSystem(f"{name}: schedules in a sequence of designs must be the same: run them apart")
+    return values[0]
+
+
+def _stacked_law(laws: list[Any]) -> Any:
+    first = laws[0]
+    if all(law == first for law in laws):
+        return first
+    fields = {name: [getattr(law, name) for law in laws] for name in first.__dataclass_fields__}
+    if any(value is None for values in fields.values() for value in values):
+        fields = {name: values for name, values in fields.items() if any(value is not None for value in values)}
+        if any(value is None for values in fields.values() for value in values):
+            raise InvalidSystem("friction laws of a sequence must set the same fields: run them apart")
+    return first.replace({name: np.array(values, dtype=float) for name, values in fields.items()})
+
+
+def first_of(system: System) -> System:
+    """The first system of a batch."""
+    if system.shape == ():
+        return system
+    cut = {"M": 2, "C": 2, "K": 2}
+    plain = {name: _first(getattr(system, name), tail) for name, tail in cut.items()}
+    plain["load"] = _first(system.load, 1)
+    contacts = []
+    for contact in system.contacts:
+        given = {name: _first(getattr(contact, name), 1) for name in ("n", "d", "t", "normal")}
+        given |= {name: _first(getattr(contact, name), 0) for name in ("N0", "V", "law")}
+        contacts.append(contact.replace(given))
+    return system.replace({**plain, "contacts": tuple(contacts)})
+
+
+def _first(value: Any, tail: int) -> Any:
+    """The first entry along leading axes of an array, or of every number of a law or schedule."""
+    if value is None or isinstance(value, (bool, str)):
+        return value
+    if isinstance(value, DataSheet):
+        own = {name: getattr(value, name) for name in value.__dataclass_fields__}  # type: ignore[attr-defined]
+        if isinstance(value, Sum):
+            return Sum(tuple((_first(w, tail), _first(part, 0)) for w, part in own["parts"]))
+        scalars = {name: _first(x, 0) for name, x in own.items() if isinstance(x, np.ndarray) and x.ndim > 0}
+        if type(value).__name__ == "Table":  # its arrays are points, not leading axes
+            return value
+        return value.replace(scalars) if scalars else value
+    array = np.asarray(value)
+    return array.reshape((-1, *array.shape[array.ndim - tail :]))[0] if array.ndim > tail else array

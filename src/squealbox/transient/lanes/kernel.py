@@ -1,0 +1,134 @@
+"""The kernel of an ensemble as a generated file: lane step, service and the scalar march's decisions in one text."""
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+from squealbox.transient import _engine, _events, _march, _modes, _motion
+from squealbox.transient.lanes import crossing, service
+from squealbox.transient.lanes.formulas import formulas
+from squealbox.transient.lanes.shape import LANES, Shape, layout, parameter_rows
+from squealbox.transient.lanes.step_text import Step
+
+HEAD = """
+from collections import namedtuple
+
+from squealbox.transient.lanes.vectors import (
+    arctan, bits, cos, exp, load, log, maximum, minimum, rough_power, sin, sqrt, store, take, where,
+)
+
+Motion = namedtuple("Motion", "t, q, qd, qdd")
+Sliding = namedtuple("Sliding", "t, velocity, normal, mode, work")
+State = namedtuple("State", "t, q, qd, qdd")
+
+packed = njit(forceinline=True, **OPTIONS)
+
+
+@packed
+def lane_tanh(x):
+    a = exp(-2.0 * abs(x))
+    size = (1.0 - a) / (1.0 + a)
+    return where(x < 0.0, -size, size)
+"""
+PLACES = {
+    "ROW_JOB": "job", "ROW_ALIVE": "alive", "ROW_T": "t", "ROW_H": "h", "ROW_T_END": "t_end", "ROW_TRIES":
+    "tries", "ROW_TAKEN": "taken", "ROW_CAUTIOUS": "cautious", "ROW_CODE": "code", "ROW_MOST": "most", "ROW_Q":
+    "q0", "ROW_V": "v0", "ROW_ACCELERATION": "a0", "ROW_START": "start0", "ROW_FIRST": "first", "ROW_WINDOW":
+    "window", "ROW_BREAK": "break0", "ROW_TARGET": "target", "ROW_TOLERANCE": "tolerance", "ROW_TRUST": "trust",
+    "ROW_RESUME": "resume", "ROW_EVENTS": "events", "ROW_WINDOW_START": "window_start", "ROW_WINDOW_EVENTS":
+    "window_events", "ROW_TURNS": "turns", "ROW_LOW": "low", "ROW_LOW_PHI": "low_phi", "ROW_HIGH": "high",
+    "ROW_HIGH_PHI": "high_phi", "ROW_SLIPS": "s0", "ROW_OPENED": "open0", "ROW_HOLD": "h0_0", "ROW_PHI": "phi0",
+    "ROW_FRESH": "fresh0", "ROW_END": "end0", "ROW_RATE": "rate0", "ROW_RATE_END": "rate_end0", "ROW_INNER":
+    "inner0", "ROW_NEXT_SAMPLE": "next", "ROW_SAMPLE": "sample", "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0",
+}  # fmt: skip
+
+
+@cache
+def lane_kernel(shape: Shape) -> Callable[..., Any]:
+    """`service.run`, compiled for one shape at first use, then read from disk."""
+    run: Callable[..., Any] = _engine.load_module(source(shape)).run
+    return run
+
+
+def source(shape: Shape) -> str:
+    """The text of the generated file."""
+    rows, step = layout(shape), Step(shape)
+    fixed: dict[str, int] = {"WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples}
+    parts = [*_engine.head(inline=False), HEAD, *formulas(shape), step.text()]
+    parts += [f"{name} = {rows.places.get(row, 0)}" for name, row in PLACES.items()]
+    first = rows.places["o0_0_0"] if shape.observers else 0
+    counts = {
+        "DOFS": shape.n, "CONTACTS": shape.m, "FUNCTIONS": shape.functions, "GIVEN": len(parameter_rows(shape)),
+        "ALL_ROWS": len(rows), "BREAKS": shape.breaks, "ROW_OBSERVED": first,
+        "MEMORY": len(rows) - first if first else 0,
+    }  # fmt: skip
+    parts += [f"{name} = {value}" for name, value in counts.items()]
+    parts += [_gather(shape, rows.places), _observers(shape, rows.places)]
+    for module in (_motion, *((_modes, _events) if shape.exact else ())):
+        parts += _engine.definitions(module, fixed)
+    parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith("COMPLETED")]
+    for module in (*((crossing,) if shape.exact else ()), service):
+        parts += _engine.definitions(module, fixed, entries=("run",))
+    return "\n\n".join(parts) + "\n"
+
+
+def _gather(shape: Shape, places: dict[str, int]) -> str:
+    """Text of `gather(A, b, lane, p, s)`: a lane's parameters into the records of the scalar march."""
+    lines = ["@inner", "def gather(A, b, lane, p, s):"]
+
+    def put(target: str, name: str) -> None:
+        if name in places:
+            lines.append(f"    {target} = A[b + {places[name] * LANES} + lane]")
+
+    n, m = shape.n, shape.m
+    for name in ("mk", "mc"):
+        for i in range(n):
+            for j in range(n):
+                put(f"p.{name}[{i}, {j}]", f"{name}{i}_{j}")
+    for name in ("md", "mw", "d", "t", "n", "w"):
+        for c in range(m):
+            for i in range(n):
+                put(f"p.{name}[{c}, {i}]", f"{name}{c}_{i}")
+    for c in range(m):
+        for e in range(m):
+            put(f"p.g[{c}, {e}]", f"g{c}_{e}")
+        for i in range(shape.laws[c][1]):
+            put(f"p.law_coefficients[{c}, {i}]", f"law{c}_{i}")
+        put(f"p.static[{c}]", f"law{c}_0")
+    put("p.smoothing", "width")
+    put("p.window", "window")
+    lines += _signals(shape, places)
+    return "\n".join([*lines, "    return"]) + "\n"
+
+
+def _signals(shape: Shape, places: dict[str, int]) -> list[str]:
+    n, m, lines = shape.n, shape.m, []
+    if not shape.varying:
+        names = [f"V{c}" for c in range(m)] + [f"N0{c}" for c in range(m)] + [f"f{i}" for i in range(n)]
+        for index, name in enumerate(names):
+            if name in places:
+                lines.append(f"    s.signal[{index}] = A[b + {places[name] * LANES} + lane]")
+        return lines
+    for index, terms in enumerate(shape.signals):
+        for k, (_, count) in enumerate(terms):
+            at = f"p.signal_start[{index}] + {k}"
+            lines.append(f"    p.term_weight[{at}] = A[b + {places[f'w{index}_{k}'] * LANES} + lane]")
+            for i in range(count):
+                row = places[f"p{index}_{k}_{i}"]
+                lines.append(f"    p.term_coefficients[{at}, {i}] = A[b + {row * LANES} + lane]")
+    return lines
+
+
+def _observers(shape: Shape, places: dict[str, int]) -> str:
+    """Text of `set_observers(A, b, lane, fixed)`: memory and coefficients at the start of a job."""
+    lines = ["@inner", "def set_observers(A, b, lane, fixed):"]
+    at = 3 + len(parameter_rows(shape))
+    for k, observer in enumerate(shape.observers):
+        for i in range(observer.copies(shape.n, shape.m)):
+            for j, value in enumerate(observer.start):
+                number = repr(float(value)).replace("inf", "np.inf").replace("nan", "np.nan")
+                lines.append(f"    A[b + {places[f'o{k}_{i}_{j}'] * LANES} + lane] = {number}")
+            for j in range(observer.coefficients):
+                lines.append(f"    A[b + {places[f'c{k}_{i}_{j}'] * LANES} + lane] = fixed[{at + j}]")
+        at += observer.coefficients
+    return "\n".join([*lines, "    return"]) + "\n"

@@ -1,0 +1,271 @@
+"""What a lane needs besides its steps: the next job, the place of an event, new modes, samples; compiled by `kernel`.
+
+These are scalar passes over one lane of a group. Modes are decided by the very functions of the scalar march, on a
+record filled from the lane, so stick, slip and lift-off mean the same in both.
+"""
+
+# ruff: noqa: F821  (the places of the rows, FUNCTIONS, EXACT_CONTACT, SAMPLES, gather, step and take are generated)
+# mypy: disable-error-code="name-defined,no-untyped-def"
+
+import numpy as np
+
+from squealbox.transient._events import event_values
+from squealbox.transient._march import COMPLETED, INCONSISTENT, NOT_FINITE, RUNNING, STEP_LIMIT, UNDERFLOW, ZENO
+from squealbox.transient._modes import apply_event, start_modes
+from squealbox.transient._motion import INSIDE, OPEN, contact_matrix, derivative, list_sticking, solve
+from squealbox.transient.lanes.crossing import locate
+
+WIDTH = 16
+DONE, LOST, OVER, EVENT, LANDED, DUE = 1, 2, 4, 8, 16, 32
+
+
+def run(A, live, table, varies, fixed, times, samples, counter, total, out, p, s, stop, every):
+    """Advance all groups until no job is left, or until stop[0] is set; `live` counts the busy lanes of each group."""
+    groups = live.shape[0]
+    size = A.shape[0] // groups
+    if A[ROW_ALIVE * WIDTH] < 0.0:  # fresh arrays
+        for g in range(groups):
+            for lane in range(WIDTH):
+                A[g * size + ROW_ALIVE * WIDTH + lane] = 0.0
+                live[g] += refill(A, g * size, lane, table, varies, fixed, times, counter, total, out, p, s)
+    while True:
+        busy = 0
+        for _ in range(every):
+            busy = 0
+            for g in range(groups):
+                if live[g] > 0:
+                    busy += 1
+                    flags = step(A, g * size)
+                    if flags != 0:
+                        live[g] -= serve(
+                            A, g * size, flags, table, varies, fixed, times, samples, counter, total, out, p, s
+                        )
+            if busy == 0:
+                return True
+        if stop[0] != 0:
+            return False
+
+
+def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out, p, s):
+    """Look after every flagged lane; returns how many of them found no further job."""
+    idle = 0
+    for lane in range(WIDTH):
+        if (flags >> lane) & 1 == 0:
+            continue
+        code = int(A[b + ROW_CODE * WIDTH + lane])
+        if SAMPLES and code & DUE:
+            write_samples(A, b, lane, times, samples)
+        ended = RUNNING
+        if code & LOST:
+            ended = UNDERFLOW if is_finite(A, b, lane) else NOT_FINITE
+        elif code & OVER:
+            ended = STEP_LIMIT
+        elif EXACT_CONTACT and code & LANDED:
+            ended = change_modes(A, b, lane, int(A[b + ROW_TARGET * WIDTH + lane]), p, s)
+        elif EXACT_CONTACT and code & EVENT:
+            which = locate(A, b, lane)
+            if which >= 0:
+                ended = change_modes(A, b, lane, which, p, s)
+        elif code & DONE:
+            ended = next_piece(A, b, lane, fixed[0], p, s)
+        if ended != RUNNING:
+            finish(A, b, lane, ended, out)
+            idle += 1 - refill(A, b, lane, table, varies, fixed, times, counter, total, out, p, s)
+    return idle
+
+
+def is_finite(A, b, lane):
+    """Whether the derivative at the present state is a number: then the step was too small, not the motion lost."""
+    total = 0.0
+    for i in range(DOFS):
+        total += (
+            A[b + (ROW_Q + i) * WIDTH + lane]
+            + A[b + (ROW_V + i) * WIDTH + lane]
+            + A[b + (ROW_ACCELERATION + i) * WIDTH + lane]
+        )
+    return np.isfinite(total)
+
+
+def refill(A, b, lane, table, varies, fixed, times, counter, total, out, p, s):
+    """Begin the next job in a lane; returns 0 when there is none. A job whose start has no modes ends at once."""
+    while True:
+        job = take(counter)
+        if job >= total:
+            A[b + ROW_ALIVE * WIDTH + lane] = 0.0
+            return 0
+        for row in range(GIVEN):
+            A[b + row * WIDTH + lane] = table[job, varies[row]] if varies[row] >= 0 else fixed[3 + row]
+        for row in range(GIVEN, ALL_ROWS):
+            A[b + row * WIDTH + lane] = 0.0
+        begin(A, b, lane, job, fixed, times, p, s)
+        ended = start(A, b, lane, p, s)
+        if ended == RUNNING:
+            A[b + ROW_ALIVE * WIDTH + lane] = 1.0
+            return 1
+        finish(A, b, lane, ended, out)
+
+
+def begin(A, b, lane, job, fixed, times, p, s):
+    """Clock, counters, start and the observers' memory; fixed holds the end, the start and the cap, then the rows."""
+    A[b + ROW_JOB * WIDTH + lane] = job
+    A[b + ROW_T * WIDTH + lane] = fixed[1]
+    A[b + ROW_MOST * WIDTH + lane] = fixed[2]
+    A[b + ROW_H * WIDTH + lane] = A[b + ROW_FIRST * WIDTH + lane]
+    A[b + ROW_T_END * WIDTH + lane] = piece_end(A, b, lane, fixed[0])
+    for k in range(DOFS):
+        A[b + (ROW_Q + k) * WIDTH + lane] = A[b + (ROW_START + k) * WIDTH + lane]
+        A[b + (ROW_V + k) * WIDTH + lane] = A[b + (ROW_START + DOFS + k) * WIDTH + lane]
+    set_observers(A, b, lane, fixed)
+    if SAMPLES:
+        A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = times[0]
+    if EXACT_CONTACT:
+        A[b + ROW_TARGET * WIDTH + lane] = -1.0
+        A[b + ROW_WINDOW_START * WIDTH + lane] = fixed[1]
+
+
+def piece_end(A, b, lane, end):
+    """The next kink of a schedule, or the end."""
+    t = A[b + ROW_T * WIDTH + lane]
+    first = end
+    for k in range(BREAKS):
+        at = A[b + (ROW_BREAK + k) * WIDTH + lane]
+        if t < at < first:
+            first = at
+    return first
+
+
+def start(A, b, lane, p, s):
+    """Modes and accelerations at the start."""
+    gather(A, b, lane, p, s)
+    load_state(A, b, lane, p, s)
+    t = A[b + ROW_T * WIDTH + lane]
+    if EXACT_CONTACT and not start_modes(p, t, s.state, s.mode, s):
+        return INCONSISTENT
+    refresh(A, b, lane, t, p, s)
+    return RUNNING
+
+
+def next_piece(A, b, lane, end, p, s):
+    """Go on behind a kink of a schedule; COMPLETED at the end."""
+    t = A[b + ROW_T * WIDTH + lane]
+    if t >= end:
+        return COMPLETED
+    A[b + ROW_T_END * WIDTH + lane] = piece_end(A, b, lane, end)
+    gather(A, b, lane, p, s)
+    load_state(A, b, lane, p, s)
+    for c in range(CONTACTS):
+        s.fresh[c] = 0
+    refresh(A, b, lane, t, p, s)
+    return RUNNING
+
+
+def load_state(A, b, lane, p, s):
+    """State and modes of a lane into the records of the scalar march."""
+    room = p.mk.shape[0]
+    s.clock[INSIDE] = np.inf
+    for i in range(DOFS):
+        s.state[i] = A[b + (ROW_Q + i) * WIDTH + lane]
+        s.state[room + i] = A[b + (ROW_V + i) * WIDTH + lane]
+    if EXACT_CONTACT:
+        for c in range(CONTACTS):
+            s.mode[c] = (
+                OPEN if A[b + (ROW_OPENED + c) * WIDTH + lane] > 0.0 else int(A[b + (ROW_SLIPS + c) * WIDTH + lane])
+            )
+
+
+def refresh(A, b, lane, t, p, s):
+    """Velocities, accelerations, modes, event functions and the inverse of the sticking contacts, back into a lane."""
+    room = p.mk.shape[0]
+    derivative(p, t, s.state, s.mode, s, s.dy)
+    for i in range(DOFS):
+        A[b + (ROW_V + i) * WIDTH + lane] = s.state[room + i]
+        A[b + (ROW_ACCELERATION + i) * WIDTH + lane] = s.dy[room + i]
+    if EXACT_CONTACT:
+        hold_matrix(A, b, lane, p, s)
+        event_values(p, t, s.state, s.mode, s, s.phi)
+        for c in range(CONTACTS):
+            A[b + (ROW_OPENED + c) * WIDTH + lane] = 1.0 if s.mode[c] == OPEN else 0.0
+            A[b + (ROW_SLIPS + c) * WIDTH + lane] = 0.0 if s.mode[c] == OPEN else float(s.mode[c])
+            A[b + (ROW_FRESH + c) * WIDTH + lane] = float(s.fresh[c])
+            A[b + (ROW_PHI + c) * WIDTH + lane] = 0.0 if s.fresh[c] else s.phi[c]
+            if FUNCTIONS > CONTACTS:
+                A[b + (ROW_PHI + CONTACTS + c) * WIDTH + lane] = s.phi[p.contacts + c]
+
+
+def hold_matrix(A, b, lane, p, s):
+    """Rows H: the inverse of t . M^-1 d over the sticking contacts; where it is singular, that of `_motion.hold`."""
+    for c in range(CONTACTS):
+        for e in range(CONTACTS):
+            A[b + (ROW_HOLD + c * CONTACTS + e) * WIDTH + lane] = 0.0
+    sticking = list_sticking(p, s.mode, s)
+    for e in range(sticking):
+        share = 0.0
+        for _ in range(2):
+            for a in range(sticking):
+                s.right[a] = 1.0 if a == e else 0.0
+            contact_matrix(p, s, sticking, share)
+            if solve(s.matrix, s.right, sticking):
+                break
+            share = 1e-9
+        for a in range(sticking):
+            A[b + (ROW_HOLD + s.stuck[a] * CONTACTS + s.stuck[e]) * WIDTH + lane] = s.right[a]
+
+
+def change_modes(A, b, lane, j, p, s):
+    """An event of function j at the present state: new modes, and the bound on events in a window of time."""
+    t = A[b + ROW_T * WIDTH + lane]
+    gather(A, b, lane, p, s)
+    load_state(A, b, lane, p, s)
+    A[b + ROW_EVENTS * WIDTH + lane] += 1.0
+    if not apply_event(p, t, s.state, s.mode, s, j if j < CONTACTS else p.contacts + j - CONTACTS):
+        return INCONSISTENT
+    refresh(A, b, lane, t, p, s)
+    A[b + ROW_H * WIDTH + lane] = A[b + ROW_RESUME * WIDTH + lane]
+    A[b + ROW_TARGET * WIDTH + lane] = -1.0
+    A[b + ROW_TRUST * WIDTH + lane] = 0.0
+    A[b + ROW_WINDOW_EVENTS * WIDTH + lane] += 1.0
+    if t - A[b + ROW_WINDOW_START * WIDTH + lane] > A[b + ROW_WINDOW * WIDTH + lane]:
+        A[b + ROW_WINDOW_START * WIDTH + lane] = t
+        A[b + ROW_WINDOW_EVENTS * WIDTH + lane] = 0.0
+    return ZENO if A[b + ROW_WINDOW_EVENTS * WIDTH + lane] > 40.0 * (CONTACTS + 1) else RUNNING
+
+
+def finish(A, b, lane, ended, out):
+    """Write what a job leaves: how it ended, its clock and counts, its state and the observers' memory."""
+    job = int(A[b + ROW_JOB * WIDTH + lane])
+    out[job, 0] = ended
+    out[job, 1] = A[b + ROW_T * WIDTH + lane]
+    out[job, 2] = A[b + ROW_TAKEN * WIDTH + lane]
+    out[job, 3] = A[b + ROW_TRIES * WIDTH + lane]
+    out[job, 4] = A[b + ROW_EVENTS * WIDTH + lane] if EXACT_CONTACT else 0.0
+    for k in range(2 * DOFS):
+        out[job, 5 + k] = A[b + (ROW_Q + k) * WIDTH + lane]
+    for k in range(MEMORY):
+        out[job, 5 + 2 * DOFS + k] = A[b + (ROW_OBSERVED + k) * WIDTH + lane]
+
+
+def write_samples(A, b, lane, times, samples):
+    """State at the instants that lie in the step just taken, by the quintic of q, q' and q'' at both ends."""
+    job = int(A[b + ROW_JOB * WIDTH + lane])
+    k = int(A[b + ROW_SAMPLE * WIDTH + lane])
+    t0 = A[b + ROW_T_OLD * WIDTH + lane]
+    t1 = A[b + ROW_T * WIDTH + lane]
+    h = t1 - t0
+    while k < times.shape[0] and times[k] <= t1:
+        x = min(max((times[k] - t0) / h, 0.0), 1.0) if h > 0.0 else 1.0
+        for i in range(DOFS):
+            q0 = A[b + (ROW_Q_OLD + i) * WIDTH + lane]
+            v0 = A[b + (ROW_Q_OLD + DOFS + i) * WIDTH + lane] * h
+            a0 = A[b + (ROW_Q_OLD + 2 * DOFS + i) * WIDTH + lane] * h * h
+            rise = A[b + (ROW_Q + i) * WIDTH + lane] - q0 - v0 - 0.5 * a0
+            turn = A[b + (ROW_V + i) * WIDTH + lane] * h - v0 - a0
+            bend = A[b + (ROW_ACCELERATION + i) * WIDTH + lane] * h * h - a0
+            c3 = 10.0 * rise - 4.0 * turn + 0.5 * bend
+            c4 = -15.0 * rise + 7.0 * turn - bend
+            c5 = 6.0 * rise - 3.0 * turn + 0.5 * bend
+            samples[job, k, i] = q0 + x * (v0 + x * (0.5 * a0 + x * (c3 + x * (c4 + x * c5))))
+            speed = v0 + x * (a0 + x * (3.0 * c3 + x * (4.0 * c4 + x * 5.0 * c5)))
+            samples[job, k, DOFS + i] = speed / h if h > 0.0 else A[b + (ROW_V + i) * WIDTH + lane]
+        k += 1
+    A[b + ROW_SAMPLE * WIDTH + lane] = k
+    A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = times[k] if k < times.shape[0] else np.inf

@@ -1,0 +1,104 @@
+"""What a lane kernel is compiled for, and the place of every number of a group in its rows."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from squealbox.transient._motion import EXACT
+
+LANES = 16  # of `vectors`, which loads numba
+
+
+@dataclass(frozen=True)
+class Shape:
+    """What a kernel is compiled for; everything else is a number in a row.
+
+    `present` names the entries that are not zero in the whole ensemble, such as "mk01". `signals` gives the kind of
+    schedule of each term of V_c, N0_c and M^-1 f_i, in that order; () where it is a constant row.
+    """
+
+    n: int
+    m: int
+    tableau: str
+    scheme: int
+    laws: tuple[tuple[int, int], ...]
+    present: frozenset[str]
+    unilateral: tuple[bool, ...]
+    signals: tuple[tuple[tuple[int, int], ...], ...] = ()
+    observers: tuple[Any, ...] = ()
+    samples: bool = False
+    breaks: int = 0
+
+    @property
+    def exact(self) -> bool:
+        """Whether events are located."""
+        return self.scheme == EXACT and self.m > 0
+
+    @property
+    def varying(self) -> bool:
+        """Whether any signal is a schedule."""
+        return bool(self.signals)
+
+    @property
+    def functions(self) -> int:
+        """How many event functions there are."""
+        return self.m * (2 if any(self.unilateral) else 1)
+
+
+@dataclass
+class Rows:
+    """Places of the rows of a group, by name; parameters first, as the table of jobs holds them."""
+
+    places: dict[str, int] = field(default_factory=dict)
+
+    def add(self, *names: str) -> None:
+        """Give each name the next place."""
+        for name in names:
+            self.places[name] = len(self.places)
+
+    def __len__(self) -> int:
+        return len(self.places)
+
+
+def parameter_rows(shape: Shape) -> list[str]:
+    """Names of the rows that come with a job: what the equation holds, then start, tolerances and limits."""
+    n, m = shape.n, shape.m
+    names = [name for name in _entries(n, m) if name in shape.present]
+    for c, (_, count) in enumerate(shape.laws):
+        names += [f"law{c}_{i}" for i in range(count)] + [f"slope{c}"]
+    for index, terms in enumerate(shape.signals):
+        for k, (_, count) in enumerate(terms):
+            names += [f"w{index}_{k}"] + [f"p{index}_{k}_{i}" for i in range(count)]
+    names += [f"start{k}" for k in range(2 * n)] + [f"atol{k}" for k in range(2 * n)]
+    names += [f"break{k}" for k in range(shape.breaks)]
+    return [*names, "rtol", "width", "window", "largest", "least", "first"]
+
+
+def _entries(n: int, m: int) -> list[str]:
+    names = [f"{name}{i}_{j}" for name in ("mk", "mc") for i in range(n) for j in range(n)]
+    names += [f"{name}{c}_{i}" for name in ("md", "mw", "d", "t", "n", "w") for c in range(m) for i in range(n)]
+    names += [f"g{c}_{b}" for c in range(m) for b in range(m)]
+    return names + [f"V{c}" for c in range(m)] + [f"N0{c}" for c in range(m)] + [f"f{i}" for i in range(n)]
+
+
+def layout(shape: Shape) -> Rows:
+    """All rows of a group."""
+    n, m, rows = shape.n, shape.m, Rows()
+    rows.add(*parameter_rows(shape))
+    rows.add("job", "alive", "t", "h", "t_end", "tries", "taken", "cautious", "code", "most")
+    rows.add(*(f"q{i}" for i in range(n)), *(f"v{i}" for i in range(n)), *(f"a{i}" for i in range(n)))
+    if shape.exact:
+        rows.add("target", "tolerance", "trust", "resume", "events", "window_start", "window_events", "turns")
+        rows.add("low", "low_phi", "high", "high_phi")
+        rows.add(*(f"s{c}" for c in range(m)), *(f"open{c}" for c in range(m)))
+        rows.add(*(f"h{c}_{b}" for c in range(m) for b in range(m)))
+        for name in ("phi", "fresh", "end", "rate", "rate_end", "inner"):
+            rows.add(*(f"{name}{j}" for j in range(shape.functions)))
+    if shape.samples:
+        rows.add("next", "sample", "t_old", *(f"{x}_old{i}" for x in "qva" for i in range(n)))
+    if any(observer.of == "contact" for observer in shape.observers):
+        rows.add(*(f"work{c}" for c in range(m)))
+    for k, observer in enumerate(shape.observers):
+        for i in range(observer.copies(n, m)):
+            rows.add(*(f"o{k}_{i}_{j}" for j in range(len(observer.start))))
+            rows.add(*(f"c{k}_{i}_{j}" for j in range(observer.coefficients)))
+    return rows

@@ -1,0 +1,329 @@
+"""The step of a lane engine as text: one trial step of sixteen trajectories, without a branch on any of them.
+
+The equation is that of `_motion.derivative`, unrolled: every entry of a matrix that is not zero in the whole ensemble
+becomes one term. Rows of sixteen doubles hold the parameters and the state of a group; `Rows` gives each its place.
+
+Friction in the exact scheme. s is +1 or -1 while a contact slips and 0 otherwise, so ``s mu(s v) N`` vanishes when it
+does not. While contacts stick, t . q'' = V' gives their forces F = G_ss^-1 (V' - t . a), a the accelerations without
+them; the rows H hold G_ss^-1, zero for the others, and change only at events.
+"""
+
+from typing import Any
+
+from squealbox.transient._motion import ARCTAN, RAW
+from squealbox.transient.lanes.event_text import EventText, minus
+from squealbox.transient.lanes.shape import LANES, Shape, layout
+from squealbox.transient.methods import tableau
+
+
+class Step(EventText):
+    """Writes the text of the step."""
+
+    def __init__(self, shape: Shape) -> None:
+        self.shape, self.rows = shape, layout(shape)
+        self.lines: list[str] = []
+        self.loaded: set[str] = set()
+        self.tag = 0
+        self.scales: dict[float, str] = {}
+        self.rule = tableau(shape.tableau)
+
+    def put(self, line: str) -> None:
+        """One more line."""
+        self.lines.append("    " + line)
+
+    def row(self, name: str) -> str:
+        """A local with the row's values, loaded at its first use."""
+        local = f"{name}_"
+        if name not in self.loaded:
+            self.loaded.add(name)
+            self.put(f"{local} = load(A, b + {self.rows.places[name] * LANES})")
+        return local
+
+    def keep(self, name: str, value: str) -> None:
+        """Write a row."""
+        self.put(f"store(A, b + {self.rows.places[name] * LANES}, {value})")
+
+    def entry(self, name: str) -> str | None:
+        """The local of an entry of the equation, None when it is zero throughout."""
+        return self.row(name) if name in self.shape.present else None
+
+    def total(self, target: str, parts: list[str]) -> str:
+        """target = sum of the parts."""
+        self.put(f"{target} = {' + '.join(parts) if parts else '0.0 * t_'}".replace("+ -", "- "))
+        return target
+
+    def product(self, name: str, vector: list[str]) -> list[str]:
+        """Terms name{i} * vector[i] that are present."""
+        found = [(self.entry(f"{name}_{i}"), x) for i, x in enumerate(vector)]
+        return [f"{a} * {x}" for a, x in found if a is not None]
+
+    def signal(self, index: int, name: str, time: str, rate: bool = False) -> list[str]:
+        """Terms of V_c, N0_c or M^-1 f_i at an instant."""
+        if not self.shape.varying:
+            value = None if rate else self.entry(name)
+            return [] if value is None else [value]
+        parts = []
+        for k, (kind, count) in enumerate(self.shape.signals[index]):
+            p = ", ".join(self.row(f"p{index}_{k}_{i}") for i in range(count))
+            parts.append(f"{self.row(f'w{index}_{k}')} * lane_{'rate' if rate else 'value'}_{kind}({time}, ({p},))")
+        return parts
+
+    def accelerations(self, q: list[str], v: list[str], time: str) -> dict[str, list[str]]:
+        """q'' in locals, with the speed, normal force, friction force and stick margin of each contact."""
+        n, m, shape = self.shape.n, self.shape.m, self.shape
+        self.tag += 1
+        k = self.tag
+        if shape.varying:
+            self.put(f"at{k} = minimum({time}, inside_)")
+            time = f"at{k}"
+        speeds = [self.total(f"v{c}_{k}", self.signal(c, f"V{c}", time) + minus(self.product(f"t{c}", v)))
+                  for c in range(m)]  # fmt: skip
+        normals = [self.total(f"n{c}_{k}", self.signal(m + c, f"N0{c}", time) + self.product(f"n{c}", q))
+                   for c in range(m)]  # fmt: skip
+        forces = [self.friction(c, k, speeds[c], normals[c]) for c in range(m)]
+        out = []
+        for i in range(n):
+            parts = self.signal(2 * m + i, f"f{i}", time)
+            parts += minus(self.product(f"mk{i}", q)) + minus(self.product(f"mc{i}", v))
+            for c in range(m):
+                push, lift = self.entry(f"md{c}_{i}"), self.entry(f"mw{c}_{i}")
+                parts += [f"{push} * {forces[c]}"] if push else []
+                if shape.unilateral[c] and lift:
+                    parts.append(f"{lift} * ({self.openness(c, normals[c])} * {normals[c]})")
+            out.append(self.total(f"a{i}_{k}", parts))
+        margins = self.hold(k, out, forces, normals, time) if shape.exact else []
+        return {"a": out, "speed": speeds, "normal": normals, "force": forces, "margin": margins}
+
+    def friction(self, c: int, k: int, speed: str, normal: str) -> str:
+        """Friction force of a sliding contact; 0 while it sticks or is open."""
+        shape, force = self.shape, f"f{c}_{k}"
+        kind, count = shape.laws[c]
+        p = "(" + ", ".join(self.row(f"law{c}_{i}") for i in range(count)) + ",)"
+        if shape.exact:
+            s = self.row(f"s{c}")
+            self.put(f"u{c}_{k} = {s} * {speed}")
+            mu = f"(lane_mu_{kind}(maximum(u{c}_{k}, 0.0), {p}) + minimum(u{c}_{k}, 0.0) * {self.row(f'slope{c}')})"
+            self.put(f"{force} = {s} * {mu} * {normal}")
+            return force
+        mu = f"lane_mu_{kind}(abs({speed}), {p})"
+        if shape.scheme == RAW:
+            sign = f"where({speed} > 0.0, 1.0, where({speed} < 0.0, -1.0, 0.0))"
+        elif shape.scheme == ARCTAN:
+            sign = f"({2.0 / 3.141592653589793!r} * arctan({speed} / {self.row('width')}))"
+        else:
+            sign = f"lane_tanh({speed} / {self.row('width')})"
+        shut = f" * (1.0 - {self.openness(c, normal)})" if shape.unilateral[c] else ""
+        self.put(f"{force} = {mu} * {sign} * {normal}{shut}")
+        return force
+
+    def openness(self, c: int, normal: str) -> str:
+        """1 where a unilateral contact is open, else 0."""
+        return self.row(f"open{c}") if self.shape.exact else f"(1.0 * ({normal} <= 0.0))"
+
+    def hold(self, k: int, a: list[str], forces: list[str], normals: list[str], time: str) -> list[str]:
+        """Add the forces of sticking contacts; returns how far each is below its limit."""
+        m, shape = self.shape.m, self.shape
+        for c in range(m):
+            parts = self.signal(c, f"V{c}", time, rate=True) + minus(self.product(f"t{c}", a))
+            self.total(f"r{c}_{k}", parts)
+        margins = []
+        for c in range(m):
+            self.put(f"hold{c}_{k} = " + " + ".join(f"{self.row(f'h{c}_{x}')} * r{x}_{k}" for x in range(m)))
+            self.put(f"{forces[c]} = {forces[c]} + hold{c}_{k}")
+            self.put(f"g{c}_{k} = {self.row(f'law{c}_0')} * {normals[c]} - abs(hold{c}_{k})")
+            margins.append(f"g{c}_{k}")
+        for i in range(shape.n):
+            parts = [f"{push} * hold{c}_{k}" for c in range(m) if (push := self.entry(f"md{c}_{i}"))]
+            self.put(f"{a[i]} = {a[i]} + " + " + ".join(parts) if parts else "pass")
+        return margins
+
+    def text(self) -> str:
+        """The function `step(A, b)`: advance one group by one trial; returns the lanes that need service as bits."""
+        shape, n, rule = self.shape, self.shape.n, self.rule
+        for name in ("t", "h", "t_end", "rtol", "alive"):
+            self.row(name)
+        self.put("rest = t_end_ - t_")
+        self.put("inside_ = t_end_")
+        self.put("last = h_ >= rest * 0.999999999999")
+        self.put("hh = where(last, rest, h_)")
+        q, v, a = ([self.row(f"{x}{i}") for i in range(n)] for x in "qva")
+        vs, as_ = [v], [a]
+        contact: list[dict[str, list[str]]] = []
+        for stage in range(1, rule.stages + 1):
+            weights = rule.b if stage == rule.stages else rule.a[stage, :stage]
+            qs = [self.combined(f"q{i}s{stage}", q[i], weights, vs, i) for i in range(n)]
+            us = [self.combined(f"v{i}s{stage}", v[i], weights, as_, i) for i in range(n)]
+            time = "t_ + hh" if stage == rule.stages else f"t_ + {rule.c[stage]!r} * hh"
+            contact.append(self.accelerations(qs, us, time))
+            vs.append(us)
+            as_.append(contact[-1]["a"])
+        q1, v1, a1 = qs, us, as_[-1]
+        self.error(q, v, q1, v1, vs, as_)
+        self.put("fine = square <= 1.0")
+        if shape.exact:
+            self.events(contact, v, a, q1, v1, a1)
+        else:
+            self.put("accepted = fine")
+        self.control()
+        self.put("t1 = where(last, t_end_, t_ + hh)")
+        self.observe(contact, (q, v, a), (q1, v1, a1))
+        self.advance((q, v, a), (q1, v1, a1))
+        return "\n".join(["@inner", "def step(A, b):", *self.lines, "    return flags"]) + "\n"
+
+    def combined(self, name: str, base: str, weights: Any, parts: list[list[str]], i: int) -> str:
+        """base + sum of hh * weight * part; the products hh * weight serve all states of a stage."""
+        terms = [f"{self.scaled(float(w))} * {part[i]}" for w, part in zip(weights, parts, strict=False) if w != 0.0]
+        self.put(f"{name} = {base} + {' + '.join(terms)}")
+        return name
+
+    def scaled(self, weight: float) -> str:
+        """The local that holds hh * weight."""
+        if weight not in self.scales:
+            self.scales[weight] = f"hw{len(self.scales)}"
+            self.put(f"{self.scales[weight]} = {weight!r} * hh")
+        return self.scales[weight]
+
+    def error(self, q: Any, v: Any, q1: Any, v1: Any, vs: Any, as_: Any) -> None:
+        """`square`: the squared norm of the embedded error, as in `_runge_kutta.error_norm`."""
+        n, rule = self.shape.n, self.rule
+        for k, (old, new) in enumerate(zip((*q, *v), (*q1, *v1), strict=True)):
+            self.put(f"size{k} = {self.row(f'atol{k}')} + rtol_ * maximum(abs({old}), abs({new}))")
+            self.put(f"square{k} = size{k} * size{k}")
+        for tag, weights in (("e", rule.e), ("x", rule.e3)):
+            if weights is None:
+                continue
+            for k in range(2 * n):
+                parts = vs if k < n else as_
+                used = zip(weights, parts, strict=False)
+                terms = [f"{float(w)!r} * {part[k % n]}" for w, part in used if w != 0.0]
+                self.put(f"{tag}{k} = {' + '.join(terms)}".replace("+ -", "- "))
+            self.put(f"sum_{tag} = " + " + ".join(self.quotients(tag, 2 * n)))
+        if rule.e3 is None:
+            self.put(f"square = hh * hh * sum_e * {1.0 / (2 * n)!r}")
+        else:
+            self.put("below = sum_e + 0.01 * sum_x")
+            self.put("below = where(below > 0.0, below, 1.0)")
+            self.put(f"square = hh * hh * sum_e * sum_e / below * {1.0 / (2 * n)!r}")
+
+    def quotients(self, tag: str, count: int) -> list[str]:
+        """Sums of squares of error over size, up to four over one division: it costs as much as ten products."""
+        out = []
+        for first in range(0, count, 4):
+            names = list(range(first, min(first + 4, count)))
+            above, below = f"{tag}{names[0]} * {tag}{names[0]}", f"square{names[0]}"
+            for done, k in enumerate(names[1:], 1):
+                self.put(f"{tag}a{k} = ({above}) * square{k} + {tag}{k} * {tag}{k} * ({below})")
+                above = f"{tag}a{k}"
+                below = " * ".join(f"square{x}" for x in names[: done + 1])
+            out.append(f"{above} / ({below})")
+        return out
+
+    def control(self) -> None:
+        """`h_new`: an integral controller within [0.2, 10], without growth after a rejected step."""
+        power = -0.5 / (self.rule.error_order + 1.0)
+        self.put(f"factor = 0.9 * rough_power(square, {power!r})")
+        self.put("factor = where(square < 1e300, factor, 0.1)")
+        self.put(f"factor = minimum(maximum(factor, 0.1), {float(self.rule.growth)!r})")
+        self.put(f"factor = where({self.row('cautious')} > 0.5, minimum(factor, 1.0), factor)")
+        self.put("factor = where(fine, factor, minimum(factor, 0.9))")
+        self.put(f"h_new = minimum(hh * factor, {self.row('largest')})")
+        self.put("h_new = where(fine & last, maximum(h_new, h_), h_new)")
+
+    def advance(self, old: Any, new: Any) -> None:
+        """Take the step where it is accepted, count, and say which lanes need service."""
+        n, shape = self.shape.n, self.shape
+        if shape.samples:
+            self.keep("t_old", "t_")
+            for x, values in zip("qva", old, strict=True):
+                for i in range(n):
+                    self.keep(f"{x}_old{i}", values[i])
+        for x, before, after in zip("qva", old, new, strict=True):
+            for i in range(n):
+                self.keep(f"{x}{i}", f"where(accepted, {after[i]}, {before[i]})")
+        self.put("t_now = where(accepted, t1, t_)")
+        self.keep("t", "t_now")
+        tries, taken = self.row("tries"), self.row("taken")
+        self.keep("taken", f"{taken} + 1.0 * accepted")
+        self.put(f"tried = {tries} + 1.0")
+        self.keep("tries", "tried")
+        self.put("done = t_now >= t_end_")
+        self.put(f"lost = ~fine & (h_new <= {self.row('least')} + 4e-16 * t_)")
+        self.put(f"over = tried >= {self.row('most')}")
+        code = "1.0 * done + 2.0 * lost + 4.0 * over"
+        any_of = "done | lost | over"
+        if shape.exact:
+            self.keep("h", "where(event, hh, h_new)")
+            for j in range(shape.m):
+                self.keep(f"phi{j}", f"where(accepted, value{j}, {self.row(f'phi{j}')})")
+                self.keep(f"fresh{j}", f"where(accepted, 0.0, {self.row(f'fresh{j}')})")
+            for j in range(shape.m, shape.functions):
+                self.keep(f"phi{j}", f"where(accepted, value{j}, {self.row(f'phi{j}')})")
+            self.keep("trust", f"where(accepted, 0.0, {self.row('trust')})")
+            self.keep("target", "where(fine, target_, -1.0)")
+            self.put("landed = event & accepted")
+            code += " + 8.0 * event + 16.0 * landed"
+            any_of += " | event"
+        else:
+            self.keep("h", "h_new")
+        if shape.samples:
+            self.put(f"due = accepted & (t_now >= {self.row('next')})")
+            code += " + 32.0 * due"
+            any_of += " | due"
+        self.keep("cautious", "where(fine, 0.0, 1.0)")
+        self.keep("code", code)
+        self.put(f"flags = bits(({any_of}) & (alive_ > 0.5))")
+
+    def observe(self, contact: Any, old: Any, new: Any) -> None:
+        """Hand every accepted step to the observers."""
+        shape, rule = self.shape, self.rule
+        works = any(observer.of == "contact" for observer in shape.observers)
+        if works:
+            for c in range(shape.m):
+                self.work(c, contact, old, new)
+        for k, observer in enumerate(shape.observers):
+            for i in range(observer.copies(shape.n, shape.m)):
+                memory = [self.row(f"o{k}_{i}_{j}") for j in range(len(observer.start))]
+                given = [self.row(f"c{k}_{i}_{j}") for j in range(observer.coefficients)]
+                before, after = self.views(observer.of, i, contact, old, new)
+                p = "(" + "".join(f"{x}, " for x in given) + ")" if given else "(0.0 * t_,)"
+                self.put(f"seen{k}_{i} = observe_{k}(({', '.join(memory)},), {p}, {before}, {after})")
+                for j, value in enumerate(memory):
+                    self.keep(f"o{k}_{i}_{j}", f"where(accepted, seen{k}_{i}[{j}], {value})")
+        del rule
+
+    def views(self, of: str, i: int, contact: Any, old: Any, new: Any) -> tuple[str, str]:
+        """What an observer of a degree of freedom, of a contact or of the whole sees before and after the step."""
+        n, end = self.shape.n, contact[-1]
+        if of == "dof":
+            return tuple(  # type: ignore[return-value]
+                f"Motion({t}, {', '.join(x[i] for x in state)})" for t, state in (("t_", old), ("t1", new))
+            )
+        if of == "contact":
+            speed = " + ".join(self.signal(i, f"V{i}", "t_") + minus(self.product(f"t{i}", old[1]))) or "0.0 * t_"
+            normal = " + ".join(self.signal(self.shape.m + i, f"N0{i}", "t_") + self.product(f"n{i}", old[0]))
+            mode = self.row(f"s{i}") if self.shape.exact else f"(1.0 * ({end['speed'][i]} > 0.0) - 0.5) * 2.0"
+            work = self.row(f"work{i}")
+            first = f"Sliding(t_, {speed}, {normal or '0.0 * t_'}, {mode}, {work})".replace("+ -", "- ")
+            return first, f"Sliding(t1, {end['speed'][i]}, {end['normal'][i]}, {mode}, worked{i})"
+        tuples = [", ".join(f"({', '.join(x[:n])},)" for x in state) for state in (old, new)]
+        return f"State(t_, {tuples[0]})", f"State(t1, {tuples[1]})"
+
+    def work(self, c: int, contact: Any, old: Any, new: Any) -> None:
+        """Work of a contact's friction in the step by the weights of the method, added to its row."""
+        rule, n = self.rule, self.shape.n
+        parts = []
+        for j, weight in enumerate(rule.b):
+            if weight == 0.0:
+                continue
+            force = contact[j - 1]["force"][c] if j > 0 else self.starting_force(c, old)
+            speed = old[1] if j == 0 else [f"v{i}s{j}" for i in range(n)]
+            along = self.product(f"d{c}", speed)
+            parts.append(f"{float(weight)!r} * {force} * ({' + '.join(along) if along else '0.0 * t_'})")
+        self.put(f"worked{c} = {self.row(f'work{c}')} + hh * ({' + '.join(parts)})")
+        self.keep(f"work{c}", f"where(accepted, worked{c}, work{c}_)")
+
+    def starting_force(self, c: int, old: Any) -> str:
+        """The friction force at the start of the step, computed once more: no row keeps it."""
+        if not hasattr(self, "_starting"):
+            self._starting = self.accelerations(old[0], old[1], "t_")
+        return self._starting["force"][c]

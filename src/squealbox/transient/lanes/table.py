@@ -1,0 +1,183 @@
+"""A batch of systems as the table of jobs a lane kernel works through."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.friction import LAWS
+from squealbox.schedules import SCHEDULES, Constant, Schedule
+from squealbox.system import InvalidSystem, System
+from squealbox.transient import packing
+from squealbox.transient._motion import EXACT
+from squealbox.transient.lanes.batch import first_of
+from squealbox.transient.lanes.shape import Shape, parameter_rows
+from squealbox.transient.methods import Method
+
+
+@dataclass(frozen=True)
+class Jobs:
+    """The table of a batch.
+
+    A row of parameters that differs between jobs is a column of `table` (jobs, columns), one that does not is a number
+    in `fixed`; varies[row] is the column or -1. `template` is one system of the batch.
+    """
+
+    shape: Shape
+    table: Any
+    varies: Any
+    fixed: Any
+    template: System
+
+
+def tabulate(
+    system: System, method: Method, scheme: int, width: float, start: tuple[Any, Any], duration: float,
+    begin: float, watches: tuple[Any, ...], coefficients: tuple[float, ...], samples: bool,
+) -> Jobs:  # fmt: skip
+    """The jobs of a batched system; leading axes are those of the system, flattened."""
+    batch = system.shape
+    count = int(np.prod(batch, dtype=int))
+    values, signals, breaks = _equation(system, batch)
+    template = first_of(system)
+    n, m = system.size, len(system.contacts)
+    q, qd = start
+    for k in range(n):
+        values[f"start{k}"], values[f"start{n + k}"] = q[..., k], qd[..., k]
+    values |= _tolerances(system, method, values, scheme == EXACT and m > 0, duration)
+    values |= {f"break{k}": instant for k, instant in enumerate(breaks)} | {"width": np.asarray(width)}
+    laws = tuple((LAWS.index(type(c.law)), len(c.law.coefficients())) for c in system.contacts)
+    present = frozenset(name for name, value in values.items() if np.any(value != 0.0))
+    unilateral = tuple(bool(c.unilateral) for c in system.contacts)
+    shape = Shape(
+        n, m, method.tableau, scheme, laws, _of_equation(present), unilateral, signals, watches, samples, len(breaks)
+    )
+    names = parameter_rows(shape)
+    fixed = np.zeros(3 + len(names) + len(coefficients))
+    fixed[:3] = begin + duration, begin, method.most_steps
+    fixed[3 + len(names) :] = coefficients
+    varies = np.full(len(names), -1, dtype=np.int64)
+    columns: list[Any] = []
+    for row, name in enumerate(names):
+        value = np.asarray(values[name], dtype=float)
+        if value.ndim == 0 or np.all(value == value.flat[0]):
+            fixed[3 + row] = value.flat[0]
+        else:
+            varies[row] = len(columns)
+            columns.append(np.broadcast_to(value, batch).ravel())
+    table = np.stack(columns, axis=1) if columns else np.zeros((count, 1))
+    return Jobs(shape, np.ascontiguousarray(table), varies, fixed, template)
+
+
+def _of_equation(present: frozenset[str]) -> frozenset[str]:
+    kinds = ("mk", "mc", "md", "mw", "d", "t", "n", "w", "g", "V", "N0", "f")
+    return frozenset(name for name in present if name.rstrip("0123456789_") in kinds or name.startswith("N0"))
+
+
+def _equation(system: System, batch: tuple[int, ...]) -> tuple[dict[str, Any], Any, list[Any]]:
+    """Numbers of the equation by name, kinds of the signals (none when all are constant), and their kinks."""
+    n, contacts = system.size, system.contacts
+    inverse = _inverse(system.M)
+    values: dict[str, Any] = {}
+
+    def put(name: str, matrix: Any) -> None:
+        for i in range(matrix.shape[-2]):
+            for j in range(matrix.shape[-1]):
+                values[f"{name}{i}_{j}"] = matrix[..., i, j]
+
+    put("mk", inverse @ system.K)
+    put("mc", inverse @ system.C)
+    for c, contact in enumerate(contacts):
+        w = np.zeros(n) if contact.normal is None else contact.normal
+        rows = {"md": _times(inverse, contact.d), "mw": _times(inverse, w), "d": contact.d, "t": contact.t}
+        for name, vector in (rows | {"n": contact.n, "w": w}).items():
+            for i in range(n):
+                values[f"{name}{c}_{i}"] = np.asarray(vector)[..., i]
+        for e, other in enumerate(contacts):
+            values[f"g{c}_{e}"] = np.sum(contact.t * _times(inverse, other.d), axis=-1)
+        for i, coefficient in enumerate(contact.law.coefficients()):
+            values[f"law{c}_{i}"] = np.asarray(coefficient, dtype=float)
+        values[f"slope{c}"] = np.asarray(contact.law.slope_at(0.0), dtype=float)
+    signals = [_terms(c.V) for c in contacts] + [_terms(c.N0) for c in contacts]
+    load = packing.load_terms(system)
+    signals += [[(_times(inverse, weight)[..., i], part) for weight, part in load] for i in range(n)]
+    if all(isinstance(part, Constant) for terms in signals for _, part in terms):
+        names = [f"V{c}" for c in range(len(contacts))] + [f"N0{c}" for c in range(len(contacts))]
+        for name, terms in zip([*names, *(f"f{i}" for i in range(n))], signals, strict=True):
+            values[name] = sum(weight * np.asarray(part.coefficients()[0]) for weight, part in terms)
+        return values, (), []
+    kinds = []
+    for index, terms in enumerate(signals):
+        kinds.append(tuple((SCHEDULES.index(type(part)), len(part.coefficients())) for _, part in terms))
+        for k, (weight, part) in enumerate(terms):
+            values[f"w{index}_{k}"] = np.asarray(weight, dtype=float)
+            for i, coefficient in enumerate(part.coefficients()):
+                values[f"p{index}_{k}_{i}"] = np.asarray(coefficient, dtype=float)
+    instants = sorted({t for terms in signals for _, part in terms for t in part.breaks()})
+    return values, tuple(kinds), [np.asarray(t) for t in instants]
+
+
+def _terms(value: Any) -> list[tuple[Any, Schedule]]:
+    return list(value.terms()) if isinstance(value, Schedule) else [(np.asarray(1.0), Constant(value))]
+
+
+def _tolerances(system: System, method: Method, values: dict[str, Any], exact: bool, duration: float) -> dict[str, Any]:
+    """Tolerances and limits of the steps, as `packing` and `simulate` choose them, one for each job."""
+    n = system.size
+    highest = _highest_frequency(values, n, system.shape)
+    velocity = 1e-3 * method.rtol * _fastest(system) if method.atol is None else np.asarray(method.atol)
+    out: dict[str, Any] = {"rtol": np.asarray(method.rtol)}
+    if np.ndim(method.atol) == 1:
+        given = packing.absolute_tolerances(system, method, 1.0)
+        out |= {f"atol{k}": np.asarray(given[k]) for k in range(2 * n)}
+    else:
+        out |= {f"atol{k}": velocity / highest if k < n else np.asarray(velocity) for k in range(2 * n)}
+    period = 2.0 * np.pi / highest
+    largest = np.minimum(duration, period / 6.0) if exact else np.full(np.shape(period), duration)
+    out["largest"] = largest if method.largest_step is None else np.minimum(largest, method.largest_step)
+    out["least"], out["window"] = 1e-14 * period, 1e-3 * period
+    out["first"] = 1e-3 * period if method.first_step is None else np.full(np.shape(period), method.first_step)
+    return out
+
+
+def _fastest(system: System) -> Any:
+    """Fastest sliding speed [m/s] of each job; 1 when nothing slides."""
+    fastest = np.zeros(())
+    for contact in system.contacts:
+        if isinstance(contact.V, Schedule):
+            instants = (0.0, *contact.V.breaks())
+            speeds = [np.abs(contact.V.value(t)) for t in instants]
+        else:
+            speeds = [np.abs(contact.V)]
+        for speed in speeds:
+            fastest = np.maximum(fastest, speed)
+    return np.where(fastest > 0.0, fastest, 1.0)
+
+
+def _highest_frequency(values: dict[str, Any], n: int, batch: tuple[int, ...]) -> Any:
+    """Highest angular frequency [rad/s] of M^-1 K of each job; 1 when it is zero. In closed form for two."""
+    if n == 2:
+        a, b, c, d = (values[f"mk{i}_{j}"] for i in range(2) for j in range(2))
+        half = 0.5 * (a + d)
+        root = np.sqrt((half * half - (a * d - b * c)).astype(complex))
+        largest = np.maximum(np.abs(half + root), np.abs(half - root))
+    else:
+        rows = [np.stack(np.broadcast_arrays(*(values[f"mk{i}_{j}"] for j in range(n))), axis=-1) for i in range(n)]
+        matrix = np.stack(np.broadcast_arrays(*rows), axis=-2)
+        largest = np.max(np.abs(np.linalg.eigvals(matrix)), axis=-1)
+    highest = np.sqrt(largest)
+    return np.where(highest > 0.0, highest, 1.0)
+
+
+def _inverse(mass: Any) -> Any:
+    try:
+        inverse = np.linalg.inv(mass)
+    except np.linalg.LinAlgError:
+        inverse = np.full_like(mass, np.inf)
+    size = np.max(np.abs(mass), axis=(-1, -2)) * np.max(np.abs(inverse), axis=(-1, -2))
+    if not np.all(size < 1e14):
+        raise InvalidSystem("M is singular: a transient needs a mass for every degree of freedom")
+    return inverse
+
+
+def _times(matrix: Any, vector: Any) -> Any:
+    return np.einsum("...ij,...j->...i", matrix, np.asarray(vector, dtype=float))

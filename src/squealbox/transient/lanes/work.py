@@ -1,0 +1,153 @@
+"""The blocks of an ensemble: tables in, one kernel on all threads, rows of results out."""
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from squealbox.parameters import ParameterError
+from squealbox.system import InvalidSystem, System, as_system, equilibrium
+from squealbox.transient import packing
+from squealbox.transient.lanes.batch import stacked
+from squealbox.transient.lanes.shape import LANES, layout
+from squealbox.transient.lanes.table import Jobs, tabulate
+from squealbox.transient.methods import Method
+from squealbox.transient.observers import Observer
+
+BLOCK = 65_536  # trajectories whose parameters lie in memory together
+GROUPS = 2  # groups of sixteen lanes that a thread advances in turn: one hides the latency of the other
+EVERY = 2_000  # trials of each group between two looks at the stop flag, some milliseconds
+HEAD = 5  # numbers of a row of results before its state: how it ended, time, accepted, tried, events
+Progress = Callable[[int, int, float], None]
+
+
+class Work:
+    """The blocks of one ensemble, their threads and what they leave."""
+
+    def __init__(
+        self, method: Method, scheme: int, width: float, start: Any, duration: float, begin: float,
+        observers: tuple[Observer, ...], times: Any, threads: int, progress: Progress | None,
+    ) -> None:  # fmt: skip
+        self.method, self.scheme, self.width, self.start = method, scheme, width, start
+        self.duration, self.begin, self.observers, self.times = duration, begin, observers, times
+        self.threads, self.progress = threads, progress
+        self.rows: list[Any] = []
+        self.samples: list[Any] = []
+        self.system: System | None = None
+        self.interrupted = False
+        self.began = time.monotonic()
+
+    def run(self, design: Any, names: tuple[str, ...], arrays: list[Any], shape: tuple[int, ...]) -> None:
+        """Work through all blocks, or until Ctrl-C."""
+        total = int(np.prod(shape, dtype=int))
+        flat = [np.broadcast_to(array, shape).ravel() for array in arrays]
+        size = BLOCK if names else max(total, 1)
+        for first in range(0, total, size):
+            part = slice(first, min(first + size, total))
+            if names:
+                system = as_system(design.replace(dict(zip(names, (a[part] for a in flat), strict=True))))
+            else:
+                system = stacked(design) if isinstance(design, (list, tuple)) else as_system(design)
+            self._block(system, shape, part, total)
+            if self.interrupted:
+                break
+
+    def _block(self, system: System, shape: tuple[int, ...], part: slice, total: int) -> None:
+        count = part.stop - part.start
+        self.system = self.system or system
+        batch = system.shape if system.shape != () else (count,)
+        start = _starts(system, self.start, self.begin, shape, part, batch)
+        watches = tuple(each.watch() for each in self.observers)
+        begins = [self.begin + (1.0 - each.last) * self.duration for each in self.observers]
+        coefficients = [x for each, t in zip(self.observers, begins, strict=True) for x in (t, *each.settings)]
+        jobs = tabulate(
+            system, self.method, self.scheme, self.width, start, self.duration, self.begin, watches,
+            tuple(coefficients), self.times.size > 0,
+        )  # fmt: skip
+        if len(jobs.table) < count:
+            jobs = replace(jobs, table=np.broadcast_to(jobs.table, (count, jobs.table.shape[1])).copy())
+        width = HEAD + 2 * system.size + sum(
+            w.copies(system.size, len(system.contacts)) * (len(w.start) + w.coefficients) for w in watches
+        )  # fmt: skip
+        out = np.full((count, width), np.nan)
+        out[:, 0] = -1.0
+        samples = np.full((count, max(self.times.size, 1), 2 * system.size) if self.times.size else (1, 1, 1), np.nan)
+        self.rows.append(out)
+        self.samples.append(samples)
+        self._compute(jobs, out, samples, count, part.start, total)
+
+    def _compute(self, jobs: Jobs, out: Any, samples: Any, count: int, before: int, total: int) -> None:
+        from squealbox.transient.lanes.kernel import lane_kernel
+
+        kernel = lane_kernel(jobs.shape)
+        rule = packing.pack(jobs.template, self.method, self.scheme, self.width, False)
+        counter, stop = np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64)
+        rows = layout(jobs.shape)
+        size = len(rows) * LANES
+        workers = max(1, min(self.threads, -(-count // LANES)))
+        failures: list[BaseException] = []
+
+        def work() -> None:
+            try:
+                lanes, live = np.zeros(GROUPS * size), np.zeros(GROUPS, dtype=np.int64)
+                lanes[rows.places["alive"] * LANES] = -1.0
+                n = jobs.shape.n
+                scratch = packing.scratch(rule, np.zeros(n), np.zeros(n), self.begin, 0.0)
+                kernel(
+                    lanes, live, jobs.table, jobs.varies, jobs.fixed, self.times, samples, counter, count, out,
+                    rule.copy(), scratch, stop, EVERY,
+                )  # fmt: skip
+            except BaseException as error:  # handed to the caller below
+                failures.append(error)
+
+        if workers == 1 and self.progress is None and threading.current_thread() is not threading.main_thread():
+            work()
+        else:
+            self._watch(
+                [threading.Thread(target=work, daemon=True) for _ in range(workers)], counter, stop, before, total
+            )
+        if failures:
+            raise failures[0]
+
+    def _watch(self, threads: list[threading.Thread], counter: Any, stop: Any, before: int, total: int) -> None:
+        for thread in threads:
+            thread.start()
+        try:
+            for thread in threads:
+                while thread.is_alive():
+                    thread.join(0.2)
+                    if self.progress is not None:
+                        self.progress(min(before + int(counter[0]), total), total, time.monotonic() - self.began)
+        except KeyboardInterrupt:
+            self.interrupted = True
+            stop[0] = 1
+            for thread in threads:
+                thread.join()
+
+
+def _starts(
+    system: System, start: Any, begin: float, shape: tuple[int, ...], part: slice, batch: tuple[int, ...]
+) -> tuple[Any, Any]:
+    """q and qd at the start, each ending with n, for the block."""
+    n = system.size
+    if start is None or (isinstance(start, str) and start == "rest"):
+        return np.zeros(n), np.zeros(n)
+    if isinstance(start, str) and start == "sliding":
+        state = equilibrium(system, begin)
+        if not np.all(state.exists):
+            raise InvalidSystem(f"there is no steady sliding to start from: {state.outcome.message}")
+        return state.q, np.zeros(n)
+    try:
+        q, qd = (np.asarray(x, dtype=float) for x in start)
+        if q.ndim == 1 and qd.ndim == 1 and q.shape == qd.shape == (n,):
+            return q, qd
+        pair = [np.broadcast_to(x, (*shape, n)).reshape(-1, n)[part].reshape(*batch, n) for x in (q, qd)]
+    except (TypeError, ValueError) as error:
+        expected = f'"rest", "sliding" or (q, qd) of shape (..., {n})'
+        raise ParameterError("simulate_ensemble", "start", start, expected) from error
+    if not all(np.all(np.isfinite(x)) for x in pair):
+        raise ParameterError("simulate_ensemble", "start", start, "finite displacements and velocities")
+    return pair[0], pair[1]
