@@ -66,7 +66,7 @@ class Ensemble(Result):
         return float(np.sum(self.ended != NOT_RUN)) / self.seconds if self.seconds > 0.0 else np.nan
 
     def to_dataset(self) -> "xarray.Dataset":
-        """As `Result.to_dataset`, with ``parameter_<name>`` for what varied and ``observed_<name>`` for each observer."""
+        """As `Result.to_dataset`, with ``parameter_<name>`` and ``observed_<name>`` for what varied and was seen."""
         dataset = super().to_dataset()
         batch = len(self.shape)
         for name, values in self.parameters.items():

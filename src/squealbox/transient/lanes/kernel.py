@@ -112,9 +112,9 @@ def _signals(shape: Shape, places: dict[str, int]) -> list[str]:
     for index, terms in enumerate(shape.signals):
         for k, (_, count) in enumerate(terms):
             at = f"p.signal_start[{index}] + {k}"
-            lines.append(f"    p.term_weight[{at}] = A[b + {places[f'w{index}_{k}'] * LANES} + lane]")
+            lines.append(f"    p.term_weight[{at}] = A[b + {places[f'weight{index}_{k}'] * LANES} + lane]")
             for i in range(count):
-                row = places[f"p{index}_{k}_{i}"]
+                row = places[f"given{index}_{k}_{i}"]
                 lines.append(f"    p.term_coefficients[{at}, {i}] = A[b + {row * LANES} + lane]")
     return lines
 

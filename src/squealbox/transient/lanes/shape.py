@@ -67,7 +67,7 @@ def parameter_rows(shape: Shape) -> list[str]:
         names += [f"law{c}_{i}" for i in range(count)] + [f"slope{c}"]
     for index, terms in enumerate(shape.signals):
         for k, (_, count) in enumerate(terms):
-            names += [f"w{index}_{k}"] + [f"p{index}_{k}_{i}" for i in range(count)]
+            names += [f"weight{index}_{k}"] + [f"given{index}_{k}_{i}" for i in range(count)]
     names += [f"start{k}" for k in range(2 * n)] + [f"atol{k}" for k in range(2 * n)]
     names += [f"break{k}" for k in range(shape.breaks)]
     return [*names, "rtol", "width", "window", "largest", "least", "first"]

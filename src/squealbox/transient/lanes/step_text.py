@@ -64,8 +64,10 @@ class Step(EventText):
             return [] if value is None else [value]
         parts = []
         for k, (kind, count) in enumerate(self.shape.signals[index]):
-            p = ", ".join(self.row(f"p{index}_{k}_{i}") for i in range(count))
-            parts.append(f"{self.row(f'w{index}_{k}')} * lane_{'rate' if rate else 'value'}_{kind}({time}, ({p},))")
+            p = ", ".join(self.row(f"given{index}_{k}_{i}") for i in range(count))
+            parts.append(
+                f"{self.row(f'weight{index}_{k}')} * lane_{'rate' if rate else 'value'}_{kind}({time}, ({p},))"
+            )
         return parts
 
     def accelerations(self, q: list[str], v: list[str], time: str) -> dict[str, list[str]]:

@@ -109,9 +109,9 @@ def _equation(system: System, batch: tuple[int, ...]) -> tuple[dict[str, Any], A
     for index, terms in enumerate(signals):
         kinds.append(tuple((SCHEDULES.index(type(part)), len(part.coefficients())) for _, part in terms))
         for k, (weight, part) in enumerate(terms):
-            values[f"w{index}_{k}"] = np.asarray(weight, dtype=float)
+            values[f"weight{index}_{k}"] = np.asarray(weight, dtype=float)
             for i, coefficient in enumerate(part.coefficients()):
-                values[f"p{index}_{k}_{i}"] = np.asarray(coefficient, dtype=float)
+                values[f"given{index}_{k}_{i}"] = np.asarray(coefficient, dtype=float)
     instants = sorted({t for terms in signals for _, part in terms for t in part.breaks()})
     return values, tuple(kinds), [np.asarray(t) for t in instants]
 
