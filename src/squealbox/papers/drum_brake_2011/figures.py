@@ -75,7 +75,7 @@ def braking(raw: Studies, exact: Studies) -> "Figure":
 
 
 def pressure_maps(maps: dict[float, PressureMap]) -> "Figure":
-    """Fig. 9: growth over both centres of pressure with its traced boundary, for some friction coefficients."""
+    """Fig. 9: growth over both centres of pressure and its boundary, for some friction coefficients."""
     from matplotlib.patches import Rectangle
 
     figure, panels = plots.panels(1, len(maps), width=4.4 * len(maps), height=3.6)
