@@ -179,6 +179,8 @@ def test_modes(said, brake, tmp_path):
     modes = complex_modes(read_design(brake))
     assert modes.summary() in out
     assert "flutter" in out
+    names = {"modes.nc", "modes.csv", "modes.png", "modes.svg", "mode_energy.png", "mode_energy.svg"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == names
     table = rows(tmp_path / "out" / "modes.csv")
     assert [float(row["growth rate [1/s]"]) for row in table] == pytest.approx(modes.growth_rate[:2], rel=1e-9)
     assert Result.load(tmp_path / "out" / "modes.nc").eigenvalues == pytest.approx(modes.eigenvalues, rel=0)
@@ -229,7 +231,28 @@ def test_map(said, brake, tmp_path):
     assert float(table[-1]["growth rate [1/s]"]) == pytest.approx(growth, rel=1e-9)
     unstable = sum(float(row["growth rate [1/s]"]) > 0.0 for row in table)
     assert f"{unstable} of 49 points are unstable" in out
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {"map.nc", "map.png", "map.svg", "map.csv"}
+    names = {"map.nc", "map.png", "map.svg", "map.csv", "boundary.csv"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == names
+
+
+def test_map_says_and_writes_the_boundary(said, brake, tmp_path):
+    words = ["--x", "friction.static", "0", "1", "--y", "theta1", "20deg", "80deg", "--points", "7"]
+    code, out, err = said("map", brake, *words, "--show", "mechanism", "--out", tmp_path / "out")
+    assert (code, err) == (0, "")
+    assert "mechanism of the unstable points: flutter" in out
+    edge = rows(tmp_path / "out" / "boundary.csv")
+    assert f"boundary: {edge[-1]['piece']} piece" in out
+    assert all(20.0 <= float(row["theta1 [deg]"]) <= 80.0 for row in edge)
+    assert max(abs(float(row["growth rate [1/s]"])) for row in edge) < 1e-9
+    mu, angle = (float(edge[5][name]) for name in ("friction.static [-]", "theta1 [deg]"))
+    there = read_design(brake).replace({"theta1": np.deg2rad(angle)})
+    onset = critical_value(there, "friction.static", (mu - 0.02, mu + 0.02)).value
+    assert float(onset) == pytest.approx(mu, abs=1e-8)  # the table has ten digits
+
+
+def test_map_without_a_boundary_says_so(said, brake):
+    words = ["--x", "friction.static", "0.01", "0.02", "--y", "theta1", "20deg", "80deg", "--points", "7"]
+    assert "boundary: none, stability does not change in the rectangle" in said("map", brake, *words)[1]
 
 
 def test_map_by_the_file(said, brake):

@@ -138,6 +138,40 @@ def test_a_map_without_an_unstable_point_still_shows_its_angles() -> None:
     assert panel.get_ylim() == (20.0, 160.0)
 
 
+def test_the_boundary_of_the_map_is_drawn_as_traced() -> None:
+    """Two bands across the square have four edges; on each the largest growth rate vanishes."""
+    found = steady.pressure_map(Case("consistent"), step=5.0, traced=True)
+    assert found.curves is not None
+    assert len(found.curves) == 4
+    panel = figures.pressure_maps({0.30: found}).axes[0]
+    assert [len(line.get_xdata()) for line in panel.get_lines()] == [len(points) for points in found.curves]
+    theta1, theta2 = np.deg2rad(np.concatenate(found.curves)).T
+    left = steady.growth(Case("consistent").design(theta1=theta1, theta2=theta2))
+    assert np.max(np.abs(left)) < 1e-7  # 1/s; degrees and back cost the last digit of an angle, times 1e4 1/s
+
+
+@pytest.mark.parametrize(
+    ("name", "friction", "load"),
+    [
+        ("eq1_printed", "", "negative_slope"),
+        ("eq3", "flutter", ""),
+        ("eq3_signed", "flutter", ""),
+        ("componentwise", "", "negative_slope"),
+        ("consistent", "flutter", "negative_slope"),
+        (PRINTED, "flutter", "negative_slope"),
+    ],
+)
+def test_each_reading_shows_by_what_it_loses_stability(name: str, friction: str, load: str) -> None:
+    """No onset, no mechanism; else the claims name it with the shares of what feeds the mode."""
+    case = Case(name)
+    found = (steady.onset_in_friction(case), steady.onset_in_load(case))
+    assert (found[0].mechanism, found[1].mechanism) == (friction, load)
+    told = by_eigenvalues.findings(case, steady.pressure_map(case, step=20.0))
+    assert told["mu-2.mechanism"].value is (friction == "flutter")
+    assert (found[0].feeding or "no onset") in told["mu-2.mechanism"].note
+    assert (found[1].feeding or "no onset") in told["q-2.load"].note
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory) -> Iterator[object]:
     """The whole command with two readings computed and their answers standing in for the others."""

@@ -27,7 +27,7 @@ COMMANDS = {
     "list": Command("catalogue", "list_", "designs with their parameters, friction laws, schedules, methods, papers"),
     "modes": Command("stability", "modes", "is steady sliding stable? complex eigenvalues of a design file"),
     "onset": Command("stability", "onset", "the value of a parameter at which squeal begins, and how"),
-    "map": Command("stability", "map_", "stability over two parameters"),
+    "map": Command("maps", "map_", "stability over two parameters, with the boundary as curves"),
     "simulate": Command("transient", "simulate", "what happens in time: a transient with verdict, figures and data"),
     "paper": Command("papers", "paper", "reproduce a published study: figures, claims and one page"),
     "schema": Command("starter", "schema", "the JSON schema of a design file, for editors"),

@@ -13,6 +13,7 @@ from squealbox.plots.motion import amplitude_course, energy, motion_overview, ph
 from squealbox.plots.spectra import spectrogram, spectrum
 from squealbox.plots.stability import (
     boundary_curves,
+    eigenvalues,
     mechanism_map,
     mode_energy,
     root_locus,
@@ -27,6 +28,7 @@ __all__ = [
     "boundary_curves",
     "coalescence",
     "contact_comparison",
+    "eigenvalues",
     "energy",
     "friction_curve",
     "letters",

@@ -1,5 +1,6 @@
 """A map over two parameters: where steady sliding, or a run, is unstable."""
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,6 +9,7 @@ from squealbox.plots.style import drawing, figure_of, quantity_label
 
 HATCH = "\\\\\\\\"  # against the slope that bands of coalescence usually have
 PALE = "#f6e6da"
+EDGE: dict[str, Any] = {"colors": ["#000000"], "linewidths": 1.2, "zorder": 3}
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,6 +26,7 @@ def stability_map(
     y_unit: str = "",
     value_name: str = "growth rate",
     value_unit: str = "1/s",
+    curves: Iterable[Any] | None = None,
     title: str = "",
     axes: Any = None,
 ) -> "Figure":
@@ -35,6 +38,7 @@ def stability_map(
     growth : (ny, nx), unstable where > 0; NaN, drawn as crosses, where nothing is known. Booleans (True = unstable) are
         drawn without shades
     x_name, x_unit, y_name, y_unit, value_name, value_unit : for the axes and the bar
+    curves : the boundary as traced, each curve (k, 2) in the units of the axes; without it the line is the grid's own
     """
     x, y, grid = np.asarray(x, dtype=float), np.asarray(y, dtype=float), np.asarray(growth)
     if grid.shape != (np.size(y), np.size(x)):
@@ -46,8 +50,12 @@ def stability_map(
     with drawing(axes, width=4.0, height=3.4) as panel:
         if top > 0.0:
             _shade(panel, x, y, np.ma.masked_invalid(level), top, None if boolean else (value_name, value_unit))
+            if curves is None:
+                panel.contour(x, y, np.ma.masked_invalid(level), levels=[0.0], **EDGE)
         if np.any(unknown):
             panel.contourf(x, y, unknown.astype(float), levels=[0.5, 1.5], colors=["#dddddd"], hatches=["xxx"])
+        for points in curves or ():
+            panel.plot(points[:, 0], points[:, 1], color=EDGE["colors"][0], linewidth=EDGE["linewidths"], zorder=3)
         _legend(panel, level > 0.0, unknown)
         panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
         panel.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))  # a map that is stable all over draws nothing else
@@ -83,6 +91,5 @@ def _shade(panel: Any, x: Any, y: Any, level: Any, top: float, bar: tuple[str, s
     palette = {"cmap": "Oranges"} if bar else {"colors": [PALE]}
     shade = panel.contourf(x, y, level, levels=steps, extend="neither", zorder=1, **palette)
     panel.contourf(x, y, level, levels=[0.0, 1e300], colors="none", hatches=[HATCH], zorder=2)
-    panel.contour(x, y, level, levels=[0.0], colors=["#000000"], linewidths=1.2, zorder=3)
     if bar:
         figure_of(panel).colorbar(shade, ax=panel, pad=0.02).set_label(quantity_label(*bar))

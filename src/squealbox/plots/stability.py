@@ -11,8 +11,16 @@ import numpy as np
 
 from squealbox.plots.dispatch import plot
 from squealbox.plots.modes import coalescence
-from squealbox.plots.style import LINES, drawing, figure_of, line, note, number, quantity_label
-from squealbox.stability import Boundary, ModeEnergy, Sensitivity, StabilityMap, TrackedModes, TransientGrowth
+from squealbox.plots.style import LINES, drawing, figure_of, line, note, number, quantity_label, scaled
+from squealbox.stability import (
+    Boundary,
+    ComplexModes,
+    ModeEnergy,
+    Sensitivity,
+    StabilityMap,
+    TrackedModes,
+    TransientGrowth,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,6 +52,31 @@ def root_locus(tracked: TrackedModes, *, title: str = "", axes: Any = None) -> "
         note(panel, f"□ {tracked.parameter} = {number(low)}\n● {tracked.parameter} = {number(high)}", "upper left")
         panel.margins(x=0.1, y=0.25)
         panel.set(xlabel=quantity_label("growth rate", "1/s"), ylabel=quantity_label("frequency", "Hz"), title=title)
+        return figure_of(panel)
+
+
+@plot.register(ComplexModes)
+def eigenvalues(modes: ComplexModes, *, title: str = "", axes: Any = None) -> "Figure":
+    """The spectrum in the complex plane, Im >= 0: dots where a mode decays, squares where it grows, with their numbers.
+
+    With leading axes the spectra of all entries stand in one figure, without numbers.
+    """
+    known = np.asarray(modes.exists)
+    half = modes.eigenvalues.shape[-1] // 2
+    growth, hertz = modes.growth_rate[known][:, :half], modes.frequency[known][:, :half]
+    factor, read = scaled("Hz", hertz)
+    with drawing(axes, height=2.8) as panel:
+        for grows, marker, colour, name in ((False, "o", "#0072B2", "decays"), (True, "s", "#D55E00", "grows")):
+            chosen = (growth > 0.0) == grows
+            if np.any(chosen):
+                panel.plot(growth[chosen], hertz[chosen] / factor, marker, color=colour, label=name)
+        if modes.eigenvalues.ndim == 1:
+            for i, at in enumerate(zip(growth[0], hertz[0] / factor, strict=True)):
+                panel.annotate(str(i + 1), at, xytext=(5.0, 3.0), textcoords="offset points", fontsize=7.0)
+        panel.axvline(0.0, color="#000000", linewidth=0.5)
+        panel.margins(x=0.15, y=0.25)
+        panel.set(xlabel=quantity_label("growth rate", "1/s"), ylabel=quantity_label("frequency", read), title=title)
+        panel.legend(loc="best")
         return figure_of(panel)
 
 

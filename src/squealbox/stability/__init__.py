@@ -6,6 +6,7 @@ from squealbox.stability.energy import ModeEnergy, mode_energy
 from squealbox.stability.exceptional import DampingSplit, ExceptionalPoints, damping_split, exceptional_points
 from squealbox.stability.indices import damping_ratio_from, indices, logarithmic_decrement, loss_factor, squeal_index
 from squealbox.stability.maps import StabilityMap, stability_map
+from squealbox.stability.massless import FiniteSpectrum, finite_spectrum
 from squealbox.stability.mechanism import Mechanism, mechanism
 from squealbox.stability.nonnormal import TransientGrowth, pseudospectrum, transient_growth
 from squealbox.stability.onset import CriticalValue, CriticalValues, critical_value, critical_values
@@ -20,6 +21,7 @@ __all__ = [
     "CriticalValues",
     "DampingSplit",
     "ExceptionalPoints",
+    "FiniteSpectrum",
     "Mechanism",
     "Mode",
     "ModeEnergy",
@@ -34,6 +36,7 @@ __all__ = [
     "damping_ratio_from",
     "damping_split",
     "exceptional_points",
+    "finite_spectrum",
     "indices",
     "logarithmic_decrement",
     "loss_factor",

@@ -312,7 +312,9 @@ def _outcome(about: Linearised, exists: Any, regular: Any, finite: Any) -> Outco
     if not np.all(exists):
         return about.equilibrium.outcome
     if not np.all(regular):
-        message = "M is singular: a degree of freedom without mass has no eigenvalue; condense it out of K first"
+        message = (
+            "M is singular: a freedom without mass has no mode; finite_spectrum() gives the eigenvalues that remain"
+        )
         return Outcome("singular_mass", message, entries=int(np.sum(~regular)))
     if not np.all(finite):
         return Outcome("not_finite", "M^-1 K or M^-1 C overflows", entries=int(np.sum(~finite)))

@@ -75,14 +75,14 @@ def braking(raw: Studies, exact: Studies) -> "Figure":
 
 
 def pressure_maps(maps: dict[float, PressureMap]) -> "Figure":
-    """Fig. 9: growth over both centres of pressure for some friction coefficients, with the published zone."""
+    """Fig. 9: growth over both centres of pressure and its boundary, for some friction coefficients."""
     from matplotlib.patches import Rectangle
 
     figure, panels = plots.panels(1, len(maps), width=4.4 * len(maps), height=3.6)
     for panel, (mu, found) in zip(np.ravel(panels), maps.items(), strict=True):
         plots.stability_map(
             found.angles, found.angles, found.growth.T, x_name=r"$\theta_1$", x_unit="deg", y_name=r"$\theta_2$",
-            y_unit="deg", title=f"mu = {mu:.2f}", axes=panel,
+            y_unit="deg", curves=found.curves, title=f"mu = {mu:.2f}", axes=panel,
         )  # fmt: skip
         with drawing(panel):
             (left, right), (low, high) = ZONE

@@ -29,7 +29,8 @@ CAPTIONS = {
     "fig7": "Fig. 7. Phase planes over the load. Black: last cycles, raw. Dashed: last cycle, exact.",
     "fig8": "Fig. 8. Braking from 0.2 m/s to rest in 0.05 s. Grey: where the paper sees a constant amplitude. "
     "The kick at the end is the belt coming to rest.",
-    "fig9": "Fig. 9. Growth rate over both centres of pressure in steps of 1 deg. Blue: the published unstable zone.",
+    "fig9": "Fig. 9. Growth rate over both centres of pressure in steps of 1 deg. Black: its boundary, traced at 0.30. "
+    "Blue: the published unstable zone.",
 }
 SIGNS = {AGREE: "✓", DISAGREE: "✗", UNDECIDED: "?"}
 

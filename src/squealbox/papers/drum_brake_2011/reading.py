@@ -22,7 +22,7 @@ Drawer = Callable[[], "Figure"]
 
 def study(case: Case, folder: Path) -> dict[str, Any]:
     """Findings, runs and figure files of one case, as plain data; the figures are written to `folder`."""
-    maps = {mu: steady.pressure_map(case, mu=mu) for mu in MAP_FRICTION}
+    maps = {mu: steady.pressure_map(case, mu=mu, traced=mu == FRICTION) for mu in MAP_FRICTION}
     found = {EIGENVALUES: by_eigenvalues.findings(case, maps[FRICTION])}
     drawn: dict[str, Drawer] = {
         "fig5": lambda: figures.coalescence(case),

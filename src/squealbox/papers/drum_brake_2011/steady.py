@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.papers.drum_brake_2011.cases import FRICTION, MAP_ANGLES, SPEED, Case
-from squealbox.stability import ComplexModes, complex_modes, critical_value, stability_map
+from squealbox.stability import ComplexModes, complex_modes, critical_value, stability_boundary, stability_map
 from squealbox.stability.eigenvalues import spectrum
 from squealbox.system import as_system, linearise
 
@@ -36,10 +36,15 @@ class Onset:
 
 @dataclass(frozen=True)
 class PressureMap:
-    """Largest growth rate [1/s] over the centres of pressure: `angles` [deg] of both, `growth` (theta1, theta2)."""
+    """Largest growth rate [1/s] over the centres of pressure: `angles` [deg] of both, `growth` (theta1, theta2).
+
+    `curves` are those of zero growth as traced, each (k, 2) [deg]; empty where stability changes nowhere, None where
+    they were not asked for.
+    """
 
     angles: Any
     growth: Any
+    curves: list[Any] | None = None
 
     @property
     def unstable(self) -> Any:
@@ -61,12 +66,17 @@ def onset_in_load(case: Case) -> Onset:
     return _onset(case.design(), "load", LOAD_RANGE)
 
 
-def pressure_map(case: Case, step: float = 1.0, mu: float = FRICTION) -> PressureMap:
-    """Growth over both centres of pressure from 20 to 160 deg in steps of `step` [deg]."""
+def pressure_map(case: Case, step: float = 1.0, mu: float = FRICTION, traced: bool = False) -> PressureMap:
+    """Growth over both centres of pressure from 20 to 160 deg in steps of `step` [deg], with the `traced` boundary."""
     low, high = MAP_ANGLES
     angles = np.linspace(low, high, round((high - low) / step) + 1)
     over = dict.fromkeys(("theta1", "theta2"), np.deg2rad(angles))
-    return PressureMap(angles, stability_map(case.design(mu=mu), over, mechanism=False).growth_rate)
+    design = case.design(mu=mu)
+    grown = stability_map(design, over, mechanism=False).growth_rate
+    if not traced:
+        return PressureMap(angles, grown)
+    ends = dict.fromkeys(over, (float(np.deg2rad(low)), float(np.deg2rad(high))))
+    return PressureMap(angles, grown, [np.rad2deg(points) for points in stability_boundary(design, ends).curves])
 
 
 def modes(case: Case, **parameters: Any) -> ComplexModes:

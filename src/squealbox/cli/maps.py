@@ -1,0 +1,167 @@
+"""`squealbox map`: which part of a plane squeals, why, and where its boundary runs."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import numpy as np
+from cyclopts import Parameter
+
+from squealbox.cli.inputs import Changes, Option, axis, folder, read, readable, with_points
+from squealbox.cli.progress import Progress
+from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.tables import write_csv, written
+from squealbox.stability import Boundary, StabilityMap, stability_boundary, stability_map
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from squealbox.designs import Design
+    from squealbox.files.analyses import Axis
+
+Span = Annotated[tuple[str, str, str] | None, Parameter(negative="")]
+ACROSS, UP = Option("--x", "--x NAME LOW HIGH"), Option("--y", "--y NAME LOW HIGH")
+
+
+def map_(
+    file: Path,
+    *,
+    x: Span = None,
+    y: Span = None,
+    points: int | None = None,
+    show: Literal["growth", "mechanism"] = "growth",
+    changes: Changes = (),
+    out: Path | None = None,
+) -> None:
+    """Stability over two parameters: which part of the plane squeals, why, how fast it grows, and its boundary.
+
+    Parameters
+    ----------
+    file
+        design file; its section [map] says what is varied, unless the options do
+    x
+        parameter, lowest and highest value: friction.static 0 1
+    y
+        the same for the other axis: theta1 20deg 160deg
+    points
+        number of values along each axis
+    show
+        what the figure shades: the growth rate, or the mechanism
+    changes
+        other values for this run: --set friction.static=0.4 load="2 kN"
+    out
+        folder for the figure, the grid and the points of the boundary
+    """
+    found = read(file, changes)
+    given = found.map
+    across = with_points(axis(found.design, given.x if given else None, *_split(x), ACROSS), points)
+    up = with_points(axis(found.design, given.y if given else None, *_split(y), UP), points)
+    if across.name == up.name:
+        raise UsageError(f"x and y are both {up.name}: expected two different parameters")
+    if out is not None:
+        folder(out)
+    with Progress(f"{int(across.points)} x {int(up.points)} points") as progress:
+        grid = stability_map(found.design, {each.name: each.values for each in (across, up)})
+        if not grid.outcome.ok:
+            raise ComputationFailed(grid.outcome)
+        progress("following the boundary")
+        edge = stability_boundary(found.design, {each.name: (each.low, each.high) for each in (across, up)})
+    plane = _Plane(found.design, across, up)
+    print(f"{found.design.title}, {file}\n{_map_summary(grid, plane)}\n{_edge_summary(edge, plane)}")
+    if out is not None:
+        figure = _drawn(grid, edge, plane, show, found.path.name)
+        print(written(*_files(grid, edge, plane, figure, out)))
+
+
+class _Plane:
+    """The two axes, in the units one reads them in."""
+
+    def __init__(self, design: "Design", across: "Axis", up: "Axis") -> None:
+        self.design, self.axes = design, (across, up)
+        self.names = (across.name, up.name)
+        (self.x, x_unit), (self.y, y_unit) = (readable(design, each, each.values) for each in self.axes)
+        self.units = (x_unit, y_unit)
+        self.factors = tuple(float(readable(design, each, 1.0)[0]) for each in self.axes)
+
+    def place(self, point: Any) -> str:
+        """A point in words."""
+        values = [readable(self.design, each, value)[0] for each, value in zip(self.axes, point, strict=True)]
+        words = [f"{n} = {v:.5g} {u}".rstrip() for n, v, u in zip(self.names, values, self.units, strict=True)]
+        return ", ".join(words)
+
+    def columns(self, x: Any, y: Any) -> dict[str, Any]:
+        """The first two columns of a table."""
+        return {f"{n} [{u or '-'}]": v for n, u, v in zip(self.names, self.units, (x, y), strict=True)}
+
+
+def _split(span: tuple[str, str, str] | None) -> tuple[str | None, tuple[str, str] | None]:
+    return (None, None) if span is None else (span[0], (span[1], span[2]))
+
+
+def _map_summary(grid: StabilityMap, plane: _Plane) -> str:
+    """How much of the plane squeals, by which mechanism, and where it is worst."""
+    known, unstable = np.count_nonzero(grid.exists), np.count_nonzero(grid.unstable)
+    counts = [(name, np.count_nonzero(grid.mechanism == code)) for code, name in enumerate(grid.mechanism_names)]
+    parts = ", ".join(f"{name.replace('_', ' ')} {100.0 * n / unstable:.1f} %" for name, n in counts[1:] if n)
+    column, row = np.unravel_index(np.nanargmax(grid.growth_rate), grid.growth_rate.shape)
+    lines = [f"{unstable} of {known} points are unstable ({100.0 * unstable / known:.1f} %)"]
+    lines += [f"mechanism of the unstable points: {parts}"] * bool(parts)
+    lines.append(
+        f"the largest growth rate is {grid.growth_rate[column, row]:+.5g} 1/s at "
+        f"{grid.frequency[column, row]:.5g} Hz, "
+        f"{plane.place((plane.axes[0].values[column], plane.axes[1].values[row]))}"
+    )
+    missing = grid.growth_rate.size - known
+    return "\n".join(lines + [f"{missing} more points have no steady sliding"] * bool(missing))
+
+
+def _edge_summary(edge: Boundary, plane: _Plane) -> str:
+    """The pieces of the boundary: from where to where each runs, and at which frequencies."""
+    if not edge.outcome.ok:
+        return f"boundary: none, {edge.outcome.message}"
+    curves = edge.curves
+    lines = [f"boundary: {len(curves)} piece{'s' * (len(curves) > 1)}, unstable on the left of the way"]
+    for i, points in enumerate(curves):
+        hertz = edge.frequency[edge.curve == i]
+        span = f"{np.min(hertz):.5g} to {np.max(hertz):.5g} Hz"
+        if edge.closed(i):
+            low, high = plane.place(points.min(axis=0)), plane.place(points.max(axis=0))
+            lines.append(f"  {i + 1}: an island between {low} and {high}; {span}")
+        else:
+            lines.append(f"  {i + 1}: from {plane.place(points[0])} to {plane.place(points[-1])}; {span}")
+    return "\n".join(lines)
+
+
+def _drawn(grid: StabilityMap, edge: Boundary, plane: _Plane, show: str, title: str) -> "Figure":
+    from squealbox import plots
+
+    (x_name, y_name), (x_unit, y_unit) = plane.names, plane.units
+    if show == "mechanism":
+        scales = {n: (f, u) for n, f, u in zip(plane.names, plane.factors, plane.units, strict=True)}
+        return plots.mechanism_map(grid, boundary=edge, scales=scales, title=title)
+    labels = {"x_name": x_name, "x_unit": x_unit, "y_name": y_name, "y_unit": y_unit}
+    curves = [points * plane.factors for points in edge.curves]
+    return plots.stability_map(plane.x, plane.y, grid.growth_rate.T, **labels, curves=curves, title=title)
+
+
+def _files(grid: StabilityMap, edge: Boundary, plane: _Plane, figure: "Figure", out: Path) -> list[Path]:
+    from squealbox import plots
+
+    columns = {
+        **plane.columns(np.repeat(plane.x, len(plane.y)), np.tile(plane.y, len(plane.x))),
+        "growth rate [1/s]": grid.growth_rate.ravel(),
+        "frequency [Hz]": grid.frequency.ravel(),
+        "growing modes": grid.unstable_modes.ravel(),
+        "mechanism": np.array([*grid.mechanism_names, "none"])[grid.mechanism.ravel()],
+    }
+    along = {
+        "piece": edge.curve + 1,
+        **plane.columns(edge.x * plane.factors[0], edge.y * plane.factors[1]),
+        "growth rate [1/s]": edge.growth_rate,
+        "frequency [Hz]": edge.frequency,
+    }
+    return [
+        grid.save(out / "map.nc"),
+        *plots.save(figure, out / "map"),
+        write_csv(out / "map.csv", columns),
+        write_csv(out / "boundary.csv", along),
+    ]
