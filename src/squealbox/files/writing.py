@@ -127,6 +127,8 @@ def _text(value: Any, unit: str, name: str) -> str:
         return '"none"'
     if isinstance(value, bool):
         return str(value).lower()
+    if isinstance(value, int):
+        return str(value)
     if isinstance(value, str):
         return _quoted(value)
     if isinstance(value, Schedule):
