@@ -8,14 +8,15 @@ each with the stiffness k = lining/P. With n = (-e_r | e_r, 0) over (drum | shoe
 
 The shoe (mass m, centre of mass at radius b in its middle, inertia J about the drum's centre) leans on an elastic
 abutment at one end and is pushed by the actuator along the chord's normal at the other; the drum turns anticlockwise, so
-shoe 1 leads and shoe 2 trails. `pressure` says what the lining does before friction acts:
+shoe 2 leads and shoe 1 trails. `pressure` says where the normal forces at q = 0 come from:
 
 - spring: the springs share the actuator's force F as the stiffnesses will have it, N0 = k n.K^-1 F, and q is measured
   from that loaded state
-- wear: N0 grows as sin(angle from the abutment), the pressure of a worn-in lining that turns about its abutment, sized
-  to balance the actuator's moment about the abutment without friction. The load F - sum n N0 that is left bends the
-  abutments.
+- wear: the lining has worn in while sliding, N0 = p sin(angle from the abutment), sized so that its moment and that of
+  its friction mu(V) balance the actuator's about the abutment; q is measured from that steady sliding, so the load is
+  -sum d mu sgn(V) N0. A leading shoe that would hold itself has no such state.
 
+A worn lining keeps its shape while q moves, so the two differ where friction depends on speed, through N mu'(V) d t'.
 A point opens instead of pulling.
 """
 
@@ -27,6 +28,7 @@ from squealbox.designs.base import Design
 from squealbox.designs.rows import block, check_law, column, diagonal, outer
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import ParameterError, choice, parameter
+from squealbox.schedules import value_at
 from squealbox.system import Contact, System
 
 OWN = "chosen here, of the size of a car's brake"
@@ -95,11 +97,13 @@ class DrumBrakeShoes(Design):
                 stiffness += each[..., None] * outer(normal, normal)
         loaded = np.linalg.solve(stiffness, load[..., None])[..., 0]
         contacts: list[Contact] = []
+        friction = self._friction_factor()
+        load = np.zeros((*np.broadcast_shapes(shape, np.shape(friction)), 8))
         for shoe in (0, 1):
             worn = self._worn_preloads(shoe)
             for i, (name, normal, along) in enumerate(self.lining_rows(shoe)):
                 preload = np.sum(each * normal * loaded, axis=-1) if self.pressure == "spring" else worn[i]
-                load = load - column(preload) * normal
+                load = load - column(friction * preload) * along
                 rows = (each * normal, along, along)
                 contacts.append(Contact(*rows, preload, self.sliding_speed, self.friction, name, True, normal))
         load = np.zeros((*shape, 8)) if self.pressure == "spring" else load
@@ -148,16 +152,25 @@ class DrumBrakeShoes(Design):
             rows.append((f"shoe {shoe + 1} point {i + 1}", normal, along))
         return rows
 
+    def _friction_factor(self) -> Any:
+        """Mu(V) sgn(V) of steady sliding."""
+        speed = value_at(self.sliding_speed, 0.0)
+        return np.asarray(self.friction.mu(speed)) * np.sign(speed)
+
     def _worn_preloads(self, shoe: int) -> list[Any]:
-        angles = self.lining_angles(shoe)
-        point = self.abutment_point(shoe)
-        direction = np.arctan2(point[..., 1], point[..., 0])
-        share = np.array([np.abs(np.sin(angle - direction)) for angle in angles])
-        # moments about the abutment: the actuator's, and that of a normal force -N e_r at R e_r
-        actuator = 2.0 * np.asarray(self.arm)
-        arms = [np.abs(np.cos(a) * point[..., 1] - np.sin(a) * point[..., 0]) for a in angles]
-        total = sum(s * arm for s, arm in zip(share, arms, strict=True))
-        return [np.asarray(self.load) * actuator * s / total for s in share]
+        if self.pressure == "spring":
+            return []
+        angles, point = self.lining_angles(shoe), self.abutment_point(shoe)
+        friction, side = self._friction_factor(), 1.0 if shoe == 0 else -1.0
+        # moments about the abutment P, anticlockwise: P x e_r of a normal force -N e_r, R - P.e_r of friction along e_t
+        normal = [point[..., 0] * np.sin(a) - point[..., 1] * np.cos(a) for a in angles]
+        along = [self.radius - point[..., 0] * np.cos(a) - point[..., 1] * np.sin(a) for a in angles]
+        share = [np.abs(arm) for arm in normal]  # |P| |sin(a - angle of P)|
+        total = sum(s * (n + friction * t) for s, n, t in zip(share, normal, along, strict=True))
+        if np.any(side * total <= 0.0):
+            shown = float(np.max(np.abs(friction)))
+            raise ParameterError("DrumBrakeShoes", "friction", shown, "less: with pressure = wear a shoe holds itself")
+        return [2.0 * np.asarray(self.arm) * self.load * side * s / total for s in share]
 
     def _shoe_mass(self, shoe: int) -> Any:
         off = np.asarray(self.mass) * np.asarray(self.centre) * np.cos(SHOES[shoe])  # the centre of mass lies on x
