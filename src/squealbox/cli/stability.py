@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from cyclopts import Parameter
 
-from squealbox.cli.inputs import RANGE, Changes, Ends, Option, axis, folder, read, readable, with_points
+from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, Option, axis, folder, read, readable, with_points
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -22,7 +22,7 @@ Span = Annotated[tuple[str, str, str] | None, Parameter(negative="")]
 ACROSS, UP = Option("--x", "--x NAME LOW HIGH"), Option("--y", "--y NAME LOW HIGH")
 
 
-def modes(file: Path, *, changes: Changes = (), out: Path | None = None) -> None:
+def modes(file: Path, *, changes: Changes = (), allow_code: AllowCode = False, out: Path | None = None) -> None:
     """Is steady sliding stable? Complex eigenvalues: frequency, growth rate and damping of each mode.
 
     Parameters
@@ -31,10 +31,12 @@ def modes(file: Path, *, changes: Changes = (), out: Path | None = None) -> None
         design file; squealbox init writes a first one
     changes
         other values for this run: --set friction.static=0.4 load="2 kN"
+    allow_code
+        run the Python file of a friction law that the design file names
     out
         folder for modes.csv and modes.nc
     """
-    found = read(file, changes)
+    found = read(file, changes, allow_code)
     time = found.modes.time if found.modes else 0.0
     spectrum = complex_modes(found.design, time)
     if not spectrum.outcome.ok:
@@ -53,6 +55,7 @@ def onset(
     parameter: str | None = None,
     range: Ends = None,
     changes: Changes = (),
+    allow_code: AllowCode = False,
     out: Path | None = None,
 ) -> None:
     """The value of a parameter at which steady sliding changes its stability: where squeal begins.
@@ -67,10 +70,12 @@ def onset(
         lowest and highest value, with or without a unit: 0 1, or 20deg 160deg
     changes
         other values for this run: --set friction.static=0.4 load="2 kN"
+    allow_code
+        run the Python file of a friction law that the design file names
     out
         folder for a figure of frequencies and growth rates over the range, and its numbers
     """
-    found = read(file, changes)
+    found = read(file, changes, allow_code)
     varied = axis(found.design, found.onset, parameter, range, RANGE)
     if out is not None:
         folder(out)
@@ -91,6 +96,7 @@ def map_(
     y: Span = None,
     points: int | None = None,
     changes: Changes = (),
+    allow_code: AllowCode = False,
     out: Path | None = None,
 ) -> None:
     """Stability over two parameters: which part of the plane squeals, and how fast it grows there.
@@ -107,10 +113,12 @@ def map_(
         number of values along each axis
     changes
         other values for this run: --set friction.static=0.4 load="2 kN"
+    allow_code
+        run the Python file of a friction law that the design file names
     out
         folder for the figure and its numbers
     """
-    found = read(file, changes)
+    found = read(file, changes, allow_code)
     given = found.map
     across = with_points(axis(found.design, given.x if given else None, *_split(x), ACROSS), points)
     up = with_points(axis(found.design, given.y if given else None, *_split(y), UP), points)

@@ -12,9 +12,8 @@ shoe 2 leads and shoe 1 trails. `pressure` says where the normal forces at q = 0
 
 - spring: the springs share the actuator's force F as the stiffnesses will have it, N0 = k n.K^-1 F, and q is measured
   from that loaded state
-- wear: the lining has worn in while sliding, N0 = p sin(angle from the abutment), sized so that its moment and that of
-  its friction mu(V) balance the actuator's about the abutment; q is measured from that steady sliding, so the load is
-  -sum d mu sgn(V) N0. A leading shoe that would hold itself has no such state.
+- wear: the lining has worn in while sliding, N = p sin(angle from the abutment), sized so that its moment and that of
+  its friction mu(V) balance the actuator's about the abutment; q is measured from that steady sliding. A leading shoe that would hold itself has no such state.
 
 A worn lining keeps its shape while q moves, so the two differ where friction depends on speed, through N mu'(V) d t'.
 A point opens instead of pulling.
@@ -102,11 +101,12 @@ class DrumBrakeShoes(Design):
         for shoe in (0, 1):
             worn = self._worn_preloads(shoe)
             for i, (name, normal, along) in enumerate(self.lining_rows(shoe)):
-                preload = np.sum(each * normal * loaded, axis=-1) if self.pressure == "spring" else worn[i]
-                load = load - column(friction * preload) * along
+                pressed = np.sum(each * normal * loaded, axis=-1)
+                if self.pressure == "wear":
+                    load = load - column(friction * worn[i]) * along
+                preload = worn[i] if self.pressure == "wear" else pressed
                 rows = (each * normal, along, along)
                 contacts.append(Contact(*rows, preload, self.sliding_speed, self.friction, name, True, normal))
-        load = np.zeros((*shape, 8)) if self.pressure == "spring" else load
         names = ("drum_x", "drum_y", "shoe1_x", "shoe1_y", "shoe1_turn", "shoe2_x", "shoe2_y", "shoe2_turn")
         return System(mass, block(self.damping) * stiffness, stiffness, load, tuple(contacts), names)
 

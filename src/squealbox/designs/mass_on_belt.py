@@ -56,9 +56,7 @@ class MassOnBelt(Design):
         unit = np.eye(1)
         along = np.ones(1)
         contact = Contact(0.0 * along, along, along, self.load, self.sliding_speed, self.friction, name="belt")
-        return System(
-            block(self.m) * unit, block(self.c) * unit, block(self.k) * unit, [0.0], (contact,), names=("x",)
-        )
+        return System(block(self.m) * unit, block(self.c) * unit, block(self.k) * unit, [0.0], (contact,), names=("x",))
 
 
 class BlockChain(Design):

@@ -9,6 +9,7 @@ Importing this room loads neither pint nor SciPy.
 
 from squealbox.files.document import DesignFileError, Problem
 from squealbox.files.own_brake import OwnBrake, OwnContact
+from squealbox.files.own_law import OwnLaw, law_from_file, own_law
 from squealbox.files.reading import BRAKES, DesignFile, read_design, read_file
 from squealbox.files.schema import json_schema
 from squealbox.files.writing import NotWritable, write_design
@@ -20,8 +21,11 @@ __all__ = [
     "NotWritable",
     "OwnBrake",
     "OwnContact",
+    "OwnLaw",
     "Problem",
     "json_schema",
+    "law_from_file",
+    "own_law",
     "read_design",
     "read_file",
     "write_design",

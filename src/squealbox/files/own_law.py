@@ -13,6 +13,9 @@ Such a file is code. It is read as text here and run only where the caller allow
 
 import ast
 import hashlib
+import inspect
+import re
+import textwrap
 from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
@@ -21,7 +24,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.friction import FrictionLaw
-from squealbox.parameters import ParameterError
+from squealbox.parameters import ParameterError, parameter
 
 LARGEST = 20_000  # characters of a law's source
 
@@ -29,40 +32,34 @@ LARGEST = 20_000  # characters of a law's source
 class OwnLaw(FrictionLaw):
     """A friction law from the text of plain functions ``mu(v, p)`` and, if given, ``slope(v, p)``.
 
-    `source` is that text and `numbers` what the functions find in p; p[0] is `static`, the largest coefficient a sticking
-    contact carries, and is mu(0) when left out. Made in Python, the law runs at once; a file may make one only when its
-    reader is told so.
+    `source` is that text, `static` the largest coefficient a sticking contact carries, which the functions find in p[0],
+    and `numbers` what follows it in p. Make one with `own_law` from functions or text, or with `law_from_file`: they
+    allow the code to run. A law that comes out of a saved result is data, and asking it for a value raises
+    `ParameterError` until `allow` is called with it.
 
-    >>> law = OwnLaw("def mu(v, p):\\n    return p[1] / (1.0 + v)", numbers=(0.4,))
+    >>> law = own_law("def mu(v, p): return p[1] / (1.0 + v)", numbers=(0.4,))
     >>> round(float(law.mu(1.0)), 12), round(float(law.slope_at(1.0)), 9)
     (0.2, -0.1)
     """
 
     source: str
+    static: float = parameter("-", 0.0, 10.0, meaning="static limit")
     numbers: tuple[float, ...] = ()
-    static: float | None = None
-
-    title: ClassVar[str] = "friction law from a Python file"
 
     def __post_init__(self) -> None:
         super().__post_init__()
         object.__setattr__(self, "numbers", _numbers(self.numbers))
-        functions = compiled(self.source)
-        if self.static is None:
-            with np.errstate(all="ignore"):
-                object.__setattr__(self, "static", _start(functions[0], self.numbers))
-        elif not (np.ndim(self.static) == 0 and 0.0 <= float(self.static) <= 10.0):
-            raise ParameterError("OwnLaw", "static", self.static, "a finite number in [0, 10]")
+        _texts(self.source)
 
     def coefficients(self) -> tuple[Any, ...]:
         """The static limit, then the law's numbers."""
         return (self.static, *self.numbers)
 
     def mu(self, velocity: Any) -> Any:
-        return compiled(self.source)[0](np.abs(velocity), self.coefficients())
+        return _functions(self.source)[0](np.abs(velocity), self.coefficients())
 
     def slope_at(self, velocity: Any) -> Any:
-        return compiled(self.source)[1](np.abs(velocity), self.coefficients())
+        return _functions(self.source)[1](np.abs(velocity), self.coefficients())
 
     @property
     def content_hash(self) -> str:
@@ -75,9 +72,37 @@ class OwnLaw(FrictionLaw):
         return _texts(self.source)
 
 
+def own_law(
+    mu: Callable[..., Any] | str,
+    slope: Callable[..., Any] | None = None,
+    *,
+    numbers: Sequence[float] = (),
+    static: float | None = None,
+) -> OwnLaw:
+    """A law from two plain functions of (v, p), or from their text; `slope` may be left out (see the module).
+
+    `static` left out is mu(0). Raises `ParameterError` for text that is not such functions, or a mu(0) outside [0, 10].
+
+    >>> law = own_law("def mu(v, p): return 0.3 + 0.1 * np.exp(-v)")
+    >>> round(law.static, 12)
+    0.4
+    """
+    source = mu if isinstance(mu, str) else "\n\n".join(_text_of(f, n) for f, n in ((mu, "mu"), (slope, "slope")) if f)
+    _texts(source)
+    _ALLOWED.add(source)
+    values = _numbers(numbers)
+    return OwnLaw(source, _start(_functions(source)[0], values) if static is None else static, values)
+
+
 def law_from_file(path: Path, numbers: Sequence[float] = (), static: float | None = None) -> OwnLaw:
     """The law in the Python file at `path`. Calling this allows its code."""
-    return OwnLaw(path.read_text(encoding="utf-8"), tuple(numbers), static)
+    return own_law(path.read_text(encoding="utf-8"), numbers=numbers, static=static)
+
+
+def allow(law: OwnLaw) -> OwnLaw:
+    """Let the code of a law that was read from a file run in this process; returns the law."""
+    _ALLOWED.add(law.source)
+    return law
 
 
 DERIVED = """def slope(v, p):
@@ -87,9 +112,17 @@ DERIVED = """def slope(v, p):
 """
 
 
+_ALLOWED: set[str] = set()  # sources that the user has let run in this process
+
+
+def _functions(source: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    if source not in _ALLOWED:
+        raise _refused("code that came with a file", "a call of squealbox.files.own_law.allow(law) before it is run")
+    return _run(source)
+
+
 @cache
-def compiled(source: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """The functions mu and slope of a law's source, run as plain Python; `ParameterError` says what is wrong with it."""
+def _run(source: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
     space: dict[str, Any] = {"np": np, "numpy": np}
     try:
         exec(compile("\n\n".join(_texts(source)), "<friction law>", "exec"), space)
@@ -120,6 +153,14 @@ def _texts(source: str) -> tuple[str, str]:
     if "mu" not in found:
         raise _refused("no mu", "a function mu(v, p)")
     return found["mu"], found.get("slope", DERIVED)
+
+
+def _text_of(function: Callable[..., Any], name: str) -> str:
+    try:
+        text = textwrap.dedent(inspect.getsource(function))
+    except (OSError, TypeError) as error:
+        raise _refused(f"{function!r}", "a function written in a file or cell, or its text") from error
+    return re.sub(r"^def \w+", f"def {name}", text, count=1)
 
 
 def _is_preface(node: ast.stmt) -> bool:

@@ -38,20 +38,23 @@ class DesignFile:
     simulate: analyses.Simulate | None = None
 
 
-def read_design(path: str | os.PathLike[str]) -> Design:
+def read_design(path: str | os.PathLike[str], *, allow_code: bool = False) -> Design:
     """The brake that the file at `path` describes.
 
+    A friction law that is Python code (``law = "own"``) is run only with `allow_code`.
     Raises `DesignFileError`, whose `problems` are all that is wrong with the file, each with line, key and a sentence.
     """
-    return read_file(path).design
+    return read_file(path, allow_code=allow_code).design
 
 
-def read_file(path: str | os.PathLike[str]) -> DesignFile:
+def read_file(path: str | os.PathLike[str], *, allow_code: bool = False) -> DesignFile:
     """The brake that the file at `path` describes, and its sections [modes], [onset], [map] and [simulate].
 
+    A friction law that is Python code (``law = "own"``) is run only with `allow_code`.
     Raises `DesignFileError`, whose `problems` are all that is wrong with the file, each with line, key and a sentence.
     """
     document = open_document(Path(path))
+    document.allow_code = allow_code
     tables = dict(document.tables)
     asked = {name: tables.pop(name) for name in SECTIONS if name in tables}
     design = _design(document, tables)
@@ -85,7 +88,7 @@ def _design(document: Document, tables: Mapping[str, Any]) -> Design | None:
 def _without_problems(document: Document, tables: Mapping[str, Any]) -> Design | None:
     """The design of a faulty file with the faulty keys left out, to check its sections against in the same go."""
     good = {name: value for name, value in tables.items() if name not in document.faulty}
-    return _design(Document(document.path, document.text, good), good)
+    return _design(Document(document.path, document.text, good, allow_code=document.allow_code), good)
 
 
 def _section(document: Document, name: str, table: Any, design: Design | None) -> Any:
