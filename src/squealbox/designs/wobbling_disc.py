@@ -16,7 +16,7 @@ The term mu h k r q1 and the change of friction with sliding speed are the two c
 what else depends on mu is taken at mu(r W), so its coefficients are constant.
 """
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 

@@ -6,8 +6,8 @@ import typing
 from typing import Any
 
 from squealbox.files.analyses import Axis, Modes, Simulate
-from squealbox.files.reading import BRAKES
 from squealbox.files.own_law import OwnLaw
+from squealbox.files.reading import BRAKES
 from squealbox.files.sheets import LAW_NAMES, OWN, SCHEDULE_NAMES, field_type, is_required
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, Parameter

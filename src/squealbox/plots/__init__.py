@@ -6,6 +6,7 @@ larger figure made with `panels`. Matplotlib is loaded at the first drawing.
 
 from squealbox.plots.contact import contact_comparison
 from squealbox.plots.dispatch import plot
+from squealbox.plots.fits import friction_fit
 from squealbox.plots.laws import friction_curve
 from squealbox.plots.maps import stability_map
 from squealbox.plots.modes import coalescence
@@ -29,6 +30,7 @@ __all__ = [
     "contact_comparison",
     "energy",
     "friction_curve",
+    "friction_fit",
     "letters",
     "mechanism_map",
     "mode_energy",
