@@ -15,7 +15,7 @@ from .designs import (
     SpragSlip,
     WobblingDisc,
 )
-from .files import Body, Mechanism, OwnBrake, OwnContact, OwnLaw, Spring, Touch, own_law, read_design, write_design
+from .files import Body, OwnBrake, OwnContact, OwnLaw, OwnMechanism, Spring, Touch, own_law, read_design, write_design
 from .fit import FrictionFit, fit_friction
 from .friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stribeck
 from .parameters import ParameterError
@@ -28,7 +28,6 @@ from .stability import (
     ComplexModes,
     CriticalValue,
     CriticalValues,
-    Mechanism,
     Mode,
     ModeEnergy,
     Sensitivity,
@@ -87,7 +86,7 @@ __all__ = [
     "write_design",
     "OwnBrake",
     "OwnContact",
-    "Mechanism",
+    "OwnMechanism",
     "Body",
     "Spring",
     "Touch",

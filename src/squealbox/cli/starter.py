@@ -76,7 +76,7 @@ def _duration(design: "Design") -> str:
 
 def _example(brake: str) -> "Design":
     from squealbox.designs import DrumBrake
-    from squealbox.files import BRAKES, Mechanism, OwnBrake, OwnContact
+    from squealbox.files import BRAKES, OwnBrake, OwnContact, OwnMechanism
     from squealbox.friction import Coulomb, LinearSlope
 
     if brake not in BRAKES:
@@ -94,12 +94,12 @@ def _example(brake: str) -> "Design":
             contacts=(contact,),
             names=("pad_x", "pad_y", "disc_y"),
         )
-    return mechanism_example() if BRAKES[brake] is Mechanism else BRAKES[brake]()
+    return mechanism_example() if BRAKES[brake] is OwnMechanism else BRAKES[brake]()
 
 
 def mechanism_example() -> "Design":
     """A pad that can turn, on an inclined and two straight springs, pressed on a disc that moves across."""
-    from squealbox.files import Body, Mechanism, Spring, Touch
+    from squealbox.files import Body, OwnMechanism, Spring, Touch
 
     springs = (
         Spring("pad", angle=np.deg2rad(30.0), stiffness=2e6, damping=5.0),
@@ -107,7 +107,7 @@ def mechanism_example() -> "Design":
         Spring("pad", angle=np.deg2rad(90.0), stiffness=1e6, x=0.03),
         Spring("disc", angle=np.deg2rad(90.0), stiffness=4e6, damping=10.0),
     )
-    return Mechanism(
+    return OwnMechanism(
         bodies=(Body("pad", 0.5, 2e-4), Body("disc", 2.0, moves="y")),
         springs=springs,
         contacts=(Touch("pad", "disc", stiffness=3e6, y=0.01),),

@@ -7,13 +7,14 @@ each with the stiffness k = lining/P. With n = (-e_r | e_r, 0) over (drum | shoe
     N = N0 + k n.q,     v = V - t.q',     K += k n n',     friction mu sgn(v) N acts along t
 
 The shoe (mass m, centre of mass at radius b in its middle, inertia J about the drum's centre) leans on an elastic
-abutment at one end and is pushed by the actuator along the chord's normal at the other; the drum turns anticlockwise, so
-shoe 2 leads and shoe 1 trails. `pressure` says where the normal forces at q = 0 come from:
+abutment below the centre and is pushed outwards by the actuator above it; the drum turns anticlockwise, so shoe 2
+leads and shoe 1 trails. `pressure` says where the normal forces at q = 0 come from:
 
 - spring: the springs share the actuator's force F as the stiffnesses will have it, N0 = k n.K^-1 F, and q is measured
   from that loaded state
 - wear: the lining has worn in while sliding, N = p sin(angle from the abutment), sized so that its moment and that of
-  its friction mu(V) balance the actuator's about the abutment; q is measured from that steady sliding. A leading shoe that would hold itself has no such state.
+  its friction mu(V) balance the actuator's about the abutment; q is measured from that steady sliding. A leading shoe
+  that would hold itself has no such state.
 
 A worn lining keeps its shape while q moves, so the two differ where friction depends on speed, through N mu'(V) d t'.
 A point opens instead of pulling.

@@ -3,9 +3,9 @@
     m1 x1'' + c1 x1' + k1 x1 =  mu(|v|) sgn(v) N       pad
     m2 x2'' + c2 x2' + k2 x2 = -mu(|v|) sgn(v) N       disc,    v = V - (x1' - x2')
 
-So the contact senses and acts along t = d = e_pad - e_disc. Linearised, C_eff = diag(c1, c2) + N mu'(V) [[1, -1], [-1, 1]]:
-a falling friction curve (mu' < 0) takes damping out. With equal pad and disc the two modes are their sum, with damping
-c, and their difference, with damping c + 2 N mu', so sliding is stable exactly while -N mu'(V) < c/2.
+So the contact senses and acts along t = d = e_pad - e_disc. Linearised, C_eff = diag(c1, c2) + N mu'(V) [[1, -1],
+[-1, 1]]: a falling friction curve (mu' < 0) takes damping out. With equal pad and disc the two modes are their sum,
+with damping c, and their difference, with damping c + 2 N mu', so sliding is stable exactly while -N mu'(V) < c/2.
 """
 
 from typing import Any, ClassVar

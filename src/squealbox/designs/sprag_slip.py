@@ -37,7 +37,7 @@ class SpragSlip(Design):
 
     title: ClassVar[str] = "Sprag-slip, inclined strut (1961)"
     source: ClassVar[str] = (
-        "idea of Spurr 1961, Proc. Instn Mech. Engrs (Automobile Division) 15, 33-52; elastic form and numbers chosen here"
+        "idea of Spurr 1961, Proc. Instn Mech. Engrs (Automobile Division) 15, 33-52; elastic form chosen here"
     )
 
     m: float = parameter("kg", 0.0, low_open=True, default=1.0, meaning="mass of the block", source=OWN)

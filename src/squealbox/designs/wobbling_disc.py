@@ -1,10 +1,11 @@
 """Wobbling disc: a rigid disc that tilts about two fixed axes, between two guided, massless, sprung pins.
 
-The disc has thickness h, inertia J about a diameter and Jp about its axis, and spins at W. q1 and q2 are its tilts about
-y and x. The pins stand on the x axis at radius r, guided along z, with stiffness k, damping d and preload N0 each. A pin's
-force along z is that of its spring; the contact carries N along the tilted normal (q1, -q2, 1) and mu N along the sliding
-direction, so guided pins give N = (N0 - k r q1)(1 - mu q2) above and (N0 + k r q1)(1 + mu q2) below. The moments about
-the centre, linear in q and q', are, with w = -r q1 the height of the surface between the pins,
+The disc has thickness h, inertia J about a diameter and Jp about its axis, and spins at W. q1 and q2 are its tilts
+about y and x. The pins stand on the x axis at radius r, guided along z, with stiffness k, damping d and preload N0
+each. A pin's force along z is that of its spring; the contact carries N along the tilted normal (q1, -q2, 1) and mu N
+along the sliding direction, so guided pins give N = (N0 - k r q1)(1 - mu q2) above and (N0 + k r q1)(1 + mu q2)
+below. The moments about the centre, linear in q and q', are, with w = -r q1 the height of the surface between the
+pins,
 
     J q1'' + [dt + 2 d r^2 + mu N0 h^2/(2 r W)] q1' - Jp W q2' + [kt + 2 k r^2 + N0 h] q1 - mu N0 h^2/(2 r) q2 = 0
     J q2'' + mu h d r q1' + Jp W q1' + dt q2' + mu h k r q1 + [kt + (1 + mu^2) N0 h] q2 = 0

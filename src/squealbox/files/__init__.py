@@ -9,7 +9,7 @@ Importing this room loads neither pint nor SciPy.
 
 from squealbox.files.document import DesignFileError, Problem
 from squealbox.files.measured import read_points
-from squealbox.files.mechanism import Body, Mechanism, Spring, Touch
+from squealbox.files.mechanism import Body, OwnMechanism, Spring, Touch
 from squealbox.files.own_brake import OwnBrake, OwnContact
 from squealbox.files.own_law import OwnLaw, law_from_file, own_law
 from squealbox.files.reading import BRAKES, DesignFile, read_design, read_file
@@ -21,11 +21,11 @@ __all__ = [
     "Body",
     "DesignFile",
     "DesignFileError",
-    "Mechanism",
     "NotWritable",
     "OwnBrake",
     "OwnContact",
     "OwnLaw",
+    "OwnMechanism",
     "Problem",
     "Spring",
     "Touch",

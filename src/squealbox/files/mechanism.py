@@ -1,12 +1,13 @@
 """A brake of one's own as a mechanism: bodies, springs and contacts with positions and angles, assembled into matrices.
 
-Bodies are rigid and move in a plane. A point (px, py) of a body at (x, y) with the degrees of freedom (u, w, turn) moves by
+Bodies are rigid and move in a plane. A point (px, py) of a body at (x, y) with the degrees of freedom (u, w, turn)
+moves by
 
     (u - turn (py - y),  w + turn (px - x))
 
 so its displacement along an angle a is a row r.q. With r the row of one body minus that of the other, a spring adds
-K += k r r' and C += c r r'. A contact presses `body` on `to` along the angle of its normal: with r_n that row and r_t the
-one along the tangent, the normal turned clockwise by 90 degrees,
+K += k r r' and C += c r r'. A contact presses `body` on `to` along the angle of its normal: with r_n that row and r_t
+the one along the tangent, the normal turned clockwise by 90 degrees,
 
     N = N0 + k r_n.q,   v = V - r_t.q',   K += k r_n r_n',   friction mu sgn(v) N acts along r_t
 
@@ -28,7 +29,7 @@ MOST_BODIES = 300
 
 
 class Body(DataSheet):
-    """A rigid body of a `Mechanism`; it turns when it has an inertia."""
+    """A rigid body of a `OwnMechanism`; it turns when it has an inertia."""
 
     name: str
     mass: float = parameter("kg", 0.0, low_open=True, meaning="mass")
@@ -69,14 +70,14 @@ class Touch(DataSheet):
     unilateral: bool = False
 
 
-class Mechanism(Design):
+class OwnMechanism(Design):
     """A brake from bodies, springs and contacts with positions and angles; q is measured from the loaded state.
 
     Degrees of freedom are named after the bodies: pad_x, pad_y, pad_turn.
 
     >>> pad = Body("pad", 1.0)
     >>> springs = (Spring("pad", angle=0.0, stiffness=2.0), Spring("pad", angle=np.pi / 4, stiffness=1.0))
-    >>> brake = Mechanism(bodies=(pad,), springs=springs, contacts=(Touch("pad", stiffness=1.0),))
+    >>> brake = OwnMechanism(bodies=(pad,), springs=springs, contacts=(Touch("pad", stiffness=1.0),))
     >>> brake.system().names
     ('pad_x', 'pad_y')
     """
@@ -97,19 +98,19 @@ class Mechanism(Design):
             object.__setattr__(self, field, tuple(getattr(self, field)))
         names = [body.name for body in self.bodies]
         if not 1 <= len(names) <= MOST_BODIES:
-            raise ParameterError("Mechanism", "bodies", len(names), f"1 to {MOST_BODIES} bodies")
+            raise ParameterError("OwnMechanism", "bodies", len(names), f"1 to {MOST_BODIES} bodies")
         for i, name in enumerate(names):
             if not re.fullmatch("[A-Za-z][A-Za-z0-9_]{0,29}", name) or names.count(name) > 1 or name == GROUND:
                 expected = f"different names of letters, digits and _, not {GROUND}"
-                raise ParameterError("Mechanism", f"bodies[{i}].name", name, expected)
+                raise ParameterError("OwnMechanism", f"bodies[{i}].name", name, expected)
         for field in ("springs", "contacts"):
             for i, part in enumerate(getattr(self, field)):
                 for end, known in (("body", names), ("to", [*names, GROUND])):
                     if getattr(part, end) not in known:
                         given = getattr(part, end)
-                        raise ParameterError("Mechanism", f"{field}[{i}].{end}", given, known_names(given, known))
+                        raise ParameterError("OwnMechanism", f"{field}[{i}].{end}", given, known_names(given, known))
                 if part.body == part.to:
-                    raise ParameterError("Mechanism", f"{field}[{i}].to", part.to, "another body than its own")
+                    raise ParameterError("OwnMechanism", f"{field}[{i}].to", part.to, "another body than its own")
 
     def system(self) -> System:
         """The equation of motion; leading axes of the shared parameters are kept."""

@@ -5,8 +5,8 @@
 
 They follow the rules of the laws in `friction`: arithmetic and NumPy (as ``np``) only, one expression path for numbers
 and arrays, because the transient engine compiles their text. Left out, the slope is the central difference
-(mu(v + h) - mu(v - h))/(2 h) with h = 1e-5 (v + 1e-3), at v < h the forward one: relative error about 1e-10 for a smooth
-law, h^2 mu'''/6 plus round-off/h.
+(mu(v + h) - mu(v - h))/(2 h) with h = 1e-5 (v + 1e-3), at v < h the one-sided one: relative error about 1e-10 for a
+smooth law, h^2 mu'''/6 plus round-off/h.
 
 Such a file is code. It is read as text here and run only where the caller allows it.
 """
@@ -32,9 +32,9 @@ LARGEST = 20_000  # characters of a law's source
 class OwnLaw(FrictionLaw):
     """A friction law from the text of plain functions ``mu(v, p)`` and, if given, ``slope(v, p)``.
 
-    `source` is that text, `static` the largest coefficient a sticking contact carries, which the functions find in p[0],
-    and `numbers` what follows it in p. Make one with `own_law` from functions or text, or with `law_from_file`: they
-    allow the code to run. A law that comes out of a saved result is data, and asking it for a value raises
+    `source` is that text, `static` the largest coefficient a sticking contact carries, which the functions find in
+    p[0], and `numbers` what follows it in p. Make one with `own_law` from functions or text, or with `law_from_file`:
+    they allow the code to run. A law that comes out of a saved result is data, and asking it for a value raises
     `ParameterError` until `allow` is called with it.
 
     >>> law = own_law("def mu(v, p): return p[1] / (1.0 + v)", numbers=(0.4,))

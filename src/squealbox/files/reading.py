@@ -11,14 +11,14 @@ import numpy as np
 from squealbox.designs import DESIGNS, Design
 from squealbox.files import analyses
 from squealbox.files.document import Document, open_document
-from squealbox.files.mechanism import Mechanism
+from squealbox.files.mechanism import OwnMechanism
 from squealbox.files.numbers import WRONG, read_choice, wrong
 from squealbox.files.own_brake import OwnBrake
 from squealbox.files.sheets import read_sheet
 from squealbox.parameters import ParameterError, known_names
 from squealbox.system import InvalidSystem
 
-BRAKES: dict[str, type[Design]] = {**DESIGNS, "own": OwnBrake, "mechanism": Mechanism}
+BRAKES: dict[str, type[Design]] = {**DESIGNS, "own": OwnBrake, "mechanism": OwnMechanism}
 SECTIONS: dict[str, Callable[..., Any]] = {
     "modes": analyses.read_modes,
     "onset": analyses.read_onset,

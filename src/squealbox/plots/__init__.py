@@ -4,6 +4,7 @@
 larger figure made with `panels`. Matplotlib is loaded at the first drawing.
 """
 
+from squealbox.plots.brakes import brake_drawing
 from squealbox.plots.contact import contact_comparison
 from squealbox.plots.dispatch import plot
 from squealbox.plots.fits import friction_fit
@@ -26,6 +27,7 @@ from squealbox.plots.style import letters, panels, save
 __all__ = [
     "amplitude_course",
     "boundary_curves",
+    "brake_drawing",
     "coalescence",
     "contact_comparison",
     "energy",
