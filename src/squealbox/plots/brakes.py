@@ -1,4 +1,4 @@
-"""A drawing of each brake from its own parameters: bodies, springs, angles, load arrows and the direction of sliding."""
+"""A drawing of each brake from its own parameters: bodies, springs, angles, loads and the direction of sliding."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -34,8 +34,8 @@ ARROW = {"arrowstyle": "-|>", "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 
 def brake_drawing(design: Design, *, axes: Any = None) -> "Figure":
     """The brake as its parameters describe it; angles are to scale, lengths where the design has any.
 
-    Blue is what slides and where it moves, orange are loads. Raises `TypeError` for a design no drawing is known for, or
-    one that stands for a whole map.
+    Blue is what slides and where it moves, orange are loads. Raises `TypeError` for a design no drawing is known
+    for, or one that stands for a whole map.
     """
     kind = next((kind for kind in DRAWINGS if isinstance(design, kind)), None)
     if kind is None:
@@ -131,7 +131,8 @@ def _mass_on_belt(panel: Any, brake: MassOnBelt) -> None:
     _belt(panel, -1.6, 1.6)
     _box(panel, (-0.4, 0.03), 0.8, 0.6, "m")
     _spring(panel, (-1.8, 0.45), (-0.4, 0.45), "k")
-    _dashpot(panel, (-1.8, 0.17), (-0.4, 0.17), "c")
+    _dashpot(panel, (-1.8, 0.17), (-0.4, 0.17))
+    _text(panel, (-0.85, 0.27), "c", fontsize=7)
     _wall(panel, (-1.8, 0.33), 0.0, 0.8)
     _arrow(panel, (0.0, 1.2), (0.0, 0.65), LOAD, "N", (0.15, 1.1))
     _arrow(panel, (0.5, 0.75), (0.95, 0.75), "black", "x", (1.05, 0.75))
@@ -181,7 +182,7 @@ def _held_mass(panel: Any, angles: list[tuple[float, str]]) -> None:
     panel.add_patch(_circle(centre, 0.3, **BODY, zorder=3))
     _text(panel, centre, "m", zorder=4)
     _spring(panel, (0.0, 0.55), (0.0, 0.04), "$k_3$", -1.0)
-    _arrow(panel, (-0.75, 1.45), (-0.28, 1.05), LOAD, "N", (-0.85, 1.55))
+    _arrow(panel, (0.0, 1.75), (0.0, 1.18), LOAD, "N", (-0.14, 1.65))
     _arrow(panel, (1.55, 0.35), (2.0, 0.35), "black", "x", (2.1, 0.35))
     _arrow(panel, (1.55, 0.35), (1.55, 0.07), "black", "y", (1.42, 0.15))
 
@@ -206,12 +207,12 @@ def _paradox(panel: Any, brake: DampingParadox) -> None:
     _spring(panel, (0.0, -0.35), (0.0, -1.15), "$k_2, c_2$")
     _line(panel, (1.15, -0.6), (1.15, 0.6), color=BELT, linewidth=2.0)
     _line(panel, (-0.6, -1.15), (0.6, -1.15), color=BELT, linewidth=2.0)
-    _arrow(panel, (1.3, 0.4), (1.3, -0.4), BELT, "V", (1.45, 0.0))
+    _arrow(panel, (1.3, -0.4), (1.3, 0.4), BELT, "V", (1.45, 0.0))
     _arrow(panel, (-0.4, -1.3), (0.4, -1.3), BELT, "V", (0.0, -1.48))
     _arrow(panel, (-1.0, 0.0), (-0.38, 0.0), LOAD, "N", (-1.1, 0.0))
     _arrow(panel, (0.0, 1.0), (0.0, 0.38), LOAD, "N", (0.0, 1.12))
     _arrow(panel, (0.5, 0.75), (0.95, 0.75), "black", "x", (1.05, 0.75))
-    _text(panel, (-0.75, -0.62), "y down", fontsize=7)
+    _arrow(panel, (0.5, 0.75), (0.5, 0.42), "black", "y", (0.62, 0.52))
 
 
 def _pad_on_disc(panel: Any, brake: PadOnDisc) -> None:
@@ -221,7 +222,8 @@ def _pad_on_disc(panel: Any, brake: PadOnDisc) -> None:
     _dashpot(panel, (-1.6, 0.1), (-0.5, 0.1), "", -1.0)
     _text(panel, (-1.28, -0.02), "$c_1$", fontsize=7)
     _wall(panel, (-1.6, 0.2), 0.0, 0.5)
-    _spring(panel, (-2.2, -0.15), (-1.2, -0.15), "$k_2$")
+    _spring(panel, (-2.2, -0.15), (-1.2, -0.15))
+    _text(panel, (-1.85, 0.05), "$k_2$")
     _dashpot(panel, (-2.2, -0.36), (-1.2, -0.36), "$c_2$", -1.0)
     _wall(panel, (-2.2, -0.25), 0.0, 0.5)
     _arrow(panel, (-0.4, -0.68), (0.5, -0.68), BELT, "V", (0.65, -0.68))
@@ -243,7 +245,7 @@ def _sprag(panel: Any, brake: SpragSlip) -> None:
 
 def _wobbling(panel: Any, brake: WobblingDisc) -> None:
     """A section through the axis and the pins, the thickness to the scale of the pins' radius."""
-    tilt = 0.1
+    tilt = -0.1  # q1 > 0 turns the right side down
     half = max(0.5 * brake.h / brake.r, 0.02)
     turn = np.array([[np.cos(tilt), -np.sin(tilt)], [np.sin(tilt), np.cos(tilt)]])
     corners = (turn @ np.array([[-1.25, 1.25, 1.25, -1.25], [-half, -half, half, half]])).T
@@ -252,7 +254,7 @@ def _wobbling(panel: Any, brake: WobblingDisc) -> None:
     panel.add_patch(Polygon(corners, **BODY))
     _line(panel, (0.0, -0.75), (0.0, 0.9), linewidth=0.6, linestyle=(0, (6, 2, 1, 2)))
     _line(panel, (-1.4, 0.0), (1.4, 0.0), linewidth=0.5, linestyle=(0, (4, 2)))
-    _arc(panel, (0.0, 0.0), 1.38, 0.0, tilt, "$q_1$")
+    _arc(panel, (0.0, 0.0), 1.38, tilt, 0.0, "$q_1$")
     for side in (1.0, -1.0):
         touch = np.tan(tilt) + side * half / np.cos(tilt)
         _line(panel, (1.0, touch), (1.0, touch + side * 0.2), linewidth=3.0)
@@ -264,7 +266,7 @@ def _wobbling(panel: Any, brake: WobblingDisc) -> None:
     _arrow(panel, (-0.3, 0.72), (0.3, 0.72), BELT, "$\\Omega$", (-0.42, 0.72))
     _line(panel, (0.0, -0.6), (1.0, -0.6), linewidth=0.5)
     _text(panel, (0.5, -0.7), f"r = {1e3 * brake.r:.0f} mm", fontsize=7)
-    _text(panel, (-0.8, 0.2), f"h = {1e3 * brake.h:.0f} mm, $k_t$, $d_t$", fontsize=7)
+    _text(panel, (-0.75, -0.2), f"h = {1e3 * brake.h:.0f} mm, $k_t$, $d_t$", fontsize=7)
 
 
 def _turning(panel: Any, radius: float, begin: float, end: float, label: str) -> None:
@@ -279,7 +281,7 @@ def _drum_brake(panel: Any, brake: DrumBrake) -> None:
     """The drum as a mass, its two shoes at their angles from the y axis."""
     panel.add_patch(_circle((0.0, 0.0), 0.8, **BODY))
     _text(panel, (-0.28, -0.28), "m")
-    for theta, load, name, sign in ((brake.theta1, "$N_1$", "$k_3$", 1.0), (brake.theta2, "$N_2$", "$k_4$", 1.0)):
+    for theta, load, name in ((brake.theta1, "$N_1$", "$k_3$"), (brake.theta2, "$N_2$", "$k_4$")):
         out = np.array([np.sin(theta), np.cos(theta)])
         _line(panel, (0.0, 0.0), tuple(0.8 * out), linewidth=0.5, linestyle=(0, (4, 2)))
         _spring(panel, tuple(0.82 * out), tuple(1.5 * out), name)
