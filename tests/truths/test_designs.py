@@ -102,9 +102,12 @@ def test_sprag_digs_in_at_the_cotangent(angle):
     brake = SpragSlip(angle=np.deg2rad(angle), friction=Coulomb(0.3))
     expected = 100.0 / (1.0 - 0.3 * np.tan(np.deg2rad(angle)))
     assert equilibrium(brake.system()).normal_force[0] == pytest.approx(expected, rel=1e-9)
-    locked = brake.replace({"friction.static": 1.0 / np.tan(np.deg2rad(angle))})
-    scale = np.linalg.det(brake.system().K)
-    assert abs(np.linalg.det(linearise(locked.system()).K)) < 1e-9 * scale or not equilibrium(locked.system()).exists
+    limit = 1.0 / np.tan(np.deg2rad(angle))
+    signs = []
+    for factor in (1.0 - 1e-6, 1.0 + 1e-6):
+        near = brake.replace({"friction.static": factor * limit}).system()
+        signs.append(np.sign(np.linalg.det(linearise(near).K)))
+    assert signs == [1.0, -1.0]
 
 
 def test_wobbling_disc_feeds_energy_by_circulation():
@@ -124,7 +127,7 @@ def test_wobbling_disc_feeds_energy_by_circulation():
 def test_shoes_carry_the_same_without_friction(points):
     brake = DrumBrakeShoes(points=points, friction=Coulomb(0.0))
     normal = equilibrium(brake.system()).normal_force
-    assert np.allclose(normal[:points], normal[points:][::1], rtol=1e-9)
+    assert np.allclose(normal[:points], normal[points:][::-1], rtol=1e-9)
 
 
 @pytest.mark.parametrize("pressure", ["wear", "spring"])

@@ -33,7 +33,7 @@ from squealbox.system import Contact, System
 
 OWN = "chosen here, of the size of a car's brake"
 MOST_POINTS = 32
-SHOES = (0.0, np.pi)  # the middle of each shoe; shoe 2 is shoe 1 turned by half a turn, with its ends exchanged
+SHOES = (0.0, np.pi)  # the middle of each shoe; shoe 2 is the mirror image of shoe 1
 
 
 class DrumBrakeShoes(Design):
