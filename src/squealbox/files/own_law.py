@@ -123,7 +123,7 @@ def _functions(source: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
 
 @cache
 def _run(source: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    space: dict[str, Any] = {"np": np, "numpy": np}
+    space: dict[str, Any] = {"np": np}
     try:
         exec(compile("\n\n".join(_texts(source)), "<friction law>", "exec"), space)
     except Exception as error:
