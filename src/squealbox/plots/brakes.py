@@ -24,7 +24,7 @@ from squealbox.plots.style import COLUMN, drawing, figure_of
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-BODY = {"facecolor": "#dfe8f0", "edgecolor": "black", "linewidth": 1.0}
+BODY: dict[str, Any] = {"facecolor": "#dfe8f0", "edgecolor": "black", "linewidth": 1.0}
 BELT, LOAD, PART = "#0072B2", "#D55E00", {"color": "black", "linewidth": 0.9}
 Point = tuple[float, float]
 ARROW = {"arrowstyle": "-|>", "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 9.0}

@@ -1,7 +1,7 @@
 """Friction laws that come as source text: their numbers in the compiled code, and what the compiler is handed.
 
-A law of this kind has `texts`, the source of ``mu(v, p)`` and ``slope(v, p)``; its kind follows those of `LAWS`, one for
-each different text among the contacts, in their order.
+A law of this kind has `texts`, the source of ``mu(v, p)`` and ``slope(v, p)``; its kind follows those of `LAWS`, one
+for each different text among the contacts, in their order.
 """
 
 from collections.abc import Sequence
@@ -42,7 +42,8 @@ def law_kinds(contacts: Sequence[Contact]) -> Any:
             known = ", ".join(law.__name__ for law in LAWS)
             given = f"{type(contact.law).__name__}(...)"
             raise InvalidSystem(
-                f"contact {contact.name}.law = {given}: expected a law that can be compiled, one of {known} or an OwnLaw"
+                f"contact {contact.name}.law = {given}: expected a law that can be compiled, "
+                f"one of {known} or an OwnLaw"
             )
         kinds.append(LAWS.index(type(contact.law)) if texts is None else len(LAWS) + own.index(texts))
     return np.array(kinds, dtype=np.int64)
