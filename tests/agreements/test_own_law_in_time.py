@@ -1,4 +1,4 @@
-"""A law of plain functions moves a block as the law it writes out does: compiled from its text, and by time stepping."""
+"""A law of plain functions moves a block as the law it writes out does: compiled from its text."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def test_motion_is_that_of_the_written_out_law():
     known = MassOnBelt(friction=Stribeck(0.5, *NUMBERS))
     ours, theirs = (simulate(block, 20.0, times=201, rtol=1e-9) for block in (own, known))
     assert ours.outcome == theirs.outcome == "completed"
-    # the derived slope, good to 1e-8, only steers the search for events; the motion agrees to the integrator's tolerance
+    # the derived slope only steers the search for events; the motion agrees to the integrator's tolerance
     assert np.max(np.abs(ours.q - theirs.q)) < 1e-6
     other = simulate(MassOnBelt(friction=Coulomb(0.5, 0.3)), 20.0, times=201)
     assert np.max(np.abs(other.q - theirs.q)) > 1e-2

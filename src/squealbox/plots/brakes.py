@@ -252,7 +252,7 @@ def _wobbling(panel: Any, brake: WobblingDisc) -> None:
     from matplotlib.patches import Polygon
 
     panel.add_patch(Polygon(corners, **BODY))
-    _line(panel, (0.0, -0.75), (0.0, 0.9), linewidth=0.6, linestyle=(0, (6, 2, 1, 2)))
+    _line(panel, (0.0, -1.15), (0.0, 0.9), linewidth=0.6, linestyle=(0, (6, 2, 1, 2)))
     _line(panel, (-1.4, 0.0), (1.4, 0.0), linewidth=0.5, linestyle=(0, (4, 2)))
     _arc(panel, (0.0, 0.0), 1.38, tilt, 0.0, "$q_1$")
     for side in (1.0, -1.0):
@@ -264,8 +264,8 @@ def _wobbling(panel: Any, brake: WobblingDisc) -> None:
             panel, (0.75, touch + side * 0.65), (0.75, touch + side * 0.12), LOAD, "$N_0$", (0.6, touch + side * 0.5)
         )
     _arrow(panel, (-0.3, 0.72), (0.3, 0.72), BELT, "$\\Omega$", (-0.42, 0.72))
-    _line(panel, (0.0, -0.6), (1.0, -0.6), linewidth=0.5)
-    _text(panel, (0.5, -0.7), f"r = {1e3 * brake.r:.0f} mm", fontsize=7)
+    _line(panel, (0.0, -1.1), (1.0, -1.1), linewidth=0.5)
+    _text(panel, (0.4, -1.2), f"r = {1e3 * brake.r:.0f} mm", fontsize=7)
     _text(panel, (-0.75, -0.2), f"h = {1e3 * brake.h:.0f} mm, $k_t$, $d_t$", fontsize=7)
 
 
@@ -324,7 +324,7 @@ def _shoes(panel: Any, brake: DrumBrakeShoes) -> None:
         edge = np.deg2rad(middle + side * half)
         _line(panel, (0.83 * np.cos(edge), 0.83 * np.sin(edge)), (side * 0.42, top), linewidth=2.0, color="#7a8a99")
         _arrow(panel, (side * 0.05, top), (side * 0.42, top), LOAD, "F", (side * 0.2, top + 0.1))
-        _text(panel, (side * 0.58, 0.0), f"shoe {shoe + 1}", fontsize=7)
+        _text(panel, (side * 0.55, -0.3), f"shoe {shoe + 1}", fontsize=7)
     _text(panel, (0.0, scale * -brake.arm - 0.13), "abutments", fontsize=7)
     _turning(panel, 1.22, 60.0, 120.0, "V")
     _text(panel, (0.0, 0.02), f"R = {1e3 * brake.radius:.0f} mm\n{2 * brake.points} contact points", fontsize=7)
