@@ -26,7 +26,7 @@ range = [0, 1]
 
 [map]                           # squealbox map {file}
 x = {{ parameter = "friction.static", range = [0, 1], points = 101 }}
-y = {{ parameter = "sliding_speed", range = ["0.1 m/s", "2 m/s"], points = 101 }}
+y = {{ {second}, points = 101 }}
 
 [simulate]                      # squealbox simulate {file} --out run
 duration = "{duration}"
@@ -52,7 +52,9 @@ def init(directory: Path, *, brake: str = "drum_brake") -> None:
     if path.exists():
         raise UsageError(f"{path} is there already, and init overwrites nothing")
     directory.mkdir(parents=True, exist_ok=True)
-    write_design(design, path, sections=STUDIES.format(file=path, duration=_duration(design)))
+    write_design(
+        design, path, sections=STUDIES.format(file=path, duration=_duration(design), second=_second_axis(design))
+    )
     print(f"{path} describes a brake. Next:\n  squealbox modes {path}\n  squealbox simulate {path} --out run")
 
 
@@ -64,6 +66,13 @@ def schema() -> None:
     from squealbox.files import json_schema
 
     print(json.dumps(json_schema(), indent=1))
+
+
+def _second_axis(design: "Design") -> str:
+    """What a first map varies beside friction: the speed, by the name the design has for it."""
+    if "sliding_speed" in design.field_names():
+        return 'parameter = "sliding_speed", range = ["0.1 m/s", "2 m/s"]'
+    return 'parameter = "spin", range = ["1 rad/s", "50 rad/s"]'
 
 
 def _duration(design: "Design") -> str:
