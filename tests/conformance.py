@@ -15,7 +15,10 @@ import pytest
 import squealbox
 from squealbox import friction, schedules, simulate
 from squealbox.designs import DESIGNS
+from squealbox.files import read_design, write_design
+from squealbox.fit import fit_friction
 from squealbox.parameters import ParameterError, from_plain, to_plain
+from squealbox.plots import brake_drawing
 from squealbox.result import Outcome, Result
 from squealbox.stability import complex_modes, critical_value
 from squealbox.system import System, equilibrium, linearise
@@ -196,7 +199,8 @@ def test_design_makes_a_system_that_slides(design):
     residual = system.K @ state.q - system.load
     for i, contact in enumerate(system.contacts):
         residual = residual - contact.d * state.friction[i] * np.sign(state.sliding_speed[i]) * state.normal_force[i]
-    assert np.max(np.abs(residual)) < 1e-9 * np.max(np.abs(system.K @ state.q))
+    forces = np.max(np.abs(system.K @ state.q)) + np.max(np.abs(state.friction * state.normal_force))
+    assert np.max(np.abs(residual)) < 1e-9 * forces
     assert np.all(np.isfinite(linearise(system).K))
 
 
@@ -213,6 +217,33 @@ def test_design_takes_arrays(design):
     one = design.replace({name: 1.01 * value}).system()
     for field in ("M", "C", "K"):
         assert np.allclose(np.broadcast_to(getattr(many, field), (2, *one.M.shape))[1], getattr(one, field), rtol=1e-14)
+
+
+def test_design_survives_its_file(design, tmp_path):
+    assert read_design(write_design(design, tmp_path / "brake.toml")) == design
+
+
+@pytest.mark.parametrize("law", LAWS, ids=named)
+def test_design_takes_any_law(design, law, tmp_path):
+    brake = design.replace(friction=law)
+    modes = complex_modes(brake)
+    assert modes.outcome == "completed"
+    assert np.all(np.isfinite(modes.eigenvalues))
+    assert read_design(write_design(brake, tmp_path / "brake.toml")) == brake
+    with pytest.raises(ParameterError, match="friction law"):
+        design.replace(friction=0.4)
+
+
+def test_design_is_drawn(design):
+    figure = brake_drawing(design)
+    assert figure.axes[0].has_data() or figure.axes[0].patches
+
+
+def test_result_of_a_design_keeps_it(design, tmp_path):
+    modes = complex_modes(design)
+    back = Result.load(modes.save(tmp_path / "modes.nc"))
+    np.testing.assert_array_equal(back.eigenvalues, modes.eigenvalues)
+    assert to_plain(back.inputs) == to_plain(modes.inputs)
 
 
 def test_design_moves(design):
@@ -255,7 +286,7 @@ def test_method_reaches_the_end_in_every_scheme(name, contact, drum):
 
 def result_kinds():
     for module in pkgutil.walk_packages(squealbox.__path__, "squealbox."):
-        if module.name.split(".")[1] in ("stability", "transient", "signals", "result", "continuation"):
+        if module.name.split(".")[1] in ("stability", "transient", "signals", "result", "continuation", "fit"):
             importlib.import_module(module.name)
     kinds, found = [Result], []
     while kinds:
@@ -282,6 +313,7 @@ MAKERS = {
     "Trajectory": lambda drum: simulate(drum, 1e-3),
     "Verdict": lambda drum: verdict(simulate(drum, 5e-3, times=501)),
     "ComplexModes": complex_modes,
+    "FrictionFit": lambda drum: fit_friction(SPEEDS, 0.3 + 0.1 * np.exp(-SPEEDS)),
     "CriticalValue": lambda drum: critical_value(drum, "friction.static", (0.1, 0.6)),
 }
 

@@ -1,9 +1,22 @@
 # The public names in the order of the story. `lazy_loader` reads the imports; people, editors and type checkers read both.
 # A room with more names than the story needs is public as a whole: `squealbox.friction.Table`, `squealbox.schedules.Table`.
 
-from . import designs, friction, plots, schedules, signals, stability, transient
+from . import designs, files, friction, plots, schedules, signals, stability, transient
 from .continuation import Follower, follow
-from .designs import DrumBrake
+from .designs import (
+    BlockChain,
+    DampingParadox,
+    DrumBrake,
+    DrumBrakeShoes,
+    InclinedSprings,
+    MassOnBelt,
+    ModeCoupling,
+    PadOnDisc,
+    SpragSlip,
+    WobblingDisc,
+)
+from .files import Body, OwnBrake, OwnContact, OwnLaw, OwnMechanism, Spring, Touch, own_law, read_design, write_design
+from .fit import FrictionFit, fit_friction
 from .friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stribeck
 from .parameters import ParameterError
 from .plots import plot
@@ -15,7 +28,6 @@ from .stability import (
     ComplexModes,
     CriticalValue,
     CriticalValues,
-    Mechanism,
     Mode,
     ModeEnergy,
     Sensitivity,
@@ -69,6 +81,29 @@ __all__ = [
     # brakes on paper
     "designs",
     "DrumBrake",
+    "DrumBrakeShoes",
+    "MassOnBelt",
+    "BlockChain",
+    "ModeCoupling",
+    "InclinedSprings",
+    "DampingParadox",
+    "PadOnDisc",
+    "WobblingDisc",
+    "SpragSlip",
+    # your own: from a file, from matrices, as a mechanism, with a law of plain functions or from measured points
+    "files",
+    "read_design",
+    "write_design",
+    "OwnBrake",
+    "OwnContact",
+    "OwnMechanism",
+    "Body",
+    "Spring",
+    "Touch",
+    "OwnLaw",
+    "own_law",
+    "fit_friction",
+    "FrictionFit",
     # is steady sliding stable, and from which value is it not?
     "stability",
     "complex_modes",
@@ -79,7 +114,6 @@ __all__ = [
     "critical_values",
     "CriticalValues",
     "mechanism",
-    "Mechanism",
     "sensitivity",
     "Sensitivity",
     "mode_energy",

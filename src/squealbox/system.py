@@ -176,6 +176,7 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
     singular = np.zeros(shape, dtype=bool)
     converged = np.zeros(shape, dtype=bool)
     scale = np.max(np.abs(base), axis=(-1, -2))
+    forces = np.max(np.abs(value_at(system.load, time)), axis=-1) + np.max(np.abs(force), axis=-1, initial=0.0)
     linear = not any(contact.unilateral for contact in system.contacts)
     for _ in range(2 + 2 * len(system.contacts) ** 2):
         residual, jacobian = _residual(system, time, q, force, speed, mu, base)
@@ -186,7 +187,7 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
             converged = np.all(np.isfinite(q), axis=-1)
             break
         size_of_step = scale * np.max(np.abs(step), axis=-1)
-        converged = size_of_step <= 1e-12 * (scale * np.max(np.abs(q), axis=-1) + 1e-300)
+        converged = size_of_step <= 1e-12 * (scale * np.max(np.abs(q), axis=-1) + forces + 1e-300)
         if np.all(converged | singular):
             break
     sliding = np.all(speed != 0.0, axis=-1)

@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from squealbox import Coulomb, Cubic, DrumBrake, Hyperbolic, LinearSlope, ParameterError, Ramp, Sinusoid, Stribeck
-from squealbox.files import BRAKES, NotWritable, OwnBrake, OwnContact, read_design, read_file, write_design
+from squealbox.cli.starter import mechanism_example
+from squealbox.files import BRAKES, NotWritable, OwnBrake, OwnContact, own_law, read_design, read_file, write_design
 from squealbox.files.sheets import LAW_NAMES, SCHEDULE_NAMES
 from squealbox.friction import Table
 from squealbox.parameters import from_plain, to_plain
@@ -57,7 +58,8 @@ def back(design, path):
 
 def example(name):
     """A design of that name: made of its defaults where it has them."""
-    return own() if BRAKES[name] is OwnBrake else BRAKES[name]()
+    made = {"own": own, "mechanism": mechanism_example}
+    return made.get(name, BRAKES[name])()
 
 
 @pytest.mark.parametrize("name", BRAKES)
@@ -184,3 +186,9 @@ def test_own_brake_is_the_system_it_describes():
     assert brake.replace({"friction.static": np.array([0.1, 0.2])}).system().shape == (2,)
     with pytest.raises(ParameterError, match=r"contacts\[0\]\.n"):
         dataclasses.replace(brake, contacts=(OwnContact(n=[1.0], d=[1.0, 0.0]),))
+
+
+def test_an_own_law_is_not_written(tmp_path):
+    with pytest.raises(NotWritable, match="code"):
+        write_design(DrumBrake(friction=own_law("def mu(v, p): return 0.3 + 0.0 * v")), tmp_path / "brake.toml")
+    assert list(tmp_path.iterdir()) == []

@@ -21,17 +21,25 @@ def list_(name: str | None = None) -> None:
 
 def _overview() -> Iterator[str]:
     from squealbox.files import BRAKES
-    from squealbox.files.sheets import LAW_NAMES, SCHEDULE_NAMES
+    from squealbox.files.sheets import SCHEDULE_NAMES
     from squealbox.transient.methods import TABLEAUX
 
     yield from _section("designs (brake = ...)", {name: sheet.title for name, sheet in BRAKES.items()})
-    yield from _section("friction laws (law = ...)", {name: _first_line(sheet) for name, sheet in LAW_NAMES.items()})
+    yield from _section("friction laws (law = ...)", {name: _first_line(sheet) for name, sheet in _laws().items()})
     yield from _section(
         "schedules, in place of a number", {n: _first_line(sheet) for n, sheet in SCHEDULE_NAMES.items()}
     )
     yield from _section("methods (method = ...)", {name: make().title for name, make in TABLEAUX.items()})
     yield from _section("papers (squealbox paper ...)", _papers())
     yield "squealbox list NAME shows the parameters of a design, law or schedule"
+
+
+def _laws() -> dict[str, type[DataSheet]]:
+    """The friction laws a file knows, with the one that is a Python file."""
+    from squealbox.files.own_law import OwnLaw
+    from squealbox.files.sheets import LAW_NAMES, OWN
+
+    return {**LAW_NAMES, OWN: OwnLaw}
 
 
 def _papers() -> dict[str, str]:

@@ -18,12 +18,13 @@ from squealbox.parameters import Parameter, ParameterError
 Changes = Annotated[
     tuple[str, ...], cyclopts.Parameter(name="--set", negative="", consume_multiple=True, show_default=False)
 ]
+AllowCode = Annotated[bool, cyclopts.Parameter(name="--allow-code", negative="")]
 Ends = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
 
 
-def read(file: Path, changes: Sequence[str] = ()) -> DesignFile:
+def read(file: Path, changes: Sequence[str] = (), allow_code: bool = False) -> DesignFile:
     """The design file with ``--set friction.static=0.4`` and the like applied."""
-    found = read_file(file)
+    found = read_file(file, allow_code=allow_code)
     for change in changes:
         name, equals, text = change.partition("=")
         if not equals:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from cyclopts import Parameter
 
-from squealbox.cli.inputs import Changes, Option, axis, folder, read, readable, with_points
+from squealbox.cli.inputs import AllowCode, Changes, Option, axis, folder, read, readable, with_points
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -30,6 +30,7 @@ def map_(
     points: int | None = None,
     show: Literal["growth", "mechanism"] = "growth",
     changes: Changes = (),
+    allow_code: AllowCode = False,
     out: Path | None = None,
 ) -> None:
     """Stability over two parameters: which part of the plane squeals, why, how fast it grows, and its boundary.
@@ -48,10 +49,12 @@ def map_(
         what the figure shades: the growth rate, or the mechanism
     changes
         other values for this run: --set friction.static=0.4 load="2 kN"
+    allow_code
+        run the Python file of a friction law that the design file names
     out
         folder for the figure, the grid and the points of the boundary
     """
-    found = read(file, changes)
+    found = read(file, changes, allow_code)
     given = found.map
     across = with_points(axis(found.design, given.x if given else None, *_split(x), ACROSS), points)
     up = with_points(axis(found.design, given.y if given else None, *_split(y), UP), points)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.cli.inputs import RANGE, Changes, Ends, axis, folder, read, readable
+from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, read, readable
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.tables import write_csv, written
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from squealbox.files.analyses import Axis
 
 
-def modes(file: Path, *, changes: Changes = (), out: Path | None = None) -> None:
+def modes(file: Path, *, changes: Changes = (), allow_code: AllowCode = False, out: Path | None = None) -> None:
     """Is steady sliding stable? Complex eigenvalues: frequency, growth rate and damping of each mode.
 
     Parameters
@@ -34,10 +34,12 @@ def modes(file: Path, *, changes: Changes = (), out: Path | None = None) -> None
         design file; squealbox init writes a first one
     changes
         other values for this run: --set friction.static=0.4 load="2 kN"
+    allow_code
+        run the Python file of a friction law that the design file names
     out
         folder for the table, a figure of the eigenvalues and one of what feeds and damps the worst mode
     """
-    found = read(file, changes)
+    found = read(file, changes, allow_code)
     time = found.modes.time if found.modes else 0.0
     spectrum = complex_modes(found.design, time)
     if not spectrum.outcome.ok:
@@ -56,6 +58,7 @@ def onset(
     parameter: str | None = None,
     range: Ends = None,
     changes: Changes = (),
+    allow_code: AllowCode = False,
     out: Path | None = None,
 ) -> None:
     """The value of a parameter at which steady sliding changes its stability: where squeal begins.
@@ -70,10 +73,12 @@ def onset(
         lowest and highest value, with or without a unit: 0 1, or 20deg 160deg
     changes
         other values for this run: --set friction.static=0.4 load="2 kN"
+    allow_code
+        run the Python file of a friction law that the design file names
     out
         folder for a figure of frequencies and growth rates over the range, and its numbers
     """
-    found = read(file, changes)
+    found = read(file, changes, allow_code)
     varied = axis(found.design, found.onset, parameter, range, RANGE)
     if out is not None:
         folder(out)

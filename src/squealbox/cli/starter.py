@@ -26,7 +26,7 @@ range = [0, 1]
 
 [map]                           # squealbox map {file}
 x = {{ parameter = "friction.static", range = [0, 1], points = 101 }}
-y = {{ parameter = "sliding_speed", range = ["0.1 m/s", "2 m/s"], points = 101 }}
+y = {{ {second}, points = 101 }}
 
 [simulate]                      # squealbox simulate {file} --out run
 duration = "{duration}"
@@ -52,7 +52,9 @@ def init(directory: Path, *, brake: str = "drum_brake") -> None:
     if path.exists():
         raise UsageError(f"{path} is there already, and init overwrites nothing")
     directory.mkdir(parents=True, exist_ok=True)
-    write_design(design, path, sections=STUDIES.format(file=path, duration=_duration(design)))
+    write_design(
+        design, path, sections=STUDIES.format(file=path, duration=_duration(design), second=_second_axis(design))
+    )
     print(f"{path} describes a brake. Next:\n  squealbox modes {path}\n  squealbox simulate {path} --out run")
 
 
@@ -66,6 +68,13 @@ def schema() -> None:
     print(json.dumps(json_schema(), indent=1))
 
 
+def _second_axis(design: "Design") -> str:
+    """What a first map varies beside friction: the speed, by the name the design has for it."""
+    if "sliding_speed" in design.field_names():
+        return 'parameter = "sliding_speed", range = ["0.1 m/s", "2 m/s"]'
+    return 'parameter = "spin", range = ["1 rad/s", "50 rad/s"]'
+
+
 def _duration(design: "Design") -> str:
     """Long enough for a hundred periods of the slowest mode."""
     from squealbox.stability import complex_modes
@@ -76,7 +85,7 @@ def _duration(design: "Design") -> str:
 
 def _example(brake: str) -> "Design":
     from squealbox.designs import DrumBrake
-    from squealbox.files import BRAKES, OwnBrake, OwnContact
+    from squealbox.files import BRAKES, OwnBrake, OwnContact, OwnMechanism
     from squealbox.friction import Coulomb, LinearSlope
 
     if brake not in BRAKES:
@@ -94,4 +103,22 @@ def _example(brake: str) -> "Design":
             contacts=(contact,),
             names=("pad_x", "pad_y", "disc_y"),
         )
-    return BRAKES[brake]()
+    return mechanism_example() if BRAKES[brake] is OwnMechanism else BRAKES[brake]()
+
+
+def mechanism_example() -> "Design":
+    """A pad that can turn, on an inclined and two straight springs, pressed on a disc that moves across."""
+    from squealbox.files import Body, OwnMechanism, Spring, Touch
+
+    springs = (
+        Spring("pad", angle=np.deg2rad(30.0), stiffness=2e6, damping=5.0),
+        Spring("pad", angle=np.deg2rad(120.0), stiffness=1e6, damping=5.0),
+        Spring("pad", angle=np.deg2rad(90.0), stiffness=1e6, x=0.03),
+        Spring("disc", angle=np.deg2rad(90.0), stiffness=4e6, damping=10.0),
+    )
+    return OwnMechanism(
+        bodies=(Body("pad", 0.5, 2e-4), Body("disc", 2.0, moves="y")),
+        springs=springs,
+        contacts=(Touch("pad", "disc", stiffness=3e6, y=0.01),),
+        normal_force=500.0,
+    )

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.cli.inputs import Changes, folder, read, time_of
+from squealbox.cli.inputs import AllowCode, Changes, folder, read, time_of
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -28,6 +28,7 @@ def simulate(
     method: str | None = None,
     contact: str | None = None,
     changes: Changes = (),
+    allow_code: AllowCode = False,
 ) -> None:
     """Follow the motion in time, say what becomes of it, and write figures and data.
 
@@ -47,8 +48,10 @@ def simulate(
         exact (stick, slip and lift-off by events), raw (plain sgn), smooth or tanh
     changes
         other values for this run: --set friction.static=0.4 load="2 kN"
+    allow_code
+        run the Python file of a friction law that the design file names
     """
-    found = read(file, changes)
+    found = read(file, changes, allow_code)
     options = {"start": start, "method": method, "contact": contact}
     settings = _settings(found.simulate or Simulate(), duration, options)
     system = found.design.system()

@@ -6,6 +6,13 @@ from squealbox.parameters import DataSheet
 from squealbox.system import System
 
 
+class Markdown(str):
+    """Text that a notebook shows as Markdown."""
+
+    def _repr_markdown_(self) -> str:
+        return str(self)
+
+
 class Design(DataSheet):
     """A brake on paper: parameters with unit, range and source, and ``system()``, the equation it obeys.
 
@@ -18,3 +25,13 @@ class Design(DataSheet):
     def system(self) -> System:
         """The equation of motion with these parameters."""
         raise NotImplementedError
+
+    @classmethod
+    def parameter_table(cls) -> Markdown:
+        """The parameters with symbol, default, range and unit, meaning and source, as a Markdown table."""
+        lines = ["| parameter | default | range | meaning | source |", "|---|---|---|---|---|"]
+        for name, about in cls.parameters().items():
+            value = getattr(cls, name, None)
+            shown = f"{value:.6g}" if isinstance(value, (int, float)) else str(value)
+            lines.append(f"| `{name}` | {shown} | {about.range} | {about.meaning} | {about.source} |")
+        return Markdown("\n".join(lines))

@@ -8,21 +8,32 @@ Importing this room loads neither pint nor SciPy.
 """
 
 from squealbox.files.document import DesignFileError, Problem
+from squealbox.files.measured import read_points
+from squealbox.files.mechanism import Body, OwnMechanism, Spring, Touch
 from squealbox.files.own_brake import OwnBrake, OwnContact
+from squealbox.files.own_law import OwnLaw, law_from_file, own_law
 from squealbox.files.reading import BRAKES, DesignFile, read_design, read_file
 from squealbox.files.schema import json_schema
 from squealbox.files.writing import NotWritable, write_design
 
 __all__ = [
     "BRAKES",
+    "Body",
     "DesignFile",
     "DesignFileError",
     "NotWritable",
     "OwnBrake",
     "OwnContact",
+    "OwnLaw",
+    "OwnMechanism",
     "Problem",
+    "Spring",
+    "Touch",
     "json_schema",
+    "law_from_file",
+    "own_law",
     "read_design",
     "read_file",
+    "read_points",
     "write_design",
 ]

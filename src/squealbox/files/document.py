@@ -49,6 +49,7 @@ class Document:
     problems: list[Problem] = field(default_factory=list)
     faulty: set[str | int] = field(default_factory=set)  # first parts of the keys with problems
     unsaid: int = 0
+    allow_code: bool = False  # may a friction law be run that is Python code?
 
     @cached_property
     def lines(self) -> dict[Key, int]:

@@ -11,13 +11,14 @@ import numpy as np
 from squealbox.designs import DESIGNS, Design
 from squealbox.files import analyses
 from squealbox.files.document import Document, open_document
+from squealbox.files.mechanism import OwnMechanism
 from squealbox.files.numbers import WRONG, read_choice, wrong
 from squealbox.files.own_brake import OwnBrake
 from squealbox.files.sheets import read_sheet
 from squealbox.parameters import ParameterError, known_names
 from squealbox.system import InvalidSystem
 
-BRAKES: dict[str, type[Design]] = {**DESIGNS, "own": OwnBrake}
+BRAKES: dict[str, type[Design]] = {**DESIGNS, "own": OwnBrake, "mechanism": OwnMechanism}
 SECTIONS: dict[str, Callable[..., Any]] = {
     "modes": analyses.read_modes,
     "onset": analyses.read_onset,
@@ -38,20 +39,23 @@ class DesignFile:
     simulate: analyses.Simulate | None = None
 
 
-def read_design(path: str | os.PathLike[str]) -> Design:
+def read_design(path: str | os.PathLike[str], *, allow_code: bool = False) -> Design:
     """The brake that the file at `path` describes.
 
+    A friction law that is Python code (``law = "own"``) is run only with `allow_code`.
     Raises `DesignFileError`, whose `problems` are all that is wrong with the file, each with line, key and a sentence.
     """
-    return read_file(path).design
+    return read_file(path, allow_code=allow_code).design
 
 
-def read_file(path: str | os.PathLike[str]) -> DesignFile:
+def read_file(path: str | os.PathLike[str], *, allow_code: bool = False) -> DesignFile:
     """The brake that the file at `path` describes, and its sections [modes], [onset], [map] and [simulate].
 
+    A friction law that is Python code (``law = "own"``) is run only with `allow_code`.
     Raises `DesignFileError`, whose `problems` are all that is wrong with the file, each with line, key and a sentence.
     """
     document = open_document(Path(path))
+    document.allow_code = allow_code
     tables = dict(document.tables)
     asked = {name: tables.pop(name) for name in SECTIONS if name in tables}
     design = _design(document, tables)
@@ -85,7 +89,7 @@ def _design(document: Document, tables: Mapping[str, Any]) -> Design | None:
 def _without_problems(document: Document, tables: Mapping[str, Any]) -> Design | None:
     """The design of a faulty file with the faulty keys left out, to check its sections against in the same go."""
     good = {name: value for name, value in tables.items() if name not in document.faulty}
-    return _design(Document(document.path, document.text, good), good)
+    return _design(Document(document.path, document.text, good, allow_code=document.allow_code), good)
 
 
 def _section(document: Document, name: str, table: Any, design: Design | None) -> Any:

@@ -6,8 +6,9 @@ import typing
 from typing import Any
 
 from squealbox.files.analyses import Axis, Modes, Simulate
+from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES
-from squealbox.files.sheets import LAW_NAMES, SCHEDULE_NAMES, field_type, is_required
+from squealbox.files.sheets import LAW_NAMES, OWN, SCHEDULE_NAMES, field_type, is_required
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, Parameter
 
@@ -20,7 +21,8 @@ def json_schema() -> Schema:
     definitions = {
         **{f"law.{name}": _sheet(law, first={"law": {"const": name}}) for name, law in LAW_NAMES.items()},
         **{f"schedule.{name}": _sheet(schedule) for name, schedule in SCHEDULE_NAMES.items()},
-        "law": {"type": "object", "required": ["law"], "oneOf": [_ref(f"law.{name}") for name in LAW_NAMES]},
+        "law.own": _own_law(),
+        "law": {"type": "object", "required": ["law"], "oneOf": [_ref(f"law.{name}") for name in (*LAW_NAMES, OWN)]},
         "schedule": {"type": "object", "oneOf": [_one_key(name, _ref(f"schedule.{name}")) for name in SCHEDULE_NAMES]},
         "axis": _axis(),
     }
@@ -112,6 +114,16 @@ def _array(about: Parameter, ndim: int) -> Schema:
         "additionalProperties": False,
     }
     return {"description": _description(about), "anyOf": [inline, file, table]}
+
+
+def _own_law() -> Schema:
+    properties = {
+        "law": {"const": OWN},
+        "file": {"type": "string", "description": "a .py file beside this one with mu(v, p); needs --allow-code"},
+        "numbers": {"type": "array", "items": _number(Parameter("-")), "description": "p[1], p[2] and so on"},
+        "static": _number(OwnLaw.parameters()["static"]),
+    }
+    return {"type": "object", "properties": properties, "required": ["law", "file"], "additionalProperties": False}
 
 
 def _axis() -> Schema:

@@ -11,10 +11,12 @@ import typing
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-from squealbox.files.arrays import read_array
-from squealbox.files.document import Document
+from squealbox.files.arrays import ArrayFileError, path_beside, read_array
+from squealbox.files.document import Document, read_bytes
 from squealbox.files.lines import Key
 from squealbox.files.numbers import LONGEST, WRONG, read_choice, read_number, shown, wrong
+from squealbox.files.own_law import LARGEST as LARGEST_LAW
+from squealbox.files.own_law import OwnLaw, own_law
 from squealbox.friction import LAWS, FrictionLaw
 from squealbox.parameters import DataSheet, Parameter, ParameterError, known_names
 from squealbox.schedules import SCHEDULES, Schedule
@@ -28,6 +30,7 @@ def name_of(sheet: type[DataSheet]) -> str:
 
 
 LAW_NAMES: dict[str, type[FrictionLaw]] = {name_of(law): law for law in LAWS}
+OWN = "own"  # the law that is a Python file
 SCHEDULE_NAMES: dict[str, type[Schedule]] = {name_of(schedule): schedule for schedule in SCHEDULES}
 
 
@@ -125,13 +128,44 @@ def read_law(document: Document, value: Any, key: Key) -> Any:
     if not isinstance(value, Mapping):
         return wrong(document, key, value, example)
     if "law" not in value:
-        document.problem(key, f"the key 'law' is missing, expected {known_names('', list(LAW_NAMES))}")
+        document.problem(key, f"the key 'law' is missing, expected {known_names('', [*LAW_NAMES, OWN])}")
         return WRONG
-    law = read_choice(document, value["law"], LAW_NAMES, (*key, "law"))
+    if value["law"] == OWN:
+        return read_own_law(document, value, key)
+    law = read_choice(document, value["law"], {**LAW_NAMES, OWN: OwnLaw}, (*key, "law"))
     if law is WRONG:
         return WRONG
     rest = {name: item for name, item in value.items() if name != "law"}
     return read_sheet(document, law, rest, key) or WRONG
+
+
+def read_own_law(document: Document, value: Mapping[str, Any], key: Key) -> Any:
+    """A law from ``{ law = "own", file = "law.py", numbers = [0.4, 0.1] }``, where the reader may run code."""
+    unknown = [name for name in value if name not in ("law", "file", "numbers", "static")]
+    for name in unknown:
+        document.problem((*key, name), f"unknown key, {known_names(name[:LONGEST], ['file', 'numbers', 'static'])}")
+    file = value.get("file")
+    if not isinstance(file, str) or not file.endswith(".py"):
+        return wrong(document, (*key, "file"), file, "the name of a .py file beside this one, such as 'law.py'")
+    if not document.allow_code:
+        document.problem(
+            (*key, "file"), f"{shown(file)} is code, which is run only with --allow-code (allow_code=True)"
+        )
+        return WRONG
+    about = OwnLaw.parameters()["static"]
+    numbers = read_array(document, value.get("numbers", []) or [0.0], Parameter("-"), (*key, "numbers"), 1)
+    static = read_number(document, value["static"], about, (*key, "static")) if "static" in value else None
+    if unknown or numbers is WRONG or static is WRONG:
+        return WRONG
+    try:
+        text = read_bytes(path_beside(document.path, file), LARGEST_LAW).decode("utf-8")
+        return own_law(text, numbers=numbers if value.get("numbers") else (), static=static)
+    except (ArrayFileError, ParameterError) as error:
+        document.problem((*key, "file"), str(error))
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        document.problem((*key, "file"), f"{shown(file)} cannot be read: {reason}")
+    return WRONG
 
 
 def _schedule(document: Document, value: Mapping[str, Any], about: Parameter, key: Key) -> Any:

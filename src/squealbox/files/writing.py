@@ -14,6 +14,7 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.files.document import LARGEST
+from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES
 from squealbox.files.sheets import SCHEDULE_NAMES, field_type, name_of, unit_in
 from squealbox.files.units import in_si
@@ -74,6 +75,8 @@ def design_text(design: Design) -> str:
 
 def _tables(name: str, value: Any) -> Iterator[str]:
     """The fields that get a table of their own: laws, and lists of sheets."""
+    if isinstance(value, OwnLaw):
+        raise NotWritable(f"{name} is code: keep it in a .py file and name that in the design file")
     if isinstance(value, FrictionLaw):
         yield from ("", f"[{name}]", *_commented(f"law = {_quoted(name_of(type(value)))}", _first_line(value)))
         yield from _lines(value)
@@ -127,10 +130,14 @@ def _text(value: Any, unit: str, name: str) -> str:
         return '"none"'
     if isinstance(value, bool):
         return str(value).lower()
+    if isinstance(value, int):
+        return str(value)
     if isinstance(value, str):
         return _quoted(value)
     if isinstance(value, Schedule):
         return f"{{ {_schedule_name(value, name)} = {_inline(value, unit)} }}"
+    if isinstance(value, OwnLaw):
+        raise NotWritable(f"{name} is code: keep it in a .py file and name that in the design file")
     if isinstance(value, FrictionLaw):
         return f"{{ law = {_quoted(name_of(type(value)))}, {_inline(value, '')[2:]}"
     if isinstance(value, (tuple, list, np.ndarray)):

@@ -4,8 +4,10 @@
 larger figure made with `panels`. Matplotlib is loaded at the first drawing.
 """
 
+from squealbox.plots.brakes import brake_drawing
 from squealbox.plots.contact import contact_comparison
 from squealbox.plots.dispatch import plot
+from squealbox.plots.fits import friction_fit
 from squealbox.plots.laws import friction_curve
 from squealbox.plots.maps import stability_map
 from squealbox.plots.modes import coalescence
@@ -26,11 +28,13 @@ from squealbox.plots.style import letters, panels, save
 __all__ = [
     "amplitude_course",
     "boundary_curves",
+    "brake_drawing",
     "coalescence",
     "contact_comparison",
     "eigenvalues",
     "energy",
     "friction_curve",
+    "friction_fit",
     "letters",
     "mechanism_map",
     "mode_energy",

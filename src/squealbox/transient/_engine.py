@@ -43,37 +43,48 @@ entry = inner
 
 
 @cache
-def time_stepping_kernel(plain: bool = False) -> Callable[..., Any]:
-    """`_time_stepping.time_stepping`, compiled at first use."""
-    parts = head(inline=True, plain=plain) + definitions(_time_stepping, {})
+def time_stepping_kernel(plain: bool = False, own: tuple[tuple[str, str], ...] = ()) -> Callable[..., Any]:
+    """`_time_stepping.time_stepping`, compiled at first use; `own` as in `kernel`."""
+    parts = head(inline=True, plain=plain, own=own) + definitions(_time_stepping, {})
     stepping: Callable[..., Any] = load_module("\n\n".join(parts) + "\n").time_stepping
     return stepping
 
 
 @cache
-def kernel(events: bool, plain: bool = False, counts: tuple[tuple[str, int], ...] = ()) -> Callable[..., int]:
+def kernel(
+    events: bool,
+    plain: bool = False,
+    counts: tuple[tuple[str, int], ...] = (),
+    own: tuple[tuple[str, str], ...] = (),
+) -> Callable[..., int]:
     """`_march.march`, compiled for each new room of its records at first use, then read from disk.
 
     `counts` fixes numbers such as ``("p.contacts", 2)`` in the text, so the compiler unrolls the loops over them.
+    `own` are the sources of mu(v, p) and slope(v, p) of friction laws that follow `LAWS`.
     """
-    march: Callable[..., int] = load_module(source(events, plain, counts)).march
+    march: Callable[..., int] = load_module(source(events, plain, counts, own)).march
     return march
 
 
-def source(events: bool, plain: bool = False, counts: tuple[tuple[str, int], ...] = ()) -> str:
+def source(
+    events: bool,
+    plain: bool = False,
+    counts: tuple[tuple[str, int], ...] = (),
+    own: tuple[tuple[str, str], ...] = (),
+) -> str:
     """The text of the generated file."""
     fixed = {"WITH_EVENTS": events, **dict(counts)}
-    parts = head(inline=not events, plain=plain)
+    parts = head(inline=not events, plain=plain, own=own)
     for module in (_motion, _runge_kutta, *((_modes, _events) if events else ()), _march):
         parts += definitions(module, fixed)
     return "\n\n".join(parts) + "\n"
 
 
-def head(inline: bool, plain: bool = False) -> list[str]:
+def head(inline: bool, plain: bool = False, own: tuple[tuple[str, str], ...] = ()) -> list[str]:
     """Decorators, and the laws and schedules behind one function each."""
     parts = [HEADER.format(decorators=PLAIN if plain else COMPILED.format(inline=inline))]
-    parts += _dispatcher("law_mu", [law.formula for law in LAWS], "v")
-    parts += _dispatcher("law_slope", [law.slope_formula for law in LAWS], "v")
+    parts += _dispatcher("law_mu", [law.formula for law in LAWS], "v", [mu for mu, _ in own])
+    parts += _dispatcher("law_slope", [law.slope_formula for law in LAWS], "v", _calls_of_mu(own))
     parts += _dispatcher("schedule_value", [schedule.formula for schedule in SCHEDULES], "t")
     return parts + _dispatcher("schedule_rate", [schedule.rate_formula for schedule in SCHEDULES], "t")
 
@@ -87,12 +98,19 @@ def cache_folder() -> Path:
     return Path(base) / "squealbox" / "kernels"
 
 
-def _dispatcher(name: str, formulas: list[Callable[..., Any]], argument: str) -> list[str]:
+def _calls_of_mu(own: tuple[tuple[str, str], ...]) -> list[str]:
+    """The slopes of own laws, which may call their mu, with the name it has in the generated file."""
+    return [re.sub(r"\bmu(?=\()", f"law_mu_{len(LAWS) + i}", slope) for i, (_, slope) in enumerate(own)]
+
+
+def _dispatcher(
+    name: str, formulas: list[Callable[..., Any]], argument: str, own: list[str] | None = None
+) -> list[str]:
     """Each formula under a name of its own, and one function that chooses by kind."""
     parts = []
     lines = ["@inner", f"def {name}(kind, {argument}, p):"]
-    for i, formula in enumerate(formulas):
-        text = re.sub(r"^def \w+", f"def {name}_{i}", inspect.getsource(formula), count=1)
+    for i, formula in enumerate([*map(inspect.getsource, formulas), *(own or ())]):
+        text = re.sub(r"^def \w+", f"def {name}_{i}", formula, count=1)
         parts.append("@inner\n" + text.rstrip().replace(": Any", "").replace(" -> Any", ""))
         lines.append(f"    if kind == {i}:\n        return float({name}_{i}({argument}, p))")
     lines.append("    return np.nan")

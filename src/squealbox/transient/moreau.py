@@ -16,6 +16,7 @@ from squealbox.system import (
 )
 from squealbox.transient import packing
 from squealbox.transient.methods import Method
+from squealbox.transient.own_laws import own_texts
 from squealbox.transient.trajectory import OPEN, Trajectory
 
 SWEEPS = 2000
@@ -83,7 +84,7 @@ def time_stepping(
     n, m = system.size, len(system.contacts)
     rows = np.zeros((steps + 1, 1 + 2 * n + 4 * m))
     z = _stepping(system, problem)
-    done, sweeps, change = time_stepping_kernel()(
+    done, sweeps, change = time_stepping_kernel(own=own_texts(system.contacts))(
         z, q.copy(), qd.copy(), start_time, h, steps, SWEEPS, TOLERANCE, rows, np.zeros(m)
     )
     outcome = _outcome(done, steps, h, sweeps, change)

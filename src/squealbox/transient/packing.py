@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES, Constant, Schedule
 from squealbox.system import InvalidSystem, System
 from squealbox.transient.methods import Method, Tableau, tableau
+from squealbox.transient.own_laws import law_kinds
 
 UNIT = Constant(1.0)
 STAGES, DEGREE = 16, 7  # room in the record of a tableau
@@ -55,7 +55,7 @@ def _packed(system: System, method: Method, scheme: int, width: float, every_ste
         "g": t @ inverse @ d.T,
         "unilateral": np.array([c.unilateral for c in contacts], dtype=np.int64),
         "static": np.array([c.law.static_limit for c in contacts], dtype=float),
-        "law_kind": np.array([LAWS.index(type(c.law)) for c in contacts], dtype=np.int64),
+        "law_kind": law_kinds(contacts),
         "law_coefficients": _padded(laws),
         **_signals(system, inverse),
         "scheme": scheme,

@@ -11,6 +11,7 @@ from squealbox.system import InvalidSystem, System, as_system, equilibrium
 from squealbox.transient import _march, _motion, moreau, packing
 from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
 from squealbox.transient.methods import Method
+from squealbox.transient.own_laws import own_texts
 from squealbox.transient.trajectory import Trajectory
 
 SCHEMES = {"exact": EXACT, "raw": RAW, "tanh": TANH, "smooth": ARCTAN, "arctan": ARCTAN}
@@ -117,7 +118,8 @@ class _Run:
         from squealbox.transient._engine import kernel
 
         events = bool(self.problem["scheme"] == EXACT and self.problem["contacts"] > 0)
-        march = kernel(events, counts=() if events else self._counts())
+        counts = () if events else self._counts()
+        march = kernel(events, counts=counts, own=own_texts(self.system.contacts))
         largest = self.method.largest_step or (min(span, self.period / 6.0) if events else span)
         records = (self.problem, self.rule, self.scratch, self.times)
         limits = (end, largest, 1e-14 * self.period, self.method.most_steps, BUDGET)

@@ -15,26 +15,34 @@ from squealbox.transient.observers import extreme
 VECTOR_FUNCTIONS = ("where", "minimum", "maximum", "sqrt", "exp", "sin", "cos", "arctan", "log")
 
 
-def formulas(shape: Shape, laws: tuple[Any, ...] = LAWS) -> list[str]:
+def formulas(shape: Shape) -> list[str]:
     """The laws, schedules and observers of a kernel as functions of lanes."""
-    parts = []
-    for kind in sorted({kind for kind, _ in shape.laws}):
-        parts.append(lane_function(laws[kind].formula, f"lane_mu_{kind}"))
+    laws = [*(inspect.getsource(law.formula) for law in LAWS), *(mu for mu, _ in shape.own)]
+    parts = [lane_function(laws[kind], f"lane_mu_{kind}") for kind in sorted({kind for kind, _ in shape.laws})]
     for kind in sorted({kind for terms in shape.signals for kind, _ in terms}):
-        parts.append(lane_function(SCHEDULES[kind].formula, f"lane_value_{kind}"))
-        parts.append(lane_function(SCHEDULES[kind].rate_formula, f"lane_rate_{kind}"))
+        parts.append(lane_function(inspect.getsource(SCHEDULES[kind].formula), f"lane_value_{kind}"))
+        parts.append(lane_function(inspect.getsource(SCHEDULES[kind].rate_formula), f"lane_rate_{kind}"))
     if shape.observers:
-        parts.append(lane_function(extreme, "extreme"))
-    parts += [lane_function(observer.update, f"observe_{k}") for k, observer in enumerate(shape.observers)]
+        parts.append(lane_function(inspect.getsource(extreme), "extreme"))
+    for k, observer in enumerate(shape.observers):
+        parts.append(lane_function(source_of(observer.update), f"observe_{k}"))
     return parts
 
 
-def lane_function(formula: Callable[..., Any], name: str) -> str:
+def source_of(function: Callable[..., Any]) -> str:
+    """The text of a user's plain function; `InvalidSystem` when there is none to compile."""
+    try:
+        return inspect.getsource(function)
+    except (OSError, TypeError) as error:
+        raise InvalidSystem(f"{function!r}: expected a plain function whose source can be read, from a file") from error
+
+
+def lane_function(text: str, name: str) -> str:
     """A plain formula under another name, its NumPy functions replaced by those of lanes."""
-    tree = ast.parse(textwrap.dedent(inspect.getsource(formula)))
+    tree = ast.parse(textwrap.dedent(text))
     function = tree.body[0]
     if not isinstance(function, ast.FunctionDef):
-        raise InvalidSystem(f"{formula!r}: expected a plain function written with def")
+        raise InvalidSystem(f"{text.splitlines()[0]}: expected a plain function written with def")
     function.name, function.returns, function.decorator_list = name, None, []
     for argument in function.args.args:
         argument.annotation = None

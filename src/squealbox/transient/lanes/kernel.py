@@ -54,7 +54,7 @@ def source(shape: Shape) -> str:
     """The text of the generated file."""
     rows, step = layout(shape), Step(shape)
     fixed: dict[str, int] = {"WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples}
-    parts = [*_engine.head(inline=False), HEAD, *formulas(shape), step.text()]
+    parts = [*_engine.head(inline=False, own=shape.own), HEAD, *formulas(shape), step.text()]
     parts += [f"{name} = {rows.places.get(row, 0)}" for name, row in PLACES.items()]
     first = rows.places["o0_0_0"] if shape.observers else 0
     counts = {

@@ -27,6 +27,7 @@ class Shape:
     observers: tuple[Any, ...] = ()
     samples: bool = False
     breaks: int = 0
+    own: tuple[tuple[str, str], ...] = ()
 
     @property
     def exact(self) -> bool:

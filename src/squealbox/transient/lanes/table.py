@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES, Constant, Schedule
 from squealbox.system import InvalidSystem, System
 from squealbox.transient import packing
@@ -13,6 +12,7 @@ from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.batch import first_of
 from squealbox.transient.lanes.shape import Shape, parameter_rows
 from squealbox.transient.methods import Method
+from squealbox.transient.own_laws import law_kinds, own_texts
 
 
 @dataclass(frozen=True)
@@ -45,11 +45,23 @@ def tabulate(
         values[f"start{k}"], values[f"start{n + k}"] = q[..., k], qd[..., k]
     values |= _tolerances(system, method, values, scheme == EXACT and m > 0, duration)
     values |= {f"break{k}": instant for k, instant in enumerate(breaks)} | {"width": np.asarray(width)}
-    laws = tuple((LAWS.index(type(c.law)), len(c.law.coefficients())) for c in system.contacts)
+    kinds = law_kinds(system.contacts)
+    laws = tuple((int(kind), len(c.law.coefficients())) for kind, c in zip(kinds, system.contacts, strict=True))
     present = frozenset(name for name, value in values.items() if np.any(value != 0.0))
     unilateral = tuple(bool(c.unilateral) for c in system.contacts)
     shape = Shape(
-        n, m, method.tableau, scheme, laws, _of_equation(present), unilateral, signals, watches, samples, len(breaks)
+        n,
+        m,
+        method.tableau,
+        scheme,
+        laws,
+        _of_equation(present),
+        unilateral,
+        signals,
+        watches,
+        samples,
+        len(breaks),
+        own_texts(system.contacts),
     )
     names = parameter_rows(shape)
     fixed = np.zeros(3 + len(names) + len(coefficients))

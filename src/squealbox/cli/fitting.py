@@ -1,0 +1,40 @@
+"""`squealbox fit`: measured friction coefficients to a friction law."""
+
+from pathlib import Path
+
+from squealbox.cli.inputs import folder
+from squealbox.cli.running import ComputationFailed
+from squealbox.cli.tables import write_csv, written
+from squealbox.files.measured import read_points
+from squealbox.fit import fit_friction
+
+
+def fit(file: Path, *, law: tuple[str, ...] = (), level: float = 0.95, out: Path | None = None) -> None:
+    """Fit friction laws to measured points, with confidence bands; the law with the least AIC comes first.
+
+    Parameters
+    ----------
+    file
+        CSV file of two columns, sliding speed in m/s and friction coefficient; a first line of names is skipped
+    law
+        laws to try: coulomb, linear_slope, stribeck, hyperbolic, cubic; all when left out
+    level
+        confidence level of the bands
+    out
+        folder for the figure, the curves and fit.nc
+    """
+    found = fit_friction(*read_points(file), law=law or None, level=level)
+    if not found.outcome.ok:
+        raise ComputationFailed(found.outcome)
+    print(f"{found.speeds.size} points, {file}\n{found.summary()}")
+    best = found.law
+    numbers = ", ".join(f"{name} = {value:.6g}" for name, _, value in best.leaves() if value is not None)
+    print(f'in a design file: friction = {{ law = "{found.names[found.best]}", {numbers} }}')
+    if out is not None:
+        from squealbox.plots import plot, save
+
+        figures = save(plot(found), folder(out) / "fit")
+        row = found.best
+        columns = {"speed [m/s]": found.curve_speeds, "mu [-]": found.curves[row]}
+        columns |= {"low [-]": found.low[row], "high [-]": found.high[row]}
+        print(written(found.save(out / "fit.nc"), write_csv(out / "fit.csv", columns), *figures))

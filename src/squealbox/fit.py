@@ -1,0 +1,205 @@
+"""Measured friction coefficients to a friction law, with confidence bands and a choice. Depends on: friction, result.
+
+Each law mu(v; p) is fitted by least squares (`scipy.optimize.curve_fit`). The band of the fitted curve follows from the
+covariance S of p by linear propagation, t sqrt(g' S g) with g = dmu/dp and Student's t of the chosen level, and the
+laws are compared by Akaike's criterion AIC = n ln(RSS/n) + 2 (k + 1), k coefficients and one variance.
+"""
+
+import dataclasses
+import warnings
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from squealbox.friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stribeck
+from squealbox.parameters import ParameterError, known_names
+from squealbox.result import COMPLETED, Outcome, Result, quantity
+
+LEAST_POINTS = 5
+
+
+@dataclasses.dataclass(frozen=True)
+class Candidate:
+    """A law that can be fitted: its class, the names of its free numbers, their least values and a first guess."""
+
+    law: type[FrictionLaw]
+    names: tuple[str, ...]
+    low: tuple[float, ...]
+    guess: Callable[[Any, Any], tuple[float, ...]]
+
+
+CANDIDATES: dict[str, Candidate] = {
+    "coulomb": Candidate(Coulomb, ("static",), (0.0,), lambda v, mu: (float(np.mean(mu)),)),
+    "linear_slope": Candidate(LinearSlope, ("static", "slope"), (0.0, -np.inf), lambda v, mu: (float(np.max(mu)), 0.0)),
+    "stribeck": Candidate(
+        Stribeck,
+        ("static", "kinetic", "speed"),
+        (0.0, 0.0, 1e-12),
+        lambda v, mu: (float(np.max(mu)), float(np.min(mu)), float(np.ptp(v)) / 3.0),
+    ),
+    "hyperbolic": Candidate(
+        Hyperbolic, ("static", "delta"), (0.0, 0.0), lambda v, mu: (float(np.max(mu)), 1.0 / float(np.max(v)))
+    ),
+    "cubic": Candidate(
+        Cubic,
+        ("static", "kinetic", "speed"),
+        (0.0, 0.0, 1e-12),
+        lambda v, mu: (float(np.max(mu)), float(np.min(mu)), float(np.max(v))),
+    ),
+}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
+class FrictionFit(Result):
+    """Laws fitted to measured points, each with its band; `law` is the one with the least AIC.
+
+    A law that could not be fitted has AIC inf and a NaN curve; `outcome` says why when none could.
+    """
+
+    speeds: Any = quantity("point", "m/s", "measured sliding speeds")
+    values: Any = quantity("point", "-", "measured friction coefficients")
+    curve_speeds: Any = quantity("along", "m/s", "sliding speeds of the curves")
+    curves: Any = quantity("law along", "-", "fitted coefficient")
+    low: Any = quantity("law along", "-", "lower end of the confidence band")
+    high: Any = quantity("law along", "-", "upper end of the confidence band")
+    coefficients: Any = quantity("law coefficient", "", "fitted numbers in the order of the law's sheet; NaN behind")
+    errors: Any = quantity("law coefficient", "", "standard errors of the fitted numbers")
+    aic: Any = quantity("law", "-", "Akaike's criterion")
+    rms: Any = quantity("law", "-", "root of the mean squared residual")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The laws that were tried."""
+        return tuple(self.settings["laws"])
+
+    @property
+    def best(self) -> int:
+        """Index of the law with the least AIC."""
+        return int(np.argmin(self.aic))
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law with the least AIC, ready for a design."""
+        return self.law_named(self.names[self.best])
+
+    def law_named(self, name: str) -> FrictionLaw:
+        """One of the fitted laws by its name. Raises `ParameterError` when it was not fitted."""
+        row = self.names.index(name) if name in self.names else -1
+        if row < 0 or not np.isfinite(self.aic[row]):
+            raise ParameterError("FrictionFit", "law", name, "the name of a law that was fitted")
+        candidate = CANDIDATES[name]
+        return candidate.law(*self.coefficients[row, : len(candidate.names)])
+
+    def summary(self) -> str:
+        """A table of the laws, the best first."""
+        lines = [f"{'law':14}{'AIC':>10}{'rms':>11}  coefficients"]
+        for row in np.argsort(self.aic, kind="stable"):
+            name = self.names[row]
+            if not np.isfinite(self.aic[row]):
+                lines.append(f"{name:14}{'-':>10}{'-':>11}  could not be fitted")
+                continue
+            parts = zip(CANDIDATES[name].names, self.coefficients[row], self.errors[row], strict=False)
+            text = ", ".join(f"{part} = {value:.4g} +- {error:.2g}" for part, value, error in parts)
+            lines.append(f"{name:14}{self.aic[row]:10.2f}{self.rms[row]:11.3g}  {text}")
+        return "\n".join(lines)
+
+
+def fit_friction(
+    speeds: Any, values: Any, law: str | Sequence[str] | None = None, *, level: float = 0.95
+) -> FrictionFit:
+    """Fit friction laws to measured points mu(v).
+
+    Parameters
+    ----------
+    speeds : shape (n,), [m/s] sliding speeds, n >= 5; the sign does not matter
+    values : shape (n,), [-] measured coefficients in [0, 10]
+    law : name of a law or several; left out, all of coulomb, linear_slope, stribeck, hyperbolic, cubic
+    level : confidence level of the bands, between 0 and 1
+
+    Returns the fits. A sliding measurement cannot tell the static limit: the fitted laws take mu(v -> 0) for it.
+    Raises `ParameterError` for points that are no such measurement. Laws with three coefficients need points on both
+    sides of their bend; one that does not settle is left out with AIC inf.
+
+    >>> v = np.linspace(0.1, 2.0, 20)
+    >>> fit_friction(v, 0.3 + 0.2 * np.exp(-v / 0.5)).names[fit_friction(v, 0.3 + 0.2 * np.exp(-v / 0.5)).best]
+    'stribeck'
+    """
+    v, mu = _points(speeds, values)
+    names = list(CANDIDATES) if law is None else [law] if isinstance(law, str) else list(law)
+    for name in names:
+        if name not in CANDIDATES:
+            raise ParameterError("fit_friction", "law", name, known_names(str(name), list(CANDIDATES)))
+    if not 0.0 < level < 1.0:
+        raise ParameterError("fit_friction", "level", level, "a number in (0, 1)")
+    along = np.linspace(0.0, float(np.max(v)), 201)
+    fits = [_fitted(CANDIDATES[name], v, mu, along, level) for name in names]
+    arrays: dict[str, Any] = {key: np.array([fit[key] for fit in fits]) for key in fits[0]}
+    found = np.any(np.isfinite(arrays["aic"]))
+    outcome = Outcome(COMPLETED) if found else Outcome("no_fit", "none of the laws could be fitted", laws=names)
+    settings = {"laws": names, "level": level}
+    return FrictionFit(speeds=v, values=mu, curve_speeds=along, settings=settings, outcome=outcome, **arrays)
+
+
+def _points(speeds: Any, values: Any) -> tuple[Any, Any]:
+    try:
+        v, mu = np.abs(np.asarray(speeds, dtype=float)), np.asarray(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise ParameterError("fit_friction", "speeds", speeds, "numbers in m/s") from error
+    if v.ndim != 1 or v.shape != mu.shape or v.size < LEAST_POINTS:
+        shown = f"shapes {v.shape} and {mu.shape}"
+        raise ParameterError("fit_friction", "speeds", shown, f"{LEAST_POINTS} or more speeds with a value each")
+    if not np.all(np.isfinite(v)) or np.ptp(v) == 0.0:
+        raise ParameterError("fit_friction", "speeds", speeds, "finite numbers in m/s, not all the same")
+    if not np.all(np.isfinite(mu)) or np.any((mu < 0.0) | (mu > 10.0)):
+        raise ParameterError("fit_friction", "values", values, "finite numbers in [0, 10]")
+    return v, mu
+
+
+def _fitted(candidate: Candidate, v: Any, mu: Any, along: Any, level: float) -> dict[str, Any]:
+    from scipy.optimize import OptimizeWarning, curve_fit
+    from scipy.stats import t as student
+
+    count, room = len(candidate.names), 3
+
+    def curve(speed: Any, *p: float) -> Any:
+        return candidate.law.formula(speed, _formula_numbers(candidate, p))
+
+    nothing = np.full(along.shape, np.nan)
+    failed = {"curves": nothing, "low": nothing, "high": nothing, "aic": np.inf, "rms": np.nan}
+    failed |= {"coefficients": np.full(room, np.nan), "errors": np.full(room, np.nan)}
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("error", OptimizeWarning)
+            bounds = (candidate.low, np.inf)
+            p, covariance = curve_fit(curve, v, mu, p0=candidate.guess(v, mu), bounds=bounds, max_nfev=20000)
+        candidate.law(*p)
+    except (RuntimeError, ValueError, OptimizeWarning):  # not converged, or numbers that are no such law
+        return failed
+    residual = float(np.sum((mu - curve(v, *p)) ** 2))
+    steps = 1e-6 * np.maximum(np.abs(p), 1e-3)
+    gradient = [
+        (curve(along, *(p + h * e)) - curve(along, *(p - h * e))) / (2.0 * h)
+        for h, e in zip(steps, np.eye(count), strict=True)
+    ]
+    spread = np.sqrt(np.maximum(np.einsum("ia,ij,ja->a", gradient, covariance, gradient), 0.0))
+    half = float(student.ppf(0.5 + 0.5 * level, v.size - count)) * spread
+    middle = curve(along, *p)
+    error = np.sqrt(np.diag(covariance))
+    variance = max(residual / v.size, np.finfo(float).tiny)  # a perfect fit has no logarithm
+    return {
+        "curves": middle,
+        "low": middle - half,
+        "high": middle + half,
+        "coefficients": np.append(p, np.full(room - count, np.nan)),
+        "errors": np.append(error, np.full(room - count, np.nan)),
+        "aic": v.size * np.log(variance) + 2.0 * (count + 1),
+        "rms": np.sqrt(residual / v.size),
+    }
+
+
+def _formula_numbers(candidate: Candidate, p: Sequence[float]) -> tuple[float, ...]:
+    """The free numbers as the formula of the law wants them, before they are known to make a law."""
+    if candidate.law is Coulomb:
+        return (p[0], p[0])
+    return (*p, -np.inf) if candidate.law is LinearSlope else tuple(p)
