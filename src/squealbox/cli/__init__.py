@@ -29,6 +29,7 @@ COMMANDS = {
     "onset": Command("stability", "onset", "the value of a parameter at which squeal begins, and how"),
     "map": Command("maps", "map_", "stability over two parameters, with the boundary as curves"),
     "simulate": Command("transient", "simulate", "what happens in time: a transient with verdict, figures and data"),
+    "ensemble": Command("ensembles", "ensemble", "transients over two parameters: amplitude and frequency of each"),
     "fit": Command("fitting", "fit", "measured friction coefficients (CSV) to a friction law, with confidence bands"),
     "paper": Command("papers", "paper", "reproduce a published study: figures, claims and one page"),
     "schema": Command("starter", "schema", "the JSON schema of a design file, for editors"),

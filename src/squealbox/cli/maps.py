@@ -56,8 +56,8 @@ def map_(
     """
     found = read(file, changes, allow_code)
     given = found.map
-    across = with_points(axis(found.design, given.x if given else None, *_split(x), ACROSS), points)
-    up = with_points(axis(found.design, given.y if given else None, *_split(y), UP), points)
+    across = with_points(axis(found.design, given.x if given else None, *split(x), ACROSS), points)
+    up = with_points(axis(found.design, given.y if given else None, *split(y), UP), points)
     if across.name == up.name:
         raise UsageError(f"x and y are both {up.name}: expected two different parameters")
     if out is not None:
@@ -68,14 +68,14 @@ def map_(
             raise ComputationFailed(grid.outcome)
         progress("following the boundary")
         edge = stability_boundary(found.design, {each.name: (each.low, each.high) for each in (across, up)})
-    plane = _Plane(found.design, across, up)
+    plane = Plane(found.design, across, up)
     print(f"{found.design.title}, {file}\n{_map_summary(grid, plane)}\n{_edge_summary(edge, plane)}")
     if out is not None:
         figure = _drawn(grid, edge, plane, show, found.path.name)
         print(written(*_files(grid, edge, plane, figure, out)))
 
 
-class _Plane:
+class Plane:
     """The two axes, in the units one reads them in."""
 
     def __init__(self, design: "Design", across: "Axis", up: "Axis") -> None:
@@ -96,11 +96,12 @@ class _Plane:
         return {f"{n} [{u or '-'}]": v for n, u, v in zip(self.names, self.units, (x, y), strict=True)}
 
 
-def _split(span: tuple[str, str, str] | None) -> tuple[str | None, tuple[str, str] | None]:
+def split(span: tuple[str, str, str] | None) -> tuple[str | None, tuple[str, str] | None]:
+    """Name and ends of an axis given as three words."""
     return (None, None) if span is None else (span[0], (span[1], span[2]))
 
 
-def _map_summary(grid: StabilityMap, plane: _Plane) -> str:
+def _map_summary(grid: StabilityMap, plane: Plane) -> str:
     """How much of the plane squeals, by which mechanism, and where it is worst."""
     known, unstable = np.count_nonzero(grid.exists), np.count_nonzero(grid.unstable)
     counts = [(name, np.count_nonzero(grid.mechanism == code)) for code, name in enumerate(grid.mechanism_names)]
@@ -117,7 +118,7 @@ def _map_summary(grid: StabilityMap, plane: _Plane) -> str:
     return "\n".join(lines + [f"{missing} more points have no steady sliding"] * bool(missing))
 
 
-def _edge_summary(edge: Boundary, plane: _Plane) -> str:
+def _edge_summary(edge: Boundary, plane: Plane) -> str:
     """The pieces of the boundary: from where to where each runs, and at which frequencies."""
     if not edge.outcome.ok:
         return f"boundary: none, {edge.outcome.message}"
@@ -134,7 +135,7 @@ def _edge_summary(edge: Boundary, plane: _Plane) -> str:
     return "\n".join(lines)
 
 
-def _drawn(grid: StabilityMap, edge: Boundary, plane: _Plane, show: str, title: str) -> "Figure":
+def _drawn(grid: StabilityMap, edge: Boundary, plane: Plane, show: str, title: str) -> "Figure":
     from squealbox import plots
 
     (x_name, y_name), (x_unit, y_unit) = plane.names, plane.units
@@ -146,7 +147,7 @@ def _drawn(grid: StabilityMap, edge: Boundary, plane: _Plane, show: str, title: 
     return plots.stability_map(plane.x, plane.y, grid.growth_rate.T, **labels, curves=curves, title=title)
 
 
-def _files(grid: StabilityMap, edge: Boundary, plane: _Plane, figure: "Figure", out: Path) -> list[Path]:
+def _files(grid: StabilityMap, edge: Boundary, plane: Plane, figure: "Figure", out: Path) -> list[Path]:
     from squealbox import plots
 
     columns = {

@@ -9,7 +9,7 @@ from squealbox.plots.contact import contact_comparison
 from squealbox.plots.dispatch import plot
 from squealbox.plots.fits import friction_fit
 from squealbox.plots.laws import friction_curve
-from squealbox.plots.maps import stability_map
+from squealbox.plots.maps import amplitude_map, stability_map
 from squealbox.plots.modes import coalescence
 from squealbox.plots.motion import amplitude_course, energy, motion_overview, phase_plane, time_history
 from squealbox.plots.spectra import spectrogram, spectrum
@@ -27,6 +27,7 @@ from squealbox.plots.style import letters, panels, save
 
 __all__ = [
     "amplitude_course",
+    "amplitude_map",
     "boundary_curves",
     "brake_drawing",
     "coalescence",

@@ -93,3 +93,38 @@ def _shade(panel: Any, x: Any, y: Any, level: Any, top: float, bar: tuple[str, s
     panel.contourf(x, y, level, levels=[0.0, 1e300], colors="none", hatches=[HATCH], zorder=2)
     if bar:
         figure_of(panel).colorbar(shade, ax=panel, pad=0.02).set_label(quantity_label(*bar))
+
+
+def amplitude_map(
+    x: Any,
+    y: Any,
+    amplitude: Any,
+    *,
+    x_name: str = "x",
+    x_unit: str = "",
+    y_name: str = "y",
+    y_unit: str = "",
+    title: str = "",
+    axes: Any = None,
+) -> "Figure":
+    """What transients end in, over two parameters, on a logarithmic scale of six decades; white where there is none.
+
+    Parameters
+    ----------
+    x, y : (nx,), (ny,), increasing, in the units named
+    amplitude : (ny, nx) [m], one row for each y; NaN where a run did not end is drawn grey
+    """
+    x, y, grid = np.asarray(x, dtype=float), np.asarray(y, dtype=float), np.asarray(amplitude, dtype=float)
+    if grid.shape != (np.size(y), np.size(x)):
+        raise ValueError(f"amplitude of shape {grid.shape}: expected ({np.size(y)}, {np.size(x)}), one row for each y")
+    from matplotlib.colors import LogNorm
+
+    known = grid[np.isfinite(grid) & (grid > 0.0)]
+    top = float(np.max(known)) if known.size else 1.0
+    with drawing(axes, width=4.4, height=3.4) as panel:
+        panel.set_facecolor("#bbbbbb")
+        shown = np.ma.masked_invalid(np.where(np.isfinite(grid), np.maximum(grid, 1e-6 * top), grid))
+        mesh = panel.pcolormesh(x, y, shown, norm=LogNorm(1e-6 * top, top), cmap="magma_r", rasterized=True)
+        panel.figure.colorbar(mesh, ax=panel, label=quantity_label("amplitude", "m"), extend="min")
+        panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
+        return figure_of(panel)
