@@ -22,7 +22,7 @@ from typing import Any
 
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
-from squealbox.transient import _events, _march, _modes, _motion, _runge_kutta, _time_stepping
+from squealbox.transient import _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta, _time_stepping
 
 ENTRIES = ("march", "time_stepping")
 HEADER = '"""Made by squealbox; safe to delete."""\n\nimport numpy as np\n\n{decorators}'
@@ -64,7 +64,7 @@ def source(events: bool, plain: bool = False, counts: tuple[tuple[str, int], ...
     """The text of the generated file."""
     fixed = {"WITH_EVENTS": events, **dict(counts)}
     parts = _head(inline=not events, plain=plain)
-    for module in (_motion, _runge_kutta, *((_modes, _events) if events else ()), _march):
+    for module in (_motion, _runge_kutta, *((_rigid, _impacts, _modes, _events) if events else ()), _march):
         parts += _definitions(module, fixed)
     return "\n\n".join(parts) + "\n"
 
