@@ -113,7 +113,10 @@ def rule(name: str) -> Any:
     kinds = [(key, "i8") for key in ("stages", "dense_stages", "degree", "error_order", "blended")] + [("growth", "f8")]
     kinds += [("a", "f8", (STAGES, STAGES)), ("p", "f8", (STAGES, DEGREE)), ("bernstein", "f8", (5, 5))]  # type: ignore[list-item]
     kinds += [(key, "f8", (STAGES,)) for key in ("b", "c", "e", "e3")]  # type: ignore[misc]
+    kinds += [("silent", "i8", (STAGES,))]  # type: ignore[list-item]
+    weights = np.concatenate([method.b, np.zeros(len(method.p) - method.stages)])
     values = {
+        "silent": (weights == 0.0) & ~np.any(method.p, axis=1),
         "stages": method.stages,
         "dense_stages": len(method.p),
         "degree": method.p.shape[1],
