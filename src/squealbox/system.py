@@ -89,9 +89,13 @@ class Contact(DataSheet):
         if self.normal is None or self.normal.ndim != 1 or not np.any(self.normal):
             raise InvalidSystem(f"{name}.normal = {self.normal!r}: a rigid contact needs its direction, shape (n,)")
         if not self.unilateral:
-            raise InvalidSystem(f"{name}.unilateral = {self.unilateral!r}: a rigid contact can only press; expected True")
+            raise InvalidSystem(
+                f"{name}.unilateral = {self.unilateral!r}: a rigid contact can only press; expected True"
+            )
         if np.any(self.n) or isinstance(self.N0, Schedule) or np.any(self.N0):
-            raise InvalidSystem(f"{name}: a rigid contact's normal force follows from the motion; expected n = 0, N0 = 0")
+            raise InvalidSystem(
+                f"{name}: a rigid contact's normal force follows from the motion; expected n = 0, N0 = 0"
+            )
 
 
 class System(DataSheet):

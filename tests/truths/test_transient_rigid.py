@@ -6,6 +6,7 @@ so tolerances of 1e-12 are round-off summed over the run.
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from small_systems import METHODS
 from squealbox import Contact, Coulomb, LinearSlope, Sinusoid, System, simulate
@@ -16,7 +17,9 @@ GRAVITY = 10.0
 
 def ball(restitution=0.0, friction=0.0, *, belt=0.0, load=None, gap=0.0):
     """A point of 1 kg over a floor at height -gap, free to move along and across; the belt runs along."""
-    floor = Contact([0, 0], [1, 0], [1, 0], 0.0, belt, Coulomb(friction), "floor", True, [0, -1], True, gap, restitution)
+    floor = Contact(
+        [0, 0], [1, 0], [1, 0], 0.0, belt, Coulomb(friction), "floor", True, [0, -1], True, gap, restitution
+    )
     return System(np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), [0.0, -GRAVITY] if load is None else load, (floor,))
 
 
@@ -95,12 +98,10 @@ def test_lift_off_and_landing_while_sliding():
 
     def height(t):
         speed = 20.0 / w * np.cos(w * start)
-        bend = 20.0 / w**2 * (np.sin(w * start) - np.sin(w * t)) + 0.0
-        return bend + (speed) * (t - start) - 0.5 * GRAVITY * (t - start) ** 2
+        bend = 20.0 / w**2 * (np.sin(w * start) - np.sin(w * t))
+        return bend + speed * (t - start) - 0.5 * GRAVITY * (t - start) ** 2
 
-    from scipy.optimize import brentq
-
-    landing = brentq(lambda t: height(t) + 20.0 / w**2 * 0.0, 0.8, 2.1)
+    landing = brentq(height, 0.8, 2.1)
     assert motion.event_mode[:2].tolist() == [2, 1]
     assert motion.event_time[:2] == pytest.approx([start, landing], rel=1e-9)
     assert motion.event_time[2] == pytest.approx(2.0 + start, rel=1e-9)
@@ -122,14 +123,14 @@ def test_two_feet_share_a_weight():
 
 
 def rod(friction, along):
-    """Painleve's rod, linearised at 60 degrees: m = 1, length 2, J = 1/3; w = e_y - cos(a) e_theta, d = sin(a) e_theta."""
+    """Painleve's rod, linearised at 60 degrees: m = 1, J = 1/3, length 2; the tip moves by x + s theta, y - c theta."""
     c, s = np.cos(np.pi / 3.0), np.sin(np.pi / 3.0)
     tip = Contact(np.zeros(3), [1, 0, s], [1, 0, s], 0.0, 0.0, Coulomb(friction), "tip", True, [0, -1, c], True)
     return System(np.diag([1.0, 1.0, 1.0 / 3.0]), np.zeros((3, 3)), np.zeros((3, 3)), [0, -GRAVITY, 0], (tip,)), along
 
 
 def test_painleve_has_a_name():
-    """w . M^-1 (w - sense mu d) = 1 + 3 c (c - sense mu s), negative for mu > (1 + 3 c^2)/(3 c s) = 1.347 in one sense."""
+    """w . M^-1 (w - sense mu d) = 1 + 3 c (c - sense mu s) < 0 in one sense for mu > (1 + 3 c^2)/(3 c s) = 1.347."""
     system, along = rod(1.5, -1.0)
     singular = [simulate(system, 1e-3, (np.zeros(3), [v, 0.0, 0.0])).outcome for v in (along, -along)]
     assert singular.count("painleve") == 1

@@ -127,7 +127,7 @@ def reject(p, r, s, h, error, least):
 
 def chatters(p, s):
     """Whether sliding reverses at most steps of late, or has often reversed and the steps have become tiny."""
-    return s.count[FLIPS] > 50 or s.count[REVERSALS] > 50 and s.clock[STEP] < p.window
+    return s.count[FLIPS] > 50 or (s.count[REVERSALS] > 50 and s.clock[STEP] < p.window)
 
 
 def accept(p, r, s, times, rows, events, t, h, t_new, error, last):

@@ -121,13 +121,6 @@ def contact_kinematics(p, y, s):
 
 def derivative(p, t, y, mode, s, dy):
     """dy = y' with the contacts in the given modes, their forces in s.force; True when sticking could be solved."""
-    solved = accelerate(p, t, y, mode, s, dy)
-    energy_rates(p, y, s, dy)
-    return solved
-
-
-def accelerate(p, t, y, mode, s, dy):
-    """The part of `derivative` that acts back on the motion, and the power of opening, which it comes by."""
     n = p.mk.shape[0]
     if p.varying:
         evaluate_signals(p, t, s)
@@ -158,12 +151,13 @@ def accelerate(p, t, y, mode, s, dy):
         for c in range(p.contacts):
             a += p.md[c, i] * s.force[c]
         dy[n + i] = a
-    dy[2 * n + p.contacts + 3] = release_open(p, y, mode, s, dy) if opened else 0.0
+    opening = release_open(p, y, mode, s, dy) if opened else 0.0
     solved = True
     if WITH_EVENTS and p.rigid_count > 0:
         solved = constrain(p, mode, s, dy, False)
     elif WITH_EVENTS and sticking > 0:
         solved = hold(p, s, sticking, dy)
+    energy_rates(p, y, s, opening, dy)
     return solved
 
 
@@ -232,8 +226,8 @@ def contact_matrix(p, s, sticking, share):
             s.matrix[a, a] += share * p.g[c, c] * (largest / limit if limit > 0.0 else 1.0)
 
 
-def energy_rates(p, y, s, dy):
-    """Powers of friction, load, skew stiffness and damping, as derivatives of the energy integrals."""
+def energy_rates(p, y, s, opening, dy):
+    """Powers of friction, load, skew stiffness, damping and opening, as derivatives of the energy integrals."""
     n = p.mk.shape[0]
     m = p.contacts
     load = 0.0
@@ -259,4 +253,5 @@ def energy_rates(p, y, s, dy):
     dy[2 * n + m] = load
     dy[2 * n + m + 1] = skew
     dy[2 * n + m + 2] = damping
+    dy[2 * n + m + 3] = opening
     dy[2 * n + m + 4] = 0.0

@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from squealbox.transient._motion import accelerate, derivative
+from squealbox.transient._motion import derivative
 
 
 def take_step(p, r, t, h, y, mode, s, stage, y_new):
@@ -16,10 +16,7 @@ def take_step(p, r, t, h, y, mode, s, stage, y_new):
     states = 2 * p.mk.shape[0]  # the energy integrals do not act back on the motion
     for i in range(1, r.stages):
         combine(r.a[i], i, h, y, stage, s.y, states)
-        if r.silent[i]:  # its weight is zero in the step and in the dense output: no energy is asked of it
-            solved = accelerate(p, t + r.c[i] * h, s.y, mode, s, stage[i]) and solved
-        else:
-            solved = derivative(p, t + r.c[i] * h, s.y, mode, s, stage[i]) and solved
+        solved = derivative(p, t + r.c[i] * h, s.y, mode, s, stage[i]) and solved
     combine(r.b, r.stages, h, y, stage, y_new, y_new.shape[0])
     solved = derivative(p, t + h, y_new, mode, s, stage[r.stages]) and solved
     return r.stages, solved

@@ -88,7 +88,6 @@ def _layout(values: dict[str, Any]) -> np.dtype[Any]:
 def problem_type(n: int, m: int, law: int, terms: int, term: int, breaks: int) -> np.dtype[Any]:
     """The layout of a problem with room for n degrees of freedom, m contacts, their coefficients, terms and kinks."""
     integers = ("size", "contacts", "circulatory", "signals", "varying", "break_count", "scheme", "every_step")
-    integers += ("rigid_count",)
     arrays: dict[str, tuple[str, tuple[int, ...]]] = {
         "mk": ("f8", (n, n)), "mc": ("f8", (n, n)), "c": ("f8", (n, n)), "ka": ("f8", (n, n)),
         "md": ("f8", (m, n)), "mw": ("f8", (m, n)), "d": ("f8", (m, n)), "t": ("f8", (m, n)),
@@ -100,7 +99,7 @@ def problem_type(n: int, m: int, law: int, terms: int, term: int, breaks: int) -
         "term_coefficients": ("f8", (terms, term)), "breaks": ("f8", (breaks,)), "atol": ("f8", (2 * n,)),
     }  # fmt: skip
     return np.dtype(
-        [(name, "i8") for name in integers]
+        [(name, "i8") for name in (*integers, "rigid_count")]
         + [(name, "f8") for name in ("smoothing", "window", "rtol")]
         + [(name, kind, shape) for name, (kind, shape) in arrays.items()]
     )
@@ -113,10 +112,7 @@ def rule(name: str) -> Any:
     kinds = [(key, "i8") for key in ("stages", "dense_stages", "degree", "error_order", "blended")] + [("growth", "f8")]
     kinds += [("a", "f8", (STAGES, STAGES)), ("p", "f8", (STAGES, DEGREE)), ("bernstein", "f8", (5, 5))]  # type: ignore[list-item]
     kinds += [(key, "f8", (STAGES,)) for key in ("b", "c", "e", "e3")]  # type: ignore[misc]
-    kinds += [("silent", "i8", (STAGES,))]  # type: ignore[list-item]
-    weights = np.concatenate([method.b, np.zeros(len(method.p) - method.stages)])
     values = {
-        "silent": (weights == 0.0) & ~np.any(method.p, axis=1),
         "stages": method.stages,
         "dense_stages": len(method.p),
         "degree": method.p.shape[1],
@@ -138,7 +134,8 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
         "signal": (2 * (m + n) + m,), "normal": (m,), "speed": (m,), "force": (m,), "right": (2 * m,), "matrix": (2 * m, 2 * m),
         "state": (width,), "state_new": (width,), "y": (width,), "y_dense": (width,), "dy": (width,),
         "stage": (STAGES, width), "phi": (2 * m,), "phi0": (2 * m,), "phi1": (2 * m,), "nodes": (5, 2 * m),
-        "stack": (128, 7), "clock": (7,), "mu": (m,), "size": (m,), "rebound": (m,), "approach": (m,), "poly": (DEGREE + 1,),
+        "stack": (128, 7), "clock": (7,),
+        "mu": (m,), "size": (m,), "rebound": (m,), "approach": (m,), "poly": (DEGREE + 1,),
     }  # fmt: skip
     names = ("stuck", "mode", "old", "forced", "at_zero", "fresh", "chosen", "touch", "leaving", "hit", "noisy")
     integers = dict.fromkeys(names, m) | {"row_contact": 2 * m, "row_kind": 2 * m, "count": 11}
@@ -252,10 +249,8 @@ def _law_kind(contact: Contact) -> int:
     """The number of a contact's law in the compiled code."""
     if type(contact.law) not in LAWS:
         known = ", ".join(law.__name__ for law in LAWS)
-        raise InvalidSystem(
-            f"contact {contact.name}.law = {type(contact.law).__name__}(...): expected a law that can be compiled for a "
-            f"transient, one of {known}"
-        )
+        given = f"contact {contact.name}.law = {type(contact.law).__name__}(...)"
+        raise InvalidSystem(f"{given}: expected a law that can be compiled for a transient, one of {known}")
     return LAWS.index(type(contact.law))
 
 
