@@ -263,7 +263,7 @@ def test_reference_by_time_stepping():
 
 
 def chain(blocks):
-    """Blocks in a row on one belt, each joined to the next and held to the frame by a spring, all a little different."""
+    """Blocks in a row on one belt, joined to the next and to the frame by springs; their loads differ a little."""
     ends = np.arange(blocks)
     stiffness = np.diag(np.full(blocks, 1.6)) - 0.4 * (np.eye(blocks, k=1) + np.eye(blocks, k=-1))
     contacts = tuple(

@@ -248,10 +248,19 @@ def change_modes(p, s, events, t, which):
         s.count[IN_WINDOW] = 0
     if s.count[IN_WINDOW] <= 40 * (p.contacts + 1):
         return RUNNING
+    return TENSION if pulled(p, s) else ZENO
+
+
+def pulled(p, s):
+    """Whether a contact that cannot open is in tension, or its normal force is just about to turn."""
+    largest = 0.0
     for c in range(p.contacts):
-        if s.at_zero[c] and not p.unilateral[c] and s.normal[c] < 0.0:
-            return TENSION
-    return ZENO
+        largest = max(largest, abs(s.normal[c]))
+    for c in range(p.contacts):
+        limit = 1e-3 * largest if s.at_zero[c] else 0.0
+        if not p.unilateral[c] and s.normal[c] < limit:
+            return True
+    return False
 
 
 def not_consistent(p, s):

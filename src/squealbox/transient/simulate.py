@@ -30,8 +30,8 @@ MESSAGES = {
     _march.INCONSISTENT: ("inconsistent_contact", "no set of stick and slip modes satisfies the contacts together"),
     _march.TENSION: (
         "contact_in_tension",
-        "a contact that cannot open is pulled (N < 0) at zero sliding velocity: friction then drives it either way, "
-        "so no stick and no slip is consistent and it switches without end; a unilateral contact would lift off here",
+        "events accumulate while a contact that cannot open is pulled (N < 0): its friction then drives its sliding "
+        "instead of opposing it, so beside a sticking contact no mode lasts; a unilateral contact would lift off",
     ),
     _march.PAINLEVE: (
         "painleve",
