@@ -278,7 +278,7 @@ def test_a_chain_of_blocks_by_time_stepping():
     system, start = chain(4), ([0.3, -0.1, 0.2, 0.0], [0.1, 0.0, -0.1, 0.05])
     exact = simulate(system, 8.0, start, times=17, rtol=1e-11)
     assert exact.outcome == "completed"
-    assert len(exact.event_time) > 8
+    assert len(exact.event_time) >= 8
     errors = []
     for step in (4e-4, 1e-4):
         stepped = simulate(system, 8.0, start, times=17, contact="time-stepping", step=step)

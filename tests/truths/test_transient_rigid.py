@@ -174,11 +174,11 @@ def test_a_law_of_ones_own_is_named():
         simulate(system, 1.0)
 
 
-@pytest.mark.parametrize("reading", ["eq1_printed", "componentwise"])
-def test_a_pulled_contact_has_a_name(reading):
+@pytest.mark.parametrize("braking", [-10.0, -5.0])
+def test_a_pulled_contact_has_a_name(braking):
     """Braked to a standstill, a contact in tension beside a sticking one has no consistent mode."""
-    belt = Ramp(0.2, -10.0, 0.0)
-    drum = DrumBrake(friction=LinearSlope(0.44, -0.05), reading=reading, sliding_speed=belt)
+    belt = Ramp(0.2, braking, 0.0)
+    drum = DrumBrake(friction=LinearSlope(0.44, -0.05), reading="componentwise", sliding_speed=belt)
     motion = simulate(drum, 0.05, times=2)
     assert motion.outcome == "contact_in_tension"
     assert "N < 0" in motion.outcome.message
