@@ -43,6 +43,10 @@ class Contact(DataSheet):
     unilateral : True when the contact opens instead of pulling: N = max(N0 + n.q, 0). K and load then hold the
         closed contact's normal reaction ``-normal * N``, which is taken out while the contact is open.
     normal : shape (..., n), [-] direction of that reaction; needed for a unilateral contact
+    rigid : True for a unilateral contact without a spring: its gap ``gap - normal . q`` never turns negative, and its
+        normal force, the reaction ``-normal * N``, is what keeps it so. n and N0 are 0 then.
+    gap : [m] gap of a rigid contact at q = 0
+    restitution : [-] Newton's coefficient e in [0, 1] of a rigid contact that lands: it leaves at e times the speed
     """
 
     n: Any
@@ -54,6 +58,9 @@ class Contact(DataSheet):
     name: str = ""
     unilateral: bool = False
     normal: Any = None
+    rigid: bool = False
+    gap: float = 0.0
+    restitution: float = 0.0
 
     def __post_init__(self) -> None:
         for field in ("n", "d", "t", "normal"):
@@ -66,6 +73,29 @@ class Contact(DataSheet):
             raise InvalidSystem(f"contact {self.name}.law = {self.law!r}: expected a friction law")
         if self.unilateral and self.normal is None:
             raise InvalidSystem(f"contact {self.name}.normal is missing: a unilateral contact needs its direction")
+        self._check_rigid()
+
+    def _check_rigid(self) -> None:
+        name = f"contact {self.name}"
+        for field, low, high in (("gap", -np.inf, np.inf), ("restitution", 0.0, 1.0)):
+            value = getattr(self, field)
+            if np.ndim(value) != 0 or not np.isfinite(value) or not low <= value <= high:
+                expected = "a number in [0, 1]" if field == "restitution" else "a finite number of metres"
+                raise InvalidSystem(f"{name}.{field} = {value!r}: expected {expected}")
+            if value != 0.0 and not self.rigid:
+                raise InvalidSystem(f"{name}.{field} = {value!r}: only a rigid contact has one; give it rigid=True")
+        if not self.rigid:
+            return
+        if self.normal is None or self.normal.ndim != 1 or not np.any(self.normal):
+            raise InvalidSystem(f"{name}.normal = {self.normal!r}: a rigid contact needs its direction, shape (n,)")
+        if not self.unilateral:
+            raise InvalidSystem(
+                f"{name}.unilateral = {self.unilateral!r}: a rigid contact can only press; expected True"
+            )
+        if np.any(self.n) or isinstance(self.N0, Schedule) or np.any(self.N0):
+            raise InvalidSystem(
+                f"{name}: a rigid contact's normal force follows from the motion; expected n = 0, N0 = 0"
+            )
 
 
 class System(DataSheet):
@@ -169,6 +199,7 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
     contacts r is linear in q, because mu depends on V alone, and one step is exact; with them r is piecewise linear and
     each step changes the set of open contacts, so the number of steps is bounded by that of the contacts' states.
     """
+    no_rigid_contact(system, "steady sliding")
     shape, size = system.shape, system.size
     force, speed, mu = _sliding(system, time)
     q = np.zeros((*shape, size))
@@ -215,12 +246,22 @@ def linearise(system: System, time: float = 0.0) -> Linearised:
     return Linearised(mass, np.where(missing, np.nan, damping), np.where(missing, np.nan, stiffness), state)
 
 
+def no_rigid_contact(system: System, what: str) -> None:
+    """Raise `InvalidSystem` when a contact is rigid: `what` needs its normal force as a function of the state."""
+    for i, contact in enumerate(system.contacts):
+        if contact.rigid:
+            raise InvalidSystem(
+                f"contacts[{i}] is rigid: {what} needs N = N0 + n . q; give the contact a stiffness instead"
+            )
+
+
 def contact_state(system: System, time: Any, q: Any, qd: Any) -> tuple[Any, Any, Any]:
     """Normal force N [N], sliding velocity v [m/s] and sliding friction force mu sgn(v) N [N] of each contact.
 
     `q` and `qd` are (..., n) at instants `time` (...); the results are (..., contacts). Where v = 0 the force is 0:
     what a sticking contact carries is known only to the analysis that holds it there.
     """
+    no_rigid_contact(system, "a contact's state")
     normals, speeds, forces = [], [], []
     for contact in system.contacts:
         normal = value_at(contact.N0, time) + np.sum(contact.n * q, axis=-1)

@@ -8,6 +8,7 @@ import pytest
 
 from small_systems import METHODS, READINGS, block_on_belt, drum, two_blocks_on_belt, two_masses
 from squealbox import (
+    Contact,
     Coulomb,
     Cubic,
     Hyperbolic,
@@ -259,3 +260,45 @@ def test_reference_by_time_stepping():
         errors.append(np.max(np.abs(stepped.q - exact.q)))
     assert errors[-1] < 1e-3
     assert errors[0] / errors[-1] == pytest.approx(4.0, rel=0.5)
+
+
+def chain(blocks):
+    """Blocks in a row on one belt, joined to the next and to the frame by springs; their loads differ a little."""
+    ends = np.arange(blocks)
+    stiffness = np.diag(np.full(blocks, 1.6)) - 0.4 * (np.eye(blocks, k=1) + np.eye(blocks, k=-1))
+    contacts = tuple(
+        Contact(np.zeros(blocks), row, row, N0=1.0 + 0.1 * (i % 4), V=0.1, law=Coulomb(0.4, 0.25))
+        for i, row in zip(ends, np.eye(blocks), strict=True)
+    )
+    return System(np.eye(blocks), 0.02 * np.eye(blocks), stiffness, 0.0, contacts)
+
+
+def test_a_chain_of_blocks_by_time_stepping():
+    # issue 3: an order-1 method with tiny steps against exact events, for contacts coupled through their blocks
+    system, start = chain(4), ([0.3, -0.1, 0.2, 0.0], [0.1, 0.0, -0.1, 0.05])
+    exact = simulate(system, 8.0, start, times=17, rtol=1e-11)
+    assert exact.outcome == "completed"
+    assert len(exact.event_time) >= 8
+    errors = []
+    for step in (4e-4, 1e-4):
+        stepped = simulate(system, 8.0, start, times=17, contact="time-stepping", step=step)
+        errors.append(np.max(np.abs(stepped.q - exact.q)))
+    assert errors[1] < 1e-3
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.6)
+
+
+def test_time_stepping_costs_in_proportion_to_the_contacts():
+    # issue 3: counted, not timed. Neighbours only share a spring, so the sweeps do not grow with the chain, and the
+    # rows a sweep walks through hold as many numbers for each contact however many contacts there are.
+    from squealbox.transient import moreau, packing
+    from squealbox.transient.methods import Method
+
+    numbers = []
+    for blocks in (25, 50, 100):
+        system = chain(blocks)
+        z = moreau._stepping(system, packing.pack(system, Method(), 0, 1.0, True))
+        numbers.append(sum(getattr(z, f"{name}_value").size for name in ("mk", "mc", "n", "t", "d", "md", "mw")))
+        run = simulate(system, 1.0, contact="time-stepping", step=2e-3)
+        assert run.outcome == "completed"
+    assert numbers[1] / numbers[0] == pytest.approx(2.0, rel=0.05)
+    assert numbers[2] / numbers[1] == pytest.approx(2.0, rel=0.05)

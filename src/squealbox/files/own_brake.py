@@ -27,6 +27,9 @@ class OwnContact(DataSheet):
     normal: Vector = parameter(
         "-", default=None, optional=True, meaning="direction of the normal reaction, when unilateral"
     )
+    rigid: bool = False
+    gap: float = parameter("m", default=0.0, meaning="gap of a rigid contact at q = 0")
+    restitution: float = parameter("-", default=0.0, meaning="rebound speed over landing speed of a rigid contact")
 
 
 class OwnBrake(Design):
@@ -90,12 +93,15 @@ class OwnBrake(Design):
             n=contact.n,
             d=contact.d,
             t=contact.d if contact.t is None else contact.t,
-            N0=_first(contact.normal_force, self.normal_force),
+            N0=0.0 if contact.rigid else _first(contact.normal_force, self.normal_force),
             V=_first(contact.sliding_speed, self.sliding_speed),
             law=contact.friction or self.friction,
             name=contact.name or f"contact {index + 1}",
             unilateral=contact.unilateral,
             normal=contact.normal,
+            rigid=contact.rigid,
+            gap=contact.gap,
+            restitution=contact.restitution,
         )
 
     def _square(self, name: str, size: int | None) -> int:

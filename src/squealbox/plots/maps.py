@@ -107,7 +107,7 @@ def amplitude_map(
     title: str = "",
     axes: Any = None,
 ) -> "Figure":
-    """What transients end in, over two parameters, on a logarithmic scale of six decades; white where there is none.
+    """What transients end in, over two parameters, on a logarithmic scale of four decades below all but a hundredth.
 
     Parameters
     ----------
@@ -120,11 +120,11 @@ def amplitude_map(
     from matplotlib.colors import LogNorm
 
     known = grid[np.isfinite(grid) & (grid > 0.0)]
-    top = float(np.max(known)) if known.size else 1.0
+    top = float(np.quantile(known, 0.99)) if known.size else 1.0
     with drawing(axes, width=4.4, height=3.4) as panel:
         panel.set_facecolor("#bbbbbb")
-        shown = np.ma.masked_invalid(np.where(np.isfinite(grid), np.maximum(grid, 1e-6 * top), grid))
-        mesh = panel.pcolormesh(x, y, shown, norm=LogNorm(1e-6 * top, top), cmap="magma_r", rasterized=True)
-        panel.figure.colorbar(mesh, ax=panel, label=quantity_label("amplitude", "m"), extend="min")
+        shown = np.ma.masked_invalid(np.where(np.isfinite(grid), np.maximum(grid, 1e-4 * top), grid))
+        mesh = panel.pcolormesh(x, y, shown, norm=LogNorm(1e-4 * top, top), cmap="magma_r", rasterized=True)
+        panel.figure.colorbar(mesh, ax=panel, label=quantity_label("amplitude", "m"), extend="both")
         panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
         return figure_of(panel)

@@ -9,6 +9,7 @@ import ast
 import hashlib
 import importlib.util
 import inspect
+import operator
 import os
 import re
 import sys
@@ -22,8 +23,11 @@ from typing import Any
 
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
-from squealbox.transient import _events, _march, _modes, _motion, _runge_kutta, _time_stepping
+from squealbox.transient import _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta, _time_stepping
 
+COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
+    ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Gt: operator.gt, ast.Lt: operator.lt,
+}  # fmt: skip
 ENTRIES = ("march", "time_stepping")
 HEADER = '"""Made by squealbox; safe to delete."""\n\nimport numpy as np\n\n{decorators}'
 COMPILED = """from numba import njit
@@ -75,7 +79,7 @@ def source(
     """The text of the generated file."""
     fixed = {"WITH_EVENTS": events, **dict(counts)}
     parts = head(inline=not events, plain=plain, own=own)
-    for module in (_motion, _runge_kutta, *((_modes, _events) if events else ()), _march):
+    for module in (_motion, _runge_kutta, *((_rigid, _impacts, _modes, _events) if events else ()), _march):
         parts += definitions(module, fixed)
     return "\n\n".join(parts) + "\n"
 
@@ -144,6 +148,21 @@ class _Fixed(ast.NodeTransformer):
         name = ast.unparse(node)
         return ast.Constant(self.fixed[name]) if name in self.fixed else node
 
+    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
+        """Every element of a fixed array, named such as ``p.rigid[]``, becomes its value."""
+        self.generic_visit(node)
+        name = f"{ast.unparse(node.value)}[]"
+        return ast.Constant(self.fixed[name]) if name in self.fixed and isinstance(node.ctx, ast.Load) else node
+
+    def visit_Compare(self, node: ast.Compare) -> ast.expr:
+        """A comparison of two numbers becomes its truth value."""
+        self.generic_visit(node)
+        sides = (node.left, node.comparators[0])
+        known = COMPARISONS.get(type(node.ops[0])) if len(node.ops) == 1 else None
+        if known is None or not all(isinstance(side, ast.Constant) for side in sides):
+            return node
+        return ast.Constant(known(*(side.value for side in sides)))  # type: ignore[attr-defined]
+
     def visit_BoolOp(self, node: ast.BoolOp) -> ast.expr:
         """``True and x`` is x, ``False and x`` is False."""
         self.generic_visit(node)
@@ -153,9 +172,16 @@ class _Fixed(ast.NodeTransformer):
             return (rest[0] if len(rest) == 1 else ast.BoolOp(node.op, rest)) if first.value else first
         return node
 
+    def visit_For(self, node: ast.For) -> ast.stmt:
+        """A loop that has lost its body does nothing."""
+        self.generic_visit(node)
+        node.body = node.body or [ast.Pass()]
+        return node
+
     def visit_If(self, node: ast.If) -> Any:
         """A statement whose test is now constant becomes its branch."""
         self.generic_visit(node)
+        node.body = node.body or [ast.Pass()]
         if isinstance(node.test, ast.Constant):
             return node.body if node.test.value else node.orelse
         return node

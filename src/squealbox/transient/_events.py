@@ -23,6 +23,7 @@ from squealbox.transient._motion import (
 from squealbox.transient._runge_kutta import dense_stages, interpolate, take_step
 
 NO_EVENT = 2.0  # any theta above 1
+SHIFT = 1e-8  # share of a step below which an event is reached along the tangent
 
 
 def event_values(p, t, y, mode, s, phi):
@@ -30,7 +31,7 @@ def event_values(p, t, y, mode, s, phi):
     m = p.contacts
     any_stick = False
     for c in range(m):
-        any_stick = any_stick or mode[c] == STICK
+        any_stick = any_stick or mode[c] == STICK or (p.rigid[c] != 0 and mode[c] != OPEN)
     if any_stick:
         derivative(p, t, y, mode, s, s.dy)
     else:
@@ -43,23 +44,42 @@ def event_values(p, t, y, mode, s, phi):
             phi[c] = -s.normal[c]
         elif mode[c] == STICK:
             phi[c] = p.static[c] * s.normal[c] - abs(s.force[c])
+            if p.rigid[c]:
+                phi[m + c] = s.normal[c]
         else:
-            phi[c] = mode[c] * s.speed[c]
+            phi[c] = mode[c] * s.speed[c] if p.static[c] > 0.0 else 1.0
             if p.unilateral[c]:
                 phi[m + c] = s.normal[c]
 
 
-def surely_none(p, h, mode, s, stage, last, phi0, phi1):
-    """True when every contact slips and its speed's Hermite cubic stays well away from zero over the step."""
-    for c in range(p.contacts):
-        if mode[c] == STICK or mode[c] == OPEN or s.fresh[c] or p.unilateral[c] or p.varying:
-            return False
-        b1 = phi0[c] + mode[c] * slip_acceleration(p, c, stage[0], s) * h / 3.0
-        b2 = phi1[c] - mode[c] * slip_acceleration(p, c, stage[last], s) * h / 3.0
-        margin = 0.2 * (abs(phi1[c] - phi0[c]) + abs(b1 - phi0[c]) + abs(b2 - phi1[c]))
-        if not (phi0[c] > margin and phi1[c] > margin and b1 > margin and b2 > margin):
-            return False
-    return True
+def quiet(p, c, h, mode, s, stage, last):
+    """True when contact c slips and its speed's Hermite cubic stays well away from zero over the step."""
+    if mode[c] == STICK or mode[c] == OPEN or s.fresh[c] or p.unilateral[c] or p.varying:
+        return False
+    before = s.phi0[c]
+    after = s.phi1[c]
+    b1 = before + mode[c] * slip_acceleration(p, c, stage[0], s) * h / 3.0
+    b2 = after - mode[c] * slip_acceleration(p, c, stage[last], s) * h / 3.0
+    margin = 0.2 * (abs(after - before) + abs(b1 - before) + abs(b2 - after))
+    return before > margin and after > margin and b1 > margin and b2 > margin
+
+
+def is_linear(p, j, mode):
+    """Whether event function j is a linear function of the state alone, and so a polynomial on the dense output."""
+    c = j if j < p.contacts else j - p.contacts
+    if p.varying:
+        return False
+    if j < p.contacts:
+        return mode[c] != STICK
+    return not p.rigid[c]
+
+
+def is_watched(p, j, mode, s):
+    """Whether event function j can have a root in this step at all."""
+    c = j if j < p.contacts else j - p.contacts
+    if j >= p.contacts:
+        return s.noisy[c] != 0 and p.unilateral[c] != 0 and mode[c] != OPEN
+    return s.noisy[c] != 0 and (mode[c] == OPEN or p.static[c] > 0.0)
 
 
 def first_event(p, r, t, h, y, y_new, mode, s, stage):
@@ -72,29 +92,69 @@ def first_event(p, r, t, h, y, y_new, mode, s, stage):
     for c in range(m):
         if not s.fresh[c] and not s.phi0[c] > 0.0:
             return 0.0, c
-    if surely_none(p, h, mode, s, stage, r.stages, s.phi0, s.phi1):
+    noisy = False
+    interpolated = False
+    for c in range(m):
+        s.noisy[c] = not quiet(p, c, h, mode, s, stage, r.stages)
+        noisy = noisy or s.noisy[c] != 0
+    if not noisy:
         return NO_EVENT, -1
     s.count[EVALUATIONS] += dense_stages(p, r, t, h, y, mode, s, stage)
-    for i in range(1, 4):
-        interpolate(r, 0.25 * i, h, y, stage, s.y_dense)
-        event_values(p, t + 0.25 * i * h, s.y_dense, mode, s, s.phi)
-        for j in range(2 * m):
-            s.nodes[i, j] = s.phi[j]
     for j in range(2 * m):
-        s.nodes[0, j] = s.phi0[j]
-        s.nodes[4, j] = s.phi1[j]
+        interpolated = interpolated or (is_watched(p, j, mode, s) and not is_linear(p, j, mode))
+    if interpolated:
+        for i in range(1, 4):
+            interpolate(r, 0.25 * i, h, y, stage, s.y_dense)
+            event_values(p, t + 0.25 * i * h, s.y_dense, mode, s, s.phi)
+            for j in range(2 * m):
+                s.nodes[i, j] = s.phi[j]
     theta = NO_EVENT
     which = -1
     for j in range(2 * m):
-        found = first_root(p, r, t, h, y, mode, s, stage, j)
-        if found < theta:
-            theta = found
-            which = j
+        if is_watched(p, j, mode, s):
+            s.nodes[0, j] = s.phi0[j]
+            s.nodes[4, j] = s.phi1[j]
+            found = first_root(p, r, t, h, y, mode, s, stage, j)
+            if found < theta:
+                theta = found
+                which = j
     return theta, which
 
 
+def event_polynomial(p, r, h, mode, s, stage, j):
+    """Coefficients in theta of the linear event function j on the dense output, into s.poly."""
+    n = p.mk.shape[0]
+    c = j if j < p.contacts else j - p.contacts
+    for k in range(r.degree + 1):
+        s.poly[k] = 0.0
+    s.poly[0] = 0.0 if j < p.contacts and s.fresh[c] else s.phi0[j]
+    for i in range(r.dense_stages):
+        rate = 0.0
+        if j >= p.contacts:
+            for k in range(n):
+                rate += p.n[c, k] * stage[i, k]
+        elif mode[c] == OPEN:
+            for k in range(n):
+                rate -= p.n[c, k] * stage[i, k]
+        else:
+            for k in range(n):
+                rate -= mode[c] * p.t[c, k] * stage[i, n + k]
+        for k in range(r.degree):
+            s.poly[k + 1] += h * rate * r.p[i, k]
+
+
+def polynomial(r, s, theta, power):
+    """s.poly over theta^power, the coefficients below `power` being zero."""
+    total = 0.0
+    for k in range(r.degree, power - 1, -1):
+        total = total * theta + s.poly[k]
+    return total
+
+
 def value_inside(p, r, t, h, y, mode, s, stage, theta, j, power):
-    """Event function j on the dense output, over theta^power."""
+    """Event function j on the dense output, over theta^power; a linear one has its coefficients in s.poly."""
+    if is_linear(p, j, mode):
+        return polynomial(r, s, theta, power)
     interpolate(r, theta, h, y, stage, s.y_dense)
     event_values(p, t + theta * h, s.y_dense, mode, s, s.phi)
     return s.phi[j] / theta**power
@@ -104,19 +164,50 @@ def start_power(p, h, mode, s, stage, c):
     """(power, first value) of a contact that has just begun to slip, whose speed is zero at the start of the step.
 
     Its speed over theta tends to its acceleration times h there. After a release without a drop of friction that is
-    zero too, and the speed over theta squared is searched instead.
+    zero too, and the speed over theta squared is searched instead. The gap of a rigid contact that has just opened is
+    treated likewise with its rate.
     """
-    rate = mode[c] * h * slip_acceleration(p, c, stage[0], s)
+    if mode[c] == OPEN:
+        rate = h * gap_rate_of_stage(p, c, stage[0])
+    else:
+        rate = mode[c] * h * slip_acceleration(p, c, stage[0], s)
     size = 0.0
     for i in range(1, 5):
         size = max(size, abs(s.nodes[i, c]))
     return (1, rate) if abs(rate) > 1e-8 * size else (2, 0.0)
 
 
+def gap_rate_of_stage(p, c, dy):
+    """g' = -w . q' from the derivative of the state."""
+    rate = 0.0
+    for i in range(p.mk.shape[0]):
+        rate -= p.w[c, i] * dy[i]
+    return rate
+
+
+def lowest_power(r, s):
+    """The first coefficient of s.poly that is not round-off, up to the third: a lift-off begins with theta^3."""
+    size = 0.0
+    for k in range(r.degree + 1):
+        size = max(size, abs(s.poly[k]))
+    for k in range(1, 3):
+        if abs(s.poly[k]) > 1e-8 * size:
+            return k
+    return 3
+
+
 def first_root(p, r, t, h, y, mode, s, stage, j):
     """First theta at which event function j turns negative, by Bernstein exclusion and halving; NO_EVENT when none."""
     power = 0
-    if j < p.contacts and s.fresh[j]:
+    fresh = j < p.contacts and s.fresh[j] != 0
+    if is_linear(p, j, mode):
+        event_polynomial(p, r, h, mode, s, stage, j)
+        power = lowest_power(r, s) if fresh else 0
+        for i in range(5):
+            s.nodes[i, j] = polynomial(r, s, 0.25 * i, power)
+        if fresh and not s.nodes[0, j] > 0.0:
+            return 0.0
+    elif fresh:
         power, s.nodes[0, j] = start_power(p, h, mode, s, stage, j)
         if power == 2:
             s.nodes[0, j] = value_inside(p, r, t, h, y, mode, s, stage, 1e-3, j, 2)
@@ -217,18 +308,20 @@ def step_onto(p, r, t, h, theta, j, y, y_new, mode, s, stage):
     """Step from y exactly to the event near theta h: Newton on the length of a real step. Returns that length.
 
     The dense output proposes the instant and the slope; what is accepted is a step of the method itself, so the event
-    inherits the method's order.
+    inherits the method's order. What is left once the correction is below SHIFT of the step is a move along y', whose
+    error is of the order of the square of that.
     """
-    before = max(theta - 1e-4, 0.5 * theta)
-    f1 = value_inside(p, r, t, h, y, mode, s, stage, theta, j, 0)
-    f0 = value_inside(p, r, t, h, y, mode, s, stage, before, j, 0)
-    slope = (f1 - f0) / ((theta - before) * h)
+    theta, slope = proposal(p, r, t, h, theta, j, y, mode, s, stage)
     x = theta * h
     f = value_after(p, r, t, x, y, y_new, mode, s, stage, j)
     for _ in range(8):
         if f == 0.0 or slope == 0.0:
             break
         new = x - f / slope
+        if abs(new - x) <= SHIFT * h and new > 0.0:
+            for k in range(y_new.shape[0]):
+                y_new[k] += (new - x) * stage[r.stages, k]
+            return new
         if not (0.0 < new <= 1.01 * h) or abs(new - theta * h) > 0.05 * h or abs(new - x) <= 2e-16 * (abs(t) + x):
             break
         f_new = value_after(p, r, t, new, y, y_new, mode, s, stage, j)
@@ -238,6 +331,28 @@ def step_onto(p, r, t, h, theta, j, y, y_new, mode, s, stage):
         x = new
         f = f_new
     return x
+
+
+def proposal(p, r, t, h, theta, j, y, mode, s, stage):
+    """(theta, slope): the root near theta on the dense output and the rate of the event function there."""
+    if is_linear(p, j, mode):
+        event_polynomial(p, r, h, mode, s, stage, j)
+        slope = 0.0
+        for _ in range(3):
+            slope = 0.0
+            for k in range(r.degree, 0, -1):
+                slope = slope * theta + k * s.poly[k]
+            if slope == 0.0:
+                return theta, 0.0
+            better = theta - polynomial(r, s, theta, 0) / slope
+            if not (0.0 < better <= 1.0) or abs(better - theta) > 1e-4:
+                break
+            theta = better
+        return theta, slope / h
+    before = max(theta - 1e-4, 0.5 * theta)
+    f1 = value_inside(p, r, t, h, y, mode, s, stage, theta, j, 0)
+    f0 = value_inside(p, r, t, h, y, mode, s, stage, before, j, 0)
+    return theta, (f1 - f0) / ((theta - before) * h)
 
 
 def keep_better(p, r, t, x, f, new, f_new, y, y_new, mode, s, stage, j):

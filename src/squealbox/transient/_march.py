@@ -9,6 +9,7 @@ The whole state of a march lies in the scratch arrays, so it can stop after a bu
 import numpy as np
 
 from squealbox.transient._events import event_values, first_event, step_onto
+from squealbox.transient._impacts import project, start_impact
 from squealbox.transient._modes import apply_event, remove_drift, start_modes
 from squealbox.transient._motion import (
     ACCEPTED,
@@ -27,6 +28,7 @@ from squealbox.transient._motion import (
     REVERSALS,
     ROWS,
     STEP,
+    STICK,
     TIME,
     WINDOW,
     contact_kinematics,
@@ -36,10 +38,12 @@ from squealbox.transient._motion import (
     list_sticking,
     sliding_velocity,
 )
+from squealbox.transient._rigid import paradox
 from squealbox.transient._runge_kutta import dense_stages, error_norm, first_step, interpolate, take_step
 
 # how a call of `march` ended
 COMPLETED, RUNNING, UNDERFLOW, NOT_FINITE, CHATTERING, ZENO, INCONSISTENT, STEP_LIMIT = 0, 1, 2, 3, 4, 5, 6, 7
+TENSION, PAINLEVE = 8, 9
 
 
 def begin(p, r, s, times, rows, limit):
@@ -47,8 +51,12 @@ def begin(p, r, s, times, rows, limit):
     t0 = s.clock[TIME]
     next_piece(p, s, t0)
     evaluate_signals(p, t0, s)
-    if WITH_EVENTS and not start_modes(p, t0, s.state, s.mode, s):
-        return INCONSISTENT
+    if WITH_EVENTS:
+        ok = start_impact(p, s.state, s.mode, s) if p.rigid_count > 0 else True
+        if not (ok and start_modes(p, t0, s.state, s.mode, s)):
+            return not_consistent(p, s)
+        if p.rigid_count > 0 and paradox(p, s.mode, s):
+            return PAINLEVE
     derivative(p, t0, s.state, s.mode, s, s.stage[0])
     if WITH_EVENTS:
         event_values(p, t0, s.state, s.mode, s, s.phi0)
@@ -78,7 +86,7 @@ def march(p, r, s, times, rows, events, t_end, largest, least, step_limit, budge
         if output_full(p, s, rows, events):
             return RUNNING
         if s.count[ACCEPTED] + s.count[REJECTED] >= step_limit:
-            return CHATTERING if s.count[FLIPS] > 50 else STEP_LIMIT
+            return CHATTERING if chatters(p, s) else STEP_LIMIT
         end = min(t_end, s.clock[PIECE])
         h = min(s.clock[STEP], largest)
         last = t + h >= end - 1e-12 * h
@@ -87,7 +95,7 @@ def march(p, r, s, times, rows, events, t_end, largest, least, step_limit, budge
         s.count[EVALUATIONS] += evaluations
         error = error_norm(p, r, h, s.state, s.state_new, s.stage) if solved else np.inf
         if not error <= 1.0:
-            code = reject(r, s, h, error, least)
+            code = reject(p, r, s, h, error, least)
             if code != RUNNING:
                 return code
             continue
@@ -103,7 +111,7 @@ def output_full(p, s, rows, events):
     return full or s.count[EVENTS] + p.contacts > events.shape[0]
 
 
-def reject(r, s, h, error, least):
+def reject(p, r, s, h, error, least):
     """Shrink the step; a step below the least one ends the march with the reason."""
     s.count[REJECTED] += 1
     s.count[CAUTIOUS] = 1
@@ -114,7 +122,12 @@ def reject(r, s, h, error, least):
         return RUNNING
     if not finite:
         return NOT_FINITE
-    return CHATTERING if s.count[FLIPS] > 50 else UNDERFLOW
+    return CHATTERING if chatters(p, s) else UNDERFLOW
+
+
+def chatters(p, s):
+    """Whether sliding reverses at most steps of late, or has often reversed and the steps have become tiny."""
+    return s.count[FLIPS] > 50 or (s.count[REVERSALS] > 50 and s.clock[STEP] < p.window)
 
 
 def accept(p, r, s, times, rows, events, t, h, t_new, error, last):
@@ -144,6 +157,10 @@ def accept(p, r, s, times, rows, events, t, h, t_new, error, last):
         else:
             for j in range(2 * p.contacts):
                 s.phi0[j] = s.phi1[j]
+        if p.rigid_count > 0:
+            derivative(p, t_new, s.state, s.mode, s, s.dy)
+            if paradox(p, s.mode, s):
+                return PAINLEVE
     return RUNNING
 
 
@@ -186,9 +203,9 @@ def write_row(p, s, rows, t, y):
     for k in range(p.size):
         row[1 + k] = y[k]
         row[1 + p.size + k] = y[room + k]
-    for k in range(p.contacts + 4):
+    for k in range(p.contacts + 5):
         row[1 + 2 * p.size + k] = y[2 * room + k]
-    first = 5 + 2 * p.size + p.contacts
+    first = 6 + 2 * p.size + p.contacts
     for c in range(p.contacts):
         row[first + c] = s.normal[c]
         row[first + p.contacts + c] = s.speed[c]
@@ -216,13 +233,48 @@ def change_modes(p, s, events, t, which):
             events[s.count[EVENTS], 2] = s.mode[c]
             s.count[EVENTS] += 1
     if not ok:
-        return INCONSISTENT
+        return not_consistent(p, s)
     restart(p, s, t)
-    s.count[IN_WINDOW] += 1
+    rebounds = False
+    if p.rigid_count > 0:
+        if paradox(p, s.mode, s):
+            return PAINLEVE
+        for c in range(p.contacts):
+            rebounds = rebounds or s.leaving[c] != 0
+    if not rebounds:  # rebounds are bounded by the speed below which a contact stays closed
+        s.count[IN_WINDOW] += 1
     if t - s.clock[WINDOW] > p.window:
         s.clock[WINDOW] = t
         s.count[IN_WINDOW] = 0
-    return ZENO if s.count[IN_WINDOW] > 40 * (p.contacts + 1) else RUNNING
+    if s.count[IN_WINDOW] <= 40 * (p.contacts + 1):
+        return RUNNING
+    return TENSION if pulled(p, s) else ZENO
+
+
+def pulled(p, s):
+    """Whether a contact that cannot open is in tension, or its normal force is just about to turn."""
+    largest = 0.0
+    for c in range(p.contacts):
+        largest = max(largest, abs(s.normal[c]))
+    for c in range(p.contacts):
+        limit = 1e-3 * largest if s.at_zero[c] else 0.0
+        if not p.unilateral[c] and s.normal[c] < limit:
+            return True
+    return False
+
+
+def not_consistent(p, s):
+    """Why no set of modes was found: a sliding rigid contact that presses itself together, or another reason."""
+    if p.rigid_count > 0:
+        for c in range(p.contacts):
+            if p.rigid[c] and s.mode[c] != STICK:
+                sense = s.hit[c]
+                s.hit[c] = 1 if s.speed[c] >= 0.0 else -1
+                found = paradox(p, s.hit, s)
+                s.hit[c] = sense
+                if found:
+                    return PAINLEVE
+    return INCONSISTENT
 
 
 def restart(p, s, t):
@@ -247,8 +299,11 @@ def keep_sticking(p, s, t):
     evaluate_signals(p, t, s)
     contact_kinematics(p, s.state, s)
     sticking = list_sticking(p, s.mode, s)
-    if sticking > 0:
-        remove_drift(p, s.state, s, sticking)
+    if sticking > 0 or p.rigid_count > 0:
+        if p.rigid_count > 0:
+            project(p, s.state, s.mode, s)
+        else:
+            remove_drift(p, s.state, s, sticking)
         derivative(p, t, s.state, s.mode, s, s.stage[0])
         s.count[EVALUATIONS] += 1
 

@@ -6,6 +6,7 @@ together: each sticks with |force| <= static N, or slips with the acceleration o
 
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
+from squealbox.transient._impacts import gap_rate, impact, project, touches
 from squealbox.transient._motion import (
     OPEN,
     STICK,
@@ -15,12 +16,17 @@ from squealbox.transient._motion import (
     evaluate_signals,
     list_sticking,
     slip_acceleration,
-    solve,
 )
+from squealbox.transient._rigid import solve
 
 
 def slip_tolerance(p, c, y, s):
-    """Speed below which a contact counts as being at zero together with another: round-off of its own terms."""
+    """Speed below which a contact counts as being at zero together with another: round-off of its own terms.
+
+    None, -1, for a contact without static friction: it never sticks, and nothing happens when it reverses.
+    """
+    if p.static[c] == 0.0:
+        return -1.0
     total = abs(s.signal[c])
     for i in range(p.mk.shape[0]):
         total += abs(p.t[c, i] * y[p.mk.shape[0] + i])
@@ -34,11 +40,17 @@ def apply_event(p, t, y, mode, s, j):
     for c in range(m):
         s.old[c] = mode[c]
         s.forced[c] = 0
+        s.leaving[c] = 0
+        s.touch[c] = p.rigid[c] != 0 and mode[c] != OPEN
         s.at_zero[c] = mode[c] == STICK or (mode[c] != OPEN and abs(s.speed[c]) <= slip_tolerance(p, c, y, s))
     c = j if j < m else j - m
-    if j >= m:
+    if p.rigid[c] and j < m and mode[c] == OPEN:
+        return land(p, t, y, mode, s, c)
+    if j >= m or (p.rigid[c] and mode[c] == STICK and s.normal[c] <= 1e-6 * s.phi0[m + c]):
         mode[c] = OPEN
         s.at_zero[c] = 0
+        if p.rigid[c]:
+            s.forced[c] = OPEN
     elif mode[c] == OPEN:
         s.at_zero[c] = abs(s.speed[c]) <= slip_tolerance(p, c, y, s)
         mode[c] = 1 if s.speed[c] >= 0.0 else -1
@@ -47,6 +59,27 @@ def apply_event(p, t, y, mode, s, j):
     else:
         s.at_zero[c] = 1
     return settle(p, t, y, mode, s)
+
+
+def land(p, t, y, mode, s, which):
+    """Rigid contact `which` has landed: an impact of all that touch, then new modes for every contact."""
+    for c in range(p.contacts):
+        if p.rigid[c] and mode[c] == OPEN:
+            rate, tolerance = gap_rate(p, c, y)
+            if c == which or (rate < -tolerance and touches(p, c, y, s)):
+                mode[c] = 1
+    if not impact(p, y, mode, s):
+        return False
+    for c in range(p.contacts):
+        slow = abs(s.speed[c]) <= slip_tolerance(p, c, y, s)
+        s.at_zero[c] = slow and mode[c] != OPEN
+        s.touch[c] = p.rigid[c] != 0 and mode[c] != OPEN
+        if mode[c] != OPEN and not slow:
+            mode[c] = 1 if s.speed[c] >= 0.0 else -1
+    if not settle(p, t, y, mode, s):
+        return False
+    s.old[which] = -2  # a landing is an event, also when the contact rebounds
+    return True
 
 
 def force_releases(p, mode, s, which):
@@ -65,8 +98,15 @@ def start_modes(p, t, y, mode, s):
     for c in range(p.contacts):
         s.forced[c] = 0
         s.at_zero[c] = 0
+        s.leaving[c] = 0
+        s.touch[c] = 0
         mode[c] = 1 if s.speed[c] >= 0.0 else -1
-        if p.unilateral[c] and s.normal[c] < 0.0:
+        if p.rigid[c]:
+            rate, tolerance = gap_rate(p, c, y)
+            s.touch[c] = touches(p, c, y, s) and rate <= tolerance
+            s.at_zero[c] = s.touch[c] and abs(s.speed[c]) <= slip_tolerance(p, c, y, s)
+            mode[c] = mode[c] if s.touch[c] else OPEN
+        elif p.unilateral[c] and s.normal[c] < 0.0:
             mode[c] = OPEN
         elif abs(s.speed[c]) <= slip_tolerance(p, c, y, s):
             s.at_zero[c] = 1
@@ -80,7 +120,11 @@ def settle(p, t, y, mode, s):
         return False
     contact_kinematics(p, y, s)
     for c in range(p.contacts):
-        s.fresh[c] = s.at_zero[c] != 0 and mode[c] != STICK
+        s.fresh[c] = s.at_zero[c] != 0 and mode[c] != STICK and mode[c] != OPEN
+        if p.rigid[c] and mode[c] == OPEN:
+            s.fresh[c] = touches(p, c, y, s)
+    if p.rigid_count > 0:
+        return project(p, y, mode, s)
     return remove_drift(p, y, s, list_sticking(p, mode, s))
 
 
@@ -110,11 +154,11 @@ def decide(p, t, y, mode, s):
     static exceeds kinetic friction it may cycle, and then all combinations are tried, sticking first.
     """
     for c in range(p.contacts):
-        if s.at_zero[c]:
+        if s.at_zero[c] or s.touch[c]:
             mode[c] = first_guess(p, c, mode, s)
     for _ in range(20 + 10 * p.contacts * p.contacts):
         if not derivative(p, t, y, mode, s, s.dy):
-            return False
+            return p.rigid_count > 0 and enumerate_modes(p, t, y, mode, s)
         changed = False
         for c in range(p.contacts):
             wanted = wanted_mode(p, c, mode, s)
@@ -131,14 +175,31 @@ def first_guess(p, c, mode, s):
     """Sticking, unless a release is forced or the contact is in tension and so can only pass through zero speed."""
     if s.forced[c] != 0:
         return s.forced[c]
+    if p.rigid[c]:
+        return closed_mode(s, c)
     if s.normal[c] > 0.0:
         return STICK
     return -mode[c] if mode[c] != STICK else (1 if s.force[c] > 0.0 else -1)
 
 
+def closed_mode(s, c):
+    """The first guess for a closed rigid contact: stick where it may, else slip in the sense of its speed."""
+    if s.at_zero[c]:
+        return STICK
+    return 1 if s.speed[c] >= 0.0 else -1
+
+
 def wanted_mode(p, c, mode, s):
     """The mode contact c would rather have, given the forces and accelerations just computed."""
-    if not s.at_zero[c] or s.forced[c] != 0:
+    if s.forced[c] != 0:
+        return mode[c]
+    if s.touch[c]:
+        if mode[c] != OPEN and s.normal[c] < -1e-12 * s.size[c]:
+            return OPEN
+        if mode[c] == OPEN:
+            rate, tolerance = gap_rate(p, c, s.dy)
+            return closed_mode(s, c) if rate < -tolerance else OPEN
+    if not s.at_zero[c]:
         return mode[c]
     if mode[c] == STICK:
         if abs(s.force[c]) <= p.static[c] * s.normal[c] * (1.0 + 1e-12):
@@ -154,20 +215,29 @@ def wanted_mode(p, c, mode, s):
 
 
 def enumerate_modes(p, t, y, mode, s):
-    """Try all 3^k combinations of the k contacts at zero speed, k <= 8; False when none is consistent."""
+    """Try all 4^k combinations of the k contacts left open, k <= 8; False when none is consistent.
+
+    Left open are the contacts at zero speed and the touching rigid ones, but not those whose release is forced.
+    """
     k = 0
     for c in range(p.contacts):
-        if s.at_zero[c]:
+        if (s.at_zero[c] or s.touch[c]) and s.forced[c] == 0:
             s.chosen[k] = c
             k += 1
     if k > 8:
         return False
-    for code in range(3**k):
+    for code in range(4**k):
         rest = code
+        allowed = True
         for a in range(k):
-            mode[s.chosen[a]] = (STICK, 1, -1)[rest % 3]
-            rest //= 3
-        if derivative(p, t, y, mode, s, s.dy):
+            c = s.chosen[a]
+            mode[c] = (STICK, 1, -1, OPEN)[rest % 4]
+            rest //= 4
+            if mode[c] == OPEN:
+                allowed = allowed and s.touch[c] != 0
+            else:
+                allowed = allowed and (s.at_zero[c] != 0 or mode[c] == closed_mode(s, c))
+        if allowed and derivative(p, t, y, mode, s, s.dy):
             consistent = True
             for c in range(p.contacts):
                 consistent = consistent and wanted_mode(p, c, mode, s) == mode[c]

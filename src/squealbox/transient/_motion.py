@@ -5,8 +5,9 @@ the rows beyond p.size are zero. Loops over contacts run to the count.
 
 Every function here takes the records of `packing`: the problem (p) and the scratch (s). The state y holds q, q' and
 then the running energy integrals: work of each contact's friction, of the load, of the skew stiffness, energy taken
-out by damping, and work of taking out an open contact's reaction. `mode[c]` is +1 or -1 while contact c slips in that
-sense, 0 while it sticks and 2 while it is open; only the exact scheme uses it.
+out by damping, work of taking out an open contact's reaction, and work of the normal impulses of rigid contacts.
+`mode[c]` is +1 or -1 while contact c slips in that sense, 0 while it sticks and 2 while it is open; only the exact
+scheme uses it. A rigid contact has -gap in the place of N while it is open; closed, its N is solved for in `_rigid`.
 """
 
 # ruff: noqa: F821  (law_mu, law_slope, schedule_value, schedule_rate and WITH_EVENTS are written by _engine)
@@ -14,11 +15,13 @@ sense, 0 while it sticks and 2 while it is open; only the exact scheme uses it.
 
 import numpy as np
 
+from squealbox.transient._rigid import constrain, solve
+
 RAW, EXACT, TANH, ARCTAN = 0, 1, 2, 3  # WITH_EVENTS is true in the file compiled for EXACT
 STICK, OPEN = 0, 2
 # s.clock: time, proposed step, logarithm of the previous error, end of the smooth piece, start of the window in which
-# events are counted, last instant inside the piece
-TIME, STEP, LOG_ERROR, PIECE, WINDOW, INSIDE = 0, 1, 2, 3, 4, 5
+# events are counted, last instant inside the piece, fastest landing on a rigid contact so far
+TIME, STEP, LOG_ERROR, PIECE, WINDOW, INSIDE, FASTEST = 0, 1, 2, 3, 4, 5, 6
 # s.count: accepted, rejected, evaluations, events, rows written, next requested time, next break, events in the window,
 # steps over a reversal of sliding among the last ones, 1 after a rejected step, steps over a reversal in all
 ACCEPTED, REJECTED, EVALUATIONS, EVENTS, ROWS, NEXT, BREAK, IN_WINDOW, FLIPS, CAUTIOUS = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
@@ -129,6 +132,9 @@ def derivative(p, t, y, mode, s, dy):
         force = 0.0
         if is_open(p, c, mode, normal):
             opened = True
+        elif WITH_EVENTS and p.rigid[c]:
+            normal = 0.0
+            s.mu[c] = sliding_coefficient(p, c, mode[c] * speed)
         elif WITH_EVENTS and mode[c] == STICK:
             s.stuck[sticking] = c
             sticking += 1
@@ -147,7 +153,9 @@ def derivative(p, t, y, mode, s, dy):
         dy[n + i] = a
     opening = release_open(p, y, mode, s, dy) if opened else 0.0
     solved = True
-    if WITH_EVENTS and sticking > 0:
+    if WITH_EVENTS and p.rigid_count > 0:
+        solved = constrain(p, mode, s, dy, False)
+    elif WITH_EVENTS and sticking > 0:
         solved = hold(p, s, sticking, dy)
     energy_rates(p, y, s, opening, dy)
     return solved
@@ -158,7 +166,7 @@ def release_open(p, y, mode, s, dy):
     n = p.mk.shape[0]
     power = 0.0
     for c in range(p.contacts):
-        if is_open(p, c, mode, s.normal[c]):
+        if is_open(p, c, mode, s.normal[c]) and not p.rigid[c]:
             for i in range(n):
                 dy[n + i] += p.mw[c, i] * s.normal[c]
                 power += p.w[c, i] * y[n + i] * s.normal[c]
@@ -218,34 +226,6 @@ def contact_matrix(p, s, sticking, share):
             s.matrix[a, a] += share * p.g[c, c] * (largest / limit if limit > 0.0 else 1.0)
 
 
-def solve(matrix, right, size):
-    """Gaussian elimination with partial pivoting, in place; False when a pivot is lost."""
-    scale = 0.0
-    for i in range(size):
-        for j in range(size):
-            scale = max(scale, abs(matrix[i, j]))
-    for k in range(size):
-        best = k
-        for i in range(k + 1, size):
-            if abs(matrix[i, k]) > abs(matrix[best, k]):
-                best = i
-        if not abs(matrix[best, k]) > 1e-13 * scale:
-            return False
-        for j in range(k, size):
-            matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
-        right[k], right[best] = right[best], right[k]
-        for i in range(k + 1, size):
-            factor = matrix[i, k] / matrix[k, k]
-            for j in range(k, size):
-                matrix[i, j] -= factor * matrix[k, j]
-            right[i] -= factor * right[k]
-    for k in range(size - 1, -1, -1):
-        for j in range(k + 1, size):
-            right[k] -= matrix[k, j] * right[j]
-        right[k] /= matrix[k, k]
-    return True
-
-
 def energy_rates(p, y, s, opening, dy):
     """Powers of friction, load, skew stiffness, damping and opening, as derivatives of the energy integrals."""
     n = p.mk.shape[0]
@@ -274,3 +254,4 @@ def energy_rates(p, y, s, opening, dy):
     dy[2 * n + m + 1] = skew
     dy[2 * n + m + 2] = damping
     dy[2 * n + m + 3] = opening
+    dy[2 * n + m + 4] = 0.0

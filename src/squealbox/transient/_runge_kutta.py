@@ -13,17 +13,18 @@ def take_step(p, r, t, h, y, mode, s, stage, y_new):
     Returns (evaluations, solved).
     """
     solved = True
+    states = 2 * p.mk.shape[0]  # the energy integrals do not act back on the motion
     for i in range(1, r.stages):
-        combine(r.a[i], i, h, y, stage, s.y)
+        combine(r.a[i], i, h, y, stage, s.y, states)
         solved = derivative(p, t + r.c[i] * h, s.y, mode, s, stage[i]) and solved
-    combine(r.b, r.stages, h, y, stage, y_new)
+    combine(r.b, r.stages, h, y, stage, y_new, y_new.shape[0])
     solved = derivative(p, t + h, y_new, mode, s, stage[r.stages]) and solved
     return r.stages, solved
 
 
-def combine(weights, count, h, y, stage, out):
-    """out = y + h sum_j weights[j] stage[j]."""
-    for k in range(out.shape[0]):
+def combine(weights, count, h, y, stage, out, width):
+    """out = y + h sum_j weights[j] stage[j], the first `width` entries."""
+    for k in range(width):
         total = 0.0
         for j in range(count):
             total += weights[j] * stage[j, k]
@@ -60,7 +61,7 @@ def scaled_error(p, weights, count, y, y_new, stage):
 def dense_stages(p, r, t, h, y, mode, s, stage):
     """The extra stages a high-order dense output needs; returns the number of evaluations."""
     for i in range(r.stages + 1, r.dense_stages):
-        combine(r.a[i], i, h, y, stage, s.y)
+        combine(r.a[i], i, h, y, stage, s.y, 2 * p.mk.shape[0])
         derivative(p, t + r.c[i] * h, s.y, mode, s, stage[i])
     return r.dense_stages - r.stages - 1
 

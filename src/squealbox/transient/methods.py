@@ -46,13 +46,14 @@ class Method:
     tableau : name, one of `TABLEAUX`
     rtol : relative tolerance of each displacement and velocity in a step [-]
     atol : absolute tolerance of a velocity [m/s]; that of a displacement is atol / (highest angular frequency). None
-        takes 1e-3 rtol times the fastest sliding speed. An array of 2n values [m, m/s] is taken as it is.
+        takes 1e-3 rtol times the fastest sliding speed, or times 1 m/s where nothing slides (below 1e-12 m/s). An
+        array of 2n values [m, m/s] is taken as it is.
     first_step, largest_step [s] : None leaves them to the program
     most_steps : tried steps after which a run ends as "step_limit"
     """
 
     tableau: str = "dormand-prince-8"
-    rtol: float = 1e-9
+    rtol: float = 3e-10
     atol: Any = None
     first_step: float | None = None
     largest_step: float | None = None

@@ -157,7 +157,8 @@ def _trajectory(
         inputs={"system": system}, settings=settings, outcome=outcome, t=instants, q=columns[0], qd=columns[1],
         normal_force=columns[2], sliding_velocity=columns[3], friction_force=columns[4], mode=mode,
         work_friction=columns[5], work_load=columns[6], work_circulation=columns[7], work_dissipated=columns[8],
-        work_opening=columns[9], event_time=events[0], event_contact=events[1], event_mode=events[2],
+        work_opening=columns[9], work_impact=np.zeros(len(instants)),
+        event_time=events[0], event_contact=events[1], event_mode=events[2],
         steps=steps, rejected=0, evaluations=steps,
     )  # fmt: skip
 

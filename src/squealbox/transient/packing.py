@@ -16,6 +16,7 @@ from squealbox.transient.own_laws import law_kinds
 
 UNIT = Constant(1.0)
 STAGES, DEGREE = 16, 7  # room in the record of a tableau
+STANDING = 1e-12  # [m/s] a belt slower than that gives no scale for a tolerance
 
 
 def pack(system: System, method: Method, scheme: int, width: float, every_step: bool) -> Any:
@@ -33,8 +34,9 @@ def _packed(system: System, method: Method, scheme: int, width: float, every_ste
         raise InvalidSystem(f"the system has leading axes {system.shape}: simulate takes one system at a time")
     n, contacts = system.size, system.contacts
     inverse = _inverse(system.M)
-    d, t, normal = (_rows([getattr(c, name) for c in contacts], n) for name in ("d", "t", "n"))
+    d, t = (_rows([getattr(c, name) for c in contacts], n) for name in ("d", "t"))
     w = _rows([np.zeros(n) if c.normal is None else c.normal for c in contacts], n)
+    normal = _rows([c.normal if c.rigid else c.n for c in contacts], n)  # of a rigid one -gap = normal . q - gap0
     laws = [np.array(c.law.coefficients(), dtype=float) for c in contacts]
     stiffness = inverse @ system.K
     highest = highest_frequency(stiffness)
@@ -55,6 +57,9 @@ def _packed(system: System, method: Method, scheme: int, width: float, every_ste
         "g": t @ inverse @ d.T,
         "unilateral": np.array([c.unilateral for c in contacts], dtype=np.int64),
         "static": np.array([c.law.static_limit for c in contacts], dtype=float),
+        "rigid": np.array([c.rigid for c in contacts], dtype=np.int64),
+        "rigid_count": sum(c.rigid for c in contacts),
+        "restitution": np.array([c.restitution for c in contacts], dtype=float),
         "law_kind": law_kinds(contacts),
         "law_coefficients": _padded(laws),
         **_signals(system, inverse),
@@ -88,12 +93,13 @@ def problem_type(n: int, m: int, law: int, terms: int, term: int, breaks: int) -
         "md": ("f8", (m, n)), "mw": ("f8", (m, n)), "d": ("f8", (m, n)), "t": ("f8", (m, n)),
         "n": ("f8", (m, n)), "w": ("f8", (m, n)), "g": ("f8", (m, m)),
         "unilateral": ("i8", (m,)), "static": ("f8", (m,)), "law_kind": ("i8", (m,)),
+        "rigid": ("i8", (m,)), "restitution": ("f8", (m,)),
         "law_coefficients": ("f8", (m, law)), "signal_start": ("i8", (2 * (m + n) + 1,)),
         "term_weight": ("f8", (terms,)), "term_kind": ("i8", (terms,)),
         "term_coefficients": ("f8", (terms, term)), "breaks": ("f8", (breaks,)), "atol": ("f8", (2 * n,)),
     }  # fmt: skip
     return np.dtype(
-        [(name, "i8") for name in integers]
+        [(name, "i8") for name in (*integers, "rigid_count")]
         + [(name, "f8") for name in ("smoothing", "window", "rtol")]
         + [(name, kind, shape) for name, (kind, shape) in arrays.items()]
     )
@@ -123,24 +129,27 @@ def rule(name: str) -> Any:
 def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> Any:
     """The record of working arrays of one march, with the start in place; first_step 0 leaves it to the march."""
     n, m = problem["atol"].shape[0] // 2, problem["static"].shape[0]
-    width = 2 * n + m + 4
+    width = 2 * n + m + 5
     floats: dict[str, tuple[int, ...]] = {
-        "signal": (2 * (m + n) + m,), "normal": (m,), "speed": (m,), "force": (m,), "right": (m,), "matrix": (m, m),
+        "signal": (2 * (m + n) + m,), "normal": (m,), "speed": (m,), "force": (m,), "right": (2 * m,),
+        "matrix": (2 * m, 2 * m),
         "state": (width,), "state_new": (width,), "y": (width,), "y_dense": (width,), "dy": (width,),
         "stage": (STAGES, width), "phi": (2 * m,), "phi0": (2 * m,), "phi1": (2 * m,), "nodes": (5, 2 * m),
-        "stack": (128, 7), "clock": (6,),
+        "stack": (128, 7), "clock": (7,),
+        "mu": (m,), "size": (m,), "rebound": (m,), "approach": (m,), "poly": (DEGREE + 1,),
     }  # fmt: skip
-    integers = dict.fromkeys(("stuck", "mode", "old", "forced", "at_zero", "fresh", "chosen"), m) | {"count": 11}
+    names = ("stuck", "mode", "old", "forced", "at_zero", "fresh", "chosen", "touch", "leaving", "hit", "noisy")
+    integers = dict.fromkeys(names, m) | {"row_contact": 2 * m, "row_kind": 2 * m, "count": 11}
     kinds = tuple((name, "f8", shape) for name, shape in floats.items())
     kinds += tuple((name, "i8", (size,)) for name, size in integers.items())
     state = np.zeros(2 * n)
     state[: len(q)], state[n : n + len(qd)] = q, qd
-    return _record(_dtype(kinds), {"state": state, "clock": np.array([time, first_step, 0.0, 0.0, time, np.inf])})
+    return _record(_dtype(kinds), {"state": state, "clock": np.array([time, first_step, 0.0, 0.0, time, np.inf, 0.0])})
 
 
 def row_width(problem: Any) -> int:
     """Columns of an output row: t, the state with its energy integrals, then N, v, force and mode of each contact."""
-    return int(5 + 2 * problem["size"] + 5 * problem["contacts"])
+    return int(6 + 2 * problem["size"] + 5 * problem["contacts"])
 
 
 def highest_frequency(stiffness: Any) -> float:
@@ -176,7 +185,7 @@ def _usual_tolerance(system: System, method: Method) -> float:
         if isinstance(speed, Schedule):
             speed = speed.value(np.array([0.0, *speed.breaks()]))
         fastest = max(fastest, float(np.max(np.abs(speed))))
-    return 1e-3 * method.rtol * (fastest or 1.0)
+    return 1e-3 * method.rtol * (fastest if fastest > STANDING else 1.0)
 
 
 @cache
@@ -207,7 +216,7 @@ def _signals(system: System, inverse: Any) -> dict[str, Any]:
     """
     n, contacts = system.size, system.contacts
     load = load_terms(system)
-    lists = [_terms(c.V) for c in contacts] + [_terms(c.N0) for c in contacts]
+    lists = [_terms(c.V) for c in contacts] + [_terms(-c.gap if c.rigid else c.N0) for c in contacts]
     spare: list[list[Any]] = [[] for _ in range(_room(n) - n)]  # the march counts loads by the room, not by the size
     lists += [[((inverse @ weight)[i], part) for weight, part in load] for i in range(n)] + spare
     lists += [[(weight[i], part) for weight, part in load] for i in range(n)] + spare

@@ -7,7 +7,7 @@ import numpy as np
 
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
-from squealbox.system import InvalidSystem, System, as_system, equilibrium
+from squealbox.system import InvalidSystem, System, as_system, equilibrium, no_rigid_contact
 from squealbox.transient import _march, _motion, moreau, packing
 from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
 from squealbox.transient.methods import Method
@@ -16,7 +16,7 @@ from squealbox.transient.trajectory import Trajectory
 
 SCHEMES = {"exact": EXACT, "raw": RAW, "tanh": TANH, "smooth": ARCTAN, "arctan": ARCTAN}
 TIME_STEPPING = "time-stepping"
-USUAL_RTOL = {"bogacki-shampine": 1e-6, "dormand-prince": 1e-8, "tsitouras": 1e-8, "dormand-prince-8": 1e-9}
+USUAL_RTOL = {"bogacki-shampine": 1e-6, "dormand-prince": 1e-8, "tsitouras": 1e-8, "dormand-prince-8": 3e-10}
 ROWS = 32_768  # room for steps at first; memory is touched only as rows are written
 BUDGET = 50_000  # steps between two looks at the keyboard, about 20 ms
 
@@ -29,6 +29,16 @@ MESSAGES = {
     ),
     _march.ZENO: ("zeno", "events accumulate at one instant"),
     _march.INCONSISTENT: ("inconsistent_contact", "no set of stick and slip modes satisfies the contacts together"),
+    _march.TENSION: (
+        "contact_in_tension",
+        "events accumulate while a contact that cannot open is pulled (N < 0): its friction then drives its sliding "
+        "instead of opposing it, so beside a sticking contact no mode lasts; a unilateral contact would lift off",
+    ),
+    _march.PAINLEVE: (
+        "painleve",
+        "friction presses a sliding rigid contact together harder than its normal force holds it apart, "
+        "w . M^-1 (w - sense mu d) <= 0: no force, or more than one, satisfies the contact laws",
+    ),
     _march.STEP_LIMIT: ("step_limit", "the largest number of steps was reached"),
 }
 
@@ -68,7 +78,8 @@ def simulate(
     Returns
     -------
     Trajectory, whose outcome is "completed" or names why the run could not go on ("step_underflow", "not_finite",
-    "chattering", "zeno", "inconsistent_contact", "step_limit", "interrupted"); it then holds what was reached.
+    "chattering", "zeno", "contact_in_tension", "painleve", "inconsistent_contact", "step_limit", "interrupted"); it
+    then holds what was reached.
 
     Raises `ParameterError` or `InvalidSystem` for input that does not make sense.
 
@@ -84,7 +95,10 @@ def simulate(
         if not (np.isfinite(value) and value > low):
             raise ParameterError("simulate", name, value, f"a finite number in ({low:g}, inf)")
     requested = _times(times, start_time, duration)
+    if contact != "exact":
+        no_rigid_contact(system, f"contact={contact!r}")
     q, qd = _start(system, start, start_time)
+    _check_gaps(system, q)
     if contact == TIME_STEPPING:
         return moreau.time_stepping(system, duration, q, qd, start_time, requested, step)
     run = _Run(system, chosen, SCHEMES[contact], width, q, qd, start_time, requested)
@@ -168,9 +182,9 @@ class _Run:
         count = [int(x) for x in self.scratch["count"]]
         rows = self.rows[: count[_motion.ROWS]]
         events = self.events[: count[_motion.EVENTS]]
-        widths = [1, n, n, m, 1, 1, 1, 1, m, m, m, m]
+        widths = [1, n, n, m, 1, 1, 1, 1, 1, m, m, m, m]
         columns = np.split(rows, np.cumsum(widths)[:-1], axis=1)
-        t, q, qd, friction, load, circulation, dissipated, opening, normal, speed, force, mode = columns
+        t, q, qd, friction, load, circulation, dissipated, opening, impact, normal, speed, force, mode = columns
         return Trajectory(
             inputs={"system": self.system},
             settings=settings,
@@ -187,6 +201,7 @@ class _Run:
             work_circulation=circulation[:, 0],
             work_dissipated=dissipated[:, 0],
             work_opening=opening[:, 0],
+            work_impact=impact[:, 0],
             event_time=events[:, 0],
             event_contact=events[:, 1].astype(np.int64),
             event_mode=events[:, 2].astype(np.int8),
@@ -248,3 +263,15 @@ def _start(system: System, start: Any, time: float) -> tuple[Any, Any]:
     if not (np.all(np.isfinite(q)) and np.all(np.isfinite(qd))):
         raise ParameterError("simulate", "start", start, "finite displacements and velocities")
     return q, qd
+
+
+def _check_gaps(system: System, q: Any) -> None:
+    """A start inside a rigid contact is no start."""
+    for i, contact in enumerate(system.contacts):
+        if contact.rigid:
+            size = abs(contact.gap) + float(np.sum(np.abs(contact.normal * q)))
+            gap = contact.gap - float(contact.normal @ q)
+            if gap < -1e-12 * size:
+                raise ParameterError(
+                    "simulate", "start", q.tolist(), f"a gap >= 0 at rigid contact {i}, not {gap:.3g} m"
+                )

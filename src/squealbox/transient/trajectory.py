@@ -17,8 +17,9 @@ class EnergyAudit:
 
     stored (k,) change of kinetic plus strain energy; friction (k, contacts) work of each contact's friction on the
     motion; load (k,), circulation (k,) work of f(t) and of the skew part of K; opening (k,) work of taking an open
-    contact's reaction out of K; dissipated (k,) taken out by C;
-    residual (k,) = stored - friction - load - circulation - opening + dissipated.
+    contact's reaction out of K; impact (k,) work of the normal impulses of rigid contacts, negative where a landing
+    loses energy; dissipated (k,) taken out by C;
+    residual (k,) = stored - friction - load - circulation - opening - impact + dissipated.
     """
 
     stored: Any
@@ -27,12 +28,13 @@ class EnergyAudit:
     circulation: Any
     dissipated: Any
     opening: Any
+    impact: Any
     residual: Any
 
     @property
     def relative_residual(self) -> float:
         """Largest |residual| over the largest energy turned over by any term [-]."""
-        terms = [self.stored, self.load, self.circulation, self.dissipated, self.opening]
+        terms = [self.stored, self.load, self.circulation, self.dissipated, self.opening, self.impact]
         terms += list(np.moveaxis(self.friction, -1, 0))
         scale = max(float(np.max(np.abs(term), initial=0.0)) for term in terms)
         worst = float(np.max(np.abs(self.residual), initial=0.0))
@@ -55,6 +57,7 @@ class Trajectory(Result):
     work_circulation: Any = quantity("time", "J", "work of the skew part of K since the start")
     work_dissipated: Any = quantity("time", "J", "energy dissipated by C since the start")
     work_opening: Any = quantity("time", "J", "work of taking out the reaction of open contacts since the start")
+    work_impact: Any = quantity("time", "J", "work of the normal impulses of rigid contacts since the start")
     event_time: Any = quantity("event", "s", "instants of stick, slip, reversal, lift-off and landing")
     event_contact: Any = quantity("event", "1", "contact of each event")
     event_mode: Any = quantity("event", "1", "mode the contact takes at the event")
@@ -74,7 +77,8 @@ class Trajectory(Result):
         """The energy audit from the start to each instant of `t`."""
         stored = mechanical_energy(self.system, self.q, self.qd)
         stored = stored - stored[:1]
-        given = np.sum(self.work_friction, axis=-1) + self.work_load + self.work_circulation + self.work_opening
+        given = np.sum(self.work_friction, axis=-1) + self.work_load + self.work_circulation
+        given = given + self.work_opening + self.work_impact
         return EnergyAudit(
             stored=stored,
             friction=self.work_friction,
@@ -82,5 +86,6 @@ class Trajectory(Result):
             circulation=self.work_circulation,
             dissipated=self.work_dissipated,
             opening=self.work_opening,
+            impact=self.work_impact,
             residual=stored - given + self.work_dissipated,
         )

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from squealbox.transient import _engine, _events, _march, _modes, _motion
+from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid
 from squealbox.transient.lanes import crossing, service
 from squealbox.transient.lanes.formulas import formulas
 from squealbox.transient.lanes.shape import LANES, Shape, layout, parameter_rows
@@ -54,6 +54,7 @@ def source(shape: Shape) -> str:
     """The text of the generated file."""
     rows, step = layout(shape), Step(shape)
     fixed: dict[str, int] = {"WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples}
+    fixed |= {"p.rigid[]": 0, "p.rigid_count": 0}
     parts = [*_engine.head(inline=False, own=shape.own), HEAD, *formulas(shape), step.text()]
     parts += [f"{name} = {rows.places.get(row, 0)}" for name, row in PLACES.items()]
     first = rows.places["o0_0_0"] if shape.observers else 0
@@ -64,7 +65,7 @@ def source(shape: Shape) -> str:
     }  # fmt: skip
     parts += [f"{name} = {value}" for name, value in counts.items()]
     parts += [_gather(shape, rows.places), _observers(shape, rows.places)]
-    for module in (_motion, *((_modes, _events) if shape.exact else ())):
+    for module in (_motion, *((_rigid, _impacts, _modes, _events) if shape.exact else ())):
         parts += _engine.definitions(module, fixed)
     parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith("COMPLETED")]
     for module in (*((crossing,) if shape.exact else ()), service):

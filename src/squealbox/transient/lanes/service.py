@@ -12,7 +12,8 @@ import numpy as np
 from squealbox.transient._events import event_values
 from squealbox.transient._march import COMPLETED, INCONSISTENT, NOT_FINITE, RUNNING, STEP_LIMIT, UNDERFLOW, ZENO
 from squealbox.transient._modes import apply_event, start_modes
-from squealbox.transient._motion import INSIDE, OPEN, contact_matrix, derivative, list_sticking, solve
+from squealbox.transient._motion import INSIDE, OPEN, contact_matrix, derivative, list_sticking
+from squealbox.transient._rigid import solve
 from squealbox.transient.lanes.crossing import locate
 
 WIDTH = 16

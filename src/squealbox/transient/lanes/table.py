@@ -35,6 +35,10 @@ def tabulate(
     begin: float, watches: tuple[Any, ...], coefficients: tuple[float, ...], samples: bool,
 ) -> Jobs:  # fmt: skip
     """The jobs of a batched system; leading axes are those of the system, flattened."""
+    if any(contact.rigid for contact in system.contacts):
+        raise InvalidSystem(
+            "a rigid contact has impacts, which lanes do not know: run such systems one by one, with simulate"
+        )
     batch = system.shape
     count = int(np.prod(batch, dtype=int))
     values, signals, breaks = _equation(system, batch)
