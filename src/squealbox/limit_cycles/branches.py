@@ -26,6 +26,7 @@ from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome, Result, quantity
 
 METHODS = ("harmonic_balance", "shooting")
+METHODS_FROM_HOPF = ("harmonic_balance", "exact")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -119,17 +120,18 @@ def branch(
     make = family(design, parameter)
     middle = 0.5 * (bounds[0] + bounds[1]) if value is None else value
     settings = {"bounds": list(bounds), "method": method, "contact": contact, "width": width, "harmonics": harmonics}
+    if isinstance(start, HopfPoint) and (method, contact) != METHODS_FROM_HOPF:
+        raise ParameterError("branch", "start", "a HopfPoint", "harmonic balance with exact contact from a Hopf point")
     if method == "shooting":
         path, unknowns, p, outcome = _shooting_start(make, start, middle, rtol, span)
     else:
         path, unknowns, p, outcome = _harmonic_start(make, start, middle, CONTACTS[contact], width, harmonics, span)
     if not outcome.ok:
         return _collect([], [], [], outcome, parameter, settings, make(middle))
-    if isinstance(start, HopfPoint):
-        direction = np.sign(p - float(start.value))
+    tangent = path.rise(unknowns) if isinstance(start, HopfPoint) else None
     control = StepControl(first=min(1e-2, largest_step), largest=largest_step, most_points=points, tolerance=1e-9)
     walk = follow(path.residual, unknowns, p, jacobian=path.jacobian, control=control, direction=direction,
-                  bounds=bounds, x_scale=path.scale, p_scale=span)  # fmt: skip
+                  bounds=bounds, x_scale=path.scale, p_scale=span, tangent=tangent)  # fmt: skip
     ends_at_grazing = method == "harmonic_balance" and contact == "exact"
     visited, seen, outcome = _walk(walk, path, ends_at_grazing)
     return _collect(visited, seen, _specials(visited, seen, span), outcome, parameter, settings, make(middle))

@@ -118,6 +118,22 @@ class Field:
         n = self.size
         return np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), free + self.held(mode, free)])
 
+    def jacobians(self, states: Any, mode: Any) -> Any:
+        """df/dx at states (k, 2n) with modes (m,) or (k, m) that stick alike, shape (k, 2n, 2n)."""
+        n = self.size
+        _, by_normal, by_speed, opened = self.forces(states, mode)
+        out = np.zeros((len(states), 2 * n, 2 * n))
+        out[:, :n, n:] = np.eye(n)
+        out[:, n:, :n] = -self.mk + np.einsum("...c,ci,cj->...ij", by_normal, self.md, self.n)
+        if np.any(opened):
+            out[:, n:, :n] += np.einsum("...c,ci,cj->...ij", 1.0 * opened, self.mw, self.n)
+        out[:, n:, n:] = -self.mc - np.einsum("...c,ci,cj->...ij", by_speed, self.md, self.t)
+        stuck = self.sticking(np.reshape(mode, (-1, len(self.V)))[0])
+        if stuck.size:
+            hold = self.md[stuck].T @ np.linalg.pinv(self.t[stuck] @ self.md[stuck].T) @ self.t[stuck]
+            out[:, n:] -= hold @ out[:, n:]
+        return out
+
     def _free_jacobian(self, x: Any, mode: Any) -> tuple[Any, Any]:
         _, by_normal, by_speed, opened = self.forces(x, mode)
         by_q = -self.mk + self.md.T @ (by_normal[:, None] * self.n)

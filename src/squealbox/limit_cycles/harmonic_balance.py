@@ -19,7 +19,7 @@ from squealbox.limit_cycles.cycle import Cycle, extremes, ordered
 from squealbox.limit_cycles.field import Field
 from squealbox.limit_cycles.shooting import CONTACTS
 from squealbox.limit_cycles.starting import first_guess
-from squealbox.limit_cycles.variation import fly
+from squealbox.limit_cycles.variation import fly, magnus
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import as_system
@@ -158,8 +158,8 @@ class Balance:
         return np.hstack([values @ coefficients, omega * (slopes @ coefficients)])
 
     def modes(self, states: Any) -> Any:
-        """Sense of slip of each contact (sgn v)."""
-        return np.where(self.field.contact_state(states)[1] >= 0.0, 1, -1)
+        """Sense of slip of each contact: that of V, so a series that passes a reversal still has a smooth residual."""
+        return np.broadcast_to(np.where(self.field.V >= 0.0, 1, -1), (*states.shape[:-1], len(self.field.V)))
 
     def residual(self, coefficients: Any, omega: float) -> tuple[Any, Any]:
         """R (2H + 1, n) over the mass [m/s^2], and the states behind it."""
@@ -232,8 +232,7 @@ class Balance:
         if speed <= 1e-9 * (float(np.max(np.abs(self.field.V), initial=0.0)) or 1.0):
             return Outcome("steady_sliding", "the series shrank to steady sliding, not a cycle", history=history)
         if self.field.contact == "exact":
-            modes = self.modes(states)
-            if np.any(modes != modes[0]):
+            if np.any(self.field.contact_state(states)[1] * self.modes(states) < 0.0):
                 message = "a contact reverses or sticks on this cycle: use a smoothed contact, or shooting"
                 return Outcome("sticking", message, history=history, advice=ADVICE)
         return Outcome(COMPLETED, "", history=history)
@@ -256,40 +255,8 @@ class Balance:
         steps = steps or max(256, self.grid.samples)
         h = 2.0 * np.pi / steps
         middle, beside = (np.arange(steps) + 0.5) * h, np.sqrt(3.0) / 6.0 * h
-        a, b = (self.rates(self.motion(coefficients, omega, middle + s * beside)) for s in (-1.0, 1.0))
-        dt = h / omega
-        exponent = 0.5 * dt * (a + b) + np.sqrt(3.0) / 12.0 * dt**2 * (b @ a - a @ b)
-        factors = _exponential(exponent)
-        while len(factors) > 1:
-            if len(factors) % 2:
-                factors = np.concatenate([factors, np.eye(factors.shape[-1])[None]])
-            factors = factors[1::2] @ factors[::2]
-        return factors[0] * self.field.scale / self.field.scale[:, None]
-
-    def rates(self, states: Any) -> Any:
-        """df/dx at each state in scaled states, shape (N, 2n, 2n)."""
-        field, n = self.field, self.field.size
-        _, by_normal, by_speed, opened = field.forces(states, self.modes(states))
-        out = np.zeros((len(states), 2 * n, 2 * n))
-        out[:, :n, n:] = np.eye(n)
-        out[:, n:, :n] = -field.mk + np.einsum("kc,ci,cj->kij", by_normal, field.md, field.n)
-        out[:, n:, :n] += np.einsum("kc,ci,cj->kij", 1.0 * opened, field.mw, field.n)
-        out[:, n:, n:] = -field.mc - np.einsum("kc,ci,cj->kij", by_speed, field.md, field.t)
-        return out * field.scale[:, None] / field.scale
-
-
-def _exponential(matrices: Any) -> Any:
-    """exp of small matrices (k, m, m): Taylor to order 12 after halving to a norm below 1/4, and squaring back."""
-    norm = float(np.max(np.sum(np.abs(matrices), axis=-1), initial=0.0))
-    halvings = max(0, int(np.ceil(np.log2(max(norm, 1e-300) / 0.25))))
-    small = matrices / 2.0**halvings
-    eye = np.eye(matrices.shape[-1])
-    total = np.broadcast_to(eye, matrices.shape)
-    for order in range(12, 0, -1):
-        total = eye + small @ total / order
-    for _ in range(halvings):
-        total = total @ total
-    return total
+        pair = (self.motion(coefficients, omega, middle + s * beside) for s in (-1.0, 1.0))
+        return magnus(*(self.field.jacobians(x, self.modes(x)) for x in pair), h / omega, self.field.scale)
 
 
 def cycle_of(

@@ -12,7 +12,7 @@ import numpy as np
 from squealbox.limit_cycles.cycle import extremes, ordered
 from squealbox.limit_cycles.field import Field
 from squealbox.limit_cycles.harmonic_balance import Balance, Grid
-from squealbox.limit_cycles.variation import Flight, flight
+from squealbox.limit_cycles.variation import Flight, fly, quick_flight
 from squealbox.parameters import ParameterError
 from squealbox.system import System
 
@@ -37,6 +37,14 @@ class HarmonicPath:
     def scale(self) -> Any:
         """Typical sizes of the unknowns."""
         return np.append(np.full(len(self.grid.d) * self.dofs - 1, self.size), self.omega)
+
+    def rise(self, x: Any) -> Any:
+        """Direction of growing amplitude at x, for the start beside a Hopf point, in scaled variables with p."""
+        coefficients, _ = self.series(x)
+        direction = coefficients / self.size
+        direction[0] = 0.0
+        flat = np.append(np.delete(direction.ravel(), self.column), [0.0, 0.0])
+        return flat / np.linalg.norm(flat)
 
     @property
     def dofs(self) -> int:
@@ -120,19 +128,21 @@ class ShootingPath:
         if key not in self.flights:
             if len(self.flights) >= KEPT:
                 self.flights.pop(next(iter(self.flights)))
-            self.flights[key] = flight(self.field(p), start, float(x[-1]), self.rtol)
+            self.flights[key] = quick_flight(self.field(p), start, float(x[-1]), self.rtol)
         return start, self.flights[key]
 
     def residual(self, x: Any, p: float) -> Any:
         """Scaled x(T) - x(0), shape (2n,); NaN, which continuation refuses, where the parameter leaves its range."""
+        nothing = np.full(len(x), np.nan)
         try:
-            self.field(p)
+            field = self.field(p)
         except ParameterError:
-            return np.full(len(x), np.nan)
+            return nothing
         if not x[-1] > 0.0:
-            return np.full(len(x), np.nan)
-        start, flown = self.fly(x, p)
-        return (flown.x - start) * self._weight()
+            return nothing
+        start = np.insert(x[:-1], self.column, 0.0)
+        run = fly(field, start, float(x[-1]), self.rtol)
+        return (np.concatenate([run.q[-1], run.qd[-1]]) - start) * self._weight() if run.outcome.ok else nothing
 
     def _weight(self) -> Any:
         sizes = np.insert(self.scale[:-1], self.column, np.nan)

