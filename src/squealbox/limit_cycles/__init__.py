@@ -1,9 +1,21 @@
-"""What does the motion settle to? Depends on: transient, stability, continuation, system, friction, result."""
+"""What does the motion settle to? Depends on: transient, stability, continuation, system, schedules, friction, result."""
 
 from squealbox.limit_cycles.branches import Branch, branch
 from squealbox.limit_cycles.cycle import Cycle
+from squealbox.limit_cycles.estimates import averaged_limit, averaged_swings, describing_function
 from squealbox.limit_cycles.harmonic_balance import harmonic_balance
 from squealbox.limit_cycles.hopf import HopfPoint, hopf_point
 from squealbox.limit_cycles.shooting import shooting
 
-__all__ = ["Branch", "Cycle", "HopfPoint", "branch", "harmonic_balance", "hopf_point", "shooting"]
+__all__ = [
+    "Branch",
+    "Cycle",
+    "HopfPoint",
+    "averaged_limit",
+    "averaged_swings",
+    "branch",
+    "describing_function",
+    "harmonic_balance",
+    "hopf_point",
+    "shooting",
+]

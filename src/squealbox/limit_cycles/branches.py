@@ -8,7 +8,8 @@ neimark_sacker   a complex pair leaves the unit circle
 grazing          least sliding speed reaches zero (harmonic balance with exact contact ends there)
 sticking         a sticking phase appears or vanishes (shooting)
 
-Folds carry the error of the cubic, of order 4 in the step; the others that of a linear interpolation.
+Folds carry the error of the cubic, of order 4 in the step; the grazing at which an exact branch ends is solved for; the
+others carry the error of a linear interpolation.
 """
 
 from dataclasses import dataclass
@@ -134,7 +135,10 @@ def branch(
                   bounds=bounds, x_scale=path.scale, p_scale=span, tangent=tangent)  # fmt: skip
     ends_at_grazing = method == "harmonic_balance" and contact == "exact"
     visited, seen, outcome = _walk(walk, path, ends_at_grazing)
-    return _collect(visited, seen, _specials(visited, seen, span), outcome, parameter, settings, make(middle))
+    specials = _specials(visited, seen, span)
+    if outcome == "grazing":
+        specials.append(("grazing", outcome.evidence["p"], len(visited) - 1))
+    return _collect(visited, seen, specials, outcome, parameter, settings, make(middle))
 
 
 def _walk(walk: Follower, path: Any, ends_at_grazing: bool) -> tuple[list[PathPoint], list[dict[str, Any]], Outcome]:
@@ -144,9 +148,32 @@ def _walk(walk: Follower, path: Any, ends_at_grazing: bool) -> tuple[list[PathPo
         visited.append(point)
         seen.append(path.describe(point.x, point.p))
         if ends_at_grazing and seen[-1]["least_slip"] < 0.0:
-            message = f"a contact comes to rest on the cycle at {point.p:.8g}: go on with smoothing, or by shooting"
-            return visited, seen, Outcome("grazing", message, p=point.p)
+            at = _grazing(path, visited[-2], visited[-1], seen) if len(visited) > 1 else point.p
+            message = f"a contact comes to rest on the cycle at {at:.10g}: go on with smoothing, or by shooting"
+            return visited[:-1], seen[:-1], Outcome("grazing", message, p=at)
     return visited, seen, walk.outcome
+
+
+def _grazing(path: HarmonicPath, a: PathPoint, b: PathPoint, seen: list[dict[str, Any]]) -> float:
+    """Parameter at which the least sliding speed is zero: false position between two points, corrected to the path."""
+    scale = np.append(path.scale, path.span)
+    ends = [np.append(point.x, point.p) / scale for point in (a, b)]
+    shares, values = [0.0, 1.0], [about["least_slip"] for about in seen[-2:]]
+    y = ends[1]
+    for _ in range(12):
+        share = shares[0] - values[0] * (shares[1] - shares[0]) / (values[1] - values[0])
+        y = ends[0] + share * (ends[1] - ends[0])
+        for _ in range(6):
+            x = y * scale
+            matrix = np.column_stack(path.jacobian(x[:-1], float(x[-1]))) * scale
+            y = y - np.linalg.lstsq(matrix, path.residual(x[:-1], float(x[-1])), rcond=None)[0]
+        x = y * scale
+        value = path.least_slip(x[:-1], float(x[-1]))
+        if abs(value) <= 1e-12 * abs(values[0] - values[1]) or share in shares:
+            break
+        side = int(value < 0.0)
+        shares[side], values[side], values[1 - side] = share, value, 0.5 * values[1 - side]
+    return float(y[-1] * path.span)
 
 
 def _harmonic_start(make: Any, start: Any, value: float, contact: str, width: float, harmonics: int, span: float) -> Any:
