@@ -1,4 +1,4 @@
-"""What does the motion settle to? Depends on: transient, stability, continuation, system, schedules, friction, result."""
+"""What does the motion settle to? Depends on: transient, stability, continuation, system, friction, schedules, result."""
 
 from squealbox.limit_cycles.branches import Branch, branch
 from squealbox.limit_cycles.cycle import Cycle

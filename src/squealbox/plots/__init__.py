@@ -5,6 +5,7 @@ larger figure made with `panels`. Matplotlib is loaded at the first drawing.
 """
 
 from squealbox.plots.contact import contact_comparison
+from squealbox.plots.cycles import branch_diagram, cycle_overview
 from squealbox.plots.dispatch import plot
 from squealbox.plots.laws import friction_curve
 from squealbox.plots.maps import stability_map
@@ -25,8 +26,10 @@ from squealbox.plots.style import letters, panels, save
 __all__ = [
     "amplitude_course",
     "boundary_curves",
+    "branch_diagram",
     "coalescence",
     "contact_comparison",
+    "cycle_overview",
     "energy",
     "friction_curve",
     "letters",
