@@ -39,7 +39,9 @@ class Branch(Result):
     lowest: Any = quantity("point dof", "m", "least displacement")
     highest: Any = quantity("point dof", "m", "largest displacement")
     multipliers: Any = quantity("point multiplier", "1", "Floquet multipliers, the trivial one first")
-    least_slip: Any = quantity("point", "m/s", "least sliding speed in the sense of V; negative where a contact reverses")
+    least_slip: Any = quantity(
+        "point", "m/s", "least sliding speed in the sense of V; negative where a contact reverses"
+    )
     sticking: Any = quantity("point", "s", "longest sticking time of a contact in a period")
     unknowns: Any = quantity("point unknown", "", "what was followed")
     special_kind: Any = quantity("special", "", "fold, period_doubling, neimark_sacker, grazing or sticking")
@@ -176,7 +178,9 @@ def _grazing(path: HarmonicPath, a: PathPoint, b: PathPoint, seen: list[dict[str
     return float(y[-1] * path.span)
 
 
-def _harmonic_start(make: Any, start: Any, value: float, contact: str, width: float, harmonics: int, span: float) -> Any:
+def _harmonic_start(
+    make: Any, start: Any, value: float, contact: str, width: float, harmonics: int, span: float
+) -> Any:
     path = HarmonicPath(make, contact, width, Grid(harmonics), span)
     if isinstance(start, HopfPoint):
         if not start.outcome.ok:
@@ -298,4 +302,3 @@ def _collect(
         special_value=np.array([value for _, value, _ in specials], dtype=float),
         special_point=np.array([index for _, _, index in specials], dtype=np.int64),
     )  # fmt: skip
-

@@ -28,7 +28,9 @@ class Cycle(Result):
     q: Any = quantity("time dof", "m", "displacement")
     qd: Any = quantity("time dof", "m/s", "velocity")
     sliding_velocity: Any = quantity("time contact", "m/s", "sliding velocity v = V - t.q'")
-    mode: Any = quantity("time contact", "1", "mode in which the instant is reached: +1 or -1 slip with sgn(v), 0 stick, 2 open")
+    mode: Any = quantity(
+        "time contact", "1", "mode in which the instant is reached: +1 or -1 slip with sgn(v), 0 stick, 2 open"
+    )
     multipliers: Any = quantity("multiplier", "1", "Floquet multipliers, the trivial one first")
     lowest: Any = quantity("dof", "m", "least displacement")
     highest: Any = quantity("dof", "m", "largest displacement")

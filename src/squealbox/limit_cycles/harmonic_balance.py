@@ -25,6 +25,7 @@ from squealbox.result import COMPLETED, Outcome
 from squealbox.system import as_system
 
 LARGEST = 512  # harmonics; beyond this a smoothed cycle is better found by shooting
+FAILURES = 4  # doublings in a row without convergence after which the search ends
 ADVICE = "give a start nearer to the cycle, more harmonics, or a wider smoothing; or use shooting"
 
 
@@ -86,12 +87,13 @@ def harmonic_balance(
 def _refined(balance: "Balance", guess: Any, period: float, tolerance: float, most: int) -> tuple[Any, ...]:
     """Double the harmonics until the motion changes by less than `tolerance` of its size."""
     coefficients, omega, outcome = balance.solve(guess, 2.0 * np.pi / period, most)
-    error = np.inf
-    while 2 * balance.grid.harmonics <= LARGEST and error > tolerance:
+    error, failures = np.inf, 0 if outcome.ok else 1
+    while 2 * balance.grid.harmonics <= LARGEST and error > tolerance and failures < FAILURES:
         finer = Balance(balance.field, Grid(2 * balance.grid.harmonics))
         usable = coefficients if outcome.ok else guess
         turned, phase = finer.grid.padded(usable), omega if outcome.ok else 2.0 * np.pi / period
         new, new_omega, outcome = finer.solve(turned, phase, most)
+        failures = 0 if outcome.ok else failures + 1
         if outcome.ok:
             change = np.max(np.linalg.norm(new - finer.grid.padded(coefficients), axis=0))
             size = np.max(np.linalg.norm(new[1:], axis=0)) or 1.0
@@ -255,8 +257,9 @@ class Balance:
         steps = steps or max(256, self.grid.samples)
         h = 2.0 * np.pi / steps
         middle, beside = (np.arange(steps) + 0.5) * h, np.sqrt(3.0) / 6.0 * h
-        pair = (self.motion(coefficients, omega, middle + s * beside) for s in (-1.0, 1.0))
-        return magnus(*(self.field.jacobians(x, self.modes(x)) for x in pair), h / omega, self.field.scale)
+        early, late = (self.motion(coefficients, omega, middle + s * beside) for s in (-1.0, 1.0))
+        a, b = (self.field.jacobians(x, self.modes(x)) for x in (early, late))
+        return magnus(a, b, h / omega, self.field.scale)
 
 
 def cycle_of(

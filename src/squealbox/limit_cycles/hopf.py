@@ -104,7 +104,8 @@ def hopf_point(design: Any, parameter: str, bounds: tuple[float, float]) -> Hopf
     outcome = found.outcome
     if outcome.ok and abs(np.imag(found.eigenvalue)) == 0.0:
         outcome = Outcome("no_hopf", "stability changes by a real eigenvalue: no cycle is born there")
-    inputs, about = {"system": make(bounds[0])}, {"parameter": parameter, "settings": {"bounds": list(bounds)}}
+    inputs = {"system": make(bounds[0])}
+    about: dict[str, Any] = {"parameter": parameter, "settings": {"bounds": list(bounds)}}
     if not outcome.ok:
         nan = np.full(2 * make(bounds[0]).size, np.nan)
         none = np.asarray(np.nan)

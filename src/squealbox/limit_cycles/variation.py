@@ -73,7 +73,10 @@ def quick_flight(field: Field, x: Any, duration: float, rtol: float = 1e-11, ste
         return flight(field, x, duration, rtol)
     states = np.hstack([motion.q, motion.qd])
     rows = [0, *(_cuts(motion) if field.contact == "exact" else []), len(motion.t) - 1]
-    counts = [max(8, int(np.ceil(steps * (motion.t[k] - motion.t[i]) / duration))) for i, k in zip(rows[:-1], rows[1:], strict=True)]
+    counts = [
+        max(8, int(np.ceil(steps * (motion.t[k] - motion.t[i]) / duration)))
+        for i, k in zip(rows[:-1], rows[1:], strict=True)
+    ]
     instants = [_gauss(motion.t[i], motion.t[k], n) for i, k, n in zip(rows[:-1], rows[1:], counts, strict=True)]
     inner = fly(field, x, duration, rtol, np.concatenate(instants))
     inside = np.split(np.hstack([inner.q, inner.qd]), np.cumsum([len(t) for t in instants])[:-1])
