@@ -1,4 +1,7 @@
-"""What does the motion settle to? Depends on: transient, stability, continuation, system, friction, schedules, result."""
+"""What does the motion settle to?
+
+Depends on: transient, stability, continuation, system, friction, schedules, result, parameters.
+"""
 
 from squealbox.limit_cycles.branches import Branch, branch
 from squealbox.limit_cycles.cycle import Cycle

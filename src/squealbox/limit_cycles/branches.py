@@ -12,6 +12,7 @@ Folds carry the error of the cubic, of order 4 in the step; the grazing at which
 others carry the error of a linear interpolation.
 """
 
+import itertools
 from dataclasses import dataclass
 from typing import Any
 
@@ -67,8 +68,10 @@ class Branch(Result):
         """What the branch holds, in a few lines."""
         if len(self.value) == 0:
             return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
-        lines = [f"{len(self.value)} cycles, {self.parameter} from {np.min(self.value):.6g} to {np.max(self.value):.6g}, "
-                 f"{int(np.sum(self.stable))} stable; ended: {self.outcome} {self.outcome.message}".rstrip()]  # fmt: skip
+        low, high = np.min(self.value), np.max(self.value)
+        walked = f"{len(self.value)} cycles, {self.parameter} from {low:.6g} to {high:.6g}"
+        ended = f"{self.outcome} {self.outcome.message}".rstrip()
+        lines = [f"{walked}, {int(np.sum(self.stable))} stable; ended: {ended}"]
         lines += [f"{kind} at {value:.8g}" for kind, value in zip(self.special_kind, self.special_value, strict=True)]
         return "\n".join(lines)
 
@@ -107,8 +110,8 @@ def branch(
     rtol : for shooting
 
     Outcome "completed" at a bound, "most_points", "grazing" (harmonic balance with exact contact at the first contact
-    that reverses), "step_underflow" (a corner: with shooting, where a sticking phase begins or ends) or why there was no
-    start. Accuracy: that of the method with these harmonics. Source: Keller 1977.
+    that reverses), "step_underflow" (a corner: with shooting, where a sticking phase begins or ends) or why there was
+    no start. Accuracy: that of the method with these harmonics. Source: Keller 1977.
 
     >>> from squealbox import DrumBrake, LinearSlope
     >>> from squealbox.limit_cycles import hopf_point
@@ -236,7 +239,7 @@ def _shooting_start(make: Any, start: Any, value: float, rtol: float, span: floa
 def _specials(visited: list[PathPoint], seen: list[dict[str, Any]], span: float) -> list[tuple[str, float, int]]:
     """(kind, value, index of the point before) along the walk."""
     found = []
-    for i, (a, b) in enumerate(zip(visited[:-1], visited[1:], strict=True)):
+    for i, (a, b) in enumerate(itertools.pairwise(visited)):
         if a.tangent[-1] * b.tangent[-1] < 0.0:
             found.append(("fold", _fold(a, b, span), i))
         for kind, test in TESTS.items():

@@ -1,4 +1,4 @@
-"""The result of every search for a limit cycle: one period of the motion, its Floquet multipliers, and how it was found.
+"""The result of a search for a limit cycle: one period of the motion, its Floquet multipliers, how it was found.
 
 A disturbance of a cycle is multiplied by a Floquet multiplier once each period. One of them is 1 (a shift in time); the
 cycle is stable when all others lie inside the unit circle. A sticking phase gives a multiplier 0.

@@ -1,15 +1,15 @@
 """Quick estimates of a cycle, beside the numerics: one harmonic, and averaging over a fast weakly damped swing.
 
-A block of mass m on a spring, damped by c, pressed by N on a belt of speed V swings as x' = u cos theta when friction and
-damping are small against the spring. The energy both do in a period is zero when
+A block of mass m on a spring, damped by c, pressed by N on a belt of speed V swings as x' = u cos theta when friction
+and damping are small against the spring. The energy both do in a period is zero when
 
     c u = (N/pi) integral_0^2pi mu(V - u cos theta) cos theta dtheta    (0 <= u <= V, so it never sticks)
 
 For mu = kinetic + D exp(-v/s) the right-hand side is 2 N D exp(-V/s) I1(u/s), with I1 the modified Bessel function.
 For the cubic law it is N 3/2 (D u/s) (1 - V^2/s^2 - u^2/(4 s^2)), D = static - kinetic, s the speed of least friction.
 The error is of second order in damping and friction over the spring's force.
-Sources: Thomsen and Fidlin 2003, International Journal of Non-Linear Mechanics 38, 389-403 (cubic law); derived here for
-any law.
+Sources: Thomsen and Fidlin 2003, International Journal of Non-Linear Mechanics 38, 389-403 (cubic law); derived here
+for any law.
 """
 
 from typing import Any

@@ -5,8 +5,8 @@ inverse and D the derivative by tau, the coefficients Q (2H + 1, n) obey
 
     R(Q, omega) = omega^2 D^2 Q M' + omega D Q C' + Q K' - E+ [f + sum_c d_c F_c(E Q, omega E D Q)] = 0
 
-and one coefficient b_1 = 0 fixes the phase. F is evaluated in time and brought back (alternating frequency-time; Cameron
-and Griffin 1989, Journal of Applied Mechanics 56, 149-154). The Jacobian is analytic, from dF/dN and dF/dv.
+and one coefficient b_1 = 0 fixes the phase. F is evaluated in time and brought back (alternating frequency-time;
+Cameron and Griffin 1989, Journal of Applied Mechanics 56, 149-154). The Jacobian is analytic, from dF/dN and dF/dv.
 Stability: Phi' = A(t) Phi over one period, by exponentials of the fourth-order Magnus series.
 """
 
@@ -233,10 +233,10 @@ class Balance:
         speed = float(np.max(np.abs(states[:, self.field.size :])))
         if speed <= 1e-9 * (float(np.max(np.abs(self.field.V), initial=0.0)) or 1.0):
             return Outcome("steady_sliding", "the series shrank to steady sliding, not a cycle", history=history)
-        if self.field.contact == "exact":
-            if np.any(self.field.contact_state(states)[1] * self.modes(states) < 0.0):
-                message = "a contact reverses or sticks on this cycle: use a smoothed contact, or shooting"
-                return Outcome("sticking", message, history=history, advice=ADVICE)
+        reverses = np.any(self.field.contact_state(states)[1] * self.modes(states) < 0.0)
+        if self.field.contact == "exact" and reverses:
+            message = "a contact reverses or sticks on this cycle: use a smoothed contact, or shooting"
+            return Outcome("sticking", message, history=history, advice=ADVICE)
         return Outcome(COMPLETED, "", history=history)
 
     def turned(self, coefficients: Any) -> tuple[Any, int]:

@@ -5,6 +5,7 @@ its events come from `simulate`; each smooth piece is integrated again together 
 (`scipy.integrate.DOP853`), and how well the two meet is kept as `mismatch`.
 """
 
+import itertools
 from dataclasses import dataclass
 from typing import Any
 
@@ -53,7 +54,7 @@ def flight(field: Field, x: Any, duration: float, rtol: float = 1e-13) -> Flight
     phi, mismatch, least, together = np.eye(size), 0.0, 1.0, False
     cuts = _cuts(motion) if field.contact == "exact" else []
     rows = [0, *cuts, len(motion.t) - 1]
-    for piece, (i, k) in enumerate(zip(rows[:-1], rows[1:], strict=True)):
+    for piece, (i, k) in enumerate(itertools.pairwise(rows)):
         if piece > 0:
             before, after = motion.mode[i], motion.mode[i + 1]
             jump, rate, _ = saltation(field, states[i], before, after)
@@ -73,15 +74,12 @@ def quick_flight(field: Field, x: Any, duration: float, rtol: float = 1e-11, ste
         return flight(field, x, duration, rtol)
     states = np.hstack([motion.q, motion.qd])
     rows = [0, *(_cuts(motion) if field.contact == "exact" else []), len(motion.t) - 1]
-    counts = [
-        max(8, int(np.ceil(steps * (motion.t[k] - motion.t[i]) / duration)))
-        for i, k in zip(rows[:-1], rows[1:], strict=True)
-    ]
+    counts = [max(8, int(np.ceil(steps * (motion.t[k] - motion.t[i]) / duration))) for i, k in itertools.pairwise(rows)]
     instants = [_gauss(motion.t[i], motion.t[k], n) for i, k, n in zip(rows[:-1], rows[1:], counts, strict=True)]
     inner = fly(field, x, duration, rtol, np.concatenate(instants))
     inside = np.split(np.hstack([inner.q, inner.qd]), np.cumsum([len(t) for t in instants])[:-1])
     phi, least = np.eye(x.size), 1.0
-    for piece, (i, k) in enumerate(zip(rows[:-1], rows[1:], strict=True)):
+    for piece, (i, k) in enumerate(itertools.pairwise(rows)):
         if piece > 0:
             jump, rate, _ = saltation(field, states[i], motion.mode[i], motion.mode[i + 1])
             phi, least = jump @ phi, min(least, abs(rate))
