@@ -1,6 +1,6 @@
 """Which starts lead to which attractor: basins, their share with its uncertainty, and the least dangerous push.
 
-Starts fill a box about steady sliding; each is run and judged by the amplitude of its last part. The share p of n starts
+Starts fill a box about steady sliding; each is run and judged by the swing of its last part. The share p of n starts
 that vibrate carries the Wilson interval (p + z^2/2n +- z sqrt(p (1 - p)/n + z^2/4n^2)) / (1 + z^2/n).
 Basin stability: Menck, Heitzig, Marwan and Kurths 2013, Nature Physics 9, 89-92.
 """
@@ -29,9 +29,7 @@ class Basin(Result):
     """Starts and what became of them, as :func:`basin` returns it."""
 
     start: Any = quantity("start state", "m", "starts (q, q'), displacements in m and velocities in m/s")
-    swing: Any = quantity(
-        "start", "m/s", "half peak to peak of the fastest velocity in the last part; NaN = run failed"
-    )
+    swing: Any = quantity("start", "m/s", "half peak to peak of the fastest velocity at the end; NaN = run failed")
     vibrates: Any = quantity("start", "1", "True where the run ends in a vibration")
     share: Any = quantity("", "1", "share of the starts that vibrate")
     interval: Any = quantity("end", "1", "Wilson interval of that share, 95 %")
@@ -39,7 +37,8 @@ class Basin(Result):
     def summary(self) -> str:
         """One line: the share with its interval."""
         low, high = self.interval
-        return f"{100 * float(self.share):.1f} % of {len(self.swing)} starts vibrate ({100 * low:.1f} to {100 * high:.1f} %)"
+        share = f"{100 * float(self.share):.1f} % of {len(self.swing)} starts vibrate"
+        return f"{share} ({100 * low:.1f} to {100 * high:.1f} %)"
 
     def __repr__(self) -> str:
         return self.summary()
@@ -109,9 +108,9 @@ def dangerous_push(
     duration: float | None = None,
     steps: int = 30,
 ) -> float:
-    """The least multiple of `direction` (2n,) between `bounds` that ends in a vibration, by bisection; NaN if none does.
+    """The least multiple of `direction` (2n,) between `bounds` that ends in a vibration; NaN if none does.
 
-    A basin boundary may be folded: this is the first boundary bisection meets, not proven to be the least.
+    By bisection: a basin boundary may be folded: this is the first boundary bisection meets, not proven to be the least.
     """
     system = as_system(design_or_system)
     field = Field(system)

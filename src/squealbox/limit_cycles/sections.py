@@ -1,10 +1,10 @@
 """Poincare sections and Lyapunov exponents of motions with stick and slip.
 
-The section is crossed where the velocity of one degree of freedom falls through zero, that is at its maxima. The largest
+The section is crossed where the velocity of one degree of freedom falls through zero, that is at its maxima. The
 Lyapunov exponents come from the derivative of the flow, saltation matrices included, re-orthonormalised by QR:
 sum log|R_ii| / time. A sticking phase forgets a direction; its exponent is minus infinity.
-Sources: Benettin, Galgani, Giorgilli and Strelcyn 1980, Meccanica 15, 9-30; Mueller 1995, Chaos, Solitons and Fractals 5,
-1671-1681 (jumps at events).
+Sources: Benettin, Galgani, Giorgilli and Strelcyn 1980, Meccanica 15, 9-30; Mueller 1995, Chaos, Solitons and
+Fractals 5, 1671-1681 (jumps at events).
 """
 
 from typing import Any
