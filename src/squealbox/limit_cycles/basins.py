@@ -110,7 +110,7 @@ def dangerous_push(
 ) -> float:
     """The least multiple of `direction` (2n,) between `bounds` that ends in a vibration; NaN if none does.
 
-    By bisection: a basin boundary may be folded: this is the first boundary bisection meets, not proven to be the least.
+    By bisection. A basin boundary may be folded: this is the first one bisection meets, not proven to be the least.
     """
     system = as_system(design_or_system)
     field = Field(system)

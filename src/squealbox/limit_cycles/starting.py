@@ -15,6 +15,7 @@ from squealbox.transient import Trajectory
 
 PERIODS = 300.0  # of the lowest mode, of a run that is to settle
 GUESS_RTOL = 1e-9
+STILL = 1e-5  # share of the sliding speed; a run that swings less has settled on steady sliding
 
 
 def first_guess(field: Field, start: Any, settle: float | None) -> tuple[Any, float, Outcome]:
@@ -47,7 +48,7 @@ def first_return(field: Field, x: Any, period: float) -> tuple[Any, float, Outco
     states = np.hstack([run.q, run.qd])
     size = np.ptp(states, axis=0)
     size = np.where(size > 0.0, size, 1.0)
-    if np.max(np.ptp(run.qd, axis=0)) <= 1e-9 * max(float(np.max(np.abs(field.V), initial=0.0)), 1e-300):
+    if np.max(np.ptp(run.qd, axis=0)) <= STILL * max(float(np.max(np.abs(field.V), initial=0.0)), 1e-300):
         return x, period, Outcome("steady_sliding", "the run settles on steady sliding, not on a cycle")
     begin = _fast_slip(run)
     section = np.concatenate([run.qd[begin], np.diff(run.qd[begin : begin + 2], axis=0)[0]]) / size**2

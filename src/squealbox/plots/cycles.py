@@ -77,7 +77,7 @@ def branch_diagram(
     dof : index of the degree of freedom
     hopf : marks where the branch is born
     runs : (values, amplitudes [m]) of long runs, drawn as crosses
-    labels, name : of the branches and of the parameter, with its unit
+    labels, name : of the branches (each then has a colour of its own) and of the parameter, with its unit
     scale : what the parameter is divided by
     axes : draw here instead of in a new figure
     """
@@ -87,8 +87,8 @@ def branch_diagram(
     with drawing(axes) as panel:
         shown: set[str] = set()
         for i, one in enumerate(several):
-            label = labels[i] if i < len(labels) else None
-            _parts(panel, one, one.amplitude[:, dof] / factor, scale, line(i)["color"], label)
+            label = labels[i] if i < len(labels) else ""
+            _parts(panel, one, one.amplitude[:, dof] / factor, scale, line(i if labels else 0)["color"], label, shown)
             _marks(panel, one, one.amplitude[:, dof] / factor, scale, shown)
         if hopf is not None and hopf.outcome.ok:
             panel.plot(hopf.value / scale, 0.0, "o", color="#000000", label="onset of instability", zorder=4)
@@ -103,7 +103,7 @@ def branch_diagram(
         return figure_of(panel)
 
 
-def _parts(panel: Any, one: Branch, size: Any, scale: float, colour: str, label: str | None) -> None:
+def _parts(panel: Any, one: Branch, size: Any, scale: float, colour: str, label: str, shown: set[str]) -> None:
     stable = one.stable
     for wanted, dash in ((True, "-"), (False, "--")):
         here = stable == wanted
@@ -111,8 +111,10 @@ def _parts(panel: Any, one: Branch, size: Any, scale: float, colour: str, label:
         kind = "stable" if wanted else "unstable"
         if np.any(here):
             text = f"{label}, {kind}" if label else kind
+            told = text in shown
+            shown.add(text)
             panel.plot(np.where(joined, one.value, np.nan) / scale, np.where(joined, size, np.nan), color=colour,
-                       linestyle=dash, label=text)  # fmt: skip
+                       linestyle=dash, label=None if told else text)  # fmt: skip
 
 
 def _marks(panel: Any, one: Branch, size: Any, scale: float, shown: set[str]) -> None:
