@@ -58,7 +58,7 @@ def averaged_swings(law: FrictionLaw, sliding_speed: float, normal_force: float,
 
     >>> from squealbox import Cubic
     >>> [round(float(u), 9) for u in averaged_swings(Cubic(0.4, 0.25, 0.5), 0.48, 1.0, 0.01)]
-    [0.213541565]
+    [0.23701852]
     """
     from scipy.optimize import brentq
 
@@ -90,7 +90,7 @@ def averaged_limit(law: Stribeck, normal_force: float, damping: float) -> float:
 
     >>> from squealbox import Stribeck
     >>> round(averaged_limit(Stribeck(0.4, 0.25, 0.3), 1.0, 0.2), 5)
-    0.31525
+    0.31543
     """
     from scipy.optimize import brentq
     from scipy.special import ive

@@ -42,7 +42,7 @@ def lyapunov_exponents(design_or_system: Any, start: Any, span: float, spans: in
     >>> from squealbox import Contact, Coulomb, System
     >>> belt = Contact(n=[0.0], d=[1.0], t=[1.0], N0=1.0, V=0.1, law=Coulomb(0.4, 0.25))
     >>> block = System([[1.0]], [[0.0]], [[1.0]], 0.0, (belt,))
-    >>> abs(lyapunov_exponents(block, ([0.4], [0.0999]), 7.317597861, 40)[0]) < 0.02
+    >>> bool(abs(lyapunov_exponents(block, ([0.4], [0.0999]), 7.317597861, 40)[0]) < 0.02)
     True
     """
     field = Field(as_system(design_or_system))
