@@ -58,7 +58,7 @@ def averaged_swings(law: FrictionLaw, sliding_speed: float, normal_force: float,
 
     >>> from squealbox import Cubic
     >>> [round(float(u), 9) for u in averaged_swings(Cubic(0.4, 0.25, 0.5), 0.48, 1.0, 0.01)]
-    [0.23701852]
+    [0.237018518]
     """
     from scipy.optimize import brentq
 
