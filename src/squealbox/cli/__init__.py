@@ -29,6 +29,7 @@ COMMANDS = {
     "onset": Command("stability", "onset", "the value of a parameter at which squeal begins, and how"),
     "map": Command("stability", "map_", "stability over two parameters"),
     "simulate": Command("transient", "simulate", "what happens in time: a transient with verdict, figures and data"),
+    "cycle": Command("cycles", "cycle", "what the motion settles to: the limit cycle, its stability, figure and data"),
     "paper": Command("papers", "paper", "reproduce a published study: figures, claims and one page"),
     "schema": Command("starter", "schema", "the JSON schema of a design file, for editors"),
 }
