@@ -1,7 +1,7 @@
 # The public names in the order of the story. `lazy_loader` reads the imports; people, editors and type checkers read both.
 # A room with more names than the story needs is public as a whole: `squealbox.friction.Table`, `squealbox.schedules.Table`.
 
-from . import designs, files, friction, plots, schedules, signals, stability, transient
+from . import designs, files, friction, limit_cycles, plots, schedules, signals, stability, transient
 from .continuation import Follower, follow
 from .designs import (
     BlockChain,
@@ -18,6 +18,7 @@ from .designs import (
 from .files import Body, OwnBrake, OwnContact, OwnLaw, OwnMechanism, Spring, Touch, own_law, read_design, write_design
 from .fit import FrictionFit, fit_friction
 from .friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stribeck
+from .limit_cycles import Branch, Cycle, HopfPoint, branch, harmonic_balance, hopf_point, shooting
 from .parameters import ParameterError
 from .plots import plot
 from .result import Outcome, Result
@@ -138,6 +139,15 @@ __all__ = [
     # follow the roots of any residual(x, p)
     "follow",
     "Follower",
+    # what does it settle to?
+    "limit_cycles",
+    "shooting",
+    "harmonic_balance",
+    "Cycle",
+    "hopf_point",
+    "HopfPoint",
+    "branch",
+    "Branch",
     # what a signal holds
     "signals",
     "spectrum",

@@ -278,6 +278,14 @@ def test_simulate(said, brake, tmp_path):
     assert float(table[-1]["x [m]"]) == pytest.approx(motion.q[-1, 0], rel=1e-9)
 
 
+def test_cycle(said, brake, tmp_path):
+    code, out, err = said("cycle", brake, "--set", "friction.static=0.45", "--out", tmp_path / "cycle")
+    assert (code, err) == (0, "")
+    assert "stable cycle" in out
+    assert sorted(path.name for path in (tmp_path / "cycle").iterdir()) == ["cycle.nc", "cycle.png", "cycle.svg"]
+    assert said("cycle", brake, "--set", "friction.static=0.1")[0] != 0
+
+
 def test_simulate_as_the_section_says(said, brake, tmp_path, undrawn):
     text = brake.read_text().partition("[simulate]")[0]
     how = 'duration = "5 ms"\nstart = "sliding"\nq = ["1 um", 0]\nmethod = "dormand-prince"\npoints = 11\n'

@@ -31,6 +31,7 @@ COMMANDS = {
     "simulate": Command("transient", "simulate", "what happens in time: a transient with verdict, figures and data"),
     "ensemble": Command("ensembles", "ensemble", "transients over two parameters: amplitude and frequency of each"),
     "fit": Command("fitting", "fit", "measured friction coefficients (CSV) to a friction law, with confidence bands"),
+    "cycle": Command("cycles", "cycle", "what the motion settles to: the limit cycle, its stability, figure and data"),
     "paper": Command("papers", "paper", "reproduce a published study: figures, claims and one page"),
     "schema": Command("starter", "schema", "the JSON schema of a design file, for editors"),
 }

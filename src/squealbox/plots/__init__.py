@@ -6,6 +6,7 @@ larger figure made with `panels`. Matplotlib is loaded at the first drawing.
 
 from squealbox.plots.brakes import brake_drawing
 from squealbox.plots.contact import contact_comparison
+from squealbox.plots.cycles import branch_diagram, cycle_overview
 from squealbox.plots.dispatch import plot
 from squealbox.plots.fits import friction_fit
 from squealbox.plots.laws import friction_curve
@@ -30,8 +31,10 @@ __all__ = [
     "amplitude_map",
     "boundary_curves",
     "brake_drawing",
+    "branch_diagram",
     "coalescence",
     "contact_comparison",
+    "cycle_overview",
     "eigenvalues",
     "energy",
     "friction_curve",

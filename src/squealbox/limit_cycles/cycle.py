@@ -1,0 +1,116 @@
+"""The result of a search for a limit cycle: one period of the motion, its Floquet multipliers, how it was found.
+
+A disturbance of a cycle is multiplied by a Floquet multiplier once each period. One of them is 1 (a shift in time); the
+cycle is stable when all others lie inside the unit circle. A sticking phase gives a multiplier 0.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.result import Result, quantity
+from squealbox.system import System
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Cycle(Result):
+    """A limit cycle, as :func:`shooting` and :func:`harmonic_balance` return it.
+
+    Where the search failed the outcome says why ("no_cycle", "no_convergence", "steady_sliding", ...), its evidence
+    holds the residual history and advice, and the arrays hold the last attempt.
+
+    Accuracy: `error` is the method's own estimate, relative to the size of the motion.
+    """
+
+    period: Any = quantity("", "s", "period")
+    t: Any = quantity("time", "s", "instants of one period")
+    q: Any = quantity("time dof", "m", "displacement")
+    qd: Any = quantity("time dof", "m/s", "velocity")
+    sliding_velocity: Any = quantity("time contact", "m/s", "sliding velocity v = V - t.q'")
+    mode: Any = quantity(
+        "time contact", "1", "mode in which the instant is reached: +1 or -1 slip with sgn(v), 0 stick, 2 open"
+    )
+    multipliers: Any = quantity("multiplier", "1", "Floquet multipliers, the trivial one first")
+    lowest: Any = quantity("dof", "m", "least displacement")
+    highest: Any = quantity("dof", "m", "largest displacement")
+    event_time: Any = quantity("event", "s", "instants of stick, slip and reversal")
+    event_contact: Any = quantity("event", "1", "contact of each event")
+    event_mode: Any = quantity("event", "1", "mode the contact takes at the event")
+    error: float = float("nan")
+    caution: str = ""
+
+    @property
+    def system(self) -> System:
+        """The system that moves."""
+        system: System = self.inputs["system"]
+        return system
+
+    @property
+    def frequency(self) -> float:
+        """1/period [Hz]."""
+        return float(1.0 / self.period)
+
+    @property
+    def amplitude(self) -> Any:
+        """Half peak to peak of each degree of freedom [m], shape (dof,)."""
+        return 0.5 * (self.highest - self.lowest)
+
+    @property
+    def centre(self) -> Any:
+        """Midway between the extremes of each degree of freedom [m], shape (dof,)."""
+        return 0.5 * (self.highest + self.lowest)
+
+    @property
+    def stable(self) -> bool:
+        """True when every multiplier but the trivial one lies inside the unit circle."""
+        others = np.abs(self.multipliers[1:])
+        return bool(self.outcome.ok and np.all(others < 1.0))
+
+    @property
+    def sticking_time(self) -> Any:
+        """Time in a period each contact sticks [s], shape (contact,)."""
+        return np.sum((self.mode[1:] == 0) * np.diff(self.t)[:, None], axis=0)
+
+    @property
+    def start(self) -> tuple[Any, Any]:
+        """(q, qd) at the beginning of the period, for `simulate`."""
+        return self.q[0], self.qd[0]
+
+    def summary(self) -> str:
+        """One line: period, frequency, amplitudes, stability."""
+        if not self.outcome.ok:
+            return f"{self.outcome}: {self.outcome.message}"
+        sizes = ", ".join(f"{name} {a:.6g} m" for name, a in zip(self.system.names, self.amplitude, strict=True))
+        kind = "stable" if self.stable else "unstable"
+        return f"{kind} cycle, period {float(self.period):.10g} s ({self.frequency:.6g} Hz), amplitude {sizes}"
+
+    def __repr__(self) -> str:
+        return self.summary()
+
+
+def ordered(multipliers: Any) -> Any:
+    """Multipliers with the one nearest to 1 first, the others by falling size."""
+    values = np.asarray(multipliers, dtype=complex)
+    if not np.all(np.isfinite(values)):
+        return values
+    trivial = int(np.argmin(np.abs(values - 1.0)))
+    others = np.delete(values, trivial)
+    return np.r_[values[trivial], others[np.argsort(-np.abs(others), kind="stable")]]
+
+
+def extremes(t: Any, q: Any, qd: Any) -> tuple[Any, Any]:
+    """Least and largest displacement of each column, by the Hermite cubic of each interval; error of order h^4."""
+    h = np.diff(t)[:, None]
+    low, high = np.min(q, axis=0), np.max(q, axis=0)
+    a, v0, v1 = q[:-1], qd[:-1] * h, qd[1:] * h
+    rise = np.diff(q, axis=0)
+    c2, c3 = 3.0 * rise - 2.0 * v0 - v1, v0 + v1 - 2.0 * rise  # a + s (v0 + s (c2 + s c3))
+    for sign in (1.0, -1.0):
+        with np.errstate(all="ignore"):
+            s = -v0 / (c2 + sign * np.sqrt(c2 * c2 - 3.0 * c3 * v0))
+        inside = (s > 0.0) & (s < 1.0)
+        s = np.where(inside, s, 0.0)
+        value = a + s * (v0 + s * (c2 + s * c3))
+        low, high = np.minimum(low, np.min(value, axis=0)), np.maximum(high, np.max(value, axis=0))
+    return low, high

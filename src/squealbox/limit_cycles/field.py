@@ -1,0 +1,163 @@
+"""The right-hand side of the equation of motion and its derivative, with each contact in a given mode.
+
+With x = (q, q') and the modes fixed, x' = f(x) is smooth. A contact that slips in the sense s carries
+F = s mu(s v) N, one that sticks the force that keeps t.q'' = 0, an open one nothing. So
+
+    a  = M^-1 (f - C q' - K q + sum_slip d F + sum_open normal N),    q'' = P a
+    P  = I - M^-1 d G^-1 t',  G = t' M^-1 d    over the sticking contacts
+    da = M^-1 (-K + sum_slip s mu d n' + sum_open normal n') dq - M^-1 (C + sum_slip mu' N d t') dq'
+
+because dv = -t.dq'. Smoothed laws put tanh(v/width) or (2/pi) arctan(v/width) for sgn(v) and have no modes.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from squealbox.parameters import ParameterError
+from squealbox.schedules import Constant, Schedule, value_at
+from squealbox.system import System
+
+OPEN = 2
+SMOOTHINGS = ("tanh", "arctan")
+
+
+def smoothed_sign(v: Any, width: float, kind: str) -> tuple[Any, Any]:
+    """The smooth sgn(v) [-] and its derivative [s/m]; kind is "tanh" or "arctan"."""
+    r = v / width
+    if kind == "tanh":
+        value = np.tanh(r)
+        return value, (1.0 - value**2) / width
+    return 2.0 / np.pi * np.arctan(r), 2.0 / (np.pi * width * (1.0 + r * r))
+
+
+class Field:
+    """f(x, mode) and df/dx of an autonomous system without leading axes.
+
+    contact is "exact" (modes), "tanh" or "arctan" (smoothed over `width`, m/s). Raises `ParameterError` for a system
+    that varies with time, whose motion has no period of its own, or that has leading axes.
+    """
+
+    def __init__(self, system: System, contact: str = "exact", width: float = 1e-3) -> None:
+        _check_autonomous(system)
+        self.system, self.contact, self.width = system, contact, width
+        n, rows = system.size, system.contacts
+        inverse = np.linalg.inv(system.M)
+        self.size = n
+        self.mk, self.mc, self.mf = inverse @ system.K, inverse @ system.C, inverse @ value_at(system.load, 0.0)
+        self.n, self.t, d = (np.array([getattr(c, name) for c in rows]).reshape(-1, n) for name in ("n", "t", "d"))
+        self.d, self.md = d, d @ inverse.T
+        normal = [np.zeros(n) if c.normal is None else c.normal for c in rows]
+        self.mw = np.array(normal).reshape(-1, n) @ inverse.T
+        self.N0, self.V = (np.array([float(value_at(getattr(c, x), 0.0)) for c in rows]) for x in ("N0", "V"))
+        self.unilateral = np.array([c.unilateral for c in rows], dtype=bool)
+        self.static = np.array([float(c.law.static_limit) for c in rows])
+        self.laws = [c.law for c in rows]
+        self.same = bool(rows) and all(law == self.laws[0] for law in self.laws)
+        self.frequency = float(np.sqrt(np.max(np.abs(np.linalg.eigvals(self.mk)))))
+        self.scale = np.r_[np.full(n, self.frequency or 1.0), np.ones(n)]
+
+    def coefficients(self, v: Any) -> tuple[Any, Any]:
+        """mu and dmu/d|v| of each contact at speeds v (..., contacts) of either sign."""
+        if self.same:
+            return self.laws[0].mu(v), self.laws[0].slope_at(v)
+        mu = [law.mu(v[..., i]) for i, law in enumerate(self.laws)]
+        slope = [law.slope_at(v[..., i]) for i, law in enumerate(self.laws)]
+        empty = np.zeros(np.shape(v))
+        return (np.stack(mu, -1), np.stack(slope, -1)) if mu else (empty, empty)
+
+    def contact_state(self, x: Any) -> tuple[Any, Any]:
+        """Normal force [N] and sliding velocity [m/s] of each contact."""
+        return self.N0 + x[..., : self.size] @ self.n.T, self.V - x[..., self.size :] @ self.t.T
+
+    def forces(self, x: Any, mode: Any) -> tuple[Any, Any, Any, Any]:
+        """F, dF/dN, dF/dv of the contacts that slip and the mask of open ones; F of a sticking contact is 0 here."""
+        normal, v = self.contact_state(x)
+        if self.contact == "exact":
+            slips = np.abs(mode) == 1
+            sense = np.where(slips, mode, 0)
+            u = sense * v
+            mu, slope = self.coefficients(np.maximum(u, 0.0))
+            factor = sense * (mu + np.minimum(u, 0.0) * slope)  # the tangent beyond a reversal, as in the engine
+            return factor * normal, factor, np.where(slips, slope * normal, 0.0), np.equal(mode, OPEN)
+        mu, slope = self.coefficients(v)
+        sign, steep = smoothed_sign(v, self.width, self.contact)
+        opened = self.unilateral & (normal <= 0.0)
+        closed = ~opened
+        by_speed = (slope * np.sign(v) * sign + mu * steep) * normal
+        return mu * sign * normal * closed, mu * sign * closed, by_speed * closed, opened
+
+    def rate(self, x: Any, mode: Any) -> Any:
+        """x' = f(x), shape (2n,)."""
+        force, _, _, opened = self.forces(x, mode)
+        q, qd = x[: self.size], x[self.size :]
+        a = self.mf - self.mk @ q - self.mc @ qd + force @ self.md
+        if np.any(opened):
+            a = a + (self.contact_state(x)[0] * opened) @ self.mw
+        return np.concatenate([qd, a + self.held(mode, a)])
+
+    def held(self, mode: Any, a: Any) -> Any:
+        """What the sticking contacts add to accelerations a (n,) or to the columns of a matrix (n, k)."""
+        stuck = self.sticking(mode)
+        if stuck.size == 0:
+            return 0.0
+        return self.md[stuck].T @ self._holding(stuck, a)
+
+    def sticking(self, mode: Any) -> Any:
+        """Indices of the sticking contacts."""
+        return np.flatnonzero(np.equal(mode, 0)) if self.contact == "exact" else np.zeros(0, dtype=int)
+
+    def _holding(self, stuck: Any, a: Any) -> Any:
+        """Forces -G^-1 t'a; contacts that hold the same motion share (least squares)."""
+        return -np.linalg.lstsq(self.t[stuck] @ self.md[stuck].T, self.t[stuck] @ a, rcond=1e-12)[0]
+
+    def jacobian(self, x: Any, mode: Any) -> Any:
+        """df/dx, shape (2n, 2n)."""
+        by_q, by_v = self._free_jacobian(x, mode)
+        free = np.hstack([by_q, by_v])
+        n = self.size
+        return np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), free + self.held(mode, free)])
+
+    def jacobians(self, states: Any, mode: Any) -> Any:
+        """df/dx at states (k, 2n) with modes (m,) or (k, m) that stick alike, shape (k, 2n, 2n)."""
+        n = self.size
+        _, by_normal, by_speed, opened = self.forces(states, mode)
+        out = np.zeros((len(states), 2 * n, 2 * n))
+        out[:, :n, n:] = np.eye(n)
+        out[:, n:, :n] = -self.mk + np.einsum("...c,ci,cj->...ij", by_normal, self.md, self.n)
+        if np.any(opened):
+            out[:, n:, :n] += np.einsum("...c,ci,cj->...ij", 1.0 * opened, self.mw, self.n)
+        out[:, n:, n:] = -self.mc - np.einsum("...c,ci,cj->...ij", by_speed, self.md, self.t)
+        stuck = self.sticking(np.reshape(mode, (-1, len(self.V)))[0])
+        if stuck.size:
+            hold = self.md[stuck].T @ np.linalg.pinv(self.t[stuck] @ self.md[stuck].T) @ self.t[stuck]
+            out[:, n:] -= hold @ out[:, n:]
+        return out
+
+    def _free_jacobian(self, x: Any, mode: Any) -> tuple[Any, Any]:
+        _, by_normal, by_speed, opened = self.forces(x, mode)
+        by_q = -self.mk + self.md.T @ (by_normal[:, None] * self.n)
+        if np.any(opened):
+            by_q = by_q + self.mw.T @ (opened[:, None] * self.n)
+        return by_q, -self.mc - self.md.T @ (by_speed[:, None] * self.t)
+
+    def holding_force(self, x: Any, mode: Any, contact: int) -> tuple[float, Any]:
+        """Force [N] a sticking contact carries, and its gradient (2n,)."""
+        stuck = self.sticking(mode)
+        at = int(np.flatnonzero(stuck == contact)[0])
+        force, _, _, opened = self.forces(x, mode)
+        q, qd = x[: self.size], x[self.size :]
+        a = self.mf - self.mk @ q - self.mc @ qd + force @ self.md
+        if np.any(opened):
+            a = a + (self.contact_state(x)[0] * opened) @ self.mw
+        free = np.hstack(self._free_jacobian(x, mode))
+        return float(self._holding(stuck, a)[at]), self._holding(stuck, free)[at]
+
+
+def _check_autonomous(system: System) -> None:
+    if system.shape != ():
+        raise ParameterError("limit_cycles", "system", f"leading axes {system.shape}", "one system, without them")
+    varying = [system.load, *(c.N0 for c in system.contacts), *(c.V for c in system.contacts)]
+    for value in varying:
+        if isinstance(value, Schedule) and not isinstance(value, Constant):
+            raise ParameterError("limit_cycles", "system", value, "constant loads, speeds and normal forces")

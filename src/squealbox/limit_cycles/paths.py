@@ -1,0 +1,190 @@
+"""What a branch of cycles is to continuation: unknowns, residual, Jacobian, and the cycle behind a point.
+
+A harmonic path follows the coefficients of the series and omega; a shooting path the state at the largest displacement
+of one degree of freedom (its velocity is zero there, which fixes the phase) and the period.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from squealbox.limit_cycles.cycle import extremes, ordered
+from squealbox.limit_cycles.field import Field
+from squealbox.limit_cycles.harmonic_balance import Balance, Grid
+from squealbox.limit_cycles.variation import Flight, fly, quick_flight
+from squealbox.parameters import ParameterError
+from squealbox.system import System
+
+KEPT = 8  # fields or flights kept between calls at the same values
+
+
+class HarmonicPath:
+    """Residual of harmonic balance over (coefficients but one, omega) and the parameter."""
+
+    def __init__(self, make: Callable[[float], System], contact: str, width: float, grid: Grid, span: float) -> None:
+        self.make, self.contact, self.width, self.grid, self.span = make, contact, width, grid, span
+        self.balances: dict[float, Balance] = {}
+        self.column, self.size, self.omega = 0, 1.0, 1.0
+
+    def begin(self, coefficients: Any, omega: float, p: float, size: float) -> Any:
+        """Unknowns of a start; sets the phase and the scales: `size` [m] and omega."""
+        turned, self.column = self.balance(p).turned(self.grid.padded(coefficients))
+        self.size, self.omega = size, omega
+        return np.append(np.delete(turned.ravel(), self.column), omega)
+
+    @property
+    def scale(self) -> Any:
+        """Typical sizes of the unknowns."""
+        return np.append(np.full(len(self.grid.d) * self.dofs - 1, self.size), self.omega)
+
+    def rise(self, x: Any) -> Any:
+        """Direction of growing amplitude at x, for the start beside a Hopf point, in scaled variables with p."""
+        coefficients, _ = self.series(x)
+        direction = coefficients / self.size
+        direction[0] = 0.0
+        flat = np.append(np.delete(direction.ravel(), self.column), [0.0, 0.0])
+        return flat / np.linalg.norm(flat)
+
+    @property
+    def dofs(self) -> int:
+        """Number of degrees of freedom."""
+        return next(iter(self.balances.values())).field.size
+
+    def balance(self, p: float) -> Balance:
+        """The equation at a parameter value."""
+        if p not in self.balances:
+            if len(self.balances) >= KEPT:
+                self.balances.pop(next(iter(self.balances)))
+            self.balances[p] = Balance(Field(self.make(p), self.contact, self.width), self.grid)
+        return self.balances[p]
+
+    def series(self, x: Any) -> tuple[Any, float]:
+        """Coefficients (2H + 1, n) and omega of a point."""
+        return np.insert(x[:-1], self.column, 0.0).reshape(len(self.grid.d), -1), float(x[-1])
+
+    def residual(self, x: Any, p: float) -> Any:
+        """R over omega^2 size; NaN, which continuation refuses, where the parameter leaves its range."""
+        try:
+            self.balance(p)
+        except ParameterError:
+            return np.full(len(x), np.nan)
+        return self.balance(p).residual(*self.series(x))[0].ravel() / (self.omega**2 * self.size)
+
+    def jacobian(self, x: Any, p: float) -> tuple[Any, Any]:
+        """By the unknowns (analytic) and by the parameter (central difference)."""
+        coefficients, omega = self.series(x)
+        balance = self.balance(p)
+        by_q, by_omega = balance.jacobian(coefficients, omega, balance.motion(coefficients, omega))
+        by_x = np.column_stack([np.delete(by_q, self.column, axis=1), by_omega]) / (self.omega**2 * self.size)
+        step = 1e-6 * self.span
+        by_p = (self.residual(x, p + step) - self.residual(x, p - step)) / (2.0 * step)
+        return by_x, by_p
+
+    def describe(self, x: Any, p: float) -> dict[str, Any]:
+        """Period, extremes, multipliers and least sliding speed of the cycle at a point."""
+        coefficients, omega = self.series(x)
+        balance = self.balance(p)
+        states = balance.motion(coefficients, omega)
+        n = balance.field.size
+        closed = np.vstack([states, states[:1]])
+        t = np.append(self.grid.tau, 2.0 * np.pi) / omega
+        low, high = extremes(t, closed[:, :n], closed[:, n:])
+        multipliers = ordered(np.linalg.eigvals(balance.monodromy(coefficients, omega, max(128, self.grid.samples))))
+        return {"period": 2.0 * np.pi / omega, "lowest": low, "highest": high, "multipliers": multipliers,
+                "least_slip": self.least_slip(x, p), "sticking": 0.0}  # fmt: skip
+
+    def least_slip(self, x: Any, p: float) -> float:
+        """Least sliding speed in the sense of V [m/s], by a parabola through the least of many samples."""
+        field = self.balance(p).field
+        tau = np.linspace(0.0, 2.0 * np.pi, 16 * self.grid.samples, endpoint=False)
+        slip = field.contact_state(self.balance(p).motion(*self.series(x), tau))[1] * np.sign(field.V)
+        least = np.inf
+        for v in slip.T:
+            i = int(np.argmin(v))
+            a, b, c = v[i - 1], v[i], v[(i + 1) % len(v)]
+            bend = a - 2.0 * b + c
+            least = min(least, float(b - (c - a) ** 2 / (8.0 * bend) if bend > 0.0 else b))
+        return least
+
+
+class ShootingPath:
+    """Residual of shooting over (state without one velocity, period) and the parameter, from a largest displacement."""
+
+    def __init__(self, make: Callable[[float], System], rtol: float, span: float) -> None:
+        self.make, self.rtol, self.span = make, rtol, span
+        self.fields: dict[float, Field] = {}
+        self.flights: dict[bytes, Flight] = {}
+        self.column, self.scale = 0, np.ones(1)
+
+    def begin(self, x: Any, period: float, p: float, dof: int, amplitude: float) -> Any:
+        """Unknowns of a start x at which the velocity of `dof` is zero."""
+        field = self.field(p)
+        self.column = field.size + dof
+        sizes = np.append(amplitude * 2.0 * np.pi / period / field.scale, period)
+        self.scale = np.delete(sizes, self.column)
+        return np.append(np.delete(x, self.column), period)
+
+    def field(self, p: float) -> Field:
+        """The equation at a parameter value."""
+        if p not in self.fields:
+            if len(self.fields) >= KEPT:
+                self.fields.pop(next(iter(self.fields)))
+            self.fields[p] = Field(self.make(p))
+        return self.fields[p]
+
+    def fly(self, x: Any, p: float) -> tuple[Any, Flight]:
+        """Start (2n,) and flight of a point."""
+        key = np.append(x, p).tobytes()
+        start = np.insert(x[:-1], self.column, 0.0)
+        if key not in self.flights:
+            if len(self.flights) >= KEPT:
+                self.flights.pop(next(iter(self.flights)))
+            self.flights[key] = quick_flight(self.field(p), start, float(x[-1]), self.rtol)
+        return start, self.flights[key]
+
+    def residual(self, x: Any, p: float) -> Any:
+        """Scaled x(T) - x(0), shape (2n,); NaN, which continuation refuses, where the parameter leaves its range."""
+        nothing = np.full(len(x), np.nan)
+        try:
+            field = self.field(p)
+        except ParameterError:
+            return nothing
+        if not x[-1] > 0.0:
+            return nothing
+        start = np.insert(x[:-1], self.column, 0.0)
+        run = fly(field, start, float(x[-1]), self.rtol)
+        return (np.concatenate([run.q[-1], run.qd[-1]]) - start) * self._weight() if run.outcome.ok else nothing
+
+    def _weight(self) -> Any:
+        sizes = np.insert(self.scale[:-1], self.column, np.nan)
+        n = len(sizes) // 2
+        sizes[self.column] = self.scale[self.column - n] * self.field_frequency
+        return 1.0 / sizes
+
+    @property
+    def field_frequency(self) -> float:
+        """The frequency by which a velocity is a displacement [rad/s]."""
+        return next(iter(self.fields.values())).frequency
+
+    def jacobian(self, x: Any, p: float) -> tuple[Any, Any]:
+        """By the unknowns (exact) and by the parameter (central difference)."""
+        _, flown = self.fly(x, p)
+        size = flown.x.size
+        by_state = np.delete(flown.phi - np.eye(size), self.column, axis=1)
+        by_x = np.column_stack([by_state, flown.rate]) * self._weight()[:, None]
+        step = 1e-5 * self.span
+        by_p = (self.residual(x, p + step) - self.residual(x, p - step)) / (2.0 * step)
+        return by_x, by_p
+
+    def describe(self, x: Any, p: float) -> dict[str, Any]:
+        """Period, extremes, multipliers, least sliding speed and longest sticking of the cycle at a point."""
+        _, flown = self.fly(x, p)
+        motion = flown.motion
+        low, high = extremes(motion.t, motion.q, motion.qd)
+        slip = motion.sliding_velocity * np.sign(self.field(p).V)
+        sticking = np.sum((motion.mode[1:] == 0) * np.diff(motion.t)[:, None], axis=0)
+        return {"period": float(x[-1]), "lowest": low, "highest": high,
+                "multipliers": ordered(np.linalg.eigvals(flown.phi)),
+                "least_slip": float(np.min(slip, initial=np.inf)),
+                "sticking": float(np.max(sticking, initial=0.0))}  # fmt: skip

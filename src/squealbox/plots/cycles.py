@@ -1,0 +1,125 @@
+"""Figures of limit cycles: one cycle with its multipliers, and branches of cycles over a parameter."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.limit_cycles import Branch, Cycle, HopfPoint
+from squealbox.plots.dispatch import plot
+from squealbox.plots.style import drawing, figure_of, line, note, number, panels, quantity_label, scaled
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# Marks of the special points: shape, and what the legend calls them.
+MARKS = {
+    "fold": ("o", "fold"),
+    "grazing": ("v", "first contact at rest"),
+    "sticking": ("^", "sticking begins or ends"),
+    "period_doubling": ("s", "period doubling"),
+    "neimark_sacker": ("D", "Neimark-Sacker"),
+}
+
+
+@plot.register(Cycle)
+def cycle_overview(cycle: Cycle, *, dof: int = 0, title: str = "") -> "Figure":
+    """One period in time (sticking shaded), the orbit in the phase plane and the multipliers in the unit circle."""
+    figure, axes = panels(1, 3, height=2.5, width_ratios=[1.4, 1.0, 1.0])
+    factor, read = scaled("m", cycle.q[:, dof])
+    speed, clock = scaled("m/s", cycle.qd[:, dof])
+    second, time = scaled("s", cycle.t)
+    stuck = np.any(cycle.mode == 0, axis=1)
+    with drawing(axes) as (history, plane, circle):
+        history.plot(cycle.t / second, cycle.q[:, dof] / factor, **line(0))
+        history.fill_between(cycle.t / second, 0.0, 1.0, where=stuck, color="#dddddd", linewidth=0.0,
+                             transform=history.get_xaxis_transform())  # fmt: skip
+        if np.any(stuck):
+            note(history, "grey: a contact sticks", "lower left")
+        history.set(xlabel=quantity_label("time", time), ylabel=quantity_label("displacement", read))
+        history.set_xlim(0.0, cycle.t[-1] / second)
+        plane.plot(cycle.q[:, dof] / factor, cycle.qd[:, dof] / speed, **line(0))
+        sticks = np.where(stuck, cycle.qd[:, dof], np.nan)
+        plane.plot(cycle.q[:, dof] / factor, sticks / speed, color="#888888", linewidth=2.5, zorder=1)
+        plane.set(xlabel=quantity_label("displacement", read), ylabel=quantity_label("velocity", clock))
+        plane.margins(0.08)
+        angle = np.linspace(0.0, 2.0 * np.pi, 181)
+        circle.plot(np.cos(angle), np.sin(angle), color="#888888", linewidth=0.7)
+        values = cycle.multipliers
+        circle.plot(values[1:].real, values[1:].imag, "o", color="#000000", markerfacecolor="white")
+        circle.plot(values[:1].real, values[:1].imag, "x", color="#000000")
+        circle.set(xlabel="Re multiplier [-]", ylabel="Im multiplier [-]")
+        circle.set_aspect("equal", adjustable="datalim")
+    kind = "stable" if cycle.stable else "unstable"
+    said = f"{kind} cycle, {number(cycle.frequency)} Hz" if cycle.outcome.ok else str(cycle.outcome)
+    figure.suptitle(". ".join(filter(None, (title, said))), fontsize=8)
+    return figure
+
+
+@plot.register(Branch)
+def branch_diagram(
+    branches: Branch | Sequence[Branch],
+    *,
+    dof: int = 0,
+    hopf: HopfPoint | None = None,
+    runs: tuple[Any, Any] | None = None,
+    labels: Sequence[str] = (),
+    name: str | None = None,
+    scale: float = 1.0,
+    title: str = "",
+    axes: Any = None,
+) -> "Figure":
+    """Amplitude over the parameter: stable parts solid, unstable ones dashed, special points marked.
+
+    Parameters
+    ----------
+    branches : one or several
+    dof : index of the degree of freedom
+    hopf : marks where the branch is born
+    runs : (values, amplitudes [m]) of long runs, drawn as crosses
+    labels, name : of the branches (each then has a colour of its own) and of the parameter, with its unit
+    scale : what the parameter is divided by
+    axes : draw here instead of in a new figure
+    """
+    several = [branches] if isinstance(branches, Branch) else list(branches)
+    largest = [b.amplitude[:, dof] for b in several]
+    factor, read = scaled("m", *largest)
+    with drawing(axes) as panel:
+        shown: set[str] = set()
+        for i, one in enumerate(several):
+            label = labels[i] if i < len(labels) else ""
+            _parts(panel, one, one.amplitude[:, dof] / factor, scale, line(i if labels else 0)["color"], label, shown)
+            _marks(panel, one, one.amplitude[:, dof] / factor, scale, shown)
+        if hopf is not None and hopf.outcome.ok:
+            panel.plot(hopf.value / scale, 0.0, "o", color="#000000", label="onset of instability", zorder=4)
+        if runs is not None:
+            values, sizes = (np.asarray(x) for x in runs)
+            panel.plot(values / scale, sizes / factor, "+", color="#555555", markersize=4.5, label="long run")
+        panel.set(xlabel=name or several[0].parameter, ylabel=quantity_label("amplitude", read), title=title)
+        panel.set_ylim(bottom=0.0)
+        panel.margins(x=0.05)
+        if panel.get_legend_handles_labels()[1]:
+            panel.legend(loc="best")
+        return figure_of(panel)
+
+
+def _parts(panel: Any, one: Branch, size: Any, scale: float, colour: str, label: str, shown: set[str]) -> None:
+    stable = one.stable
+    for wanted, dash in ((True, "-"), (False, "--")):
+        here = stable == wanted
+        joined = here | np.r_[here[1:], False] if len(here) else here  # reach the next part
+        kind = "stable" if wanted else "unstable"
+        if np.any(here):
+            text = f"{label}, {kind}" if label else kind
+            told = text in shown
+            shown.add(text)
+            panel.plot(np.where(joined, one.value, np.nan) / scale, np.where(joined, size, np.nan), color=colour,
+                       linestyle=dash, label=None if told else text)  # fmt: skip
+
+
+def _marks(panel: Any, one: Branch, size: Any, scale: float, shown: set[str]) -> None:
+    for kind, value, at in zip(one.special_kind, one.special_value, one.special_point, strict=True):
+        shape, text = MARKS[str(kind)]
+        label = None if text in shown else text
+        shown.add(text)
+        panel.plot(value / scale, size[int(at)], shape, color="#D55E00", markerfacecolor="white", label=label, zorder=4)
