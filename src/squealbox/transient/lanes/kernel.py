@@ -5,7 +5,7 @@ from functools import cache
 from typing import Any
 
 from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid
-from squealbox.transient.lanes import crossing, service
+from squealbox.transient.lanes import alone, crossing, service
 from squealbox.transient.lanes.formulas import formulas
 from squealbox.transient.lanes.shape import LANES, Shape, layout, parameter_rows
 from squealbox.transient.lanes.step_text import Step
@@ -39,7 +39,8 @@ PLACES = {
     "window_events", "ROW_TURNS": "turns", "ROW_LOW": "low", "ROW_LOW_PHI": "low_phi", "ROW_HIGH": "high",
     "ROW_HIGH_PHI": "high_phi", "ROW_SLIPS": "s0", "ROW_OPENED": "open0", "ROW_HOLD": "h0_0", "ROW_PHI": "phi0",
     "ROW_FRESH": "fresh0", "ROW_END": "end0", "ROW_RATE": "rate0", "ROW_RATE_END": "rate_end0", "ROW_INNER":
-    "inner0", "ROW_NEXT_SAMPLE": "next", "ROW_SAMPLE": "sample", "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0",
+    "inner0", "ROW_FORCE": "force0", "ROW_ZERO": "zero0", "ROW_OWN_G": "own_g0",
+    "ROW_NEXT_SAMPLE": "next", "ROW_SAMPLE": "sample", "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0",
 }  # fmt: skip
 
 
@@ -54,7 +55,7 @@ def source(shape: Shape) -> str:
     """The text of the generated file."""
     rows, step = layout(shape), Step(shape)
     fixed: dict[str, int] = {"WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples}
-    fixed |= {"p.rigid[]": 0, "p.rigid_count": 0}
+    fixed |= {"SIMPLE": shape.simple, "p.rigid[]": 0, "p.rigid_count": 0}
     parts = [*_engine.head(inline=False, own=shape.own), HEAD, *formulas(shape), step.text()]
     parts += [f"{name} = {rows.places.get(row, 0)}" for name, row in PLACES.items()]
     first = rows.places["o0_0_0"] if shape.observers else 0
@@ -65,10 +66,11 @@ def source(shape: Shape) -> str:
     }  # fmt: skip
     parts += [f"{name} = {value}" for name, value in counts.items()]
     parts += [_gather(shape, rows.places), _observers(shape, rows.places)]
+    parts += _one_contact(shape, rows.places) if shape.simple else []
     for module in (_motion, *((_rigid, _impacts, _modes, _events) if shape.exact else ())):
         parts += _engine.definitions(module, fixed)
     parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith("COMPLETED")]
-    for module in (*((crossing,) if shape.exact else ()), service):
+    for module in (*((crossing,) if shape.exact else ()), *((alone,) if shape.simple else ()), service):
         parts += _engine.definitions(module, fixed, entries=("run",))
     return "\n\n".join(parts) + "\n"
 
@@ -100,6 +102,43 @@ def _gather(shape: Shape, places: dict[str, int]) -> str:
     put("p.window", "window")
     lines += _signals(shape, places)
     return "\n".join([*lines, "    return"]) + "\n"
+
+
+def _one_contact(shape: Shape, places: dict[str, int]) -> list[str]:
+    """Text of what `alone` asks of one contact of a lane: normal force, speed, rate, limit, and impulses."""
+
+    def at(name: str) -> str:
+        return f"A[b + {places[name] * LANES} + lane]"
+
+    def along(c: int, rows: str, states: str, sign: str = "+") -> str:
+        pairs = [(f"{rows}{c}_{i}", f"{states}{i}") for i in range(shape.n) if f"{rows}{c}_{i}" in places]
+        return "".join(f" {sign} {at(row)} * {at(state)}" for row, state in pairs)
+
+    def value(c: int, name: str) -> str:
+        return at(f"{name}{c}") if f"{name}{c}" in places else "0.0"
+
+    def scale(c: int) -> str:
+        return "".join(f" + abs({at(f't{c}_{i}')} * {at(f'v{i}')})" for i in range(shape.n) if f"t{c}_{i}" in places)
+
+    answers = {
+        "contact_normal": lambda c: value(c, "N0") + along(c, "n", "q"),
+        "contact_speed": lambda c: value(c, "V") + along(c, "t", "v", "-"),
+        "speed_scale": lambda c: f"abs({value(c, 'V')})" + scale(c),
+        "slip_rate": lambda c: "0.0" + along(c, "t", "a", "-"),
+        "contact_static": lambda c: at(f"law{c}_0"),
+    }
+    texts = []
+    for name, answer in answers.items():
+        lines = [f"    if c == {c}:\n        return {answer(c)}" for c in range(shape.m)]
+        texts.append("\n".join(["@inner", f"def {name}(A, b, lane, c):", *lines, "    return np.nan"]))
+    for name, states in (("push", "a"), ("stop", "v")):
+        lines = [f"@inner\ndef {name}(A, b, lane, c, x):"]
+        for c in range(shape.m):
+            lines.append(f"    if c == {c}:\n        x = 1.0 * x")
+            lines += [f"        {at(f'{states}{i}')} += {at(f'md{c}_{i}')} * x"
+                      for i in range(shape.n) if f"md{c}_{i}" in places]  # fmt: skip
+        texts.append("\n".join(lines))
+    return texts
 
 
 def _signals(shape: Shape, places: dict[str, int]) -> list[str]:

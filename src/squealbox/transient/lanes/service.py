@@ -4,7 +4,7 @@ These are scalar passes over one lane of a group. Modes are decided by the very 
 record filled from the lane, so stick, slip and lift-off mean the same in both.
 """
 
-# ruff: noqa: F821  (the places of the rows, FUNCTIONS, EXACT_CONTACT, SAMPLES, gather, step and take are generated)
+# ruff: noqa: F821  (the places of the rows, FUNCTIONS, EXACT_CONTACT, SIMPLE, SAMPLES, gather, step and take are generated)
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
 import numpy as np
@@ -14,6 +14,7 @@ from squealbox.transient._march import COMPLETED, INCONSISTENT, NOT_FINITE, RUNN
 from squealbox.transient._modes import apply_event, start_modes
 from squealbox.transient._motion import INSIDE, OPEN, contact_matrix, derivative, list_sticking
 from squealbox.transient._rigid import solve
+from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
 
 WIDTH = 16
@@ -215,12 +216,16 @@ def hold_matrix(A, b, lane, p, s):
 def change_modes(A, b, lane, j, p, s):
     """An event of function j at the present state: new modes, and the bound on events in a window of time."""
     t = A[b + ROW_T * WIDTH + lane]
-    gather(A, b, lane, p, s)
-    load_state(A, b, lane, p, s)
     A[b + ROW_EVENTS * WIDTH + lane] += 1.0
-    if not apply_event(p, t, s.state, s.mode, s, j if j < CONTACTS else p.contacts + j - CONTACTS):
-        return INCONSISTENT
-    refresh(A, b, lane, t, p, s)
+    done = False
+    if SIMPLE:
+        done = change_alone(A, b, lane, j)
+    if not done:
+        gather(A, b, lane, p, s)
+        load_state(A, b, lane, p, s)
+        if not apply_event(p, t, s.state, s.mode, s, j if j < CONTACTS else p.contacts + j - CONTACTS):
+            return INCONSISTENT
+        refresh(A, b, lane, t, p, s)
     A[b + ROW_H * WIDTH + lane] = A[b + ROW_RESUME * WIDTH + lane]
     A[b + ROW_TARGET * WIDTH + lane] = -1.0
     A[b + ROW_TRUST * WIDTH + lane] = 0.0

@@ -40,6 +40,11 @@ class Shape:
         return bool(self.signals)
 
     @property
+    def simple(self) -> bool:
+        """Whether the usual event can be decided on the rows alone: constant signals, no contact that opens."""
+        return self.exact and not self.varying and not any(self.unilateral)
+
+    @property
     def functions(self) -> int:
         """How many event functions there are."""
         return self.m * (2 if any(self.unilateral) else 1)
@@ -69,6 +74,8 @@ def parameter_rows(shape: Shape) -> list[str]:
     for index, terms in enumerate(shape.signals):
         for k, (_, count) in enumerate(terms):
             names += [f"weight{index}_{k}"] + [f"given{index}_{k}_{i}" for i in range(count)]
+    if shape.simple:
+        names += [f"zero{c}" for c in range(m)] + [f"own_g{c}" for c in range(m)]
     names += [f"start{k}" for k in range(2 * n)] + [f"atol{k}" for k in range(2 * n)]
     names += [f"break{k}" for k in range(shape.breaks)]
     return [*names, "rtol", "width", "window", "largest", "least", "first"]
@@ -91,6 +98,7 @@ def layout(shape: Shape) -> Rows:
         rows.add("target", "tolerance", "trust", "resume", "events", "window_start", "window_events", "turns")
         rows.add("low", "low_phi", "high", "high_phi")
         rows.add(*(f"s{c}" for c in range(m)), *(f"open{c}" for c in range(m)))
+        rows.add(*(f"force{c}" for c in range(m)))
         rows.add(*(f"h{c}_{b}" for c in range(m) for b in range(m)))
         for name in ("phi", "fresh", "end", "rate", "rate_end", "inner"):
             rows.add(*(f"{name}{j}" for j in range(shape.functions)))

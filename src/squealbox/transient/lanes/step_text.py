@@ -160,6 +160,7 @@ class Step(EventText):
             vs.append(us)
             as_.append(contact[-1]["a"])
         q1, v1, a1 = qs, us, as_[-1]
+        self.end = contact[-1]
         self.error(q, v, q1, v1, vs, as_)
         self.put("fine = square <= 1.0")
         if shape.exact:
@@ -260,6 +261,8 @@ class Step(EventText):
                 self.keep(f"fresh{j}", f"where(accepted, 0.0, {self.row(f'fresh{j}')})")
             for j in range(shape.m, shape.functions):
                 self.keep(f"phi{j}", f"where(accepted, value{j}, {self.row(f'phi{j}')})")
+            for c, force in enumerate(self.end["force"]):
+                self.keep(f"force{c}", force)
             self.keep("trust", f"where(accepted, 0.0, {self.row('trust')})")
             self.keep("target", "where(fine, target_, -1.0)")
             self.put("landed = event & accepted")

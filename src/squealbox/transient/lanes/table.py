@@ -112,6 +112,7 @@ def _equation(system: System, batch: tuple[int, ...]) -> tuple[dict[str, Any], A
             values[f"g{c}_{e}"] = np.sum(contact.t * _times(inverse, other.d), axis=-1)
         for i, coefficient in enumerate(contact.law.coefficients()):
             values[f"law{c}_{i}"] = np.asarray(coefficient, dtype=float)
+        values[f"zero{c}"], values[f"own_g{c}"] = np.asarray(contact.law.mu(0.0), dtype=float), values[f"g{c}_{c}"]
         values[f"slope{c}"] = np.asarray(contact.law.slope_at(0.0), dtype=float)
     signals = [_terms(c.V) for c in contacts] + [_terms(c.N0) for c in contacts]
     load = packing.load_terms(system)
