@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from squealbox.papers.drum_brake_2011 import record, search_results
-from squealbox.papers.drum_brake_2011.cases import ALPHA, DEFAULT_READING, PRINTED, SPEED
+from squealbox.papers.drum_brake_2011.cases import ALPHA, DEFAULT_READING, DURATION, PRINTED, SPEED
 from squealbox.papers.drum_brake_2011.claims import AGREE, DISAGREE, EXACT, RAW, ROADS, UNDECIDED, claims, paper
+from squealbox.papers.drum_brake_2011.ensembles import LEVEL, LONGER, MEANS
 from squealbox.papers.drum_brake_2011.motions import METHODS
 from squealbox.report import Cell, Code, Page, Picture, Points, Section, Table, Text, Tiles
 
@@ -30,6 +31,13 @@ CAPTIONS = {
     "fig8": "Fig. 8. Braking from 0.2 m/s to rest in 0.05 s. Grey: where the paper sees a constant amplitude. "
     "The kick at the end is the belt coming to rest.",
     "fig9": "Fig. 9. Growth rate over both centres of pressure in steps of 1 deg. Blue: the published unstable zone.",
+    "maps_friction": "Friction with load and with speed. Left: growth rate by eigenvalues. Right: 101 x 101 transients "
+    "from rest; black line: the boundary by eigenvalues.",
+    "maps_pressure": "Centres of pressure. Left: growth rate by eigenvalues. Right: transients from rest at the same "
+    "points; black line: the boundary by eigenvalues; pink: the published zone.",
+    "maxima": "The last eight maxima of x over the friction coefficient after 0.5 s. One mark a value of mu is a cycle or "
+    "steady sliding, several are a motion of several frequencies. Circles: from rest; dots: from 0.1 % beside steady "
+    "sliding. Where they part, sliding is stable and a cycle exists beside it.",
 }
 SIGNS = {AGREE: "✓", DISAGREE: "✗", UNDECIDED: "?"}
 
@@ -182,7 +190,25 @@ def _reading(name: str, study: Mapping[str, Any], found: list[record.Record], fo
     pictures = tuple(_picture(folder, figure) for figure in study["figures"])
     table = Section("All numbers", (Table(head, tuple(rows)),), folded=True)
     runs = (Section("All runs, raw beside exact", (_runs(study["runs"]),), folded=True),) if study["runs"] else ()
-    return (Text(f"{READING_MEANS[name][0].upper()}{READING_MEANS[name][1:]}."), table, *runs, *pictures)
+    shares = _shares(study.get("shares", []))
+    return (Text(f"{READING_MEANS[name][0].upper()}{READING_MEANS[name][1:]}."), table, *runs, *pictures, *shares)
+
+
+def _shares(maps: list[dict[str, Any]]) -> tuple[Any, ...]:
+    """What the maps by transients are made of, and why they differ from those by eigenvalues."""
+    if not maps:
+        return ()
+    rows = tuple(
+        (each["map"], f"{each['points']:,}", *(f"{share:.2%}" for share in each["shares"])) for each in maps
+    )
+    caption = (
+        f"Maps by transients: share of each kind. A trajectory starts from rest and squeals when, over the last fifth of "
+        f"{1e3 * DURATION:g} ms, the speed of its vibration (2 pi times frequency times amplitude) is above {LEVEL:g} V_B. "
+        f"Where that differs from the eigenvalues it is run again for {LONGER:g} s: what still squeals is a cycle beside "
+        "stable sliding, which the step load from rest reaches and an eigenvalue cannot see; what is then quiet was "
+        "still ringing, so 50 ms is too short to tell. Not decided: the trajectory did not reach its end."
+    )
+    return (Table(("map", "trajectories", *MEANS), rows, caption),)
 
 
 def _why(part: record.Record) -> str:
