@@ -47,23 +47,25 @@ def planes(load: SquealMap, speed: SquealMap) -> "Figure":
 
 
 def maxima(case: Case, found: Maxima, onset: float) -> "Figure":
-    """The last eight maxima of x over the friction coefficient, from rest and from beside steady sliding."""
+    """The last eight maxima of x, less steady sliding, over friction; from rest and from beside steady sliding."""
     with drawing(None, width=6.4, height=3.4) as panel:
-        panel.plot(found.mu, 1e6 * found.sliding, color="#808080", linewidth=0.8, label="steady sliding")
+        panel.axhline(0.0, color="#808080", linewidth=0.8)
         for values, mark, colour, size, name in (
             (found.from_rest, "o", "#D55E00", 3.0, "from rest"),
             (found.from_sliding, ".", "#000000", 1.6, "from beside steady sliding"),
         ):
             mu = np.broadcast_to(found.mu[:, None], values.shape)
             face = "none" if mark == "o" else colour
+            away = values - found.sliding[:, None]
             panel.plot(
-                mu.ravel(), 1e6 * values.ravel(), mark, color=colour, markersize=size, markerfacecolor=face,
+                mu.ravel(), 1e6 * away.ravel(), mark, color=colour, markersize=size, markerfacecolor=face,
                 markeredgewidth=0.4, label=name,
             )  # fmt: skip
         if np.isfinite(onset) and found.mu[0] < onset < found.mu[-1]:
             panel.axvline(onset, color="#0072B2", linestyle=(0, (4, 2)), linewidth=0.9, label="onset by eigenvalues")
         panel.set(xlim=(found.mu[0], found.mu[-1]), xlabel=quantity_label(MU[0], MU[1]))
-        panel.set_ylabel(quantity_label("maxima of x", "µm"))
+        panel.set_yscale("symlog", linthresh=1.0)
+        panel.set_ylabel(quantity_label("maxima of x, less steady sliding", "µm"))
         panel.set_title(f"{case.reading}, after 0.5 s")
         panel.legend(loc="best")
         return figure_of(panel)

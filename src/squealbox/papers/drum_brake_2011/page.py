@@ -35,9 +35,9 @@ CAPTIONS = {
     "from rest; black line: the boundary by eigenvalues.",
     "maps_pressure": "Centres of pressure. Left: growth rate by eigenvalues. Right: transients from rest at the same "
     "points; black line: the boundary by eigenvalues; pink: the published zone.",
-    "maxima": "The last eight maxima of x over the friction coefficient after 0.5 s. One mark a value of mu is a cycle or "
-    "steady sliding, several are a motion of several frequencies. Circles: from rest; dots: from 0.1 % beside steady "
-    "sliding. Where they part, sliding is stable and a cycle exists beside it.",
+    "maxima": "The last eight maxima of x, less steady sliding, over the friction coefficient after 0.5 s. One mark a value "
+    "of mu is a cycle of one maximum, several are a cycle of several or a motion that does not repeat. Circles: from rest; dots: from 0.1 % beside steady "
+    "sliding. Where they part, the start decides between two motions. Linear within 1 µm of zero.",
 }
 SIGNS = {AGREE: "✓", DISAGREE: "✗", UNDECIDED: "?"}
 
@@ -198,15 +198,14 @@ def _shares(maps: list[dict[str, Any]]) -> tuple[Any, ...]:
     """What the maps by transients are made of, and why they differ from those by eigenvalues."""
     if not maps:
         return ()
-    rows = tuple(
-        (each["map"], f"{each['points']:,}", *(f"{share:.2%}" for share in each["shares"])) for each in maps
-    )
+    rows = tuple((each["map"], f"{each['points']:,}", *(f"{share:.2%}" for share in each["shares"])) for each in maps)
     caption = (
-        f"Maps by transients: share of each kind. A trajectory starts from rest and squeals when, over the last fifth of "
-        f"{1e3 * DURATION:g} ms, the speed of its vibration (2 pi times frequency times amplitude) is above {LEVEL:g} V_B. "
-        f"Where that differs from the eigenvalues it is run again for {LONGER:g} s: what still squeals is a cycle beside "
-        "stable sliding, which the step load from rest reaches and an eigenvalue cannot see; what is then quiet was "
-        "still ringing, so 50 ms is too short to tell. Not decided: the trajectory did not reach its end."
+        "Maps by transients: share of each kind. A trajectory starts from rest and squeals when, over the last fifth "
+        f"of {1e3 * DURATION:g} ms, the speed of its vibration (2 pi times frequency times amplitude) is above "
+        f"{LEVEL:g} V_B. Where that differs from the eigenvalues it is run again for {1e3 * LONGER:g} ms. What holds "
+        "its level is a cycle beside stable sliding: the step load from rest reaches it, and an eigenvalue cannot see "
+        "it. What has fallen was still ringing: 50 ms are too short to tell. Not decided: the trajectory hung where "
+        "contacts stick and slip without end, and was stopped."
     )
     return (Table(("map", "trajectories", *MEANS), rows, caption),)
 
