@@ -35,7 +35,7 @@ def paper(name: str, *, out: Path | None = None, fine: bool = False) -> None:
     out
         folder for the figures, claims.json, claims.md and one HTML page; the paper's name when left out
     fine
-        maps by transients at 561 x 561 points in the place of 141 x 141; takes some minutes more
+        maps by transients at 561 x 561 points in the place of 141 x 141, and more of them; takes some minutes more
     """
     if name not in PAPERS:
         raise UsageError(f"{name[:40]!r} is no paper this program knows: {known_names(name[:40], list(PAPERS))}")

@@ -22,7 +22,8 @@ def reproduce(
     `out` then holds index.html (self-contained), claims.json, claims.md, search.csv, and figures/ with Figs. 1 to 9 of
     the default reading, the other readings' in folders of their names, each as PNG and SVG. `progress` is called with
     what was done and the share that is done. `fine` draws the maps of the
-    centres of pressure by transients at 561 x 561 points in the place of 141 x 141. Takes about a minute on 2
+    centres of pressure by transients at 561 x 561 points in the place of 141 x 141, and those of friction with load and
+    speed for reading eq3 as well. Takes about a minute on 2
     processors once the kernels are compiled, and several minutes more with `fine`.
 
     Source: Journal of Vibroengineering 13(2), paper 632, June 2011.

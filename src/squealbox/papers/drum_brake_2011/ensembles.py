@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.papers.drum_brake_2011.cases import DURATION, MAP_ANGLES, Case
+from squealbox.papers.drum_brake_2011.cases import DEFAULT_READING, DURATION, MAP_ANGLES, Case
 from squealbox.stability import stability_map
 from squealbox.system import as_system, equilibrium
 from squealbox.transient import Ensemble, Method, simulate_ensemble
@@ -42,14 +42,18 @@ MEANS = (
 
 @dataclass(frozen=True)
 class Sizes:
-    """How many values each axis has: of the centres of pressure, of friction with load or speed, of friction alone."""
+    """How many values each axis has: of the centres of pressure, of friction with load or speed, of friction alone.
+
+    `planes` are the readings whose friction is varied together with load and speed.
+    """
 
     pressure: int = 141
     plane: int = 101
     friction: int = 301
+    planes: tuple[str, ...] = (DEFAULT_READING,)
 
 
-USUAL, FINE = Sizes(), Sizes(pressure=561)
+USUAL, FINE = Sizes(), Sizes(pressure=561, planes=(DEFAULT_READING, "eq3"))
 
 
 @dataclass(frozen=True)

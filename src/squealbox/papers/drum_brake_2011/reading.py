@@ -15,7 +15,7 @@ from squealbox.plots import style
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-PLANES = (DEFAULT_READING, "eq3")  # readings whose friction is varied together with load and speed
+ALONG_FRICTION = (DEFAULT_READING, "eq3")  # readings with a diagram of the maxima over friction
 DOTS = 160  # per inch
 MAP_FRICTION = (FRICTION, 0.35)  # the paper compares its map with one measured at 0.35
 Drawer = Callable[[], "Figure"]
@@ -57,14 +57,13 @@ def _ensembles(case: Case, sizes: ensembles.Sizes) -> tuple[dict[str, Drawer], l
     centres = ensembles.pressure(case, sizes.pressure)
     drawn: dict[str, Drawer] = {"maps_pressure": lambda: ensemble_figures.pressure(centres)}
     maps = {"centres of pressure": centres}
-    if case.reading in PLANES:
+    if case.reading in sizes.planes:
         load, speed = (each(case, sizes.plane) for each in (ensembles.friction_and_load, ensembles.friction_and_speed))
-        over, onset = ensembles.maxima(case, sizes.friction), steady.onset_in_friction(case).value
         maps |= {"friction and load": load, "friction and speed": speed}
-        drawn |= {
-            "maps_friction": lambda: ensemble_figures.planes(load, speed),
-            "maxima": lambda: ensemble_figures.maxima(case, over, onset),
-        }
+        drawn["maps_friction"] = lambda: ensemble_figures.planes(load, speed)
+    if case.reading in ALONG_FRICTION:
+        over, onset = ensembles.maxima(case, sizes.friction), steady.onset_in_friction(case).value
+        drawn["maxima"] = lambda: ensemble_figures.maxima(case, over, onset)
     return drawn, [{"map": name, "points": int(each.kind.size), "shares": each.shares} for name, each in maps.items()]
 
 
