@@ -56,7 +56,7 @@ def named(sheet):
 @pytest.fixture(scope="module")
 def compiled():
     """The generated file with its laws and schedules, compiled one by one when called."""
-    return _engine._module(_engine.source(events=False))
+    return _engine.load_module(_engine.source(events=False))
 
 
 def test_every_law_and_schedule_has_an_example():

@@ -396,6 +396,5 @@ def _outer(a: Any, b: Any) -> Any:
 
 def _form(a: Any, matrix: Any, b: Any) -> Any:
     """a . matrix b over leading axes; one matrix for all rows goes through one matrix product."""
-    a, b = np.asarray(a), np.asarray(b)
-    product = b @ matrix.T if np.ndim(matrix) == 2 else np.einsum("...ij,...j->...i", matrix, b)
-    return np.sum(a * product, axis=-1)
+    product = np.asarray(b) @ matrix.T if np.ndim(matrix) == 2 else np.einsum("...ij,...j->...i", matrix, b)
+    return np.sum(np.asarray(a) * product, axis=-1)

@@ -29,7 +29,7 @@ def test_the_generated_file_holds_the_source_and_changes_with_it():
     contacts = [MassOnBelt(friction=law).system().contacts[0] for law in (first, Coulomb(0.3), second, first)]
     own = own_texts(contacts)
     assert law_kinds(contacts).tolist() == [6, 0, 7, 6]
-    plain = _engine._module(_engine.source(True, plain=True, own=own))
+    plain = _engine.load_module(_engine.source(True, plain=True, own=own))
     p = np.array(first.coefficients())
     for v in (0.0, 0.1, 1.3):
         assert plain.law_mu(6, v, p) == pytest.approx(float(first.mu(v)), rel=1e-15)

@@ -196,7 +196,7 @@ def test_cache_folder_that_cannot_be_written_warns_and_works(monkeypatch, tmp_pa
     blocked.write_text("not a folder")
     monkeypatch.setenv("SQUEALBOX_CACHE", str(blocked / "kernels"))
     with pytest.warns(RuntimeWarning, match="is not writable"):
-        kernel = _engine._module(_engine.source(events=False, plain=True)).march
+        kernel = _engine.load_module(_engine.source(events=False, plain=True)).march
     assert kernel.__name__ == "march"
 
 
@@ -205,11 +205,11 @@ def test_cache_folder_is_chosen_by_the_environment(monkeypatch, tmp_path):
     text = _engine.source(events=True, plain=True)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        _engine._module(text)
+        _engine.load_module(text)
     (file,) = (tmp_path / "here").glob("*.py")
     assert file.read_text() == text
     file.write_text("raise RuntimeError('spoilt')")  # a damaged file is written anew
-    _engine._module(text)
+    _engine.load_module(text)
     assert file.read_text() == text
 
 

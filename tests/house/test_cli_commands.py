@@ -363,7 +363,8 @@ def test_a_folder_that_cannot_be_made_is_said(place, said, brake, tmp_path):
 def test_paper(said, tmp_path, monkeypatch):
     from squealbox.papers import drum_brake_2011
 
-    def reproduce(out, progress=None):
+    def reproduce(out, progress=None, fine=False):
+        assert not fine
         progress("half of it", 0.5)
         (out / "index.html").write_text("a page")
         return out / "index.html"

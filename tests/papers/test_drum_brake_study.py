@@ -10,6 +10,7 @@ import pytest
 from squealbox.papers.drum_brake_2011 import (
     by_eigenvalues,
     by_transients,
+    ensembles,
     figures,
     jobs,
     reading,
@@ -176,9 +177,9 @@ def test_each_reading_shows_by_what_it_loses_stability(name: str, friction: str,
 def folder(tmp_path_factory) -> Iterator[object]:
     """The whole command with two readings computed and their answers standing in for the others."""
 
-    def two_only(readings, figures, progress):
+    def two_only(readings, figures, progress, fine):
         printed = reading.study(Case(PRINTED), figures / PRINTED)
-        default = reading.study(Case(DEFAULT_READING), figures)
+        default = reading.study(Case(DEFAULT_READING), figures, ensembles.Sizes(5, 5, 7))
         found = {name: default if name == DEFAULT_READING else printed for name in readings}
         for name in readings:
             if name not in (PRINTED, DEFAULT_READING):
@@ -226,7 +227,7 @@ def test_transient_claims_have_raw_and_exact_side_by_side(folder) -> None:
 def test_the_page_shows_the_claims_first_and_holds_every_figure(folder) -> None:
     text = (folder / "index.html").read_text(encoding="utf-8")
     assert text.index("mu-1") < text.index("<img")
-    assert text.count("<img") == 2 + 7 + 5 * 2 + 1  # Figs. 1 and 2, the default's, two for each stand-in, the search
+    assert text.count("<img") == 2 + 10 + 5 * 2 + 1  # Figs. 1 and 2, the default's, two for each stand-in, the search
     assert "http" not in text.replace("http-equiv", "")
 
 

@@ -38,7 +38,7 @@ def trajectory(t=T, outcome=None):
     return Trajectory(
         t=t, q=moved.q, qd=moved.qd, normal_force=contacts, sliding_velocity=contacts, friction_force=contacts,
         mode=contacts, work_friction=contacts + 1e-3 * t[:, None], work_load=1e-4 * t, work_circulation=none,
-        work_dissipated=2e-3 * t, work_opening=none, event_time=none[:0], event_contact=none[:0],
+        work_dissipated=2e-3 * t, work_opening=none, work_impact=none, event_time=none[:0], event_contact=none[:0],
         event_mode=none[:0], inputs={"system": system}, outcome=outcome or Outcome(),
     )  # fmt: skip
 

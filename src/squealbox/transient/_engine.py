@@ -195,6 +195,7 @@ class _Fixed(ast.NodeTransformer):
 
 
 def load_module(text: str) -> ModuleType:
+    """The text as a module, from a file named by its content."""
     name = f"squealbox_kernel_{hashlib.sha256(text.encode()).hexdigest()[:20]}"
     path = _written(name, text)
     spec = importlib.util.spec_from_file_location(name, path)

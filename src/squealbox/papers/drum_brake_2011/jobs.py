@@ -21,6 +21,7 @@ from squealbox.papers.drum_brake_2011.cases import DEFAULT_READING, PRINTED, Cas
 from squealbox.papers.drum_brake_2011.claims import EXACT, RAW
 
 MOST_WORKERS = 4  # each holds about 300 MB
+KERNELS = ("consistent", "eq1_printed", "componentwise", "eq3")  # eq3_signed has the equation of eq3
 Job = dict[str, Any]
 Progress = Callable[[str, float], None]
 Idle = SimpleQueue[subprocess.Popen[str]]
@@ -55,7 +56,7 @@ def run(jobs: list[Job], progress: Progress | None = None, first: int = 0) -> li
 
 
 def everything(
-    readings: Sequence[str], figures: Path, progress: Progress | None = None
+    readings: Sequence[str], figures: Path, progress: Progress | None = None, fine: bool = False
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Study and search of every reading, by reading; the default reading's figures go to `figures` itself.
 
@@ -63,7 +64,11 @@ def everything(
     transients would each compile the same.
     """
     compiling = [{"kind": "compile", "contact": road, "label": f"compiled for {road} contact"} for road in (EXACT, RAW)]
-    tasks = [_task(kind, reading, figures) for kind in ("study", "search") for reading in readings]
+    compiling += [
+        {"kind": "compile maps", "reading": name, "label": f"compiled for maps of {name}"}
+        for name in readings if name in KERNELS
+    ]  # fmt: skip
+    tasks = [_task(kind, reading, figures, fine) for kind in ("study", "search") for reading in readings]
     alone = [task for task in tasks if task["reading"] == PRINTED]
     others = [task for task in tasks if task["reading"] != PRINTED]
     answers = run(compiling + alone + others, progress, len(compiling + alone))[len(compiling) :]
@@ -73,19 +78,22 @@ def everything(
 
 def do(job: Job) -> Any:
     """One job: the study or the search of one reading, or one run so that its kernel is compiled."""
-    from squealbox.papers.drum_brake_2011 import motions, reading, search
+    from squealbox.papers.drum_brake_2011 import ensembles, motions, reading, search
 
     if job["kind"] == "compile":
         return motions.studies(Case(DEFAULT_READING), job["contact"])[motions.RUNS[0]].words
+    if job["kind"] == "compile maps":
+        return ensembles.compile_kernel(job["reading"])
     if job["kind"] == "study":
-        return reading.study(Case(job["reading"]), Path(job["folder"]))
+        sizes = ensembles.FINE if job["fine"] else ensembles.USUAL
+        return reading.study(Case(job["reading"]), Path(job["folder"]), sizes)
     return search.search(job["reading"])
 
 
-def _task(kind: str, reading: str, figures: Path) -> Job:
+def _task(kind: str, reading: str, figures: Path, fine: bool) -> Job:
     folder = figures if reading == DEFAULT_READING else figures / reading
     label = f"{'study of' if kind == 'study' else 'search in'} {reading}"
-    return {"kind": kind, "reading": reading, "folder": str(folder), "label": label}
+    return {"kind": kind, "reading": reading, "folder": str(folder), "label": label, "fine": fine}
 
 
 def _processors() -> int:

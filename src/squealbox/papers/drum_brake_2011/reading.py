@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.papers.drum_brake_2011 import by_eigenvalues, by_transients, figures, steady
-from squealbox.papers.drum_brake_2011.cases import FRICTION, Case
+from squealbox.papers.drum_brake_2011 import by_eigenvalues, by_transients, ensemble_figures, ensembles, figures, steady
+from squealbox.papers.drum_brake_2011.cases import DEFAULT_READING, FRICTION, Case
 from squealbox.papers.drum_brake_2011.claims import EIGENVALUES, EXACT, RAW, Finding
 from squealbox.papers.drum_brake_2011.motions import RUNS, Motion, Studies, distance, doubt, studies
 from squealbox.plots import style
@@ -15,13 +15,14 @@ from squealbox.plots import style
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+ALONG_FRICTION = (DEFAULT_READING, "eq3")  # readings with a diagram of the maxima over friction
 DOTS = 160  # per inch
 MAP_FRICTION = (FRICTION, 0.35)  # the paper compares its map with one measured at 0.35
 Drawer = Callable[[], "Figure"]
 
 
-def study(case: Case, folder: Path) -> dict[str, Any]:
-    """Findings, runs and figure files of one case, as plain data; the figures are written to `folder`."""
+def study(case: Case, folder: Path, sizes: ensembles.Sizes = ensembles.USUAL) -> dict[str, Any]:
+    """Findings, runs, shares of maps and figure files of one case, as plain data; figures are written to `folder`."""
     maps = {mu: steady.pressure_map(case, mu=mu, traced=mu == FRICTION) for mu in MAP_FRICTION}
     found = {EIGENVALUES: by_eigenvalues.findings(case, maps[FRICTION])}
     drawn: dict[str, Drawer] = {
@@ -29,6 +30,7 @@ def study(case: Case, folder: Path) -> dict[str, Any]:
         "fig9": lambda: figures.pressure_maps(maps),
     }
     runs: list[dict[str, Any]] = []
+    shares: list[dict[str, Any]] = []
     if case.has_contacts:
         raw, exact = studies(case, RAW), studies(case, EXACT)
         found |= {RAW: by_transients.findings(raw, exact), EXACT: by_transients.findings(exact)}
@@ -40,11 +42,29 @@ def study(case: Case, folder: Path) -> dict[str, Any]:
             "fig7": lambda: figures.phase_planes(figures.LOAD_SHOWN, raw, exact),
             "fig8": lambda: figures.braking(raw, exact),
         }
+        more, shares = _ensembles(case, sizes)
+        drawn |= more
     else:
         found |= {RAW: by_transients.without_contacts(), EXACT: by_transients.without_contacts()}
     for name, draw in sorted(drawn.items()):
         save(draw(), folder / name)
-    return {"findings": {road: _plain(each) for road, each in found.items()}, "runs": runs, "figures": sorted(drawn)}
+    plain = {road: _plain(each) for road, each in found.items()}
+    return {"findings": plain, "runs": runs, "shares": shares, "figures": sorted(drawn)}
+
+
+def _ensembles(case: Case, sizes: ensembles.Sizes) -> tuple[dict[str, Drawer], list[dict[str, Any]]]:
+    """Figures of the maps by transients, and the share of each of their kinds."""
+    centres = ensembles.pressure(case, sizes.pressure)
+    drawn: dict[str, Drawer] = {"maps_pressure": lambda: ensemble_figures.pressure(centres)}
+    maps = {"centres of pressure": centres}
+    if case.reading in sizes.planes:
+        load, speed = (each(case, sizes.plane) for each in (ensembles.friction_and_load, ensembles.friction_and_speed))
+        maps |= {"friction and load": load, "friction and speed": speed}
+        drawn["maps_friction"] = lambda: ensemble_figures.planes(load, speed)
+    if case.reading in ALONG_FRICTION:
+        over, onset = ensembles.maxima(case, sizes.friction), steady.onset_in_friction(case).value
+        drawn["maxima"] = lambda: ensemble_figures.maxima(case, over, onset)
+    return drawn, [{"map": name, "points": int(each.kind.size), "shares": each.shares} for name, each in maps.items()]
 
 
 def save(figure: "Figure", path: Path) -> None:
