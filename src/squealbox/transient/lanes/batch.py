@@ -1,5 +1,6 @@
 """Batches of systems: many stacked into one with leading axes, and one out of many."""
 
+import dataclasses
 from collections.abc import Sequence
 from typing import Any
 
@@ -46,11 +47,10 @@ def _stacked_law(laws: list[Any]) -> Any:
     first = laws[0]
     if all(law == first for law in laws):
         return first
-    fields = {name: [getattr(law, name) for law in laws] for name in first.__dataclass_fields__}
-    if any(value is None for values in fields.values() for value in values):
-        fields = {name: values for name, values in fields.items() if any(value is not None for value in values)}
-        if any(value is None for values in fields.values() for value in values):
-            raise InvalidSystem("friction laws of a sequence must set the same fields: run them apart")
+    fields = {each.name: [getattr(law, each.name) for law in laws] for each in dataclasses.fields(first)}
+    fields = {name: values for name, values in fields.items() if any(value != values[0] for value in values)}
+    if any(not isinstance(value, (int, float)) for values in fields.values() for value in values):
+        raise InvalidSystem("friction laws of a sequence may differ in numbers that all of them set: run them apart")
     return first.replace({name: np.array(values, dtype=float) for name, values in fields.items()})
 
 
