@@ -1,12 +1,13 @@
 """Ensembles of drum transients against every rival there is: one run, ratios with their spread.
 
-a) plain sgn with Bogacki-Shampine 3(2) at rtol 1e-3: SciPy's RK23 with a NumPy right-hand side, CyRK's compiled RK23,
-   numbalsoda's DOP853 (each when installed), the scalar `simulate`, and lanes.cpp, which g++ compiles here.
+a) plain sgn with Bogacki-Shampine 3(2) at rtol 1e-3: SciPy's RK23 with a NumPy right-hand side, CyRK's compiled RK23
+   when installed, the scalar `simulate`, and lanes.cpp, which g++ compiles here.
 b) exact stick and slip on a map of pressure centres: rate, error, slowest over median.
 c) two cores against one. d) a law of one's own and Stribeck's. e) ten degrees of freedom and six contacts.
 f) memory of many trajectories. g) share of the processor's measured peak.
 
-Times are of the processor unless said otherwise, after one run that compiles. `--quick` takes less of everything.
+Times are of the processor unless said otherwise, after one run that compiles. `--quick` takes less of everything;
+letters choose parts (g comes with a, c with b).
 """
 
 import ast
@@ -22,10 +23,10 @@ from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import numpy as np  # noqa: E402
-from transient import DURATION, SLOPE, right_hand_side, seconds  # noqa: E402
+import numpy as np
+from transient import DURATION, SLOPE, right_hand_side, seconds
 
-from squealbox import (  # noqa: E402
+from squealbox import (
     Contact,
     DrumBrake,
     LinearSlope,
@@ -36,16 +37,18 @@ from squealbox import (  # noqa: E402
     simulate,
     simulate_ensemble,
 )
-from squealbox.transient._motion import RAW  # noqa: E402
-from squealbox.transient.lanes.formulas import formulas  # noqa: E402
-from squealbox.transient.lanes.shape import parameter_rows  # noqa: E402
-from squealbox.transient.lanes.step_text import Step  # noqa: E402
-from squealbox.transient.lanes.table import tabulate  # noqa: E402
+from squealbox.transient._motion import RAW
+from squealbox.transient.lanes.formulas import formulas
+from squealbox.transient.lanes.shape import parameter_rows
+from squealbox.transient.lanes.step_text import Step
+from squealbox.transient.lanes.table import tabulate
 
 QUICK = "--quick" in sys.argv[1:]
 REPETITIONS = 3 if QUICK else 7
 RAW_OPTIONS = {"contact": "raw", "method": "bogacki-shampine", "rtol": 1e-3}
-FLAGS = "-O3 -march=native -mprefer-vector-width=512 -ffp-contract=fast -fno-math-errno -fno-trapping-math -shared -fPIC"
+FLAGS = (
+    "-O3 -march=native -mprefer-vector-width=512 -ffp-contract=fast -fno-math-errno -fno-trapping-math -shared -fPIC"
+)
 
 
 def spread(theirs, ours):
@@ -65,7 +68,9 @@ def compiled():
     if compiler is None:
         return None
     target = Path(tempfile.mkdtemp()) / "lanes.so"
-    subprocess.run([compiler, *FLAGS.split(), "-o", str(target), str(Path(__file__).with_name("lanes.cpp"))], check=True)
+    subprocess.run(
+        [compiler, *FLAGS.split(), "-o", str(target), str(Path(__file__).with_name("lanes.cpp"))], check=True
+    )
     library = ctypes.CDLL(str(target))
     library.peak.restype, library.given.restype = ctypes.c_double, ctypes.c_int64
     library.peak.argtypes = [ctypes.c_int64, ctypes.c_double]
@@ -105,7 +110,7 @@ def by_hand(library, table):
 
 
 def numba_rates(system):
-    """y' for CyRK and numbalsoda: scalar arithmetic on constants, compiled."""
+    """y' for CyRK: scalar arithmetic on constants, compiled."""
     inverse = np.linalg.inv(system.M)
     k, c, f = inverse @ system.K, inverse @ system.C, inverse @ system.load
     one, two = system.contacts
@@ -259,7 +264,9 @@ def exact():
         for rtol in (1e-5, 1e-7) if QUICK else (1e-4, 1e-5, 1e-6, 1e-7, 1e-8):
             found = simulate_ensemble(system, None, DURATION, method, rtol=rtol, **sheet)
             spent = seconds(
-                lambda s=system, m=method, r=rtol: simulate_ensemble(s, None, DURATION, m, rtol=r, observe=(), threads=1),
+                lambda s=system, m=method, r=rtol: simulate_ensemble(
+                    s, None, DURATION, m, rtol=r, observe=(), threads=1
+                ),
                 2 if QUICK else 3,
             )
             rate = side * side / spent
@@ -290,7 +297,9 @@ def cores(system):
 def per_trial(system, duration, threads=1):
     """Processor time of each tried step of a lane [s]."""
     found = simulate_ensemble(system, None, duration, rtol=1e-7, observe=(), threads=threads)
-    run = seconds(lambda: simulate_ensemble(system, None, duration, rtol=1e-7, observe=(), threads=threads), REPETITIONS)
+    run = seconds(
+        lambda: simulate_ensemble(system, None, duration, rtol=1e-7, observe=(), threads=threads), REPETITIONS
+    )
     return run / np.sum(found.tried), run
 
 
@@ -307,7 +316,9 @@ def laws():
     simulate_ensemble(own, None, 1e-3, observe=())
     cost = {name: per_trial(s, 0.02) for name, s in (("line", line), ("curve", curve), ("own", own))}
     print(f"\nd) per tried step: Stribeck over LinearSlope {spread(cost['curve'][0], cost['line'][0])}; asked 2.2")
-    print(f"   the same Stribeck as a plain function over built in {spread(cost['own'][0], cost['curve'][0])}; asked 1.1")
+    print(
+        f"   the same Stribeck as a plain function over built in {spread(cost['own'][0], cost['curve'][0])}; asked 1.1"
+    )
     if not QUICK:
         with tempfile.TemporaryDirectory() as fresh:
             text = f"import time; import numpy as np; from squealbox import *; law = own_law({STRIBECK!r}, " \
@@ -361,13 +372,10 @@ def main():
     library = compiled()
     if library is None:
         print("no g++: without the kernel by hand and the share of the peak")
-    if not importlib.util.find_spec("numbalsoda"):
-        print("numbalsoda is not installed")
-    raw(library)
-    exact()
-    laws()
-    sizes()
-    memory()
+    parts = {"a": lambda: raw(library), "b": exact, "d": laws, "e": sizes, "f": memory}
+    asked = [name for name in sys.argv[1:] if name in parts] or list(parts)
+    for name in asked:
+        parts[name]()
 
 
 if __name__ == "__main__":

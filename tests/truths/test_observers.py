@@ -77,7 +77,7 @@ def belts():
 def test_share_of_time_sticking(belts):
     # ten whole periods of the cycle, so the share does not depend on where in it they begin
     assert belts["sticking"][0, 0] == pytest.approx(3.0 / PERIOD, abs=1e-7)
-    assert PERIOD == pytest.approx(7.317597861, abs=1e-9)
+    assert pytest.approx(7.317597861, abs=1e-9) == PERIOD
     assert abs(belts["sticking"][1, 0] - 3.0 / PERIOD) > 0.1
 
 
