@@ -25,9 +25,10 @@ def cells(text: str) -> str:
 
 @pytest.mark.parametrize("path", [p for p in PAGES if "{code-cell}" in p.read_text()], ids=lambda path: path.stem)
 def test_cells_run(path, tmp_path):
-    code = cells(path.read_text())
+    page = tmp_path / "page.py"  # a file, so that the source of its functions can be read
+    page.write_text(cells(path.read_text()))
     environment = {**os.environ, "MPLBACKEND": "Agg"}
-    command = [sys.executable, "-W", "error", "-c", code]
+    command = [sys.executable, "-W", "error", str(page)]
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=200)
     assert done.returncode == 0, done.stderr
 

@@ -111,13 +111,15 @@ def _half_range(memory: Any) -> Any:
     return 0.5 * (memory[..., 0] - memory[..., 1])
 
 
+def peak_update(memory: Any, p: Any, before: Any, after: Any) -> Memory:
+    """Largest |q| at both ends of the step and at an extreme inside it."""
+    _, _, inside = extreme(before, after)
+    return (np.maximum(memory[0], np.maximum(np.maximum(abs(before.q), abs(after.q)), abs(inside))),)
+
+
 def peak() -> Observer:
-    """Largest |q| of each degree of freedom over the whole run [m]."""
-    return Observer("peak", amplitude_update, (0.0, 0.0), "dof", _largest, 1.0, unit="m")
-
-
-def _largest(memory: Any) -> Any:
-    return np.maximum(memory[..., 0], -memory[..., 1])
+    """Largest |q| of each degree of freedom over the whole run, its start included [m]."""
+    return Observer("peak", peak_update, (0.0,), "dof", None, 1.0, unit="m")
 
 
 def frequency_update(memory: Any, p: Any, before: Any, after: Any) -> Memory:
@@ -178,7 +180,10 @@ def settled_update(memory: Any, p: Any, before: Any, after: Any) -> Memory:
 
 
 def settled(level: float = 1e-4) -> Observer:
-    """When |q'| of each degree of freedom fell below `level` [m/s] for good [s]; inf when it had not at the end."""
+    """When |q'| of each degree of freedom fell below `level` [m/s] for good [s]; inf when it had not at the end.
+
+    It is looked at where steps end, so the instant is early by up to a step.
+    """
     return Observer("settled", settled_update, (0.0, 0.0), "dof", _when, 1.0, (level,), unit="s")
 
 
@@ -192,13 +197,13 @@ def energy_update(memory: Any, p: Any, before: Any, after: Any) -> Memory:
 
 
 def energy(last: float = 1.0) -> Observer:
-    """Energy each contact feeds into the vibration over the last part [J]."""
+    """Energy each contact feeds into the vibration over the last part [J], from the step that reaches into it on."""
     return Observer("energy", energy_update, (0.0,), "contact", None, last, unit="J")
 
 
 def sticking_update(memory: Any, p: Any, before: Any, after: Any) -> Memory:
     """Time spent sticking and time seen, from p[0] on."""
-    h = np.where(after.t > p[0], after.t - before.t, 0.0)
+    h = np.maximum(after.t - np.maximum(before.t, p[0]), 0.0)
     return (memory[0] + np.where(abs(after.mode) < 0.5, h, 0.0), memory[1] + h)
 
 
@@ -209,7 +214,7 @@ def sticking(last: float = 1.0) -> Observer:
 
 def reversed_update(memory: Any, p: Any, before: Any, after: Any) -> Memory:
     """Time spent sliding against the positive sense and time seen, from p[0] on."""
-    h = np.where(after.t > p[0], after.t - before.t, 0.0)
+    h = np.maximum(after.t - np.maximum(before.t, p[0]), 0.0)
     return (memory[0] + np.where(after.mode < -0.5, h, 0.0), memory[1] + h)
 
 

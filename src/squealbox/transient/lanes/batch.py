@@ -1,7 +1,7 @@
 """Batches of systems: many stacked into one with leading axes, and one out of many."""
 
+import dataclasses
 from collections.abc import Sequence
-from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -47,12 +47,11 @@ def _stacked_law(laws: list[Any]) -> Any:
     first = laws[0]
     if all(law == first for law in laws):
         return first
-    given = {each.name: [getattr(law, each.name) for law in laws] for each in fields(first)}
-    if any(value is None for values in given.values() for value in values):
-        given = {name: values for name, values in given.items() if any(value is not None for value in values)}
-        if any(value is None for values in given.values() for value in values):
-            raise InvalidSystem("friction laws of a sequence must set the same fields: run them apart")
-    return first.replace({name: np.array(values, dtype=float) for name, values in given.items()})
+    fields = {each.name: [getattr(law, each.name) for law in laws] for each in dataclasses.fields(first)}
+    fields = {name: values for name, values in fields.items() if any(value != values[0] for value in values)}
+    if any(not isinstance(value, (int, float)) for values in fields.values() for value in values):
+        raise InvalidSystem("friction laws of a sequence may differ in numbers that all of them set: run them apart")
+    return first.replace({name: np.array(values, dtype=float) for name, values in fields.items()})
 
 
 def first_of(system: System) -> System:
@@ -75,7 +74,7 @@ def _first(value: Any, tail: int) -> Any:
     if value is None or isinstance(value, (bool, str)):
         return value
     if isinstance(value, DataSheet):
-        own = {each.name: getattr(value, each.name) for each in fields(value)}  # type: ignore[arg-type]
+        own = {each.name: getattr(value, each.name) for each in dataclasses.fields(value)}  # type: ignore[arg-type]
         if isinstance(value, Sum):
             return Sum(tuple((_first(w, tail), _first(part, 0)) for w, part in own["parts"]))
         scalars = {name: _first(x, 0) for name, x in own.items() if isinstance(x, np.ndarray) and x.ndim > 0}

@@ -60,7 +60,7 @@ def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out
         ended = RUNNING
         if code & LOST:
             ended = UNDERFLOW if is_finite(A, b, lane) else NOT_FINITE
-        elif code & OVER:
+        elif code & OVER and not code & DONE:
             ended = STEP_LIMIT
         elif EXACT_CONTACT and code & LANDED:
             ended = change_modes(A, b, lane, int(A[b + ROW_TARGET * WIDTH + lane]), p, s)

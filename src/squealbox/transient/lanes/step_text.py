@@ -307,6 +307,8 @@ class Step(EventText):
             speed = " + ".join(self.signal(i, f"V{i}", "t_") + minus(self.product(f"t{i}", old[1]))) or "0.0 * t_"
             normal = " + ".join(self.signal(self.shape.m + i, f"N0{i}", "t_") + self.product(f"n{i}", old[0]))
             mode = self.row(f"s{i}") if self.shape.exact else f"(1.0 * ({end['speed'][i]} > 0.0) - 0.5) * 2.0"
+            if self.shape.exact and self.shape.unilateral[i]:  # s is 0 in both; only a contact that sticks counts as 0
+                mode = f"({mode} + 2.0 * {self.row(f'open{i}')})"
             work = self.row(f"work{i}")
             first = f"Sliding(t_, {speed}, {normal or '0.0 * t_'}, {mode}, {work})".replace("+ -", "- ")
             return first, f"Sliding(t1, {end['speed'][i]}, {end['normal'][i]}, {mode}, worked{i})"

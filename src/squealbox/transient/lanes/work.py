@@ -142,12 +142,11 @@ def _starts(
         return state.q, np.zeros(n)
     try:
         q, qd = (np.asarray(x, dtype=float) for x in start)
-        if q.ndim == 1 and qd.ndim == 1 and q.shape == qd.shape == (n,):
-            return q, qd
-        pair = [np.broadcast_to(x, (*shape, n)).reshape(-1, n)[part].reshape(*batch, n) for x in (q, qd)]
+        if not (q.ndim == qd.ndim == 1 and q.shape == qd.shape == (n,)):
+            q, qd = (np.broadcast_to(x, (*shape, n)).reshape(-1, n)[part].reshape(*batch, n) for x in (q, qd))
     except (TypeError, ValueError) as error:
         expected = f'"rest", "sliding" or (q, qd) of shape (..., {n})'
         raise ParameterError("simulate_ensemble", "start", start, expected) from error
-    if not all(np.all(np.isfinite(x)) for x in pair):
+    if not (np.all(np.isfinite(q)) and np.all(np.isfinite(qd))):
         raise ParameterError("simulate_ensemble", "start", start, "finite displacements and velocities")
-    return pair[0], pair[1]
+    return q, qd
