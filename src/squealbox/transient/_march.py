@@ -41,6 +41,7 @@ from squealbox.transient._motion import (
 from squealbox.transient._rigid import paradox
 from squealbox.transient._runge_kutta import dense_stages, error_norm, first_step, interpolate, take_step
 
+SMALLEST = 1e-300  # a positive number that stands for zero
 # how a call of `march` ended
 COMPLETED, RUNNING, UNDERFLOW, NOT_FINITE, CHATTERING, ZENO, INCONSISTENT, STEP_LIMIT = 0, 1, 2, 3, 4, 5, 6, 7
 TENSION, PAINLEVE = 8, 9
@@ -235,6 +236,8 @@ def change_modes(p, s, events, t, which):
     if not ok:
         return not_consistent(p, s)
     restart(p, s, t)
+    if which >= p.contacts or (p.unilateral[which] and s.old[which] == OPEN):
+        begin_from_zero(p, s, which)
     rebounds = False
     if p.rigid_count > 0:
         if paradox(p, s.mode, s):
@@ -249,6 +252,14 @@ def change_modes(p, s, events, t, which):
     if s.count[IN_WINDOW] <= 40 * (p.contacts + 1):
         return RUNNING
     return TENSION if pulled(p, s) else ZENO
+
+
+def begin_from_zero(p, s, which):
+    """A contact that has just opened or closed has N = 0: round-off of the other sign is no event of its own."""
+    c = which if which < p.contacts else which - p.contacts
+    j = c if s.mode[c] == OPEN else p.contacts + c
+    if not p.rigid[c]:
+        s.phi0[j] = max(s.phi0[j], SMALLEST)
 
 
 def pulled(p, s):

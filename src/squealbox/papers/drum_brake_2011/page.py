@@ -38,8 +38,8 @@ CAPTIONS = {
     "points; black line: the boundary by eigenvalues; pink: the published zone.",
     "maxima": "The last eight maxima of x, less steady sliding, over the friction coefficient after 0.5 s. One mark "
     "a value of mu is a cycle of one maximum, several are a cycle of several or a motion that does not repeat. "
-    "Circles: from rest; dots: from 0.1 % beside steady sliding. Where they part, the start decides between two motions. "
-    "Linear within 1 µm of zero.",
+    "Circles: from rest; dots: from 0.1 % beside steady sliding. Where they part, the start decides between two "
+    "motions. Linear within 1 µm of zero.",
 }
 SIGNS = {AGREE: "✓", DISAGREE: "✗", UNDECIDED: "?"}
 

@@ -225,7 +225,12 @@ def change_modes(A, b, lane, j, p, s):
         load_state(A, b, lane, p, s)
         if not apply_event(p, t, s.state, s.mode, s, j if j < CONTACTS else p.contacts + j - CONTACTS):
             return INCONSISTENT
+        opened = s.old[j] == OPEN if j < CONTACTS else True
         refresh(A, b, lane, t, p, s)
+        if FUNCTIONS > CONTACTS and opened:  # N = 0 there: round-off of the other sign is no event of its own
+            c = j if j < CONTACTS else j - CONTACTS
+            at = c if s.mode[c] == OPEN else CONTACTS + c
+            A[b + (ROW_PHI + at) * WIDTH + lane] = max(A[b + (ROW_PHI + at) * WIDTH + lane], 1e-300)
     A[b + ROW_H * WIDTH + lane] = A[b + ROW_RESUME * WIDTH + lane]
     A[b + ROW_TARGET * WIDTH + lane] = -1.0
     A[b + ROW_TRUST * WIDTH + lane] = 0.0
