@@ -35,9 +35,10 @@ CAPTIONS = {
     "from rest; black line: the boundary by eigenvalues.",
     "maps_pressure": "Centres of pressure. Left: growth rate by eigenvalues. Right: transients from rest at the same "
     "points; black line: the boundary by eigenvalues; pink: the published zone.",
-    "maxima": "The last eight maxima of x, less steady sliding, over the friction coefficient after 0.5 s; linear within "
-    "1 µm of zero. One mark a value of mu is a cycle of one maximum, several are a cycle of several or a motion that does "
-    "not repeat. Circles: from rest; dots: from 0.1 % beside steady sliding. Where they part, the start decides.",
+    "maxima": "The last eight maxima of x, less steady sliding, over the friction coefficient after 0.5 s; linear "
+    "within 1 µm of zero. One mark a value of mu is a cycle of one maximum, several are a cycle of several or a motion "
+    "that does not repeat; those that rise from zero right after the onset are still growing. Circles: from rest; "
+    "dots: from 0.1 % beside steady sliding. Where they part, the start decides.",
 }
 SIGNS = {AGREE: "✓", DISAGREE: "✗", UNDECIDED: "?"}
 
