@@ -207,8 +207,8 @@ def _shares(maps: list[dict[str, Any]]) -> tuple[Any, ...]:
         f"{LEVEL:g} V_B. Where that differs from the eigenvalues it is run again for {1e3 * LONGER:g} ms. What holds "
         "its level is a cycle beside stable sliding: the step load from rest reaches it, and an eigenvalue cannot see "
         "it. What has fallen was still ringing: 50 ms are too short to tell. Unstable, yet quiet: it grows so slowly "
-        "that the longer run is too short as well. Not decided: the trajectory hung where contacts stick and slip without "
-        "end, and was stopped."
+        "that the longer run is too short as well. Not decided: the trajectory hung where contacts stick and slip "
+        "without end, and was stopped."
     )
     return (Table(("map", "trajectories", *MEANS), rows, caption),)
 
