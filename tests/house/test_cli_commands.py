@@ -384,4 +384,4 @@ def test_every_paper_listed_can_be_reproduced():
     from squealbox.cli.papers import PAPERS
 
     for paper in PAPERS.values():
-        assert list(inspect.signature(import_module(paper.module).reproduce).parameters) == ["out", "progress"]
+        assert list(inspect.signature(import_module(paper.module).reproduce).parameters) == ["out", "progress", "fine"]

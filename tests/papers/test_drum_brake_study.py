@@ -242,7 +242,7 @@ def test_claims_md_and_search_csv_tell_the_same(folder) -> None:
 
 def test_jobs_run_in_their_own_processes(tmp_path) -> None:
     heard = []
-    work = [{"kind": "study", "reading": PRINTED, "folder": str(tmp_path), "label": "printed"}]
+    work = [{"kind": "study", "reading": PRINTED, "folder": str(tmp_path), "label": "printed", "fine": False}]
     (answer,) = jobs.run(work, lambda what, share: heard.append((what, share)))
     assert heard == [("printed", 1.0)]
     assert answer["figures"] == ["fig5", "fig9"]
@@ -250,6 +250,6 @@ def test_jobs_run_in_their_own_processes(tmp_path) -> None:
 
 
 def test_a_job_that_fails_says_which(tmp_path) -> None:
-    work = [{"kind": "study", "reading": "no such reading", "folder": str(tmp_path), "label": "nonsense"}]
+    work = [{"kind": "search", "reading": "no such reading", "label": "nonsense"}]
     with pytest.raises(jobs.JobFailed, match="nonsense: its process ended with code 1"):
         jobs.run(work)

@@ -64,7 +64,9 @@ def maxima(case: Case, found: Maxima, onset: float) -> "Figure":
         if np.isfinite(onset) and found.mu[0] < onset < found.mu[-1]:
             panel.axvline(onset, color="#0072B2", linestyle=(0, (4, 2)), linewidth=0.9, label="onset by eigenvalues")
         panel.set(xlim=(found.mu[0], found.mu[-1]), xlabel=quantity_label(MU[0], MU[1]))
+        away = 1e6 * np.concatenate([v - found.sliding[:, None] for v in (found.from_rest, found.from_sliding)])
         panel.set_yscale("symlog", linthresh=1.0)
+        panel.set_ylim(min(-0.3, 1.3 * np.nanmin(away)), max(1.0, 2.0 * np.nanmax(away)))
         panel.set_ylabel(quantity_label("maxima of x, less steady sliding", "µm"))
         panel.set_title(f"{case.reading}, after 0.5 s")
         panel.legend(loc="best")
