@@ -202,8 +202,8 @@ def same_as_by_hand(library, friction):
         frictions = friction + np.linspace(-5e-3, 5e-3, 64)
         found = simulate_ensemble(drum(friction), {"friction.static": frictions}, DURATION, observe=(), **RAW_OPTIONS)
         hand = by_hand(library, table_of(jobs_of(drum(friction).replace({"friction.static": frictions}).system())))
-        print(f"   largest difference to C++ after {DURATION} s: "
-              f"{np.max(np.abs(hand[:, 3:5] - found.q)) / np.max(np.abs(found.q)):.1e} of the largest displacement")  # fmt: skip
+        apart = np.max(np.abs(hand[:, 3:5] - found.q)) / np.max(np.abs(found.q))
+        print(f"   largest difference to C++ after {DURATION} s: {apart:.1e} of the largest displacement")
     finally:
         DURATION = whole
 
@@ -234,8 +234,8 @@ def share(library, found, spent):
     """Part g: of the measured peak, by the operations of the generated text and the steps tried."""
     flop = operations(jobs_of(drum(0.3).replace({"friction.static": np.array([0.3, 0.31])}).system()).shape)
     rate, peak = flop * np.sum(found.tried) / spent, peak_rate(library)
-    print(f"   g) {flop} operations a trial: {rate / 1e9:.1f} Gflop/s, {100 * rate / peak:.0f} % of the measured peak of "
-          f"{peak / 1e9:.1f} Gflop/s")  # fmt: skip
+    print(f"   g) {flop} operations a trial: {rate / 1e9:.1f} Gflop/s, {100 * rate / peak:.0f} % of the measured peak")
+    print(f"      of {peak / 1e9:.1f} Gflop/s")
 
 
 def mapped(side, reading, preload):
@@ -274,10 +274,12 @@ def exact():
             error = (np.max(np.abs(found.q - truth.q), axis=-1) / largest)[both]
             failed = np.sum(~both)
             stick = np.max(found["sticking"], axis=-1)
-            print(f"{reading:<12}{preload or 0:>6.0f}  {method:<17}{rtol:>7.0e}{np.median(rate):>8.0f}{np.min(rate):>7.0f}"
-                  f"{np.max(rate):>7.0f}{np.median(error):>9.0e}{np.quantile(error, 0.9):>9.0e}{np.max(error):>9.0e}"
-                  f"{np.max(found.tried) / np.median(found.tried):>9.1f}{100 * np.mean(stick > 0):>6.0f}%  "
-                  f"{'all completed' if failed == 0 else f'{failed} not completed'}")  # fmt: skip
+            slowest = np.max(found.tried) / np.median(found.tried)
+            said = "all completed" if failed == 0 else f"{failed} not completed"
+            print(f"{reading:<12}{preload or 0:>6.0f}  {method:<17}{rtol:>7.0e}{np.median(rate):>8.0f}"
+                  f"{np.min(rate):>7.0f}{np.max(rate):>7.0f}{np.median(error):>9.0e}"
+                  f"{np.quantile(error, 0.9):>9.0e}{np.max(error):>9.0e}"
+                  f"{slowest:>9.1f}{100 * np.mean(stick > 0):>6.0f}%  {said}")  # fmt: skip
     print("   asked: more than 5,000 per second and core at errors below 1e-5; slowest at most 10 times the median")
     cores(system)
 

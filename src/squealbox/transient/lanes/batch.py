@@ -74,7 +74,7 @@ def _first(value: Any, tail: int) -> Any:
     if value is None or isinstance(value, (bool, str)):
         return value
     if isinstance(value, DataSheet):
-        own = {name: getattr(value, name) for name in value.__dataclass_fields__}  # type: ignore[attr-defined]
+        own = {each.name: getattr(value, each.name) for each in dataclasses.fields(value)}  # type: ignore[arg-type]
         if isinstance(value, Sum):
             return Sum(tuple((_first(w, tail), _first(part, 0)) for w, part in own["parts"]))
         scalars = {name: _first(x, 0) for name, x in own.items() if isinstance(x, np.ndarray) and x.ndim > 0}
