@@ -186,7 +186,8 @@ def raw(library):
                 print(f"   {name:<16} is not installed")
             else:
                 print(
-                    f"   {name:<16}{1e6 * np.median(times):12.2f} us   over ours {spread(times, ours)}{ASKED.get(name, '')}"
+                    ratio = spread(times, ours) + ASKED.get(name, "")
+                    print(f"   {name:<16}{1e6 * np.median(times):12.2f} us   over ours {ratio}")
                 )
         if library is not None:
             size = np.max(np.abs(found.q))
