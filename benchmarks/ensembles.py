@@ -185,10 +185,8 @@ def raw(library):
             if times is None:
                 print(f"   {name:<16} is not installed")
             else:
-                print(
-                    ratio = spread(times, ours) + ASKED.get(name, "")
-                    print(f"   {name:<16}{1e6 * np.median(times):12.2f} us   over ours {ratio}")
-                )
+                ratio = spread(times, ours) + ASKED.get(name, "")
+                print(f"   {name:<16}{1e6 * np.median(times):12.2f} us   over ours {ratio}")
         if library is not None:
             size = np.max(np.abs(found.q))
             near = np.mean(np.max(np.abs(hand[:, 3:5] - found.q), axis=1) < 1e-2 * size)
