@@ -91,12 +91,17 @@ def unilateral(load):
 def test_lift_off_and_landing_agree_with_single_runs():
     start = (np.array([0.0, 0.05]), np.zeros(2))
     loads = np.array([-1.0, -2.0])
-    many = simulate_ensemble([unilateral(f) for f in loads], None, 4.0, observe=(), start=start, rtol=1e-9)
+    many = simulate_ensemble([unilateral(f) for f in loads], None, 4.0, observe=("sticking",), start=start, rtol=1e-9)
     for k, load in enumerate(loads):
         one = simulate(unilateral(load), 4.0, start=start, rtol=1e-9)
         assert 2 in one.event_mode
         assert many.events[k] > 10
         assert distance(many.q[k], one.q[-1], np.max(np.abs(one.q))) < 1e-6
+        mode = simulate(unilateral(load), 4.0, start=start, times=20_001, rtol=1e-9).mode
+        assert many["sticking"][k] == pytest.approx(
+            np.mean(mode == 0, axis=0), abs=1e-3
+        )  # in the air it does not stick
+        assert np.mean(mode == 2) > 0.05
 
 
 def test_braking_to_standstill_agrees_with_single_runs():

@@ -10,9 +10,10 @@ import time
 import numpy as np
 import pytest
 
-from squealbox import DrumBrake, Method, ParameterError, Result, simulate_ensemble
+from squealbox import Coulomb, DrumBrake, Method, ParameterError, Result, own_law, simulate_ensemble
 from squealbox.system import InvalidSystem
 from squealbox.transient import Observer
+from squealbox.transient.lanes.batch import first_of, stacked
 
 FRICTIONS = np.linspace(0.1, 0.44, 40)
 SHORT = 2e-3
@@ -78,6 +79,18 @@ def test_an_ensemble_survives_its_file(tmp_path):
     assert loaded.ended[0, 0] == "completed"
     with pytest.raises(KeyError, match="was not observed"):
         loaded["loudness"]
+
+
+def test_laws_of_a_sequence_may_differ_in_numbers_only():
+    own = [own_law("def mu(v, p): return p[1] + 0.0 * v", numbers=(x,), static=0.4) for x in (0.2, 0.3)]
+    assert stacked([DrumBrake(friction=Coulomb(x, 0.2)) for x in (0.3, 0.4)]).contacts[0].law.static.tolist() == [
+        0.3,
+        0.4,
+    ]
+    with pytest.raises(InvalidSystem, match="may differ in numbers"):
+        stacked([DrumBrake(friction=law) for law in own])
+    angles = DrumBrake(friction=own[0], theta1=np.array([0.5, 0.6])).system()
+    assert first_of(angles).contacts[0].law.coefficients() == own[0].coefficients()
 
 
 def path_update(memory, p, before, after):
