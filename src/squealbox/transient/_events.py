@@ -77,8 +77,9 @@ def is_linear(p, j, mode):
 def is_watched(p, j, mode, s):
     """Whether event function j can have a root in this step at all."""
     c = j if j < p.contacts else j - p.contacts
-    if j >= p.contacts:
-        return s.noisy[c] != 0 and p.unilateral[c] != 0 and mode[c] != OPEN
+    if j >= p.contacts:  # a sprung contact that sticks is released before its normal force can turn
+        lifts = mode[c] != OPEN and (mode[c] != STICK or p.rigid[c] != 0)
+        return s.noisy[c] != 0 and p.unilateral[c] != 0 and lifts
     return s.noisy[c] != 0 and (mode[c] == OPEN or p.static[c] > 0.0)
 
 
