@@ -385,29 +385,3 @@ def test_every_paper_listed_can_be_reproduced():
 
     for paper in PAPERS.values():
         assert list(inspect.signature(import_module(paper.module).reproduce).parameters) == ["out", "progress", "fine"]
-
-
-def test_ensemble_says_what_transients_end_in(said, tmp_path):
-    path = tmp_path / "brake.toml"
-    path.write_text('brake = "drum_brake"\n[friction]\nlaw = "linear_slope"\nstatic = 0.3\nslope = -0.05\n')
-    plane = ("--x", "friction.static", "0.1", "0.45", "--y", "theta1", "30deg", "40deg", "--points", "3")
-    code, out, err = said("ensemble", path, *plane, "--duration", "20 ms", "--out", tmp_path / "out")
-    assert (code, err) == (0, "")
-    assert "9 transients of 0.02 s from rest: 9 completed" in out
-    table = rows(tmp_path / "out" / "ensemble.csv")
-    assert len(table) == 9
-    assert {row["ended"] for row in table} == {"completed"}
-    quiet, loud = (float(row["amplitude [m]"]) for row in (table[0], table[-1]))
-    assert loud > 10.0 * quiet  # stable sliding rings out, beyond the onset it squeals
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {
-        "ensemble.nc", "ensemble.csv", "ensemble.png", "ensemble.svg"
-    }  # fmt: skip
-
-
-def test_ensemble_refuses_one_parameter_twice(said, tmp_path):
-    path = tmp_path / "brake.toml"
-    path.write_text('brake = "drum_brake"\n')
-    twice = ("--x", "friction.static", "0", "1", "--y", "friction.static", "0", "1")
-    code, out, err = said("ensemble", path, *twice)
-    assert (code, out) == (2, "")
-    assert "expected two different parameters" in err
