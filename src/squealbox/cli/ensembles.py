@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.cli.inputs import AllowCode, Changes, axis, folder, read, time_of, with_points
-from squealbox.cli.maps import ACROSS, UP, Plane, Span, split
+from squealbox.cli.inputs import AllowCode, Changes, folder, read, time_of
+from squealbox.cli.maps import Plane, Span, axes_of
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -50,11 +50,7 @@ def ensemble(
         folder for the figure and the numbers
     """
     found = read(file, changes, allow_code)
-    given = found.map
-    across = with_points(axis(found.design, given.x if given else None, *split(x), ACROSS), points)
-    up = with_points(axis(found.design, given.y if given else None, *split(y), UP), points)
-    if across.name == up.name:
-        raise UsageError(f"x and y are both {up.name}: expected two different parameters")
+    across, up = axes_of(found, x, y, points)
     seconds = time_of("--duration", duration)
     if not seconds > 0.0:
         raise UsageError(f"--duration {duration}: expected a time above 0 s")

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squealbox.designs import Design
+    from squealbox.files import DesignFile
     from squealbox.files.analyses import Axis
 
 Span = Annotated[tuple[str, str, str] | None, Parameter(negative="")]
@@ -55,11 +56,7 @@ def map_(
         folder for the figure, the grid and the points of the boundary
     """
     found = read(file, changes, allow_code)
-    given = found.map
-    across = with_points(axis(found.design, given.x if given else None, *split(x), ACROSS), points)
-    up = with_points(axis(found.design, given.y if given else None, *split(y), UP), points)
-    if across.name == up.name:
-        raise UsageError(f"x and y are both {up.name}: expected two different parameters")
+    across, up = axes_of(found, x, y, points)
     if out is not None:
         folder(out)
     with Progress(f"{int(across.points)} x {int(up.points)} points") as progress:
@@ -96,8 +93,17 @@ class Plane:
         return {f"{n} [{u or '-'}]": v for n, u, v in zip(self.names, self.units, (x, y), strict=True)}
 
 
-def split(span: tuple[str, str, str] | None) -> tuple[str | None, tuple[str, str] | None]:
-    """Name and ends of an axis given as three words."""
+def axes_of(found: "DesignFile", x: Span, y: Span, points: int | None) -> tuple["Axis", "Axis"]:
+    """The two axes of a plane, from the options or the section [map] of the file."""
+    given = found.map
+    across = with_points(axis(found.design, given.x if given else None, *_split(x), ACROSS), points)
+    up = with_points(axis(found.design, given.y if given else None, *_split(y), UP), points)
+    if across.name == up.name:
+        raise UsageError(f"x and y are both {up.name}: expected two different parameters")
+    return across, up
+
+
+def _split(span: tuple[str, str, str] | None) -> tuple[str | None, tuple[str, str] | None]:
     return (None, None) if span is None else (span[0], (span[1], span[2]))
 
 

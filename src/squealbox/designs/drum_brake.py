@@ -17,6 +17,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.designs.base import Design
+from squealbox.designs.rows import check_law, matrix, vector
 from squealbox.friction import FrictionLaw, LinearSlope
 from squealbox.parameters import ParameterError, choice, parameter
 from squealbox.schedules import as_schedule
@@ -70,19 +71,18 @@ class DrumBrake(Design):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not isinstance(self.friction, FrictionLaw):
-            raise ParameterError("DrumBrake", "friction", self.friction, "a friction law")
+        check_law(self)
 
     def system(self) -> System:
         """The equation of motion in the chosen reading; leading axes of the parameters are kept."""
         s1, c1, s2, c2 = self._angles()
         zero = np.zeros(np.broadcast_shapes(*(np.shape(x) for x in (self.m, self.k1, self.k3, self.k4, s1, s2))))
-        mass = _matrix(self.m + zero, zero, zero, self.m + zero)
-        damping = _matrix(self.c1 + zero, zero, zero, self.c2 + zero)
+        mass = matrix((self.m + zero, zero), (zero, self.m + zero))
+        damping = matrix((self.c1 + zero, zero), (zero, self.c2 + zero))
         cross = self.k3 * s1 * c1 + self.k4 * s2 * c2 + zero
         k11 = self.k1 + self.k3 * s1**2 + self.k4 * s2**2 + zero
         k22 = self.k2 + self.k3 * c1**2 + self.k4 * c2**2 + zero
-        stiffness = _matrix(k11, cross, cross, k22)
+        stiffness = matrix((k11, cross), (cross, k22))
         return System(mass, damping, stiffness, self._load(), READINGS[self.reading](self), names=("x", "y"))
 
     def _angles(self) -> tuple[Any, Any, Any, Any]:
@@ -90,7 +90,7 @@ class DrumBrake(Design):
 
     def _load(self) -> Any:
         s1, c1, s2, c2 = self._angles()
-        first, second = _vector(s1, -c1), _vector(-s2, c2)
+        first, second = vector(s1, -c1), vector(-s2, c2)
         if isinstance(self.load1, (float, np.ndarray)) and isinstance(self.load2, (float, np.ndarray)):
             return np.asarray(self.load1)[..., None] * first + np.asarray(self.load2)[..., None] * second
         return as_schedule(self.load1) * first + as_schedule(self.load2) * second
@@ -100,7 +100,7 @@ def _componentwise(brake: DrumBrake, rows: list[tuple[str, Any, Any, Any, Any]])
     """Contacts acting and sensing along x or y, from rows of (name, n_x, n_y, axis, sliding speed)."""
     axes = {"x": np.array([1.0, 0.0]), "y": np.array([0.0, 1.0])}
     return tuple(
-        Contact(_vector(nx, ny), axes[axis], axes[axis], 0.0, speed, brake.friction, name=name)
+        Contact(vector(nx, ny), axes[axis], axes[axis], 0.0, speed, brake.friction, name=name)
         for name, nx, ny, axis, speed in rows
     )
 
@@ -153,14 +153,14 @@ def _consistent(brake: DrumBrake) -> tuple[Contact, ...]:
     rows = (("shoe 1", brake.k3, s1, c1, brake.load1), ("shoe 2", brake.k4, s2, c2, brake.load2))
     return tuple(
         Contact(
-            n=_vector(k * s, k * c),
-            d=_vector(c, -s),
-            t=_vector(c, -s),
+            n=vector(k * s, k * c),
+            d=vector(c, -s),
+            t=vector(c, -s),
             N0=load,
             V=brake.sliding_speed,
             law=brake.friction,
             name=name,
-            normal=_vector(s, c),
+            normal=vector(s, c),
         )
         for name, k, s, c, load in rows
     )
@@ -192,14 +192,5 @@ def published_matrices(brake: DrumBrake) -> System:
     k11, k22 = brake.k1 + k3 * s1**2 + k4 * s2**2, brake.k2 + k3 * c1**2 + k4 * c2**2
     c11 = brake.c1 - alpha * brake.load1 * (c1**2 + c2**2)
     c22 = brake.c2 - alpha * brake.load1 * (s1**2 - s2**2)
-    mass = _matrix(brake.m, 0.0, 0.0, brake.m)
-    return System(mass, _matrix(c11, 0.0, 0.0, c22), _matrix(k11, k12, k21, k22), brake._load(), names=("x", "y"))
-
-
-def _vector(a: Any, b: Any) -> Any:
-    return np.stack(np.broadcast_arrays(a, b), axis=-1)
-
-
-def _matrix(a: Any, b: Any, c: Any, d: Any) -> Any:
-    a, b, c, d = np.broadcast_arrays(a, b, c, d)
-    return np.stack([_vector(a, b), _vector(c, d)], axis=-2)
+    mass = matrix((brake.m, 0.0), (0.0, brake.m))
+    return System(mass, matrix((c11, 0.0), (0.0, c22)), matrix((k11, k12), (k21, k22)), brake._load(), names=("x", "y"))

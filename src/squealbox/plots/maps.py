@@ -40,9 +40,7 @@ def stability_map(
     x_name, x_unit, y_name, y_unit, value_name, value_unit : for the axes and the bar
     curves : the boundary as traced, each curve (k, 2) in the units of the axes; without it the line is the grid's own
     """
-    x, y, grid = np.asarray(x, dtype=float), np.asarray(y, dtype=float), np.asarray(growth)
-    if grid.shape != (np.size(y), np.size(x)):
-        raise ValueError(f"growth of shape {grid.shape}: expected ({np.size(y)}, {np.size(x)}), one row for each y")
+    x, y, grid = _checked("growth", x, y, growth)
     boolean = grid.dtype == bool
     level = np.where(grid, 1.0, -1.0) if boolean else grid.astype(float)
     unknown = ~np.isfinite(level)
@@ -62,6 +60,14 @@ def stability_map(
         panel.set_facecolor("white")
         panel.tick_params(color="#000000")
         return figure_of(panel)
+
+
+def _checked(name: str, x: Any, y: Any, grid: Any) -> tuple[Any, Any, Any]:
+    """Axes and grid as arrays; `ValueError` unless the grid has one row for each y."""
+    x, y, grid = np.asarray(x, dtype=float), np.asarray(y, dtype=float), np.asarray(grid)
+    if grid.shape != (np.size(y), np.size(x)):
+        raise ValueError(f"{name} of shape {grid.shape}: expected ({np.size(y)}, {np.size(x)}), one row for each y")
+    return x, y, grid
 
 
 def _legend(panel: Any, unstable: Any, unknown: Any) -> None:
@@ -114,9 +120,7 @@ def amplitude_map(
     x, y : (nx,), (ny,), increasing, in the units named
     amplitude : (ny, nx) [m], one row for each y; NaN where a run did not end is drawn grey
     """
-    x, y, grid = np.asarray(x, dtype=float), np.asarray(y, dtype=float), np.asarray(amplitude, dtype=float)
-    if grid.shape != (np.size(y), np.size(x)):
-        raise ValueError(f"amplitude of shape {grid.shape}: expected ({np.size(y)}, {np.size(x)}), one row for each y")
+    x, y, grid = _checked("amplitude", x, y, np.asarray(amplitude, dtype=float))
     from matplotlib.colors import LogNorm
 
     known = grid[np.isfinite(grid) & (grid > 0.0)]

@@ -15,7 +15,7 @@ from squealbox.transient import _march
 from squealbox.transient.lanes.work import HEAD, Progress, Work
 from squealbox.transient.methods import Method
 from squealbox.transient.observers import as_observers
-from squealbox.transient.simulate import MESSAGES, SCHEMES, chosen_method
+from squealbox.transient.simulate import MESSAGES, SCHEMES, chosen_method, instants_within
 
 if TYPE_CHECKING:
     import xarray
@@ -145,9 +145,12 @@ def simulate_ensemble(
     for name, value, low in (("duration", duration, 0.0), ("width", width, 0.0), ("start_time", start_time, -np.inf)):
         if not (np.isfinite(value) and value > low):
             raise ParameterError("simulate_ensemble", name, value, f"a finite number in ({low:g}, inf)")
+    instants = np.zeros(0)
+    if times is not None:
+        instants = instants_within("simulate_ensemble", np.atleast_1d(times), start_time, duration)
     job = Work(
         _method(method, rtol, atol), SCHEMES[contact], width, start, duration, start_time, as_observers(observe),
-        _instants(times, start_time, duration), _threads(threads), progress,
+        instants, _threads(threads), progress,
     )  # fmt: skip
     names, arrays, shape = _space(design_or_system, parameters, grid)
     job.run(design_or_system, names, arrays, shape)
@@ -177,7 +180,7 @@ def _result(
     at, observed = HEAD + 2 * n, {}
     for each in work.observers:
         watch = each.watch()
-        copies, width = watch.copies(n, m), len(watch.start) + watch.coefficients
+        copies, width = watch.copies(n, m), watch.width
         memory = rows[:, at : at + copies * width].reshape(total, copies, width)[..., : len(watch.start)]
         values = each.value(memory)
         values = values[:, 0] if each.of == "system" else values
@@ -233,17 +236,6 @@ def _threads(threads: int | None) -> int:
     if int(threads) != threads or threads < 1:
         raise ParameterError("simulate_ensemble", "threads", threads, "a whole number of at least 1")
     return int(threads)
-
-
-def _instants(times: Any, begin: float, duration: float) -> Any:
-    if times is None:
-        return np.zeros(0)
-    instants = np.atleast_1d(np.asarray(times, dtype=float))
-    end = begin + duration
-    inside = np.all((instants >= begin) & (instants <= end * (1.0 + 1e-12)))
-    if instants.ndim != 1 or not inside or np.any(np.diff(instants) < 0.0):
-        raise ParameterError("simulate_ensemble", "times", times, f"increasing instants within [{begin:g}, {end:g}] s")
-    return np.minimum(instants, end)
 
 
 def _space(design: Any, parameters: Mapping[str, Any] | None, grid: bool) -> tuple[tuple[str, ...], list[Any], Any]:

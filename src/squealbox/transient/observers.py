@@ -30,6 +30,11 @@ class Watch(NamedTuple):
         """How many of it run: one for each degree of freedom or contact, or one."""
         return {"dof": n, "contact": m, "system": 1}[self.of]
 
+    @property
+    def width(self) -> int:
+        """Numbers each of them leaves in a row of results: its memory and its coefficients."""
+        return len(self.start) + self.coefficients
+
 
 @dataclass(frozen=True)
 class Observer:

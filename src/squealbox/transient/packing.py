@@ -33,7 +33,7 @@ def _packed(system: System, method: Method, scheme: int, width: float, every_ste
     if system.shape != ():
         raise InvalidSystem(f"the system has leading axes {system.shape}: simulate takes one system at a time")
     n, contacts = system.size, system.contacts
-    inverse = _inverse(system.M)
+    inverse = inverse_mass(system.M)
     d, t = (_rows([getattr(c, name) for c in contacts], n) for name in ("d", "t"))
     w = _rows([np.zeros(n) if c.normal is None else c.normal for c in contacts], n)
     normal = _rows([c.normal if c.rigid else c.n for c in contacts], n)  # of a rigid one -gap = normal . q - gap0
@@ -165,7 +165,7 @@ def absolute_tolerances(system: System, method: Method, highest: float) -> Any:
         if np.shape(method.atol) != (2 * n,):
             raise InvalidSystem(f"atol has shape {np.shape(method.atol)}: expected a number or {2 * n} values")
         return np.array(method.atol, dtype=float)
-    velocity = _usual_tolerance(system, method) if method.atol is None else float(method.atol)
+    velocity = float(1e-3 * method.rtol * fastest_speed(system) if method.atol is None else method.atol)
     return np.concatenate([np.full(n, velocity / highest), np.full(n, velocity)])
 
 
@@ -178,14 +178,15 @@ def bernstein_matrix() -> Any:
     return np.linalg.inv(values)
 
 
-def _usual_tolerance(system: System, method: Method) -> float:
-    fastest = 0.0
+def fastest_speed(system: System) -> Any:
+    """Fastest sliding speed [m/s], which sets the usual tolerance; 1 when nothing slides. One for each leading axis."""
+    fastest = np.zeros(())
     for contact in system.contacts:
         speed = contact.V
-        if isinstance(speed, Schedule):
-            speed = speed.value(np.array([0.0, *speed.breaks()]))
-        fastest = max(fastest, float(np.max(np.abs(speed))))
-    return 1e-3 * method.rtol * (fastest if fastest > STANDING else 1.0)
+        speeds = [speed.value(t) for t in (0.0, *speed.breaks())] if isinstance(speed, Schedule) else [speed]
+        for each in speeds:
+            fastest = np.maximum(fastest, np.abs(each))
+    return np.where(fastest > STANDING, fastest, 1.0)
 
 
 @cache
@@ -252,13 +253,14 @@ def _terms(value: Any) -> list[tuple[Any, Schedule]]:
     return list(value.terms()) if isinstance(value, Schedule) else [(value, UNIT)]
 
 
-def _inverse(mass: Any) -> Any:
+def inverse_mass(mass: Any) -> Any:
+    """M^-1, shape (..., n, n); raises `InvalidSystem` where M is singular to working precision."""
     try:
         inverse = np.linalg.inv(mass)
     except np.linalg.LinAlgError:
         inverse = np.full_like(mass, np.inf)
-    size = float(np.max(np.abs(mass)) * np.max(np.abs(inverse)))
-    if not size < 1e14:
+    size = np.max(np.abs(mass), axis=(-1, -2)) * np.max(np.abs(inverse), axis=(-1, -2))
+    if not np.all(size < 1e14):
         raise InvalidSystem("M is singular: a transient needs a mass for every degree of freedom")
     return inverse
 

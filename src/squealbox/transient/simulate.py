@@ -237,11 +237,16 @@ def _times(times: Any, start_time: float, duration: float) -> Any:
         if int(times) != times or times < 2:
             raise ParameterError("simulate", "times", times, "a whole number of at least 2, or an array of instants")
         return np.linspace(start_time, start_time + duration, int(times))
+    return instants_within("simulate", times, start_time, duration)
+
+
+def instants_within(function: str, times: Any, start_time: float, duration: float) -> Any:
+    """The instants as an array; `ParameterError` of `function` unless they increase within the run."""
     instants = np.asarray(times, dtype=float)
     end = start_time + duration
     inside = np.all((instants >= start_time) & (instants <= end * (1.0 + 1e-12)))
     if instants.ndim != 1 or not inside or np.any(np.diff(instants) < 0.0):
-        raise ParameterError("simulate", "times", times, f"increasing instants within [{start_time:g}, {end:g}] s")
+        raise ParameterError(function, "times", times, f"increasing instants within [{start_time:g}, {end:g}] s")
     return np.minimum(instants, end)
 
 

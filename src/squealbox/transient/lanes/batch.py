@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox import friction, schedules
 from squealbox.parameters import DataSheet
 from squealbox.schedules import Sum
 from squealbox.system import InvalidSystem, System, as_system
@@ -78,7 +79,7 @@ def _first(value: Any, tail: int) -> Any:
         if isinstance(value, Sum):
             return Sum(tuple((_first(w, tail), _first(part, 0)) for w, part in own["parts"]))
         scalars = {name: _first(x, 0) for name, x in own.items() if isinstance(x, np.ndarray) and x.ndim > 0}
-        if type(value).__name__ == "Table":  # its arrays are points, not leading axes
+        if isinstance(value, (friction.Table, schedules.Table)):  # its arrays are points, not leading axes
             return value
         return value.replace(scalars) if scalars else value
     array = np.asarray(value)

@@ -68,7 +68,7 @@ class Rows:
 def parameter_rows(shape: Shape) -> list[str]:
     """Names of the rows that come with a job: what the equation holds, then start, tolerances and limits."""
     n, m = shape.n, shape.m
-    names = [name for name in _entries(n, m) if name in shape.present]
+    names = [name for name in entries(n, m) if name in shape.present]
     for c, (_, count) in enumerate(shape.laws):
         names += [f"law{c}_{i}" for i in range(count)] + [f"slope{c}"]
     for index, terms in enumerate(shape.signals):
@@ -81,7 +81,8 @@ def parameter_rows(shape: Shape) -> list[str]:
     return [*names, "rtol", "width", "window", "largest", "least", "first"]
 
 
-def _entries(n: int, m: int) -> list[str]:
+def entries(n: int, m: int) -> list[str]:
+    """Names of all numbers of the equation, zero or not, in the order of their rows."""
     names = [f"{name}{i}_{j}" for name in ("mk", "mc") for i in range(n) for j in range(n)]
     names += [f"{name}{c}_{i}" for name in ("md", "mw", "d", "t", "n", "w") for c in range(m) for i in range(n)]
     names += [f"g{c}_{b}" for c in range(m) for b in range(m)]

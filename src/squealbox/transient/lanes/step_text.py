@@ -25,6 +25,7 @@ class Step(EventText):
         self.loaded: set[str] = set()
         self.tag = 0
         self.scales: dict[float, str] = {}
+        self.starting: dict[str, list[str]] | None = None
         self.rule = tableau(shape.tableau)
 
     def put(self, line: str) -> None:
@@ -222,7 +223,7 @@ class Step(EventText):
         return out
 
     def control(self) -> None:
-        """`h_new`: an integral controller within [0.2, 10], without growth after a rejected step."""
+        """`h_new`: an integral controller within [0.1, growth], without growth after a rejected step."""
         power = -0.5 / (self.rule.error_order + 1.0)
         self.put(f"factor = 0.9 * rough_power(square, {power!r})")
         self.put("factor = where(square < 1e300, factor, 0.1)")
@@ -280,7 +281,7 @@ class Step(EventText):
 
     def observe(self, contact: Any, old: Any, new: Any) -> None:
         """Hand every accepted step to the observers."""
-        shape, rule = self.shape, self.rule
+        shape = self.shape
         works = any(observer.of == "contact" for observer in shape.observers)
         if works:
             for c in range(shape.m):
@@ -294,7 +295,6 @@ class Step(EventText):
                 self.put(f"seen{k}_{i} = observe_{k}(({', '.join(memory)},), {p}, {before}, {after})")
                 for j, value in enumerate(memory):
                     self.keep(f"o{k}_{i}_{j}", f"where(accepted, seen{k}_{i}[{j}], {value})")
-        del rule
 
     def views(self, of: str, i: int, contact: Any, old: Any, new: Any) -> tuple[str, str]:
         """What an observer of a degree of freedom, of a contact or of the whole sees before and after the step."""
@@ -331,6 +331,6 @@ class Step(EventText):
 
     def starting_force(self, c: int, old: Any) -> str:
         """The friction force at the start of the step, computed once more: no row keeps it."""
-        if not hasattr(self, "_starting"):
-            self._starting = self.accelerations(old[0], old[1], "t_")
-        return self._starting["force"][c]
+        if self.starting is None:
+            self.starting = self.accelerations(old[0], old[1], "t_")
+        return self.starting["force"][c]

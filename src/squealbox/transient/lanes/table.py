@@ -10,7 +10,7 @@ from squealbox.system import InvalidSystem, System
 from squealbox.transient import packing
 from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.batch import first_of
-from squealbox.transient.lanes.shape import Shape, parameter_rows
+from squealbox.transient.lanes.shape import Shape, entries, parameter_rows
 from squealbox.transient.methods import Method
 from squealbox.transient.own_laws import law_kinds, own_texts
 
@@ -41,7 +41,7 @@ def tabulate(
         )
     batch = system.shape
     count = int(np.prod(batch, dtype=int))
-    values, signals, breaks = _equation(system, batch)
+    values, signals, breaks = _equation(system)
     template = first_of(system)
     n, m = system.size, len(system.contacts)
     q, qd = start
@@ -51,7 +51,7 @@ def tabulate(
     values |= {f"break{k}": instant for k, instant in enumerate(breaks)} | {"width": np.asarray(width)}
     kinds = law_kinds(system.contacts)
     laws = tuple((int(kind), len(c.law.coefficients())) for kind, c in zip(kinds, system.contacts, strict=True))
-    present = frozenset(name for name, value in values.items() if np.any(value != 0.0))
+    present = frozenset(name for name in entries(n, m) if name in values and np.any(values[name] != 0.0))
     unilateral = tuple(bool(c.unilateral) for c in system.contacts)
     shape = Shape(
         n,
@@ -59,7 +59,7 @@ def tabulate(
         method.tableau,
         scheme,
         laws,
-        _of_equation(present),
+        present,
         unilateral,
         signals,
         watches,
@@ -84,15 +84,10 @@ def tabulate(
     return Jobs(shape, np.ascontiguousarray(table), varies, fixed, template)
 
 
-def _of_equation(present: frozenset[str]) -> frozenset[str]:
-    kinds = ("mk", "mc", "md", "mw", "d", "t", "n", "w", "g", "V", "N0", "f")
-    return frozenset(name for name in present if name.rstrip("0123456789_") in kinds or name.startswith("N0"))
-
-
-def _equation(system: System, batch: tuple[int, ...]) -> tuple[dict[str, Any], Any, list[Any]]:
+def _equation(system: System) -> tuple[dict[str, Any], Any, list[Any]]:
     """Numbers of the equation by name, kinds of the signals (none when all are constant), and their kinks."""
     n, contacts = system.size, system.contacts
-    inverse = _inverse(system.M)
+    inverse = packing.inverse_mass(system.M)
     values: dict[str, Any] = {}
 
     def put(name: str, matrix: Any) -> None:
@@ -140,8 +135,8 @@ def _terms(value: Any) -> list[tuple[Any, Schedule]]:
 def _tolerances(system: System, method: Method, values: dict[str, Any], exact: bool, duration: float) -> dict[str, Any]:
     """Tolerances and limits of the steps, as `packing` and `simulate` choose them, one for each job."""
     n = system.size
-    highest = _highest_frequency(values, n, system.shape)
-    velocity = 1e-3 * method.rtol * _fastest(system) if method.atol is None else np.asarray(method.atol)
+    highest = _highest_frequency(values, n)
+    velocity = 1e-3 * method.rtol * packing.fastest_speed(system) if method.atol is None else np.asarray(method.atol)
     out: dict[str, Any] = {"rtol": np.asarray(method.rtol)}
     if np.ndim(method.atol) == 1:
         given = packing.absolute_tolerances(system, method, 1.0)
@@ -156,21 +151,7 @@ def _tolerances(system: System, method: Method, values: dict[str, Any], exact: b
     return out
 
 
-def _fastest(system: System) -> Any:
-    """Fastest sliding speed [m/s] of each job; 1 when nothing slides."""
-    fastest = np.zeros(())
-    for contact in system.contacts:
-        if isinstance(contact.V, Schedule):
-            instants = (0.0, *contact.V.breaks())
-            speeds = [np.abs(contact.V.value(t)) for t in instants]
-        else:
-            speeds = [np.abs(contact.V)]
-        for speed in speeds:
-            fastest = np.maximum(fastest, speed)
-    return np.where(fastest > 0.0, fastest, 1.0)
-
-
-def _highest_frequency(values: dict[str, Any], n: int, batch: tuple[int, ...]) -> Any:
+def _highest_frequency(values: dict[str, Any], n: int) -> Any:
     """Highest angular frequency [rad/s] of M^-1 K of each job; 1 when it is zero. In closed form for two."""
     if n == 2:
         a, b, c, d = (values[f"mk{i}_{j}"] for i in range(2) for j in range(2))
@@ -183,17 +164,6 @@ def _highest_frequency(values: dict[str, Any], n: int, batch: tuple[int, ...]) -
         largest = np.max(np.abs(np.linalg.eigvals(matrix)), axis=-1)
     highest = np.sqrt(largest)
     return np.where(highest > 0.0, highest, 1.0)
-
-
-def _inverse(mass: Any) -> Any:
-    try:
-        inverse = np.linalg.inv(mass)
-    except np.linalg.LinAlgError:
-        inverse = np.full_like(mass, np.inf)
-    size = np.max(np.abs(mass), axis=(-1, -2)) * np.max(np.abs(inverse), axis=(-1, -2))
-    if not np.all(size < 1e14):
-        raise InvalidSystem("M is singular: a transient needs a mass for every degree of freedom")
-    return inverse
 
 
 def _times(matrix: Any, vector: Any) -> Any:

@@ -69,9 +69,8 @@ class Work:
         )  # fmt: skip
         if len(jobs.table) < count:
             jobs = replace(jobs, table=np.broadcast_to(jobs.table, (count, jobs.table.shape[1])).copy())
-        width = HEAD + 2 * system.size + sum(
-            w.copies(system.size, len(system.contacts)) * (len(w.start) + w.coefficients) for w in watches
-        )  # fmt: skip
+        memory = sum(w.copies(system.size, len(system.contacts)) * w.width for w in watches)
+        width = HEAD + 2 * system.size + memory
         out = np.full((count, width), np.nan)
         out[:, 0] = -1.0
         samples = np.full((count, max(self.times.size, 1), 2 * system.size) if self.times.size else (1, 1, 1), np.nan)
@@ -103,12 +102,8 @@ class Work:
             except BaseException as error:  # handed to the caller below
                 failures.append(error)
 
-        if workers == 1 and self.progress is None and threading.current_thread() is not threading.main_thread():
-            work()
-        else:
-            self._watch(
-                [threading.Thread(target=work, daemon=True) for _ in range(workers)], counter, stop, before, total
-            )
+        threads = [threading.Thread(target=work, daemon=True) for _ in range(workers)]
+        self._watch(threads, counter, stop, before, total)
         if failures:
             raise failures[0]
 
