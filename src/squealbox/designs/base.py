@@ -2,7 +2,8 @@
 
 from typing import ClassVar
 
-from squealbox.parameters import DataSheet
+from squealbox.friction import FrictionLaw
+from squealbox.parameters import DataSheet, ParameterError
 from squealbox.system import System
 
 
@@ -21,6 +22,14 @@ class Design(DataSheet):
 
     title: ClassVar[str] = ""
     source: ClassVar[str] = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not hasattr(self, "friction"):
+            return
+        law = self.friction
+        if not isinstance(law, FrictionLaw):
+            raise ParameterError(type(self).__name__, "friction", law, "a friction law")
 
     def system(self) -> System:
         """The equation of motion with these parameters."""

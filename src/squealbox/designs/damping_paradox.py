@@ -23,7 +23,7 @@ import numpy as np
 
 from squealbox.designs.base import Design
 from squealbox.designs.mode_coupling import X, Y
-from squealbox.designs.rows import block, check_law, column, diagonal
+from squealbox.designs.rows import block, column, diagonal
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import parameter
 from squealbox.system import Contact, System
@@ -56,10 +56,6 @@ class DampingParadox(Design):
     load: Any = parameter("N", 0.0, default=10.0, schedule=True, meaning="normal force of each contact", source=OWN)
     sliding_speed: Any = parameter("m/s", default=1.0, schedule=True, meaning="speed of the contacts", source=OWN)
     friction: FrictionLaw = Coulomb(0.2)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_law(self)
 
     def system(self) -> System:
         """The equation of motion; leading axes of the parameters are kept."""

@@ -17,7 +17,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.designs.base import Design
-from squealbox.designs.rows import check_law, matrix, vector
+from squealbox.designs.rows import matrix, vector
 from squealbox.friction import FrictionLaw, LinearSlope
 from squealbox.parameters import ParameterError, choice, parameter
 from squealbox.schedules import as_schedule
@@ -68,10 +68,6 @@ class DrumBrake(Design):
         default="consistent",
         meaning="how the paper's friction is read",
     )
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_law(self)
 
     def system(self) -> System:
         """The equation of motion in the chosen reading; leading axes of the parameters are kept."""

@@ -25,7 +25,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.designs.base import Design
-from squealbox.designs.rows import block, check_law, column, diagonal, outer
+from squealbox.designs.rows import block, column, diagonal, outer
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import ParameterError, choice, parameter
 from squealbox.schedules import value_at
@@ -71,7 +71,6 @@ class DrumBrakeShoes(Design):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_law(self)
         if np.ndim(self.points) or self.points != int(self.points):
             raise ParameterError("DrumBrakeShoes", "points", self.points, f"a whole number in [1, {MOST_POINTS}]")
         object.__setattr__(self, "points", int(self.points))

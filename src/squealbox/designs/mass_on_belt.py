@@ -17,7 +17,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.designs.base import Design
-from squealbox.designs.rows import block, check_law
+from squealbox.designs.rows import block
 from squealbox.friction import FrictionLaw, Hyperbolic
 from squealbox.parameters import ParameterError, parameter
 from squealbox.system import Contact, System
@@ -46,10 +46,6 @@ class MassOnBelt(Design):
     load: Any = parameter("N", 0.0, default=1.0, schedule=True, meaning="normal force on the belt", source=LEINE)
     sliding_speed: Any = parameter("m/s", default=0.2, schedule=True, meaning="speed of the belt", source=LEINE)
     friction: FrictionLaw = Hyperbolic(1.0, 3.0)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_law(self)
 
     def system(self) -> System:
         """The equation of motion; leading axes of the parameters are kept."""
@@ -84,7 +80,6 @@ class BlockChain(Design):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_law(self)
         if np.ndim(self.blocks) or self.blocks != int(self.blocks):
             raise ParameterError("BlockChain", "blocks", self.blocks, f"a whole number in [1, {MOST_BLOCKS}]")
         object.__setattr__(self, "blocks", int(self.blocks))

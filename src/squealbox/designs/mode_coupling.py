@@ -18,7 +18,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.designs.base import Design
-from squealbox.designs.rows import block, check_law, column, diagonal, matrix, outer, vector
+from squealbox.designs.rows import block, column, diagonal, matrix, outer, vector
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import parameter
 from squealbox.system import Contact, System
@@ -58,10 +58,6 @@ class ModeCoupling(Design):
     sliding_speed: Any = parameter("m/s", default=1.0, schedule=True, meaning="speed of the belt", source=OWN)
     friction: FrictionLaw = Coulomb(0.5)
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_law(self)
-
     def system(self) -> System:
         """The equation of motion; leading axes of the parameters are kept."""
         stiffness = matrix((self.k11, self.k12), (self.k12, self.k22))
@@ -95,10 +91,6 @@ class InclinedSprings(Design):
     load: Any = parameter("N", 0.0, default=1.0, schedule=True, meaning="normal force without friction", source=OWN)
     sliding_speed: Any = parameter("m/s", default=1.0, schedule=True, meaning="speed of the belt", source=OWN)
     friction: FrictionLaw = Coulomb(0.5)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_law(self)
 
     def system(self) -> System:
         """The equation of motion; leading axes of the parameters are kept."""

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.designs.base import Design
-from squealbox.designs.rows import check_law, diagonal
+from squealbox.designs.rows import diagonal
 from squealbox.friction import FrictionLaw, LinearSlope
 from squealbox.parameters import parameter
 from squealbox.system import Contact, System
@@ -42,10 +42,6 @@ class PadOnDisc(Design):
     load: Any = parameter("N", 0.0, default=1000.0, schedule=True, meaning="normal force", source=OWN)
     sliding_speed: Any = parameter("m/s", default=1.0, schedule=True, meaning="speed of the disc", source=OWN)
     friction: FrictionLaw = LinearSlope(0.6, -0.02, 0.0)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_law(self)
 
     def system(self) -> System:
         """The equation of motion; leading axes of the parameters are kept."""

@@ -4,8 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.friction import FrictionLaw
-from squealbox.parameters import DataSheet, ParameterError
 from squealbox.schedules import Schedule, as_schedule
 
 
@@ -44,10 +42,3 @@ def block(value: Any) -> Any:
 def times(load: Any, direction: Any) -> Any:
     """A load, number or schedule, along a direction (..., n)."""
     return as_schedule(load) * direction if isinstance(load, Schedule) else column(load) * direction
-
-
-def check_law(sheet: DataSheet) -> None:
-    """Raise `ParameterError` when the sheet's `friction` is no friction law."""
-    law = sheet.value_of("friction")
-    if not isinstance(law, FrictionLaw):
-        raise ParameterError(type(sheet).__name__, "friction", law, "a friction law")

@@ -20,7 +20,7 @@ import numpy as np
 
 from squealbox.designs.base import Design
 from squealbox.designs.mode_coupling import X, Y
-from squealbox.designs.rows import block, check_law, column, diagonal, outer, times, vector
+from squealbox.designs.rows import block, column, diagonal, outer, times, vector
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import parameter
 from squealbox.system import Contact, System
@@ -50,10 +50,6 @@ class SpragSlip(Design):
     load: Any = parameter("N", 0.0, default=100.0, schedule=True, meaning="load on the block, L", source=OWN)
     sliding_speed: Any = parameter("m/s", default=1.0, schedule=True, meaning="speed of the belt", source=OWN)
     friction: FrictionLaw = Coulomb(0.4)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_law(self)
 
     def system(self) -> System:
         """The equation of motion; leading axes of the parameters are kept."""

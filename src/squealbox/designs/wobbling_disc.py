@@ -22,7 +22,7 @@ from typing import ClassVar
 import numpy as np
 
 from squealbox.designs.base import Design
-from squealbox.designs.rows import block, check_law, matrix, vector
+from squealbox.designs.rows import block, matrix, vector
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import parameter
 from squealbox.system import Contact, System
@@ -56,10 +56,6 @@ class WobblingDisc(Design):
         "rad/s", 0.0, low_open=True, default=5 * np.pi, meaning="angular speed of the disc, W", source=OWN
     )
     friction: FrictionLaw = Coulomb(0.6)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_law(self)
 
     def system(self) -> System:
         """The equation of motion; leading axes of the parameters are kept."""
