@@ -11,10 +11,13 @@ from squealbox.limit_cycles.harmonic_balance import harmonic_balance
 from squealbox.limit_cycles.hopf import HopfPoint, hopf_point
 from squealbox.limit_cycles.sections import lyapunov_exponents, maxima
 from squealbox.limit_cycles.shooting import shooting
+from squealbox.limit_cycles.special_points import BranchPoint
+from squealbox.limit_cycles.stick_slip_limit import return_gap, stick_slip_limit
 
 __all__ = [
     "Basin",
     "Branch",
+    "BranchPoint",
     "Cycle",
     "HopfPoint",
     "averaged_limit",
@@ -27,5 +30,7 @@ __all__ = [
     "hopf_point",
     "lyapunov_exponents",
     "maxima",
+    "return_gap",
     "shooting",
+    "stick_slip_limit",
 ]
