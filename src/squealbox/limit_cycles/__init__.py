@@ -5,6 +5,7 @@ Depends on: transient, stability, continuation, system, friction, schedules, res
 
 from squealbox.limit_cycles.basins import Basin, basin, dangerous_push
 from squealbox.limit_cycles.branches import Branch, branch
+from squealbox.limit_cycles.curves import PointCurve, hopf_curve, point_curve
 from squealbox.limit_cycles.cycle import Cycle
 from squealbox.limit_cycles.estimates import averaged_limit, averaged_swings, describing_function
 from squealbox.limit_cycles.harmonic_balance import harmonic_balance
@@ -20,6 +21,7 @@ __all__ = [
     "BranchPoint",
     "Cycle",
     "HopfPoint",
+    "PointCurve",
     "averaged_limit",
     "averaged_swings",
     "basin",
@@ -27,9 +29,11 @@ __all__ = [
     "dangerous_push",
     "describing_function",
     "harmonic_balance",
+    "hopf_curve",
     "hopf_point",
     "lyapunov_exponents",
     "maxima",
+    "point_curve",
     "return_gap",
     "shooting",
     "stick_slip_limit",

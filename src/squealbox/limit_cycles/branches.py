@@ -14,6 +14,7 @@ import numpy as np
 
 from squealbox.continuation import Follower, PathPoint, StepControl, follow
 from squealbox.limit_cycles.cycle import Cycle
+from squealbox.limit_cycles.doubling import doubled
 from squealbox.limit_cycles.harmonic_balance import Grid, harmonic_balance
 from squealbox.limit_cycles.hopf import HopfPoint, family
 from squealbox.limit_cycles.paths import HarmonicPath, ShootingPath
@@ -100,7 +101,8 @@ def branch(
     ----------
     design : a design, or a function of one value that returns a design or system
     parameter, bounds : dotted name and the range walked
-    start : a `HopfPoint` (the branch born there), or what :func:`shooting` takes, at `value` of the parameter
+    start : a `HopfPoint` (the branch born there), a period doubling out of `Branch.points` (the branch of doubled
+        period, with method "shooting"), or what :func:`shooting` takes, at `value` of the parameter
     value : where to start from; None takes the middle of the bounds
     method : "harmonic_balance" (smooth or smoothed cycles, fast) or "shooting" (exact stick and slip)
     contact, width, harmonics : for harmonic balance
@@ -127,6 +129,10 @@ def branch(
     settings = {"bounds": list(bounds), "method": method, "contact": contact, "width": width, "harmonics": harmonics}
     if isinstance(start, HopfPoint) and (method, contact) != METHODS_FROM_HOPF:
         raise ParameterError("branch", "start", "a HopfPoint", "harmonic balance with exact contact from a Hopf point")
+    if isinstance(start, BranchPoint):
+        middle = float(start.value) if value is None else middle
+        if start.kind == "period_doubling" and method != "shooting":
+            raise ParameterError("branch", "method", method, '"shooting" from a period doubling')
     if method == "shooting":
         path, unknowns, p, outcome = _shooting_start(make, start, middle, rtol, span)
     else:
@@ -134,6 +140,8 @@ def branch(
     if not outcome.ok:
         return _collect([], [], [], outcome, parameter, settings, make(middle))
     tangent = path.rise(unknowns) if isinstance(start, HopfPoint) else None
+    if isinstance(start, BranchPoint) and start.kind == "period_doubling":
+        unknowns, tangent = doubled(path, unknowns, p)
     control = StepControl(first=min(1e-2, largest_step), largest=largest_step, most_points=points, tolerance=1e-9)
     walk = follow(path.residual, unknowns, p, jacobian=path.jacobian, control=control, direction=direction,
                   bounds=bounds, x_scale=path.scale, p_scale=span, tangent=tangent)  # fmt: skip

@@ -1,18 +1,15 @@
-"""Where stick-slip of a block on a belt ends, without an approximation: the slip that leaves stick and touches it again.
+"""Where stick-slip of a block on a belt ends, exactly: the slip that leaves stick and only just touches it again.
 
-m x'' + c x' + k x = N mu(V - x') with x' = V while it sticks. Sticking ends where the spring and the damper pull with
-the static limit, at x_r = (N mu(0) - c V)/k, x' = V: one point, whatever went before. Its slip is therefore one orbit,
-and the stick-slip cycle exists as long as this orbit comes back to x' = V. It does while
+m x'' + c x' + k x = N mu(V - x') with x' = V while it sticks, c >= 0 and mu nowhere above its static limit. Sticking
+ends where spring and damper pull with that limit, at x_r = (N mu_s - c V)/k, x' = V: one point, whatever went before.
+So its slip is one orbit, and the stick-slip cycle exists as long as that orbit comes back to x' = V:
 
-    G(V) = min over the first return swing of v(t) = V - x'(t)   is below zero,    G(V*) = 0 is the end.
+    G(V) = least v(t) = V - x'(t) on the return swing < 0,    G(V*) = 0 is the end.
 
-At V* the orbit is tangent to v = 0: v = 0 and v' = 0, that is x = x_r again, so it is itself a cycle that only slips.
-So the end of stick-slip, the grazing of the unstable slip cycle and a homoclinic touch of x_r are one condition. With
-y = (x, v) it is one equation in V, solved by Brent's method on an orbit of high order; for static > kinetic friction at
-v = 0+ the orbit leaves with a jump of x'' and the same condition holds. Below V = 0 nothing moves, so the range of
-existence is 0 < V < V*.
-
-Source: derived here. Averaging gives `estimates.averaged_limit`, whose error is of second order in (c, N mu).
+At V* the orbit touches v = 0 with v' = 0. When mu(0+) is the static limit that is at x_r itself, so the orbit is a
+cycle that only slips: stick-slip meets the unstable slip cycle there, a fold with a corner. G = 0 is one equation in V
+with one orbit of high order behind it. Averaging (`averaged_limit`) has an error of second order in (c, N mu).
+Source: derived here.
 """
 
 from typing import Any
