@@ -5,18 +5,23 @@ Depends on: transient, stability, continuation, system, friction, schedules, res
 
 from squealbox.limit_cycles.basins import Basin, basin, dangerous_push
 from squealbox.limit_cycles.branches import Branch, branch
+from squealbox.limit_cycles.curves import PointCurve, hopf_curve, point_curve
 from squealbox.limit_cycles.cycle import Cycle
 from squealbox.limit_cycles.estimates import averaged_limit, averaged_swings, describing_function
 from squealbox.limit_cycles.harmonic_balance import harmonic_balance
 from squealbox.limit_cycles.hopf import HopfPoint, hopf_point
 from squealbox.limit_cycles.sections import lyapunov_exponents, maxima
 from squealbox.limit_cycles.shooting import shooting
+from squealbox.limit_cycles.special_points import BranchPoint
+from squealbox.limit_cycles.stick_slip_limit import return_gap, stick_slip_limit
 
 __all__ = [
     "Basin",
     "Branch",
+    "BranchPoint",
     "Cycle",
     "HopfPoint",
+    "PointCurve",
     "averaged_limit",
     "averaged_swings",
     "basin",
@@ -24,8 +29,12 @@ __all__ = [
     "dangerous_push",
     "describing_function",
     "harmonic_balance",
+    "hopf_curve",
     "hopf_point",
     "lyapunov_exponents",
     "maxima",
+    "point_curve",
+    "return_gap",
     "shooting",
+    "stick_slip_limit",
 ]

@@ -2,31 +2,28 @@
 
 Continuation walks the path (`squealbox.continuation`); this module starts it, reads each point and finds
 
-fold             the path turns back in the parameter: p(s) between two points is a Hermite cubic, and p' = 0 on it
-period_doubling  a real multiplier passes -1
-neimark_sacker   a complex pair leaves the unit circle
-grazing          least sliding speed reaches zero (harmonic balance with exact contact ends there)
-sticking         a sticking phase appears or vanishes (shooting)
-
-Folds carry the error of the cubic, of order 4 in the step; the grazing at which an exact branch ends is solved for; the
-others carry the error of a linear interpolation.
+fold, period_doubling, neimark_sacker, grazing and sticking. They are solved for, not interpolated (`special_points`):
+`Branch.points` holds the cycle at each with what is left of its test function. Where a path could not be corrected
+between two points, the value is their middle, its uncertainty NaN, and there is no such cycle.
 """
 
-import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from squealbox.continuation import Follower, PathPoint, StepControl, follow
-from squealbox.limit_cycles.cycle import Cycle, extremes
+from squealbox.limit_cycles.cycle import Cycle
+from squealbox.limit_cycles.doubling import doubled
 from squealbox.limit_cycles.harmonic_balance import Grid, harmonic_balance
 from squealbox.limit_cycles.hopf import HopfPoint, family
 from squealbox.limit_cycles.paths import HarmonicPath, ShootingPath
 from squealbox.limit_cycles.shooting import CONTACTS, shooting
+from squealbox.limit_cycles.special_points import BranchPoint, branch_point, candidates, located
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome, Result, quantity
 
+Special = tuple[str, float, int, BranchPoint | None]
 METHODS = ("harmonic_balance", "shooting")
 METHODS_FROM_HOPF = ("harmonic_balance", "exact")
 
@@ -48,7 +45,10 @@ class Branch(Result):
     special_kind: Any = quantity("special", "", "fold, period_doubling, neimark_sacker, grazing or sticking")
     special_value: Any = quantity("special", "", "value of the parameter there")
     special_point: Any = quantity("special", "1", "index of the point before it")
+    special_uncertainty: Any = quantity("special", "", "of the value; NaN where it lies midway between two points")
+    special_test: Any = quantity("special", "", "what is left of the test function")
     parameter: str = ""
+    points: tuple[BranchPoint, ...] = field(default=(), metadata={"transient": True})
 
     @property
     def amplitude(self) -> Any:
@@ -101,7 +101,8 @@ def branch(
     ----------
     design : a design, or a function of one value that returns a design or system
     parameter, bounds : dotted name and the range walked
-    start : a `HopfPoint` (the branch born there), or what :func:`shooting` takes, at `value` of the parameter
+    start : a `HopfPoint` (the branch born there), a period doubling out of `Branch.points` (the branch of doubled
+        period, with method "shooting"), or what :func:`shooting` takes, at `value` of the parameter
     value : where to start from; None takes the middle of the bounds
     method : "harmonic_balance" (smooth or smoothed cycles, fast) or "shooting" (exact stick and slip)
     contact, width, harmonics : for harmonic balance
@@ -128,6 +129,10 @@ def branch(
     settings = {"bounds": list(bounds), "method": method, "contact": contact, "width": width, "harmonics": harmonics}
     if isinstance(start, HopfPoint) and (method, contact) != METHODS_FROM_HOPF:
         raise ParameterError("branch", "start", "a HopfPoint", "harmonic balance with exact contact from a Hopf point")
+    if isinstance(start, BranchPoint):
+        middle = float(start.value) if value is None else middle
+        if start.kind == "period_doubling" and method != "shooting":
+            raise ParameterError("branch", "method", method, '"shooting" from a period doubling')
     if method == "shooting":
         path, unknowns, p, outcome = _shooting_start(make, start, middle, rtol, span)
     else:
@@ -135,14 +140,17 @@ def branch(
     if not outcome.ok:
         return _collect([], [], [], outcome, parameter, settings, make(middle))
     tangent = path.rise(unknowns) if isinstance(start, HopfPoint) else None
+    if isinstance(start, BranchPoint) and start.kind == "period_doubling":
+        unknowns, tangent = doubled(path, unknowns, p)
     control = StepControl(first=min(1e-2, largest_step), largest=largest_step, most_points=points, tolerance=1e-9)
     walk = follow(path.residual, unknowns, p, jacobian=path.jacobian, control=control, direction=direction,
                   bounds=bounds, x_scale=path.scale, p_scale=span, tangent=tangent)  # fmt: skip
     ends_at_grazing = method == "harmonic_balance" and contact == "exact"
     visited, seen, outcome = _walk(walk, path, ends_at_grazing)
-    specials = _specials(visited, seen, span)
-    if outcome == "grazing":
-        specials.append(("grazing", outcome.evidence["p"], len(visited) - 1))
+    specials = _specials(path, visited, seen, parameter)
+    if ends_at_grazing and outcome == "grazing" and len(visited) > 1:
+        visited, seen = visited[:-1], seen[:-1]
+        outcome = _grazing_outcome(specials, visited[-1].p)
     return _collect(visited, seen, specials, outcome, parameter, settings, make(middle))
 
 
@@ -153,32 +161,15 @@ def _walk(walk: Follower, path: Any, ends_at_grazing: bool) -> tuple[list[PathPo
         visited.append(point)
         seen.append(path.describe(point.x, point.p))
         if ends_at_grazing and seen[-1]["least_slip"] < 0.0:
-            at = _grazing(path, visited[-2], visited[-1], seen) if len(visited) > 1 else point.p
-            message = f"a contact comes to rest on the cycle at {at:.10g}: go on with smoothing, or by shooting"
-            return visited[:-1], seen[:-1], Outcome("grazing", message, p=at)
+            return visited, seen, Outcome("grazing", "a contact reverses at the start", p=point.p)
     return visited, seen, walk.outcome
 
 
-def _grazing(path: HarmonicPath, a: PathPoint, b: PathPoint, seen: list[dict[str, Any]]) -> float:
-    """Parameter at which the least sliding speed is zero: false position between two points, corrected to the path."""
-    scale = np.append(path.scale, path.span)
-    ends = [np.append(point.x, point.p) / scale for point in (a, b)]
-    shares, values = [0.0, 1.0], [about["least_slip"] for about in seen[-2:]]
-    y = ends[1]
-    for _ in range(12):
-        share = shares[0] - values[0] * (shares[1] - shares[0]) / (values[1] - values[0])
-        y = ends[0] + share * (ends[1] - ends[0])
-        for _ in range(6):
-            x = y * scale
-            matrix = np.column_stack(path.jacobian(x[:-1], float(x[-1]))) * scale
-            y = y - np.linalg.lstsq(matrix, path.residual(x[:-1], float(x[-1])), rcond=None)[0]
-        x = y * scale
-        value = path.least_slip(x[:-1], float(x[-1]))
-        if abs(value) <= 1e-12 * abs(values[0] - values[1]) or share in shares:
-            break
-        side = int(value < 0.0)
-        shares[side], values[side], values[1 - side] = share, value, 0.5 * values[1 - side]
-    return float(y[-1] * path.span)
+def _grazing_outcome(specials: list[Special], last: float) -> Outcome:
+    """How a branch with exact contact ends: where the least sliding speed is zero."""
+    at = next((value for kind, value, _, _ in reversed(specials) if kind == "grazing"), last)
+    message = f"a contact comes to rest on the cycle at {at:.10g}: go on with smoothing, or by shooting"
+    return Outcome("grazing", message, p=at)
 
 
 def _harmonic_start(
@@ -236,58 +227,21 @@ def _shooting_start(make: Any, start: Any, value: float, rtol: float, span: floa
     return path, path.begin(x, period, value, dof, amplitude), value, found.outcome
 
 
-def _specials(visited: list[PathPoint], seen: list[dict[str, Any]], span: float) -> list[tuple[str, float, int]]:
-    """(kind, value, index of the point before) along the walk."""
-    found = []
-    for i, (a, b) in enumerate(itertools.pairwise(visited)):
-        if a.tangent[-1] * b.tangent[-1] < 0.0:
-            found.append(("fold", _fold(a, b, span), i))
-        for kind, test in TESTS.items():
-            before, after = test(seen[i]), test(seen[i + 1])
-            if before * after < 0.0:
-                share = before / (before - after)
-                found.append((kind, float(a.p + share * (b.p - a.p)), i))
+def _specials(path: Any, visited: list[PathPoint], seen: list[dict[str, Any]], parameter: str) -> list[Special]:
+    """(kind, value, index of the point before, the point or None where it could not be solved for) along the walk."""
+    found: list[Special] = []
+    for kind, i in candidates(visited, seen):
+        solved = located(path, visited[i], visited[i + 1], kind)
+        if solved is not None:
+            x, p, test, uncertainty = solved
+            found.append((kind, p, i, branch_point(path, x, p, kind, parameter, test, uncertainty)))
+        elif kind != "neimark_sacker":  # there None may mean a neutral saddle, which is no bifurcation
+            found.append((kind, 0.5 * (visited[i].p + visited[i + 1].p), i, None))
     return found
 
 
-def _fold(a: PathPoint, b: PathPoint, span: float) -> float:
-    """Extreme of p on the Hermite cubic between two points."""
-    h = b.arclength - a.arclength
-    t = np.array([0.0, h])
-    low, high = extremes_of(t, np.array([a.p, b.p]), span * np.array([a.tangent[-1], b.tangent[-1]]))
-    return high if a.tangent[-1] > 0.0 else low
-
-
-def extremes_of(t: Any, values: Any, slopes: Any) -> tuple[float, float]:
-    """Least and largest value of one Hermite cubic."""
-    low, high = extremes(t, values[:, None], slopes[:, None])
-    return float(low[0]), float(high[0])
-
-
-def _doubling(about: dict[str, Any]) -> float:
-    """Changes sign where a real multiplier passes -1."""
-    others = about["multipliers"][1:]
-    real = others[np.abs(others.imag) <= 1e-9 * (1.0 + np.abs(others))].real
-    return float(np.prod(np.sign(real + 1.0)) * (np.min(np.abs(real + 1.0)) if real.size else 1.0))
-
-
-def _torus(about: dict[str, Any]) -> float:
-    """Changes sign where a complex pair passes the unit circle."""
-    others = about["multipliers"][1:]
-    pairs = others[others.imag > 1e-9 * (1.0 + np.abs(others))]
-    return float(np.max(np.abs(pairs)) - 1.0) if pairs.size else -1.0
-
-
-TESTS = {
-    "period_doubling": _doubling,
-    "neimark_sacker": _torus,
-    "grazing": lambda about: about["least_slip"] if about["sticking"] == 0.0 else np.nan,
-    "sticking": lambda about: 1.0 if about["sticking"] > 0.0 else -1.0,
-}
-
-
 def _collect(
-    visited: list[PathPoint], seen: list[dict[str, Any]], specials: list[Any], outcome: Outcome, parameter: str,
+    visited: list[PathPoint], seen: list[dict[str, Any]], specials: list[Special], outcome: Outcome, parameter: str,
     settings: dict[str, Any], system: Any,
 ) -> Branch:  # fmt: skip
     n = system.size
@@ -301,7 +255,10 @@ def _collect(
         highest=column("highest", (n,)), multipliers=column("multipliers", (2 * n,)).astype(complex),
         least_slip=column("least_slip"), sticking=column("sticking"),
         unknowns=np.array([point.x for point in visited]).reshape(len(visited), -1 if visited else 0),
-        special_kind=np.array([kind for kind, _, _ in specials], dtype=str),
-        special_value=np.array([value for _, value, _ in specials], dtype=float),
-        special_point=np.array([index for _, _, index in specials], dtype=np.int64),
+        special_kind=np.array([kind for kind, _, _, _ in specials], dtype=str),
+        special_value=np.array([value for _, value, _, _ in specials], dtype=float),
+        special_point=np.array([index for _, _, index, _ in specials], dtype=np.int64),
+        special_uncertainty=np.array([np.nan if at is None else float(at.uncertainty) for *_, at in specials]),
+        special_test=np.array([np.nan if at is None else float(at.test) for *_, at in specials]),
+        points=tuple(at for *_, at in specials if at is not None),
     )  # fmt: skip

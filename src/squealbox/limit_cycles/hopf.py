@@ -113,9 +113,9 @@ def hopf_point(design: Any, parameter: str, bounds: tuple[float, float]) -> Hopf
                          lyapunov=none, growth_slope=none, frequency_slope=none, **about)  # fmt: skip
     value = float(found.value)
     field = Field(make(value))
-    eigenvalue, q, p, steady = _critical_pair(field, abs(np.imag(found.eigenvalue)))
+    eigenvalue, q, p, steady = critical_pair(field, abs(np.imag(found.eigenvalue)))
     step = 1e-4 * (bounds[1] - bounds[0])
-    ahead, behind = (_critical_pair(Field(make(value + s * step)), abs(eigenvalue.imag))[0] for s in (1.0, -1.0))
+    ahead, behind = (critical_pair(Field(make(value + s * step)), abs(eigenvalue.imag))[0] for s in (1.0, -1.0))
     slope = (ahead - behind) / (2.0 * step)
     return HopfPoint(
         inputs={"system": field.system}, outcome=Outcome(COMPLETED), value=np.asarray(value),
@@ -125,10 +125,10 @@ def hopf_point(design: Any, parameter: str, bounds: tuple[float, float]) -> Hopf
     )  # fmt: skip
 
 
-def _critical_pair(field: Field, frequency: float) -> tuple[complex, Any, Any, Any]:
+def critical_pair(field: Field, frequency: float) -> tuple[complex, Any, Any, Any]:
     """Eigenvalue nearest to i frequency, right and left vector, steady state."""
     steady = steady_state(field)
-    a = field.jacobian(steady, _steady_modes(field, steady))
+    a = field.jacobian(steady, steady_modes(field, steady))
     values, right = np.linalg.eig(a)
     i = int(np.argmin(np.abs(values - 1j * frequency)))
     dual, left = np.linalg.eig(a.T)
@@ -137,7 +137,8 @@ def _critical_pair(field: Field, frequency: float) -> tuple[complex, Any, Any, A
     return complex(values[i]), q, p / np.conj(np.vdot(p, q)), steady
 
 
-def _steady_modes(field: Field, steady: Any) -> Any:
+def steady_modes(field: Field, steady: Any) -> Any:
+    """Modes of the contacts in steady sliding."""
     normal, speed = field.contact_state(steady)
     return np.where(field.unilateral & (normal <= 0.0), 2, np.where(speed >= 0.0, 1, -1))
 
@@ -145,7 +146,7 @@ def _steady_modes(field: Field, steady: Any) -> Any:
 def lyapunov_coefficient(field: Field, steady: Any, frequency: float, q: Any, p: Any) -> float:
     """l1 of the equation at the head of this module; `frequency` in rad/s, q and p its critical vectors."""
     normal, speed = field.contact_state(steady)
-    closed = np.where(_steady_modes(field, steady) == 2, 0.0, 1.0)
+    closed = np.where(steady_modes(field, steady) == 2, 0.0, 1.0)
     sense = np.sign(speed)
     first, second, third = (closed * x for x in law_derivatives(field, speed))
     n = field.size
@@ -165,7 +166,7 @@ def lyapunov_coefficient(field: Field, steady: Any, frequency: float, q: Any, p:
         mixed = nx * vy * vz + ny * vx * vz + nz * vx * vy
         return along(sense * second * mixed + third * normal * vx * vy * vz)
 
-    a = field.jacobian(steady, _steady_modes(field, steady)).astype(complex)
+    a = field.jacobian(steady, steady_modes(field, steady)).astype(complex)
     conj = np.conj(q)
     slow = np.linalg.solve(a, bilinear(q, conj))
     fast = np.linalg.solve(2j * frequency * np.eye(2 * n) - a, bilinear(q, q))

@@ -9,11 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.cycle import extremes, ordered
+from squealbox.limit_cycles.cycle import Cycle, extremes, ordered
 from squealbox.limit_cycles.field import Field
-from squealbox.limit_cycles.harmonic_balance import Balance, Grid
-from squealbox.limit_cycles.variation import Flight, fly, quick_flight
+from squealbox.limit_cycles.harmonic_balance import Balance, Grid, cycle_of
+from squealbox.limit_cycles.shooting import cycle_through
+from squealbox.limit_cycles.variation import Flight, flight, fly, quick_flight
 from squealbox.parameters import ParameterError
+from squealbox.result import COMPLETED, Outcome
 from squealbox.system import System
 
 KEPT = 8  # fields or flights kept between calls at the same values
@@ -93,6 +95,14 @@ class HarmonicPath:
         multipliers = ordered(np.linalg.eigvals(balance.monodromy(coefficients, omega, max(128, self.grid.samples))))
         return {"period": 2.0 * np.pi / omega, "lowest": low, "highest": high, "multipliers": multipliers,
                 "least_slip": self.least_slip(x, p), "sticking": 0.0}  # fmt: skip
+
+    def cycle(self, x: Any, p: float) -> Cycle:
+        """The cycle at a point, on a fine grid; its error is the share of the last quarter of harmonics."""
+        coefficients, omega = self.series(x)
+        balance = self.balance(p)
+        settings = {"contact": self.contact, "width": self.width}
+        error = balance.tail(coefficients)
+        return cycle_of(balance, coefficients, omega, Outcome(COMPLETED), settings, error)
 
     def least_slip(self, x: Any, p: float) -> float:
         """Least sliding speed in the sense of V [m/s], by a parabola through the least of many samples."""
@@ -188,3 +198,16 @@ class ShootingPath:
                 "multipliers": ordered(np.linalg.eigvals(flown.phi)),
                 "least_slip": float(np.min(slip, initial=np.inf)),
                 "sticking": float(np.max(sticking, initial=0.0))}  # fmt: skip
+
+    def least_slip(self, x: Any, p: float) -> float:
+        """Least sliding speed in the sense of V [m/s] at the instants of the motion."""
+        return float(self.describe(x, p)["least_slip"])
+
+    def cycle(self, x: Any, p: float) -> Cycle:
+        """The cycle at a point, its multipliers integrated anew to 1e-13; error is the scaled residual there."""
+        start = np.insert(x[:-1], self.column, 0.0)
+        flown = flight(self.field(p), start, float(x[-1]))
+        error = float(np.max(np.abs(self.residual(x, p))))
+        settings = {"contact": "exact", "width": 0.0, "shots": 1, "rtol": 1e-13}
+        return cycle_through(self.field(p), start, float(x[-1]), flown.phi, Outcome(COMPLETED), settings, 2049, error,
+                             [flown])  # fmt: skip

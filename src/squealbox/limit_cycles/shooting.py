@@ -75,11 +75,11 @@ def shooting(
     x, period, found = first_guess(field, start, settle)
     settings = {"contact": contact, "width": width, "shots": shots, "rtol": rtol, "tolerance": tolerance}
     if not found.ok:
-        return _cycle(field, x, period, np.full((x.size, x.size), np.nan), found, settings, samples, np.nan)
+        return cycle_through(field, x, period, np.full((x.size, x.size), np.nan), found, settings, samples, np.nan)
     newton = Newton(field, _nodes(field, x, period, int(shots), rtol), period, rtol)
     outcome = newton.solve(tolerance, most_steps)
     error = newton.history[-1] if newton.history else np.inf
-    return _cycle(field, newton.nodes[0], newton.period, newton.monodromy, outcome, settings, samples, error,
+    return cycle_through(field, newton.nodes[0], newton.period, newton.monodromy, outcome, settings, samples, error,
                   newton.flights)  # fmt: skip
 
 
@@ -195,7 +195,7 @@ def _nodes(field: Field, x: Any, period: float, shots: int, rtol: float) -> Any:
     return np.hstack([run.q, run.qd])[:shots]
 
 
-def _cycle(
+def cycle_through(
     field: Field, x: Any, period: float, monodromy: Any, outcome: Outcome, settings: dict[str, Any], samples: int,
     error: float, flights: list[Flight] | None = None,
 ) -> Cycle:  # fmt: skip
