@@ -85,7 +85,7 @@ def hopf_curve(design: Any, bounds: Bounds, *, value: float | None = None, point
 
     >>> from squealbox import DrumBrake, LinearSlope
     >>> brake = DrumBrake(friction=LinearSlope(0.3, -0.05))
-    >>> hopf_curve(brake, {"friction.static": (0.1, 0.6), "load": (500.0, 2000.0)}, points=10).outcome.ok
+    >>> hopf_curve(brake, {"friction.static": (0.1, 0.6), "load": (500.0, 2000.0)}).outcome.ok
     True
     """
     make, names = two_parameters(design, bounds)
@@ -156,8 +156,8 @@ def point_curve(design: Any, bounds: Bounds, point: BranchPoint, value: float, *
     ...     return System([[1.0]], [[damping]], [[1.0]], 0.0, (belt,))
     >>> born = hopf_point(lambda speed: block(speed, 0.2), "speed", (0.05, 1.0))
     >>> end = branch(lambda speed: block(speed, 0.2), "speed", (0.05, 1.0), born).points[-1]
-    >>> point_curve(block, {"speed": (0.05, 1.0), "damping": (0.15, 0.25)}, end, 0.2, points=20).outcome.ok
-    True
+    >>> point_curve(block, {"speed": (0.05, 1.0), "damping": (0.15, 0.25)}, end, 0.2, points=2).kind
+    'grazing'
     """
     if point.kind not in (*TESTS, "fold") or point.kind == "sticking":
         raise ParameterError("point_curve", "point", point.kind, "a fold, grazing, period doubling or Neimark-Sacker")
