@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from small_systems import two_blocks_on_belt
 from squealbox import (
     Contact,
     DrumBrake,
@@ -76,3 +77,24 @@ def test_curve_of_grazing_is_the_exact_end_for_each_damping(end):
 def test_what_point_curve_refuses(end):
     with pytest.raises(ParameterError, match="two parameters"):
         point_curve(block, {"speed": SPEEDS}, end, 0.2)
+
+
+def test_from_a_period_doubling_onto_the_doubled_branch():
+    """Two turns of the old cycle become one; the parameter moves with the square of the distance (a pitchfork)."""
+
+    def blocks(speed):
+        return two_blocks_on_belt(speed=speed)
+
+    walk = {"direction": -1, "method": "shooting"}
+    single = branch(blocks, "speed", (0.045, 0.06), value=0.0493, points=6, **walk)
+    (point,) = single.points
+    assert point.kind == "period_doubling"
+    assert np.min(np.abs(point.multipliers + 1.0)) < 1e-9
+    np.testing.assert_array_equal(single.stable, single.value > float(point.value))  # the single cycle hands over
+    double = branch(blocks, "speed", (0.045, 0.06), point, points=5, **walk)
+    assert np.all(double.stable)
+    np.testing.assert_allclose(double.period, 2.0 * float(point.period), rtol=1e-4)  # T itself moves with the parameter
+    rise, moved = double.amplitude[:, 0] - point.amplitude[0], float(point.value) - double.value
+    assert np.polyfit(np.log(rise), np.log(moved), 1)[0] == pytest.approx(2.0, abs=0.1)
+    with pytest.raises(ParameterError, match="shooting"):
+        branch(blocks, "speed", (0.045, 0.06), point)
