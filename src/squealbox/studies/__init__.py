@@ -1,0 +1,5 @@
+"""How does the answer vary? Spaces of parameters, sweeps over them, and the store a sweep cannot lose.
+
+A study imports no analysis: it is handed one, any function of a design. So it can run the user's own as well.
+Depends on: system, result, parameters.
+"""
