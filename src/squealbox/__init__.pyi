@@ -23,7 +23,7 @@ from .parameters import ParameterError
 from .plots import plot
 from .result import Outcome, Result
 from .schedules import Constant, Ramp, Schedule, Sinusoid
-from .signals import peaks, sound, spectrogram, spectrum
+from .signals import peaks, sound, sound_level, spectrogram, spectrum
 from .stability import (
     Boundary,
     ComplexModes,
@@ -154,6 +154,7 @@ __all__ = [
     "peaks",
     "spectrogram",
     "sound",
+    "sound_level",
     # any result as a figure
     "plots",
     "plot",

@@ -6,6 +6,7 @@ h5netcdf; nothing in them is ever executed.
 """
 
 import dataclasses
+import importlib
 import json
 import os
 import platform
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     import xarray
 
 COMPLETED = "completed"
+DRAWN_BY = "squealbox.plots"  # by name, when asked: a result may know that it can be drawn, but not by whom
 
 
 class Outcome(str):
@@ -149,6 +151,15 @@ class Result:
                 return cls.from_dataset(dataset.load())
         except (OSError, ValueError, KeyError, TypeError, RuntimeError) as error:
             raise ResultFileError(f"{path}: not a readable {cls.__name__}: {error}") from error
+
+    def plot(self, **keywords: Any) -> Any:
+        """The figure of this result, as `squealbox.plots.plot` draws it; keywords go to the drawing function."""
+        return importlib.import_module(DRAWN_BY).plot(self, **keywords)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: how it ended, the key numbers with units, a small figure, the arrays folded away."""
+        card: str = importlib.import_module(DRAWN_BY).card(self)
+        return card
 
     def _plain(self) -> dict[str, Any]:
         arrays = {field.name for field in _quantities(type(self))}

@@ -138,6 +138,24 @@ def test_sound_has_true_pitch_and_does_not_clip(tmp_path):
     assert dominant_frequency(low.astype(float), rate=44100.0) == pytest.approx(1000.0, rel=1e-6)
 
 
+def test_two_sounds_of_one_loudest_value_keep_their_ratio(tmp_path):
+    loud, quiet = sine(2000.0, 3e-6), sine(2000.0, 1e-6)
+    waves = [wavfile.read(sound(x, tmp_path / f"{i}.wav", T, loudest=3e-6))[1] for i, x in enumerate((loud, quiet))]
+    peaks_ = [float(np.max(np.abs(wave.astype(float)))) for wave in waves]
+    assert peaks_[1] / peaks_[0] == pytest.approx(1.0 / 3.0, abs=1e-4)  # a sample is a whole number of 32767
+    assert peaks_[0] == pytest.approx(0.9 * 32767, rel=5e-3)  # the filter overshoots at the ends
+    with pytest.raises(SignalError, match="loudest"):
+        sound(loud, tmp_path / "clips.wav", T, loudest=2e-6)
+
+
+def test_a_sound_fades_in_and_out(tmp_path):
+    _, wave = wavfile.read(sound(sine(2000.0), tmp_path / "faded.wav", T, fade=0.01))
+    _, hard = wavfile.read(sound(sine(2000.0), tmp_path / "hard.wav", T, fade=0.0))
+    first = slice(0, 44)  # the first millisecond: the fade of 10 ms is at sin^2(9 deg) = 2.4 % there
+    assert np.max(np.abs(wave[first].astype(int))) < 0.03 * 32767 < np.max(np.abs(hard[first].astype(int)))
+    assert np.array_equal(np.abs(wave[-44:].astype(int)) < 0.03 * 32767, np.ones(44, dtype=bool))
+
+
 def test_a_trajectory_is_taken_by_index_and_by_name():
     motion = Motion(T, np.column_stack([sine(2000.0), sine(3000.0)]))
     assert peaks(spectrum(motion, dof="y"), 1).frequency[0] == pytest.approx(3000.0, abs=0.01)

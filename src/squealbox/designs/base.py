@@ -1,9 +1,11 @@
 """What every design is: a data sheet that makes a system."""
 
-from typing import ClassVar
+import importlib
+from typing import Any, ClassVar
 
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError
+from squealbox.result import DRAWN_BY
 from squealbox.system import System
 
 
@@ -34,6 +36,15 @@ class Design(DataSheet):
     def system(self) -> System:
         """The equation of motion with these parameters."""
         raise NotImplementedError
+
+    def plot(self, **keywords: Any) -> Any:
+        """The drawing of this brake, as `squealbox.plots.brake_drawing` makes it."""
+        return importlib.import_module(DRAWN_BY).plot(self, **keywords)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the drawing, and the parameters with value, unit, range, meaning and source."""
+        card: str = importlib.import_module(DRAWN_BY).card(self)
+        return card
 
     @classmethod
     def parameter_table(cls) -> Markdown:

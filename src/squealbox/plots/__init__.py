@@ -5,15 +5,26 @@ larger figure made with `panels`. Matplotlib is loaded at the first drawing.
 """
 
 from squealbox.plots.brakes import brake_drawing
+from squealbox.plots.cards import card
 from squealbox.plots.contact import contact_comparison
 from squealbox.plots.cycles import branch_diagram, cycle_overview
 from squealbox.plots.dispatch import plot
+from squealbox.plots.facts import facts
 from squealbox.plots.fits import friction_fit
 from squealbox.plots.laws import friction_curve
 from squealbox.plots.maps import amplitude_map, stability_map
 from squealbox.plots.modes import coalescence
 from squealbox.plots.motion import amplitude_course, energy, motion_overview, phase_plane, time_history
-from squealbox.plots.spectra import spectrogram, spectrum
+from squealbox.plots.points import (
+    birth_of_a_cycle,
+    crossings,
+    damping_split,
+    finite_eigenvalues,
+    merging_points,
+    point_curve,
+)
+from squealbox.plots.populations import basin_of_starts, ensemble_overview
+from squealbox.plots.spectra import component_growth, loudness, spectrogram, spectrum
 from squealbox.plots.stability import (
     boundary_curves,
     eigenvalues,
@@ -24,28 +35,41 @@ from squealbox.plots.stability import (
     tracked_modes,
     transient_growth,
 )
-from squealbox.plots.style import letters, panels, save
+from squealbox.plots.style import drawn, letters, panels, save
 
 __all__ = [
     "amplitude_course",
     "amplitude_map",
+    "basin_of_starts",
+    "birth_of_a_cycle",
     "boundary_curves",
     "brake_drawing",
     "branch_diagram",
+    "card",
     "coalescence",
+    "component_growth",
     "contact_comparison",
+    "crossings",
     "cycle_overview",
+    "damping_split",
+    "drawn",
     "eigenvalues",
     "energy",
+    "ensemble_overview",
+    "facts",
+    "finite_eigenvalues",
     "friction_curve",
     "friction_fit",
     "letters",
+    "loudness",
     "mechanism_map",
+    "merging_points",
     "mode_energy",
     "motion_overview",
     "panels",
     "phase_plane",
     "plot",
+    "point_curve",
     "root_locus",
     "save",
     "sensitivity",

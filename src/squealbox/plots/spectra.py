@@ -6,7 +6,7 @@ import numpy as np
 
 from squealbox import signals
 from squealbox.plots.dispatch import plot
-from squealbox.plots.style import drawing, figure_of, line, note, number, quantity_label, scaled
+from squealbox.plots.style import LINES, drawing, figure_of, line, note, number, quantity_label, scaled, uncertain
 
 NAMED = 0.03  # share of the highest peak from which a peak is named
 
@@ -126,6 +126,40 @@ def spectrogram(
         panel.set(xlabel=quantity_label("time", clock), ylabel=quantity_label("frequency", read), title=title)
         pieces = f"pieces of {number(grid.segment / second, 3)} {clock}"
         note(panel, f"{grid.window.capitalize()} window, {pieces}, resolution {_fine(grid.resolution, read)}")
+        return figure_of(panel)
+
+
+@plot.register(signals.GrowthRate)
+def component_growth(found: signals.GrowthRate, *, title: str = "", axes: Any = None) -> "Figure":
+    """The amplitude of one component piece by piece, on a logarithmic scale, and the rate fitted to it."""
+    second, clock = scaled("s", found.time)
+    middle = 0.5 * (found.time[0] + found.time[-1])
+    line_through = np.exp(np.mean(np.log(found.envelope)) + found.rate * (found.time - middle))
+    with drawing(axes, height=2.4) as panel:
+        panel.semilogy(found.time / second, found.envelope, "o", color=LINES[0][0], markersize=3.0, label="measured")
+        label = f"{uncertain(found.rate, found.rate_error)} 1/s"
+        panel.semilogy(found.time / second, line_through, **line(2), label=label)
+        panel.set(xlabel=quantity_label("time", clock), ylabel="amplitude of the component", title=title)
+        factor, read = scaled("Hz", found.frequency)
+        note(panel, f"at {number(found.frequency / factor, 5)} {read}", "lower left")
+        panel.legend(loc="best")
+        return figure_of(panel)
+
+
+@plot.register(signals.SoundLevel)
+def loudness(found: signals.SoundLevel, *, title: str = "", axes: Any = None) -> "Figure":
+    """Estimated sound pressure level of each line, with the sum in the title and what it rests on below."""
+    factor, read = scaled("Hz", found.frequency)
+    floor = float(np.min(found.line_level, initial=0.0))
+    with drawing(axes, height=2.6) as panel:
+        panel.vlines(found.frequency / factor, min(floor, 0.0), found.line_level, color=LINES[1][0], linewidth=2.0)
+        panel.plot(found.frequency / factor, found.line_level, "o", color=LINES[1][0])
+        panel.set_xlim(left=0.0)
+        panel.set_ylim(bottom=min(floor, 0.0))
+        panel.margins(x=0.1, y=0.15)
+        total = f"estimate: {number(found.level, 3)} dB, {number(found.weighted, 3)} dB(A)"
+        panel.set_title(". ".join(filter(None, (title, total))))
+        panel.set(xlabel=quantity_label("frequency", read), ylabel=quantity_label("level at the ear", "dB re 20 µPa"))
         return figure_of(panel)
 
 

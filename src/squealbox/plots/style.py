@@ -4,6 +4,7 @@ Lines differ by dash and marker as well as by colour, areas by hatching as well 
 matplotlib's objects, never with pyplot, so none is left open and no display is needed.
 """
 
+import io
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -47,6 +48,12 @@ PREFIXES: dict[str, tuple[tuple[float, str], ...]] = {
     "rad": ((np.pi / 180.0, "°"),),
 }
 
+# What a file would say of its making, left out so that equal figures give equal files.
+NAMELESS: dict[str, dict[str, None]] = {
+    "png": {"Software": None},
+    "svg": {"Date": None, "Creator": None},
+    "pdf": {"CreationDate": None},
+}
 RC: dict[str, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 8.0,
@@ -201,13 +208,20 @@ def save(
     """
     stem = Path(path)
     stem = stem.with_suffix("") if stem.suffix.lstrip(".") in formats else stem
-    nameless = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}, "pdf": {"CreationDate": None}}
     written = []
     with styled(), _laid_out(figure):
         for kind in formats:
             written.append(stem.with_name(f"{stem.name}.{kind}"))
-            figure.savefig(written[-1], format=kind, metadata=nameless.get(kind), dpi=dots)
+            figure.savefig(written[-1], format=kind, metadata=NAMELESS.get(kind), dpi=dots)
     return written
+
+
+def drawn(figure: "Figure", kind: str = "png", dots: float | None = None) -> bytes:
+    """The figure as the content of a PNG, SVG or PDF file, `dots` an inch."""
+    stream = io.BytesIO()
+    with styled(), _laid_out(figure):
+        figure.savefig(stream, format=kind, metadata=NAMELESS.get(kind), dpi=dots)
+    return stream.getvalue()
 
 
 @contextmanager

@@ -1,13 +1,14 @@
-"""What a signal holds: spectrum, peaks, spectrogram, frequency, growth rate, sound. Depends on: result.
+"""What a signal holds: spectrum, peaks, spectrogram, frequency, growth rate, sound and how loud. Depends on: result.
 
 Every function takes an array with its times ``t`` [s] or its sampling rate [Hz], or anything with ``.t`` and ``.q``,
 such as a trajectory, of which ``dof`` names one column. Fourier methods need equal time steps and refuse others.
 """
 
 from squealbox.signals.growth import GrowthRate, dominant_frequency, growth_rate, slope, with_error
+from squealbox.signals.radiation import SoundLevel, a_weighting, piston_efficiency, sound_level
 from squealbox.signals.samples import LEAST, Samples, SignalError, column, equal_steps, samples, values
 from squealbox.signals.spectra import Peaks, Spectrogram, Spectrum, peaks, spectrogram, spectrum
-from squealbox.signals.wav import sound
+from squealbox.signals.wav import audible, sixteen_bits, sound
 
 __all__ = [
     "LEAST",
@@ -15,16 +16,22 @@ __all__ = [
     "Peaks",
     "Samples",
     "SignalError",
+    "SoundLevel",
     "Spectrogram",
     "Spectrum",
+    "a_weighting",
+    "audible",
     "column",
     "dominant_frequency",
     "equal_steps",
     "growth_rate",
     "peaks",
+    "piston_efficiency",
     "samples",
+    "sixteen_bits",
     "slope",
     "sound",
+    "sound_level",
     "spectrogram",
     "spectrum",
     "values",

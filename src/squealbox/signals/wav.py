@@ -9,37 +9,60 @@ import numpy as np
 
 from squealbox.signals.samples import SignalError, samples
 
+SAMPLING = 44100  # [Hz]
+
 
 def sound(
     signal: Any,
     path: str | os.PathLike[str],
     t: Any = None,
     *,
-    sampling: int = 44100,
+    sampling: int = SAMPLING,
     level: float = 0.9,
     fade: float = 0.005,
     slower: float = 1.0,
+    loudest: float | None = None,
     **cut: Any,
 ) -> Path:
     """Write a signal as a mono 16-bit WAV file and return its path.
 
     The pitch is true (`slower` = 2 plays at half speed, an octave down). The largest value is `level` of full scale, so
-    nothing clips. `fade` [s] at each end keeps it from clicking. What lies above half of `sampling` [Hz] is filtered
-    out.
+    nothing clips; with `loudest`, a value of that size is, so that two sounds written with the same `loudest` can be
+    compared by ear. `fade` [s] at each end keeps it from clicking. What lies above half of `sampling` [Hz] is filtered
+    out. Raises `SignalError` for a constant signal, and when a `loudest` is so small that it would clip.
     """
     from scipy.io import wavfile
+
+    wave = audible(signal, t, sampling=sampling, fade=fade, slower=slower, **cut)
+    wavfile.write(path, sampling, sixteen_bits(wave, level=level, loudest=loudest))
+    return Path(path)
+
+
+def audible(
+    signal: Any, t: Any = None, *, sampling: int = SAMPLING, fade: float = 0.005, slower: float = 1.0, **cut: Any
+) -> Any:
+    """The signal about its mean, sampled at `sampling` [Hz] and faded in and out over `fade` [s], in its own unit.
+
+    The true frequencies are kept; `slower` stretches time. What cannot be written at that rate is filtered out.
+    """
     from scipy.signal import resample_poly
 
     data = samples(signal, t, **cut)
-    if not (0.0 < level <= 1.0 and slower > 0.0 and fade >= 0.0):
-        raise SignalError(f"level = {level}, slower = {slower}, fade = {fade}: expected (0, 1], > 0 and >= 0 s")
+    if not (slower > 0.0 and fade >= 0.0):
+        raise SignalError(f"slower = {slower}, fade = {fade}: expected > 0 and >= 0 s")
     ratio = Fraction(sampling * slower / data.rate).limit_denominator(10_000)
     wave = resample_poly(data.x - np.mean(data.x), ratio.numerator, ratio.denominator)
     ramp = np.minimum(np.arange(wave.size), np.arange(wave.size)[::-1]) / max(fade * sampling, 1.0)
-    wave = wave * np.sin(0.5 * np.pi * np.minimum(ramp, 1.0)) ** 2
-    loudest = float(np.max(np.abs(wave)))
-    if loudest == 0.0:
+    return wave * np.sin(0.5 * np.pi * np.minimum(ramp, 1.0)) ** 2
+
+
+def sixteen_bits(wave: Any, *, level: float = 0.9, loudest: float | None = None) -> Any:
+    """A wave as 16-bit samples; its largest value, or a value of size `loudest`, becomes `level` of full scale."""
+    if not 0.0 < level <= 1.0:
+        raise SignalError(f"level = {level}: expected a share of full scale in (0, 1]")
+    own = float(np.max(np.abs(wave)))
+    if own == 0.0 and loudest is None:
         raise SignalError("the signal is constant: there is nothing to hear")
-    whole = np.rint(wave * (level * np.iinfo(np.int16).max / loudest)).astype(np.int16)
-    wavfile.write(path, sampling, whole)
-    return Path(path)
+    if loudest is not None and not (loudest > 0.0 and level * own <= loudest):
+        raise SignalError(f"loudest = {loudest:g}: expected about the largest value or more, {own:g} would clip")
+    return np.rint(wave * (level * np.iinfo(np.int16).max / (loudest or own))).astype(np.int16)

@@ -148,11 +148,6 @@ class ComplexModes(Result):
 
         return summary(self)
 
-    def _repr_html_(self) -> str:
-        from squealbox.stability.modes_text import html
-
-        return html(self)
-
     def __repr__(self) -> str:
         return self.summary()
 

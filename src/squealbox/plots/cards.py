@@ -1,0 +1,153 @@
+"""What a notebook shows of a result or a design: a small card of HTML, readable without colours of its own.
+
+A card says what it is and how it ended, gives the key numbers with their units, a small picture where one is cheap, and
+folds away the arrays, settings and versions. Everything taken from outside is escaped; nothing is fetched.
+"""
+
+import base64
+import dataclasses
+from collections.abc import Iterable, Mapping
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.designs import Design
+from squealbox.limit_cycles import Branch, PointCurve
+from squealbox.limit_cycles.basins import Basin
+from squealbox.parameters import DataSheet
+from squealbox.plots.dispatch import plot
+from squealbox.plots.facts import facts, plain_unit
+from squealbox.plots.style import drawn, number
+from squealbox.result import Result
+from squealbox.stability import ComplexModes
+from squealbox.stability.modes_text import html as modes_table
+from squealbox.transient import Trajectory
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+DOTS = 90.0  # an inch: small, but sharp enough for a notebook
+WALKED = (Branch, PointCurve, Basin, Trajectory)  # what was reached is worth seeing, however it ended
+MOST_POINTS = 500_000  # more numbers than this are not drawn unasked
+
+
+def card(thing: Result | Design) -> str:
+    """The card of a result or a design as HTML."""
+    return _design_card(thing) if isinstance(thing, Design) else _result_card(thing)
+
+
+def inline(figure: "Figure", dots: float = DOTS) -> str:
+    """A figure as an ``img`` element that carries its own PNG."""
+    data = base64.b64encode(drawn(figure, "png", dots)).decode("ascii")
+    return f'<img alt="" style="max-width: 100%; background: white" src="data:image/png;base64,{data}">'
+
+
+def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """A plain HTML table; every cell is escaped."""
+    first = "".join(f'<th style="text-align: left">{escape(cell)}</th>' for cell in head)
+    body = "".join(
+        "<tr>" + "".join(f'<td style="text-align: left">{escape(cell)}</td>' for cell in row) + "</tr>" for row in rows
+    )
+    return f"<table><thead><tr>{first}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _result_card(result: Result) -> str:
+    kind = type(result).__name__
+    ended = f"{result.outcome}: {result.outcome.message}" if result.outcome.message else str(result.outcome)
+    parts = [f"<p><b>{escape(kind)}</b> &middot; {escape(ended)}</p>"]
+    caution = getattr(result, "caution", "")
+    parts += [f"<p><b>Caution:</b> {escape(caution)}</p>"] * bool(caution)
+    parts.append(_said(result))
+    if (result.outcome.ok or isinstance(result, WALKED)) and _is_cheap(result):
+        parts.append(inline(plot(result)))
+    return _framed(parts, _folded("arrays, settings, versions", [_arrays(result), _settings(result)]))
+
+
+def _said(result: Result) -> str:
+    """What the result says of itself: a table of modes, its summary, else its key numbers."""
+    if isinstance(result, ComplexModes):
+        return modes_table(result)
+    told = getattr(result, "summary", None)
+    words = told() if told is not None else str(getattr(result, "text", ""))
+    said = f'<pre style="white-space: pre-wrap">{escape(words)}</pre>' if words else ""
+    numbers = facts(result)
+    return said + (table(("", "value", "unit"), numbers) if numbers else "")
+
+
+def _is_cheap(result: Result) -> bool:
+    """True where a picture is known and the arrays behind it are small and hold something."""
+    sizes = [np.size(getattr(result, name)) for name, _ in _quantities(result)]
+    first = np.size(getattr(result, _quantities(result)[0][0]))
+    return plot.dispatch(type(result)) is not plot.dispatch(object) and first > 0 and max(sizes) <= MOST_POINTS
+
+
+def _arrays(result: Result) -> str:
+    rows = []
+    for name, about in _quantities(result):
+        array = np.asarray(getattr(result, name))
+        size = " x ".join(str(n) for n in array.shape) or "one value"
+        rows.append((name, size, plain_unit(about["unit"]), str(about["meaning"])))
+    return table(("array", "shape", "unit", "meaning"), rows)
+
+
+def _settings(result: Result) -> str:
+    given = [("setting", name, _short(value)) for name, value in result.settings.items()]
+    given += [("version", name, str(value)) for name, value in result.provenance.items()]
+    return table(("", "name", "value"), given)
+
+
+def _quantities(result: Result) -> list[tuple[str, Mapping[str, Any]]]:
+    return [(field.name, field.metadata) for field in dataclasses.fields(result) if "dims" in field.metadata]
+
+
+def _design_card(design: Design) -> str:
+    kind = type(design).__name__
+    parts = [f"<p><b>{escape(kind)}</b> &middot; {escape(design.title)}<br><small>{escape(design.source)}</small></p>"]
+    if has_drawing(design):
+        parts.append(inline(plot(design)))
+    return _framed(parts, table(("parameter", "value", "range", "meaning", "source"), parameter_rows(design)))
+
+
+def has_drawing(design: Design) -> bool:
+    """True when a drawing is known for this design and it is one brake, not a map of them."""
+    from squealbox.plots.brakes import DRAWINGS
+
+    single = not any(np.ndim(value) for _, about, value in design.leaves() if about.unit != "-")
+    return single and any(isinstance(design, kind) for kind in DRAWINGS)
+
+
+def parameter_rows(design: DataSheet) -> list[tuple[str, str, str, str, str]]:
+    """(name, value with unit, range, meaning, source) of every parameter, nested sheets included; angles in degrees."""
+    rows = [
+        (name, _with_unit(value, about.unit), about.range, about.meaning, about.source)
+        for name, about, value in design.leaves()
+    ]
+    words = [(name, str(getattr(design, name)), "one of " + ", ".join(about.options), about.meaning, "")
+             for name, about in design.choices().items()]  # fmt: skip
+    return rows + words
+
+
+def _with_unit(value: Any, unit: str) -> str:
+    if value is None:
+        return "not set"
+    if isinstance(value, DataSheet):
+        return f"{type(value).__name__}, varies in time"
+    if np.ndim(value):
+        return f"{np.size(value)} values {plain_unit(unit)}".rstrip()
+    if unit == "rad":
+        return f"{number(float(np.rad2deg(value)), 6)}°"
+    return f"{number(float(value), 6)} {plain_unit(unit)}".rstrip()
+
+
+def _short(value: Any, most: int = 80) -> str:
+    text = str(value)
+    return text if len(text) <= most else f"{text[: most - 3]}..."
+
+
+def _folded(title: str, parts: list[str]) -> str:
+    return f"<details><summary>{escape(title)}</summary>{''.join(parts)}</details>"
+
+
+def _framed(parts: list[str], last: str) -> str:
+    return f'<div class="squealbox-card">{"".join(parts)}{last}</div>'

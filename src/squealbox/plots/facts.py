@@ -1,0 +1,136 @@
+"""The key numbers of each kind of result, for a card, a table of a report or a line of a page."""
+
+import dataclasses
+from functools import singledispatch
+from typing import Any
+
+import numpy as np
+
+from squealbox.limit_cycles import Branch, Cycle
+from squealbox.plots.style import MINUS, number, scaled
+from squealbox.signals import Spectrum, peaks
+from squealbox.stability import CriticalValue, StabilityMap
+from squealbox.transient import Ensemble, Trajectory, Verdict
+
+Fact = tuple[str, str, str]  # name, value, unit
+
+
+@singledispatch
+def facts(result: Any) -> list[Fact]:
+    """The key numbers of a result as (name, value, unit): its scalars, unless a kind registers others."""
+    found = []
+    for field in dataclasses.fields(result):
+        value = getattr(result, field.name)
+        if field.metadata.get("dims") == () or isinstance(value, float):
+            found.append((field.name.replace("_", " "), shown(value), plain_unit(field.metadata.get("unit", ""))))
+    return found
+
+
+def shown(value: Any, digits: int = 6) -> str:
+    """A number as a reader writes it: complex ones with i, truth values as yes and no, NaN as not known."""
+    if np.ndim(value) or isinstance(value, str):
+        return str(value)
+    if isinstance(value, (bool, np.bool_)) or np.asarray(value).dtype == bool:
+        return "yes" if value else "no"
+    if np.iscomplexobj(value):
+        size = number(abs(float(np.imag(value))), digits)
+        return f"{number(float(np.real(value)), digits)} {MINUS if np.imag(value) < 0.0 else '+'} {size} i"
+    return "not known" if np.isnan(float(value)) else number(float(value), digits)
+
+
+def plain_unit(unit: str) -> str:
+    """A unit as it is written behind a number: nothing for a pure number."""
+    return "" if unit in ("-", "1") else unit
+
+
+def read(name: str, value: Any, unit: str, digits: int = 4) -> Fact:
+    """A fact in the unit that suits the number: 1.2e-5 m is read as 12 µm."""
+    if not np.isfinite(float(value)):
+        return name, "not known", ""
+    factor, written = scaled(unit, value)
+    return name, number(float(value) / factor, digits), plain_unit(written)
+
+
+@facts.register
+def _of_trajectory(motion: Trajectory) -> list[Fact]:
+    names = motion.system.names
+    found = [read("duration", motion.t[-1] - motion.t[0] if len(motion.t) else np.nan, "s")]
+    if len(motion.t):
+        found += [read(f"half peak to peak of {name}", 0.5 * np.ptp(motion.q[:, i]), "m")
+                  for i, name in list(enumerate(names))[:6]]  # fmt: skip
+    found.append(("events (stick, slip, lift-off, landing)", str(len(motion.event_time)), ""))
+    found.append(("steps, of which rejected", f"{motion.steps}, {motion.rejected}", ""))
+    closed = motion.energy.relative_residual if len(motion.t) else np.nan
+    return [*found, ("energy audit closes to", f"{closed:.1e}", "of the largest term")]
+
+
+@facts.register
+def _of_verdict(verdict: Verdict) -> list[Fact]:
+    found = [read("amplitude, half peak to peak", verdict.amplitude, "m"), read("frequency", verdict.frequency, "Hz")]
+    found.append(read("growth rate", verdict.growth_rate, "1/s"))
+    return [*found, read("settled at", verdict.settled_at, "s")] if np.isfinite(verdict.settled_at) else found
+
+
+@facts.register
+def _of_cycle(cycle: Cycle) -> list[Fact]:
+    if not cycle.outcome.ok:
+        return []
+    found = [read("period", cycle.period, "s", 6), read("frequency", cycle.frequency, "Hz", 6)]
+    found += [read(f"amplitude of {name}", size, "m") for name, size in zip(cycle.system.names, cycle.amplitude,
+                                                                             strict=True)]  # fmt: skip
+    largest = float(np.max(np.abs(cycle.multipliers[1:]), initial=0.0))
+    found.append(("stable", "yes" if cycle.stable else "no", ""))
+    return [*found, ("largest multiplier but the trivial one", number(largest, 4), "")]
+
+
+@facts.register
+def _of_critical_value(found: CriticalValue) -> list[Fact]:
+    unit = unit_of(found, found.parameter)
+    return [
+        (found.parameter, shown(found.value, 8), unit),
+        read("frequency there", found.frequency, "Hz", 6),
+        ("direction", found.direction, ""),
+        ("mechanism", found.mechanism.replace("_", " "), ""),
+    ]
+
+
+@facts.register
+def _of_map(found: StabilityMap) -> list[Fact]:
+    known, growing = int(np.sum(found.exists)), int(np.sum(found.unstable))
+    worst = np.nanmax(found.growth_rate) if known else np.nan
+    return [("points", str(found.growth_rate.size), ""), ("unstable", str(growing), f"of {known}"),
+            read("largest growth rate", worst, "1/s")]  # fmt: skip
+
+
+@facts.register
+def _of_spectrum(found: Spectrum) -> list[Fact]:
+    return [read(f"line {i + 1}", frequency, "Hz", 6) for i, (frequency, _) in enumerate(peaks(found, 3))]
+
+
+@facts.register
+def _of_branch(branch: Branch) -> list[Fact]:
+    if len(branch.value) == 0:
+        return []
+    unit = unit_of(branch, branch.parameter)
+    low, high = float(np.min(branch.value)), float(np.max(branch.value))
+    return [
+        (branch.parameter, f"{number(low)} to {number(high)}", unit),
+        ("points, of which stable", f"{len(branch.value)}, {int(np.sum(branch.stable))}", ""),
+        read("largest amplitude", np.max(branch.amplitude), "m"),
+    ]
+
+
+@facts.register
+def _of_ensemble(found: Ensemble) -> list[Fact]:
+    names, counts = np.unique(found.ended, return_counts=True)
+    ended = ", ".join(f"{count} {name}" for name, count in zip(names, counts, strict=True))
+    return [("trajectories", str(np.size(found.ended)), ""), ("ended", ended, ""),
+            ("varied", ", ".join(found.parameters) or "nothing", ""),
+            ("observed", ", ".join(found.observed) or "nothing", "")]  # fmt: skip
+
+
+def unit_of(result: Any, parameter: str) -> str:
+    """The unit of a dotted parameter of the design a result was computed from; empty where it kept none."""
+    design = result.inputs.get("system")
+    leaves = design.leaves() if hasattr(design, "leaves") else ()
+    return next((plain_unit(about.unit) for name, about, _ in leaves if name == parameter), "")

@@ -1,0 +1,136 @@
+"""Figures of results that are points or short curves over one or two parameters."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.limit_cycles import HopfPoint, PointCurve
+from squealbox.plots.dispatch import plot
+from squealbox.plots.facts import unit_of
+from squealbox.plots.style import LINES, drawing, figure_of, line, note, number, quantity_label, scaled
+from squealbox.stability import CriticalValue, CriticalValues, DampingSplit, ExceptionalPoints, FiniteSpectrum
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+DOWN, UP = "#0072B2", "#D55E00"
+
+
+@plot.register(CriticalValue)
+@plot.register(CriticalValues)
+def crossings(found: CriticalValue | CriticalValues, *, title: str = "", axes: Any = None) -> "Figure":
+    """Frequency of each crossing over the parameter: triangles up where a mode starts to grow, down where it stops."""
+    every = [found] if isinstance(found, CriticalValue) else list(found)
+    every = [one for one in every if np.isfinite(one.value)]
+    factor, read = scaled("Hz", *(one.frequency for one in every))
+    with drawing(axes, height=2.4) as panel:
+        for one in every:
+            grows = one.direction == "destabilising"
+            look = {"marker": "^" if grows else "v", "color": UP if grows else DOWN, "linestyle": "none"}
+            panel.plot(one.value, one.frequency / factor, **look, markersize=6.0)
+            text = f"{number(one.value, 6)}\n{one.mechanism.replace('_', ' ')}"
+            panel.annotate(text, (one.value, one.frequency / factor), xytext=(6.0, 0.0), va="center", fontsize=6.5,
+                           textcoords="offset points")  # fmt: skip
+        panel.margins(x=0.4, y=0.4)
+        note(panel, "▲ a mode grows above   ▼ below" if every else "no crossing", "lower left")
+        name = quantity_label(found.parameter, unit_of(found, found.parameter))
+        panel.set(xlabel=name, ylabel=quantity_label("frequency", read), title=title)
+        return figure_of(panel)
+
+
+@plot.register(FiniteSpectrum)
+def finite_eigenvalues(found: FiniteSpectrum, *, title: str = "", axes: Any = None) -> "Figure":
+    """The finite eigenvalues with Im >= 0 in the complex plane: dots decay, squares grow."""
+    values = found.eigenvalues[np.imag(found.eigenvalues) >= 0.0]
+    factor, read = scaled("Hz", np.abs(values.imag) / (2.0 * np.pi))
+    with drawing(axes, height=2.8) as panel:
+        for grows, marker, colour in ((False, "o", DOWN), (True, "s", UP)):
+            chosen = values[(values.real > 0.0) == grows]
+            panel.plot(chosen.real, chosen.imag / (2.0 * np.pi) / factor, marker, color=colour)
+        panel.axvline(0.0, color="#000000", linewidth=0.5)
+        panel.margins(x=0.15, y=0.25)
+        panel.set(xlabel=quantity_label("growth rate", "1/s"), ylabel=quantity_label("frequency", read), title=title)
+        return figure_of(panel)
+
+
+@plot.register(ExceptionalPoints)
+def merging_points(found: ExceptionalPoints, *, title: str = "", axes: Any = None) -> "Figure":
+    """Points of two parameters at which two modes merge, each with the frequency there."""
+    names = found.parameters or ("", "")
+    with drawing(axes, height=2.8) as panel:
+        panel.plot(found.x, found.y, "o", color=LINES[0][0], markerfacecolor="white", markersize=5.0)
+        for x, y, value in zip(found.x, found.y, found.eigenvalue, strict=True):
+            factor, read = scaled("Hz", abs(value.imag) / (2.0 * np.pi))
+            text = f"{number(abs(value.imag) / (2.0 * np.pi) / factor)} {read}"
+            panel.annotate(text, (x, y), xytext=(5.0, 4.0), textcoords="offset points", fontsize=6.5)
+        panel.margins(x=0.3, y=0.3)
+        x_name, y_name = (quantity_label(name, unit_of(found, name)) for name in names)
+        panel.set(xlabel=x_name, ylabel=y_name, title=title)
+        return figure_of(panel)
+
+
+@plot.register(DampingSplit)
+def damping_split(found: DampingSplit, *, title: str = "", axes: Any = None) -> "Figure":
+    """Critical value over how the damping is shared; the best share marked, the undamped value as a line."""
+    with drawing(axes, height=2.8) as panel:
+        panel.plot(found.share, found.critical, **line(0, marker=True, count=np.size(found.share)), label="damped")
+        panel.plot(found.best_share, found.best, "o", color=UP, label=f"best, {number(found.best)}")
+        panel.axhline(float(found.undamped), **{**line(1), "linewidth": 0.8}, label="without damping")
+        unit = unit_of(found, found.parameter)
+        share = f"share of {found.dampers[0]}" if found.dampers else "share of the first damper"
+        panel.set(xlabel=quantity_label(share, ""), ylabel=quantity_label(f"critical {found.parameter}", unit))
+        panel.set(title=title, xlim=(float(found.share[0]), float(found.share[-1])))
+        panel.legend(loc="best")
+        return figure_of(panel)
+
+
+@plot.register(PointCurve)
+def point_curve(found: PointCurve, *, title: str = "", axes: Any = None) -> "Figure":
+    """A curve of special points over two parameters; where Hopf points give birth to unstable cycles it is dotted."""
+    names = found.parameters or ("", "")
+    subcritical = np.nan_to_num(np.asarray(found.lyapunov, dtype=float)) > 0.0
+    with drawing(axes, height=2.8) as panel:
+        for hard, look, label in ((False, line(0), found.kind or "curve"), (True, line(2), "subcritical")):
+            here = subcritical == hard
+            joined = here | np.r_[here[1:], False] if len(here) else here
+            if np.any(here):
+                panel.plot(np.where(joined, found.x, np.nan), np.where(joined, found.y, np.nan), **look, label=label)
+        panel.margins(0.08)
+        panel.locator_params(axis="x", nbins=5)
+        panel.legend(loc="best")
+        x_name, y_name = (quantity_label(name, unit_of(found, name)) for name in names)
+        panel.set(xlabel=x_name, ylabel=y_name, title=title)
+        return figure_of(panel)
+
+
+@plot.register(HopfPoint)
+def birth_of_a_cycle(found: HopfPoint, *, title: str = "", axes: Any = None) -> "Figure":
+    """The square-root law of amplitudes beside a Hopf point, up to where a contact would come to rest.
+
+    Solid where the cycle is stable, dashed where it is not.
+    """
+    end = found.beside(_size_of_first_rest(found))
+    values = np.linspace(float(found.value), end, 201)
+    reach = abs(end - float(found.value))
+    sizes = np.max(found.amplitude(values), axis=-1)
+    factor, read = scaled("m", sizes)
+    stable = found.kind == "supercritical"
+    with drawing(axes, height=2.6) as panel:
+        panel.plot(values, sizes / factor, **line(0 if stable else 1), label=f"cycle, {found.kind}")
+        panel.plot(float(found.value), 0.0, "o", color=UP, markersize=5.0, zorder=3, label="Hopf point")
+        panel.set(xlabel=quantity_label(found.parameter, unit_of(found, found.parameter)), title=title)
+        panel.set(
+            ylabel=quantity_label("amplitude, largest", read),
+            xlim=(float(found.value) - reach, float(found.value) + reach),
+        )
+        panel.set_ylim(bottom=0.0)
+        panel.legend(loc="best")
+        return figure_of(panel)
+
+
+def _size_of_first_rest(found: HopfPoint) -> float:
+    """Amplitude [m] of the critical mode at which a contact comes to rest: beyond it the square-root law ends."""
+    half = len(found.shape) // 2
+    shape = found.shape / np.max(np.abs(found.shape[:half]))
+    rates = [abs(contact.t @ shape[half:]) / abs(float(contact.V)) for contact in found.inputs["system"].contacts]
+    return 1.0 / max(rates) if max(rates, default=0.0) > 0.0 else 1e-3 * float(np.max(np.abs(found.steady))) or 1e-6

@@ -1,0 +1,78 @@
+"""Figures of many motions at once: an ensemble over its parameters, starts and what became of them."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.limit_cycles.basins import Basin
+from squealbox.plots.dispatch import plot
+from squealbox.plots.facts import unit_of
+from squealbox.plots.maps import amplitude_map
+from squealbox.plots.style import LINES, drawing, figure_of, line, number, quantity_label, scaled
+from squealbox.transient import Ensemble
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@plot.register(Ensemble)
+def ensemble_overview(found: Ensemble, *, observer: str | None = None, title: str = "", axes: Any = None) -> "Figure":
+    """What an observer saw over the parameters: a map over two, points over one, else sorted by size.
+
+    `observer` names it, by default the first. Of several degrees of freedom or values the largest is drawn. Runs that
+    did not end are left out.
+    """
+    name = observer or next(iter(found.observed), "")
+    seen = found[name] if name else np.max(np.abs(found.q), axis=-1)
+    values = np.asarray(seen, dtype=float).reshape(*found.shape, -1)
+    values = np.max(np.where(np.isfinite(values), values, -np.inf), axis=-1)
+    values = np.where(np.isfinite(values) & (found.ended == "completed"), values, np.nan)
+    label = name.replace("_", " ") or "largest displacement"
+    if len(found.shape) == 2 and len(found.parameters) == 2:
+        (x_name, x), (y_name, y) = found.parameters.items()
+        x, y = (np.broadcast_to(each, found.shape) for each in (x, y))
+        return amplitude_map(x[:, 0], y[0], values.T, x_name=x_name, x_unit=unit_of(found, x_name), y_name=y_name,
+                             y_unit=unit_of(found, y_name), title=title, axes=axes)  # fmt: skip
+    if len(found.parameters) == 1:
+        key, across = next(iter(found.parameters.items()))
+        along, across = quantity_label(key, unit_of(found, key)), np.broadcast_to(across, found.shape).ravel()
+        values = values.ravel()
+    else:
+        along, across, values = "run, sorted", np.arange(values.size) + 1.0, np.sort(values.ravel())
+    unit = {"amplitude": "m", "frequency": "Hz", "growth_rate": "1/s"}.get(name, "" if name else "m")
+    factor, read = scaled(unit, values)
+    with drawing(axes, height=2.6) as panel:
+        panel.plot(across, values / factor, ".", color=LINES[0][0], markersize=3.0)
+        panel.set(xlabel=along, ylabel=quantity_label(label, read), title=title)
+        return figure_of(panel)
+
+
+@plot.register(Basin)
+def basin_of_starts(
+    found: Basin, *, places: tuple[int, int] | None = None, title: str = "", axes: Any = None
+) -> "Figure":
+    """Starts in the plane of two states: dots come to rest in steady sliding, crosses vibrate.
+
+    `places` are two columns of the state (q, q'), by default the first two in which the starts differ.
+    """
+    spread = np.ptp(found.start, axis=0)
+    half = found.start.shape[-1] // 2
+    first, second = places or tuple(sorted(np.argsort(spread == 0.0, kind="stable")[:2]))
+    names = [f"q{i + 1}" for i in range(half)] + [f"q{i + 1}'" for i in range(half)]
+    x, y = found.start[:, first], found.start[:, second]
+    (x_factor, x_unit), (y_factor, y_unit) = (
+        scaled("m" if place < half else "m/s", column) for place, column in ((first, x), (second, y))
+    )
+    vibrates = np.asarray(found.vibrates, dtype=bool)
+    with drawing(axes, width=3.8, height=3.2) as panel:
+        for here, marker, look, label in (
+            (~vibrates, ".", line(1), "comes to steady sliding"),
+            (vibrates, "x", line(2), "vibrates"),
+        ):
+            panel.plot(x[here] / x_factor, y[here] / y_factor, marker, color=look["color"], label=label)
+        panel.set(xlabel=quantity_label(names[first], x_unit), ylabel=quantity_label(names[second], y_unit))
+        low, high = (100.0 * float(end) for end in found.interval)
+        said = f"{number(100.0 * float(found.share), 3)} % vibrate ({number(low, 3)} to {number(high, 3)} %)"
+        panel.set_title(". ".join(filter(None, (title, said))))
+        panel.legend(loc="upper right")
+        return figure_of(panel)

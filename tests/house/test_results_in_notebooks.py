@@ -1,0 +1,109 @@
+"""Every result and every design draws itself: a card for a notebook, and a figure."""
+
+import dataclasses
+import re
+
+import numpy as np
+import pytest
+
+from conformance import result_kinds
+from result_examples import EXAMPLES
+from squealbox.designs import DESIGNS, DrumBrake
+from squealbox.plots import card, facts, plot
+from squealbox.plots.cards import MOST_POINTS, parameter_rows
+from squealbox.result import Outcome, Result, quantity
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
+class Undrawn(Result):
+    """A kind nobody draws, with text that must not become markup."""
+
+    value: float = quantity("", "Hz", "<b>bold</b>")
+    text: str = "<script>alert(1)</script>"
+
+
+def test_every_kind_has_an_example():
+    assert {kind.__name__ for kind in result_kinds()} | {"Cycle", "Branch"} <= set(EXAMPLES)
+
+
+@pytest.mark.parametrize("name", list(EXAMPLES))
+def test_a_result_draws_itself_and_has_a_card(name):
+    result = EXAMPLES[name]()
+    assert type(result).__name__ == name
+    figure = result.plot()
+    assert any(axes.has_data() for axes in figure.axes)
+    text = result._repr_html_()
+    assert name in text
+    assert str(result.outcome) in text
+    assert 'src="data:image/png;base64,' in text
+    assert not re.search(r"https?://|<script", text)
+    for fact, value, unit in facts(result):
+        assert fact
+        assert value
+        assert unit is not None
+    for field in dataclasses.fields(result):
+        if "dims" in field.metadata:
+            assert f">{field.name}<" in text
+    assert len(text) < 200_000  # a notebook of fifty results stays under 10 MB
+
+
+@pytest.mark.parametrize("name", ["CriticalValue", "Cycle", "Verdict"])
+def test_key_numbers_carry_their_units(name):
+    found = {fact: (value, unit) for fact, value, unit in facts(EXAMPLES[name]())}
+    frequency = next(value for fact, value in found.items() if "frequency" in fact)
+    assert frequency[1] in ("Hz", "kHz")
+    assert float(frequency[0]) > 0.0
+
+
+def test_a_failed_result_says_so_and_draws_nothing():
+    text = dataclasses.replace(EXAMPLES["Cycle"](), outcome=Outcome("no_cycle", "it came to <rest>"))._repr_html_()
+    assert "no_cycle: it came to &lt;rest&gt;" in text
+    assert "<img" not in text
+
+
+def test_a_kind_nobody_draws_has_a_card_without_a_picture():
+    result = Undrawn(value=np.float64(2000.0))
+    text = result._repr_html_()
+    assert "<img" not in text
+    assert "<script>" not in text
+    assert "2000" in text
+    with pytest.raises(TypeError, match="no figure is known for Undrawn"):
+        result.plot()
+
+
+def test_a_huge_result_is_not_drawn_unasked():
+    example = EXAMPLES["Spectrum"]()
+    many = np.linspace(0.0, 1.0, MOST_POINTS + 1)
+    assert "<img" not in card(dataclasses.replace(example, frequency=many, amplitude=many))
+
+
+@pytest.mark.parametrize("name", sorted(DESIGNS))
+def test_a_design_draws_itself_and_has_a_card(name):
+    design = DESIGNS[name]()
+    assert any(axes.has_data() for axes in design.plot().figure.axes)
+    text = design._repr_html_()
+    assert 'src="data:image/png;base64,' in text
+    assert type(design).title in text or "&" in type(design).title
+    for path, about, _ in design.leaves():
+        assert f">{path}<" in text
+        assert about.meaning
+
+
+def test_parameters_are_read_with_units_and_angles_in_degrees():
+    rows = {name: value for name, value, *_ in parameter_rows(DrumBrake())}
+    assert rows["theta1"] == "35°"
+    assert rows["k3"] in ("190000000 N/m", "1.9e+08 N/m", "1.9e8 N/m")
+    assert rows["friction.slope"] == "−0.05 s/m"  # noqa: RUF001
+    assert rows["reading"] == "consistent"
+
+
+def test_a_map_of_brakes_has_a_card_without_a_drawing():
+    text = DrumBrake(m=np.array([1.0, 2.0]))._repr_html_()
+    assert "<img" not in text
+    assert "2 values kg" in text
+
+
+def test_the_figure_of_a_result_is_the_one_plot_draws():
+    modes = EXAMPLES["ComplexModes"]()
+    ours, theirs = modes.plot(title="a"), plot(modes, title="a")
+    assert ours.axes[0].get_title() == theirs.axes[0].get_title() == "a"
