@@ -3,23 +3,27 @@
 Depends on: transient, stability, continuation, system, friction, schedules, result, parameters.
 """
 
-from squealbox.limit_cycles.basins import Basin, basin, dangerous_push
+from squealbox.limit_cycles.attractors import Attractor
+from squealbox.limit_cycles.basins import Basin, basin
 from squealbox.limit_cycles.branches import Branch, branch
 from squealbox.limit_cycles.curves import PointCurve, hopf_curve, point_curve
 from squealbox.limit_cycles.cycle import Cycle
 from squealbox.limit_cycles.estimates import averaged_limit, averaged_swings, describing_function
 from squealbox.limit_cycles.harmonic_balance import harmonic_balance
 from squealbox.limit_cycles.hopf import HopfPoint, hopf_point
+from squealbox.limit_cycles.pushes import DangerousPush, dangerous_push, push_along
 from squealbox.limit_cycles.sections import lyapunov_exponents, maxima
 from squealbox.limit_cycles.shooting import shooting
 from squealbox.limit_cycles.special_points import BranchPoint
 from squealbox.limit_cycles.stick_slip_limit import return_gap, stick_slip_limit
 
 __all__ = [
+    "Attractor",
     "Basin",
     "Branch",
     "BranchPoint",
     "Cycle",
+    "DangerousPush",
     "HopfPoint",
     "PointCurve",
     "averaged_limit",
@@ -34,6 +38,7 @@ __all__ = [
     "lyapunov_exponents",
     "maxima",
     "point_curve",
+    "push_along",
     "return_gap",
     "shooting",
     "stick_slip_limit",

@@ -1,170 +1,215 @@
-"""Which starts lead to which attractor: basins, their share with its uncertainty, and the least dangerous push.
+"""Which starts lead to which attractor: basins, their shares with confidence intervals, and pictures of a plane.
 
-Starts fill a box about steady sliding; each is run and judged by the swing of its last part. The share p of n starts
-that vibrate carries the Wilson interval (p + z^2/2n +- z sqrt(p (1 - p)/n + z^2/4n^2)) / (1 + z^2/n).
+Starts fill a box of the state space, or a grid in one of its planes. An ensemble runs them until each rests or repeats
+itself (`settling`), motions that ended alike are one attractor, and shooting confirms it (`attractors`). Of n starts of
+which k lead to an attractor its share is k/n, with the Wilson score interval of 95 % (SciPy's `binomtest`).
 Basin stability: Menck, Heitzig, Marwan and Kurths 2013, Nature Physics 9, 89-92.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.field import Field
-from squealbox.limit_cycles.starting import GUESS_RTOL, steady_state
-from squealbox.limit_cycles.variation import fly
-from squealbox.parameters import ParameterError
+from squealbox.limit_cycles.attractors import NO_END, SLIDING, Attractor, attractors
+from squealbox.limit_cycles.settling import RESTS, Batch, Scales, settle
+from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome, Result, quantity
-from squealbox.stability import complex_modes
 from squealbox.system import System, as_system
 
-FinalSwings = Callable[[System, Any, float], Any]
-LAST = 0.1  # share of a run by whose swing it is judged
-RAN = 0.05  # share of the sliding speed; a last swing above it is a vibration
+CONFIDENCE = 0.95
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Basin(Result):
-    """Starts and what became of them, as :func:`basin` returns it."""
+    """Starts and what became of them, as :func:`basin` returns it.
+
+    `attractors` are :class:`Attractor` objects, with the refined cycles; a saved file keeps the arrays only. `plane`
+    names the two states of a picture; `through` is the state its plane goes through.
+    """
 
     start: Any = quantity("start state", "m", "starts (q, q'), displacements in m and velocities in m/s")
-    swing: Any = quantity("start", "m/s", "half peak to peak of the fastest velocity at the end; NaN = run failed")
-    vibrates: Any = quantity("start", "1", "True where the run ends in a vibration")
+    attractor: Any = quantity("start", "1", "index of the attractor; -1 not settled, -2 the run failed")
+    level: Any = quantity("start", "1", "half range at the end over V/w1, w1 the slowest frequency")
+    time: Any = quantity("start", "s", "time it ran")
+    vibrates: Any = quantity("start", "1", "True where the run does not come to rest")
+    kind: Any = quantity("attractor", "", "steady sliding, rest elsewhere, cycle, vibration or irregular")
+    count: Any = quantity("attractor", "1", "number of starts that lead there")
+    shares: Any = quantity("attractor", "1", "share of the starts that lead there")
+    intervals: Any = quantity("attractor end", "1", "its confidence interval, 95 %")
+    lowest: Any = quantity("attractor dof", "m", "least displacement")
+    highest: Any = quantity("attractor dof", "m", "largest displacement")
     share: Any = quantity("", "1", "share of the starts that vibrate")
-    interval: Any = quantity("end", "1", "Wilson interval of that share, 95 %")
+    interval: Any = quantity("end", "1", "its confidence interval, 95 %")
+    through: Any = quantity("state", "m", "state the plane or the box goes through")
+    plane: tuple[str, ...] = ()
+    attractors: tuple[Attractor, ...] = field(default=(), metadata={"transient": True})
+
+    @property
+    def system(self) -> System:
+        """The system that moves."""
+        system: System = self.inputs["system"]
+        return system
 
     def summary(self) -> str:
-        """One line: the share with its interval."""
+        """The share that vibrates, and a line for each attractor."""
+        if self.outcome == "no_sliding":
+            return f"{self.outcome}: {self.outcome.message}"
         low, high = self.interval
-        share = f"{100 * float(self.share):.1f} % of {len(self.swing)} starts vibrate"
-        return f"{share} ({100 * low:.1f} to {100 * high:.1f} %)"
+        lines = [f"{100 * float(self.share):.1f} % of {len(self.attractor)} starts vibrate "
+                 f"({100 * low:.1f} to {100 * high:.1f} %)"]  # fmt: skip
+        for i, kind in enumerate(self.kind):
+            about = self.attractors[i].summary() if self.attractors else str(kind)
+            low, high = self.intervals[i]
+            lines.append(f"  {100 * self.shares[i]:5.1f} % ({100 * low:.1f} to {100 * high:.1f} %) {about}")
+        if not self.outcome.ok:
+            lines.append(f"  {self.outcome}: {self.outcome.message}")
+        return "\n".join(lines)
 
     def __repr__(self) -> str:
         return self.summary()
 
 
-def final_swings(system: System, starts: Any, duration: float) -> Any:
-    """Half peak to peak of the fastest velocity [m/s] in the last part of each run; NaN where a run failed."""
-    field = Field(system)
-    swings = []
-    for start in starts:
-        instants = np.linspace((1.0 - LAST) * duration, duration, 400)
-        run = fly(field, start, duration, GUESS_RTOL, instants)
-        swings.append(0.5 * float(np.max(np.ptp(run.qd, axis=0))) if run.outcome.ok else np.nan)
-    return np.array(swings)
-
-
 def basin(
     design_or_system: Any,
-    spread: Any,
-    starts: int = 100,
+    spread: Any = None,
+    starts: int = 1000,
     *,
+    plane: Sequence[Any] | None = None,
+    through: Any = None,
     duration: float | None = None,
     seed: int = 1,
-    plane: Sequence[int] | None = None,
-    run: FinalSwings = final_swings,
+    refine: bool = True,
+    threads: int | None = None,
 ) -> Basin:
-    """What becomes of `starts` starts in a box of half widths `spread` about steady sliding.
+    """What becomes of many starts in a box about steady sliding, or on a grid in a plane of the state space.
 
     Parameters
     ----------
     design_or_system : a design or a `System` with constant loads and speeds
-    spread : half widths, shape (2n,): displacements [m] and velocities [m/s]
+    spread : half widths, shape (2n,): displacements [m] and velocities [m/s]; None takes V/w1 and V, with V the fastest
+        sliding speed and w1 the slowest frequency [rad/s]; a number multiplies that
     starts : number of starts, a Sobol sequence with `seed`; with `plane`, about that many on a square grid
-    duration : [s] of each run; None takes 200 periods of the slowest mode
-    plane : two places in the state (q, q'), for a picture of the plane through steady sliding
-    run : function of system, starts (k, 2n) and duration that returns the last swings; for an engine of your own
+    plane : two states, by place in (q, q') or by name, as in ("x", "x'"); the others stay at `through`
+    through : (q, qd) in the middle of the box or plane, such as a state on a cycle; None takes steady sliding
+    duration : [s] of the first stretch; None takes 60 periods of the slowest mode. What has not settled runs on, up to
+        63 times that
+    refine : confirm each attractor by shooting
+    threads : how many; None takes one for each core
 
-    Outcome "completed", "failed_runs" (some runs failed; they count as vibrating) or "no_sliding".
+    Outcome "completed", "not_settled" (some runs neither rest nor repeat: they count as vibrating and are an attractor
+    of the kind "irregular"), "failed_runs" or "no_sliding". Accuracy: shares as their intervals, for starts uniform in
+    the box (a Sobol sequence does better). A cycle below 5 % of V that attracts slowly may pass for rest. Rigid
+    contacts raise `InvalidSystem`. Source: as this module.
 
     >>> from squealbox import DrumBrake, LinearSlope
     >>> basin(DrumBrake(friction=LinearSlope(0.3, -0.05)), [1e-6, 1e-6, 0.0, 0.0], 4).share
     array(0.)
     """
     system = as_system(design_or_system)
-    field = Field(system)
-    half = np.asarray(spread, dtype=float)
-    if half.shape != (2 * field.size,) or not np.all(np.isfinite(half)) or np.any(half < 0.0):
-        raise ParameterError("basin", "spread", spread, f"{2 * field.size} half widths of at least 0")
-    centre = steady_state(field)
-    points = np.zeros((0, 2 * field.size))
-    if np.all(np.isfinite(centre)):
-        points = centre + half * _unit_starts(2 * field.size, starts, seed, plane)
-    length = 200.0 * _slowest(system) if duration is None else duration
-    swings = run(system, points, length) if len(points) else np.zeros(0)
-    vibrates = ~(swings <= RAN * float(np.max(np.abs(field.V), initial=0.0)))
-    share, interval = wilson(int(np.sum(vibrates)), len(vibrates))
-    settings = {"spread": half.tolist(), "duration": length, "seed": seed}
-    return Basin(inputs={"system": system}, settings=settings, outcome=_outcome(swings), start=points, swing=swings,
-                 vibrates=vibrates, share=np.asarray(share), interval=interval)  # fmt: skip
+    batch = Batch.over(system)
+    scales = Scales.of(batch, 1)
+    n = system.size
+    names = state_names(system)
+    half = _spread(spread, scales, n)
+    centre = np.concatenate([scales.rest[0], np.zeros(n)]) if through is None else _state(through, n)
+    points = np.zeros((0, 2 * n))
+    places = None if plane is None else [place(names, each) for each in plane]
+    if places is not None and (len(places) != 2 or places[0] == places[1]):
+        raise ParameterError("basin", "plane", plane, "two different states")
+    if np.all(np.isfinite(centre)) and np.all(np.isfinite(scales.rest)):
+        points = centre + half * unit_starts(2 * n, starts, seed, places)
+    ends = settle(batch, points[:, :n], points[:, n:], duration=duration, threads=threads)
+    found, label = attractors(system, ends, refine)
+    counts = np.array([int(np.sum(label == i)) for i in range(len(found))], dtype=np.int64)
+    total = len(label)
+    spans = [interval(int(k), total) for k in counts]
+    vibrates = ends.kind != RESTS
+    share, span = interval(int(np.sum(vibrates)), total)
+    return Basin(
+        inputs={"system": system}, settings={"spread": half.tolist(), "seed": seed, "starts": starts},
+        outcome=_outcome(label, found), start=points, attractor=label, level=ends.level, time=ends.time,
+        vibrates=vibrates, kind=np.array([each.kind for each in found], dtype=str), count=counts,
+        shares=np.array([s for s, _ in spans]), intervals=np.array([i for _, i in spans]).reshape(-1, 2),
+        lowest=np.array([each.low for each in found]).reshape(-1, n),
+        highest=np.array([each.high for each in found]).reshape(-1, n), share=np.asarray(share), interval=span,
+        through=centre, plane=() if places is None else tuple(names[i] for i in places), attractors=tuple(found),
+    )  # fmt: skip
 
 
-def dangerous_push(
-    design_or_system: Any,
-    direction: Any,
-    bounds: tuple[float, float],
-    *,
-    duration: float | None = None,
-    steps: int = 30,
-) -> float:
-    """The least multiple of `direction` (2n,) between `bounds` that ends in a vibration; NaN if none does.
-
-    By bisection. A basin boundary may be folded: this is the first one bisection meets, not proven to be the least.
-    """
-    system = as_system(design_or_system)
-    field = Field(system)
-    centre, along = steady_state(field), np.asarray(direction, dtype=float)
-    length = 200.0 * _slowest(system) if duration is None else duration
-    limit = RAN * float(np.max(np.abs(field.V), initial=0.0))
-
-    def vibrates(size: float) -> bool:
-        return not bool(final_swings(system, [centre + size * along], length)[0] <= limit)
-
-    low, high = bounds
-    if vibrates(low):
-        return float(low)
-    if not vibrates(high):
-        return float("nan")
-    for _ in range(steps):
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if vibrates(middle) else (middle, high)
-    return float(high)
-
-
-def wilson(successes: int, count: int) -> tuple[float, Any]:
-    """Share and its 95 % Wilson interval, shape (2,); NaN without a count."""
-    if count == 0:
+def interval(count: int, total: int) -> tuple[float, Any]:
+    """Share and its Wilson score interval of 95 %, shape (2,); NaN without any."""
+    if total == 0:
         return float("nan"), np.full(2, np.nan)
-    z, p = 1.959963984540054, successes / count
-    middle = (p + z**2 / (2 * count)) / (1.0 + z**2 / count)
-    half = z * np.sqrt(p * (1.0 - p) / count + z**2 / (4.0 * count**2)) / (1.0 + z**2 / count)
-    return p, np.array([max(middle - half, 0.0), min(middle + half, 1.0)])
+    from scipy.stats import binomtest
+
+    span = binomtest(count, total).proportion_ci(CONFIDENCE, method="wilson")
+    return count / total, np.array([span.low, span.high])
 
 
-def _unit_starts(size: int, starts: int, seed: int, plane: Sequence[int] | None) -> Any:
-    """Points of the cube [-1, 1]^size."""
-    if plane is not None:
+def state_names(system: System) -> list[str]:
+    """Names of the states: the degrees of freedom, then their velocities with a prime."""
+    return [*system.names, *(f"{name}'" for name in system.names)]
+
+
+def place(names: Sequence[str], given: Any) -> int:
+    """The place of a state in (q, q') from its place or name."""
+    if isinstance(given, str) and given in names:
+        return list(names).index(given)
+    if isinstance(given, (int, np.integer)) and 0 <= given < len(names):
+        return int(given)
+    expected = known_names(str(given), list(names))
+    raise ParameterError("basin", "plane", given, f"{expected}; or a place from 0 to {len(names) - 1}")
+
+
+def unit_starts(size: int, starts: int, seed: int, places: Sequence[int] | None) -> Any:
+    """Points of the cube [-1, 1]^size: a Sobol sequence, or a square grid in two of its directions."""
+    if places is not None:
         side = np.linspace(-1.0, 1.0, max(2, round(np.sqrt(starts))))
         out = np.zeros((side.size**2, size))
-        out[:, plane[0]], out[:, plane[1]] = (x.ravel() for x in np.meshgrid(side, side))
+        out[:, places[0]], out[:, places[1]] = (x.ravel() for x in np.meshgrid(side, side))
         return out
     from scipy.stats import qmc
 
     power = int(np.ceil(np.log2(max(starts, 2))))
-    return 2.0 * qmc.Sobol(size, seed=seed).random_base2(power)[:starts] - 1.0
+    return 2.0 * qmc.Sobol(size, rng=seed).random_base2(power)[:starts] - 1.0
 
 
-def _slowest(system: System) -> float:
-    frequencies = np.asarray(complex_modes(system).frequency)
-    moving = frequencies[frequencies > 0.0]
-    return float(1.0 / np.min(moving)) if moving.size else 1.0
+def _spread(spread: Any, scales: Scales, n: int) -> Any:
+    speed = float(scales.speed[0]) or 1.0
+    usual = np.repeat([speed / float(scales.slowest[0]), speed], n)
+    given = np.asarray(1.0 if spread is None else spread, dtype=float)
+    half = given * usual if given.ndim == 0 else given
+    if half.shape != (2 * n,) or not np.all(np.isfinite(half)) or np.any(half < 0.0):
+        raise ParameterError("basin", "spread", spread, f"{2 * n} half widths of at least 0, or one number")
+    return half
 
 
-def _outcome(swings: Any) -> Outcome:
-    if len(swings) == 0:
+def _state(given: Any, n: int) -> Any:
+    try:
+        q, qd = (np.asarray(part, dtype=float) for part in given)
+    except (TypeError, ValueError) as error:
+        raise ParameterError("basin", "through", given, f"(q, qd), each of shape ({n},)") from error
+    if q.shape != (n,) or qd.shape != (n,) or not np.all(np.isfinite(np.concatenate([q, qd]))):
+        raise ParameterError("basin", "through", given, f"(q, qd), each of shape ({n},) and finite")
+    return np.concatenate([q, qd])
+
+
+def _outcome(label: Any, found: Sequence[Attractor]) -> Outcome:
+    if len(label) == 0:
         return Outcome("no_sliding", "there is no steady sliding to start about")
-    failed = int(np.sum(~np.isfinite(swings)))
+    failed = int(np.sum(label == NO_END))
     if failed:
-        return Outcome("failed_runs", f"{failed} of {len(swings)} runs did not reach their end", failed=failed)
+        return Outcome("failed_runs", f"{failed} of {len(label)} runs did not reach their end", failed=failed)
+    wild = [i for i, each in enumerate(found) if each.kind == "irregular"]
+    moving = int(np.sum(np.isin(label, wild)))
+    if moving:
+        message = f"{moving} of {len(label)} runs neither came to rest nor repeated themselves in their time"
+        return Outcome("not_settled", message, moving=moving)
     return Outcome(COMPLETED)
+
+
+def resting(attractor: Attractor) -> bool:
+    """True for steady sliding and other states of rest."""
+    return attractor.kind in (SLIDING, "rest elsewhere")

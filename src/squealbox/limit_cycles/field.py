@@ -39,7 +39,7 @@ class Field:
     """
 
     def __init__(self, system: System, contact: str = "exact", width: float = 1e-3) -> None:
-        _check_autonomous(system)
+        check_autonomous(system)
         self.system, self.contact, self.width = system, contact, width
         n, rows = system.size, system.contacts
         inverse = np.linalg.inv(system.M)
@@ -154,7 +154,8 @@ class Field:
         return float(self._holding(stuck, a)[at]), self._holding(stuck, free)[at]
 
 
-def _check_autonomous(system: System) -> None:
+def check_autonomous(system: System) -> None:
+    """Raise `ParameterError` for leading axes and for what varies with time."""
     if system.shape != ():
         raise ParameterError("limit_cycles", "system", f"leading axes {system.shape}", "one system, without them")
     varying = [system.load, *(c.N0 for c in system.contacts), *(c.V for c in system.contacts)]

@@ -119,7 +119,8 @@ def simulate_ensemble(
     method : name of a tableau or a `Method`; "bogacki-shampine", "dormand-prince", "tsitouras" or "dormand-prince-8"
     observe : names out of `OBSERVERS`, or `Observer`s; no trajectory is stored
     contact : "exact", "raw", "smooth" = "arctan", or "tanh", as in `simulate`
-    start : "rest", "sliding", or (q, qd) whose arrays end with n and broadcast with the parameters
+    start : "rest", "sliding", or (q, qd) whose arrays end with n and broadcast with the parameters; without parameters
+        their leading axes are those of the ensemble
     times : instants at which q and qd are sampled [s]; they do not influence the steps
     rtol, atol, width, start_time : as in `simulate`
     threads : how many; None takes one for each core
@@ -152,7 +153,7 @@ def simulate_ensemble(
         _method(method, rtol, atol), SCHEMES[contact], width, start, duration, start_time, as_observers(observe),
         instants, _threads(threads), progress,
     )  # fmt: skip
-    names, arrays, shape = _space(design_or_system, parameters, grid)
+    names, arrays, shape = _space(design_or_system, parameters, grid, start)
     job.run(design_or_system, names, arrays, shape)
     settings = {
         "duration": duration, "start_time": start_time, "contact": contact, "width": width, "grid": grid,
@@ -238,12 +239,14 @@ def _threads(threads: int | None) -> int:
     return int(threads)
 
 
-def _space(design: Any, parameters: Mapping[str, Any] | None, grid: bool) -> tuple[tuple[str, ...], list[Any], Any]:
-    """Names, arrays and the common shape of the parameters."""
+def _space(
+    design: Any, parameters: Mapping[str, Any] | None, grid: bool, start: Any
+) -> tuple[tuple[str, ...], list[Any], Any]:
+    """Names, arrays and the common shape of the parameters, or of the starts where nothing else has a shape."""
     if not parameters:
         if isinstance(design, (list, tuple)):
             return (), [], (len(design),)
-        return (), [], as_system(design).shape
+        return (), [], as_system(design).shape or _shape_of_starts(start)
     if isinstance(design, (System, list, tuple)):
         raise ParameterError(
             "simulate_ensemble", "parameters", list(parameters), "a design: a System has no named parameters to vary"
@@ -259,3 +262,13 @@ def _space(design: Any, parameters: Mapping[str, Any] | None, grid: bool) -> tup
             "simulate_ensemble", "parameters", shapes, "shapes that broadcast, or grid=True for the outer product"
         ) from error
     return tuple(parameters), arrays, shape
+
+
+def _shape_of_starts(start: Any) -> tuple[int, ...]:
+    """Leading axes of (q, qd); none for words, and for what `Work` will refuse."""
+    if start is None or isinstance(start, str):
+        return ()
+    try:
+        return np.broadcast_shapes(*(np.shape(part)[:-1] for part in start))
+    except (TypeError, ValueError):
+        return ()

@@ -34,12 +34,12 @@ def tabulate(
     system: System, method: Method, scheme: int, width: float, start: tuple[Any, Any], duration: float,
     begin: float, watches: tuple[Any, ...], coefficients: tuple[float, ...], samples: bool,
 ) -> Jobs:  # fmt: skip
-    """The jobs of a batched system; leading axes are those of the system, flattened."""
+    """The jobs of a batched system; leading axes are those of the system or else of the starts, flattened."""
     if any(contact.rigid for contact in system.contacts):
         raise InvalidSystem(
             "a rigid contact has impacts, which lanes do not know: run such systems one by one, with simulate"
         )
-    batch = system.shape
+    batch = system.shape or np.shape(start[0])[:-1]
     count = int(np.prod(batch, dtype=int))
     values, signals, breaks = _equation(system)
     template = first_of(system)
