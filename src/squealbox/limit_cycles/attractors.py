@@ -5,7 +5,7 @@ A the largest of them and c_i its middle beside steady sliding; of one that does
 Motions are of one attractor when a chain of neighbours within `SAME_SIGNATURE` joins them (single linkage).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -134,12 +134,13 @@ def _confirmed(system: System, groups: list[tuple[Attractor, Any]], refine: bool
 
 
 def _with(attractor: Attractor, kind: str, cycle: Cycle) -> Attractor:
-    exact = kind == CYCLE
-    return Attractor(kind, cycle.lowest if exact else attractor.low, cycle.highest if exact else attractor.high,
-                     attractor.maxima, attractor.frequency, cycle.start if exact else attractor.start, cycle)  # fmt: skip
+    """The attractor with what shooting found: its extremes and start where that is a cycle."""
+    if kind != CYCLE:
+        return replace(attractor, cycle=cycle)
+    return replace(attractor, kind=kind, low=cycle.lowest, high=cycle.highest, start=cycle.start, cycle=cycle)
 
 
 def _alike(cycle: Cycle, attractor: Attractor, reach: float) -> bool:
     size = float(np.max(attractor.amplitude))
-    off = max(float(np.max(np.abs(cycle.lowest - attractor.low))), float(np.max(np.abs(cycle.highest - attractor.high))))
-    return bool(off <= reach * size)
+    off = np.abs(np.concatenate([cycle.lowest - attractor.low, cycle.highest - attractor.high]))
+    return bool(np.max(off) <= reach * size)

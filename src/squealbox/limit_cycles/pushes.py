@@ -8,8 +8,8 @@ with K_s the symmetric part of K and L the Cholesky factors. In u all directions
 directions an ensemble finds the first length that vibrates; differential evolution (SciPy) lowers it over the
 directions; then starts drawn uniformly from the ball |u| < |u*| look for a smaller one.
 
-What is guaranteed: the push found vibrates (it was run). That none is smaller is not: what is known is how large a share
-of all pushes of less energy is dangerous at most, by the count among those drawn, with a confidence of 95 %.
+What is guaranteed: the push found vibrates (it was run). That none is smaller is not: what is known is how large a
+share of all pushes of less energy is dangerous at most, by the count among those drawn, with a confidence of 95 %.
 Source: Kerswell 2018, Annu. Rev. Fluid Mech. 50, 319-345 (minimal seeds); Storn and Price 1997, J. Global Optim. 11.
 """
 

@@ -197,4 +197,3 @@ def _judge(windows: Sequence[Any], apart: float, scales: Scales) -> Any:
         off = np.max(np.maximum(np.abs(low2 - low1), np.abs(high2 - high1)), axis=-1)
         repeats = off <= SAME * reach
     return np.where(rests, RESTS, np.where(repeats, REPEATS, MOVING))
-
