@@ -61,12 +61,30 @@ def eigenvalues(about: Linearised, engine: Engine = "auto") -> Any:
 
 
 def compiled_eigenvalues(matrices: Any) -> Any:
-    """Eigenvalues (count, n) of real matrices (count, n, n), as `numpy.linalg.eigvals`; NaN where QR fails."""
-    from squealbox.stability import kernels_lanes
+    """Eigenvalues (count, n) of real matrices (count, n, n), as `numpy.linalg.eigvals`; NaN where there are none."""
+    from squealbox.stability import kernels_spectra
 
     matrices = np.require(matrices, float, ["C", "W"])
     values = np.empty(matrices.shape[:2], dtype=complex)
-    kernels_lanes.spectra(matrices, values)
+    kernels_spectra.spectra(matrices, values)
+    left = np.isnan(values[:, 0].real)
+    if np.any(left):
+        values[left] = by_lapack(matrices[left])
+    return values
+
+
+def by_lapack(matrices: Any) -> Any:
+    """What the kernels leave: rows or columns that stand alone, sizes near overflow, QR that does not converge.
+
+    NaN for matrices that are not finite, or on which LAPACK fails too.
+    """
+    values = np.full(matrices.shape[:2], np.nan, dtype=complex)
+    finite = np.all(np.isfinite(matrices), axis=(-1, -2))
+    try:
+        values[finite] = np.linalg.eigvals(matrices[finite])
+    except np.linalg.LinAlgError:  # NumPy answers no matrix of a batch when one fails
+        if len(matrices) > 1:
+            return np.concatenate([by_lapack(one[None]) for one in matrices])
     return values
 
 
