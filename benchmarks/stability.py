@@ -7,6 +7,7 @@ Ratios are NumPy's least time over ours at equal results; the largest difference
 import os
 import sys
 import time
+from functools import partial
 from itertools import pairwise
 
 # These choose other kernels of OpenBLAS and slow NumPy down: the rival runs as it is shipped, on one core.
@@ -19,8 +20,7 @@ import numpy as np  # noqa: E402
 
 from squealbox import DrumBrake, LinearSlope  # noqa: E402
 from squealbox.stability import kernels_two_dof as kernels  # noqa: E402
-from squealbox.stability import stability_boundary, stability_map  # noqa: E402
-from squealbox.stability.spectra import compiled_eigenvalues  # noqa: E402
+from squealbox.stability import compiled_eigenvalues, stability_boundary, stability_map  # noqa: E402
 
 
 def least(function, repetitions=7):
@@ -76,15 +76,14 @@ def spectra():
     damping, stiffness, state = oscillators(20000, 2)
     mass, c, k, found = np.eye(2).ravel(), damping.ravel(), stiffness.ravel(), np.empty((len(state), 4), dtype=complex)
     compare("4 x 4 spectrum, 2 DOF", state, lambda: kernels.spectrum(mass, c, k, 0, found), lambda: found)
-    for size, count in ((2, 20000), (6, 3200)):
-        _, _, state = oscillators(count, size)
-        name = f"{2 * size} x {2 * size} spectrum, QR"
-        compare(
-            name,
-            state,
-            lambda state=state: compiled_eigenvalues(state),
-            lambda state=state: compiled_eigenvalues(state),
-        )
+    for size, count in ((4, 20000), (12, 3200), (24, 640)):
+        for kind in ("oscillators", "any real"):
+            if kind == "oscillators":
+                _, _, matrices = oscillators(count, size // 2)
+            else:
+                matrices = np.random.default_rng(size).normal(size=(count, size, size))
+            run = partial(compiled_eigenvalues, matrices)
+            compare(f"{size} x {size} spectrum, {kind}", matrices, run, run)
 
 
 def compare(name, state, ours, result):

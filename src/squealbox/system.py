@@ -342,9 +342,12 @@ def _solve(jacobian: Any, residual: Any) -> tuple[Any, Any]:
 
 
 def _condition(matrix: Any) -> Any:
-    """Condition number; of 2 x 2 matrices in closed form (Frobenius norm), which is many times faster on a map."""
+    """Condition number in the 1-norm, NaN for a matrix with NaN; of 2 x 2 matrices in closed form (Frobenius norm).
+
+    By the inverse, which takes half the time of the singular values on a map; the closed form many times less.
+    """
     if matrix.shape[-1] != 2:
-        return np.linalg.cond(matrix)
+        return np.linalg.cond(matrix, 1)
     determinant = matrix[..., 0, 0] * matrix[..., 1, 1] - matrix[..., 0, 1] * matrix[..., 1, 0]
     return np.sum(matrix**2, axis=(-1, -2)) / np.abs(determinant)
 

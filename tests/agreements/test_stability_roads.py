@@ -11,7 +11,7 @@ from squealbox.parameters import DataSheet, parameter
 from squealbox.stability import complex_modes, critical_value, stability_boundary, stability_map
 from squealbox.stability.family import Family, steady_sliding
 from squealbox.stability.mechanism import contributions
-from squealbox.stability.spectra import asymptotically_stable, compiled_eigenvalues, eigenvalues, largest_growth
+from squealbox.stability.spectra import asymptotically_stable, eigenvalues, largest_growth
 from squealbox.system import System
 
 # Eigenvalues of well-conditioned matrices of this size agree to some 1e-13; the worst of thousands of random ones have
@@ -49,34 +49,6 @@ def test_compiled_growth_of_a_drum_map_is_that_of_numpy(shared: bool) -> None:
     terms = [np.array(contributions(about, engine=engine)) for engine in ("numpy", "compiled")]
     assert np.max(np.abs(terms[0] - terms[1])) < 1e-6  # sums of 24 growth rates, some of them at a coalescence
     assert np.max(np.abs(np.sum(terms[1], axis=0) - plain[0])) < 1e-6
-
-
-@pytest.mark.parametrize("size", [2, 4, 6, 12])
-def test_compiled_spectra(size: int) -> None:
-    rng = np.random.default_rng(size)
-    matrices = rng.normal(size=(300, size, size))
-    plain, fast = np.linalg.eigvals(matrices), compiled_eigenvalues(matrices)
-    scale = np.max(np.abs(plain), axis=-1)
-    gap = np.max(np.min(np.abs(plain[:, :, None] - fast[:, None, :]), axis=2), axis=1) / scale
-    assert np.quantile(gap, 0.95) < TYPICAL
-    assert np.max(gap) < WORST
-    assert not np.allclose(np.sort(fast.real), np.sort(compiled_eigenvalues(1.01 * matrices).real), rtol=1e-3)
-
-
-def test_compiled_spectra_of_awkward_matrices() -> None:
-    awkward = np.zeros((6, 4, 4))
-    awkward[1] = np.eye(4)
-    awkward[2] = np.diag([1.0, 1.0, 1.0], 1)  # one Jordan block: eigenvalues are good to 1e-16^(1/4)
-    awkward[3] = np.roll(np.eye(4), 1, axis=0)
-    awkward[4] = np.diag([1e-8, 1.0, 1e8, 0.0])
-    awkward[5] = np.nan
-    found = compiled_eigenvalues(awkward)
-    assert np.all(found[0] == 0.0)
-    assert np.allclose(found[1], 1.0)
-    assert np.max(np.abs(found[2])) < 1e-3
-    assert np.allclose(np.sort_complex(found[3]), np.sort_complex(np.array([1.0, 1j, -1.0, -1j])), atol=1e-14)
-    assert np.allclose(np.sort(found[4].real), [0.0, 1e-8, 1.0, 1e8], rtol=1e-12)
-    assert np.all(np.isnan(found[5]))
 
 
 @pytest.mark.parametrize("size", [2, 6])

@@ -12,6 +12,7 @@ from squealbox.stability.nonnormal import TransientGrowth, pseudospectrum, trans
 from squealbox.stability.onset import CriticalValue, CriticalValues, critical_value, critical_values
 from squealbox.stability.routh_hurwitz import routh_hurwitz
 from squealbox.stability.sensitivity import Sensitivity, sensitivity
+from squealbox.stability.spectra import compiled_eigenvalues
 from squealbox.stability.tracking import TrackedModes, TrackedPoint, track, tracked_modes
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
     "TrackedModes",
     "TrackedPoint",
     "TransientGrowth",
+    "compiled_eigenvalues",
     "complex_modes",
     "critical_value",
     "critical_values",

@@ -206,17 +206,34 @@ def state_matrix(about: Linearised) -> tuple[Any, Any, Any, Outcome]:
     size = about.M.shape[-1]
     exists = np.asarray(about.equilibrium.exists)
     with np.errstate(all="ignore"):
-        regular = np.linalg.cond(about.M) < 1.0 / np.finfo(float).eps
-        mass = np.where(regular[..., None, None], about.M, np.eye(size))
-        stiffness = np.linalg.solve(mass, np.where(exists[..., None, None], about.K, 0.0))
-        damping = np.linalg.solve(mass, np.where(exists[..., None, None], about.C, 0.0))
+        mass = _once(about.M)
+        regular = np.linalg.cond(mass, 1) < 1.0 / np.finfo(float).eps
+        mass = np.where(regular[..., None, None], mass, np.eye(size))
+        stiffness = _divided(mass, np.where(exists[..., None, None], about.K, 0.0))
+        damping = _divided(mass, np.where(exists[..., None, None], about.C, 0.0))
         rate = np.maximum(np.sqrt(_largest(stiffness)), _largest(damping))
         rate = np.where(np.isfinite(rate) & (rate > 0.0), rate, 1.0)
-        lower = [-stiffness / rate[..., None, None] ** 2, -damping / rate[..., None, None]]
-    upper = [np.zeros(stiffness.shape), np.broadcast_to(np.eye(size), stiffness.shape)]
-    matrix = np.concatenate([np.concatenate(upper, axis=-1), np.concatenate(lower, axis=-1)], axis=-2)
-    finite = np.all(np.isfinite(matrix), axis=(-1, -2))
+        matrix = np.zeros((*stiffness.shape[:-2], 2 * size, 2 * size))
+        matrix[..., :size, size:] = np.eye(size)
+        np.multiply(stiffness, -1.0 / rate[..., None, None] ** 2, out=matrix[..., size:, :size])
+        np.multiply(damping, -1.0 / rate[..., None, None], out=matrix[..., size:, size:])
+    regular = np.broadcast_to(regular, exists.shape)
+    finite = np.all(np.isfinite(matrix[..., size:, :]), axis=(-1, -2))
     return matrix, rate, exists & regular & finite, _outcome(about, exists, regular, finite)
+
+
+def _once(mass: Any) -> Any:
+    """M (n, n) where all systems share one, else as it is."""
+    shared = all(step == 0 for step in mass.strides[:-2])
+    return mass[(0,) * (mass.ndim - 2)] if shared and mass.size else mass
+
+
+def _divided(mass: Any, matrix: Any) -> Any:
+    """M^-1 A; one factorisation where all systems share one M."""
+    if mass.ndim > 2 or matrix.ndim == 2:
+        return np.linalg.solve(mass, matrix)
+    columns = np.moveaxis(matrix, -2, 0)
+    return np.moveaxis(np.linalg.solve(mass, columns.reshape(len(mass), -1)).reshape(columns.shape), 0, -2)
 
 
 def spectrum_order(eigenvalues: Any) -> Any:

@@ -1,7 +1,8 @@
 """Francis double-shift QR on sixteen real Hessenberg matrices at once, each on a window of its own.
 
-Row and column indices that differ between the matrices are packed numbers; a choice by mask takes the place of a branch.
-Blocks that have split off are left alone, since only eigenvalues are wanted, and rows between them mean nothing.
+Row and column indices that differ between the matrices are packed numbers; a choice by mask takes the place of a
+branch. Blocks that have split off are left alone, since only eigenvalues are wanted; the entries between them mean
+nothing.
 """
 
 from typing import Any
@@ -13,7 +14,7 @@ from squealbox.stability.packed import inverse_power, larger, largest, load, roo
 EPS = 2.220446049250313e-16
 TINY = 1e-290  # of a matrix whose largest entry is about 1: nothing
 SWEEPS = 60  # QR sweeps on one window before the matrix is given up
-INLINE = {"error_model": "numpy", "forceinline": True}
+INLINE: Any = {"error_model": "numpy", "forceinline": True}
 
 
 @njit(**INLINE)

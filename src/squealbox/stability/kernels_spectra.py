@@ -1,9 +1,9 @@
 """Compiled spectra of many small real matrices, sixteen at a time in packed registers.
 
 The steps are LAPACK's geev: scale, balance, Householder reduction to Hessenberg form, Francis double-shift QR. Sixteen
-matrices lie side by side as one matrix of packed numbers (see `packed`), entry (i, j) at i n + j. All take every
-step together; what differs between them, the window that is still coupled and its shifts, is held in packed numbers too,
-and a matrix outside its window, or finished, takes part with a reflection that does nothing.
+matrices lie side by side as one matrix of packed numbers (see `packed`), entry (i, j) at i n + j. All take every step
+together; what differs between them, the window that is still coupled and its shifts, is held in packed numbers too, and
+a matrix outside its window, or finished, takes part with a reflection that does nothing.
 
 Importing this module loads numba; only `spectra` does.
 """
@@ -11,7 +11,6 @@ Importing this module loads numba; only `spectra` does.
 import math
 from typing import Any
 
-import numpy as np
 from numba import njit
 
 from squealbox.stability.kernels_qr import INLINE, TINY, iterate

@@ -1,11 +1,11 @@
 """Sixteen real numbers as one value of compiled code: `Packed`, with arithmetic, comparisons and a choice by mask.
 
-A loop over lanes is packed by LLVM only when it can prove that nothing overlaps, and fails silently when it cannot. Here a
-variable of a kernel simply is a vector: `x * y + z` are packed instructions on AVX2, AVX-512 or NEON, whatever there is, and
-the kernel reads like the formula for one matrix. A `Mask` is what a comparison of two of them gives.
+A loop over lanes is packed by LLVM only when it can prove that nothing overlaps, and fails silently when it cannot.
+Here a variable of a kernel simply is a vector: `x * y + z` are packed instructions, on AVX2, AVX-512 or NEON, and the
+kernel reads like the formula for one matrix. A `Mask` is what a comparison of two of them gives.
 
-Entry i of an array of packed numbers is `load(array, i)`; the array holds 16 doubles for each. Importing this module loads
-numba.
+Entry i of an array of packed numbers is `load(array, i)`; the array holds 16 doubles for each. Importing this module
+loads numba.
 """
 
 import operator
@@ -19,6 +19,7 @@ from numba.core import cgutils
 from numba.core.extending import models, register_model
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
 
+intrinsic: Any = extending.intrinsic  # untyped, and its calls leave out the typing context
 LANES = 16  # two registers of AVX-512: one hides the latency of the other
 FLAGS = ("contract", "nsz", "arcp", "reassoc", "afn")  # not nnan or ninf: they would remove the tests for lost lanes
 REALS, WORDS, BITS = (ir.VectorType(kind, LANES) for kind in (ir.DoubleType(), ir.IntType(64), ir.IntType(1)))
@@ -74,7 +75,7 @@ def _function(result: Any, *arguments: Any) -> Callable[..., Any]:
             lambda typing, a, b: typed(a, b),
             lambda typing, a, b, c: typed(a, b, c),
         ]
-        return extending.intrinsic(by_count[len(arguments) - 1])
+        return intrinsic(by_count[len(arguments) - 1])
 
     return wrap
 
@@ -172,7 +173,7 @@ def _place(context: Any, builder: Any, kind: Any, array: Any, index: Any) -> Any
     return builder.bitcast(builder.gep(data, [first]), REALS.as_pointer())
 
 
-@extending.intrinsic
+@intrinsic
 def load(typing: Any, array: Any, index: Any) -> Any:
     """Packed number `index` of a flat array."""
 
@@ -184,7 +185,7 @@ def load(typing: Any, array: Any, index: Any) -> Any:
     return signature(packed, array, types.intp), generate
 
 
-@extending.intrinsic
+@intrinsic
 def store(typing: Any, array: Any, index: Any, value: Any) -> Any:
     """Write packed number `index` of a flat array."""
 
