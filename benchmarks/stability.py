@@ -19,8 +19,8 @@ if any(name in os.environ for name in UNWANTED) or os.environ.get("OPENBLAS_NUM_
 import numpy as np  # noqa: E402
 
 from squealbox import DrumBrake, LinearSlope  # noqa: E402
-from squealbox.stability import kernels_two_dof as kernels  # noqa: E402
 from squealbox.stability import compiled_eigenvalues, stability_boundary, stability_map  # noqa: E402
+from squealbox.stability import kernels_two_dof as kernels  # noqa: E402
 
 
 def least(function, repetitions=7):
