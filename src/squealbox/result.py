@@ -11,11 +11,11 @@ import json
 import os
 import platform
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar
 
 import numpy as np
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 COMPLETED = "completed"
 DRAWN_BY = "squealbox.plots"  # by name, when asked: a result may know that it can be drawn, but not by whom
+Analysis = TypeVar("Analysis", bound=Callable[..., Any])
 
 
 class Outcome(str):
@@ -68,6 +69,25 @@ def quantity(dims: str, unit: str, meaning: str = "") -> Any:
     return dataclasses.field(metadata={"dims": tuple(dims.split()), "unit": unit, "meaning": meaning})
 
 
+class Column(NamedTuple):
+    """What a study keeps of a result under one name; dims are those that come after the leading axes."""
+
+    values: Any
+    dims: tuple[str, ...] = ()
+    unit: str = ""
+    meaning: str = ""
+
+
+def batched(analysis: Analysis) -> Analysis:
+    """Declare that an analysis answers a design whose parameters are arrays (k,) with results of leading axis k.
+
+    A study hands such an analysis whole blocks of points instead of one point at a time. The answer at a point must not
+    depend on the other points of its block.
+    """
+    analysis.batched = True  # type: ignore[attr-defined]
+    return analysis
+
+
 def provenance() -> dict[str, str]:
     """Versions of what computed a result; no host name, user or date, so equal inputs give equal files."""
     return dict(_versions())
@@ -89,6 +109,8 @@ class Result:
     provenance: Mapping[str, str] = dataclasses.field(default_factory=provenance)
 
     kinds: ClassVar[dict[str, type["Result"]]] = {}
+    swept: ClassVar[Mapping[str, tuple[str, str, str]]] = {}
+    """Attributes a study keeps of each point, with dimensions, unit and meaning; empty means every declared array."""
 
     def __init_subclass__(cls, **keywords: Any) -> None:
         super().__init_subclass__(**keywords)
@@ -98,6 +120,19 @@ class Result:
     def kind_name(cls) -> str:
         """The name a file knows this class by, its place in the package: ``transient.trajectory.Trajectory``."""
         return f"{cls.__module__.removeprefix('squealbox.')}.{cls.__name__}"
+
+    @property
+    def outcomes(self) -> Any:
+        """How each entry of the leading axes ended, by name; without leading axes, how the whole did."""
+        return np.asarray(str(self.outcome))
+
+    def columns(self) -> dict[str, Column]:
+        """What a study keeps of this result: the attributes in `swept`, or every declared array."""
+        arrays = {f.name: (" ".join(f.metadata["dims"]), *_about(f)) for f in _quantities(type(self))}
+        return {
+            name: Column(getattr(self, name), tuple(part for part in dims.split() if part != "..."), unit, meaning)
+            for name, (dims, unit, meaning) in (self.swept or arrays).items()
+        }
 
     def to_dataset(self) -> "xarray.Dataset":
         """The arrays as a labelled `xarray.Dataset`; units, inputs, settings, outcome and versions are attributes."""
@@ -166,6 +201,10 @@ class Result:
         kept = [f.name for f in dataclasses.fields(self) if not f.metadata.get("transient")]
         others = {name: getattr(self, name) for name in kept if name not in arrays}
         return {**others, "outcome": self.outcome.to_plain()}
+
+
+def _about(field: dataclasses.Field[Any]) -> tuple[str, str]:
+    return field.metadata["unit"], field.metadata["meaning"]
 
 
 def _quantities(kind: type[Result]) -> list[dataclasses.Field[Any]]:

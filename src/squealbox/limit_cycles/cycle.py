@@ -5,7 +5,7 @@ cycle is stable when all others lie inside the unit circle. A sticking phase giv
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -39,6 +39,16 @@ class Cycle(Result):
     event_mode: Any = quantity("event", "1", "mode the contact takes at the event")
     error: float = float("nan")
     caution: str = ""
+
+    swept: ClassVar = {
+        "period": ("", "s", "period"),
+        "frequency": ("", "Hz", "1/period"),
+        "amplitude": ("dof", "m", "half peak to peak"),
+        "centre": ("dof", "m", "midway between the extremes"),
+        "stable": ("", "1", "True when every multiplier but the trivial one lies inside the unit circle"),
+        "sticking_time": ("contact", "s", "time in a period each contact sticks"),
+        "multipliers": ("multiplier", "1", "Floquet multipliers, the trivial one first"),
+    }
 
     @property
     def system(self) -> System:

@@ -6,11 +6,11 @@ angular frequency; time enters as exp(lambda t), so a positive real part grows.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.result import COMPLETED, Outcome, Result, batched, quantity
 from squealbox.system import Linearised, as_system, linearise
 
 MARGINAL = 1e-12  # growth below this share of the largest |lambda| is round-off, not growth
@@ -79,6 +79,18 @@ class ComplexModes(Result):
     condition: Any = quantity("... mode", "1", "condition number of the eigenvalue; infinite = defective")
     steady: Any = quantity("... dof", "m", "steady sliding displacement")
     exists: Any = quantity("...", "1", "True where there is a spectrum")
+
+    swept: ClassVar = {
+        "largest_growth_rate": ("", "1/s", "largest growth rate"),
+        "unstable_modes": ("", "1", "number of growing modes"),
+        "growth_rate": ("mode", "1/s", "growth rate of each mode"),
+        "frequency": ("mode", "Hz", "frequency of each mode"),
+        "damping_ratio": ("mode", "1", "damping ratio of each mode; negative grows"),
+    }
+
+    @property
+    def outcomes(self) -> Any:
+        return np.where(self.exists, COMPLETED, str(self.outcome))
 
     @property
     def growth_rate(self) -> Any:
@@ -152,6 +164,7 @@ class ComplexModes(Result):
         return self.summary()
 
 
+@batched
 def complex_modes(design_or_system: Any, time: float = 0.0) -> ComplexModes:
     """Eigenvalues and modes of (lambda^2 M + lambda C_eff + K_eff) u = 0 about steady sliding at `time` [s].
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -35,6 +35,13 @@ class CriticalValue(OneEigenvalue, Result):
     slope: float = float("nan")
     unstable_below: int = 0
     unstable_above: int = 0
+
+    swept: ClassVar = {
+        "value": ("", "", "critical value of the parameter, in its own unit"),
+        "frequency": ("", "Hz", "frequency of the mode that crosses"),
+        "mechanism": ("", "", "flutter, negative_slope, divergence or mixed"),
+        "direction": ("", "", "destabilising or stabilising"),
+    }
 
     @property
     def changes_stability(self) -> bool:

@@ -1,9 +1,13 @@
 """How does the answer vary? Spaces of parameters, sweeps over them, and the store a sweep cannot lose.
 
+    table = sweep(brake, {"friction.static": mus, "load": loads}, complex_modes, out="study")
+
 A study imports no analysis: it is handed one, any function of a design. So it can run the user's own as well.
 Depends on: system, result, parameters.
 """
 
+from squealbox.result import batched
+from squealbox.studies.analysis import StudyError
 from squealbox.studies.distributions import (
     DISTRIBUTIONS,
     Beta,
@@ -17,18 +21,49 @@ from squealbox.studies.distributions import (
     as_distribution,
 )
 from squealbox.studies.scatter import SAMPLINGS, Scatter
+from squealbox.studies.space import Axis, Space, grid, latin_hypercube, sampled, sobol, zipped
+from squealbox.studies.store import (
+    ForeignStore,
+    Store,
+    StoreDamaged,
+    StoreError,
+    StoreFull,
+    StoreLocked,
+    StudyChanged,
+)
+from squealbox.studies.sweep import Sweep, sweep
+from squealbox.studies.work import Pace
 
 __all__ = [
     "DISTRIBUTIONS",
     "SAMPLINGS",
+    "Axis",
     "Beta",
     "Distribution",
+    "ForeignStore",
     "Lognormal",
     "Normal",
+    "Pace",
     "Scatter",
     "ScipyDistribution",
+    "Space",
+    "Store",
+    "StoreDamaged",
+    "StoreError",
+    "StoreFull",
+    "StoreLocked",
+    "StudyChanged",
+    "StudyError",
+    "Sweep",
     "Triangular",
     "TruncatedNormal",
     "Uniform",
     "as_distribution",
+    "batched",
+    "grid",
+    "latin_hypercube",
+    "sampled",
+    "sobol",
+    "sweep",
+    "zipped",
 ]

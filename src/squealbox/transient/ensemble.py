@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from squealbox.parameters import ParameterError, known_names
-from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.result import COMPLETED, Column, Outcome, Result, batched, quantity
 from squealbox.system import System, as_system
 from squealbox.transient import _march
 from squealbox.transient.lanes.work import HEAD, Progress, Work
@@ -61,6 +61,22 @@ class Ensemble(Result):
         return tuple(np.shape(self.ended))
 
     @property
+    def outcomes(self) -> Any:
+        return self.ended
+
+    def columns(self) -> dict[str, Column]:
+        """What a study keeps: what was observed, how far the motion went, and the samples where there are any."""
+        declared = super().columns()
+        samples = ("sample_q", "sample_qd") if np.size(self.sample_time) else ()
+        kept = {name: declared[name] for name in ("time", "steps", "events", *samples)}
+        for name, values in self.observed.items():
+            of, unit = self.settings["observed"][name]
+            first = () if of == "system" else (of,)
+            more = np.ndim(values) - len(self.shape) - len(first)
+            kept[name] = Column(values, (*first, *(f"{name}_{i}" for i in range(more))), unit, f"observed {name}")
+        return kept
+
+    @property
     def rate(self) -> float:
         """Trajectories per second, compilation and parameters included."""
         return float(np.sum(self.ended != NOT_RUN)) / self.seconds if self.seconds > 0.0 else np.nan
@@ -89,6 +105,7 @@ class Ensemble(Result):
         return replace(ensemble, parameters=kept["parameter_"], observed=kept["observed_"], ended=ended)
 
 
+@batched
 def simulate_ensemble(
     design_or_system: Any,
     parameters: Mapping[str, Any] | None = None,
@@ -158,6 +175,7 @@ def simulate_ensemble(
     settings = {
         "duration": duration, "start_time": start_time, "contact": contact, "width": width, "grid": grid,
         "tableau": job.method.tableau, "rtol": job.method.rtol, "observe": [each.name for each in job.observers],
+        "observed": {each.name: [each.of, each.unit] for each in job.observers},
     }  # fmt: skip
     several = isinstance(design_or_system, (list, tuple))
     inputs = {"systems": list(design_or_system)} if several else {"system": design_or_system}

@@ -1,7 +1,7 @@
 """The result of a transient: what moved, what each contact did, and where the energy went."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -65,6 +65,13 @@ class Trajectory(Result):
     steps: int = 0
     rejected: int = 0
     evaluations: int = 0
+
+    swept: ClassVar = {
+        "t": ("time", "s", "time"),
+        "q": ("time dof", "m", "displacement"),
+        "qd": ("time dof", "m/s", "velocity"),
+        "steps": ("", "1", "accepted steps"),
+    }
 
     @property
     def system(self) -> System:
