@@ -1,7 +1,7 @@
 # The public names in the order of the story. `lazy_loader` reads the imports; people, editors and type checkers read both.
 # A room with more names than the story needs is public as a whole: `squealbox.friction.Table`, `squealbox.schedules.Table`.
 
-from . import designs, files, friction, limit_cycles, plots, schedules, signals, stability, transient
+from . import designs, files, friction, limit_cycles, plots, schedules, signals, stability, studies, transient
 from .continuation import Follower, follow
 from .designs import (
     BlockChain,
@@ -44,6 +44,7 @@ from .stability import (
     stability_map,
     tracked_modes,
 )
+from .studies import Space, Sweep, sweep
 from .system import Contact, System, equilibrium, linearise
 from .transient import (
     Ensemble,
@@ -148,6 +149,11 @@ __all__ = [
     "HopfPoint",
     "branch",
     "Branch",
+    # how does the answer vary?
+    "studies",
+    "sweep",
+    "Sweep",
+    "Space",
     # what a signal holds
     "signals",
     "spectrum",

@@ -102,7 +102,8 @@ def evaluate(task: Task, start: int, points: Mapping[str, Any], tick: Tick | Non
         if said:
             unlucky = where[np.broadcast_to(names, len(where)) != COMPLETED]
             messages |= {start + int(place): said[:LONGEST] for place in unlucky}
-    return Block(start, start + count, outcome.astype(str), stacked(parts, count), messages)
+    names = np.full(count, COMPLETED) if np.all(outcome == COMPLETED) else outcome.astype(str)  # conversion is slow
+    return Block(start, start + count, names, stacked(parts, count), messages)
 
 
 def _groups(points: Mapping[str, Any]) -> Iterator[Any]:

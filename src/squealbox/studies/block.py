@@ -44,7 +44,10 @@ class Block:
 
     def to_bytes(self) -> bytes:
         """The block as a NumPy archive."""
-        names, codes = np.unique(self.outcome, return_inverse=True)
+        if np.all(self.outcome == COMPLETED):  # sorting words is slow
+            names, codes = np.array([COMPLETED]), np.zeros(len(self), dtype=np.uint16)
+        else:
+            names, codes = np.unique(self.outcome, return_inverse=True)
         about = {
             "start": self.start,
             "stop": self.stop,
@@ -110,6 +113,8 @@ def _filled(given: list[tuple[Any, Column]], count: int) -> Column:
     ndim = max(array.ndim for array in arrays)
     arrays = [array.reshape(*array.shape, *(1,) * (ndim - array.ndim)) for array in arrays]
     tail = tuple(max(array.shape[i] for array in arrays) for i in range(1, ndim))
+    if len(given) == 1 and len(given[0][0]) == count:
+        return first._replace(values=arrays[0])
     whole = sum(len(where) for where, _ in given) == count and all(array.shape[1:] == tail for array in arrays)
     dtype = common_type([array.dtype for array in arrays], whole)
     values = np.full((count, *tail), missing(dtype), dtype=dtype)

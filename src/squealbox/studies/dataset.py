@@ -76,8 +76,9 @@ def write_file(path: Path, plan: Layout, blocks: Iterable[Block]) -> None:
             name: _created(file, plan.names[name], about, _widest(about)) for name, about in plan.variables.items()
         }
         for block in blocks:
+            words = _bytes(block.outcome)
             for index, part, shape in slabs(block.start, block.stop, frame.shape):
-                ended[index] = np.char.encode(block.outcome[part].reshape(shape), "utf-8")
+                ended[index] = words[part].reshape(shape)
                 for name, target in targets.items():
                     values = filled(plan, name, block)[part]
                     target[index] = _stored(values.reshape(*shape, *values.shape[1:]))
@@ -132,7 +133,17 @@ def _put(file: "h5netcdf.File", name: str, dims: tuple[str, ...], values: Any, a
 
 def _stored(values: Any) -> Any:
     kind = values.dtype.kind
-    return np.char.encode(values, "utf-8") if kind == "U" else values.astype("i1") if kind == "b" else values
+    return _bytes(values) if kind == "U" else values.astype("i1") if kind == "b" else values
+
+
+def _bytes(words: Any) -> Any:
+    """Words as UTF-8; all the same or plain ASCII, the usual cases, on the quick road."""
+    if words.size and np.all(words == words.flat[0]):
+        return np.full(words.shape, str(words.flat[0]).encode())
+    try:
+        return words.astype("S")
+    except UnicodeEncodeError:
+        return np.char.encode(words, "utf-8")
 
 
 def _widest(about: Variable) -> int:

@@ -45,7 +45,7 @@ def described(space: Space) -> dict[str, Any]:
 
 def digest(data: bytes) -> str:
     """A short name of these bytes that no other bytes have."""
-    return hashlib.blake2b(data, digest_size=16).hexdigest()
+    return hashlib.sha256(data).hexdigest()[:32]
 
 
 def plain(value: Any) -> Any:

@@ -10,6 +10,7 @@ Every file appears whole or not at all (written aside, fsync, renamed), so a pro
 process writes at a time, which a lock sees to. A file whose bytes are not what its digest says is never used.
 """
 
+import hashlib
 import json
 import os
 import re
@@ -232,13 +233,11 @@ def write_whole(path: Path, data: bytes) -> None:
 
 def file_digest(path: Path) -> str:
     """The digest of the bytes of a file."""
-    import hashlib
-
-    whole = hashlib.blake2b(digest_size=16)
+    whole = hashlib.sha256()
     with path.open("rb") as stream:
         while part := stream.read(1 << 22):
             whole.update(part)
-    return whole.hexdigest()
+    return whole.hexdigest()[:32]
 
 
 class _explained:

@@ -66,7 +66,7 @@ class Sweep(Result):
     def from_dataset(cls, dataset: "xarray.Dataset") -> Self:
         texts = {name: json.loads(dataset.attrs[name]) for name in ("inputs", "settings", "outcome", "provenance")}
         texts["outcome"], texts["inputs"] = Outcome.from_plain(texts["outcome"]), from_plain(texts["inputs"])
-        return cls(dataset=dataset, **texts)
+        return cls(dataset=dataset.drop_encoding(), **texts)
 
     @classmethod
     def opened(cls, path: str | os.PathLike[str]) -> Self:
