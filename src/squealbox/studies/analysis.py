@@ -143,18 +143,18 @@ def _read(task: Task, answer: Any, batch: int | None) -> tuple[Any, str, dict[st
     if isinstance(answer, Result):
         if answer.outcome == "interrupted":
             raise KeyboardInterrupt
-        return answer.outcomes, answer.outcome.message, _clean(_kept(task, answer))
+        return answer.outcomes, answer.outcome.message, _kept(task, answer)
     named = dict(answer) if isinstance(answer, Mapping) else {VALUE: answer}
     outcome = named.pop("outcome", COMPLETED)
     missing = [name for name in task.keep if name not in named]
     if missing:
         raise StudyError(f"keep = {missing[0]!r}: expected {known_names(missing[0], list(named))}")
     kept = {name: named[name] for name in task.keep or named}
-    return outcome, "", _clean({name: _column(task, name, value, batch) for name, value in kept.items()})
+    return outcome, "", {name: _column(task, name, value, batch) for name, value in kept.items()}
 
 
 def _kept(task: Task, answer: Result) -> dict[str, Column]:
-    offered = answer.columns()
+    offered = {name: column._replace(values=np.asarray(column.values)) for name, column in answer.columns().items()}
     if not task.keep:
         return offered
     kept = {}
@@ -168,16 +168,8 @@ def _kept(task: Task, answer: Result) -> dict[str, Column]:
 
 def _column(task: Task, name: str, value: Any, batch: int | None) -> Column:
     array = np.asarray(value)
+    if array.dtype.kind not in "biufcU":
+        kind = type(value).__name__
+        raise StudyError(f"the analysis returns a {kind} for {name}: expected numbers, truth values or words")
     own = array.ndim - (0 if batch is None else 1)
     return Column(array, tuple(f"{name}_{i}" for i in range(own)), task.units.get(name, ""), "")
-
-
-def _clean(columns: dict[str, Column]) -> dict[str, Column]:
-    """Arrays of numbers, truth values or words; anything else is an error that names it."""
-    for name, column in columns.items():
-        array = np.asarray(column.values)
-        if array.dtype.kind not in "biufcU":
-            kind = type(column.values).__name__
-            raise StudyError(f"the analysis returns a {kind} for {name}: expected numbers, truth values or words")
-        columns[name] = column._replace(values=array)
-    return columns

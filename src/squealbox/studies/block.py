@@ -45,7 +45,7 @@ class Block:
     def to_bytes(self) -> bytes:
         """The block as a NumPy archive."""
         if np.all(self.outcome == COMPLETED):  # sorting words is slow
-            names, codes = np.array([COMPLETED]), np.zeros(len(self), dtype=np.uint16)
+            names, codes = np.array([COMPLETED]), np.zeros(len(self), dtype=np.intp)
         else:
             names, codes = np.unique(self.outcome, return_inverse=True)
         about = {

@@ -11,16 +11,16 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from squealbox.parameters import ParameterError, known_names
+from squealbox.parameters import ParameterError
+from squealbox.studies.scatter import Sampling, unit_points
 
 POINT = "point"  # the dimension of an axis with several parameters
-SAMPLINGS = ("latin_hypercube", "sobol", "random")
 
 
 class Samples(Protocol):
     """Anything with a joint distribution: `squealbox.studies.Scatter`, or the user's own."""
 
-    def sample(self, count: int, how: str, seed: int) -> Mapping[str, Any]:
+    def sample(self, count: int, method: Any, seed: int) -> Mapping[str, Any]:
         """`count` values of each parameter by its dotted name."""
 
 
@@ -122,47 +122,37 @@ def zipped(lists: Mapping[str, Any], dim: str = POINT) -> Space:
 def latin_hypercube(ranges: Mapping[str, Any], count: int, *, seed: int = 0, dim: str = POINT) -> Space:
     """`count` points that hit each of `count` equal slices of every range once (McKay, Beckman, Conover 1979).
 
-    ranges maps dotted names to (low, high), or to (low, high, "log") for slices equal in the logarithm. The order of
-    the points is theirs to choose: the sample of scipy.stats.qmc.LatinHypercube with this seed.
+    ranges maps dotted names to (low, high), or to (low, high, "log") for slices equal in the logarithm.
+    A seed gives the same sample again.
 
     >>> latin_hypercube({"friction.static": (0.2, 0.5), "load": (1e2, 1e4, "log")}, 64)
     64 points: friction.static and load (64)
     """
-    from scipy.stats import qmc
-
-    return _within(ranges, qmc.LatinHypercube(d=len(ranges), rng=seed).random(_count(count)), dim)
+    return _within(ranges, count, "latin_hypercube", seed, dim)
 
 
 def sobol(ranges: Mapping[str, Any], count: int, *, seed: int = 0, dim: str = POINT) -> Space:
     """`count` points of the scrambled Sobol' sequence (Owen 1998), more even than chance; best with a power of two.
 
-    Arguments as for `latin_hypercube`. Raises `ParameterError` for a count that is no power of two, which would lose
-    the balance the sequence is chosen for.
+    Arguments as for `latin_hypercube`. Other counts than a power of two take the first points of the next one.
 
     >>> sobol({"friction.static": (0.2, 0.5), "load": (1e3, 2e3)}, 128)
     128 points: friction.static and load (128)
     """
-    from scipy.stats import qmc
-
-    if _count(count) & (count - 1):
-        raise ParameterError("space", "count", count, "a power of two for a Sobol' sequence")
-    return _within(ranges, qmc.Sobol(d=len(ranges), rng=seed).random(count), dim)
+    return _within(ranges, count, "sobol", seed, dim)
 
 
-def sampled(scatter: Samples, count: int, *, how: str = "latin_hypercube", seed: int = 0, dim: str = POINT) -> Space:
-    """`count` points of a joint distribution, correlations included; how: "latin_hypercube", "sobol" or "random".
+def sampled(scatter: Samples, count: int, *, method: str = "sobol", seed: int = 0, dim: str = POINT) -> Space:
+    """`count` points of a joint distribution, correlations included; "latin_hypercube", "sobol" or "random".
 
-    `scatter` is anything with ``sample(count, how, seed)`` that returns the values by dotted name.
+    `scatter` is a `squealbox.studies.Scatter`, or anything else with ``sample(count, method, seed)`` that returns the
+    values by dotted name.
 
-    >>> class Spread:
-    ...     def sample(self, count, how, seed):
-    ...         return {"load": np.random.default_rng(seed).normal(1e3, 50.0, count)}
-    >>> sampled(Spread(), 10)
-    10 points: load (10)
+    >>> from squealbox.studies import Normal, Scatter
+    >>> sampled(Scatter({"load": Normal(1e3, 50.0)}), 16)
+    16 points: load (16)
     """
-    if how not in SAMPLINGS:
-        raise ParameterError("space", "how", how, known_names(str(how), list(SAMPLINGS)))
-    return zipped(scatter.sample(_count(count), how, seed), dim)
+    return zipped(scatter.sample(count, method, seed), dim)
 
 
 def as_space(space: Any) -> Space:
@@ -174,10 +164,11 @@ def as_space(space: Any) -> Space:
     return space
 
 
-def _within(ranges: Mapping[str, Any], unit: Any, dim: str) -> Space:
+def _within(ranges: Mapping[str, Any], count: int, method: Sampling, seed: int, dim: str) -> Space:
+    ends = {name: _range(name, given) for name, given in ranges.items()}
+    unit = unit_points(count, len(ends), method, np.random.default_rng(seed)) if ends else np.zeros((0, 0))
     columns = {}
-    for (name, given), column in zip(ranges.items(), unit.T, strict=True):
-        low, high, log = _range(name, given)
+    for (name, (low, high, log)), column in zip(ends.items(), unit.T, strict=True):
         columns[name] = low * (high / low) ** column if log else low + (high - low) * column
     return zipped(columns, dim)
 
@@ -191,12 +182,6 @@ def _range(name: str, given: Sequence[Any]) -> tuple[float, float, bool]:
     if not (np.isfinite(low) and np.isfinite(high) and low < high) or (log and low <= 0.0):
         raise ParameterError("space", name, given, expected)
     return low, high, log
-
-
-def _count(count: int) -> int:
-    if isinstance(count, bool) or int(count) != count or count < 1:
-        raise ParameterError("space", "count", count, "a whole number of at least 1")
-    return int(count)
 
 
 def _checked(name: str, values: Any) -> Any:
