@@ -1,6 +1,7 @@
 """Is steady sliding stable? Depends on: system, continuation, result; numba only when a kernel is needed."""
 
 from squealbox.stability.boundary import Boundary, stability_boundary
+from squealbox.stability.crossings import first_crossings
 from squealbox.stability.eigenvalues import ComplexModes, Mode, complex_modes
 from squealbox.stability.energy import ModeEnergy, mode_energy
 from squealbox.stability.exceptional import DampingSplit, ExceptionalPoints, damping_split, exceptional_points
@@ -39,6 +40,7 @@ __all__ = [
     "damping_split",
     "exceptional_points",
     "finite_spectrum",
+    "first_crossings",
     "indices",
     "logarithmic_decrement",
     "loss_factor",

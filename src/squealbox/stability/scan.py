@@ -6,7 +6,7 @@ uncoupled) are left out. A system neutral as a whole (no damping, or purely gyro
 sign at its onset; for it the scanned function is `coalescence`, which is analytic through the merging of two modes.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -71,6 +71,18 @@ def scan(family: Family, low: float, high: float, points: int, refinements: int 
         order = np.argsort(values, kind="stable")
         found = Scan(family, values[order], functions[order], neutral, undamped)
     return found
+
+
+def first_function(samples: list[Linearised]) -> Callable[[Linearised], Any] | None:
+    """The first of the scanned functions where modes without damping call for it; None where the growth rate serves.
+
+    `samples` are the matrices at a few values, with any leading axes.
+    """
+    eigenvalues = np.stack([spectrum(about) for about in samples])
+    known = np.isfinite(eigenvalues[..., 0])
+    neutral = bool(np.all(np.stack([is_neutral(about) for about in samples])[known])) if np.any(known) else False
+    undamped = 0 if neutral else _undamped(eigenvalues[known])
+    return (lambda about: _functions(about, neutral, undamped)[..., 0]) if neutral or undamped else None
 
 
 def coalescence(eigenvalues: Any) -> Any:

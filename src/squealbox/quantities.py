@@ -1,0 +1,125 @@
+"""Numbers of a brake that a study varies, by the analyses of the house. Depends on: studies, stability, transient.
+
+    squeal_probability(brake, scatter, quantities.margin("friction.static", (0, 1)))
+
+Each function here returns a `Quantity`: one number of a design, with its unit and the limit at which squeal begins.
+All take designs of arrays in one batched call. Any plain function of a design serves a study as well.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from squealbox.parameters import ParameterError
+from squealbox.stability.crossings import first_crossings
+from squealbox.stability.family import steady_sliding
+from squealbox.stability.spectra import eigenvalues, largest_growth
+from squealbox.studies.quantity import Quantity
+from squealbox.transient import simulate_ensemble
+
+
+def growth_rate(*, limit: float = 0.0, time: float = 0.0) -> Quantity:
+    """The largest growth rate of steady sliding [1/s]; above `limit` the brake squeals.
+
+    Round-off about an undamped mode counts as zero. It has a kink where two modes meet, so a polynomial follows it badly
+    there: `critical_value` and `margin` are smooth.
+
+    >>> from squealbox.designs import ModeCoupling
+    >>> growth_rate()(ModeCoupling(k3=[0.5, 2.0])) > 0.0
+    array([False, False])
+    """
+
+    def largest(design: Any) -> Any:
+        growth, _, growing = largest_growth(steady_sliding(design, time))
+        return np.where((growth > 0.0) & (growing == 0), 0.0, growth)
+
+    return Quantity(largest, "growth rate", "1/s", limit, smooth=False, meaning="largest growth rate")
+
+
+def damping_ratio(*, limit: float = 0.0, time: float = 0.0) -> Quantity:
+    """The least damping ratio of steady sliding, -Re lambda / |lambda| [-]; below `limit` the brake squeals.
+
+    >>> from squealbox.designs import MassOnBelt
+    >>> damping_ratio()(MassOnBelt()).shape
+    ()
+    """
+
+    def least(design: Any) -> Any:
+        values = eigenvalues(steady_sliding(design, time))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.min(-values.real / np.abs(values), axis=-1)
+
+    return Quantity(least, "damping ratio", "", limit, "below", smooth=False, meaning="least damping ratio")
+
+
+def critical_value(
+    parameter: str, bounds: tuple[float, float], *, limit: float, unit: str = "", points: int = 65
+) -> Quantity:
+    """The value of `parameter` between `bounds` at which squeal begins; below `limit` the brake squeals.
+
+    `limit` is the value the brake runs at. Infinite where sliding is stable (or unstable, negative) all over the bounds.
+    """
+
+    def critical(design: Any) -> Any:
+        return first_crossings(design, parameter, bounds, points=points)
+
+    return Quantity(critical, f"critical {parameter}", unit, limit, "below", meaning="where squeal begins")
+
+
+def margin(parameter: str, bounds: tuple[float, float], *, unit: str = "", points: int = 65) -> Quantity:
+    """How far `parameter` is below the value at which squeal begins, in its own unit; below 0 the brake squeals.
+
+    It is smooth where the growth rate has its kink. Infinite where stability does not change within the bounds.
+
+    >>> from squealbox.designs import ModeCoupling
+    >>> from squealbox.friction import Coulomb
+    >>> round(float(margin("friction.static", (0.0, 2.0))(ModeCoupling(friction=Coulomb(0.4)))), 9)
+    0.6
+    """
+
+    def distance(design: Any) -> Any:
+        return first_crossings(design, parameter, bounds, points=points) - design.value_of(parameter)
+
+    return Quantity(distance, f"margin of {parameter}", unit, 0.0, "below", meaning="distance to the onset of squeal")
+
+
+def amplitude(duration: float = 0.05, *, limit: float, contact: str = "exact", rtol: float | None = None) -> Quantity:
+    """The largest amplitude of a transient from rest [m], over its last fifth; above `limit` the brake squeals.
+
+    By `simulate_ensemble` over `duration` [s]; NaN for a transient that does not reach its end.
+    """
+
+    def largest(design: Any) -> Any:
+        many = simulate_ensemble(design, None, duration, observe=("amplitude",), contact=contact, rtol=rtol)
+        return np.where(many.ended == "completed", np.max(many["amplitude"], axis=-1), np.nan)
+
+    return Quantity(largest, "amplitude", "m", limit, smooth=False, meaning="amplitude in the end")
+
+
+def parameter_value(parameter: str, *, unit: str = "") -> Quantity:
+    """The value of one parameter of the design itself, such as a mass, to be a goal or a bound of `optimise`."""
+    return weighted_sum({parameter: 1.0}, name=parameter, unit=unit)
+
+
+def weighted_sum(weights: Mapping[str, float], *, name: str = "weighted sum", unit: str = "") -> Quantity:
+    """sum_i w_i x_i over parameters of the design: a mass, a cost.
+
+    >>> from squealbox.designs import DampingParadox
+    >>> float(weighted_sum({"eta1": 100.0, "eta2": 50.0}, name="cost")(DampingParadox(eta1=0.02, eta2=0.01)))
+    2.5
+    """
+    if not weights:
+        raise ParameterError("weighted_sum", "weights", weights, "parameters with a number each, at least one")
+    kept = {str(path): float(weight) for path, weight in weights.items()}
+
+    def total(design: Any) -> Any:
+        parts = np.broadcast_arrays(*(weight * np.asarray(design.value_of(path)) for path, weight in kept.items()))
+        return np.broadcast_to(np.sum(parts, axis=0), _shape_of(design))
+
+    return Quantity(total, name, unit, meaning="weighted sum of parameters")
+
+
+def _shape_of(design: Any) -> tuple[int, ...]:
+    """The leading axes of a design of arrays."""
+    return np.broadcast_shapes(*(np.shape(value) for _, _, value in design.leaves() if np.ndim(value) == 1))

@@ -1,0 +1,33 @@
+"""Honest intervals: exact ones for independent points, those of randomised replicates for stratified points."""
+
+from typing import Any
+
+import numpy as np
+
+
+def binomial_interval(hits: int, unknown: int, count: int, level: float) -> tuple[float, float]:
+    """Clopper and Pearson's exact interval of a probability; points of unknown outcome count for both sides.
+
+    The lower end takes every unknown point for quiet and the upper one for squealing, so an unknown point can only
+    widen it. Source: C. J. Clopper, E. S. Pearson 1934, Biometrika 26, 404-413; `scipy.stats.binomtest`.
+    """
+    from scipy.stats import binomtest
+
+    low = binomtest(hits, count).proportion_ci(level, method="exact").low
+    high = binomtest(hits + unknown, count).proportion_ci(level, method="exact").high
+    return float(low), float(high)
+
+
+def student_interval(values: Any, level: float, axis: int = 0) -> tuple[Any, Any, Any]:
+    """Mean, low and high end over independent replicates along `axis`: mean -+ t s/sqrt(R), t of Student with R - 1.
+
+    Each replicate is an unbiased estimate from its own randomisation, so this needs no assumption about the points
+    within one. Source: A. B. Owen, Monte Carlo Theory, Methods and Examples, 2013, section 17.3.
+    """
+    from scipy.stats import t as student
+
+    values = np.asarray(values, dtype=float)
+    count = values.shape[axis]
+    mean = np.mean(values, axis=axis)
+    half = student.ppf(0.5 + 0.5 * level, count - 1) * np.std(values, axis=axis, ddof=1) / np.sqrt(count)
+    return mean, mean - half, mean + half
