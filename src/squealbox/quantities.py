@@ -22,8 +22,8 @@ from squealbox.transient import simulate_ensemble
 def growth_rate(*, limit: float = 0.0, time: float = 0.0) -> Quantity:
     """The largest growth rate of steady sliding [1/s]; above `limit` the brake squeals.
 
-    Round-off about an undamped mode counts as zero. It has a kink where two modes meet, so a polynomial follows it badly
-    there: `critical_value` and `margin` are smooth.
+    Round-off about an undamped mode counts as zero. It has a kink where two modes meet, so a polynomial follows it
+    badly there: `critical_value` and `margin` are smooth.
 
     >>> from squealbox.designs import ModeCoupling
     >>> growth_rate()(ModeCoupling(k3=[0.5, 2.0])) > 0.0
@@ -58,7 +58,8 @@ def critical_value(
 ) -> Quantity:
     """The value of `parameter` between `bounds` at which squeal begins; below `limit` the brake squeals.
 
-    `limit` is the value the brake runs at. Infinite where sliding is stable (or unstable, negative) all over the bounds.
+    `limit` is the value the brake runs at. Infinite where sliding is stable all over the bounds, minus infinite where
+    it is unstable at the lower one.
     """
 
     def critical(design: Any) -> Any:

@@ -36,6 +36,7 @@ from squealbox.plots.stability import (
     transient_growth,
 )
 from squealbox.plots.style import drawn, letters, panels, save
+from squealbox.plots.uncertainty import morris_effects, sobol_indices, squeal_probability
 
 __all__ = [
     "amplitude_course",
@@ -65,6 +66,7 @@ __all__ = [
     "mechanism_map",
     "merging_points",
     "mode_energy",
+    "morris_effects",
     "motion_overview",
     "panels",
     "phase_plane",
@@ -73,8 +75,10 @@ __all__ = [
     "root_locus",
     "save",
     "sensitivity",
+    "sobol_indices",
     "spectrogram",
     "spectrum",
+    "squeal_probability",
     "stability_map",
     "time_history",
     "tracked_modes",

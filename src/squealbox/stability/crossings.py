@@ -1,6 +1,6 @@
 """The first loss of stability of many systems at once: `critical_value` for a design whose parameters are arrays."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -8,6 +8,8 @@ import numpy as np
 from squealbox.stability.family import Family
 from squealbox.stability.scan import first_function
 from squealbox.stability.spectra import largest_growth
+
+BLOCK = 1 << 14  # systems computed together
 
 
 def first_crossings(
@@ -34,7 +36,9 @@ def first_crossings(
     """
     low, high = (float(end) for end in bounds)
     if not (np.isfinite(low) and np.isfinite(high) and low < high) or points < 3:
-        raise ValueError(f"bounds = {bounds}, points = {points}: expected low < high, both finite, and 3 points or more")
+        raise ValueError(
+            f"bounds = {bounds}, points = {points}: expected low < high, both finite, and 3 points or more"
+        )
     family = Family(design, [parameter], time)
     shape = _shape(family, low)
     rows = shape[0] if shape else 1
@@ -43,15 +47,14 @@ def first_crossings(
     above, value_above = np.full(rows, np.nan), np.full(rows, np.nan)
     found = np.where(value_below > 0.0, -np.inf, np.nan)
     open_ = ~(value_below > 0.0)
-    for value in np.linspace(low, high, points)[1:]:
-        if not np.any(open_):
-            break
-        here = growth(np.full(rows, value))
+    for value, here in _along(growth, np.linspace(low, high, points)[1:], rows):
         crossed = open_ & (here > 0.0)
         above[crossed], value_above[crossed] = value, here[crossed]
         open_ &= ~crossed
         quiet = open_ & (here <= 0.0)
         below[quiet], value_below[quiet] = value, here[quiet]
+        if not np.any(open_):
+            break
     found[open_ & np.isfinite(value_below)] = np.inf
     bracketed = np.isfinite(value_above) & np.isfinite(value_below)
     if np.any(bracketed):
@@ -67,7 +70,7 @@ def _shape(family: Family, low: float) -> tuple[int, ...]:
 
 
 def _growth(family: Family, rows: int, sample: Any) -> Callable[[Any], Any]:
-    """The function that turns positive where stability is lost: of values (rows,), one for each system.
+    """The function that turns positive where stability is lost: of values (..., rows), one for each system.
 
     It is the largest growth rate by the quickest road, unless modes without damping call for another function.
     """
@@ -80,6 +83,14 @@ def _growth(family: Family, rows: int, sample: Any) -> Callable[[Any], Any]:
         return largest_growth(steady)[0]
 
     return growth
+
+
+def _along(growth: Callable[[Any], Any], values: Any, rows: int) -> Iterator[tuple[float, Any]]:
+    """Each value with what `growth` gives there, several values in one batched call."""
+    together = max(BLOCK // rows, 1)
+    for start in range(0, values.size, together):
+        some = values[start : start + together]
+        yield from zip(some, growth(np.repeat(some[:, None], rows, axis=1)), strict=True)
 
 
 def _roots(growth: Callable[[Any], Any], below: Any, above: Any, places: Any) -> Any:

@@ -20,7 +20,12 @@ from squealbox.studies.distributions import (
     Uniform,
     as_distribution,
 )
+from squealbox.studies.intervals import IntervalBounds, interval_bounds
+from squealbox.studies.morris import MorrisEffects, morris_effects
+from squealbox.studies.probability import SquealProbability, squeal_probability
+from squealbox.studies.quantity import Quantity, evaluate
 from squealbox.studies.scatter import SAMPLINGS, Scatter
+from squealbox.studies.sobol import SobolIndices, sobol_indices
 from squealbox.studies.space import Axis, Space, grid, latin_hypercube, sampled, sobol, zipped
 from squealbox.studies.store import (
     ForeignStore,
@@ -41,12 +46,17 @@ __all__ = [
     "Beta",
     "Distribution",
     "ForeignStore",
+    "IntervalBounds",
     "Lognormal",
+    "MorrisEffects",
     "Normal",
     "Pace",
+    "Quantity",
     "Scatter",
     "ScipyDistribution",
+    "SobolIndices",
     "Space",
+    "SquealProbability",
     "Store",
     "StoreDamaged",
     "StoreError",
@@ -60,10 +70,15 @@ __all__ = [
     "Uniform",
     "as_distribution",
     "batched",
+    "evaluate",
     "grid",
+    "interval_bounds",
     "latin_hypercube",
+    "morris_effects",
     "sampled",
     "sobol",
+    "sobol_indices",
+    "squeal_probability",
     "sweep",
     "zipped",
 ]

@@ -133,7 +133,7 @@ def _extremes(values_at: Callable[[Any], Any], ends: Any, seed: int) -> list[tup
     at_corners = values_at(corners)
     found = []
     for sign in (1.0, -1.0):
-        value, place = _least(lambda x, sign=sign: sign * values_at(x), ends, seed)
+        value, place = _least(values_at, sign, ends, seed)
         seen = np.where(np.isnan(at_corners), np.inf, sign * at_corners)
         best = int(np.argmin(seen))
         if seen[best] < value:
@@ -142,15 +142,15 @@ def _extremes(values_at: Callable[[Any], Any], ends: Any, seed: int) -> list[tup
     return found
 
 
-def _least(values_at: Callable[[Any], Any], ends: Any, seed: int) -> tuple[float, Any]:
+def _least(values_at: Callable[[Any], Any], sign: float, ends: Any, seed: int) -> tuple[float, Any]:
     from scipy.optimize import differential_evolution
 
     def goal(x: Any) -> Any:
-        values = np.atleast_1d(values_at(np.atleast_2d(x.T)))
+        values = sign * np.atleast_1d(values_at(np.atleast_2d(x.T)))
         values = np.where(np.isnan(values), np.inf, values)
         return values if x.ndim == 2 else float(values[0])
 
     found = differential_evolution(
-        goal, ends, rng=seed, vectorized=True, updating="deferred", polish=True, tol=1e-8, popsize=20
+        goal, ends, rng=seed, vectorized=True, updating="deferred", polish=True, tol=1e-6, popsize=15, maxiter=60
     )
     return float(found.fun), np.asarray(found.x)

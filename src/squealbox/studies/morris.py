@@ -45,7 +45,9 @@ class MorrisEffects(Result):
             return f"Morris effects: {self.outcome}: {self.outcome.message}"
         width = max(len(name) for name in ("parameter", *self.names))
         unit = f" [{about['unit'] or '-'}]"
-        lines = [f"effects on {about['name']}{unit} over 99 % of each range; {self.settings['evaluations']} evaluations"]
+        lines = [
+            f"effects on {about['name']}{unit} over 99 % of each range; {self.settings['evaluations']} evaluations"
+        ]
         lines.append(f"{'parameter':{width}}  {'mu*':>10}  {'+-':>9}  {'mu':>10}  {'sigma':>10}")
         for i in np.argsort(-self.strength):
             numbers = f"{self.strength[i]:10.4g}  {self.strength_error[i]:9.2g}  {self.direction[i]:+10.4g}"
@@ -73,7 +75,7 @@ def morris_effects(
     >>> from squealbox.studies import Scatter, Uniform, morris_effects
     >>> scatter = Scatter({"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0)})
     >>> found = morris_effects(None, scatter, lambda at: 3.0 * at["a"] - at["b"])
-    >>> np.round(found.direction, 6).tolist()     # 99 % of each range
+    >>> np.round(found.direction, 6).tolist()  # 99 % of each range
     [2.97, -0.99]
     """
     from SALib.analyze import morris as analysis

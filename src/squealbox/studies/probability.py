@@ -55,7 +55,7 @@ class SquealProbability(Result):
         unit = f" {about['unit']}" if about["unit"] else ""
         level = f"{100.0 * settings['level']:g} %"
         lines = [
-            f"P(squeal) = {float(self.probability):.4g}, {level} interval {float(self.low):.4g} to {float(self.high):.4g}",
+            f"P(squeal) = {float(self.probability):.4g}, {level} interval {_span(self.low, self.high)}",
             f"squeal: {about['name']} {about['squeals']} {about['limit']:g}{unit}",
             f"{self.values.size} points ({settings['method'].replace('_', ' ')}, seed {settings['seed']}), "
             + ("exact binomial interval" if self.interval == "clopper-pearson" else _replicates(self.of_replicates)),
@@ -116,7 +116,9 @@ def squeal_probability(
     estimates = np.mean(hits.reshape(groups, each), axis=1)
     low, high, interval = _interval(hits, unknown, estimates, each, level)
     known = unknown.size - int(np.sum(unknown))
-    outcome = Outcome() if known else Outcome("no_answer", "the quantity is unknown at every point", points=unknown.size)
+    outcome = (
+        Outcome() if known else Outcome("no_answer", "the quantity is unknown at every point", points=unknown.size)
+    )
     settings = {"quantity": asked.about, "names": list(scatter.names), "samples": values.size, "method": method}
     settings |= {"seed": seed, "level": level, "replicates": groups}
     return SquealProbability(
@@ -148,11 +150,13 @@ def _replicates(estimates: Any) -> str:
     return f"interval from {estimates.size} independent randomisations"
 
 
+def _span(low: Any, high: Any) -> str:
+    return f"{float(low):.4g} to {float(high):.4g}"
+
+
 def _check(samples: Any, level: float, replicates: Any) -> None:
     for name, value, least in (("samples", samples, 1), ("replicates", replicates, 2)):
         if isinstance(value, bool) or int(value) != value or value < least:
             raise ParameterError("squeal_probability", name, value, f"a whole number of at least {least}")
     if not 0.0 < level < 1.0:
         raise ParameterError("squeal_probability", "level", level, "a number in (0, 1)")
-
-

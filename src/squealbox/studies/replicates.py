@@ -31,3 +31,16 @@ def student_interval(values: Any, level: float, axis: int = 0) -> tuple[Any, Any
     mean = np.mean(values, axis=axis)
     half = student.ppf(0.5 + 0.5 * level, count - 1) * np.std(values, axis=axis, ddof=1) / np.sqrt(count)
     return mean, mean - half, mean + half
+
+
+def ratio_interval(parts: Any, wholes: Any, level: float) -> tuple[Any, Any, Any]:
+    """Ratio of the means of `parts` (R, d) and `wholes` (R,), with low and high end by the delta method.
+
+    The mean of the ratios would be biased where both vary together; the ratio S of the means is so to order 1/R only,
+    and its error is that of the mean of parts - S wholes.
+    Source: W. G. Cochran, Sampling Techniques, 3rd ed. 1977, section 6.4.
+    """
+    parts, wholes = np.asarray(parts, dtype=float), np.asarray(wholes, dtype=float)
+    ratio = np.mean(parts, axis=0) / np.mean(wholes)
+    _, low, high = student_interval((parts - ratio * wholes[:, None]) / np.mean(wholes), level)
+    return ratio, ratio + low, ratio + high

@@ -3,8 +3,9 @@
     S_i  = Var(E[y | x_i]) / Var(y)              first order: what would go if x_i were known
     ST_i = E[Var(y | all but x_i)] / Var(y)      total: what x_i has a part in, interactions included
 
-Estimators of Saltelli et al. 2010 through `scipy.stats.sobol_indices`, on scrambled Sobol' points; n (d + 2) evaluations.
-Sources: I. M. Sobol' 2001, Math. Comput. Simulat. 55, 271-280; A. Saltelli et al. 2010, Comput. Phys. Commun. 181, 259-270.
+Estimators of Saltelli et al. 2010 through `scipy.stats.sobol_indices`, on scrambled Sobol' points.
+Sources: I. M. Sobol' 2001, Math. Comput. Simulat. 55, 271-280;
+A. Saltelli et al. 2010, Comput. Phys. Commun. 181, 259-270.
 """
 
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ import numpy as np
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
-from squealbox.studies.replicates import student_interval
+from squealbox.studies.replicates import ratio_interval
 from squealbox.studies.scatter import Scatter, unit_points
 
 
@@ -89,12 +90,10 @@ def sobol_indices(
     >>> import numpy as np
     >>> from squealbox.studies import Normal, Scatter, sobol_indices
     >>> scatter = Scatter({"a": Normal(0.0, 3.0), "b": Normal(0.0, 1.0)})
-    >>> found = sobol_indices(None, scatter, lambda at: at["a"] + at["b"])   # variances 9 and 1
+    >>> found = sobol_indices(None, scatter, lambda at: at["a"] + at["b"])  # variances 9 and 1
     >>> np.round(found.first, 2).tolist()
     [0.9, 0.1]
     """
-    from scipy import stats
-
     asked = as_quantity(quantity)
     need_independent(scatter, "sobol_indices")
     if not 0.0 < level < 1.0:
@@ -111,14 +110,11 @@ def sobol_indices(
     settings = {"quantity": asked.about, "names": list(scatter.names), "samples": each * len(rngs), "seed": seed}
     settings |= {"level": level, "replicates": len(rngs), "evaluations": values.size}
     outcome = finite_outcome(values) if not np.all(np.isfinite(values)) else _varies(values)
-    first = total = np.full((len(rngs), size), np.nan)
-    if outcome.ok:
-        each_found = [stats.sobol_indices(func={"f_A": v[:1], "f_B": v[1:2], "f_AB": v[2:, None]}, n=each) for v in values]
-        first = np.stack([found.first_order.reshape(size) for found in each_found])
-        total = np.stack([found.total_order.reshape(size) for found in each_found])
     arrays: dict[str, Any] = {}
-    for name, estimates in (("first", first), ("total", total)):
-        ends = student_interval(estimates, level)
+    shares = _shares(values) if outcome.ok else (np.full((len(rngs), size), np.nan),) * 2
+    wholes = np.var(values[:, :2], axis=(1, 2)) if outcome.ok else np.full(len(rngs), np.nan)
+    for name, parts in zip(("first", "total"), shares, strict=True):
+        ends = ratio_interval(parts, wholes, level)
         arrays |= {name: ends[0], f"{name}_low": ends[1], f"{name}_high": ends[2]}
     base = values[:, :2] if outcome.ok else np.full(2, np.nan)
     return SobolIndices(
@@ -141,7 +137,9 @@ def need_independent(scatter: Scatter, owner: str) -> None:
 def finite_outcome(values: Any) -> Outcome:
     """The outcome for values of which some are NaN or infinite, with the counts as evidence."""
     unknown, infinite = int(np.count_nonzero(np.isnan(values))), int(np.count_nonzero(np.isinf(values)))
-    message = f"{unknown} of {values.size} values are unknown and {infinite} infinite: narrow the scatter or the question"
+    message = (
+        f"{unknown} of {values.size} values are unknown and {infinite} infinite: narrow the scatter or the question"
+    )
     return Outcome("unknown_values", message, unknown=unknown, infinite=infinite, points=int(values.size))
 
 
@@ -149,6 +147,18 @@ def _varies(values: Any) -> Outcome:
     if np.ptp(values) == 0.0:
         return Outcome("no_variance", f"the quantity is {values.flat[0]:g} at every point", value=float(values.flat[0]))
     return Outcome()
+
+
+def _shares(values: Any) -> tuple[Any, Any]:
+    """First-order and total part of the variance that each replicate finds, shape (replicates, parameters) each."""
+    from scipy import stats
+
+    rows = []
+    for v in values:
+        found = stats.sobol_indices(func={"f_A": v[:1], "f_B": v[1:2], "f_AB": v[2:, None]}, n=v.shape[-1])
+        rows.append(np.var(v[:2]) * np.stack([found.first_order.reshape(-1), found.total_order.reshape(-1)]))
+    stacked = np.stack(rows)
+    return stacked[:, 0], stacked[:, 1]
 
 
 def _saltelli(count: int, size: int, rng: Any) -> Any:
