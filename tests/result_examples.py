@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox import signals, stability
+from squealbox import quantities, signals, stability, studies
 from squealbox.designs import DampingParadox, DrumBrake, MassOnBelt
 from squealbox.fit import fit_friction
 from squealbox.friction import Coulomb
@@ -48,6 +48,12 @@ def special() -> Any:
     return next(iter(cycles().points))
 
 
+def scattered(study: Callable[..., Any], **settings: Any) -> Any:
+    """A study of the growth rate of the model of the damping paradox under scatter."""
+    scatter = studies.Scatter({FRICTION: studies.Normal(0.28, 0.02), "eta1": studies.Uniform(0.01, 0.03)})
+    return study(DampingParadox(), scatter, quantities.growth_rate(), **settings)
+
+
 EXAMPLES: dict[str, Callable[[], Result]] = {
     "Trajectory": motion,
     "Verdict": lambda: verdict(motion()),
@@ -82,4 +88,10 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
     "BranchPoint": special,
     "Basin": lambda: basin(drum(), [1e-6, 1e-6, 0.0, 0.0], 4),
     "PointCurve": lambda: hopf_curve(drum(), {FRICTION: RANGE, "k1": (18e6, 20e6)}, points=6),
+    "SquealProbability": lambda: scattered(studies.squeal_probability, samples=512),
+    "SobolIndices": lambda: scattered(studies.sobol_indices, samples=128),
+    "MorrisEffects": lambda: scattered(studies.morris_effects, trajectories=10),
+    "IntervalBounds": lambda: studies.interval_bounds(
+        DampingParadox(), {FRICTION: (0.2, 0.3), "eta1": (0.01, 0.03)}, quantities.growth_rate(), runs=1
+    ),
 }

@@ -36,7 +36,7 @@ from squealbox.plots.stability import (
     transient_growth,
 )
 from squealbox.plots.style import drawn, letters, panels, save
-from squealbox.plots.uncertainty import morris_effects, sobol_indices, squeal_probability
+from squealbox.plots.uncertainty import interval_bounds, morris_effects, sobol_indices, squeal_probability
 
 __all__ = [
     "amplitude_course",
@@ -61,6 +61,7 @@ __all__ = [
     "finite_eigenvalues",
     "friction_curve",
     "friction_fit",
+    "interval_bounds",
     "letters",
     "loudness",
     "mechanism_map",

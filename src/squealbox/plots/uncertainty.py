@@ -6,6 +6,7 @@ import numpy as np
 
 from squealbox.plots.dispatch import plot
 from squealbox.plots.style import COLUMN, LINES, WIDTH, drawing, figure_of, line, number, quantity_label
+from squealbox.studies.intervals import IntervalBounds
 from squealbox.studies.morris import MorrisEffects
 from squealbox.studies.probability import SquealProbability
 from squealbox.studies.quantity import unit_of
@@ -165,3 +166,48 @@ def morris_effects(found: MorrisEffects, *, title: str = "", axes: Any = None) -
         )
         panel.legend(loc="upper left")
         return figure_of(panel)
+
+
+@plot.register(IntervalBounds)
+def interval_bounds(found: IntervalBounds, *, title: str = "", axes: Any = None) -> "Figure":
+    """The range as a bar with the limit of squeal; a figure of its own also shows where in the box the ends lie."""
+    if axes is not None:
+        with drawing(axes) as panel:
+            _range(panel, found, title)
+            return figure_of(panel)
+    box, names = np.asarray(found.settings["box"]), found.names
+    size = {"width": 1.4 * COLUMN, "height": 1.9 + 0.25 * len(names), "height_ratios": [1.0, 0.4 + 0.3 * len(names)]}
+    with drawing(None, 2, 1, **size) as (top, below):
+        _range(top, found, title)
+        places = np.arange(len(names))
+        for at, label, (colour, _, _), marker in (
+            (found.low_at, "least value", LINES[1], "v"),
+            (found.high_at, "largest value", LINES[2], "^"),
+        ):
+            share = (at - box[:, 0]) / (box[:, 1] - box[:, 0])
+            below.plot(share, places, marker, color=colour, markersize=6, label=label, clip_on=False)
+        below.hlines(places, 0.0, 1.0, color="#888888", linewidth=0.6, zorder=0)
+        below.set_yticks(places, [f"{n}: {number(a)} to {number(b)}" for n, (a, b) in zip(names, box, strict=True)])
+        below.set(
+            xlim=(-0.04, 1.04), ylim=(len(names) - 0.5, -0.5), xlabel="place within the interval, 0 low to 1 high"
+        )
+        below.legend(loc="upper center", bbox_to_anchor=(0.5, -0.32 - 0.25 / len(names)), ncols=2)
+        return figure_of(top)
+
+
+def _range(panel: Any, found: IntervalBounds, title: str) -> None:
+    about = found.settings["quantity"]
+    low, high = float(found.low), float(found.high)
+    limit = about["limit"]
+    above = about["squeals"] == "above"
+    quiet = (low, min(high, limit)) if above else (max(low, limit), high)
+    squeal = (max(low, limit), high) if above else (low, min(high, limit))
+    for (start, end), colour, label in ((quiet, QUIET, "quiet"), (squeal, SQUEAL, "squeal")):
+        if start < end:
+            panel.barh(0.0, end - start, 0.5, left=start, color=colour, edgecolor="#000000", linewidth=0.4, label=label)
+    panel.plot(float(found.nominal), 0.0, "o", color="#000000", label="middle of the box")
+    panel.axvline(limit, color="#000000", linewidth=0.8, linestyle="--")
+    panel.set_ylim(-0.6, 0.9)
+    panel.set_yticks([])
+    panel.legend(loc="upper center", ncols=3, borderpad=0.1)
+    panel.set(xlabel=quantity_label(about["name"], about["unit"]), title=title)
