@@ -1,11 +1,16 @@
 """Settings shared by all tests: quiet plots, reproducible property tests, no surprise from the machine."""
 
 import os
+import signal
 
 import hypothesis
 import pytest
 
 os.environ.setdefault("MPLBACKEND", "Agg")
+
+# A shell starts a job in the background deaf to Ctrl-C, and the processes tests start would inherit that.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # Derandomised: a red run on one machine is red on the next. No deadline: the first call may compile a kernel.
 hypothesis.settings.register_profile("house", deadline=None, derandomize=True, max_examples=50)
