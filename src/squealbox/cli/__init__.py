@@ -32,6 +32,8 @@ COMMANDS = {
     "ensemble": Command("ensembles", "ensemble", "transients over two parameters: amplitude and frequency of each"),
     "fit": Command("fitting", "fit", "measured friction coefficients (CSV) to a friction law, with confidence bands"),
     "cycle": Command("cycles", "cycle", "what the motion settles to: the limit cycle, its stability, figure and data"),
+    "report": Command("reports", "report", "a design examined from every side, or any result, as one HTML page"),
+    "listen": Command("listening", "listen", "the motion as sound at its true frequency (WAV), and how loud it may be"),
     "paper": Command("papers", "paper", "reproduce a published study: figures, claims and one page"),
     "schema": Command("starter", "schema", "the JSON schema of a design file, for editors"),
 }

@@ -3,15 +3,13 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from squealbox.cli.inputs import AllowCode, Changes, folder, read, time_of
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files.analyses import Simulate
+from squealbox.files.runs import run, start_of
 from squealbox.parameters import ParameterError
-from squealbox.system import InvalidSystem, System, equilibrium
 
 if TYPE_CHECKING:
     from squealbox.transient.trajectory import Trajectory
@@ -37,7 +35,7 @@ def simulate(
     file
         design file; its section [simulate] says how, unless the options do
     out
-        folder for the verdict, figures (PNG and SVG), motion.csv and motion.nc
+        folder for the verdict, figures (PNG and SVG), motion.csv, motion.nc, and motion.wav where it can be heard
     duration
         how long the motion is followed: 50ms
     start
@@ -55,10 +53,10 @@ def simulate(
     options = {"start": start, "method": method, "contact": contact}
     settings = _settings(found.simulate or Simulate(), duration, options)
     system = found.design.system()
-    beginning = _beginning(system, settings)
+    start_of(system, settings)  # what cannot be started is said before a folder is made
     folder(out)
     with Progress("simulating (the first run compiles the engine)"):
-        motion = _motion(system, settings, beginning)
+        motion = run(system, settings)
     with Progress("drawing"):
         text, paths = _results(motion, file.name, out)
     print(f"{found.design.title}, {file}\n{text}\n{written(*paths)}")
@@ -74,33 +72,6 @@ def _settings(given: Simulate, duration: str | None, options: dict[str, str | No
         return given.replace(changed)
     except ParameterError as error:
         raise UsageError(f"--{error.name} {options.get(error.name) or duration}: {error.expectation}") from error
-
-
-def _beginning(system: System, settings: Simulate) -> tuple[Any, Any]:
-    """Displacement and velocity at the start: rest or steady sliding, and what the file adds to it."""
-    q = qd = np.zeros(system.size)
-    if settings.start == "sliding":
-        state = equilibrium(system, settings.begin)
-        if not state.exists:
-            raise InvalidSystem(f"there is no steady sliding to start from: {state.outcome.message}")
-        q = state.q
-    return q + (0.0 if settings.q is None else settings.q), qd + (0.0 if settings.qd is None else settings.qd)
-
-
-def _motion(system: System, settings: Simulate, beginning: tuple[Any, Any]) -> "Trajectory":
-    from squealbox.transient import simulate as follow
-
-    return follow(
-        system,
-        settings.duration,
-        start=beginning,
-        times=int(settings.points),
-        method=settings.method,
-        contact=settings.contact,
-        rtol=settings.rtol,
-        width=settings.width,
-        start_time=settings.begin,
-    )
 
 
 def _results(motion: "Trajectory", title: str, out: Path) -> tuple[str, list[Path]]:
@@ -123,7 +94,17 @@ def _results(motion: "Trajectory", title: str, out: Path) -> tuple[str, list[Pat
         name = motion.system.names[i]
         paths += plots.save(plots.plot(motion, dof=i, title=f"{title}: {name}"), out / f"motion_{name}")
     paths += plots.save(plots.energy(motion, title=title), out / "energy")
+    paths += _sound(motion, liveliest[0], float(judged[liveliest[0]].frequency), out)
     return text, [out / "verdict.txt", *paths]
+
+
+def _sound(motion: "Trajectory", dof: int, pitch: float, out: Path) -> list[Path]:
+    """The motion that is largest as a WAV file, where people can hear its frequency and the steps are equal."""
+    from squealbox.signals import equal_steps, sound
+    from squealbox.signals.radiation import AUDIBLE
+
+    heard = AUDIBLE[0] <= pitch <= AUDIBLE[1] and equal_steps(motion.t)
+    return [sound(motion, out / "motion.wav", dof=dof)] if heard else []
 
 
 def _columns(motion: "Trajectory") -> dict[str, Any]:

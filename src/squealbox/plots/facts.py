@@ -67,7 +67,8 @@ def _of_trajectory(motion: Trajectory) -> list[Fact]:
 @facts.register
 def _of_verdict(verdict: Verdict) -> list[Fact]:
     found = [read("amplitude, half peak to peak", verdict.amplitude, "m"), read("frequency", verdict.frequency, "Hz")]
-    found.append(read("growth rate", verdict.growth_rate, "1/s"))
+    if verdict.kind != "settles_on_cycle":
+        found.append(read("growth rate", verdict.growth_rate, "1/s"))
     return [*found, read("settled at", verdict.settled_at, "s")] if np.isfinite(verdict.settled_at) else found
 
 

@@ -1,23 +1,12 @@
-"""Results as one self-contained HTML page. Depends on: result; jinja2 when a page is written.
-
-A page is data: a title and sections of text, tables, pictures and code, nested where some of it should be folded away.
-`write_page` turns it into one file: pictures are embedded, styles are inside, nothing is fetched, everything given is
-escaped. It reads in light and dark, on a narrow screen and on paper.
-"""
+"""What a page is made of: text, tables, pictures, charts, sounds and code in titled sections. Data only."""
 
 import base64
 import mimetypes
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-
-import numpy as np
-
-from squealbox.result import Result
-
-TEMPLATE = "page.html.j2"
 
 
 class ReportError(ValueError):
@@ -83,6 +72,7 @@ class Picture:
     path: Path
     caption: str
     alt: str = ""
+    inches = 0.0
     kind = "picture"
 
     @property
@@ -92,8 +82,51 @@ class Picture:
 
 
 @dataclass(frozen=True)
+class Drawing:
+    """A picture given as the content of a PNG or SVG file, with a caption; `alt` says in words what it shows."""
+
+    content: bytes
+    caption: str
+    alt: str = ""
+    inches: float = 0.0  # width of the figure it was; 0 shows the picture at its own size
+    kind = "picture"
+
+    @property
+    def uri(self) -> str:
+        """The picture itself as a data URI."""
+        kind = "png" if self.content.startswith(b"\x89PNG") else "svg+xml"
+        return f"data:image/{kind};base64,{base64.b64encode(self.content).decode('ascii')}"
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A picture that can be pointed at and zoomed into: a drawing, and the same as a Plotly figure (data, layout).
+
+    The drawing is what is printed, and what is seen where scripts do not run.
+    """
+
+    drawing: Drawing
+    figure: Mapping[str, Any]
+    kind = "chart"
+
+
+@dataclass(frozen=True)
+class Sound:
+    """A WAV file to listen to, with a caption."""
+
+    content: bytes
+    caption: str
+    kind = "sound"
+
+    @property
+    def uri(self) -> str:
+        """The sound itself as a data URI."""
+        return f"data:audio/wav;base64,{base64.b64encode(self.content).decode('ascii')}"
+
+
+@dataclass(frozen=True)
 class Tiles:
-    """A row of counts: (count, what it counts, mark)."""
+    """A row of numbers that matter: (number, what it is, mark)."""
 
     tiles: tuple[tuple[str, str, str], ...]
     kind = "tiles"
@@ -125,56 +158,3 @@ def data_uri(path: str | os.PathLike[str]) -> str:
     if kind is None or not kind.startswith("image/"):
         raise ReportError(f"{os.fspath(path)}: not a picture, expected PNG, SVG or JPEG")
     return f"data:{kind};base64,{base64.b64encode(Path(path).read_bytes()).decode('ascii')}"
-
-
-def render(page: Page) -> str:
-    """The HTML of a page."""
-    import jinja2
-
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("squealbox", "templates"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return environment.get_template(TEMPLATE).render(page=page)
-
-
-def write_page(page: Page, path: str | os.PathLike[str]) -> Path:
-    """Write a page to an HTML file, whole or not at all; returns the path."""
-    path = Path(path)
-    part = path.with_name(path.name + ".part")
-    part.write_text(render(page), encoding="utf-8")
-    part.replace(path)
-    return path
-
-
-def result_section(title: str, result: Result, pictures: tuple[Picture, ...] = (), *, folded: bool = False) -> Section:
-    """A section about one result: how it ended, its pictures, its arrays, its settings and versions."""
-    ended = f"Outcome: {result.outcome}. {result.outcome.message}".strip()
-    arrays = tuple(_array_row(name, about) for name, about in result.to_dataset().data_vars.items())
-    facts = (*_facts("settings", result.settings), *_facts("version", result.provenance))
-    return Section(
-        title,
-        (
-            Text(ended),
-            *pictures,
-            Table(("array", "unit", "meaning", "shape", "least", "greatest"), arrays),
-            Table(("", "", ""), facts, "Settings and versions"),
-        ),
-        folded,
-    )
-
-
-def _array_row(name: Any, about: Any) -> tuple[str, ...]:
-    values = about.values
-    finite = np.abs(values) if np.iscomplexobj(values) else np.asarray(values, dtype=float)
-    finite = finite[np.isfinite(finite)]
-    least, greatest = (f"{finite.min():.6g}", f"{finite.max():.6g}") if finite.size else ("", "")
-    shape = " by ".join(f"{size} {dim}" for dim, size in about.sizes.items()) or "one value"
-    return str(name), about.attrs["units"], about.attrs["long_name"], shape, least, greatest
-
-
-def _facts(kind: str, items: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
-    return ((kind, name, str(value)) for name, value in items.items())

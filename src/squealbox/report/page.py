@@ -1,0 +1,93 @@
+"""A page of blocks as one HTML file that needs nothing else: no network, no folder beside it.
+
+Charts come to life by plotly.js, which lies packed in the same file and is unpacked by the browser. The page's own
+policy allows exactly that script and the one that starts it, by their hashes, and no connection to anywhere.
+"""
+
+import base64
+import gzip
+import hashlib
+import json
+import os
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squealbox.report.blocks import Chart, Page, Section
+
+TEMPLATE = "page.html.j2"
+
+
+def render(page: Page) -> str:
+    """The HTML of a page."""
+    import jinja2
+
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("squealbox", "templates"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    figures = [plain_json(chart.figure) for chart in charts(page.sections)]
+    start = environment.get_template("charts.js").render() if figures else ""
+    library = packed_library() if figures else None
+    allowed = " ".join(f"'sha256-{digest}'" for digest in (_digest(start), library[1])) if library else ""
+    return environment.get_template(TEMPLATE).render(
+        page=page, figures=figures, start=start, library=library[0] if library else "", allowed=allowed
+    )
+
+
+def write_page(page: Page, path: str | os.PathLike[str]) -> Path:
+    """Write a page to an HTML file, whole or not at all; returns the path."""
+    path = Path(path)
+    part = path.with_name(path.name + ".part")
+    part.write_text(render(page), encoding="utf-8")
+    part.replace(path)
+    return path
+
+
+def charts(blocks: tuple[Any, ...]) -> Iterator[Chart]:
+    """Every chart among nested blocks, in the order of the page."""
+    for block in blocks:
+        if isinstance(block, Section):
+            yield from charts(block.blocks)
+        elif isinstance(block, Chart):
+            yield block
+
+
+def plain_json(figure: Any) -> str:
+    """A figure of dictionaries, lists, texts and arrays as JSON; what is not finite becomes null, a gap in a line.
+
+    Six digits, more than any screen shows; safe inside a script element.
+    """
+    return json.dumps(_plain(figure), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if isinstance(value, (np.ndarray, np.generic)):
+        return _plain(value.tolist())
+    if isinstance(value, float):
+        return float(f"{value:.6g}") if np.isfinite(value) else None
+    return value
+
+
+@cache
+def packed_library() -> tuple[str, str]:
+    """The script of plotly.js, compressed, as base64; and the SHA-256 of the script, as base64."""
+    from plotly.offline import get_plotlyjs
+
+    script = get_plotlyjs()
+    packed = gzip.compress(script.encode("utf-8"), compresslevel=9, mtime=0)
+    return base64.b64encode(packed).decode("ascii"), _digest(script)
+
+
+def _digest(script: str) -> str:
+    return base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii")

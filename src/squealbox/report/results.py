@@ -1,0 +1,123 @@
+"""Results of any kind as pages and sections: how each ended, its key numbers, its figure, arrays and settings."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squealbox import plots
+from squealbox.designs import Design
+from squealbox.plots.cards import WALKED, has_drawing, parameter_rows
+from squealbox.report.blocks import Code, Page, Picture, Points, ReportError, Section, Sound, Table, Text
+from squealbox.report.pictures import picture, wav
+from squealbox.result import Result, provenance
+from squealbox.signals import LEAST, equal_steps
+from squealbox.signals.radiation import AUDIBLE
+from squealbox.transient import Trajectory, verdict
+
+MOST_RESULTS = 40  # of a folder on one page
+
+
+def result_page(result: Result, *, title: str = "") -> Page:
+    """The page of one result, with the design or system it was computed from where it kept one."""
+    kind = type(result).__name__
+    sections = [Section(kind, tuple(_about(result)))]
+    design = result.inputs.get("system")
+    if isinstance(design, Design):
+        sections.append(Section("The brake", tuple(_design(design))))
+    sections.append(Section("Arrays, settings and versions", result_section(kind, result).blocks))
+    return Page(title or kind, _ended(result), tuple(sections), _made())
+
+
+def folder_page(folder: Path) -> Page:
+    """The page of a folder of results: every NetCDF file in it that holds one, in order of their names."""
+    paths = sorted(path for path in folder.glob("*.nc") if path.is_file())
+    if not paths:
+        raise ReportError(f"{folder}: holds no results, expected NetCDF files (.nc) as `--out` and `save` write them")
+    if len(paths) > MOST_RESULTS:
+        raise ReportError(f"{folder}: holds {len(paths)} results, expected at most {MOST_RESULTS} on one page")
+    results = [(path, Result.load(path)) for path in paths]
+    sections = tuple(Section(f"{type(each).__name__}: {path.name}", tuple(_about(each))) for path, each in results)
+    design = next((each.inputs["system"] for _, each in results if isinstance(each.inputs.get("system"), Design)), None)
+    brake = (Section("The brake", tuple(_design(design))),) if design is not None else ()
+    details = tuple(Section(path.name, result_section(path.name, each).blocks, folded=True) for path, each in results)
+    last = Section("Arrays, settings and versions", details)
+    return Page(folder.resolve().name, f"{len(results)} results.", (*sections, *brake, last), _made())
+
+
+def _ended(result: Result) -> str:
+    return f"{result.outcome}: {result.outcome.message}" if result.outcome.message else str(result.outcome)
+
+
+def _about(result: Result) -> Iterator[Any]:
+    """What the result says: its summary, its key numbers, its figure, a motion also its verdicts and sound."""
+    yield Text(f"Ended: {_ended(result)}.")
+    told = getattr(result, "summary", None)
+    if told is not None:
+        yield Code(told())
+    caution = getattr(result, "caution", "")
+    if caution:
+        yield Text(f"Caution: {caution}")
+    numbers = tuple((name, f"{value} {unit}".rstrip()) for name, value, unit in plots.facts(result))
+    if numbers:
+        yield Table(("", "value"), numbers)
+    known = plots.plot.dispatch(type(result)) is not plots.plot.dispatch(object)
+    if known and (result.outcome.ok or isinstance(result, WALKED)) and _holds_something(result):
+        yield picture(plots.plot(result), f"{type(result).__name__}.")
+    if isinstance(result, Trajectory) and len(result.t) >= LEAST:
+        yield from _motion(result)
+
+
+def _holds_something(result: Result) -> bool:
+    return all(np.size(values) for values in list(result.to_dataset().data_vars.values())[:1])
+
+
+def _motion(motion: Trajectory) -> Iterator[Any]:
+    verdicts = [verdict(motion, dof=i) for i in range(motion.system.size)]
+    yield Points(tuple(f"{name}: {one.text}" for name, one in zip(motion.system.names, verdicts, strict=True)))
+    dof = int(np.argmax([float(np.nan_to_num(one.amplitude)) for one in verdicts]))
+    pitch = float(np.nan_to_num(verdicts[dof].frequency))
+    if AUDIBLE[0] <= pitch <= AUDIBLE[1] and equal_steps(motion.t):
+        yield Sound(wav(motion, dof), f"The motion of {motion.system.names[dof]} as sound, at its true frequency.")
+
+
+def _design(design: Design) -> Iterator[Any]:
+    yield Text(f"{design.title}. {design.source}")
+    if has_drawing(design):
+        yield picture(plots.brake_drawing(design), "The brake, angles to scale.", f"Drawing of {design.title}")
+    yield Table(("parameter", "value", "may be", "meaning", "source"), tuple(parameter_rows(design)))
+
+
+def _made() -> str:
+    return f"Made by {', '.join(f'{name} {version}' for name, version in provenance().items())}."
+
+
+def result_section(title: str, result: Result, pictures: tuple[Picture, ...] = (), *, folded: bool = False) -> Section:
+    """A section about one result: how it ended, its pictures, its arrays, its settings and versions."""
+    ended = f"Outcome: {result.outcome}. {result.outcome.message}".strip()
+    arrays = tuple(_array_row(name, about) for name, about in result.to_dataset().data_vars.items())
+    facts = (*_facts("settings", result.settings), *_facts("version", result.provenance))
+    return Section(
+        title,
+        (
+            Text(ended),
+            *pictures,
+            Table(("array", "unit", "meaning", "shape", "least", "greatest"), arrays),
+            Table(("", "", ""), facts, "Settings and versions"),
+        ),
+        folded,
+    )
+
+
+def _array_row(name: Any, about: Any) -> tuple[str, ...]:
+    values = about.values
+    finite = np.abs(values) if np.iscomplexobj(values) else np.asarray(values, dtype=float)
+    finite = finite[np.isfinite(finite)]
+    least, greatest = (f"{finite.min():.6g}", f"{finite.max():.6g}") if finite.size else ("", "")
+    shape = " by ".join(f"{size} {dim}" for dim, size in about.sizes.items()) or "one value"
+    return str(name), about.attrs["units"], about.attrs["long_name"], shape, least, greatest
+
+
+def _facts(kind: str, items: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
+    return ((kind, name, str(value)) for name, value in items.items())

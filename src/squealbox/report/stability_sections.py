@@ -1,0 +1,76 @@
+"""The sections of a page about stability: modes, onset, ranking, energy, and the map over two parameters."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from squealbox import plots
+from squealbox.plots.style import quantity_label
+from squealbox.report import charts, tables, words
+from squealbox.report.blocks import Chart, Section, Text
+from squealbox.report.examination import Examination
+from squealbox.report.pictures import picture, why_not
+
+
+def stability(found: Examination) -> Iterator[Any]:
+    """Modes, what becomes of them over a parameter, which parameter to change, and where the energy comes from."""
+    if not found.modes.exists:
+        yield Text(found.missing.get("stability", "there is no steady sliding"))
+        return
+    yield tables.modes(found.modes)
+    yield picture(plots.plot(found.modes), "Eigenvalues. To the right of the line a mode grows.")
+    if found.varied is not None and found.spectra is not None:
+        yield _coalescence(found)
+    if found.ranking is not None:
+        yield Section("Which parameter to change", (
+            picture(plots.plot(found.ranking), "Change of the growth rate for one per cent more of each parameter."),
+            tables.ranking(found, found.ranking),
+        ))  # fmt: skip
+    if found.energy is not None:
+        yield Section("Where the energy comes from", (
+            picture(plots.plot(found.energy), "What each contact and damper adds to the worst growth rate."),
+            tables.energy(found.energy),
+        ))  # fmt: skip
+    yield from why_not(found, "ranking", "energy", "onset")
+
+
+def _coalescence(found: Examination) -> Chart:
+    varied, spectra = found.varied, found.spectra
+    if varied is None or spectra is None:
+        raise TypeError("no parameter was varied")
+    factor, unit = words.in_reading_unit(found, varied.name)
+    inputs = np.sort(np.append(varied.values, found.crossings.value if found.crossings is not None else []))
+    figure = plots.coalescence(factor * inputs, spectra, name=varied.name, unit=unit)
+    here = factor * found.present
+    for panel in figure.axes:
+        panel.axvline(here, color="#000000", linewidth=0.7, linestyle=":")
+    caption = f"Frequencies and growth rates over {varied.name}; hatched: unstable; dotted: this design."
+    moving = charts.modes_over_parameter(factor * inputs, spectra.eigenvalues, varied.name, unit, here)
+    return Chart(picture(figure, caption), moving)
+
+
+def map_of_two(found: Examination) -> Iterator[Any]:
+    """The map over two parameters with the boundary and the design in it."""
+    plane, grid, boundary = found.plane, found.map, found.boundary
+    if plane is not None and grid is not None and boundary is not None:
+        names, factors, units = (plane.x.name, plane.y.name), [], []
+        for name in names:
+            factor, unit = words.in_reading_unit(found, name)
+            factors.append(factor)
+            units.append(unit)
+        x, y = (factor * np.asarray(values) for factor, values in zip(factors, grid.axes.values(), strict=True))
+        curves = [points * factors for points in boundary.curves]
+        here = tuple(factor * float(found.design.value_of(name)) for factor, name in zip(factors, names, strict=True))
+        look = {"x_name": names[0], "x_unit": units[0], "y_name": names[1], "y_unit": units[1]}
+        figure = plots.stability_map(x, y, grid.growth_rate.T, curves=curves, **look)
+        figure.axes[0].plot(*here, "x", color="#000000", markersize=7, markeredgewidth=2.0)
+        labels = [quantity_label(name, unit) for name, unit in zip(names, units, strict=True)]
+        caption = (
+            f"Growth rate over {names[0]} and {names[1]}, with the boundary of stability as traced; the cross is this "
+            "design."
+        )
+        moving = charts.map_over_two(x, y, grid.growth_rate.T, grid.frequency.T, labels, curves, (here[0], here[1]))
+        yield Chart(picture(figure, caption), moving)
+        yield Text(f"{grid.summary()}.".replace("\n", "; "))
+    yield from why_not(found, "map")

@@ -1,0 +1,185 @@
+"""What an examination says in sentences: the verdict, and the caveats that belong to it."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from squealbox.files.analyses import quantity_of
+from squealbox.plots.facts import plain_unit, read
+from squealbox.plots.style import number
+from squealbox.report.examination import Examination
+from squealbox.system import equilibrium
+
+
+def in_reading_unit(found: Examination, name: str) -> tuple[float, str]:
+    """What SI values of a parameter are multiplied by to be read, and the unit then: angles in degrees."""
+    unit = quantity_of(found.design, name).unit
+    return (180.0 / np.pi, "°") if unit == "rad" else (1.0, plain_unit(unit))
+
+
+def value_in_words(found: Examination, name: str, value: float, digits: int = 5) -> str:
+    """A value of a parameter with its unit."""
+    factor, unit = in_reading_unit(found, name)
+    return f"{number(factor * float(value), digits)} {unit}".rstrip()
+
+
+def quantity(value: Any, unit: str, digits: int = 4) -> str:
+    """A number in the unit that suits it: 12.3 µm."""
+    _, text, written = read("", value, unit, digits)
+    return f"{text} {written}".rstrip()
+
+
+def verdict(found: Examination) -> list[str]:
+    """The answer in a few sentences: stable or not and why, the margin, what the motion does, how loud."""
+    return [*_stability(found), *_margin(found), *_motion(found), *cycle(found), *_loudness(found)]
+
+
+def short_verdict(found: Examination) -> str:
+    """One sentence for the head of a page."""
+    if not found.modes.exists:
+        return f"There is no steady sliding: {found.modes.outcome.message}."
+    if not found.stable:
+        worst = found.modes.most_unstable
+        how = f" at {quantity(worst.frequency, 'Hz')}" if worst.frequency > 0.0 else ""
+        return f"Steady sliding is unstable: a mode grows{how}."
+    beside = ", and yet a vibration can persist beside it" if found.coexists else ""
+    return f"Steady sliding is stable{beside}."
+
+
+def _stability(found: Examination) -> Iterator[str]:
+    yield short_verdict(found)
+    if not found.modes.exists:
+        return
+    worst = found.modes.most_unstable
+    if found.stable:
+        yield (
+            f"The least damped mode, at {quantity(worst.frequency, 'Hz')}, decays at "
+            f"{number(abs(worst.growth_rate))} 1/s (damping ratio {number(100.0 * worst.damping_ratio, 3)} %)."
+        )
+    elif found.why is not None:
+        yield f"Its growth rate is {number(worst.growth_rate)} 1/s, its mechanism {found.why}."
+
+
+def _margin(found: Examination) -> Iterator[str]:
+    if found.varied is None or found.crossings is None:
+        return
+    name, critical = found.varied.name, found.critical
+    if critical is None:
+        ends = " and ".join(value_in_words(found, name, x) for x in (found.varied.low, found.varied.high))
+        yield f"Between {name} = {ends} stability does not change."
+        return
+    value, here = float(critical.value), found.present
+    shares = ", ".join(f"{key.replace('_', ' ')} {100.0 * share:.0f} %" for key, share in critical.shares.items())
+    side = "above" if critical.direction == "destabilising" else "below"
+    yield (
+        f"A mode of {quantity(critical.frequency, 'Hz')} grows {side} {name} = {value_in_words(found, name, value)} "
+        f"by {critical.mechanism.replace('_', ' ')} ({shares})."
+    )
+    if value != 0.0:
+        away = "above" if here > value else "below"
+        margin = number(100.0 * abs(here - value) / abs(value), 3)
+        yield f"This design has {name} = {value_in_words(found, name, here)}, {margin} % {away} that value."
+
+
+def _motion(found: Examination) -> Iterator[str]:
+    if not found.verdicts or found.settings is None:
+        return
+    one = found.verdicts[found.liveliest]
+    begins = "rest, with the loads applied suddenly" if found.settings.start == "rest" else "steady sliding"
+    name, length = found.system.names[found.liveliest], quantity(found.settings.duration, "s")
+    yield f"From {begins}, followed for {length}, {name}: {one.text}"
+
+
+def cycle(found: Examination) -> list[str]:
+    """The limit cycle in words: which one, reached from where, and whether stable sliding exists beside it."""
+    return [*_cycle(found), *_birth(found)]
+
+
+def _birth(found: Examination) -> Iterator[str]:
+    hopf = found.hopf
+    if hopf is None or not hopf.outcome.ok:
+        return
+    where = f"{hopf.parameter} = {value_in_words(found, hopf.parameter, float(hopf.value))}"
+    if hopf.kind == "subcritical":
+        yield f"The cycle born at {where} is unstable: vibration can persist on the stable side of that value already."
+    elif hopf.kind == "supercritical":
+        yield f"The cycle born at {where} is stable and grows from nothing there, as long as its contacts keep sliding."
+
+
+def _cycle(found: Examination) -> Iterator[str]:
+    cycle = found.cycle
+    if cycle is None:
+        return
+    if not cycle.outcome.ok:
+        why = f"{_listed(found.tried)} ({cycle.outcome.message})"
+        yield f"No limit cycle was found from {why}; that does not prove there is none."
+        return
+    kind = "stable" if cycle.stable else "unstable"
+    sizes = ", ".join(
+        f"{name} {quantity(size, 'm')}" for name, size in zip(found.system.names, cycle.amplitude, strict=True)
+    )
+    pitch = quantity(cycle.frequency, "Hz", 5)
+    yield f"There is a {kind} limit cycle of {pitch}, half peak to peak {sizes}, reached from {found.tried[-1]}."
+    if found.coexists:
+        yield (
+            "It exists beside stable sliding: eigenvalues call this brake quiet, yet a push large enough starts a "
+            "vibration that persists."
+        )
+
+
+def _loudness(found: Examination) -> Iterator[str]:
+    loud = found.loudness
+    if loud is None or not loud.outcome.ok:
+        return
+    yield (
+        f"Were the last quarter of the transient to go on, it would be about {float(loud.level):.0f} dB "
+        f"({float(loud.weighted):.0f} dB(A)). {loud.assumption}"
+    )
+
+
+def caveats(found: Examination) -> list[str]:
+    """What a reader must know before leaning on the numbers."""
+    said = [
+        f"The model has {found.system.size} degrees of freedom and {len(found.system.contacts)} contacts: modes of the "
+        "real parts that are not in it, temperature, wear and the scatter of friction are not in the result either.",
+        "A positive growth rate says that steady sliding is left, not how large or how loud the vibration becomes; a "
+        "negative one says that small disturbances decay, not that large ones do.",
+    ]
+    if found.cycle is not None:
+        said.append(
+            f"Limit cycles were looked for from {_listed(found.tried)}. Others may exist that none of these reaches."
+        )
+    if found.ranking is not None and found.ranking.near_defective:
+        said.append("Two modes nearly merge here: derivatives in the ranking of parameters change within a small step.")
+    if found.loudness is not None:
+        said.append(
+            "The sound level is an estimate; differences between two designs can be trusted more than the level itself."
+        )
+    said += [
+        f"{name} carries {quantity(force, 'N')} in steady sliding: it pulls, which a real contact cannot. Around this "
+        "state the model's contact is not a real one."
+        for name, force in _pulling(found)
+    ]
+    said += [f"Note of the {name}: {text}" for name, text in _cautions(found)]
+    return said
+
+
+def _pulling(found: Examination) -> Iterator[tuple[str, float]]:
+    """Contacts that can only push in reality, and pull in this model's steady sliding."""
+    state = equilibrium(found.system, found.time)
+    if not state.exists:
+        return
+    for i, contact in enumerate(found.system.contacts):
+        if float(state.normal_force[i]) < 0.0 and not contact.unilateral:
+            yield contact.name or f"contact {i + 1}", float(state.normal_force[i])
+
+
+def _cautions(found: Examination) -> Iterator[tuple[str, str]]:
+    for name, part in (("transient", found.motion), ("limit cycle", found.cycle)):
+        if part is not None and part.caution:
+            yield name, part.caution
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return " and ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else "".join(names)
