@@ -267,7 +267,7 @@ def test_simulate(said, brake, tmp_path):
     names = {path.name for path in folder.iterdir()}
     assert names == {
         "verdict.txt", "motion.nc", "motion.csv", "energy.png", "energy.svg", "motion_x.png", "motion_x.svg",
-        "motion_y.png", "motion_y.svg",
+        "motion_y.png", "motion_y.svg", "motion.wav",
     }  # fmt: skip
     assert (folder / "verdict.txt").read_text() in out
     motion = Result.load(folder / "motion.nc")
@@ -302,14 +302,14 @@ def test_simulate_as_the_section_says(said, brake, tmp_path, undrawn):
 def test_a_run_that_cannot_go_on_exits_with_one(said, brake, tmp_path, monkeypatch, undrawn):
     from squealbox.cli import transient
 
-    follow = transient._motion
+    follow = transient.run
 
     def stopped(*arguments):
         import dataclasses
 
         return dataclasses.replace(follow(*arguments), outcome=Outcome("step_underflow", "no step was small enough"))
 
-    monkeypatch.setattr(transient, "_motion", stopped)
+    monkeypatch.setattr(transient, "run", stopped)
     code, out, err = said("simulate", brake, "--out", tmp_path / "out", "--duration", "5 ms")
     assert code == 1
     assert err == "squealbox simulate: step_underflow: no step was small enough\n"
@@ -325,14 +325,14 @@ def test_an_interrupt_exits_with_130(said, brake, tmp_path, monkeypatch, undrawn
 
     monkeypatch.setattr(stability, "complex_modes", pressed)
     assert said("modes", brake) == (130, "", "squealbox modes: stopped\n")
-    follow = transient._motion
+    follow = transient.run
 
     def interrupted(*arguments):
         import dataclasses
 
         return dataclasses.replace(follow(*arguments), outcome=Outcome("interrupted", "stopped by the user"))
 
-    monkeypatch.setattr(transient, "_motion", interrupted)
+    monkeypatch.setattr(transient, "run", interrupted)
     assert said("simulate", brake, "--out", tmp_path / "out", "--duration", "5 ms")[0] == 130
 
 

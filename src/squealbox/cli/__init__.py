@@ -44,6 +44,7 @@ examples:
   squealbox modes brake/brake.toml           is it stable?
   squealbox onset brake/brake.toml --parameter friction.static --range 0 1
   squealbox simulate brake/brake.toml --out run
+  squealbox report brake/brake.toml          one page for a colleague
   squealbox paper drum-brake-2011 --out study"""
 
 

@@ -14,6 +14,7 @@ from squealbox.parameters import ParameterError
 if TYPE_CHECKING:
     from squealbox.transient.trajectory import Trajectory
 
+SAMPLES_A_PERIOD = 4.0  # fewer points do not hold the motion
 MOST_FIGURES = 4  # degrees of freedom that are drawn: those that move most
 
 
@@ -99,11 +100,12 @@ def _results(motion: "Trajectory", title: str, out: Path) -> tuple[str, list[Pat
 
 
 def _sound(motion: "Trajectory", dof: int, pitch: float, out: Path) -> list[Path]:
-    """The motion that is largest as a WAV file, where people can hear its frequency and the steps are equal."""
+    """The motion that is largest as a WAV file, where people can hear it and its points are close enough in time."""
     from squealbox.signals import equal_steps, sound
     from squealbox.signals.radiation import AUDIBLE
 
     heard = AUDIBLE[0] <= pitch <= AUDIBLE[1] and equal_steps(motion.t)
+    heard = heard and SAMPLES_A_PERIOD * pitch * (motion.t[-1] - motion.t[0]) <= len(motion.t)
     return [sound(motion, out / "motion.wav", dof=dof)] if heard else []
 
 

@@ -26,7 +26,8 @@ from squealbox.report.blocks import (
     data_uri,
 )
 from squealbox.report.design_page import design_page
-from squealbox.report.examination import Examination, examine
+from squealbox.report.examination import Examination
+from squealbox.report.examining import examine
 from squealbox.report.page import render, write_page
 from squealbox.report.results import result_page, result_section
 from squealbox.report.writing import report

@@ -8,7 +8,8 @@ from squealbox.designs import Design
 from squealbox.files import DesignFile, read_file
 from squealbox.report.blocks import Page, ReportError
 from squealbox.report.design_page import design_page
-from squealbox.report.examination import Examination, Progress, examine
+from squealbox.report.examination import Examination
+from squealbox.report.examining import Progress, examine
 from squealbox.report.page import write_page
 from squealbox.report.results import folder_page, result_page
 from squealbox.result import Result

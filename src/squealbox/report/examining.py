@@ -1,0 +1,225 @@
+"""Everything a report asks of one design, computed once: no words, no figures.
+
+What cannot be asked of a design (a limit cycle under a load that varies in time, a map where only one number can be
+varied) is left out with the sentence that says why, in `missing`.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from squealbox.designs import Design
+from squealbox.files.analyses import Axis, Map, Simulate, quantity_of, scalar_parameters
+from squealbox.files.runs import run
+from squealbox.limit_cycles import hopf_point, shooting
+from squealbox.parameters import ParameterError
+from squealbox.report.examination import Examination
+from squealbox.schedules import Schedule, value_at
+from squealbox.signals import SignalError, sound_level
+from squealbox.stability import (
+    Sensitivity,
+    complex_modes,
+    critical_values,
+    mechanism,
+    mode_energy,
+    sensitivity,
+    stability_boundary,
+    stability_map,
+)
+from squealbox.system import InvalidSystem
+from squealbox.transient import verdict
+
+Progress = Callable[[str], None]
+PERIODS = 200  # of the worst mode, followed where the file does not say how long
+MAP_POINTS = 81
+MOST_MAP_POINTS = 151
+HEARD = 2.0  # seconds of motion that are made audible
+SAMPLING = 88_200.0  # [Hz] of that motion
+PUSHES = (1.0, 3.0)  # velocities at the contacts, over the sliding speed, from which a cycle is looked for
+
+
+def examine(
+    design: Design,
+    *,
+    onset: Axis | None = None,
+    plane: Map | None = None,
+    simulate: Simulate | None = None,
+    time: float = 0.0,
+    progress: Progress = lambda text: None,
+) -> Examination:
+    """Stability, margin, sensitivity, energy, map, transient, sound and limit cycle of a design.
+
+    Parameters
+    ----------
+    design : one design, without leading axes
+    onset, plane, simulate : the sections of a design file; left out, the friction at rest (else the parameter that
+        matters most) is varied, with the next in the ranking beside it, and the motion from rest is followed for 200
+        periods of the worst mode
+    time : instant at which schedules are taken [s]
+    progress : called with what is being done
+
+    Raises `ParameterError` for a design that stands for a map. Anything else that cannot be computed is in `missing`.
+    """
+    if any(np.ndim(value) for _, about, value in design.leaves() if about.unit != "-"):
+        raise ParameterError(type(design).__name__, "design", "arrays", "one brake, not a map of brakes")
+    work = _Work(design, time, progress)
+    work.stability(onset)
+    work.margins(plane)
+    work.transient(simulate)
+    work.cycle()
+    return Examination(
+        design=design, system=work.system, modes=work.modes, time=time, missing=work.missing, **work.found
+    )
+
+
+class _Work:
+    """The parts of an examination, found one after the other."""
+
+    def __init__(self, design: Design, time: float, progress: Progress) -> None:
+        self.design, self.time, self.progress = design, time, progress
+        self.system = design.system()
+        self.modes = complex_modes(design, time)
+        self.found: dict[str, Any] = {}
+        self.missing: dict[str, str] = {}
+
+    @contextmanager
+    def part(self, name: str, text: str) -> Iterator[None]:
+        """One part: what cannot be asked of this design is noted under its name."""
+        self.progress(text)
+        try:
+            yield
+        except ParameterError as error:
+            varies = isinstance(error.value, Schedule)
+            self.missing[name] = f"{error.expectation}, and something varies in time" if varies else str(error)
+        except (InvalidSystem, SignalError, ValueError) as error:
+            self.missing[name] = " ".join(str(error).split())
+
+    def stability(self, onset: Axis | None) -> None:
+        if not self.modes.exists:
+            self.missing["stability"] = f"there is no steady sliding: {self.modes.outcome.message}"
+            return
+        with self.part("ranking", "sensitivity"):
+            self.found["ranking"] = sensitivity(self.design, self._leaves(), time=self.time)
+        with self.part("energy", "energy of the worst mode"):
+            self.found["why"] = mechanism(self.design, self.time)
+            if self.modes.most_unstable.angular_frequency > 0.0:
+                self.found["energy"] = mode_energy(self.design, None, self.time)
+        with self.part("onset", "looking for the onset"):
+            self.found["varied"] = varied = onset or self._usual_axis()
+            self.found["crossings"] = crossings = critical_values(
+                self.design, varied.name, (varied.low, varied.high), time=self.time
+            )
+            values = np.sort(np.append(varied.values, crossings.value))
+            self.found["spectra"] = complex_modes(self.design.replace({varied.name: values}), self.time)
+            self.found["varied"] = varied
+
+    def margins(self, plane: Map | None) -> None:
+        """The map over two parameters with its boundary."""
+        if "spectra" not in self.found:
+            return
+        with self.part("map", "map over two parameters"):
+            self.found["plane"] = chosen = plane or self._usual_plane()
+            points = [np.linspace(a.low, a.high, min(int(a.points), MOST_MAP_POINTS)) for a in (chosen.x, chosen.y)]
+            names = (chosen.x.name, chosen.y.name)
+            self.found["map"] = stability_map(self.design, dict(zip(names, points, strict=True)), time=self.time)
+            bounds = {axis.name: (axis.low, axis.high) for axis in (chosen.x, chosen.y)}
+            self.found["boundary"] = stability_boundary(self.design, bounds, time=self.time)
+
+    def transient(self, simulate: Simulate | None) -> None:
+        with self.part("transient", "transient (the first run compiles the engine)"):
+            self.found["settings"] = settings = simulate or Simulate(duration=PERIODS * self._period())
+            self.found["motion"] = motion = run(self.system, settings)
+            if not motion.outcome.ok:
+                self.missing["sound"] = f"the transient ended early: {motion.outcome.message}"
+                return
+            self.found["verdicts"] = tuple(verdict(motion, dof=i) for i in range(self.system.size))
+        if "verdicts" not in self.found:
+            return
+        with self.part("sound", "sound"):
+            dof = max(range(self.system.size), key=lambda i: float(np.nan_to_num(self.found["verdicts"][i].amplitude)))
+            last = motion.t[-1] - 0.25 * (motion.t[-1] - motion.t[0])
+            self.found["loudness"] = sound_level(motion, dof=dof, begin=last)
+            pitch = float(self.found["verdicts"][dof].frequency)
+            if not 20.0 <= pitch <= 20e3:
+                raise SignalError(f"its frequency, {pitch:.4g} Hz, is not one people hear")
+            longer = settings.replace({"duration": max(HEARD, settings.duration)})
+            self.found["heard"] = run(self.system, longer, points=int(longer.duration * SAMPLING) + 1)
+
+    def cycle(self) -> None:
+        """A limit cycle: from the usual start, the end of the transient, and pushes about steady sliding."""
+        if self.modes.exists:
+            with self.part("hopf", "how the cycle is born"):
+                varied = self.found.get("varied")
+                if varied is not None:
+                    self.found["hopf"] = hopf_point(self.design, varied.name, (varied.low, varied.high))
+        tried: list[str] = []
+        with self.part("cycle", "limit cycle"):
+            for name, start in self._starts():
+                tried.append(name)
+                found = shooting(self.system, start)
+                best = self.found.get("cycle")
+                if best is None or (found.outcome.ok and not best.outcome.ok):
+                    self.found["cycle"] = found
+                if found.outcome.ok and found.stable:
+                    self.found["cycle"] = found
+                    break
+        self.found["tried"] = tuple(tried)
+
+    def _starts(self) -> Iterator[tuple[str, Any]]:
+        yield "the worst mode", None
+        motion = self.found.get("motion")
+        if motion is not None and motion.outcome.ok:
+            yield "the end of the transient", motion
+        if not self.modes.exists:
+            return
+        mode = self.modes.most_unstable
+        speeds = [abs(float(value_at(contact.V, self.time))) for contact in self.system.contacts]
+        motion = [abs(contact.t @ (mode.eigenvalue * mode.shape)) for contact in self.system.contacts]
+        swing = [moves / speed for moves, speed in zip(motion, speeds, strict=True) if speed > 0.0]
+        if max(swing, default=0.0) == 0.0:
+            return
+        for push in PUSHES:
+            yield f"a push to {push:g} times the sliding speed", mode.start(push / max(swing))
+
+    def _leaves(self) -> tuple[str, ...]:
+        """Parameters that hold one number other than zero and can be varied; those inside a schedule cannot."""
+        heads = {name for name in self.design.field_names() if isinstance(getattr(self.design, name), Schedule)}
+        numbers = [name for name, _, value in self.design.leaves() if isinstance(value, float) and value != 0.0]
+        known = scalar_parameters(self.design)
+        return tuple(name for name in numbers if name in known and name.partition(".")[0] not in heads)
+
+    def _period(self) -> float:
+        """Period [s] of the worst mode, else of the fastest undamped one."""
+        if self.modes.exists and self.modes.most_unstable.frequency > 0.0:
+            return 1.0 / self.modes.most_unstable.frequency
+        rates = np.sqrt(np.abs(np.linalg.eigvals(np.linalg.solve(self.system.M, self.system.K))))
+        return 2.0 * np.pi / float(np.max(rates)) if np.max(rates) > 0.0 else 1.0
+
+    def _usual_axis(self) -> Axis:
+        known = scalar_parameters(self.design)
+        name = "friction.static" if "friction.static" in known else self._strongest([])
+        return self._about(name, 0.05, 2.5)
+
+    def _usual_plane(self) -> Map:
+        varied: Axis = self.found["varied"]
+        other = self._about(self._strongest([varied.name]), 0.5, 1.5)
+        x = varied.replace(points=MAP_POINTS)
+        return Map(x, other.replace(points=MAP_POINTS))
+
+    def _strongest(self, but: list[str]) -> str:
+        ranking: Sensitivity | None = self.found.get("ranking")
+        names = [name for name, change in ranking.ranked() if name not in but and change != 0.0] if ranking else []
+        if not names:
+            raise ParameterError(type(self.design).__name__, "design", "it", "a parameter that changes the growth rate")
+        return names[0]
+
+    def _about(self, name: str, low: float, high: float) -> Axis:
+        """A range about the design's own value in shares of it, inside what the parameter may be."""
+        value, about = float(self.design.value_of(name)), quantity_of(self.design, name)
+        ends = sorted((low * value, high * value))
+        ends = [float(np.clip(end, about.low, about.high)) for end in ends]
+        if about.low_open and ends[0] == about.low:
+            ends[0] += 1e-3 * abs(value)
+        return Axis(name, ends[0], ends[1])

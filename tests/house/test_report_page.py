@@ -1,0 +1,241 @@
+"""`squealbox report` as its reader has it: one file, in a real browser without a network, on screen and on paper."""
+
+import base64
+import io
+import re
+import tempfile
+import wave
+
+import numpy as np
+import pytest
+from playwright.sync_api import sync_playwright
+
+from squealbox import DrumBrake, LinearSlope, Ramp, complex_modes, simulate
+from squealbox.cli import BAD_INPUT, DONE, main
+from squealbox.files import write_design
+from squealbox.report import Examination, ReportError, design_page, examine, report
+from squealbox.signals import dominant_frequency
+
+FLAGS = [
+    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
+    "--disable-background-networking", "--disable-component-update",
+]  # fmt: skip
+SIZE = {"width": 1280, "height": 800}
+SQUEALING = DrumBrake(friction=LinearSlope(0.45, -0.05))
+SECTIONS = """
+[map]
+x = { parameter = "friction.static", range = [0.1, 0.6], points = 21 }
+y = { parameter = "load", range = ["0.5 kN", "5 kN"], points = 21 }
+"""
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """The report of a squealing drum, written by the command."""
+    folder = tmp_path_factory.mktemp("report")
+    file = write_design(SQUEALING, folder / "brake.toml", sections=SECTIONS)
+    assert main(["report", str(file), "--out", str(folder / "brake.html")]) == DONE
+    return folder / "brake.html"
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with sync_playwright() as playwright, tempfile.TemporaryDirectory() as profile:
+        context = playwright.chromium.launch_persistent_context(
+            profile,
+            executable_path="/usr/bin/chromium",
+            args=FLAGS,
+            offline=True,
+            viewport={"width": 1280, "height": 800},
+        )
+        yield context
+        context.close()
+
+
+class Opened:
+    """A page opened from its file, with every request it made and every error it had."""
+
+    def __init__(self, browser, path):
+        self.page = browser.new_page()
+        self.errors, self.requests = [], []
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.on(
+            "console", lambda said: self.errors.append(said.text) if said.type in ("error", "warning") else None
+        )
+        self.page.on("requestfailed", lambda request: self.errors.append(f"failed: {request.url[:60]}"))
+        self.page.on("request", lambda request: self.requests.append(request.url))
+        self.page.goto(path.as_uri())
+
+
+@pytest.fixture
+def opened(browser, written):
+    reading = Opened(browser, written)
+    reading.page.wait_for_function("document.documentElement.dataset.charts")
+    yield reading
+    reading.page.close()
+
+
+def test_it_opens_without_network_request_or_error(opened, written):
+    assert opened.page.evaluate("document.documentElement.dataset.charts") == "drawn"
+    assert opened.errors == []
+    assert [url for url in opened.requests if not url.startswith("data:")] == [written.as_uri()]
+    assert written.stat().st_size < 5e6
+
+
+def test_an_error_and_a_request_are_seen(browser, tmp_path):
+    bad = tmp_path / "bad.html"
+    bad.write_text("<img src='http://example.invalid/x.png'><script>throw new Error('broken')</script>")
+    reading = Opened(browser, bad)
+    reading.page.wait_for_load_state()
+    assert any("broken" in error for error in reading.errors)
+    assert any("example.invalid" in url for url in reading.requests)
+    reading.page.close()
+
+
+def test_its_policy_runs_no_other_script_and_connects_nowhere(opened):
+    ran = opened.page.evaluate("""() => {
+        const script = document.createElement("script");
+        script.textContent = "window.strange = 1";
+        document.head.append(script);
+        return window.strange ?? 0;
+    }""")
+    assert ran == 0
+    refused = opened.page.evaluate("fetch('http://127.0.0.1:9/').then(() => 'sent', (error) => error.name)")
+    assert refused == "TypeError"
+    assert "default-src 'none'" in opened.page.get_attribute("meta[http-equiv]", "content")
+
+
+def test_the_charts_show_the_numbers(opened):
+    drawn = opened.page.evaluate(
+        "[...document.querySelectorAll('figure.chart .live')].map((place) => place.data.map((line) => "
+        "({type: line.type, name: line.name, size: (line.x ?? []).length})))"
+    )
+    modes, plane, motion = drawn
+    assert {line["name"] for line in modes} == {"mode 1", "mode 2"}
+    assert all(line["size"] > 200 for line in modes)
+    assert plane[0]["type"] == "heatmap"
+    assert {line["name"] for line in plane[1:]} == {"boundary of stability", "this design"}
+    assert [line["name"] for line in motion] == ["x", "x", "y", "y"]
+    here = opened.page.evaluate("document.querySelectorAll('figure.chart .live')[1].data.at(-1).x[0]")
+    assert here == pytest.approx(0.45)
+    assert opened.page.locator(".live .main-svg").count() >= 3
+
+
+def test_it_says_what_an_engineer_asks(opened):
+    text = opened.page.inner_text("main")
+    critical = re.search(r"grows above friction\.static = ([\d.]+)", text)
+    assert float(critical[1]) == pytest.approx(0.33269, abs=5e-6)  # the digits printed
+    assert "Steady sliding is unstable" in text
+    assert "flutter" in text
+    assert "it pulls, which a real contact cannot" in text  # shoe 1 carries -612 N in this reading
+    assert "stable limit cycle" in text
+    assert "100 cm²" in text
+    assert "an assumption" in text
+    for name, about, _ in SQUEALING.leaves():
+        assert name in text
+        assert about.meaning in text
+
+
+def test_its_sound_has_the_frequency_of_the_motion(opened):
+    uri = opened.page.get_attribute("audio", "src")
+    content = base64.b64decode(uri.partition(",")[2])
+    with wave.open(io.BytesIO(content)) as file:
+        assert (file.getnchannels(), file.getsampwidth(), file.getframerate()) == (1, 2, 44100)
+        heard = np.frombuffer(file.readframes(file.getnframes()), dtype=np.int16).astype(float)
+    motion = simulate(SQUEALING, 0.1, times=10_001)
+    late = dominant_frequency(motion, dof="y", begin=0.05)
+    assert dominant_frequency(heard[22_050:], rate=44100.0) == pytest.approx(late, rel=1e-5)
+    seconds = opened.page.evaluate(
+        "new Promise((done) => { const sound = document.querySelector('audio');"
+        "sound.onloadedmetadata = () => done(sound.duration); sound.load(); })"
+    )
+    assert seconds == pytest.approx(2.0, abs=0.01)
+
+
+def test_it_prints_its_figures_and_opens_what_is_folded(opened):
+    pdf = opened.page.pdf(prefer_css_page_size=True)
+    assert pdf.startswith(b"%PDF")
+    assert 6 <= len(re.findall(rb"/Type\s*/Page\b", pdf)) <= 20
+    opened.page.emulate_media(media="print")
+    assert not opened.page.locator("figure.chart .live").first.is_visible()
+    assert opened.page.locator("figure.chart img").first.is_visible()
+    assert opened.page.locator("text=how the paper's friction is read").last.is_visible()
+    opened.page.emulate_media(media="screen")
+    assert opened.page.locator("figure.chart .live").first.is_visible()
+
+
+def test_no_picture_is_missing_and_no_text_leaves_the_page(opened):
+    assert opened.page.evaluate("[...document.images].every((image) => image.complete && image.naturalWidth > 0)")
+    assert opened.page.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+
+
+@pytest.fixture(scope="module")
+def quiet() -> Examination:
+    return examine(DrumBrake(friction=LinearSlope(0.30, -0.05)))
+
+
+def test_a_cycle_beside_stable_sliding_is_found_and_said(quiet):
+    assert quiet.stable
+    assert quiet.coexists
+    assert len(quiet.tried) > 1
+    text = " ".join(str(block) for section in design_page(quiet).sections for block in section.blocks)
+    assert "beside stable sliding" in text
+
+
+def test_what_cannot_be_computed_is_said(tmp_path):
+    braking = examine(DrumBrake(sliding_speed=Ramp(0.2, -4.0)))
+    assert set(braking.missing) == {"hopf", "cycle"}
+    assert "varies in time" in braking.missing["cycle"]
+    assert "sliding_speed.start" not in braking.ranking.parameters
+    assert braking.map is not None
+    text = report(braking, tmp_path / "braking.html").read_text()
+    assert "Not computed, cycle: expected constant loads" in text
+
+
+def test_a_result_and_a_folder_of_results(tmp_path, browser):
+    brake = DrumBrake()
+    complex_modes(brake).save(tmp_path / "modes.nc")
+    simulate(brake, 5e-3, times=501).save(tmp_path / "motion.nc")
+    assert main(["report", str(tmp_path / "motion.nc"), "--out", str(tmp_path / "motion.html")]) == DONE
+    assert main(["report", str(tmp_path), "--out", str(tmp_path / "all.html")]) == DONE
+    for name, parts in (
+        ("motion", ["Trajectory", "half peak to peak"]),
+        ("all", ["ComplexModes", "Trajectory", "Drum brake"]),
+    ):
+        reading = Opened(browser, tmp_path / f"{name}.html")
+        reading.page.wait_for_load_state()
+        assert reading.errors == []
+        text = reading.page.inner_text("body")
+        assert [part for part in parts if part not in text] == []
+        reading.page.close()
+
+
+@pytest.mark.parametrize(
+    ("source", "sentence"),
+    [
+        ("nowhere.toml", "nowhere.toml"),
+        ("nowhere.nc", "no such file or folder"),
+        ("notes.txt", "not a file a report can be made of, expected a design file"),
+        ("empty", "holds no results"),
+        ("broken.nc", "not a readable Result"),
+        ("broken.toml", "broken.toml:1: not TOML"),
+    ],
+)
+def test_a_bad_source_is_one_sentence(source, sentence, tmp_path, capsys):
+    (tmp_path / "empty").mkdir()
+    for name in ("notes.txt", "broken.nc", "broken.toml"):
+        (tmp_path / name).write_text("not at all")
+    assert main(["report", str(tmp_path / source), "--out", str(tmp_path / "out.html")]) == BAD_INPUT
+    said = capsys.readouterr().err
+    assert sentence in said
+    assert len(said.strip().splitlines()) == 1
+    assert not (tmp_path / "out.html").exists()
+
+
+def test_a_bad_target_or_thing_is_refused(tmp_path):
+    with pytest.raises(ReportError, match="ends in .html"):
+        report(DrumBrake(), tmp_path / "brake.pdf")
+    with pytest.raises(ReportError, match="is not there"):
+        report(DrumBrake(), tmp_path / "nowhere" / "brake.html")
+    with pytest.raises(ReportError, match="a report of int"):
+        report(3, tmp_path / "three.html")
