@@ -13,6 +13,7 @@ from squealbox.friction import Coulomb
 from squealbox.limit_cycles import basin, branch, hopf_point, shooting
 from squealbox.limit_cycles.curves import hopf_curve
 from squealbox.result import Result
+from squealbox.studies import sweep
 from squealbox.transient import compare_contact, simulate, simulate_ensemble, verdict
 
 FRICTION = "friction.static"
@@ -87,6 +88,7 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
     "Branch": cycles,
     "BranchPoint": special,
     "Basin": lambda: basin(drum(), [1e-6, 1e-6, 0.0, 0.0], 4),
+    "Sweep": lambda: sweep(drum(), {FRICTION: np.linspace(0.1, 0.4, 4)}, stability.complex_modes),
     "PointCurve": lambda: hopf_curve(drum(), {FRICTION: RANGE, "k1": (18e6, 20e6)}, points=6),
     "SquealProbability": lambda: scattered(studies.squeal_probability, samples=512),
     "SobolIndices": lambda: scattered(studies.sobol_indices, samples=128),

@@ -1,12 +1,14 @@
 """Every result and every design draws itself: a card for a notebook, and a figure."""
 
 import dataclasses
+import importlib
+import pkgutil
 import re
 
 import numpy as np
 import pytest
 
-from conformance import result_kinds
+import squealbox
 from result_examples import EXAMPLES
 from squealbox.designs import DESIGNS, DrumBrake
 from squealbox.plots import card, facts, plot
@@ -22,8 +24,13 @@ class Undrawn(Result):
     text: str = "<script>alert(1)</script>"
 
 
-def test_every_kind_has_an_example():
-    assert {kind.__name__ for kind in result_kinds()} | {"Cycle", "Branch"} <= set(EXAMPLES)
+def test_every_kind_of_the_package_is_drawn():
+    for module in pkgutil.walk_packages(squealbox.__path__, "squealbox."):
+        if module.name.split(".")[1] in ("stability", "transient", "signals", "fit", "limit_cycles", "studies"):
+            importlib.import_module(module.name)
+    kinds = [kind for kind in Result.kinds.values() if kind.__module__.startswith("squealbox.")]
+    assert len(kinds) > 25
+    assert [kind.__name__ for kind in kinds if plot.dispatch(kind) is plot.dispatch(object)] == []
 
 
 @pytest.mark.parametrize("name", list(EXAMPLES))

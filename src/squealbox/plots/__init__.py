@@ -36,6 +36,7 @@ from squealbox.plots.stability import (
     transient_growth,
 )
 from squealbox.plots.style import drawn, letters, panels, save
+from squealbox.plots.sweeps import search_for_a_push, sweep_overview
 from squealbox.plots.uncertainty import interval_bounds, morris_effects, sobol_indices, squeal_probability
 
 __all__ = [
@@ -75,12 +76,14 @@ __all__ = [
     "point_curve",
     "root_locus",
     "save",
+    "search_for_a_push",
     "sensitivity",
     "sobol_indices",
     "spectrogram",
     "spectrum",
     "squeal_probability",
     "stability_map",
+    "sweep_overview",
     "time_history",
     "tracked_modes",
     "transient_growth",

@@ -19,16 +19,18 @@ from squealbox.parameters import DataSheet
 from squealbox.plots.dispatch import plot
 from squealbox.plots.facts import facts, plain_unit
 from squealbox.plots.style import drawn, number
+from squealbox.plots.sweeps import numeric_answers
 from squealbox.result import Result
 from squealbox.stability import ComplexModes
 from squealbox.stability.modes_text import html as modes_table
+from squealbox.studies import Sweep
 from squealbox.transient import Trajectory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DOTS = 90.0  # an inch: small, but sharp enough for a notebook
-WALKED = (Branch, PointCurve, Basin, Trajectory)  # what was reached is worth seeing, however it ended
+WALKED = (Branch, PointCurve, Basin, Trajectory, Sweep)  # what was reached is worth seeing, however it ended
 MOST_POINTS = 500_000  # more numbers than this are not drawn unasked
 
 
@@ -59,7 +61,7 @@ def _result_card(result: Result) -> str:
     caution = getattr(result, "caution", "")
     parts += [f"<p><b>Caution:</b> {escape(caution)}</p>"] * bool(caution)
     parts.append(_said(result))
-    if (result.outcome.ok or isinstance(result, WALKED)) and _is_cheap(result):
+    if has_figure(result):
         parts.append(inline(plot(result)))
     return _framed(parts, _folded("arrays, settings, versions", [_arrays(result), _settings(result)]))
 
@@ -75,15 +77,28 @@ def _said(result: Result) -> str:
     return said + (table(("", "value", "unit"), numbers) if numbers else "")
 
 
-def _is_cheap(result: Result) -> bool:
-    """True where a picture is known and the arrays behind it are small and hold something."""
-    sizes = [np.size(getattr(result, name)) for name, _ in _quantities(result)]
-    first = np.size(getattr(result, _quantities(result)[0][0]))
-    return plot.dispatch(type(result)) is not plot.dispatch(object) and first > 0 and max(sizes) <= MOST_POINTS
+def has_figure(result: Result) -> bool:
+    """True where a figure is known, there is something to draw, and the arrays are small enough to draw unasked."""
+    if plot.dispatch(type(result)) is plot.dispatch(object) or not (result.outcome.ok or isinstance(result, WALKED)):
+        return False
+    sizes = [np.size(getattr(result, name)) for name, _ in _quantities(result)] or [_points(result)]
+    return sizes[0] > 0 and max(sizes) <= MOST_POINTS
+
+
+def _points(result: Result) -> int:
+    """Points of a sweep that hold an answer that can be drawn; 0 of any other kind without arrays of its own."""
+    if not isinstance(result, Sweep) or not numeric_answers(result):
+        return 0
+    return int(np.size(result.outcomes))
 
 
 def _arrays(result: Result) -> str:
     rows = []
+    if not _quantities(result):
+        for name, held in result.to_dataset().data_vars.items():
+            shape = " x ".join(f"{count} {dim}" for dim, count in held.sizes.items()) or "one value"
+            words = (str(held.attrs.get(key, "")) for key in ("units", "long_name"))
+            rows.append((str(name), shape, *words))
     for name, about in _quantities(result):
         array = np.asarray(getattr(result, name))
         size = " x ".join(str(n) for n in array.shape) or "one value"

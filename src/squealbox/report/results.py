@@ -8,7 +8,7 @@ import numpy as np
 
 from squealbox import plots
 from squealbox.designs import Design
-from squealbox.plots.cards import WALKED, has_drawing, parameter_rows
+from squealbox.plots.cards import has_drawing, has_figure, parameter_rows
 from squealbox.report.blocks import Code, Page, Picture, Points, ReportError, Section, Sound, Table, Text
 from squealbox.report.pictures import picture, wav
 from squealbox.result import Result, provenance
@@ -62,15 +62,10 @@ def _about(result: Result) -> Iterator[Any]:
     numbers = tuple((name, f"{value} {unit}".rstrip()) for name, value, unit in plots.facts(result))
     if numbers:
         yield Table(("", "value"), numbers)
-    known = plots.plot.dispatch(type(result)) is not plots.plot.dispatch(object)
-    if known and (result.outcome.ok or isinstance(result, WALKED)) and _holds_something(result):
+    if has_figure(result):
         yield picture(plots.plot(result), f"{type(result).__name__}.")
     if isinstance(result, Trajectory) and len(result.t) >= LEAST:
         yield from _motion(result)
-
-
-def _holds_something(result: Result) -> bool:
-    return all(np.size(values) for values in list(result.to_dataset().data_vars.values())[:1])
 
 
 def _motion(motion: Trajectory) -> Iterator[Any]:
