@@ -34,6 +34,7 @@ COMMANDS = {
     "cycle": Command("cycles", "cycle", "what the motion settles to: the limit cycle, its stability, figure and data"),
     "report": Command("reports", "report", "a design examined from every side, or any result, as one HTML page"),
     "listen": Command("listening", "listen", "the motion as sound at its true frequency (WAV), and how loud it may be"),
+    "lab": Command("lab", "lab", "the workbench: a page in the browser where a brake is explored live"),
     "paper": Command("papers", "paper", "reproduce a published study: figures, claims and one page"),
     "schema": Command("starter", "schema", "the JSON schema of a design file, for editors"),
 }

@@ -12,7 +12,7 @@ from squealbox.files.measured import read_points
 from squealbox.files.mechanism import Body, OwnMechanism, Spring, Touch
 from squealbox.files.own_brake import OwnBrake, OwnContact
 from squealbox.files.own_law import OwnLaw, law_from_file, own_law
-from squealbox.files.reading import BRAKES, DesignFile, read_design, read_file
+from squealbox.files.reading import BRAKES, DesignFile, read_design, read_file, read_text
 from squealbox.files.schema import json_schema
 from squealbox.files.writing import NotWritable, write_design
 
@@ -35,5 +35,6 @@ __all__ = [
     "read_design",
     "read_file",
     "read_points",
+    "read_text",
     "write_design",
 ]

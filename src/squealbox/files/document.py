@@ -75,7 +75,11 @@ class Document:
 
 def open_document(path: Path) -> Document:
     """The tables of a TOML file; `DesignFileError` when it cannot be read as one."""
-    text = _text(path)
+    return document_of(path, _text(path))
+
+
+def document_of(path: Path, text: str) -> Document:
+    """The tables of a TOML text that is called `path`; `DesignFileError` when it is none."""
     try:
         tables = tomllib.loads(text)
     except RecursionError as error:

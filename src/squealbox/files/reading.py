@@ -10,7 +10,7 @@ import numpy as np
 
 from squealbox.designs import DESIGNS, Design
 from squealbox.files import analyses
-from squealbox.files.document import Document, open_document
+from squealbox.files.document import Document, document_of, open_document
 from squealbox.files.mechanism import OwnMechanism
 from squealbox.files.numbers import WRONG, read_choice, wrong
 from squealbox.files.own_brake import OwnBrake
@@ -56,6 +56,21 @@ def read_file(path: str | os.PathLike[str], *, allow_code: bool = False) -> Desi
     """
     document = open_document(Path(path))
     document.allow_code = allow_code
+    return _file(document)
+
+
+def read_text(text: str, name: str = "design.toml") -> DesignFile:
+    """What :func:`read_file` reads from a file, from its text; `name` is what problems call it. No code is run.
+
+    Raises `DesignFileError`, whose `problems` are all that is wrong with the text.
+
+    >>> read_text('brake = "pad_on_disc"').design.m1
+    1.0
+    """
+    return _file(document_of(Path(name), text.replace("\r\n", "\n")))
+
+
+def _file(document: Document) -> DesignFile:
     tables = dict(document.tables)
     asked = {name: tables.pop(name) for name in SECTIONS if name in tables}
     design = _design(document, tables)

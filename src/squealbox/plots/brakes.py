@@ -60,7 +60,29 @@ def _text(panel: Any, at: Point, text: str, **look: Any) -> None:
     panel.text(*at, text, **{"ha": "center", "va": "center", "fontsize": 8, **look})
 
 
-def _arrow(panel: Any, start: Point, end: Point, colour: str, label: str = "", at: Point | None = None) -> None:
+def size_of(brake: Design, name: str) -> float:
+    """How large the arrow of a load or speed is drawn: 1 at the design's usual value, growing with the square root.
+
+    Negative for a negative value, 0 for none; a schedule is drawn as usual.
+    """
+    value, usual = brake.value_of(name), getattr(type(brake), brake.aliases.get(name, (name,))[0])
+    if not isinstance(value, float) or not usual:
+        return 1.0
+    if value == 0.0:
+        return 0.0
+    return float(np.sign(value) * np.clip(np.sqrt(abs(value / usual)), 0.3, 1.6))
+
+
+def _arrow(
+    panel: Any, start: Point, end: Point, colour: str, label: str = "", at: Point | None = None, size: float = 1.0
+) -> None:
+    """An arrow whose tip stays where it is while `size` moves its tail, with its label at `at`, beside the tail."""
+    moved = [float((1.0 - size) * (e - s)) for s, e in zip(start, end, strict=True)]
+    start = (start[0] + moved[0], start[1] + moved[1])
+    at = None if at is None else (at[0] + moved[0], at[1] + moved[1])
+    if size == 0.0:
+        _text(panel, at or start, f"{label} = 0", color=colour)
+        return
     panel.annotate("", xy=end, xytext=start, arrowprops={**ARROW, "color": colour, "linewidth": 1.4})
     panel.plot([start[0], end[0]], [start[1], end[1]], linestyle="none")  # so that the limits include it
     if label:
@@ -102,14 +124,25 @@ def _box(panel: Any, corner: Point, width: float, height: float, label: str = ""
         _text(panel, (corner[0] + 0.5 * width, corner[1] + 0.5 * height), label)
 
 
-def _belt(panel: Any, left: float, right: float, label: str = "V", y: float = 0.0) -> None:
-    """A belt that moves to the right below the blocks."""
+def _belt(panel: Any, left: float, right: float, speed: float = 1.0, label: str = "V") -> None:
+    """A belt below the blocks, moving to the right where its speed is positive."""
+    y = 0.0
     _line(panel, (left, y), (right, y), color=BELT, linewidth=2.0)
     for r in (left, right):
         panel.add_patch(_circle((r, y - 0.16), 0.16, facecolor="white", edgecolor=BELT, linewidth=1.0))
     _line(panel, (left, y - 0.32), (right, y - 0.32), color=BELT, linewidth=1.0)
     middle = 0.5 * (left + right)
-    _arrow(panel, (middle - 0.35, y - 0.16), (middle + 0.35, y - 0.16), BELT, label, (middle + 0.5, y - 0.16))
+    _velocity(panel, (middle - 0.35, y - 0.16), (middle + 0.35, y - 0.16), label, (middle + 0.62, y - 0.16), speed)
+
+
+def _velocity(panel: Any, start: Point, end: Point, label: str, at: Point, size: float) -> None:
+    """An arrow that grows about its middle, and points the other way where `size` is negative."""
+    middle, half = 0.5 * (np.array(start) + np.array(end)), 0.5 * size * (np.array(end) - np.array(start))
+    if size == 0.0:
+        _text(panel, at, f"{label} = 0", color=BELT)
+    else:
+        _arrow(panel, tuple(middle - half), tuple(middle + half), BELT)
+        _text(panel, at, label, color=BELT)
 
 
 def _circle(centre: Point, radius: float, **look: Any) -> Any:
@@ -128,13 +161,13 @@ def _arc(panel: Any, centre: Point, radius: float, begin: float, end: float, lab
 
 
 def _mass_on_belt(panel: Any, brake: MassOnBelt) -> None:
-    _belt(panel, -1.6, 1.6)
+    _belt(panel, -1.6, 1.6, size_of(brake, "sliding_speed"))
     _box(panel, (-0.4, 0.03), 0.8, 0.6, "m")
     _spring(panel, (-1.8, 0.45), (-0.4, 0.45), "k")
     _dashpot(panel, (-1.8, 0.17), (-0.4, 0.17))
     _text(panel, (-0.85, 0.27), "c", fontsize=7)
     _wall(panel, (-1.8, 0.33), 0.0, 0.8)
-    _arrow(panel, (0.0, 1.2), (0.0, 0.65), LOAD, "N", (0.15, 1.1))
+    _arrow(panel, (0.0, 1.2), (0.0, 0.65), LOAD, "N", (0.15, 1.1), size_of(brake, "load"))
     _arrow(panel, (0.5, 0.75), (0.95, 0.75), "black", "x", (1.05, 0.75))
 
 
@@ -156,12 +189,12 @@ def _dashpot(panel: Any, start: Point, end: Point, label: str = "", side: float 
 def _block_chain(panel: Any, brake: BlockChain) -> None:
     shown = min(brake.blocks, 5)
     pitch = 1.5
-    _belt(panel, -1.1, pitch * (shown - 1) + 1.1)
+    _belt(panel, -1.1, pitch * (shown - 1) + 1.1, size_of(brake, "sliding_speed"))
     for i in range(shown):
         x = pitch * i
         _box(panel, (x - 0.35, 0.03), 0.7, 0.5, "m")
         _spring(panel, (x - 0.15, 0.53), (x - 0.55, 1.4), "k")
-        _arrow(panel, (x + 0.12, 1.1), (x + 0.12, 0.56), LOAD, "N", (x + 0.28, 1.0))
+        _arrow(panel, (x + 0.12, 1.1), (x + 0.12, 0.56), LOAD, "N", (x + 0.28, 1.0), size_of(brake, "load"))
         if i:
             _spring(panel, (x - pitch + 0.35, 0.28), (x - 0.35, 0.28), "$k_c$")
     _wall(panel, (0.5 * pitch * (shown - 1) - 0.55, 1.4), -np.pi / 2, pitch * (shown - 1) + 0.7)
@@ -169,9 +202,9 @@ def _block_chain(panel: Any, brake: BlockChain) -> None:
         _text(panel, (pitch * (shown - 1) + 0.8, 0.28), f"... {brake.blocks} blocks", ha="left")
 
 
-def _held_mass(panel: Any, angles: list[tuple[float, str]]) -> None:
+def _held_mass(panel: Any, brake: Design, angles: list[tuple[float, str]]) -> None:
     """A mass above a belt with its contact spring, and springs away from it at angles from the belt."""
-    _belt(panel, -1.7, 1.7)
+    _belt(panel, -1.7, 1.7, size_of(brake, "sliding_speed"))
     centre = (0.0, 0.85)
     for angle, name in angles:
         way = angle if np.sin(angle) >= -1e-9 else angle + np.pi  # a spring has no sense: drawn away from the belt
@@ -182,7 +215,7 @@ def _held_mass(panel: Any, angles: list[tuple[float, str]]) -> None:
     panel.add_patch(_circle(centre, 0.3, **BODY, zorder=3))
     _text(panel, centre, "m", zorder=4)
     _spring(panel, (0.0, 0.55), (0.0, 0.04), "$k_3$", -1.0)
-    _arrow(panel, (0.0, 1.75), (0.0, 1.18), LOAD, "N", (-0.14, 1.65))
+    _arrow(panel, (0.0, 1.75), (0.0, 1.18), LOAD, "N", (-0.14, 1.65), size_of(brake, "load"))
     _arrow(panel, (1.55, 0.35), (2.0, 0.35), "black", "x", (2.1, 0.35))
     _arrow(panel, (1.55, 0.35), (1.55, 0.07), "black", "y", (1.42, 0.15))
 
@@ -193,12 +226,12 @@ def _mode_coupling(panel: Any, brake: ModeCoupling) -> None:
     _, vectors = np.linalg.eigh(stiffness)
     # the belt's y is downwards in the figure
     names = ("soft", "stiff")
-    _held_mass(panel, [(float(np.arctan2(-v[1], v[0])), n) for v, n in zip(vectors.T, names, strict=True)])
+    _held_mass(panel, brake, [(float(np.arctan2(-v[1], v[0])), n) for v, n in zip(vectors.T, names, strict=True)])
 
 
 def _inclined(panel: Any, brake: InclinedSprings) -> None:
     angles = [(-brake.angle1, "$k_1$"), (-brake.angle2, "$k_2$")]  # y is downwards in the figure
-    _held_mass(panel, [(float(np.arctan2(np.sin(a), np.cos(a))), name) for a, name in angles])
+    _held_mass(panel, brake, [(float(np.arctan2(np.sin(a), np.cos(a))), name) for a, name in angles])
 
 
 def _paradox(panel: Any, brake: DampingParadox) -> None:
@@ -207,10 +240,11 @@ def _paradox(panel: Any, brake: DampingParadox) -> None:
     _spring(panel, (0.0, -0.35), (0.0, -1.15), "$k_2, c_2$")
     _line(panel, (1.15, -0.6), (1.15, 0.6), color=BELT, linewidth=2.0)
     _line(panel, (-0.6, -1.15), (0.6, -1.15), color=BELT, linewidth=2.0)
-    _arrow(panel, (1.3, -0.4), (1.3, 0.4), BELT, "V", (1.45, 0.0))
-    _arrow(panel, (-0.4, -1.3), (0.4, -1.3), BELT, "V", (0.0, -1.48))
-    _arrow(panel, (-1.0, 0.0), (-0.38, 0.0), LOAD, "N", (-1.1, 0.0))
-    _arrow(panel, (0.0, 1.0), (0.0, 0.38), LOAD, "N", (0.0, 1.12))
+    speed = size_of(brake, "sliding_speed")
+    _velocity(panel, (1.3, -0.4), (1.3, 0.4), "V", (1.45, 0.0), speed)
+    _velocity(panel, (-0.4, -1.3), (0.4, -1.3), "V", (0.0, -1.48), speed)
+    _arrow(panel, (-1.0, 0.0), (-0.38, 0.0), LOAD, "N", (-1.1, 0.0), size_of(brake, "load"))
+    _arrow(panel, (0.0, 1.0), (0.0, 0.38), LOAD, "N", (0.0, 1.12), size_of(brake, "load"))
     _arrow(panel, (0.5, 0.75), (0.95, 0.75), "black", "x", (1.05, 0.75))
     _arrow(panel, (0.5, 0.75), (0.5, 0.42), "black", "y", (0.62, 0.52))
 
@@ -226,12 +260,12 @@ def _pad_on_disc(panel: Any, brake: PadOnDisc) -> None:
     _text(panel, (-1.85, 0.05), "$k_2$")
     _dashpot(panel, (-2.2, -0.36), (-1.2, -0.36), "$c_2$", -1.0)
     _wall(panel, (-2.2, -0.25), 0.0, 0.5)
-    _arrow(panel, (-0.4, -0.68), (0.5, -0.68), BELT, "V", (0.65, -0.68))
-    _arrow(panel, (0.0, 1.0), (0.0, 0.45), LOAD, "N", (0.14, 0.9))
+    _velocity(panel, (-0.4, -0.68), (0.5, -0.68), "V", (0.05, -0.84), size_of(brake, "sliding_speed"))
+    _arrow(panel, (0.0, 1.0), (0.0, 0.45), LOAD, "N", (0.14, 0.9), size_of(brake, "load"))
 
 
 def _sprag(panel: Any, brake: SpragSlip) -> None:
-    _belt(panel, -1.3, 1.9)
+    _belt(panel, -1.3, 1.9, size_of(brake, "sliding_speed"))
     _box(panel, (-0.3, 0.03), 0.6, 0.4)
     _text(panel, (-0.16, 0.3), "m")
     start = np.array([0.0, 0.23])
@@ -240,7 +274,7 @@ def _sprag(panel: Any, brake: SpragSlip) -> None:
     _wall(panel, tuple(start + 1.6 * out), brake.angle + np.pi)
     _line(panel, tuple(start), (1.1, 0.23), linewidth=0.5, linestyle=(0, (4, 2)))
     _arc(panel, (0.0, 0.23), 0.6, 0.0, brake.angle, f"{np.rad2deg(brake.angle):.0f}°")
-    _arrow(panel, (-0.18, 1.1), (-0.18, 0.46), LOAD, "L", (-0.32, 1.0))
+    _arrow(panel, (-0.18, 1.1), (-0.18, 0.46), LOAD, "L", (-0.32, 1.0), size_of(brake, "load"))
 
 
 def _wobbling(panel: Any, brake: WobblingDisc) -> None:
@@ -261,16 +295,28 @@ def _wobbling(panel: Any, brake: WobblingDisc) -> None:
         _spring(panel, (1.0, touch + side * 0.2), (1.0, touch + side * 0.8), "k, d" if side > 0 else "", -1.0)
         _wall(panel, (1.0, touch + side * 0.8), -side * np.pi / 2)
         _arrow(
-            panel, (0.75, touch + side * 0.65), (0.75, touch + side * 0.12), LOAD, "$N_0$", (0.6, touch + side * 0.5)
+            panel,
+            (0.75, touch + side * 0.65),
+            (0.75, touch + side * 0.12),
+            LOAD,
+            "$N_0$",
+            (0.6, touch + side * 0.5),
+            size_of(brake, "load"),
         )
-    _arrow(panel, (-0.3, 0.72), (0.3, 0.72), BELT, "$\\Omega$", (-0.42, 0.72))
+    _velocity(panel, (-0.3, 0.72), (0.3, 0.72), "$\\Omega$", (-0.6, 0.72), size_of(brake, "spin"))
     _line(panel, (0.0, -1.1), (1.0, -1.1), linewidth=0.5)
     _text(panel, (0.4, -1.2), f"r = {1e3 * brake.r:.0f} mm", fontsize=7)
     _text(panel, (-0.75, -0.2), f"h = {1e3 * brake.h:.0f} mm, $k_t$, $d_t$", fontsize=7)
 
 
-def _turning(panel: Any, radius: float, begin: float, end: float, label: str) -> None:
-    """An arrow along a circle."""
+def _turning(panel: Any, radius: float, begin: float, end: float, label: str, size: float) -> None:
+    """An arrow along a circle, the other way round where `size` is negative."""
+    if size == 0.0:
+        way = np.deg2rad(0.5 * (begin + end))
+        _text(panel, (1.13 * radius * np.cos(way), 1.13 * radius * np.sin(way)), f"{label} = 0", color=BELT)
+        return
+    middle, half = 0.5 * (begin + end), 0.5 * size * (end - begin)
+    begin, end = middle - half, middle + half
     angles = np.deg2rad(np.linspace(begin, end, 60))
     points = radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     _line(panel, *(tuple(p) for p in points), color=BELT, linewidth=1.4)
@@ -281,13 +327,14 @@ def _drum_brake(panel: Any, brake: DrumBrake) -> None:
     """The drum as a mass, its two shoes at their angles from the y axis."""
     panel.add_patch(_circle((0.0, 0.0), 0.8, **BODY))
     _text(panel, (-0.28, -0.28), "m")
-    for theta, load, name in ((brake.theta1, "$N_1$", "$k_3$"), (brake.theta2, "$N_2$", "$k_4$")):
+    shoes = ((brake.theta1, "load1", "$N_1$", "$k_3$"), (brake.theta2, "load2", "$N_2$", "$k_4$"))
+    for theta, number, load, name in shoes:
         out = np.array([np.sin(theta), np.cos(theta)])
         _line(panel, (0.0, 0.0), tuple(0.8 * out), linewidth=0.5, linestyle=(0, (4, 2)))
         _spring(panel, tuple(0.82 * out), tuple(1.5 * out), name)
         across = np.array([out[1], -out[0]])
         _line(panel, *(tuple(1.5 * out + s * 0.3 * across) for s in (-1.0, 1.0)), linewidth=4.0, color="#7a8a99")
-        _arrow(panel, tuple(2.05 * out), tuple(1.56 * out), LOAD, load, tuple(2.2 * out))
+        _arrow(panel, tuple(2.05 * out), tuple(1.56 * out), LOAD, load, tuple(2.2 * out), size_of(brake, number))
         begin, end = np.pi / 2, np.pi / 2 - theta
         _arc(panel, (0.0, 0.0), 0.3 if theta == brake.theta1 else 0.52, begin, end, f"{np.rad2deg(theta):.0f}°")
     _line(panel, (0.0, 0.0), (0.0, 1.15), linewidth=0.5)
@@ -296,7 +343,7 @@ def _drum_brake(panel: Any, brake: DrumBrake) -> None:
     _wall(panel, (-1.5, 0.0), 0.0)
     _spring(panel, (0.0, -0.8), (0.0, -1.5), "$k_2$")
     _wall(panel, (0.0, -1.5), np.pi / 2)
-    _turning(panel, 0.95, 250.0, 195.0, "$V_B$")
+    _turning(panel, 0.95, 250.0, 195.0, "$V_B$", size_of(brake, "sliding_speed"))
 
 
 def _shoes(panel: Any, brake: DrumBrakeShoes) -> None:
@@ -323,10 +370,12 @@ def _shoes(panel: Any, brake: DrumBrakeShoes) -> None:
         top = scale * brake.arm
         edge = np.deg2rad(middle + side * half)
         _line(panel, (0.83 * np.cos(edge), 0.83 * np.sin(edge)), (side * 0.42, top), linewidth=2.0, color="#7a8a99")
-        _arrow(panel, (side * 0.05, top), (side * 0.42, top), LOAD, "F", (side * 0.2, top + 0.1))
+        _arrow(
+            panel, (side * 0.05, top), (side * 0.42, top), LOAD, "F", (side * 0.2, top + 0.1), size_of(brake, "load")
+        )
         _text(panel, (side * 0.55, -0.3), f"shoe {shoe + 1}", fontsize=7)
     _text(panel, (0.0, scale * -brake.arm - 0.13), "abutments", fontsize=7)
-    _turning(panel, 1.22, 60.0, 120.0, "V")
+    _turning(panel, 1.22, 60.0, 120.0, "V", size_of(brake, "sliding_speed"))
     _text(panel, (0.0, 0.02), f"R = {1e3 * brake.radius:.0f} mm\n{2 * brake.points} contact points", fontsize=7)
 
 

@@ -1,0 +1,49 @@
+"""`squealbox lab`: the workbench in the browser."""
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from squealbox.cli.running import UsageError
+
+LINK = "#d="  # what a link to a design carries behind its address
+
+
+def lab(
+    file: str | None = None,
+    *,
+    port: int | None = None,
+    browser: Annotated[bool, Parameter(negative="--no-browser")] = True,
+) -> None:
+    """A page on this machine where a brake is explored live: parameters as sliders, stability, motion, what to change.
+
+    It is served on loopback only, needs no internet, and ends with Ctrl-C.
+
+    Parameters
+    ----------
+    file
+        design file to start with, or a link that somebody copied from his workbench
+    port
+        where the page is served; left out, 8642 or the next free one
+    browser
+        open the page in the browser
+    """
+    if port is not None and not 0 <= port <= 65535:
+        raise UsageError(f"--port {port}: expected 0 to 65535")
+    text, fragment = "", ""
+    if file is not None and LINK in file:
+        fragment = "d=" + file.partition(LINK)[2]
+    elif file is not None:
+        from squealbox.files import read_file
+
+        read_file(Path(file))  # says all that is wrong with it before anything is served
+        text = Path(file).read_text(encoding="utf-8")
+    try:
+        from squealbox.workbench.lab import serve
+
+        serve(text, port, browser=browser, fragment=fragment)
+    except ModuleNotFoundError as error:
+        if str(error.name).startswith("squealbox"):
+            raise
+        raise UsageError(f"{error.name} is missing: install it with pip install 'squealbox[workbench]'") from error

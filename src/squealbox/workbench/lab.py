@@ -1,0 +1,89 @@
+"""From the command to the page: a free port on loopback, the token, the server, the browser."""
+
+import os
+import secrets
+import socket
+import sys
+import threading
+import webbrowser
+from pathlib import Path
+from urllib.parse import quote
+
+HOST = "127.0.0.1"
+PORT = 8642
+TRIES = 20  # ports after the usual one that are tried
+
+
+def serve(text: str = "", port: int | None = None, *, browser: bool = True, fragment: str = "") -> None:
+    """Serve the workbench on loopback until it is stopped with Ctrl-C.
+
+    Parameters
+    ----------
+    text : a design file to start with
+    port : None takes 8642 or the next free one
+    browser : open the page in the browser
+    fragment : what stands behind the # of the page's address: a design shared by its link
+
+    Raises `OSError` where the port is taken.
+    """
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")  # many small matrices: threads of the algebra only stand in each other's way
+    import uvicorn
+
+    from squealbox.workbench.guard import Token
+    from squealbox.workbench.server import LARGEST_MESSAGE, Workbench
+
+    listening = listen(port)
+    port = listening.getsockname()[1]
+    token = kept_token()
+    address = f"http://{HOST}:{port}/?token={quote(token)}{'#' + fragment if fragment else ''}"
+    app = Workbench(Token(token, port), text).app()
+    config = uvicorn.Config(
+        app, log_level="warning", ws="websockets-sansio", ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False,
+        lifespan="on", timeout_graceful_shutdown=2, access_log=False, server_header=False,
+    )  # fmt: skip
+    print(f"squealbox lab: {address}\nstop it with Ctrl-C", flush=True)
+    if browser:
+        threading.Timer(0.2, webbrowser.open, [address]).start()
+    uvicorn.Server(config).run(sockets=[listening])
+
+
+def listen(port: int | None) -> socket.socket:
+    """A socket on loopback: on `port`, or on the usual one or the next that is free."""
+    last: OSError | None = None
+    for each in [port] if port is not None else [*range(PORT, PORT + TRIES), 0]:
+        listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        if sys.platform != "win32":
+            listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listening.bind((HOST, each))
+            listening.listen(128)
+            return listening
+        except OSError as error:
+            listening.close()
+            last = error
+    raise OSError(last.errno if last else 0, f"the port is taken: {last}", f"{HOST}:{port}")
+
+
+def kept_token() -> str:
+    """The token of this user on this machine, made once, so that an open page survives a restart of the server."""
+    given = os.environ.get("SQUEALBOX_TOKEN", "")
+    if given:
+        return given
+    base = os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
+    path = Path(base) / "squealbox" / "workbench-token"
+    try:
+        token = path.read_text(encoding="ascii").strip()
+    except (OSError, ValueError):
+        token = ""
+    if len(token) >= 20:
+        return token
+    token = secrets.token_urlsafe(24)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+        with os.fdopen(handle, "w", encoding="ascii") as stream:
+            stream.write(token)
+    except OSError as error:
+        print(f"squealbox lab: the token cannot be kept ({error.strerror}): a restart will need a new page")
+    return token

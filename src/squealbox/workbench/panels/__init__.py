@@ -1,0 +1,42 @@
+"""The panels of the workbench: one Python file here, one ES module of the same name in ``static/panels/``.
+
+A panel's file has one function ``answer(design, options, work) -> Answer``. `PANELS` names the panels in the order of
+the page; a file is imported when its panel is first asked.
+"""
+
+import importlib
+from dataclasses import dataclass
+
+from squealbox.workbench.panels.panel import Answer, Function, OptionError, Options, Stopped, Work
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A panel: its title, how wide it is in columns of the page, and whether its answer may take seconds."""
+
+    title: str
+    columns: int = 1
+    slow: bool = False
+    shown: bool = True  # False: it answers the page itself, not a place on it
+
+
+PANELS: dict[str, Panel] = {
+    "drawing": Panel("The brake", shown=False),
+    "verdict": Panel("Verdict", shown=False),
+    "locus": Panel("Modes over a parameter", columns=2),
+    "map": Panel("Stability map"),
+    "friction": Panel("Friction curve"),
+    "motion": Panel("Motion", columns=2, slow=True),
+    "energy": Panel("Energy by contact"),
+    "sensitivity": Panel("Which parameter to change"),
+}
+
+
+def function_of(name: str) -> Function:
+    """The function that answers a panel."""
+    module = importlib.import_module(f"squealbox.workbench.panels.{name}")
+    function: Function = module.answer
+    return function
+
+
+__all__ = ["PANELS", "Answer", "OptionError", "Options", "Panel", "Stopped", "Work", "function_of"]

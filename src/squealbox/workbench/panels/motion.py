@@ -1,0 +1,139 @@
+"""What happens in time: one transient, its spectrum, phase plane and spectrogram, and the verdict on it in words."""
+
+from typing import Any
+
+import numpy as np
+
+from squealbox.designs import Design
+from squealbox.plots.style import scaled
+from squealbox.signals import SignalError, dominant_frequency, peaks, spectrogram, spectrum
+from squealbox.stability import complex_modes
+from squealbox.system import equilibrium
+from squealbox.transient import Trajectory, simulate, verdict
+from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
+
+SAMPLES = 4096  # instants kept: 40 a period over a hundred periods
+DRAWN = 1024  # pairs of least and largest value along the time axis
+PERIODS = 100  # followed when nothing is given
+STARTS = ("push", "rest", "sliding")
+CONTACTS = ("exact", "smooth")
+
+
+def answer(design: Design, options: Options, work: Work) -> Answer:
+    """The motion of one degree of freedom over time, and what a signal analysis says of it."""
+    system = design.system()
+    start = options.word("start", STARTS)
+    contact = options.word("contact", CONTACTS)
+    duration = options.number("duration", 0.0, 0.0, 1e6) or usual_duration(design)
+    dof = int(options.number("dof", 0, 0, 10_000))
+    if dof >= system.size:
+        raise OptionError(f"dof: expected 0 to {system.size - 1}")
+    work.progress(0.0, "following the motion")
+    beginning = _beginning(design, start, options.number("push", 0.05, 0.0, 10.0))
+    motion = simulate(system, duration, start=beginning, times=SAMPLES, contact=contact)
+    work.progress(0.6, "spectrum")
+    data = {
+        "names": list(system.names),
+        "dof": dof,
+        "duration": duration,
+        "outcome": str(motion.outcome),
+        "message": motion.outcome.message,
+        "steps": motion.steps,
+        "caution": motion.caution,
+    }
+    if motion.t.size < 64:
+        return Answer({**data, "short": True})
+    return _signals(motion, dof, data)
+
+
+def usual_duration(design: Design) -> float:
+    """A hundred periods of the mode that grows first, or of the slowest mode where none does [s]."""
+    modes = complex_modes(design)
+    if not bool(modes.exists):
+        return 1.0
+    half = modes.eigenvalues.shape[-1] // 2
+    hertz = modes.frequency[:half]
+    chosen = modes.most_unstable.frequency if not modes.stable else float(np.min(hertz))
+    return PERIODS / chosen if chosen > 0.0 else 1.0
+
+
+def _beginning(design: Design, start: str, push: float) -> Any:
+    """Steady sliding with a push along the mode that grows first, or one of the starts `simulate` knows.
+
+    The push is a share of the static deflection, so that it is large for no brake and small for none.
+    """
+    if start != "push":
+        return start
+    modes = complex_modes(design)
+    if not bool(modes.exists):
+        return "rest"
+    mode = modes.most_unstable
+    state = equilibrium(design.system())
+    size = float(np.max(np.abs(state.q))) or 1e-6
+    return mode.start(push * size)
+
+
+def _signals(motion: Trajectory, dof: int, data: dict[str, Any]) -> Answer:
+    x, v, t = motion.q[:, dof], motion.qd[:, dof], motion.t
+    metre, size = scaled("m", x)
+    second, clock = scaled("s", t)
+    speed, rate = scaled("m/s", v)
+    data |= {"unit": size, "clock": clock, "speed": rate}
+    judged = verdict(motion, dof=dof)
+    data |= {
+        "verdict": judged.text,
+        "fate": judged.fate,
+        "amplitude": finite(judged.amplitude),
+        "frequency": finite(judged.frequency),
+        "sticking": [finite(np.mean(motion.mode[:, i] == 0)) for i in range(motion.mode.shape[1])],
+        "speeds": [
+            [finite(np.min(column)), finite(np.max(column))] for column in motion.sliding_velocity[len(t) // 2 :].T
+        ],
+    }
+    low, high, at = _hull(t, x)
+    late = len(t) // 2
+    arrays = {
+        "time": at / second,
+        "low": low / metre,
+        "high": high / metre,
+        "x": x[late:] / metre,
+        "v": v[late:] / speed,
+    }
+    try:
+        lines = spectrum(motion, dof=dof, begin=float(t[late]))
+        grid = spectrogram(motion, dof=dof)
+        main = dominant_frequency(x, t)
+    except SignalError as error:
+        return Answer({**data, "noSpectrum": str(error)}, arrays)
+    top = _upto(lines, main)
+    shown, seen = lines.frequency <= top, grid.frequency <= top
+    found = peaks(lines, 4)
+    data |= {
+        "peaks": [[f, a / metre] for f, a in found if f <= top],
+        "resolution": lines.resolution,
+        "gridTime": [float(grid.time[0] / second), float(grid.time[-1] / second)],
+        "gridTop": float(grid.frequency[seen][-1]),
+        "end": float(t[-1] / second),
+    }
+    arrays |= {
+        "hertz": lines.frequency[shown],
+        "amplitude": lines.amplitude[shown] / metre,
+        "grid": grid.amplitude[seen] / metre,
+    }
+    return Answer(data, arrays)
+
+
+def _upto(lines: Any, main: float) -> float:
+    """The highest frequency drawn: four times that of the strongest line, so that harmonics are seen."""
+    strongest = float(lines.frequency[np.argmax(lines.amplitude)])
+    wanted = 4.0 * max(strongest, main if np.isfinite(main) else 0.0)
+    return min(wanted, float(lines.frequency[-1])) if wanted > 0.0 else float(lines.frequency[-1])
+
+
+def _hull(t: Any, x: Any) -> tuple[Any, Any, Any]:
+    """Least and largest value in equal stretches, and their middle times: what a line too dense to draw looks like."""
+    each = max(len(x) // DRAWN, 1)
+    count = len(x) // each
+    stretches = x[: count * each].reshape(count, each)
+    return stretches.min(axis=1), stretches.max(axis=1), t[: count * each].reshape(count, each).mean(axis=1)

@@ -1,0 +1,129 @@
+"""What a panel is given and what it hands back."""
+
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from squealbox.designs import Design
+from squealbox.files.analyses import quantity_of, scalar_parameters
+from squealbox.parameters import Parameter, ParameterError
+from squealbox.workbench.sheet import read_in, slider, usual_value
+
+
+class OptionError(ValueError):
+    """An option of a panel that makes no sense; the message is one sentence."""
+
+
+class Stopped(Exception):
+    """The user stopped the computation, or a newer question made it needless."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a panel draws: `data` goes into the header (plain JSON), `arrays` follow as float32.
+
+    Scale arrays to the unit they are read in before (float32 has seven digits), and name that unit in `data`.
+    """
+
+    data: Mapping[str, Any]
+    arrays: Mapping[str, Any] = field(default_factory=dict)
+
+
+class Work:
+    """How a long answer says how far it is, and learns that nobody waits for it any more."""
+
+    def __init__(self, report: Callable[[float, str], None] | None = None) -> None:
+        self._report, self._stop = report, threading.Event()
+
+    def stop(self) -> None:
+        """Ask the answer to end; it raises `Stopped` at its next `progress`."""
+        self._stop.set()
+
+    @property
+    def stopped(self) -> bool:
+        """True when the answer is no longer wanted."""
+        return self._stop.is_set()
+
+    def progress(self, share: float, text: str = "") -> None:
+        """Say how far the answer is, 0 to 1, and raise `Stopped` where it is no longer wanted."""
+        if self.stopped:
+            raise Stopped
+        if self._report is not None:
+            self._report(share, text)
+
+
+Function = Callable[[Design, "Options", Work], Answer]
+
+
+class Options:
+    """The options of a question, each read with its kind and range; what is wrong is an `OptionError`."""
+
+    def __init__(self, given: Any) -> None:
+        if not isinstance(given, Mapping):
+            raise OptionError("options: expected an object")
+        self.given = given
+
+    def word(self, name: str, options: tuple[str, ...]) -> str:
+        """One of several words; the first where nothing is given."""
+        value = self.given.get(name, options[0])
+        if value not in options:
+            raise OptionError(f"{name}: expected one of {', '.join(options)}")
+        return str(value)
+
+    def number(self, name: str, usual: float, low: float, high: float) -> float:
+        """A finite number from low to high."""
+        value = self.given.get(name)
+        if value is None:
+            return usual
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not low <= value <= high:
+            raise OptionError(f"{name}: expected a number in [{low:g}, {high:g}]")
+        return float(value)
+
+    def parameter(self, name: str, design: Design, *usual: str) -> str:
+        """The name of a parameter a study can vary; left out, the first of `usual` that the design has."""
+        known = scalar_parameters(design)
+        value = self.given.get(name)
+        if value is None:
+            return next((each for each in usual if each in known), next(iter(known)))
+        if not isinstance(value, str) or value not in known:
+            raise OptionError(f"{name}: {str(value)[:60]!r} is no parameter of this design that can be varied")
+        return value
+
+    def span(self, name: str, design: Design, parameter: str) -> tuple[float, float]:
+        """The ends [SI] of an axis: those given as ``[low, high]`` or where the parameter's slider runs."""
+        about, value = quantity_of(design, parameter), float(design.value_of(parameter) or 0.0)
+        given = self.given.get(name)
+        if given is None:
+            low, high = slider(value, about)
+            return min(low, value), max(high, value)
+        if not isinstance(given, list) or len(given) != 2 or not all(_is_number(end) for end in given):
+            raise OptionError(f"{name}: expected two numbers")
+        low, high = float(given[0]), float(given[1])
+        if not (low < high and about.accepts(np.array([low, high]))):
+            raise OptionError(f"{name}: expected a lower and a higher value in {about.range}")
+        return low, high
+
+
+def axis_of(design: Design, parameter: str) -> dict[str, Any]:
+    """How an axis of this parameter is read: its name, unit and factor to SI."""
+    about: Parameter = quantity_of(design, parameter)
+    head, _, name = parameter.rpartition(".")
+    owner = design.value_of(head) if head else design
+    unit, factor = read_in(about, usual_value(owner, owner.aliases.get(name, (name,))[0]))
+    return {"parameter": parameter, "unit": unit, "factor": factor, "meaning": about.meaning}
+
+
+def try_value(design: Design, parameter: str) -> float | None:
+    """The value of a parameter [SI], None where it has none (a schedule, or left out)."""
+    try:
+        value = design.value_of(parameter)
+    except ParameterError:
+        return None
+    return float(value) if isinstance(value, (int, float)) else None
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < 1e300

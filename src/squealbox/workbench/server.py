@@ -1,0 +1,146 @@
+"""The server: the page and its scripts over HTTP, questions and answers over one WebSocket a page."""
+
+import asyncio
+import importlib.util
+import os
+from collections.abc import AsyncIterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.middleware import Middleware
+from starlette.middleware.trustedhost import TrustedHostMiddleware
+from starlette.requests import Request
+from starlette.responses import FileResponse, HTMLResponse, Response
+from starlette.routing import Mount, Route, WebSocketRoute
+from starlette.staticfiles import StaticFiles
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from squealbox.workbench.frames import frame
+from squealbox.workbench.guard import Headers, SameOrigin, Token
+
+STATIC = Path(__file__).parent / "static"
+HOSTS = ["127.0.0.1", "localhost"]
+LARGEST_MESSAGE = 2_000_000  # bytes; a longer one closes the connection
+NO_TOKEN = """<!doctype html><html lang="en"><meta charset="utf-8"><title>squealbox</title>
+<h1>This address needs its token</h1>
+<p>Open the workbench with the address that <code>squealbox lab</code> printed when it started.</p></html>"""
+
+
+class Workbench:
+    """The parts of one running workbench: token, file to start with, and the threads that compute."""
+
+    def __init__(self, token: Token, text: str = "") -> None:
+        self.token, self.text = token, text
+        self.quick = ThreadPoolExecutor(2, "squealbox-quick")
+        self.slow = ThreadPoolExecutor(max(1, (os.cpu_count() or 2) - 1), "squealbox-slow")
+        self.pages = 0
+
+    def app(self) -> Starlette:
+        """The application, to be served on loopback."""
+        routes = [
+            Route("/", self.page),
+            Route("/favicon.ico", _file(STATIC / "favicon.svg", "image/svg+xml")),
+            Route("/vendor/d3.js", _file(chart_library(), "text/javascript")),
+            WebSocketRoute("/ws", self.talk),
+            Mount("/static", StaticFiles(directory=STATIC)),
+        ]
+        middleware = [
+            Middleware(Headers),
+            Middleware(TrustedHostMiddleware, allowed_hosts=HOSTS, www_redirect=False),
+            Middleware(SameOrigin),
+        ]
+        return Starlette(routes=routes, middleware=middleware, lifespan=self._life)
+
+    @asynccontextmanager
+    async def _life(self, app: Starlette) -> AsyncIterator[None]:
+        warming = asyncio.get_running_loop().run_in_executor(self.slow, _warm)
+        try:
+            yield
+        finally:
+            warming.cancel()
+            for pool in (self.quick, self.slow):
+                pool.shutdown(wait=False, cancel_futures=True)
+
+    async def page(self, request: Request) -> Response:
+        """The page, for those who know the token; it stays known to their browser."""
+        if not self.token.known(request.scope):
+            return HTMLResponse(NO_TOKEN, status_code=403)
+        response = FileResponse(STATIC / "index.html", media_type="text/html")
+        if self.token.in_address(request.scope):
+            about: dict[str, Any] = {"httponly": True, "samesite": "strict", "path": "/", "max_age": 30 * 86400}
+            response.set_cookie(self.token.cookie, self.token.token, **about)
+        return response
+
+    async def talk(self, socket: WebSocket) -> None:
+        """One page's connection from its start to its end."""
+        if not self.token.known(socket.scope):
+            await socket.close(1008)  # before it is accepted: the handshake is answered with 403
+            return
+        await socket.accept()
+        from squealbox.workbench.session import Session
+
+        writing = asyncio.Lock()
+
+        async def send(data: bytes) -> None:
+            async with writing:
+                try:
+                    await socket.send_bytes(data)
+                except (WebSocketDisconnect, RuntimeError):  # the page left while its answer was computed
+                    session.close()
+
+        session = Session(send, self.quick, self.slow)
+        self.pages += 1
+        try:
+            await send(frame({"kind": "hello", **_hello(self.text)}))
+            while True:
+                message = await socket.receive()
+                if message["type"] == "websocket.disconnect":
+                    break
+                await session.take(message.get("text") or "")
+        finally:
+            self.pages -= 1
+            session.close()
+
+
+def chart_library() -> Path:
+    """D3, which draws the charts, from the installed package `mpld3` that ships it; that package is not imported."""
+    found = importlib.util.find_spec("mpld3")
+    folder = Path(found.origin).parent if found is not None and found.origin else Path()
+    path = folder / "js" / "d3.v5.min.js"
+    if not path.is_file():
+        raise FileNotFoundError(2, "the chart library is missing, install 'squealbox[workbench]'", str(path))
+    return path
+
+
+def _file(path: Path, kind: str) -> Any:
+    async def answer(request: Request) -> Response:
+        return FileResponse(path, media_type=kind)
+
+    return answer
+
+
+def _hello(text: str) -> dict[str, Any]:
+    from squealbox.designs import DESIGNS
+    from squealbox.workbench.panels import PANELS
+
+    return {
+        "text": text,
+        "brakes": [{"name": name, "title": design.title} for name, design in DESIGNS.items()],
+        "panels": [
+            {"name": name, "title": panel.title, "columns": panel.columns, "slow": panel.slow, "shown": panel.shown}
+            for name, panel in PANELS.items()
+        ],
+    }
+
+
+def _warm() -> None:
+    """Load what the first questions need, while the page is still being read."""
+    from squealbox.designs import DrumBrake
+    from squealbox.workbench.panels import PANELS, Options, Work, function_of
+
+    for name, panel in PANELS.items():
+        if not panel.slow:
+            function_of(name)(DrumBrake(), Options({}), Work())

@@ -1,0 +1,210 @@
+"""One page's conversation with the server. Nothing is kept of a user but the files the page opened, and those are his.
+
+A question is a JSON text, an answer a binary frame (`frames`) with the question's `id`:
+
+    {"id": 7, "view": "locus", "state": {...}, "options": {...}}    ask a panel
+    {"id": 8, "ask": "sheet", "state": {...}}                       fields of a design, and its TOML text
+    {"id": 9, "ask": "open", "text": "brake = ..."}                 read a design file
+    {"id": 10, "ask": "stop", "view": "motion"}                     stop a panel's computation
+
+Of each view one question is answered at a time; of those that arrive meanwhile only the newest waits, and the others are
+answered at once with `superseded`. Views do not wait for each other, and slow ones have threads of their own.
+"""
+
+import asyncio
+import hashlib
+import json
+from collections.abc import Awaitable, Callable, Mapping
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from typing import Any
+
+from squealbox.designs import DESIGNS, Design
+from squealbox.files import DesignFileError, NotWritable, read_text
+from squealbox.files.writing import design_text
+from squealbox.workbench.frames import frame
+from squealbox.workbench.panels import PANELS, Answer, OptionError, Options, Stopped, Work, function_of
+from squealbox.workbench.sheet import sheet
+from squealbox.workbench.state import StateError, UnknownBase, design_of
+
+LONGEST_TEXT = 1_000_000  # characters of an opened file
+MOST_BASES = 8  # opened files kept for a page; the page sends an older one again
+LONGEST_ID = 9_007_199_254_740_991  # the largest whole number a page can count to
+
+
+class Malformed(ValueError):
+    """A message that is no question."""
+
+
+@dataclass
+class Slot:
+    """What one view is working on, and the newest question that waits for it."""
+
+    work: Work | None = None
+    waiting: dict[str, Any] | None = None
+
+
+@dataclass
+class Session:
+    """A page's conversation: `send` takes a frame, `quick` and `slow` are where answers are computed."""
+
+    send: Callable[[bytes], Awaitable[None]]
+    quick: Executor
+    slow: Executor
+    bases: dict[str, Design] = field(default_factory=dict)
+    slots: dict[str, Slot] = field(default_factory=dict)
+    tasks: set[asyncio.Task[None]] = field(default_factory=set)
+
+    async def take(self, text: str) -> None:
+        """Read one message and see to its answer; what is no question is answered with what was expected."""
+        number: int | None = None
+        try:
+            message = _read(text)
+            number = message["id"]
+            if "view" in message and message.get("ask") is None:
+                await self._view(message)
+            else:
+                await self._ask(message)
+        except Malformed as error:
+            await self.send(frame({"id": number, "kind": "malformed", "message": str(error)}))
+
+    def close(self) -> None:
+        """The page is gone: nobody waits for what is being computed."""
+        for slot in self.slots.values():
+            slot.waiting = None
+            if slot.work is not None:
+                slot.work.stop()
+
+    async def _view(self, message: dict[str, Any]) -> None:
+        name = message["view"]
+        if not isinstance(name, str) or name not in PANELS:
+            raise Malformed(f"view: expected one of {', '.join(PANELS)}")
+        slot = self.slots.setdefault(name, Slot())
+        if slot.work is None:
+            slot.work = Work()  # taken before the task runs, so that the next question waits
+            self._start(self._answers(name, slot, message))
+            return
+        older, slot.waiting = slot.waiting, message
+        if older is not None:
+            await self.send(frame({"id": older["id"], "view": name, "kind": "superseded"}))
+
+    def _start(self, work: Any) -> None:
+        task = asyncio.ensure_future(work)
+        self.tasks.add(task)
+        task.add_done_callback(self.tasks.discard)
+
+    async def _answers(self, name: str, slot: Slot, message: dict[str, Any]) -> None:
+        """Answer a view's questions one after the other until none waits."""
+        following: dict[str, Any] | None = message
+        try:
+            while following is not None:
+                slot.waiting = None
+                slot.work = self._work(name, following["id"])
+                await self._answer(name, following, slot.work)
+                following = slot.waiting
+        finally:
+            slot.work = None
+
+    def _work(self, name: str, number: int) -> Work:
+        loop = asyncio.get_running_loop()
+
+        def report(share: float, text: str) -> None:
+            data = frame({"id": number, "view": name, "kind": "progress", "share": share, "text": text})
+            loop.call_soon_threadsafe(lambda: self._start(self.send(data)))
+
+        return Work(report if PANELS[name].slow else None)
+
+    async def _answer(self, name: str, message: dict[str, Any], work: Work) -> None:
+        loop = asyncio.get_running_loop()
+        pool = self.slow if PANELS[name].slow else self.quick
+        data = await loop.run_in_executor(pool, answered, name, message, dict(self.bases), work)
+        await self.send(data)
+
+    async def _ask(self, message: dict[str, Any]) -> None:
+        ask = message.get("ask")
+        if ask == "stop":
+            slot = self.slots.get(str(message.get("view"))[:40])
+            if slot is not None and slot.work is not None:
+                slot.waiting = None
+                slot.work.stop()
+            await self.send(frame({"id": message["id"], "kind": "done"}))
+        elif ask == "sheet":
+            await self.send(await asyncio.get_running_loop().run_in_executor(self.quick, self._sheet, message))
+        elif ask == "open":
+            await self.send(await asyncio.get_running_loop().run_in_executor(self.quick, self._open, message))
+        else:
+            raise Malformed("ask: expected one of sheet, open, stop; or view")
+
+    def _sheet(self, message: dict[str, Any]) -> bytes:
+        about = {"id": message["id"], "ask": "sheet"}
+        try:
+            design = design_of(message.get("state"), self.bases)
+        except StateError as error:
+            return frame({**about, **_wrong(error)})
+        return frame({**about, "kind": "sheet", "sheet": sheet(design), **_toml(design)})
+
+    def _open(self, message: dict[str, Any]) -> bytes:
+        about = {"id": message["id"], "ask": "open"}
+        text = message.get("text")
+        if not isinstance(text, str) or len(text) > LONGEST_TEXT:
+            problem = {"line": 0, "field": "", "message": f"expected a text of at most {LONGEST_TEXT} characters"}
+            return frame({**about, "kind": "wrong", "wrong": [problem]})
+        try:
+            design = read_text(text, "the file").design
+        except DesignFileError as error:
+            wrong = [{"line": each.line, "field": each.key, "message": each.message} for each in error.problems]
+            return frame({**about, "kind": "wrong", "wrong": wrong})
+        base = hashlib.sha256(text.encode()).hexdigest()[:16]
+        while len(self.bases) >= MOST_BASES:
+            self.bases.pop(next(iter(self.bases)))
+        self.bases[base] = design
+        return frame({**about, "kind": "opened", "base": base, "brake": _name(design)})
+
+
+def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design], work: Work) -> bytes:
+    """The frame that answers a question to a panel; whatever goes wrong is an answer too."""
+    about = {"id": message["id"], "view": name}
+    try:
+        if work.stopped:
+            raise Stopped
+        design = design_of(message.get("state"), bases)
+        answer: Answer = function_of(name)(design, Options(message.get("options") or {}), work)
+    except StateError as error:
+        return frame({**about, **_wrong(error)})
+    except OptionError as error:
+        return frame({**about, "kind": "wrong", "wrong": [{"field": "", "message": str(error)}]})
+    except Stopped:
+        return frame({**about, "kind": "stopped"})
+    except Exception as error:  # a panel that fails says so in its own place; the others go on
+        text = " ".join(str(error).split())[:500]
+        return frame({**about, "kind": "failed", "message": f"{type(error).__name__}: {text}"})
+    return frame({**about, "kind": "answer", "data": answer.data}, answer.arrays)
+
+
+def _wrong(error: StateError) -> dict[str, Any]:
+    kind = "unknown_base" if isinstance(error, UnknownBase) else "wrong"
+    return {"kind": kind, "wrong": [{"field": each.field, "message": each.message} for each in error.wrong]}
+
+
+def _toml(design: Design) -> dict[str, Any]:
+    try:
+        return {"toml": design_text(design)}
+    except NotWritable as error:
+        return {"toml": None, "notWritable": str(error)}
+
+
+def _name(design: Design) -> str:
+    return next((name for name, kind in DESIGNS.items() if kind is type(design)), "")
+
+
+def _read(text: str) -> dict[str, Any]:
+    try:
+        message = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise Malformed("this is not JSON") from error
+    if not isinstance(message, dict):
+        raise Malformed("expected a JSON object")
+    number = message.get("id")
+    if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number <= LONGEST_ID:
+        raise Malformed("id: expected a whole number")
+    return message

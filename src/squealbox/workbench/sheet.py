@@ -1,0 +1,145 @@
+"""What the page has to know of a design: each field with its unit, range, meaning and source, and where a slider runs."""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from squealbox.designs import Design
+from squealbox.files.analyses import scalar_parameters
+from squealbox.files.sheets import LAW_NAMES, field_type, name_of
+from squealbox.friction import FrictionLaw
+from squealbox.parameters import DataSheet, Parameter
+from squealbox.schedules import Schedule
+from squealbox.workbench.frames import finite
+from squealbox.workbench.state import CHOOSABLE
+
+# Units in which a field is read and written, what one of them is in SI, and the sizes of the design's own value for
+# which they are used; everything else is in SI.
+READ_IN: dict[str, tuple[tuple[str, float, float, float], ...]] = {
+    "rad": (("deg", math.pi / 180.0, 0.0, math.inf),),
+    "N/m": (("kN/mm", 1e6, 1e5, math.inf),),
+    "N": (("kN", 1e3, 1e4, math.inf),),
+    "m": (("mm", 1e-3, 1e-12, 0.3), ("m", 1.0, 0.3, math.inf)),
+    "s": (("µs", 1e-6, 1e-12, 1e-4), ("ms", 1e-3, 1e-4, 0.5)),
+}
+STEPS = 500  # of a slider
+
+
+def sheet(design: Design) -> dict[str, Any]:
+    """The fields of a design in order, the parameters a study can vary, and its aliases."""
+    known = scalar_parameters(design)
+    return {
+        "title": design.title or type(design).__name__,
+        "source": design.source,
+        "about": _first_lines(design),
+        "fields": list(_fields(design, "")),
+        "varied": list(known),
+        "aliases": {alias: list(names) for alias, names in design.aliases.items() if alias in known},
+    }
+
+
+def slider(value: float, about: Parameter, whole: bool = False) -> tuple[float, float]:
+    """Where the slider of a parameter runs [SI]: its range where that is short, else 0 to about 2.5 times its value.
+
+    >>> slider(0.3, Parameter("-", 0.0, 10.0))
+    (0.0, 1.0)
+    """
+    if about.unit == "-" and not whole and about.high == 10.0:  # coefficients of friction
+        return 0.0, max(1.0, _round_up(1.2 * value))
+    if math.isfinite(about.low) and math.isfinite(about.high) and about.unit == "rad":
+        return about.low, about.high
+    top = _round_up(2.5 * abs(value)) if value else 1.0
+    low = about.low if about.low >= 0.0 else -top
+    low = max(low, about.low)
+    if about.low_open and low == about.low:
+        low += 0.02 * (top - low)
+    if whole:
+        low, top = max(about.low, 1.0), max(8.0, top)
+    return low, min(top, about.high)
+
+
+def read_in(about: Parameter, usual: Any) -> tuple[str, float]:
+    """The unit a parameter is read in and what one of it is in SI, chosen by the design's usual value, not the present.
+
+    >>> read_in(Parameter("N/m"), 190e6)
+    ('kN/mm', 1000000.0)
+    """
+    size = abs(float(usual)) if isinstance(usual, (int, float)) else 0.0
+    for unit, factor, least, most in READ_IN.get(about.unit, ()):
+        if least <= size < most:
+            return unit, factor
+    return "" if about.unit == "-" else about.unit, 1.0
+
+
+def usual_value(owner: DataSheet, name: str) -> Any:
+    """The value the class gives to a field, or the present one where the class has none."""
+    usual = getattr(type(owner), name, None)
+    return usual if isinstance(usual, (int, float)) else getattr(owner, name)
+
+
+def _fields(owner: DataSheet, prefix: str) -> Iterator[dict[str, Any]]:
+    parameters, words = owner.parameters(), owner.choices()
+    for name in owner.field_names():
+        value, path = getattr(owner, name), prefix + name
+        if isinstance(value, FrictionLaw):
+            yield _law(value, path)
+            yield from _fields(value, f"{path}.")
+        elif name in words:
+            about = words[name]
+            yield {"path": path, "kind": "choice", "value": value, "options": about.options, "meaning": about.meaning}
+        elif name in parameters:
+            yield _parameter(owner, name, value, path, parameters[name])
+
+
+def _parameter(owner: DataSheet, name: str, value: Any, path: str, about: Parameter) -> dict[str, Any]:
+    field = {"path": path, "meaning": about.meaning, "source": about.source, "range": about.range}
+    if isinstance(value, Schedule) or np.ndim(value) > 0:
+        return {**field, "kind": "fixed", "value": f"{value!r}" if isinstance(value, Schedule) else _size(value)}
+    whole = field_type(type(owner), name) is int
+    unit, factor = read_in(about, usual_value(owner, name))
+    low, high = slider(float(value) if value is not None else 0.0, about, whole)
+    return {
+        **field,
+        "kind": "number",
+        "value": value,
+        "unit": unit,
+        "factor": factor,
+        "low": finite(about.low),
+        "high": finite(about.high),
+        "lowOpen": about.low_open,
+        "highOpen": about.high_open,
+        "optional": about.optional,
+        "whole": whole,
+        "slider": [low, high],
+        "step": 1.0 if whole else (high - low) / STEPS,
+    }
+
+
+def _law(law: FrictionLaw, path: str) -> dict[str, Any]:
+    name = name_of(type(law))
+    options = [name, *(other for other in CHOOSABLE if other != name)] if name not in CHOOSABLE else list(CHOOSABLE)
+    titles = {each: _first_sentence(LAW_NAMES[each]) if each in LAW_NAMES else "own" for each in options}
+    meaning = _first_sentence(type(law))
+    return {"path": path, "kind": "law", "value": name, "options": options, "titles": titles, "meaning": meaning}
+
+
+def _round_up(value: float) -> float:
+    """The next of 1, 2, 2.5, 5, 10 times a power of ten."""
+    if value <= 0.0:
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(step * power for step in (1.0, 2.0, 2.5, 5.0, 10.0) if step * power >= value * (1.0 - 1e-12))
+
+
+def _size(value: Any) -> str:
+    return " x ".join(str(n) for n in np.shape(value)) + " numbers"
+
+
+def _first_sentence(kind: type) -> str:
+    return (kind.__doc__ or "").strip().partition("\n")[0]
+
+
+def _first_lines(design: Design) -> str:
+    return " ".join((type(design).__doc__ or "").partition(">>>")[0].split())

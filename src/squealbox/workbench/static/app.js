@@ -1,0 +1,225 @@
+// The page as a whole: what the server offers, the state, the views, and the buttons above.
+
+import { Connection } from "./connection.js";
+import { Drawing } from "./drawing.js";
+import { make, note } from "./elements.js";
+import { download } from "./export.js";
+import { Opener } from "./opener.js";
+import { Panel } from "./panel.js";
+import { Parameters } from "./parameters.js";
+import { Store } from "./store.js";
+import { chooseTheme, nextTheme } from "./theme.js";
+import { Verdict } from "./verdict.js";
+
+const LEADING = "locus"; // the view whose pace a moving slider keeps
+
+class App extends EventTarget {
+  constructor() {
+    super();
+    this.connection = new Connection();
+    this.store = new Store();
+    this.panels = new Map();
+    this.views = [];
+    this.ready = false;
+    this.motion = null;
+    this.parameters = new Parameters(this, byId("fields"));
+    this.drawing = new Drawing(this, byId("drawing"));
+    this.verdict = new Verdict(this, byId("verdict"));
+    this.views.push(this.drawing.view, this.verdict.view);
+    this.opener = new Opener(this);
+    this.store.busy = () => this.panels.get(LEADING)?.view.busy ?? false;
+    this.store.addEventListener("changed", (event) => this.#changed(event.detail?.fields));
+    this.store.addEventListener("history", () => this.#history());
+    this.connection.addEventListener("hello", (event) => this.#hello(event.detail));
+    this.connection.addEventListener("lost", () => this.#lost());
+    this.#buttons();
+  }
+
+  /** The name of files: design and date are left out, so that equal figures have equal names. */
+  stem() {
+    return this.store.design.base ? "design" : this.store.design.brake.replaceAll("_", "-");
+  }
+
+  /** A view was drawn: tell who waits for it, once the frame with it has been painted. */
+  painted(name, key) {
+    requestAnimationFrame(() => setTimeout(() => this.dispatchEvent(new CustomEvent("painted", { detail: { name, key, at: performance.now() } }))));
+  }
+
+  answered(name) {
+    if (name === LEADING) this.store.answered();
+  }
+
+  /** What the motion panel found goes into the verdict and onto the friction curve. */
+  heard(data) {
+    this.motion = { design: this.store.design, text: (data.verdict ?? data.message).replaceAll("+-", "±").replaceAll(" -", " −"), speeds: data.speeds };
+    this.verdict.amplitude(this.motion);
+    this.dispatchEvent(new Event("motion"));
+  }
+
+  /** What is wrong with the design: beside its field, or above all fields. */
+  problems(wrong) {
+    const others = this.parameters.problems(wrong);
+    byId("problems").replaceChildren(...others.map((each) => make("p", {}, each.message)));
+  }
+
+  /** Another brake from the list. */
+  async chooseBrake(brake) {
+    this.store.replace({ base: null, brake, laws: {}, values: {} }, null);
+  }
+
+  /** Another friction law in its place. */
+  replaceLaw(path, name, design) {
+    this.store.replace(design);
+  }
+
+  /** Read a design file's text; resolves to what is wrong with it, or nothing. */
+  async open(text) {
+    const frame = await this.connection.ask({ ask: "open", text });
+    if (frame.kind === "opened") {
+      this.store.replace({ base: frame.base, brake: frame.brake, laws: {}, values: {} }, text);
+      return [];
+    }
+    return frame.wrong ?? [{ line: 0, field: "", message: frame.message }];
+  }
+
+  /** Take over what a link carries; false where it carries nothing. */
+  async follow(address) {
+    const carried = Store.carried(address);
+    if (!carried) return false;
+    const { brake, laws = {}, values = {}, settings = {}, text = null } = carried;
+    this.store.settings = settings;
+    let base = null;
+    if (text) {
+      const frame = await this.connection.ask({ ask: "open", text });
+      if (frame.kind !== "opened") {
+        note("The file in this link cannot be read here.");
+        return false;
+      }
+      base = frame.base;
+    }
+    this.store.replace({ base, brake, laws, values }, text);
+    return true;
+  }
+
+  /** The server does not know our file, as after its restart: send it again. */
+  async reopen() {
+    if (!this.store.text) return this.chooseBrake("drum_brake");
+    const frame = await this.connection.ask({ ask: "open", text: this.store.text });
+    if (frame.kind === "opened") this.#update();
+    else if (this.initial && this.store.design.base) note("The file this design came from is not open any more.");
+  }
+
+  async #hello(hello) {
+    const first = !this.hello;
+    this.hello = hello;
+    this.ready = true;
+    byId("link-state").textContent = "";
+    document.body.dataset.connected = "yes";
+    if (first) await this.#begin(hello);
+    else if (this.store.text) await this.reopen();
+    for (const view of this.views) view.forget();
+    if (!first) await this.#sheet();
+  }
+
+  async #begin(hello) {
+    const select = byId("brake");
+    select.replaceChildren(...hello.brakes.map((brake) => make("option", { value: brake.name }, brake.title)));
+    select.append(make("option", { value: "", hidden: true }, "from a file"));
+    const address = location.hash;
+    const shown = hello.panels.filter((about) => about.shown);
+    const modules = await Promise.all(shown.map((about) => import(`./panels/${about.name}.js`)));
+    shown.forEach((about, i) => {
+      const panel = new Panel(this, about, modules[i].default);
+      this.panels.set(about.name, panel);
+      this.views.push(panel.view);
+      byId("panels").append(panel.element);
+    });
+    if (hello.text && !address) await this.open(hello.text);
+    else if (!(await this.follow(address))) await this.#sheet();
+  }
+
+  #lost() {
+    this.ready = false;
+    document.body.dataset.connected = "no";
+    byId("link-state").textContent = this.hello ? "the server does not answer; waiting for it" : "no connection";
+    for (const view of this.views) view.forget();
+  }
+
+  async #changed(fields) {
+    if (fields) await this.#sheet();
+    else this.#update();
+  }
+
+  async #sheet() {
+    const { design } = this.store;
+    const frame = await this.connection.ask({ ask: "sheet", state: { ...design, values: {} } }).catch(() => null);
+    if (!frame || this.store.design !== design) return;
+    if (frame.kind === "unknown_base") return this.reopen();
+    if (frame.kind !== "sheet") return this.problems(frame.wrong ?? []);
+    this.store.sheet = frame.sheet;
+    byId("brake").value = design.base ? "" : design.brake;
+    byId("title").textContent = frame.sheet.title;
+    byId("source").textContent = frame.sheet.source ? `Source: ${frame.sheet.source}` : "";
+    this.store.dispatchEvent(new Event("fields"));
+    this.#update();
+  }
+
+  #update() {
+    for (const view of this.views) view.update();
+  }
+
+  #history() {
+    byId("undo").disabled = !this.store.past.length;
+    byId("redo").disabled = !this.store.future.length;
+  }
+
+  async #save() {
+    const frame = await this.connection.ask({ ask: "sheet", state: this.store.design });
+    if (frame.toml) download(frame.toml, `${this.stem()}.toml`, "application/toml");
+    else note(frame.notWritable ?? "This design cannot be written: see what is marked.");
+  }
+
+  async #copyLink() {
+    const address = `${location.origin}/${this.store.fragment()}`;
+    await navigator.clipboard.writeText(address).then(
+      () => note("Copied. It opens in any workbench: squealbox lab LINK, or Open…"),
+      () => note(address),
+    );
+  }
+
+  #buttons() {
+    const on = (id, what) => byId(id).addEventListener("click", what);
+    byId("brake").addEventListener("change", (event) => this.chooseBrake(event.target.value));
+    on("open", () => this.opener.show());
+    on("save", () => this.#save());
+    on("link", () => this.#copyLink());
+    on("undo", () => this.store.undo());
+    on("redo", () => this.store.redo());
+    on("reset", () => this.store.replace({ ...this.store.design, laws: {}, values: {} }));
+    on("theme", () => this.#theme());
+    document.addEventListener("keydown", (event) => {
+      if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || event.target.type === "text") return;
+      event.preventDefault();
+      if (event.shiftKey) this.store.redo();
+      else this.store.undo();
+    });
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.#repaint());
+    chooseTheme();
+  }
+
+  #theme() {
+    note(`Colours: ${nextTheme()}`);
+    this.#repaint();
+  }
+
+  /** Pictures hold their colours in their pixels: draw them again. */
+  #repaint() {
+    for (const view of this.views) view.forget();
+    this.#update();
+  }
+}
+
+const byId = (id) => document.getElementById(id);
+
+export const app = new App();
+app.connection.start();

@@ -1,0 +1,252 @@
+// One chart: axes, lines, areas, points and marks in SVG, drawn with D3; a picture of values on a canvas beneath.
+//
+//   const chart = new Chart(place, { height: 220, title: "frequency" });
+//   chart.draw({ x: { label, domain }, y: { label, domain }, layers: [line(x, y, { name })] });
+
+import { shown } from "./numbers.js";
+
+const d3 = window.d3;
+const MARGIN = { top: 8, right: 14, bottom: 42, left: 58 };
+const LETTER = 7; // px a digit of the axes is wide
+
+// What can be drawn. Each is { kind, ... }; `cls` chooses the look in workbench.css.
+export const line = (x, y, about = {}) => ({ kind: "line", x, y, cls: "s0", ...about });
+export const hull = (x, low, high, about = {}) => ({ kind: "hull", x, low, high, cls: "s0", ...about });
+export const points = (x, y, about = {}) => ({ kind: "points", x, y, cls: "here", r: 4.5, ...about });
+export const across = (y, about = {}) => ({ kind: "across", y, cls: "axis-line", ...about });
+export const upright = (x, about = {}) => ({ kind: "upright", x, cls: "present", ...about });
+export const band = (from, to, about = {}) => ({ kind: "band", from, to, cls: "unstable", ...about });
+export const text = (x, y, words, about = {}) => ({ kind: "text", x, y, words, cls: "label", ...about });
+export const path = (rings, about = {}) => ({ kind: "path", rings, cls: "boundary", ...about });
+
+export class Chart {
+  constructor(place, { height = 230, title = "", name = "figure", margin = {} } = {}) {
+    this.margin = { ...MARGIN, ...margin };
+    this.height = height;
+    this.name = name;
+    this.figure = d3.select(place).append("figure").attr("class", "chart").attr("data-figure", name);
+    if (title) this.figure.append("figcaption").text(title);
+    this.frame = this.figure.append("div").attr("class", "frame").style("height", `${height}px`);
+    this.canvas = this.frame.append("canvas").node();
+    this.svg = this.frame.append("svg").attr("role", "img").attr("aria-label", title || name).attr("height", height);
+    this.clip = `clip-${Math.random().toString(36).slice(2)}`;
+    this.clipped = this.svg.append("clipPath").attr("id", this.clip).append("rect");
+    this.back = this.svg.append("g").attr("clip-path", `url(#${this.clip})`);
+    this.grid = this.svg.append("g").attr("class", "grid");
+    this.xAxis = this.svg.append("g").attr("class", "axis");
+    this.yAxis = this.svg.append("g").attr("class", "axis");
+    this.front = this.svg.append("g").attr("clip-path", `url(#${this.clip})`);
+    this.xLabel = this.svg.append("text").attr("class", "axis-label").attr("text-anchor", "middle");
+    this.yLabel = this.svg.append("text").attr("class", "axis-label").attr("text-anchor", "middle");
+    this.legend = this.svg.append("g").attr("class", "legend");
+    this.reader = this.svg.append("g").attr("class", "reader").attr("display", "none");
+    this.reader.append("circle").attr("r", 3.5);
+    this.reader.append("text").attr("class", "reading");
+    this.svg.on("mousemove", () => this.#read(d3.mouse(this.svg.node()))).on("mouseleave", () => this.#silent());
+    new ResizeObserver(() => this.spec && this.draw(this.spec)).observe(this.frame.node());
+  }
+
+  draw(spec) {
+    this.spec = spec;
+    const { top, right, bottom } = this.margin;
+    const left = (this.margin.left = this.#room(spec.y));
+    const width = Math.max(this.frame.node().clientWidth, 180);
+    const inner = { width: width - left - right, height: this.height - top - bottom };
+    this.inner = inner;
+    this.svg.attr("width", width).attr("viewBox", `0 0 ${width} ${this.height}`);
+    this.clipped.attr("x", left).attr("y", top).attr("width", inner.width).attr("height", inner.height);
+    this.x = scale(spec.x, [left, left + inner.width]);
+    this.y = scale(spec.y, [top + inner.height, top]);
+    this.#axes(spec, width);
+    const behind = spec.layers.filter((layer) => layer.kind === "band");
+    const before = spec.layers.filter((layer) => layer.kind !== "band");
+    this.#layers(this.back, behind);
+    this.#layers(this.front, before);
+    this.#named(spec.layers.filter((layer) => layer.name && layer.kind !== "band"), spec.legend);
+    this.#heat(spec.heat);
+    this.svg.attr("data-drawn", (this.count = (this.count ?? 0) + 1));
+  }
+
+  /** Room for the label and the longest number of the upright axis. */
+  #room(axis) {
+    const numbers = scale(axis, [0, 1]).ticks(5).map((value) => shown(value, 5).length);
+    return 30 + LETTER * Math.max(2, ...numbers);
+  }
+
+  #axes(spec, width) {
+    const { top, bottom, left } = this.margin;
+    const ticks = (axis, size) => axis.ticks(Math.max(2, Math.round(size / 70))).tickFormat((v) => shown(v, 5)).tickSizeOuter(0);
+    this.xAxis.attr("transform", `translate(0,${this.height - bottom})`).call(ticks(d3.axisBottom(this.x), this.inner.width));
+    this.yAxis.attr("transform", `translate(${left},0)`).call(ticks(d3.axisLeft(this.y), 1.6 * this.inner.height));
+    const places = spec.heat ? [] : this.y.ticks(Math.max(2, Math.round((1.6 * this.inner.height) / 70)));
+    const lines = this.grid.selectAll("line").data(places);
+    lines.exit().remove();
+    lines.enter().append("line").merge(lines).attr("x1", left).attr("x2", left + this.inner.width).attr("y1", this.y).attr("y2", this.y);
+    this.xLabel.attr("x", left + this.inner.width / 2).attr("y", this.height - 6).text(spec.x.label);
+    this.yLabel.attr("transform", `translate(14,${top + this.inner.height / 2}) rotate(-90)`).text(spec.y.label);
+    this.svg.attr("data-width", width);
+  }
+
+  #layers(group, layers) {
+    const nodes = group.selectAll("g.layer").data(layers);
+    nodes.exit().remove();
+    const all = nodes.enter().append("g").merge(nodes);
+    const chart = this;
+    all.attr("class", (layer) => `layer ${layer.cls}`).each(function (layer) {
+      DRAW[layer.kind](d3.select(this), layer, chart);
+    });
+  }
+
+  #named(layers, place = "top right") {
+    const [vertical, horizontal] = place.split(" ");
+    const seen = new Set();
+    const names = layers.filter((layer) => !seen.has(layer.name) && seen.add(layer.name));
+    const entries = this.legend.selectAll("g").data(names);
+    entries.exit().remove();
+    const fresh = entries.enter().append("g");
+    fresh.append("line").attr("x1", 0).attr("x2", 22).attr("y1", -4).attr("y2", -4);
+    fresh.append("text").attr("x", 27);
+    const all = fresh.merge(entries);
+    const { left, top } = this.margin;
+    const x = horizontal === "left" ? left + 8 : left + this.inner.width - 108;
+    const first = vertical === "top" ? top + 16 : top + this.inner.height - 8 - 16 * (names.length - 1);
+    all.attr("class", (layer) => `layer ${layer.cls}`).attr("transform", (layer, i) => `translate(${x},${first + 16 * i})`);
+    all.select("text").text((layer) => layer.name);
+  }
+
+  #heat(heat) {
+    const canvas = this.canvas;
+    canvas.hidden = !heat;
+    if (!heat) return;
+    const { left, top } = this.margin;
+    Object.assign(canvas.style, { left: `${left}px`, top: `${top}px`, width: `${this.inner.width}px`, height: `${this.inner.height}px` });
+    canvas.width = heat.columns;
+    canvas.height = heat.rows;
+    const picture = new ImageData(heat.columns, heat.rows);
+    const pixels = new Uint32Array(picture.data.buffer);
+    for (let j = 0; j < heat.rows; j++) {
+      const from = (heat.rows - 1 - j) * heat.columns; // rows come from below
+      for (let i = 0; i < heat.columns; i++) pixels[j * heat.columns + i] = heat.colour(heat.values[from + i]);
+    }
+    canvas.getContext("2d").putImageData(picture, 0, 0);
+    canvas.classList.toggle("smooth", Boolean(heat.smooth));
+  }
+
+  #read([x, y]) {
+    const layers = this.spec?.layers.filter((layer) => layer.kind === "line" || layer.kind === "points") ?? [];
+    let best = null;
+    for (const layer of layers) {
+      for (let i = 0; i < layer.x.length; i++) {
+        const dx = this.x(layer.x[i]) - x;
+        const dy = this.y(layer.y[i]) - y;
+        const far = dx * dx + dy * dy;
+        if (far < (best?.far ?? 900)) best = { far, px: this.x(layer.x[i]), py: this.y(layer.y[i]), vx: layer.x[i], vy: layer.y[i], name: layer.name };
+      }
+    }
+    if (!best) return this.#silent();
+    const right = best.px > this.margin.left + 0.6 * this.inner.width;
+    this.reader.attr("display", null).attr("transform", `translate(${best.px},${best.py})`);
+    this.reader.select("text").attr("x", right ? -8 : 8).attr("y", best.py < 30 ? 18 : -8).attr("text-anchor", right ? "end" : "start")
+      .text(`${best.name ? `${best.name}: ` : ""}${shown(best.vx)}, ${shown(best.vy)}`);
+  }
+
+  #silent() {
+    this.reader.attr("display", "none");
+  }
+
+  /** The numbers drawn, as columns: [[name, values], ...]. */
+  columns() {
+    const columns = [];
+    const { x, y, layers, heat } = this.spec;
+    for (const [i, layer] of layers.entries()) {
+      const name = layer.name || layer.column || `line ${i + 1}`;
+      if (layer.kind === "line" || layer.kind === "points") columns.push([`${name}: ${x.label}`, layer.x], [`${name}: ${y.label}`, layer.y]);
+      if (layer.kind === "hull") columns.push([`${x.label}`, layer.x], [`least ${y.label}`, layer.low], [`largest ${y.label}`, layer.high]);
+    }
+    if (heat) {
+      const at = (axis, count, i) => axis.domain[0] + ((axis.domain[1] - axis.domain[0]) * i) / (count - 1);
+      const xs = [], ys = [];
+      for (let j = 0; j < heat.rows; j++) for (let i = 0; i < heat.columns; i++) xs.push(at(x, heat.columns, i)), ys.push(at(y, heat.rows, j));
+      columns.unshift([x.label, xs], [y.label, ys], [heat.name, heat.values]);
+    }
+    return columns;
+  }
+}
+
+function scale(axis, range) {
+  const made = axis.log ? d3.scaleLog() : d3.scaleLinear();
+  made.domain(axis.domain).range(range);
+  return axis.nice ? made.nice() : made;
+}
+
+/** The span of some arrays, a little wider; `with0` keeps zero inside. */
+export function span(arrays, { with0 = false, room = 0.06 } = {}) {
+  let low = with0 ? 0 : Infinity;
+  let high = with0 ? 0 : -Infinity;
+  for (const array of arrays) {
+    for (const value of array) {
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+  }
+  if (!(low <= high)) return [0, 1];
+  const extra = room * (high - low) || Math.abs(high) * 0.1 || 1;
+  return [low - extra, high + extra];
+}
+
+function single(group, tag) {
+  const found = group.selectAll(tag).data([0]);
+  group.selectAll(`:scope > :not(${tag})`).remove();
+  return found.enter().append(tag).merge(found);
+}
+
+const DRAW = {
+  line(group, layer, { x, y }) {
+    let d = "";
+    let pen = "M";
+    for (let i = 0; i < layer.x.length; i++) {
+      const px = x(layer.x[i]);
+      const py = y(layer.y[i]);
+      if (Number.isFinite(px) && Number.isFinite(py)) {
+        d += `${pen}${px.toFixed(1)},${py.toFixed(1)}`;
+        pen = "L";
+      } else pen = "M";
+    }
+    single(group, "path").attr("d", d || null).attr("fill", "none");
+  },
+  hull(group, layer, { x, y }) {
+    const up = [];
+    const down = [];
+    for (let i = 0; i < layer.x.length; i++) {
+      const px = x(layer.x[i]).toFixed(1);
+      up.push(`${px},${y(layer.high[i]).toFixed(1)}`);
+      down.push(`${px},${y(layer.low[i]).toFixed(1)}`);
+    }
+    single(group, "path").attr("class", "area").attr("d", `M${up.join("L")}L${down.reverse().join("L")}Z`);
+  },
+  points(group, layer, { x, y }) {
+    const places = Array.from(layer.x, (value, i) => [x(value), y(layer.y[i])]).filter((p) => p.every(Number.isFinite));
+    group.selectAll(":scope > :not(circle)").remove();
+    const dots = group.selectAll("circle").data(places);
+    dots.exit().remove();
+    dots.enter().append("circle").merge(dots).attr("r", layer.r).attr("cx", (p) => p[0]).attr("cy", (p) => p[1]);
+  },
+  across(group, layer, { y, margin, inner }) {
+    single(group, "line").attr("x1", margin.left).attr("x2", margin.left + inner.width).attr("y1", y(layer.y)).attr("y2", y(layer.y));
+  },
+  upright(group, layer, { x, margin, inner }) {
+    single(group, "line").attr("x1", x(layer.x)).attr("x2", x(layer.x)).attr("y1", margin.top).attr("y2", margin.top + inner.height);
+  },
+  band(group, layer, { x, margin, inner }) {
+    const [a, b] = [x(layer.from), x(layer.to)];
+    single(group, "rect").attr("x", Math.min(a, b)).attr("width", Math.abs(b - a)).attr("y", margin.top).attr("height", inner.height);
+  },
+  text(group, layer, { x, y }) {
+    single(group, "text").attr("x", x(layer.x)).attr("y", y(layer.y)).attr("dx", layer.dx ?? 0).attr("dy", layer.dy ?? -6)
+      .attr("text-anchor", layer.anchor ?? "middle").text(layer.words);
+  },
+  path(group, layer, { x, y }) {
+    const d = layer.rings.map((ring) => "M" + ring.map(([a, b]) => `${x(a).toFixed(1)},${y(b).toFixed(1)}`).join("L")).join("");
+    single(group, "path").attr("d", d || null).attr("fill", "none");
+  },
+};

@@ -1,0 +1,34 @@
+// Small pieces of the page, made without innerHTML.
+
+export function make(tag, about = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(about)) {
+    if (value === undefined || value === null || value === false) continue;
+    if (name === "class") element.className = value;
+    else if (name === "data") Object.assign(element.dataset, value);
+    else if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else element.setAttribute(name, value === true ? "" : value);
+  }
+  element.append(...children.filter((child) => child !== null && child !== undefined));
+  return element;
+}
+
+/** A select with its label; `choices` are [value, text] pairs. */
+export function choose(text, choices, value, onchange) {
+  const select = make("select", { "aria-label": text });
+  for (const [each, name] of choices) select.append(make("option", { value: each, selected: each === value }, name));
+  select.value = value;
+  select.addEventListener("change", () => onchange(select.value));
+  return make("label", { class: "choice" }, `${text} `, select);
+}
+
+let hiding = 0;
+
+/** A sentence at the foot of the page that goes away. */
+export function note(text) {
+  const place = document.getElementById("note");
+  place.textContent = text;
+  place.hidden = false;
+  clearTimeout(hiding);
+  hiding = setTimeout(() => (place.hidden = true), 4000);
+}

@@ -1,0 +1,39 @@
+// Numbers and units as a reader writes them.
+
+const PREFIXES = {
+  m: [[1, "m"], [1e-3, "mm"], [1e-6, "µm"], [1e-9, "nm"]],
+  s: [[1, "s"], [1e-3, "ms"], [1e-6, "µs"]],
+  Hz: [[1e6, "MHz"], [1e3, "kHz"], [1, "Hz"]],
+  N: [[1e6, "MN"], [1e3, "kN"], [1, "N"], [1e-3, "mN"]],
+  "m/s": [[1, "m/s"], [1e-3, "mm/s"], [1e-6, "µm/s"]],
+};
+
+/** A number with that many digits, plain where it can be, with a true minus. */
+export function shown(value, digits = 4) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
+  const size = Math.abs(value);
+  let text;
+  if (size !== 0 && (size < 1e-4 || size >= 1e6)) text = value.toExponential(digits - 1).replace(/\.?0+e/, "e").replace("e+", "e");
+  else text = String(Number(value.toPrecision(digits)));
+  return text.replaceAll("-", "−");
+}
+
+/** A value with the prefix that makes it one or more: 2.13 kHz. */
+export function withUnit(value, unit, digits = 4) {
+  const [factor, name] = prefix(unit, Math.abs(value));
+  return `${shown(value / factor, digits)} ${name}`.trim();
+}
+
+/** What to divide values up to `largest` by, and the unit then read. */
+export function prefix(unit, largest) {
+  const choices = PREFIXES[unit] ?? [[1, unit]];
+  if (!largest) return choices.find(([factor]) => factor === 1) ?? choices[0];
+  return choices.find(([factor]) => largest >= 0.999 * factor) ?? choices[choices.length - 1];
+}
+
+/** As many digits as a field needs to hold the number. */
+export const plain = (value) => (value === null || value === undefined ? "" : String(Number(value.toPrecision(7))));
+
+/** "friction.static [-]": the label of an axis. */
+export const label = (name, unit) => `${name} [${unit || "-"}]`;

@@ -1,0 +1,165 @@
+// The one state of the page: which design, which laws, what was changed; undo; and the link that carries it all.
+//
+// A design is { base, brake, laws, values }: `base` names an opened file, `values` holds only what was changed. It is
+// never altered in place. Changes made while a slider moves are gathered until the leading view has answered the last
+// ones, so what is drawn always belongs to the design that is shown.
+
+const LINK = "#d=";
+const LONGEST_WAIT = 150; // ms a gathered change may wait
+
+export class Store extends EventTarget {
+  constructor() {
+    super();
+    this.design = { base: null, brake: "drum_brake", laws: {}, values: {} };
+    this.text = null; // of the opened file
+    this.sheet = null;
+    this.settings = {}; // options of the panels, by panel
+    this.past = [];
+    this.future = [];
+    this.gathered = null;
+    this.before = null; // the design before the gesture that is going on
+    this.busy = () => false; // is the leading view still answering?
+  }
+
+  get fields() {
+    return this.sheet?.fields ?? [];
+  }
+
+  field(path) {
+    return this.fields.find((field) => field.path === path);
+  }
+
+  /** The value of a parameter as shown, an alias standing for its first field. */
+  value(path) {
+    const name = this.sheet?.aliases[path]?.[0] ?? path;
+    if (this.gathered && name in this.gathered) return this.gathered[name];
+    if (name in this.design.values) return this.design.values[name];
+    return this.field(name)?.value;
+  }
+
+  /** A change while a gesture goes on: shown at once, computed as fast as the leading view answers. */
+  propose(changes) {
+    this.before ??= this.design;
+    this.gathered ??= {};
+    for (const [path, value] of Object.entries(changes)) {
+      for (const name of this.sheet?.aliases[path] ?? [path]) this.gathered[name] = value;
+    }
+    this.dispatchEvent(new CustomEvent("shown"));
+    this.gatheredAt ??= performance.now();
+    this.#later();
+  }
+
+  /** The end of a gesture: one step for undo. */
+  commit(changes = {}) {
+    if (Object.keys(changes).length) this.propose(changes);
+    this.#flush();
+    if (this.before && !same(this.before, this.design)) {
+      this.past.push(this.before);
+      if (this.past.length > 200) this.past.shift();
+      this.future = [];
+    }
+    this.before = null;
+    this.#keepLink();
+    this.dispatchEvent(new Event("history"));
+  }
+
+  /** A leading view has answered: what was gathered meanwhile can go. */
+  answered() {
+    if (this.gathered) this.#flush();
+  }
+
+  /** Another brake, file or law: the fields change too. */
+  replace(design, text = this.text) {
+    this.gathered = null;
+    this.past.push(this.before ?? this.design);
+    this.before = null;
+    this.future = [];
+    this.text = text;
+    this.#set(design, true);
+  }
+
+  undo() {
+    this.#step(this.past, this.future);
+  }
+
+  redo() {
+    this.#step(this.future, this.past);
+  }
+
+  /** Options of a panel; they are part of the link, not of undo. */
+  option(panel, changes) {
+    this.settings = { ...this.settings, [panel]: { ...this.settings[panel], ...changes } };
+    this.#keepLink();
+    this.dispatchEvent(new CustomEvent("changed"));
+  }
+
+  /** The link's part behind the #. */
+  fragment() {
+    const { base, brake, laws, values } = this.design;
+    const carried = { brake, laws, values, settings: this.settings, ...(base ? { text: this.text } : {}) };
+    return LINK + encode(JSON.stringify(carried));
+  }
+
+  /** What a link carries; null where it is none. */
+  static carried(address) {
+    const at = address.indexOf(LINK);
+    if (at < 0) return null;
+    try {
+      const state = JSON.parse(decode(address.slice(at + LINK.length).trim()));
+      return state && typeof state === "object" ? state : null;
+    } catch {
+      return null;
+    }
+  }
+
+  #later() {
+    if (this.frame) return;
+    this.frame = requestAnimationFrame(() => {
+      this.frame = 0;
+      if (!this.gathered) return;
+      if (this.busy() && performance.now() - this.gatheredAt < LONGEST_WAIT) this.#later();
+      else this.#flush();
+    });
+  }
+
+  #flush() {
+    if (!this.gathered) return;
+    const values = { ...this.design.values, ...this.gathered };
+    this.gathered = null;
+    this.gatheredAt = null;
+    this.#set({ ...this.design, values }, false);
+  }
+
+  #step(from, to) {
+    if (!from.length) return;
+    this.gathered = null;
+    this.before = null;
+    to.push(this.design);
+    this.#set(from.pop(), true);
+  }
+
+  #set(design, fields) {
+    this.design = design;
+    if (fields) this.#keepLink();
+    this.dispatchEvent(new CustomEvent("changed", { detail: { fields } }));
+    this.dispatchEvent(new Event("history"));
+  }
+
+  #keepLink() {
+    history.replaceState(null, "", location.pathname + location.search + this.fragment());
+  }
+}
+
+export const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+
+function encode(text) {
+  const bytes = new TextEncoder().encode(text);
+  let binary = "";
+  for (const byte of bytes) binary += String.fromCharCode(byte);
+  return btoa(binary).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+}
+
+function decode(text) {
+  const binary = atob(text.replaceAll("-", "+").replaceAll("_", "/"));
+  return new TextDecoder("utf-8", { fatal: true }).decode(Uint8Array.from(binary, (c) => c.charCodeAt(0)));
+}

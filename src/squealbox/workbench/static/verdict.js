@@ -1,0 +1,86 @@
+// The verdict in words, above the figures: state, mechanism, where stability is lost, and how far that is.
+
+import { make } from "./elements.js";
+import { shown, withUnit } from "./numbers.js";
+import { View } from "./view.js";
+
+const MECHANISMS = { flutter: "mode coupling (flutter)", negative_slope: "falling friction (negative slope)", divergence: "divergence", mixed: "mode coupling and falling friction together", unknown: "not known" };
+
+export class Verdict {
+  constructor(app, place) {
+    Object.assign(this, { app, place, motion: null });
+    this.view = new View(app, "verdict", {
+      request: () => this.#request(),
+      draw: (frame) => this.draw(frame.data),
+      status: (kind) => (place.dataset.state = kind),
+    });
+  }
+
+  #request() {
+    const locus = this.app.panels.get("locus");
+    if (!this.app.store.sheet || !locus) return null;
+    const parameter = locus.parameter("parameter", "friction.static");
+    return { state: this.app.store.design, options: { parameter, span: locus.span(parameter) } };
+  }
+
+  draw(data) {
+    this.data = data;
+    const place = this.place;
+    place.dataset.verdict = data.state;
+    place.replaceChildren(make("p", { class: "state" }, headline(data)), make("p", { class: "why" }, ...why(data)), make("p", { class: "quiet" }, caveats(data)));
+    this.amplitude(this.motion);
+  }
+
+  /** What the motion panel found, while it belongs to the same design. */
+  amplitude(motion) {
+    this.motion = motion;
+    this.place.querySelector(".heard")?.remove();
+    if (!motion || motion.design !== this.app.store.design || !this.data) return;
+    this.place.insertBefore(make("p", { class: "heard" }, `In time: ${motion.text}`), this.place.lastChild);
+  }
+}
+
+function headline(data) {
+  if (data.state === "unknown") return "No steady sliding";
+  if (data.state === "stable") return "Steady sliding is stable";
+  return `Unstable: it will squeal at about ${withUnit(data.frequency, "Hz")}`;
+}
+
+function why(data) {
+  if (data.state === "unknown") return [`${data.reason}.`];
+  const words = [];
+  if (data.state === "unstable") {
+    const several = data.modes > 1 ? `${data.modes} modes grow, the fastest` : "One mode grows,";
+    words.push(`${several} at ${shown(data.growth)} 1/s by ${MECHANISMS[data.mechanism] ?? data.mechanism}${shares(data)}. `);
+  } else words.push(`The least damped mode decays at ${shown(-data.growth)} 1/s, at ${withUnit(data.frequency, "Hz")} (damping ratio ${shown(data.damping, 3)}). `);
+  return [...words, ...margin(data)];
+}
+
+function shares(data) {
+  if (data.flutterShare === null || data.mechanism === "divergence") return "";
+  return `, ${Math.round(100 * data.flutterShare)} % of what feeds it from circulation`;
+}
+
+function margin(data) {
+  const { axis, value } = data;
+  const unit = axis.unit ? ` ${axis.unit}` : "";
+  const changes = data.crossings.filter((each) => each.changes);
+  const read = (x) => `${shown(x / axis.factor, 5)}${unit}`;
+  if (!changes.length) return [`Over ${axis.parameter} from ${read(data.span[0])} to ${read(data.span[1])} that does not change.`];
+  if (value === null) return [`Critical ${axis.parameter}: ${changes.map((each) => read(each.value)).join(", ")}.`];
+  const near = changes.reduce((a, b) => (Math.abs(b.value - value) < Math.abs(a.value - value) ? b : a));
+  const away = value ? ` (${shown((100 * (near.value - value)) / Math.abs(value), 3)} %)` : "";
+  const way = near.value >= value ? "above" : "below";
+  return [
+    "Stability changes at ",
+    make("b", {}, `${axis.parameter} = ${read(near.value)}`),
+    `, ${read(Math.abs(near.value - value))} ${way} the present ${read(value)}${away}, by ${MECHANISMS[near.mechanism] ?? near.mechanism} at ${withUnit(near.frequency, "Hz")}.`,
+    changes.length > 1 ? ` It changes ${changes.length} times in this range.` : "",
+  ];
+}
+
+function caveats(data) {
+  const words = ["Linear and about steady sliding: it says whether squeal can start, not how loud it gets; stable sliding can still squeal after a push."];
+  if (data.near) words.push("Two modes nearly merge here: growth rate and shares react strongly to small changes.");
+  return words.join(" ");
+}

@@ -1,0 +1,86 @@
+// A view asks the server for what it shows. One question is under way at a time, the newest follows; an answer is drawn
+// only while the design and options it was asked for are still those of the page.
+
+import { Disconnected } from "./connection.js";
+
+export class View {
+  /** name; request() -> { state, options } or null; draw(frame); status(kind, text) */
+  constructor(app, name, { request, draw, status, slow = false }) {
+    Object.assign(this, { app, name, request, draw, status, slow });
+    this.asked = null; // the key of the question under way
+    this.drawn = null; // the key of what is drawn
+    this.visible = true;
+    this.outcome = ["waiting", null]; // of the question last answered
+  }
+
+  get busy() {
+    return this.asked !== null;
+  }
+
+  /** Something may have changed: ask if what is drawn is no longer right. */
+  update() {
+    if (!this.visible || !this.app.ready) return;
+    const question = this.request();
+    if (!question) return;
+    const key = JSON.stringify(question);
+    if (key === this.drawn) {
+      this.#tell(...this.outcome); // back at what is drawn, or at what was found wrong with it
+      return;
+    }
+    this.#tell("waiting");
+    if (this.asked === null) this.#ask(question, key);
+    else if (this.slow && key !== this.asked) this.app.connection.ask({ ask: "stop", view: this.name }).catch(quiet);
+  }
+
+  /** Stop a slow computation; the panel stays as it is until something changes. */
+  stop() {
+    if (this.asked !== null) this.app.connection.ask({ ask: "stop", view: this.name }).catch(quiet);
+  }
+
+  forget() {
+    this.drawn = null;
+    this.asked = null;
+  }
+
+  #ask(question, key) {
+    this.asked = key;
+    this.app.connection
+      .ask({ view: this.name, ...question }, (progress) => this.status("progress", progress))
+      .then((frame) => this.#answered(frame, key))
+      .catch((error) => {
+        if (!(error instanceof Disconnected)) throw error;
+        this.asked = null; // the page asks again when the server is back
+      });
+  }
+
+  #answered(frame, key) {
+    this.asked = null;
+    const current = this.request();
+    const wanted = current && JSON.stringify(current) === key;
+    if (frame.kind === "unknown_base") {
+      this.app.reopen();
+      return;
+    }
+    if (wanted && frame.kind === "answer") {
+      this.drawn = key;
+      this.draw(frame);
+      this.outcome = ["drawn", null];
+      this.#tell("drawn");
+      this.app.painted(this.name, key);
+    } else if (wanted && frame.kind !== "superseded") {
+      this.drawn = frame.kind === "stopped" ? null : key;
+      this.outcome = [frame.kind, frame];
+      this.#tell(frame.kind, frame);
+    }
+    this.app.answered(this.name);
+    if (!wanted) this.update();
+  }
+
+  #tell(kind, frame = null) {
+    this.status(kind, frame);
+  }
+}
+
+function quiet(error) {
+  if (!(error instanceof Disconnected)) throw error;
+}
