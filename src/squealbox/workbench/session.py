@@ -7,8 +7,8 @@ A question is a JSON text, an answer a binary frame (`frames`) with the question
     {"id": 9, "ask": "open", "text": "brake = ..."}                 read a design file
     {"id": 10, "ask": "stop", "view": "motion"}                     stop a panel's computation
 
-Of each view one question is answered at a time; of those that arrive meanwhile only the newest waits, and the others are
-answered at once with `superseded`. Views do not wait for each other, and slow ones have threads of their own.
+Of each view one question is answered at a time; of those that arrive meanwhile only the newest waits, and the others
+are answered at once with `superseded`. Views do not wait for each other, and slow ones have threads of their own.
 """
 
 import asyncio

@@ -1,4 +1,4 @@
-"""What the page has to know of a design: each field with its unit, range, meaning and source, and where a slider runs."""
+"""What the page has to know of a design: each field with unit, range, meaning and source, and where its slider runs."""
 
 import math
 from collections.abc import Iterator

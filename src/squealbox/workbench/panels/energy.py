@@ -1,4 +1,6 @@
-"""Who feeds the mode that grows first, and who damps it: what each contact and each damper brings to its growth rate."""
+"""Who feeds the mode that grows first and who damps it: what each contact and damper brings to its growth rate."""
+
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +19,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         return Answer({"outcome": str(modes.outcome), "message": modes.outcome.message, "bars": []})
     parts = mode_energy(design, modes.most_unstable)
     per = 1.0 / (2.0 * parts.total)
-    bars = []
+    bars: list[dict[str, Any]] = []
     for i, name in enumerate(parts.contacts):
         circulation, slope = float(parts.circulation[i] * per), float(parts.slope[i] * per)
         bars.append({"name": name, "parts": {"normal force": circulation, "slope": slope}, "sum": circulation + slope})

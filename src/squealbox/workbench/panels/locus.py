@@ -1,4 +1,4 @@
-"""Eigenvalues of steady sliding over one parameter, the same mode always on the same line, and at the present design."""
+"""Eigenvalues of steady sliding over one parameter, each mode on a line of its own, and at the present design."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Stability over two parameters. The page draws the boundary where the growth rate passes zero, and the present point."""
+"""Stability over two parameters; the page draws the boundary where the growth rate passes zero."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ POINTS = 101
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
-    """Largest growth rate [1/s] on a grid, row by row from below; with ``show = "mechanism"`` also why it is unstable."""
+    """Largest growth rate [1/s] on a grid, row by row from below; with ``show = "mechanism"`` also the mechanism."""
     across = options.parameter("x", design, "friction.static")
     up = options.parameter("y", design, "load", "load1", "sliding_speed", "theta1")
     if across == up:
