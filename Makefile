@@ -66,7 +66,7 @@ $(BIN)/python:
 	$(CREATE)
 
 $(VENV)/.installed: pyproject.toml | $(BIN)/python
-	$(INSTALL) --editable .
+	$(INSTALL) --editable '.[workbench]'
 	@touch $@
 
 $(VENV)/.installed-%: pyproject.toml | $(BIN)/python

@@ -163,6 +163,8 @@ class DataSheet:
         name = self.aliases.get(head, (head,))[0]
         self._check_known(path, head, name, None)
         value = getattr(self, name)
+        if rest and not isinstance(value, DataSheet):
+            raise ParameterError(type(self).__name__, path, None, f"a name without a part: {name} holds no parameters")
         return value.value_of(rest) if rest else value
 
     def _check_known(self, path: str, head: str, name: str, value: Any) -> None:

@@ -98,10 +98,9 @@ class Session:
         following: dict[str, Any] | None = message
         try:
             while following is not None:
-                slot.waiting = None
                 slot.work = self._work(name, following["id"])
                 await self._answer(name, following, slot.work)
-                following = slot.waiting
+                following, slot.waiting = slot.waiting, None
         finally:
             slot.work = None
 

@@ -1,0 +1,99 @@
+"""Debian's Chromium through Playwright, and what a test wants to know of a page: what is drawn, and what went wrong."""
+
+import contextlib
+import shutil
+
+from playwright.sync_api import sync_playwright
+
+FLAGS = [
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync",
+]  # fmt: skip
+LINES = """figure => [...figure.querySelectorAll('g.layer')].map(layer => ({
+    cls: layer.getAttribute('class'), d: layer.querySelector('path')?.getAttribute('d') ?? '',
+    circles: layer.querySelectorAll('circle').length,
+}))"""
+SPEC = """([name, figure]) => import('/static/app.js').then(({ app }) => {
+    const { spec } = app.panels.get(name).charts.find(chart => chart.name === figure);
+    const numbers = ({ kind, cls, column = '', x, y }) => ({ kind, cls, column, x: Array.from(x), y: Array.from(y) });
+    const layers = spec.layers.filter(({ kind }) => kind === 'line' || kind === 'points');
+    return { x: spec.x, y: spec.y, layers: layers.map(numbers) };
+})"""
+
+
+@contextlib.contextmanager
+def launched():
+    """A headless Chromium with a new profile."""
+    path = shutil.which("chromium")
+    assert path, "chromium is not installed; .ci/run installs it"
+    with sync_playwright() as playwright:
+        running = playwright.chromium.launch(executable_path=path, args=FLAGS)
+        yield running
+        running.close()
+
+
+class Page:
+    """A page of the workbench. Leaving it fails on script errors and on requests to anything but the server itself."""
+
+    def __init__(self, browser, server, *, scheme="light", size=(1280, 800)):
+        self.server = server
+        self.context = browser.new_context(viewport={"width": size[0], "height": size[1]}, color_scheme=scheme)
+        self.page = self.context.new_page()
+        self.errors: list[str] = []
+        self.expected: tuple[str, ...] = ()  # parts of messages a test provokes
+        own = (f"http://127.0.0.1:{server.port}/", f"ws://127.0.0.1:{server.port}/", "blob:", "data:")
+        self.page.on("pageerror", lambda error: self.errors.append(f"script: {error}"))
+        self.page.on("console", lambda m: self.errors.append(f"console: {m.text}") if m.type == "error" else None)
+        self.page.on("request", lambda r: None if r.url.startswith(own) else self.errors.append(f"foreign: {r.url}"))
+        self.page.on("websocket", lambda w: None if w.url.startswith(own) else self.errors.append(f"foreign: {w.url}"))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, *rest):
+        self.context.close()
+        unexpected = [each for each in self.errors if not any(part in each for part in self.expected)]
+        assert kind is not None or unexpected == []
+
+    def goto(self, fragment=""):
+        """Open the start address and wait until the first figure is there."""
+        self.page.goto(self.server.address + fragment)
+        self.drawn("locus")
+
+    def drawn(self, *panels):
+        """Wait until these panels show the present design."""
+        for panel in panels:
+            self.page.locator(f"section[data-panel={panel}]").scroll_into_view_if_needed()
+            self.page.wait_for_selector(f"section[data-panel={panel}][data-state=drawn]", timeout=120_000)
+
+    def settled(self, panel):
+        """Wait until a panel has answered the newest question, with a figure or a sentence."""
+        self.page.locator(f"section[data-panel={panel}]").scroll_into_view_if_needed()
+        self.page.wait_for_selector(f"section[data-panel={panel}]:not([data-state=waiting])", timeout=120_000)
+
+    def says(self, panel):
+        """The sentence below a panel."""
+        return self.page.locator(f"section[data-panel={panel}] .says").inner_text()
+
+    def enter(self, path, value):
+        """Type a value into the field of a parameter."""
+        field = self.page.locator(f"input[data-path='{path}']")
+        field.fill(str(value))
+        field.press("Enter")
+
+    def slide(self, path, value):
+        """Move the slider of a parameter, as dragging it does, and let go."""
+        self.page.evaluate(
+            """([path, value]) => { const slider = document.querySelector(`[data-slider="${path}"]`);
+            slider.value = value; slider.dispatchEvent(new Event('input', { bubbles: true }));
+            slider.dispatchEvent(new Event('change', { bubbles: true })); }""",
+            [path, value],
+        )
+
+    def numbers(self, panel, figure):
+        """The numbers a figure was drawn from: axes, and lines and points with their columns."""
+        return self.page.evaluate(SPEC, [panel, figure])
+
+    def strokes(self, panel, figure):
+        """What stands in the page: class, path and circles of each layer of a figure."""
+        return self.page.locator(f"section[data-panel={panel}] figure[data-figure={figure}]").evaluate(LINES)

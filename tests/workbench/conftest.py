@@ -1,0 +1,54 @@
+"""A running workbench, a real browser, and a page that fails its test on any error or any request to elsewhere."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from workbench.browsing import Page, launched
+
+COMMAND = Path(sys.executable).with_name("squealbox")
+
+
+class Server:
+    """`squealbox lab` as its user starts it."""
+
+    def __init__(self, folder, *words, port=0, token="token-of-the-tests-0123456789"):
+        environment = {**os.environ, "XDG_STATE_HOME": str(folder), "SQUEALBOX_TOKEN": token}
+        command = [COMMAND, "lab", *map(str, words), "--no-browser", "--port", str(port)]
+        self.log = open(folder / "server.log", "w+")  # noqa: SIM115 - closed by stop
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self.log, text=True, env=environment)
+        line = self.process.stdout.readline()
+        found = re.search(r"http://127\.0\.0\.1:(\d+)/\?token=(\S+)", line)
+        assert found, line + (folder / "server.log").read_text()
+        self.address, self.port, self.token = found[0], int(found[1]), token
+
+    def stop(self):
+        """End it and give its port back."""
+        self.process.terminate()
+        self.process.wait(20)
+        self.process.stdout.close()
+        self.log.close()
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory):
+    running = Server(tmp_path_factory.mktemp("workbench"))
+    yield running
+    running.stop()
+
+
+@pytest.fixture(scope="session")
+def browser():
+    with launched() as running:
+        yield running
+
+
+@pytest.fixture
+def page(server, browser):
+    with Page(browser, server) as opened:
+        opened.goto()
+        yield opened
