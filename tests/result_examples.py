@@ -96,4 +96,7 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
     "IntervalBounds": lambda: studies.interval_bounds(
         DampingParadox(), {FRICTION: (0.2, 0.3), "eta1": (0.01, 0.03)}, quantities.growth_rate(), runs=1
     ),
+    "DesignPoint": lambda: scattered(studies.form, samples=200),
+    "SubsetProbability": lambda: scattered(studies.subset_simulation, samples=200),
+    "Surrogate": lambda: scattered(studies.polynomial_chaos, samples=64, degree=3),
 }

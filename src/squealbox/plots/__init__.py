@@ -24,6 +24,7 @@ from squealbox.plots.points import (
     point_curve,
 )
 from squealbox.plots.populations import basin_of_starts, ensemble_overview
+from squealbox.plots.reliability import design_point, subset_probability, surrogate
 from squealbox.plots.spectra import component_growth, loudness, spectrogram, spectrum
 from squealbox.plots.stability import (
     boundary_curves,
@@ -54,6 +55,7 @@ __all__ = [
     "crossings",
     "cycle_overview",
     "damping_split",
+    "design_point",
     "drawn",
     "eigenvalues",
     "energy",
@@ -83,6 +85,8 @@ __all__ = [
     "spectrum",
     "squeal_probability",
     "stability_map",
+    "subset_probability",
+    "surrogate",
     "sweep_overview",
     "time_history",
     "tracked_modes",

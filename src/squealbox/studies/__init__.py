@@ -8,6 +8,7 @@ Depends on: system, result, parameters.
 
 from squealbox.result import batched
 from squealbox.studies.analysis import StudyError
+from squealbox.studies.chaos import Surrogate, polynomial_chaos
 from squealbox.studies.distributions import (
     DISTRIBUTIONS,
     Beta,
@@ -20,6 +21,7 @@ from squealbox.studies.distributions import (
     Uniform,
     as_distribution,
 )
+from squealbox.studies.form import DesignPoint, form
 from squealbox.studies.intervals import IntervalBounds, interval_bounds
 from squealbox.studies.morris import MorrisEffects, morris_effects
 from squealbox.studies.probability import SquealProbability, squeal_probability
@@ -36,6 +38,7 @@ from squealbox.studies.store import (
     StoreLocked,
     StudyChanged,
 )
+from squealbox.studies.subset import SubsetProbability, subset_simulation
 from squealbox.studies.sweep import Sweep, sweep
 from squealbox.studies.work import Pace
 
@@ -44,6 +47,7 @@ __all__ = [
     "SAMPLINGS",
     "Axis",
     "Beta",
+    "DesignPoint",
     "Distribution",
     "ForeignStore",
     "IntervalBounds",
@@ -64,6 +68,8 @@ __all__ = [
     "StoreLocked",
     "StudyChanged",
     "StudyError",
+    "SubsetProbability",
+    "Surrogate",
     "Sweep",
     "Triangular",
     "TruncatedNormal",
@@ -71,14 +77,17 @@ __all__ = [
     "as_distribution",
     "batched",
     "evaluate",
+    "form",
     "grid",
     "interval_bounds",
     "latin_hypercube",
     "morris_effects",
+    "polynomial_chaos",
     "sampled",
     "sobol",
     "sobol_indices",
     "squeal_probability",
+    "subset_simulation",
     "sweep",
     "zipped",
 ]

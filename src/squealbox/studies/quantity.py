@@ -75,17 +75,18 @@ def as_quantity(given: Any) -> Quantity:
     return Quantity(given, "quantity" if name == "<lambda>" else name.replace("_", " "))
 
 
-def evaluate(design: Any, quantity: Quantity, points: Mapping[str, Any]) -> Any:
+def evaluate(design: Any, quantity: Quantity, points: Mapping[str, Any], *, strict: bool = True) -> Any:
     """The quantity at `points` (dotted name to shape (n,)), shape (n,); in blocks of 131,072.
 
     `design` has ``replace``; or is a function of the values in the order of `points`; or is None, when the quantity is
     a function of the dictionary of values itself. NaN where the design refuses a value as out of its range.
-    Raises `ParameterError` when it refuses every point or an unknown name, `ValueError` for an answer of another shape.
+    Raises `ParameterError` for an unknown name or (`strict`) when it refuses every point, `ValueError` for an answer of
+    another shape.
     """
     arrays = {name: np.asarray(values, dtype=float) for name, values in points.items()}
     count = next(iter(arrays.values())).size
     inside = _inside(design, arrays)
-    if not np.any(inside):
+    if strict and not np.any(inside):
         made(design, {name: float(values[0]) for name, values in arrays.items()})  # says why
     found = np.full(count, np.nan)
     places = np.nonzero(inside)[0]

@@ -95,6 +95,20 @@ class Scatter(DataSheet):
             out[name] = np.where(score > 0.0, frozen.isf(tail), frozen.ppf(tail))
         return out
 
+    def to_normal(self, values: Mapping[str, Any]) -> Any:
+        """The inverse of `from_normal`: independent standard normal numbers, shape (..., d)."""
+        from scipy.special import ndtri
+
+        scores = []
+        for name, each in self.distributions.items():
+            frozen, x = each.frozen(), np.asarray(values[name], dtype=float)
+            below, above = frozen.cdf(x), frozen.sf(x)
+            scores.append(np.where(below < above, ndtri(below), -ndtri(above)))
+        stacked = np.stack(np.broadcast_arrays(*scores), axis=-1)
+        if self.independent:
+            return stacked
+        return np.linalg.solve(np.linalg.cholesky(self.correlation), stacked[..., None])[..., 0]
+
     def sample(self, count: int, method: Sampling = "sobol", seed: int = 0) -> dict[str, Any]:
         """`count` samples of every parameter: name to shape (count,).
 
