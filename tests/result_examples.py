@@ -99,4 +99,7 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
     "DesignPoint": lambda: scattered(studies.form, samples=200),
     "SubsetProbability": lambda: scattered(studies.subset_simulation, samples=200),
     "Surrogate": lambda: scattered(studies.polynomial_chaos, samples=64, degree=3),
+    "Optimum": lambda: studies.optimise(
+        DampingParadox(), {"eta1": (0.001, 0.05)}, studies.Goal(quantities.growth_rate()), generations=5, population=8
+    ),
 }

@@ -15,6 +15,7 @@ from squealbox.plots.laws import friction_curve
 from squealbox.plots.maps import amplitude_map, stability_map
 from squealbox.plots.modes import coalescence
 from squealbox.plots.motion import amplitude_course, energy, motion_overview, phase_plane, time_history
+from squealbox.plots.optimisation import optimum
 from squealbox.plots.points import (
     birth_of_a_cycle,
     crossings,
@@ -72,6 +73,7 @@ __all__ = [
     "mode_energy",
     "morris_effects",
     "motion_overview",
+    "optimum",
     "panels",
     "phase_plane",
     "plot",

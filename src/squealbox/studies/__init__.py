@@ -22,8 +22,10 @@ from squealbox.studies.distributions import (
     as_distribution,
 )
 from squealbox.studies.form import DesignPoint, form
+from squealbox.studies.goals import Constraint, Goal
 from squealbox.studies.intervals import IntervalBounds, interval_bounds
 from squealbox.studies.morris import MorrisEffects, morris_effects
+from squealbox.studies.optimisation import Optimum, optimise
 from squealbox.studies.probability import SquealProbability, squeal_probability
 from squealbox.studies.quantity import Quantity, evaluate
 from squealbox.studies.scatter import SAMPLINGS, Scatter
@@ -47,13 +49,16 @@ __all__ = [
     "SAMPLINGS",
     "Axis",
     "Beta",
+    "Constraint",
     "DesignPoint",
     "Distribution",
     "ForeignStore",
+    "Goal",
     "IntervalBounds",
     "Lognormal",
     "MorrisEffects",
     "Normal",
+    "Optimum",
     "Pace",
     "Quantity",
     "Scatter",
@@ -82,6 +87,7 @@ __all__ = [
     "interval_bounds",
     "latin_hypercube",
     "morris_effects",
+    "optimise",
     "polynomial_chaos",
     "sampled",
     "sobol",
