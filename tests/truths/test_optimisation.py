@@ -38,7 +38,7 @@ def best_split(s):
 @pytest.mark.parametrize("method", ["global", "local"])
 def test_best_split_of_damping(method):
     s = 400.0
-    wide = {name: (0.001, 0.8) for name in ETAS}
+    wide = dict.fromkeys(ETAS, (0.001, 0.8))
     p, mu = best_split(s)
     found = optimise(
         DampingParadox(), wide, Goal(MARGIN, "maximise"), [Constraint(DAMPING, high=s)], method=method, generations=40
