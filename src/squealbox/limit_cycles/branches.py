@@ -12,18 +12,19 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.continuation import Follower, PathPoint, StepControl, follow
+from squealbox.continuation import PathPoint, StepControl, follow
 from squealbox.limit_cycles.cycle import Cycle
 from squealbox.limit_cycles.doubling import doubled
 from squealbox.limit_cycles.harmonic_balance import Grid, harmonic_balance
 from squealbox.limit_cycles.hopf import HopfPoint, family
 from squealbox.limit_cycles.paths import HarmonicPath, ShootingPath
+from squealbox.limit_cycles.phases import begun
 from squealbox.limit_cycles.shooting import CONTACTS, shooting
-from squealbox.limit_cycles.special_points import BranchPoint, branch_point, candidates, located
+from squealbox.limit_cycles.special_points import BranchPoint
+from squealbox.limit_cycles.walks import Special, special_points, walked
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome, Result, quantity
 
-Special = tuple[str, float, int, BranchPoint | None]
 METHODS = ("harmonic_balance", "shooting")
 METHODS_FROM_HOPF = ("harmonic_balance", "exact")
 
@@ -146,23 +147,12 @@ def branch(
     walk = follow(path.residual, unknowns, p, jacobian=path.jacobian, control=control, direction=direction,
                   bounds=bounds, x_scale=path.scale, p_scale=span, tangent=tangent)  # fmt: skip
     ends_at_grazing = method == "harmonic_balance" and contact == "exact"
-    visited, seen, outcome = _walk(walk, path, ends_at_grazing)
-    specials = _specials(path, visited, seen, parameter)
-    if ends_at_grazing and outcome == "grazing" and len(visited) > 1:
-        visited, seen = visited[:-1], seen[:-1]
-        outcome = _grazing_outcome(specials, visited[-1].p)
-    return _collect(visited, seen, specials, outcome, parameter, settings, make(middle))
-
-
-def _walk(walk: Follower, path: Any, ends_at_grazing: bool) -> tuple[list[PathPoint], list[dict[str, Any]], Outcome]:
-    visited: list[PathPoint] = []
-    seen: list[dict[str, Any]] = []
-    for point in walk:
-        visited.append(point)
-        seen.append(path.describe(point.x, point.p))
-        if ends_at_grazing and seen[-1]["least_slip"] < 0.0:
-            return visited, seen, Outcome("grazing", "a contact reverses at the start", p=point.p)
-    return visited, seen, walk.outcome
+    done = walked(path, walk, control, bounds, ends_at_grazing)
+    specials = special_points(done, parameter)
+    if ends_at_grazing and done.outcome == "grazing" and len(done.visited) > 1:
+        done.drop_last()
+        done.outcome = _grazing_outcome(specials, done.visited[-1].p)
+    return _collect(done.visited, done.seen, specials, done.outcome, parameter, settings, make(middle))
 
 
 def _grazing_outcome(specials: list[Special], last: float) -> Outcome:
@@ -220,24 +210,7 @@ def _shooting_start(make: Any, start: Any, value: float, rtol: float, span: floa
     found = start if isinstance(start, Cycle) else shooting(make(value), start)
     if not found.outcome.ok:
         return path, None, value, found.outcome
-    dof = int(np.argmax(found.amplitude))
-    top = int(np.argmax(found.q[:-1, dof]))
-    period, amplitude = float(found.period), float(np.max(found.amplitude))
-    x = np.concatenate([found.q[top], found.qd[top]])
-    return path, path.begin(x, period, value, dof, amplitude), value, found.outcome
-
-
-def _specials(path: Any, visited: list[PathPoint], seen: list[dict[str, Any]], parameter: str) -> list[Special]:
-    """(kind, value, index of the point before, the point or None where it could not be solved for) along the walk."""
-    found: list[Special] = []
-    for kind, i in candidates(visited, seen):
-        solved = located(path, visited[i], visited[i + 1], kind)
-        if solved is not None:
-            x, p, test, uncertainty = solved
-            found.append((kind, p, i, branch_point(path, x, p, kind, parameter, test, uncertainty)))
-        elif kind != "neimark_sacker":  # there None may mean a neutral saddle, which is no bifurcation
-            found.append((kind, 0.5 * (visited[i].p + visited[i + 1].p), i, None))
-    return found
+    return path, begun(path, found, value), value, found.outcome
 
 
 def _collect(

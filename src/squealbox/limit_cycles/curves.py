@@ -196,7 +196,7 @@ class _Special:
         """The path at a value of the second parameter."""
         path = copy.copy(self.path)
         path.make = lambda a: self.make(a, float(b))
-        for name in ("balances", "fields", "flights"):
+        for name in ("balances", "fields", "runs", "flights"):
             if hasattr(path, name):
                 setattr(path, name, {})
         return path

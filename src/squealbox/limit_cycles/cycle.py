@@ -113,6 +113,8 @@ def extremes(t: Any, q: Any, qd: Any) -> tuple[Any, Any]:
     """Least and largest displacement of each column, by the Hermite cubic of each interval; error of order h^4."""
     h = np.diff(t)[:, None]
     low, high = np.min(q, axis=0), np.max(q, axis=0)
+    if len(t) < 2:
+        return low, high
     a, v0, v1 = q[:-1], qd[:-1] * h, qd[1:] * h
     rise = np.diff(q, axis=0)
     c2, c3 = 3.0 * rise - 2.0 * v0 - v1, v0 + v1 - 2.0 * rise  # a + s (v0 + s (c2 + s c3))

@@ -17,6 +17,7 @@ import numpy as np
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Schedule, value_at
 from squealbox.system import System
+from squealbox.transient.packing import inverse_mass
 
 OPEN = 2
 SMOOTHINGS = ("tanh", "arctan")
@@ -42,7 +43,7 @@ class Field:
         check_autonomous(system)
         self.system, self.contact, self.width = system, contact, width
         n, rows = system.size, system.contacts
-        inverse = np.linalg.inv(system.M)
+        inverse = inverse_mass(system.M)
         self.size = n
         self.mk, self.mc, self.mf = inverse @ system.K, inverse @ system.C, inverse @ value_at(system.load, 0.0)
         self.n, self.t, d = (np.array([getattr(c, name) for c in rows]).reshape(-1, n) for name in ("n", "t", "d"))

@@ -72,8 +72,8 @@ def harmonic_balance(
     x, period, found = first_guess(field, start, settle)
     settings = {"contact": contact, "width": width, "tolerance": tolerance}
     grid = Grid(harmonics or 8, samples)
-    guess = grid.series(fly(field, x, period, 1e-9, np.linspace(0.0, period, grid.samples + 1)).q[: grid.samples])
     balance = Balance(field, grid)
+    guess, found = _guess(field, grid, x, period, found)
     if not found.ok:
         return cycle_of(balance, guess, 2.0 * np.pi / period, found, settings, np.nan)
     if harmonics is not None:
@@ -82,6 +82,16 @@ def harmonic_balance(
     else:
         balance, coefficients, omega, outcome, error = _refined(balance, guess, period, tolerance, most_steps)
     return cycle_of(balance, coefficients, omega, outcome, settings, error)
+
+
+def _guess(field: Field, grid: "Grid", x: Any, period: float, found: Outcome) -> tuple[Any, Outcome]:
+    """The series of the motion from x over a period; of rest at x where there is no such motion, and then why."""
+    run = fly(field, x, period, 1e-9, np.linspace(0.0, period, grid.samples + 1)) if found.ok else None
+    if run is not None and run.outcome.ok:
+        return grid.series(run.q[: grid.samples]), found
+    if run is not None:
+        found = Outcome("no_convergence", f"the first period ended early: {run.outcome.message}", history=[], advice=ADVICE)
+    return grid.series(np.tile(x[: field.size], (grid.samples, 1))), found
 
 
 def _refined(balance: "Balance", guess: Any, period: float, tolerance: float, most: int) -> tuple[Any, ...]:

@@ -99,8 +99,9 @@ def hopf_point(design: Any, parameter: str, bounds: tuple[float, float]) -> Hopf
     >>> hopf_point(DrumBrake(friction=LinearSlope(0.3, -0.05)), "friction.static", (0.1, 0.6)).kind
     'supercritical'
     """
-    found = critical_value(design, parameter, bounds)
     make = family(design, parameter)
+    Field(make(bounds[0]))  # says at once where the system is none that this room can treat
+    found = critical_value(design, parameter, bounds)
     outcome = found.outcome
     if outcome.ok and abs(np.imag(found.eigenvalue)) == 0.0:
         outcome = Outcome("no_hopf", "stability changes by a real eigenvalue: no cycle is born there")

@@ -17,8 +17,15 @@ from squealbox.limit_cycles.variation import Flight, flight, fly, quick_flight
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import System
+from squealbox.transient import Trajectory
 
-KEPT = 8  # fields or flights kept between calls at the same values
+KEPT = 8  # fields, runs or flights kept between calls at the same values
+SHARES = (1e-5, 1e-6, 1e-7)  # of the range of the parameter: steps of its differences
+
+
+def _trim(kept: dict[Any, Any]) -> None:
+    if len(kept) > KEPT:
+        kept.pop(next(iter(kept)))
 
 
 class HarmonicPath:
@@ -56,9 +63,8 @@ class HarmonicPath:
     def balance(self, p: float) -> Balance:
         """The equation at a parameter value."""
         if p not in self.balances:
-            if len(self.balances) >= KEPT:
-                self.balances.pop(next(iter(self.balances)))
             self.balances[p] = Balance(Field(self.make(p), self.contact, self.width), self.grid)
+            _trim(self.balances)
         return self.balances[p]
 
     def series(self, x: Any) -> tuple[Any, float]:
@@ -124,6 +130,7 @@ class ShootingPath:
     def __init__(self, make: Callable[[float], System], rtol: float, span: float) -> None:
         self.make, self.rtol, self.span = make, rtol, span
         self.fields: dict[float, Field] = {}
+        self.runs: dict[bytes, Trajectory] = {}
         self.flights: dict[bytes, Flight] = {}
         self.column, self.scale = 0, np.ones(1)
 
@@ -138,33 +145,54 @@ class ShootingPath:
     def field(self, p: float) -> Field:
         """The equation at a parameter value."""
         if p not in self.fields:
-            if len(self.fields) >= KEPT:
-                self.fields.pop(next(iter(self.fields)))
             self.fields[p] = Field(self.make(p))
+            _trim(self.fields)
         return self.fields[p]
+
+    def start(self, x: Any) -> Any:
+        """State (2n,) at which a point's period begins."""
+        return np.insert(x[:-1], self.column, 0.0)
+
+    def run(self, x: Any, p: float) -> Trajectory:
+        """The motion of a point over its period."""
+        key = np.append(x, p).tobytes()
+        if key not in self.runs:
+            self.runs[key] = fly(self.field(p), self.start(x), float(x[-1]), self.rtol)
+            _trim(self.runs)
+        return self.runs[key]
 
     def fly(self, x: Any, p: float) -> tuple[Any, Flight]:
         """Start (2n,) and flight of a point."""
         key = np.append(x, p).tobytes()
-        start = np.insert(x[:-1], self.column, 0.0)
+        start = self.start(x)
         if key not in self.flights:
-            if len(self.flights) >= KEPT:
-                self.flights.pop(next(iter(self.flights)))
-            self.flights[key] = quick_flight(self.field(p), start, float(x[-1]), self.rtol)
+            self.flights[key] = quick_flight(self.field(p), start, float(x[-1]), self.rtol, motion=self.run(x, p))
+            _trim(self.flights)
         return start, self.flights[key]
+
+    def sequence(self, x: Any, p: float) -> tuple[tuple[int, int], ...] | None:
+        """(contact, mode it takes) of the events of a period in their order, from a fixed first one; None: no motion."""
+        try:
+            run = self.run(x, p) if x[-1] > 0.0 else None
+        except ParameterError:
+            run = None
+        if run is None or not run.outcome.ok:
+            return None
+        events = [(int(c), int(m)) for c, m in zip(run.event_contact, run.event_mode, strict=True)]
+        return min((tuple(events[i:] + events[:i]) for i in range(len(events))), default=())
 
     def residual(self, x: Any, p: float) -> Any:
         """Scaled x(T) - x(0), shape (2n,); NaN, which continuation refuses, where the parameter leaves its range."""
         nothing = np.full(len(x), np.nan)
+        if not (np.all(np.isfinite(x)) and x[-1] > 0.0):
+            return nothing
         try:
-            field = self.field(p)
+            run = self.run(x, p)
         except ParameterError:
             return nothing
-        if not x[-1] > 0.0:
+        if not run.outcome.ok:
             return nothing
-        start = np.insert(x[:-1], self.column, 0.0)
-        run = fly(field, start, float(x[-1]), self.rtol)
-        return (np.concatenate([run.q[-1], run.qd[-1]]) - start) * self._weight() if run.outcome.ok else nothing
+        return (np.concatenate([run.q[-1], run.qd[-1]]) - self.start(x)) * self._weight()
 
     def _weight(self) -> Any:
         sizes = np.insert(self.scale[:-1], self.column, np.nan)
@@ -183,9 +211,21 @@ class ShootingPath:
         size = flown.x.size
         by_state = np.delete(flown.phi - np.eye(size), self.column, axis=1)
         by_x = np.column_stack([by_state, flown.rate]) * self._weight()[:, None]
-        step = 1e-5 * self.span
-        by_p = (self.residual(x, p + step) - self.residual(x, p - step)) / (2.0 * step)
-        return by_x, by_p
+        return by_x, self._by_parameter(x, p)
+
+    def _by_parameter(self, x: Any, p: float) -> Any:
+        """d residual/dp by differences, over values at which the events come in the same order as at p."""
+        here = self.sequence(x, p)
+        slope = np.full(len(x), np.nan)
+        for share in SHARES:
+            step = share * self.span
+            ends = [s * step for s in (1.0, -1.0) if self.sequence(x, p + s * step) == here]
+            if len(ends) == 2 or (ends and share == SHARES[-1]):
+                low, high = (ends + [0.0])[:2][::-1]
+                return (self.residual(x, p + high) - self.residual(x, p + low)) / (high - low)
+            if share == SHARES[0]:  # where no smaller step keeps the order
+                slope = (self.residual(x, p + step) - self.residual(x, p - step)) / (2.0 * step)
+        return slope
 
     def describe(self, x: Any, p: float) -> dict[str, Any]:
         """Period, extremes, multipliers, least sliding speed and longest sticking of the cycle at a point."""
@@ -205,7 +245,7 @@ class ShootingPath:
 
     def cycle(self, x: Any, p: float) -> Cycle:
         """The cycle at a point, its multipliers integrated anew to 1e-13; error is the scaled residual there."""
-        start = np.insert(x[:-1], self.column, 0.0)
+        start = self.start(x)
         flown = flight(self.field(p), start, float(x[-1]))
         error = float(np.max(np.abs(self.residual(x, p))))
         settings = {"contact": "exact", "width": 0.0, "shots": 1, "rtol": 1e-13}

@@ -15,6 +15,7 @@ from squealbox.transient import Trajectory
 
 PERIODS = 300.0  # of the lowest mode, of a run that is to settle
 GUESS_RTOL = 1e-9
+UNBOUNDED = 1e100  # [m, m/s]; squares of what is below it are still numbers
 STILL = 1e-5  # share of the sliding speed; a run that swings less has settled on steady sliding
 
 
@@ -46,6 +47,8 @@ def first_return(field: Field, x: Any, period: float) -> tuple[Any, float, Outco
     if not run.outcome.ok:
         return x, period, Outcome("no_cycle", f"the search for a return ended early: {run.outcome.message}")
     states = np.hstack([run.q, run.qd])
+    if np.max(np.abs(states)) > UNBOUNDED:
+        return x, period, Outcome("no_cycle", "the motion grows without bound: no cycle in sight")
     size = np.ptp(states, axis=0)
     size = np.where(size > 0.0, size, 1.0)
     if np.max(np.ptp(run.qd, axis=0)) <= STILL * max(float(np.max(np.abs(field.V), initial=0.0)), 1e-300):

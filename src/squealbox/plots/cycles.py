@@ -19,6 +19,7 @@ MARKS = {
     "sticking": ("^", "sticking begins or ends"),
     "period_doubling": ("s", "period doubling"),
     "neimark_sacker": ("D", "Neimark-Sacker"),
+    "event_order": ("|", "two events change places"),
 }
 
 
