@@ -191,15 +191,6 @@ def test_end_of_the_stick_slip_cycle():
     assert away[0] > 1e-4  # the closed form is not exact
 
 
-def test_stick_slip_branch_leads_there():
-    law, damping = Stribeck(0.4, 0.25, 0.3), 0.2
-    found = branch(belt_of(law, damping), "V", (0.05, 0.5), value=0.28, points=100, method="shooting")
-    exact = brentq(touching, 0.3, 0.33, args=(law, damping), xtol=1e-14)
-    # the sticking time falls as a root, so continuation stops a little before the corner
-    assert exact - 2e-5 < np.max(found.value) < exact + 1e-7
-    assert np.all(found.stable[found.value < exact - 1e-4])
-
-
 def test_averaged_cubic():
     """The closed form of the cubic law and the quadrature for any law give one swing."""
     from squealbox.limit_cycles.estimates import averaged_excess

@@ -16,10 +16,11 @@ from squealbox.continuation import PathPoint, StepControl, follow
 from squealbox.limit_cycles.cycle import Cycle
 from squealbox.limit_cycles.doubling import doubled
 from squealbox.limit_cycles.harmonic_balance import Grid, harmonic_balance
+from squealbox.limit_cycles.harmonic_path import HarmonicPath
 from squealbox.limit_cycles.hopf import HopfPoint, family
-from squealbox.limit_cycles.paths import HarmonicPath, ShootingPath
 from squealbox.limit_cycles.phases import begun
 from squealbox.limit_cycles.shooting import CONTACTS, shooting
+from squealbox.limit_cycles.shooting_path import ShootingPath
 from squealbox.limit_cycles.special_points import BranchPoint
 from squealbox.limit_cycles.walks import Special, special_points, walked
 from squealbox.parameters import ParameterError, known_names

@@ -1,8 +1,8 @@
 """Past a corner of a branch: where a contact begins to touch v = 0, or two events change places.
 
-The return map of stick and slip is continuous there but its derivative jumps, so pseudo-arclength, which wants a tangent
-that turns little, stops. With A- and A+ the derivatives of the residual by y = (x, p) on both sides of the surface
-h(y) = 0 at which the order of events changes,
+The return map of stick and slip is continuous there but its derivative jumps, so pseudo-arclength, which wants a
+tangent that turns little, stops. With A- and A+ the derivatives of the residual by y = (x, p) on both sides of the
+surface h(y) = 0 at which the order of events changes,
 
     A+ - A- = a h'      (both agree along the surface: rank one)
 
@@ -11,9 +11,9 @@ turns back, t-_p t+_p < 0, that is a fold with a corner: two cycles meet and bot
 (a contact with static above kinetic friction that just stops, one in tension that reaches v = 0), no cycle lies beside
 the last one, and the branch ends there.
 
-Source: di Bernardo, Budd, Champneys and Kowalczyk 2008, Piecewise-smooth Dynamical Systems, Springer, Sec. 3.1 and Ch. 8
-(border collision; of the boundary events of sliding only grazing-sliding has a linear corner); the rank-one rule is
-derived here.
+Source: di Bernardo, Budd, Champneys and Kowalczyk 2008, Piecewise-smooth Dynamical Systems, Springer, Sec. 3.1 and
+Ch. 8 (border collision; of the boundary events of sliding only grazing-sliding has a linear corner); the rank-one rule
+is derived here.
 """
 
 from collections.abc import Iterator
@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.continuation import Follower, PathPoint
-from squealbox.limit_cycles.paths import ShootingPath
+from squealbox.limit_cycles.shooting_path import ShootingPath
 from squealbox.result import Outcome
 
 PROBES = (1e-6, 1e-5, 1e-4, 1e-3)  # distances beyond the last point at which the new order of events is looked for
@@ -141,4 +141,3 @@ def _corner(path: ShootingPath, walk: Follower, last: PathPoint, found: tuple[An
     kind = kind_of(path.sequence(last.x, last.p), path.sequence(x[:-1], float(x[-1])))
     uncertainty = abs(ends[0] - ends[1]) + abs(ends[0] - y[-1])
     return Corner(last, beyond_it, tangent, kind, 0.5 * sum(ends) * walk.scale[-1], uncertainty * walk.scale[-1])
-

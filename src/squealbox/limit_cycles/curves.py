@@ -25,8 +25,9 @@ import numpy as np
 from squealbox.continuation import StepControl, follow
 from squealbox.limit_cycles.field import Field
 from squealbox.limit_cycles.harmonic_balance import Grid
+from squealbox.limit_cycles.harmonic_path import HarmonicPath
 from squealbox.limit_cycles.hopf import HopfPoint, critical_pair, hopf_point, lyapunov_coefficient, steady_modes
-from squealbox.limit_cycles.paths import HarmonicPath, ShootingPath
+from squealbox.limit_cycles.shooting_path import ShootingPath
 from squealbox.limit_cycles.special_points import TESTS, BranchPoint
 from squealbox.limit_cycles.starting import steady_state
 from squealbox.parameters import ParameterError

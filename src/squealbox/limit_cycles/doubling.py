@@ -10,13 +10,25 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.paths import ShootingPath
+from squealbox.limit_cycles.shooting_path import ShootingPath
 
+NEWTON_STEPS, CLOSE = 8, 1e-11
 SHIFT = 1e-2  # first distance from the old cycle, in its size
+
+
+def settled(path: ShootingPath, x: Any, p: float) -> Any:
+    """The unknowns corrected to the path at fixed p, where no multiplier but the trivial one is 1."""
+    for _ in range(NEWTON_STEPS):
+        change = np.linalg.solve(path.jacobian(x, p)[0] * path.scale, path.residual(x, p))
+        x = x - change * path.scale
+        if np.max(np.abs(change)) < CLOSE:
+            break
+    return x
 
 
 def doubled(path: ShootingPath, x: Any, p: float) -> tuple[Any, Any]:
     """Unknowns beside the old cycle with twice its period, and the direction to start along, scaled, with p last."""
+    x = settled(path, x, p)
     start, flown = path.fly(x, p)
     values, vectors = np.linalg.eig(flown.phi)
     e = np.real(vectors[:, int(np.argmin(np.abs(values + 1.0)))])

@@ -90,7 +90,9 @@ def _guess(field: Field, grid: "Grid", x: Any, period: float, found: Outcome) ->
     if run is not None and run.outcome.ok:
         return grid.series(run.q[: grid.samples]), found
     if run is not None:
-        found = Outcome("no_convergence", f"the first period ended early: {run.outcome.message}", history=[], advice=ADVICE)
+        found = Outcome(
+            "no_convergence", f"the first period ended early: {run.outcome.message}", history=[], advice=ADVICE
+        )
     return grid.series(np.tile(x[: field.size], (grid.samples, 1))), found
 
 

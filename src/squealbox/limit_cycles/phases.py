@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.limit_cycles.cycle import Cycle
-from squealbox.limit_cycles.paths import ShootingPath
+from squealbox.limit_cycles.shooting_path import ShootingPath
 
 CLEAR = 0.02  # of the period: an event farther from the beginning is no matter
 TOUCHING = 1e-3  # and one nearer than this may be why a path does not go on

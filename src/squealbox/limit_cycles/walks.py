@@ -7,15 +7,19 @@ import numpy as np
 
 from squealbox.continuation import Follower, PathPoint, StepControl, follow
 from squealbox.limit_cycles.corners import MOST, Corner, beyond
-from squealbox.limit_cycles.paths import ShootingPath
 from squealbox.limit_cycles.phases import taken_up, touches_event
+from squealbox.limit_cycles.shooting_path import ShootingPath
 from squealbox.limit_cycles.special_points import BranchPoint, branch_point, candidates, located
-from squealbox.result import Outcome
+from squealbox.result import COMPLETED, Outcome
 
 Special = tuple[str, float, int, BranchPoint | None]
 
 
-STALL = 1e-5, 15  # a path that takes so many steps below that length runs along a grazing, where derivatives are unbounded
+SMALL = 0.2  # of the largest amplitude of a walk: below it a cycle may be about to shrink to steady sliding
+STALL = (
+    1e-5,
+    15,
+)  # a path that takes so many steps below that length runs along a grazing, where derivatives are unbounded
 STALLED = Outcome("step_underflow", f"{STALL[1]} steps below {STALL[0]:g} in a row: the path runs along a grazing")
 BACK = 1e-3  # arclength from the last point to the one that tells where a path was going
 
@@ -38,12 +42,33 @@ class Walk:
 
     def drop_last(self) -> None:
         """Leave out the last point."""
-        self.visited, self.seen = self.visited[:-1], self.seen[:-1]
+        self.visited, self.paths, self.seen = self.visited[:-1], self.paths[:-1], self.seen[:-1]
+
+    def shrank(self) -> bool:
+        """True when the last step passed through amplitude zero: what was a largest displacement is a least one."""
+        if len(self.visited) < 2 or self.paths[-2] is not self.paths[-1]:
+            return False
+        sizes = [np.max(about["highest"] - about["lowest"]) for about in self.seen]
+        dof = int(np.argmax(self.seen[-1]["highest"] - self.seen[-1]["lowest"]))
+        sides = [2.0 * about["begin"][dof] > about["highest"][dof] + about["lowest"][dof] for about in self.seen[-2:]]
+        return bool(max(sizes[-2:]) < SMALL * max(sizes) and sides[0] != sides[1])
+
+    def born(self) -> Outcome:
+        """The end at steady sliding: the square of the amplitude is linear in the parameter. Drops the last point."""
+        self.drop_last()
+        squares = [float(np.max(about["highest"] - about["lowest"])) ** 2 for about in self.seen[-2:]]
+        values = [at.p for at in self.visited[-2:]]
+        p = (
+            values[-1] - squares[-1] * (values[-1] - values[0]) / (squares[-1] - squares[0])
+            if len(values) > 1
+            else values[0]
+        )
+        return Outcome(COMPLETED, f"the cycle shrinks to steady sliding at {p:.8g}, a Hopf point", hopf=p)
 
     def stalls(self) -> bool:
         """True when steps stay tiny."""
         steps = [at.step for at in self.visited[-STALL[1] :]]
-        return len(steps) == STALL[1] and 0.0 < min(steps) and max(steps) < STALL[0]
+        return len(steps) == STALL[1] and min(steps) > 0.0 and max(steps) < STALL[0]
 
     def earlier(self) -> PathPoint | None:
         """The last point of the path that is well before its end."""
@@ -60,6 +85,9 @@ def walked(path: Any, walk: Follower, control: StepControl, bounds: tuple[float,
             done.add(point, path)
             if to_grazing and done.seen[-1]["least_slip"] < 0.0:
                 done.outcome = Outcome("grazing", "a contact reverses at the start", p=point.p)
+                return done
+            if done.shrank():
+                done.outcome = done.born()
                 return done
             if len(done.visited) >= control.most_points:
                 done.outcome = Outcome("most_points", f"ended after {control.most_points} points", p=point.p)

@@ -1,7 +1,6 @@
-"""What a branch of cycles is to continuation: unknowns, residual, Jacobian, and the cycle behind a point.
+"""A branch by shooting, as continuation sees it: a state at a turning point and the period over the parameter.
 
-A harmonic path follows the coefficients of the series and omega; a shooting path the state at the largest displacement
-of one degree of freedom (its velocity is zero there, which fixes the phase) and the period.
+At a largest or least displacement of one degree of freedom its velocity is zero, which fixes the phase.
 """
 
 from collections.abc import Callable
@@ -11,7 +10,6 @@ import numpy as np
 
 from squealbox.limit_cycles.cycle import Cycle, extremes, ordered
 from squealbox.limit_cycles.field import Field
-from squealbox.limit_cycles.harmonic_balance import Balance, Grid, cycle_of
 from squealbox.limit_cycles.shooting import cycle_through
 from squealbox.limit_cycles.variation import Flight, flight, fly, quick_flight
 from squealbox.parameters import ParameterError
@@ -19,109 +17,13 @@ from squealbox.result import COMPLETED, Outcome
 from squealbox.system import System
 from squealbox.transient import Trajectory
 
-KEPT = 8  # fields, runs or flights kept between calls at the same values
+KEPT = 8  # equations, runs and flights kept between calls at the same values
 SHARES = (1e-5, 1e-6, 1e-7)  # of the range of the parameter: steps of its differences
 
 
 def _trim(kept: dict[Any, Any]) -> None:
     if len(kept) > KEPT:
         kept.pop(next(iter(kept)))
-
-
-class HarmonicPath:
-    """Residual of harmonic balance over (coefficients but one, omega) and the parameter."""
-
-    def __init__(self, make: Callable[[float], System], contact: str, width: float, grid: Grid, span: float) -> None:
-        self.make, self.contact, self.width, self.grid, self.span = make, contact, width, grid, span
-        self.balances: dict[float, Balance] = {}
-        self.column, self.size, self.omega = 0, 1.0, 1.0
-
-    def begin(self, coefficients: Any, omega: float, p: float, size: float) -> Any:
-        """Unknowns of a start; sets the phase and the scales: `size` [m] and omega."""
-        turned, self.column = self.balance(p).turned(self.grid.padded(coefficients))
-        self.size, self.omega = size, omega
-        return np.append(np.delete(turned.ravel(), self.column), omega)
-
-    @property
-    def scale(self) -> Any:
-        """Typical sizes of the unknowns."""
-        return np.append(np.full(len(self.grid.d) * self.dofs - 1, self.size), self.omega)
-
-    def rise(self, x: Any) -> Any:
-        """Direction of growing amplitude at x, for the start beside a Hopf point, in scaled variables with p."""
-        coefficients, _ = self.series(x)
-        direction = coefficients / self.size
-        direction[0] = 0.0
-        flat = np.append(np.delete(direction.ravel(), self.column), [0.0, 0.0])
-        return flat / np.linalg.norm(flat)
-
-    @property
-    def dofs(self) -> int:
-        """Number of degrees of freedom."""
-        return next(iter(self.balances.values())).field.size
-
-    def balance(self, p: float) -> Balance:
-        """The equation at a parameter value."""
-        if p not in self.balances:
-            self.balances[p] = Balance(Field(self.make(p), self.contact, self.width), self.grid)
-            _trim(self.balances)
-        return self.balances[p]
-
-    def series(self, x: Any) -> tuple[Any, float]:
-        """Coefficients (2H + 1, n) and omega of a point."""
-        return np.insert(x[:-1], self.column, 0.0).reshape(len(self.grid.d), -1), float(x[-1])
-
-    def residual(self, x: Any, p: float) -> Any:
-        """R over omega^2 size; NaN, which continuation refuses, where the parameter leaves its range."""
-        try:
-            self.balance(p)
-        except ParameterError:
-            return np.full(len(x), np.nan)
-        return self.balance(p).residual(*self.series(x))[0].ravel() / (self.omega**2 * self.size)
-
-    def jacobian(self, x: Any, p: float) -> tuple[Any, Any]:
-        """By the unknowns (analytic) and by the parameter (central difference)."""
-        coefficients, omega = self.series(x)
-        balance = self.balance(p)
-        by_q, by_omega = balance.jacobian(coefficients, omega, balance.motion(coefficients, omega))
-        by_x = np.column_stack([np.delete(by_q, self.column, axis=1), by_omega]) / (self.omega**2 * self.size)
-        step = 1e-6 * self.span
-        by_p = (self.residual(x, p + step) - self.residual(x, p - step)) / (2.0 * step)
-        return by_x, by_p
-
-    def describe(self, x: Any, p: float) -> dict[str, Any]:
-        """Period, extremes, multipliers and least sliding speed of the cycle at a point."""
-        coefficients, omega = self.series(x)
-        balance = self.balance(p)
-        states = balance.motion(coefficients, omega)
-        n = balance.field.size
-        closed = np.vstack([states, states[:1]])
-        t = np.append(self.grid.tau, 2.0 * np.pi) / omega
-        low, high = extremes(t, closed[:, :n], closed[:, n:])
-        multipliers = ordered(np.linalg.eigvals(balance.monodromy(coefficients, omega, max(128, self.grid.samples))))
-        return {"period": 2.0 * np.pi / omega, "lowest": low, "highest": high, "multipliers": multipliers,
-                "least_slip": self.least_slip(x, p), "sticking": 0.0}  # fmt: skip
-
-    def cycle(self, x: Any, p: float) -> Cycle:
-        """The cycle at a point, on a fine grid; its error is the share of the last quarter of harmonics."""
-        coefficients, omega = self.series(x)
-        balance = self.balance(p)
-        settings = {"contact": self.contact, "width": self.width}
-        error = balance.tail(coefficients)
-        return cycle_of(balance, coefficients, omega, Outcome(COMPLETED), settings, error)
-
-    def least_slip(self, x: Any, p: float) -> float:
-        """Least sliding speed in the sense of V [m/s], by a parabola through the least of many samples."""
-        field = self.balance(p).field
-        tau = np.linspace(0.0, 2.0 * np.pi, 16 * self.grid.samples, endpoint=False)
-        slip = field.contact_state(self.balance(p).motion(*self.series(x), tau))[1] * np.sign(field.V)
-        least = np.inf
-        for v in slip.T:
-            i = int(np.argmin(v))
-            a, b, c = v[i - 1], v[i], v[(i + 1) % len(v)]
-            bend = a - 2.0 * b + c
-            least = min(least, float(b - (c - a) ** 2 / (8.0 * bend) if bend > 0.0 else b))
-        return least
 
 
 class ShootingPath:
@@ -171,7 +73,7 @@ class ShootingPath:
         return start, self.flights[key]
 
     def sequence(self, x: Any, p: float) -> tuple[tuple[int, int], ...] | None:
-        """(contact, mode it takes) of the events of a period in their order, from a fixed first one; None: no motion."""
+        """(contact, new mode) of the events of a period, from a fixed first one on; None where there is no motion."""
         try:
             run = self.run(x, p) if x[-1] > 0.0 else None
         except ParameterError:
@@ -221,7 +123,7 @@ class ShootingPath:
             step = share * self.span
             ends = [s * step for s in (1.0, -1.0) if self.sequence(x, p + s * step) == here]
             if len(ends) == 2 or (ends and share == SHARES[-1]):
-                low, high = (ends + [0.0])[:2][::-1]
+                low, high = sorted([*ends, 0.0][:2])
                 return (self.residual(x, p + high) - self.residual(x, p + low)) / (high - low)
             if share == SHARES[0]:  # where no smaller step keeps the order
                 slope = (self.residual(x, p + step) - self.residual(x, p - step)) / (2.0 * step)
@@ -237,7 +139,7 @@ class ShootingPath:
         return {"period": float(x[-1]), "lowest": low, "highest": high,
                 "multipliers": ordered(np.linalg.eigvals(flown.phi)),
                 "least_slip": float(np.min(slip, initial=np.inf)),
-                "sticking": float(np.max(sticking, initial=0.0))}  # fmt: skip
+                "sticking": float(np.max(sticking, initial=0.0)), "begin": motion.q[0]}  # fmt: skip
 
     def least_slip(self, x: Any, p: float) -> float:
         """Least sliding speed in the sense of V [m/s] at the instants of the motion."""
