@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from squealbox.parameters import ParameterError
-from squealbox.studies import Scatter, Uniform, grid, latin_hypercube, sampled, sobol, zipped
+from squealbox.studies import Scatter, Uniform, grid, latin_hypercube, sampled, sobol_sequence, zipped
 from squealbox.studies.layout import open_ranges, slabs
 
 
@@ -46,7 +46,7 @@ def test_a_latin_hypercube_hits_every_slice_once():
 
 
 def test_a_sobol_sequence_fills_every_square_of_a_binary_grid():
-    points = sobol({"a": (0.0, 1.0), "b": (0.0, 1.0)}, 64).points(0, 64)
+    points = sobol_sequence({"a": (0.0, 1.0), "b": (0.0, 1.0)}, 64).points(0, 64)
     squares = {(int(8 * a), int(8 * b)) for a, b in zip(points["a"], points["b"], strict=True)}
     assert len(squares) == 64  # a (0, 6, 2) net: one point in each of 8 x 8
     rng = np.random.default_rng(0)

@@ -25,12 +25,17 @@ Ends = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
 def read(file: Path, changes: Sequence[str] = (), allow_code: bool = False) -> DesignFile:
     """The design file with ``--set friction.static=0.4`` and the like applied."""
     found = read_file(file, allow_code=allow_code)
+    return dataclasses.replace(found, design=changed(found.design, changes))
+
+
+def changed(design: Design, changes: Sequence[str]) -> Design:
+    """The design with ``--set friction.static=0.4`` and the like applied."""
     for change in changes:
         name, equals, text = change.partition("=")
         if not equals:
             raise UsageError(f"--set {change[:60]}: expected NAME=VALUE, such as friction.static=0.4")
-        found = dataclasses.replace(found, design=_changed(found.design, name.strip(), text.strip(), change))
-    return found
+        design = _changed(design, name.strip(), text.strip(), change)
+    return design
 
 
 @dataclasses.dataclass(frozen=True)

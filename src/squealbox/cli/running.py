@@ -70,12 +70,16 @@ def _explain(name: str, error: Exception) -> int:
     """Say what was wrong; only errors of kinds that are about the input are put down to the user."""
     from squealbox.files import DesignFileError, NotWritable
     from squealbox.parameters import ParameterError
+    from squealbox.studies import StoreDamaged, StoreError, StoreFull, StudyError
     from squealbox.system import InvalidSystem
 
     if isinstance(error, DesignFileError):
         print("\n".join(str(problem) for problem in error.problems), file=sys.stderr)
         return BAD_INPUT
-    if isinstance(error, (UsageError, ParameterError, InvalidSystem, NotWritable)):
+    if isinstance(error, (StoreDamaged, StoreFull)):
+        _say(name, str(error))
+        return FAILED
+    if isinstance(error, (UsageError, ParameterError, InvalidSystem, NotWritable, StoreError, StudyError)):
         _say(name, str(error))
         return BAD_INPUT
     if isinstance(error, OSError) and error.filename is not None:

@@ -19,6 +19,7 @@ from squealbox.parameters import ParameterError, known_names
 from squealbox.system import InvalidSystem
 
 BRAKES: dict[str, type[Design]] = {**DESIGNS, "own": OwnBrake, "mechanism": OwnMechanism}
+STUDY = "study"  # a section that `study.read_study` reads
 SECTIONS: dict[str, Callable[..., Any]] = {
     "modes": analyses.read_modes,
     "onset": analyses.read_onset,
@@ -72,16 +73,24 @@ def read_text(text: str, name: str = "design.toml") -> DesignFile:
 
 def _file(document: Document) -> DesignFile:
     tables = dict(document.tables)
+    tables.pop(STUDY, None)
     asked = {name: tables.pop(name) for name in SECTIONS if name in tables}
-    design = _design(document, tables)
-    known = design or _without_problems(document, tables)
-    sections = {name: _section(document, name, table, known) for name, table in asked.items()}
+    design = design_of(document, tables)
+    sections = {name: section_of(document, name, table, design) for name, table in asked.items()}
     if design is None or document.problems:
         raise document.error()
     return DesignFile(document.path, design, **sections)
 
 
-def _design(document: Document, tables: Mapping[str, Any]) -> Design | None:
+def design_of(document: Document, tables: Mapping[str, Any], beside: tuple[str, ...] = ()) -> Design | None:
+    """The brake of a file whose other sections are taken out; `beside` are keys it may have for other readers.
+
+    When something is wrong, the design without the faulty keys, so that sections can be checked against it.
+    """
+    return _design(document, tables, beside) or _without_problems(document, tables)
+
+
+def _design(document: Document, tables: Mapping[str, Any], beside: tuple[str, ...] = ()) -> Design | None:
     if "brake" not in tables:
         document.problem((), f"the key 'brake' is missing, expected {known_names('', list(BRAKES))}")
         return None
@@ -89,7 +98,7 @@ def _design(document: Document, tables: Mapping[str, Any]) -> Design | None:
     if kind is WRONG:
         return None
     rest = {name: value for name, value in tables.items() if name != "brake"}
-    design: Design | None = read_sheet(document, kind, rest, (), beside=tuple(SECTIONS))
+    design: Design | None = read_sheet(document, kind, rest, (), beside=(*SECTIONS, STUDY, *beside))
     if design is None:
         return None
     try:
@@ -107,7 +116,8 @@ def _without_problems(document: Document, tables: Mapping[str, Any]) -> Design |
     return _design(Document(document.path, document.text, good, allow_code=document.allow_code), good)
 
 
-def _section(document: Document, name: str, table: Any, design: Design | None) -> Any:
+def section_of(document: Document, name: str, table: Any, design: Design | None) -> Any:
+    """A section of the file, read by its own reader."""
     if not isinstance(table, Mapping):
         return wrong(document, (name,), table, f"a section [{name}]")
     return SECTIONS[name](document, table, (name,), design)

@@ -7,8 +7,9 @@ from typing import Any
 
 from squealbox.files.analyses import Axis, Modes, Simulate
 from squealbox.files.own_law import OwnLaw
-from squealbox.files.reading import BRAKES
+from squealbox.files.reading import BRAKES, STUDY
 from squealbox.files.sheets import LAW_NAMES, OWN, SCHEDULE_NAMES, field_type, is_required
+from squealbox.files.study import OTHERS, Study
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, Parameter
 
@@ -37,6 +38,7 @@ def json_schema() -> Schema:
             "required": ["x", "y"],
             "additionalProperties": False,
         },
+        STUDY: _study(),
     }
     brakes = [_sheet(brake, first={"brake": {"const": name}}, more=sections) for name, brake in BRAKES.items()]
     return {
@@ -139,6 +141,13 @@ def _axis() -> Schema:
         "required": ["parameter", "range"],
         "additionalProperties": False,
     }
+
+
+def _study() -> Schema:
+    """[study]; its axes come in several forms, which the reader checks."""
+    words = {"type": "array", "items": {"type": "string"}, "minItems": 1}
+    axes = {"type": "array", "items": {"type": "object"}, "minItems": 1, "description": "the axes of the space"}
+    return _sheet(Study, more=dict(zip(OTHERS, (axes, words, words), strict=True)))
 
 
 def _one_key(name: str, value: Schema) -> Schema:

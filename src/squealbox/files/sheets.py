@@ -20,6 +20,7 @@ from squealbox.files.own_law import OwnLaw, own_law
 from squealbox.friction import LAWS, FrictionLaw
 from squealbox.parameters import DataSheet, Parameter, ParameterError, known_names
 from squealbox.schedules import SCHEDULES, Schedule
+from squealbox.studies.distributions import Distribution
 
 Sheet = TypeVar("Sheet", bound=DataSheet)
 
@@ -182,8 +183,11 @@ def _schedule(document: Document, value: Mapping[str, Any], about: Parameter, ke
 def unit_in(sheet: type[DataSheet], about: Parameter, unit: str) -> str:
     """The unit a field of `sheet` has in a file.
 
-    In a schedule a declared unit of nothing is that of the quantity it stands for, and ``/s`` is that per second.
+    In a distribution a declared unit of nothing is that of the parameter that scatters. In a schedule it is that of the
+    quantity it stands for, and ``/s`` is that per second.
     """
+    if issubclass(sheet, Distribution):
+        return about.unit or unit
     if not issubclass(sheet, Schedule):
         return about.unit
     if about.unit == "/s":

@@ -1,16 +1,23 @@
-"""Figures of a sweep: one answer over the parameters of its space."""
+"""Figures of sweeps: an answer over one parameter as lines, over two as a map, of samples as points."""
 
+import itertools
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from squealbox.limit_cycles.pushes import DangerousPush
 from squealbox.plots.dispatch import plot
-from squealbox.plots.style import drawing, figure_of, line, note, quantity_label
+from squealbox.plots.style import COLUMN, LINES, PREFIXES, ROW, drawing, figure_of, line, note, quantity_label, scaled
 from squealbox.studies import Sweep
 
 if TYPE_CHECKING:
+    import xarray
     from matplotlib.figure import Figure
+
+MOST_LINES = 8
+MOST_PANELS = 6
+MOST_WORDS = len(LINES)
+UNKNOWN = "#dddddd"
 
 
 def numeric_answers(found: Sweep) -> list[str]:
@@ -21,34 +28,42 @@ def numeric_answers(found: Sweep) -> list[str]:
 
 @plot.register(Sweep)
 def sweep_overview(found: Sweep, *, answer: str | None = None, title: str = "", axes: Any = None) -> "Figure":
-    """One answer over the space: a line over one parameter, a map over two, sorted values over samples or more axes.
+    """An answer of a sweep over its parameters; failed points are crosses, or grey crossed fields.
 
-    `answer` names it, by default the first that is a number at each point. A sweep without one raises `ValueError`.
+    Parameters
+    ----------
+    answer : its name; left out, the first that is one number at each point, or the first of all
+    axes : one panel, for a sweep over one or two axes
+
+    Over one axis the answer is a line, or one for each of its numbers; over two a map (of the largest of its numbers);
+    further axes give a panel for each of up to six combinations of their values. A sample of several parameters is
+    drawn as points over the first two. Raises `ValueError` for an unknown answer and for more panels.
     """
-    known = numeric_answers(found)
-    name = answer or next(iter(known), "")
-    if name not in known:
-        raise ValueError(f"answer = {name!r}: expected one number a point, one of {', '.join(known) or 'none'}")
-    about = found[name]
-    label = quantity_label(name.replace("_", " "), _unit(about))
-    values = np.asarray(about.values, dtype=float)
-    names = [str(dim) for dim in about.dims if dim in found.dataset.coords]
-    with drawing(axes, width=4.2 if values.ndim == 2 else None, height=3.0 if values.ndim == 2 else 2.6) as panel:
-        if values.ndim == 2 and len(names) == 2:
-            x, y = (found[dim] for dim in names)
-            mesh = panel.pcolormesh(x.values, y.values, values.T, cmap="cividis", rasterized=True, shading="nearest")
-            figure_of(panel).colorbar(mesh, ax=panel, pad=0.02).set_label(label)
-            panel.set(xlabel=quantity_label(names[0], _unit(x)), ylabel=quantity_label(names[1], _unit(y)), title=title)
+    name = answer if answer is not None else [*numeric_answers(found), *found.answers, ""][0]
+    if name not in found.answers:
+        raise ValueError(
+            f"answer = {name!r}: expected one of {', '.join(found.answers) or 'none, since every point failed'}"
+        )
+    values, dims = found[name], list(found["outcome"].dims)
+    if axes is not None or len(dims) <= 2:
+        with drawing(axes, width=COLUMN if len(dims) == 1 else 4.2, height=2.7) as panel:
+            _panel(panel, found, values, dims, {}, title)
             return figure_of(panel)
-        if values.ndim == 1 and len(names) == 1:
-            along = found[names[0]]
-            panel.plot(along.values, values, **line(0, marker=values.size < 60, count=values.size))
-            panel.set(xlabel=quantity_label(names[0], _unit(along)))
-        else:
-            panel.plot(np.arange(values.size) + 1, np.sort(values.ravel()), **line(0))
-            panel.set(xlabel="point, sorted by the answer")
-        panel.set(ylabel=label, title=title)
-        return figure_of(panel)
+    combinations = list(itertools.product(*(range(found.dataset.sizes[dim]) for dim in dims[2:])))
+    if len(combinations) > MOST_PANELS:
+        raise ValueError(f"{len(combinations)} panels: choose values of {', '.join(map(str, dims[2:]))} in the dataset")
+    columns = min(len(combinations), 2)
+    rows = -(-len(combinations) // columns)
+    with drawing(None, rows, columns, width=3.7 * columns, height=1.3 * ROW * rows, squeeze=False) as panels:
+        for panel, place in itertools.zip_longest(np.ravel(panels), combinations):
+            if place is None:
+                panel.set_axis_off()
+                continue
+            chosen = dict(zip(dims[2:], place, strict=True))
+            _panel(panel, found, values.isel(chosen), dims[:2], chosen, _said(found, chosen))
+        figure = figure_of(panels)
+        figure.suptitle(title, fontsize=8.0)
+        return figure
 
 
 @plot.register(DangerousPush)
@@ -62,6 +77,171 @@ def search_for_a_push(found: DangerousPush, *, title: str = "", axes: Any = None
         return figure_of(panel)
 
 
-def _unit(about: Any) -> str:
-    unit = str(about.attrs.get("units", ""))
-    return "" if unit in ("1", "-") else unit
+def _panel(
+    panel: Any, found: Sweep, values: "xarray.DataArray", dims: list[Any], chosen: dict[Any, int], title: str
+) -> None:
+    ended = np.asarray(found["outcome"].isel(chosen).values, dtype=str) == "completed"
+    several = [dim for dim in dims if dim not in found.dataset.coords]
+    if len(dims) == 1 and not several:
+        _lines(panel, found, values, dims[0], ended)
+        _spaced(panel, "x", found[dims[0]])
+    elif len(dims) == 2 and not several:
+        _map(panel, found, values, dims, ended)
+        _spaced(panel, "x", found[dims[0]])
+        _spaced(panel, "y", found[dims[1]])
+    else:
+        _points(panel, found, values, dims, ended)
+    panel.set_title(title)
+
+
+def _lines(panel: Any, found: Sweep, values: "xarray.DataArray", dim: Any, ended: Any) -> None:
+    x, label = _along(found[dim])
+    if values.dtype.kind in "OU":
+        _words_over(panel, x, values)
+    else:
+        y, unit = _numbers(values)
+        table = y.reshape(len(x), -1)
+        for i in range(min(table.shape[1], MOST_LINES)):
+            look = {} if table.shape[1] == 1 else {"label": str(i + 1)}
+            panel.plot(x, table[:, i], **line(i), **look, marker="." if len(x) <= 60 else "")
+        if table.shape[1] > 1:
+            panel.legend(title=str(values.dims[-1]).replace("_", " "), loc="best")
+        panel.set_ylabel(quantity_label(_called(values), unit))
+    if not np.all(ended):
+        where = panel.get_xaxis_transform()
+        panel.plot(
+            x[~ended], np.full(np.count_nonzero(~ended), 0.03), "x", color="#D55E00", transform=where, clip_on=False
+        )
+        panel.text(0.98, 0.05, "x failed", color="#D55E00", transform=panel.transAxes, ha="right", fontsize=7.0)
+    panel.set_xlabel(label)
+
+
+def _map(panel: Any, found: Sweep, values: "xarray.DataArray", dims: list[Any], ended: Any) -> None:
+    (x, x_label), (y, y_label) = (_along(found[dim]) for dim in dims)
+    if values.dtype.kind in "OU":
+        grid, words = _coded(values)
+        _word_map(panel, x, y, np.where(ended, grid, -1), words)
+    else:
+        numbers, unit = _numbers(values)
+        grid = _largest(numbers, ended.ndim)
+        shown = np.ma.masked_invalid(np.where(ended, grid, np.nan))
+        every = _numbers(found[str(values.name)], unit)[0]  # one scale for all panels, so that they can be compared
+        known = every[np.isfinite(every)]
+        low, high = (float(np.min(known)), float(np.max(known))) if known.size else (0.0, 1.0)
+        signed = low < 0.0 < high
+        top = max(-low, high)
+        limits = {"vmin": -top, "vmax": top, "cmap": "PuOr_r"} if signed else {"vmin": low, "vmax": high}
+        mesh = panel.pcolormesh(x, y, shown.T, rasterized=True, **limits)
+        label = quantity_label(_called(values, numbers.ndim > ended.ndim), unit)
+        figure_of(panel).colorbar(mesh, ax=panel, pad=0.02).set_label(label)
+        if signed and len(x) > 1 and len(y) > 1:
+            panel.contour(x, y, shown.T, levels=[0.0], colors=["#000000"], linewidths=1.0)
+    _crossed(panel, x, y, ended)
+    panel.set(xlabel=x_label, ylabel=y_label)
+
+
+def _points(panel: Any, found: Sweep, values: "xarray.DataArray", dims: list[Any], ended: Any) -> None:
+    """Points of a sample over the first two parameters, or over the only one; other axes lie on top of each other."""
+    if found["outcome"].ndim != ended.ndim or values.dtype.kind in "OU":
+        raise ValueError("words, or a sample with more than one further axis: draw them from the dataset")
+    places, labels = [], []
+    for name, c in found.dataset.coords.items():
+        if c.dtype.kind == "f":
+            along, label = _along(found[str(name)])
+            shape = [-1 if dim in c.dims else 1 for dim in dims]
+            places.append(np.broadcast_to(along.reshape(shape), ended.shape))
+            labels.append(label)
+    numbers, unit = _numbers(values)
+    flat = np.where(ended, _largest(numbers, ended.ndim), np.nan)
+    label = quantity_label(_called(values, numbers.ndim > ended.ndim), unit)
+    panel.set_xlabel(labels[0])
+    if len(places) == 1:
+        panel.plot(places[0].ravel(), flat.ravel(), ".", color=LINES[1][0], markersize=3.0)
+        panel.set_ylabel(label)
+        return
+    x, y = places[:2]
+    dots = panel.scatter(x.ravel(), y.ravel(), c=flat.ravel(), s=7.0, cmap="viridis", plotnonfinite=False)
+    panel.plot(x[~ended], y[~ended], "x", color="#D55E00", markersize=3.0)
+    figure_of(panel).colorbar(dots, ax=panel, pad=0.02).set_label(label)
+    panel.set_ylabel(labels[1])
+
+
+def _words_over(panel: Any, x: Any, values: "xarray.DataArray") -> None:
+    codes, words = _coded(values)
+    panel.plot(x, codes.reshape(len(x), -1), "o", color=LINES[1][0], markersize=3.0)
+    panel.set_yticks(range(len(words)), [word.replace("_", " ") or "none" for word in words])
+    panel.set_ylim(-0.5, len(words) - 0.5)
+
+
+def _word_map(panel: Any, x: Any, y: Any, grid: Any, words: list[str]) -> None:
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    colours = [LINES[i % MOST_WORDS][0] for i in range(1, len(words) + 1)]
+    shown = np.ma.masked_less(grid.reshape(len(x), len(y)), 0)
+    panel.pcolormesh(x, y, shown.T, cmap=ListedColormap(colours), vmin=-0.5, vmax=len(words) - 0.5, rasterized=True)
+    names = [word.replace("_", " ") or "none" for word in words]
+    panel.legend(handles=[Patch(color=c, label=n) for c, n in zip(colours, names, strict=True)], loc="best")
+
+
+def _crossed(panel: Any, x: Any, y: Any, ended: Any) -> None:
+    if np.all(ended):
+        return
+    panel.set_facecolor(UNKNOWN)
+    places = np.argwhere(~ended)
+    if len(places) <= 500:
+        panel.plot(x[places[:, 0]], y[places[:, 1]], "x", color="#D55E00", markersize=3.0)
+
+
+def _coded(values: "xarray.DataArray") -> tuple[Any, list[str]]:
+    words, codes = np.unique(np.asarray(values.values, dtype=str), return_inverse=True)
+    return codes.reshape(values.shape), [str(word) for word in words]
+
+
+def _numbers(values: "xarray.DataArray", to: str | None = None) -> tuple[Any, str]:
+    """The values in the unit asked for, or one that reads well; the size of complex ones."""
+    array = np.asarray(values.values)
+    array = np.abs(array) if array.dtype.kind == "c" else array.astype(float)
+    unit = str(values.attrs.get("units", ""))
+    factor, read = scaled(
+        unit, array[np.isfinite(array)], to=to if to in [name for _, name in PREFIXES.get(unit, ())] else None
+    )
+    return array / factor, "" if read == "1" else read
+
+
+def _spaced(panel: Any, axis: str, values: "xarray.DataArray") -> None:
+    """A logarithmic axis for values that were spaced so."""
+    if values.dtype.kind != "f" or values.size < 3 or float(values.min()) <= 0.0:
+        return
+    steps, ratios = np.diff(values.values), np.diff(np.log(values.values))
+    if np.ptp(ratios) < 1e-6 * np.max(np.abs(ratios)) and np.ptp(steps) > 1e-3 * np.max(np.abs(steps)):
+        panel.set(**{f"{axis}scale": "log"})
+
+
+def _largest(numbers: Any, ndim: int) -> Any:
+    if numbers.ndim == ndim:
+        return numbers
+    flat = numbers.reshape(*numbers.shape[:ndim], -1)
+    return np.max(np.where(np.isfinite(flat), flat, -np.inf), axis=-1, initial=-np.inf)
+
+
+def _along(values: "xarray.DataArray") -> tuple[Any, str]:
+    """A coordinate as numbers to draw over, and its label."""
+    if values.dtype.kind in "OU":
+        return np.arange(values.size), ", ".join(f"{i} {word}" for i, word in enumerate(values.values))
+    unit = str(values.attrs.get("units", ""))
+    factor, read = scaled(unit, values.values)
+    return values.values / factor, quantity_label(str(values.name), "" if read == "1" else read)
+
+
+def _called(values: "xarray.DataArray", several: bool = False) -> str:
+    name = str(values.name).replace("_", " ")
+    return f"largest {name}" if several else name
+
+
+def _said(found: Sweep, chosen: dict[Any, int]) -> str:
+    parts = []
+    for dim, place in chosen.items():
+        value = found[dim].values[place] if dim in found.dataset.coords else place
+        parts.append(f"{dim} = {value if isinstance(value, str) else format(float(value), '.4g')}")
+    return ", ".join(parts)

@@ -30,7 +30,7 @@ from squealbox.studies.probability import SquealProbability, squeal_probability
 from squealbox.studies.quantity import Quantity, evaluate
 from squealbox.studies.scatter import SAMPLINGS, Scatter
 from squealbox.studies.sobol import SobolIndices, sobol_indices
-from squealbox.studies.space import Axis, Space, grid, latin_hypercube, sampled, sobol, zipped
+from squealbox.studies.space import Axis, Space, grid, latin_hypercube, sampled, sobol_sequence, zipped
 from squealbox.studies.store import (
     ForeignStore,
     Store,
@@ -41,7 +41,7 @@ from squealbox.studies.store import (
     StudyChanged,
 )
 from squealbox.studies.subset import SubsetProbability, subset_simulation
-from squealbox.studies.sweep import Sweep, sweep
+from squealbox.studies.sweep import Sweep, open_sweep, sweep
 from squealbox.studies.work import Pace
 
 __all__ = [
@@ -87,11 +87,12 @@ __all__ = [
     "interval_bounds",
     "latin_hypercube",
     "morris_effects",
+    "open_sweep",
     "optimise",
     "polynomial_chaos",
     "sampled",
-    "sobol",
     "sobol_indices",
+    "sobol_sequence",
     "squeal_probability",
     "subset_simulation",
     "sweep",

@@ -14,6 +14,7 @@ from squealbox.studies.block import NOT_RUN, Block, common_type, missing
 
 OUTCOME, FAILURE = "outcome", "failure"
 MOST = 1000  # failed points whose messages are kept
+HEADER = 8192  # bytes HDF5 needs at most to describe a variable
 Attributes = dict[str, Any]
 
 
@@ -83,6 +84,16 @@ class Layout:
     outcomes: Mapping[str, int]
     messages: Mapping[int, str]
     gaps: tuple[tuple[int, int], ...]
+
+    @property
+    def nbytes(self) -> int:
+        """Size of the variables and coordinates as a file holds them, and what HDF5 needs to describe them."""
+        widths = [(v.dtype.itemsize // (4 if v.dtype.kind == "U" else 1), v.tail) for v in self.variables.values()]
+        outcome = max(len(name) for name in [NOT_RUN, *self.outcomes])
+        per_point = outcome + sum(width * int(np.prod(tail, dtype=np.int64)) for width, tail in widths)
+        axes = sum(c.values.nbytes for c in self.frame.coordinates.values())
+        texts = sum(map(len, self.messages.values())) + sum(len(str(a)) for a in self.frame.attributes.values())
+        return self.frame.total * per_point + axes + texts + HEADER * (8 + len(self.variables))
 
 
 def summary_of(block: Block) -> Summary:

@@ -36,7 +36,7 @@ class Axis:
 
 
 class Space:
-    """A product of axes, made by `grid`, `zipped`, `latin_hypercube`, `sobol` or `sampled`; ``a * b`` is the product.
+    """A product of axes, made by `grid`, `zipped`, `latin_hypercube`, `sobol_sequence` or `sampled`; `*` multiplies.
 
     Raises `ParameterError` for an empty axis, values that are neither finite numbers nor words, or a name given twice.
 
@@ -131,12 +131,12 @@ def latin_hypercube(ranges: Mapping[str, Any], count: int, *, seed: int = 0, dim
     return _within(ranges, count, "latin_hypercube", seed, dim)
 
 
-def sobol(ranges: Mapping[str, Any], count: int, *, seed: int = 0, dim: str = POINT) -> Space:
+def sobol_sequence(ranges: Mapping[str, Any], count: int, *, seed: int = 0, dim: str = POINT) -> Space:
     """`count` points of the scrambled Sobol' sequence (Owen 1998), more even than chance; best with a power of two.
 
     Arguments as for `latin_hypercube`. Other counts than a power of two take the first points of the next one.
 
-    >>> sobol({"friction.static": (0.2, 0.5), "load": (1e3, 2e3)}, 128)
+    >>> sobol_sequence({"friction.static": (0.2, 0.5), "load": (1e3, 2e3)}, 128)
     128 points: friction.static and load (128)
     """
     return _within(ranges, count, "sobol", seed, dim)

@@ -174,6 +174,13 @@ class Store:
         """Used with ``with``: an error of the file system becomes a `StoreError` that says what is safe."""
         return _explained(self.path)
 
+    def reserve(self, path: Path, size: int) -> None:
+        """See that a file of this size can be written, which HDF5 would find out too late."""
+        with self.explained(), path.open("wb") as stream:
+            if hasattr(os, "posix_fallocate") and size > 0:
+                os.posix_fallocate(stream.fileno(), 0, size)
+        path.unlink()
+
     def log(self, text: str) -> None:
         """A line of run.log, with the time."""
         with _explained(self.path), (self.path / LOG).open("a", encoding="utf-8") as stream:
@@ -196,6 +203,7 @@ class Store:
                 self.damaged.append(file.name)
                 if repair:
                     os.replace(file, file.with_suffix(".damaged"))
+                    self.log(f"{file.name} is damaged: put aside, to be computed again")
                 continue
             if any(place[0] < stop and start < place[1] for start, stop in self.done):
                 raise StoreDamaged(f"{file} overlaps with another block: take one of them away")
@@ -250,8 +258,8 @@ class _explained:
         return None
 
     def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
-        if isinstance(error, OSError):
-            why = error.strerror or str(error)
+        if isinstance(error, (OSError, RuntimeError)):  # the latter from HDF5, which has no errors of the system
+            why = getattr(error, "strerror", None) or str(error)
             text = f"{self.path}: cannot be written ({why}); what was finished before is safe, and the study can go on"
             raise StoreFull(text) from error
 

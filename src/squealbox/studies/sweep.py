@@ -14,11 +14,11 @@ from squealbox.result import Outcome, Result, ResultFileError, provenance
 from squealbox.studies.analysis import StudyError, Task
 from squealbox.studies.block import Block
 from squealbox.studies.dataset import in_memory, write_file
-from squealbox.studies.embedded import run_embedded
+from squealbox.studies.executors import Executor, executor
 from squealbox.studies.fingerprint import plain, record
 from squealbox.studies.layout import Coordinate, Frame, Summary, layout, summary_of
 from squealbox.studies.space import Space, as_space
-from squealbox.studies.store import RESULT, Store
+from squealbox.studies.store import RESULT, Store, StoreDamaged
 from squealbox.studies.work import Progress, Work
 
 if TYPE_CHECKING:
@@ -93,6 +93,29 @@ class Sweep(Result):
         aside = ("outcome", "failure_point", "failure_message")
         return [str(name) for name in self.dataset.data_vars if name not in aside]
 
+    def table(self, rows: int | None = None, *, widest: int | None = None) -> dict[str, Any]:
+        """Columns with a row for each point, the last axis fastest: parameters, outcome, every number of every answer.
+
+        The keys are names with units, ``load [N]``. `rows` and `widest` leave out later points, and the later numbers
+        of an answer that has many.
+        """
+        dims = self["outcome"].dims
+        shape = self["outcome"].shape
+        first = slice(0, rows)
+        columns: dict[str, Any] = {}
+        for name, values in self.dataset.coords.items():
+            place = [values.sizes[dim] if dim in values.dims else 1 for dim in dims]
+            whole = np.broadcast_to(np.asarray(values.values).reshape(place), shape)
+            columns[_headed(str(name), values)] = whole.reshape(-1)[first]
+        columns["outcome"] = self.outcomes.reshape(-1)[first]
+        for name in self.answers:
+            values = self.dataset[name]
+            flat = np.asarray(values.values).reshape(int(np.prod(shape)), -1)[first, :widest]
+            for i, column in enumerate(flat.T):
+                label = name if values.ndim == len(dims) else f"{name} {i + 1}"
+                columns[_headed(label, values)] = column
+        return columns
+
     def __repr__(self) -> str:
         return self.summary()
 
@@ -127,6 +150,9 @@ def sweep(
     units: Mapping[str, str] | None = None,
     seed: int = 0,
     chunk: int | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    time_limit: float | None = None,
     progress: Progress | None = None,
 ) -> Sweep:
     """Ask `analysis` of `design` at every point of `space`; with `out`, nothing that was finished can be lost.
@@ -143,11 +169,18 @@ def sweep(
     units : of the names a mapping returns
     seed : of the random generators
     chunk : points in a block; left out, a block takes about a second, by measuring
+    workers : number of supervised processes on this machine; left out, this process computes
+    scheduler : address of a Dask scheduler, such as "tcp://head:8786", whose workers compute
+    time_limit : of a block that a worker process computes [s]; left out, 30 s. A block that is late is taken apart,
+        so a single point has this long before it is given up
     progress : called with a `Pace` after each block
 
     Returns
     -------
     Sweep. A point whose analysis raises an error has the outcome "failed" and its message; the others are untouched.
+    With workers, a point that hangs is "time_limit" and one that kills its process three times is "worker_died".
+    Answers do not depend on who computes them, bit for bit, for an analysis whose answer at a point depends on that
+    point alone.
     Ctrl-C returns what is done, with the outcome "interrupted". Equal studies give equal files, byte for byte.
 
     Raises `ParameterError` for a name the design does not have, `StudyError` for what cannot be asked, and `StoreError`
@@ -161,18 +194,35 @@ def sweep(
     points = as_space(space)
     kept = (keep,) if isinstance(keep, str) else tuple(keep)
     task = Task(design, analysis, kept, dict(units or {}), int(seed))
+    execute = executor(workers, scheduler, time_limit)
     _check(task, points, chunk)
     frame = frame_of(task, points)
     if out is None:
         memory = Memory()
-        _run(Work(task, points, memory, chunk=chunk, progress=progress))
+        _run(Work(task, points, memory, chunk=chunk, progress=progress), execute)
         return Sweep.from_dataset(in_memory(layout(frame, memory.done), memory.blocks()))
     with Store.created_or_resumed(Path(out), record(task, points)) as store:
         if store.finished:
             return Sweep.opened(store.result())
         store.keep_frame(frame)
-        _run(Work(task, points, store, chunk=chunk, progress=progress))
+        _run(Work(task, points, store, chunk=chunk, progress=progress), execute)
         return Sweep.opened(consolidated(store, frame))
+
+
+def open_sweep(path: str | os.PathLike[str]) -> Sweep:
+    """What the folder of a study holds at this moment, also while it is being written; nothing is changed.
+
+    Raises `StoreError` when it is no such folder or damaged. Points that are not finished are "not_run".
+    """
+    store = Store.opened(Path(path))
+    if not store.finished:
+        try:
+            return Sweep.from_dataset(in_memory(layout(store.frame(), store.done), store.blocks()))
+        except StoreDamaged:
+            store = Store.opened(Path(path))  # it may have been finished while its blocks were read
+            if not store.finished:
+                raise
+    return Sweep.opened(store.result())
 
 
 def consolidated(store: Store, frame: Frame) -> Path:
@@ -180,6 +230,7 @@ def consolidated(store: Store, frame: Frame) -> Path:
     plan = layout(frame, store.done)
     part = store.path / (PARTIAL if plan.gaps else RESULT)
     part = part.with_name(part.name + ".part")
+    store.reserve(part, plan.nbytes)
     with store.explained():
         write_file(part, plan, store.blocks())
     if plan.gaps:
@@ -202,11 +253,11 @@ def frame_of(task: Task, points: Space) -> Frame:
     return Frame(points.dims, points.shape, coordinates, {"kind": Sweep.kind_name(), **attributes})
 
 
-def _run(work: Work) -> None:
+def _run(work: Work, execute: Executor) -> None:
     """All that is left, or until Ctrl-C."""
     work.target.log(f"begins: {work.left} of {len(work.points)} points to compute")
     try:
-        run_embedded(work)
+        execute(work)
     except KeyboardInterrupt:
         work.target.log(f"stopped by the user: {work.pace}")
         return
@@ -235,6 +286,11 @@ def _declared(design: Any) -> Iterator[tuple[str, tuple[str, str]]]:
         first = design.parameters().get(names[0])
         if first is not None:
             yield alias, (first.unit if first.unit != "-" else "1", first.meaning)
+
+
+def _headed(name: str, values: "xarray.DataArray") -> str:
+    unit = values.attrs.get("units", "")
+    return f"{name} [{unit}]" if unit not in ("", "1") else name
 
 
 def _ranged(values: "xarray.DataArray") -> str:

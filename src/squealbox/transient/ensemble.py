@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 USUAL_RTOL = 1e-7
 CODES = {_march.COMPLETED: COMPLETED} | {code: name for code, (name, _) in MESSAGES.items()}
 NOT_RUN = "not_run"
+THREADS = "SQUEALBOX_THREADS"  # in the environment: how many threads where nothing else is said
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -250,6 +251,8 @@ def _outcome(ended: Any, interrupted: bool) -> Outcome:
 
 
 def _threads(threads: int | None) -> int:
+    if threads is None and os.environ.get(THREADS, "").isdigit():
+        return max(1, int(os.environ[THREADS]))  # set for processes that share a machine
     if threads is None:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     if int(threads) != threads or threads < 1:

@@ -1,0 +1,191 @@
+"""`squealbox run`, `status`, `show` and `export`: studies that go on where they were stopped."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import Parameter
+
+from squealbox.cli.inputs import AllowCode, Changes, changed, folder
+from squealbox.cli.progress import Progress
+from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.study_analyses import UNITS, analysis_of
+from squealbox.cli.tables import write_csv, written
+from squealbox.files.study import read_study
+from squealbox.studies import Store, open_sweep, sweep
+from squealbox.studies.store import LOG, RESULT
+
+if TYPE_CHECKING:
+    from squealbox.studies import Pace, Sweep
+
+LINES = 5  # of the log that `status` shows
+ROWS = 20  # of the table that `show` prints
+WIDEST = 4  # numbers of one answer in it
+Where = Annotated[Path, Parameter(show_default=False)]
+
+
+def run(
+    file: Path,
+    *,
+    out: Path,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    time_limit: str | None = None,
+    chunk: int | None = None,
+    changes: Changes = (),
+    allow_code: AllowCode = False,
+) -> None:
+    """Run a study: an analysis at every point of a space of parameters. Stopped or killed, it goes on when run again.
+
+    Parameters
+    ----------
+    file
+        study file: a brake and a section [study]; squealbox init writes a first one
+    out
+        folder of the study; what was finished there is kept
+    workers
+        number of supervised worker processes on this machine; left out, this process computes
+    scheduler
+        address of a Dask scheduler whose workers compute: tcp://head:8786
+    time_limit
+        of a block that a worker computes: 60s
+    chunk
+        points in a block; left out, a block takes about a second
+    changes
+        other values of the brake for this study: --set friction.static=0.4 load="2 kN"
+    allow_code
+        run the Python file of a friction law that the design file names
+    """
+    found = read_study(file, allow_code=allow_code)
+    study = found.study
+    design = changed(found.brake.design, changes)
+    if scheduler is None and workers is None and study.workers is not None:
+        workers = int(study.workers)
+    if chunk is None and study.chunk is not None:
+        chunk = int(study.chunk)
+    limit = study.time_limit if time_limit is None else _seconds(time_limit)
+    with Progress(f"{len(found.space)} points") as progress:
+        table = sweep(
+            design,
+            found.space,
+            analysis_of(found),
+            out=out,
+            keep=found.keep,
+            units=UNITS if study.analysis == "simulate" else None,
+            seed=int(study.seed),
+            chunk=chunk,
+            workers=workers,
+            scheduler=scheduler,
+            time_limit=limit if workers or scheduler else None,
+            progress=lambda pace: progress(str(pace), _share(pace)),
+        )
+    if table.outcome == "interrupted":
+        raise ComputationFailed(table.outcome)
+    print(f"{design.title}, {file}\n{table.summary()}\n{written(out / RESULT, out / LOG)}")
+
+
+def status(directory: Where) -> None:
+    """How far is a study, is it running, and what did it say last?
+
+    Parameters
+    ----------
+    directory
+        folder of the study
+    """
+    store = Store.opened(directory)
+    if store.finished:
+        print(f"{directory}: finished")
+    else:
+        total, done = store.frame().total, sum(stop - start for start, stop in store.done)
+        failed = sum(summary.failed for summary in store.done.values())
+        state = "running" if store.writing else "stopped; the same run command goes on from here"
+        print(f"{directory}: {state}\n{done} of {total} points in {len(store.done)} blocks, {failed} failed")
+    for name in store.damaged:
+        print(f"damaged, to be computed again: {name}")
+    log = directory / LOG
+    if log.exists():
+        print("\n".join(log.read_text(encoding="utf-8").splitlines()[-LINES:]))
+
+
+def show(directory: Where, *, of: str | None = None, out: Path | None = None) -> None:
+    """What a study has found, also while it runs: a table, and a figure with --out.
+
+    Parameters
+    ----------
+    directory
+        folder of the study
+    of
+        the answer that the figure shows; left out, the first
+    out
+        folder for sweep.png, sweep.svg and sweep.csv
+    """
+    found = open_sweep(directory)
+    print(found.summary())
+    print(_rows(found))
+    if out is not None:
+        from squealbox import plots
+
+        if of is not None and of not in found.answers:
+            raise UsageError(f"--of {of[:40]}: expected one of {', '.join(found.answers)}")
+        try:
+            figure = plots.sweep_overview(found, answer=of, title=str(directory))
+        except ValueError as error:
+            raise UsageError(f"no figure: {error}") from error
+        print(written(*plots.save(figure, folder(out) / "sweep"), write_csv(out / "sweep.csv", found.table())))
+
+
+def export(directory: Where, *, format: Literal["csv", "nc", "mat"] = "csv", to: Path | None = None) -> None:
+    """Write what a study has found as one file: CSV for spreadsheets, NetCDF, or MAT for MATLAB.
+
+    Parameters
+    ----------
+    directory
+        folder of the study
+    format
+        csv, nc or mat
+    to
+        file to write; left out, sweep.FORMAT in this folder
+    """
+    found = open_sweep(directory)
+    path = to if to is not None else Path(f"sweep.{format}")
+    if path.exists():
+        raise UsageError(f"{path} is there already, and export overwrites nothing: give another name with --to")
+    folder(path.parent)
+    if format == "csv":
+        write_csv(path, found.table())
+    elif format == "nc":
+        found.save(path)
+    else:
+        from squealbox.cli.matlab import write_mat
+
+        write_mat(path, found)
+    print(written(path))
+
+
+def _rows(found: "Sweep") -> str:
+    """The first rows of the table, as text."""
+    columns = found.table(ROWS, widest=WIDEST)
+    names = list(columns)
+    cells = [[_cell(value) for value in columns[name]] for name in names]
+    widths = [max(len(name), *(len(cell) for cell in column)) for name, column in zip(names, cells, strict=True)]
+    lines = ["  ".join(name.rjust(width) for name, width in zip(names, widths, strict=True))]
+    for row in zip(*cells, strict=True):
+        lines.append("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)))
+    more = int(found["outcome"].size) - len(cells[0])
+    return "\n".join(lines + [f"and {more} more; squealbox export writes them all"] * (more > 0))
+
+
+def _cell(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _share(pace: "Pace") -> float:
+    return pace.done / max(pace.total, 1)
+
+
+def _seconds(text: str) -> float:
+    from squealbox.cli.inputs import time_of
+
+    seconds = time_of("--time-limit", text)
+    if not seconds > 0.0:
+        raise UsageError(f"--time-limit {text[:40]}: expected a time above 0 s")
+    return seconds

@@ -1,0 +1,123 @@
+"""A study file: a brake, and in its section [study] an analysis and the space it is asked over.
+
+    design = "brake.toml"                       # or the brake itself, as in any design file
+
+    [study]
+    analysis = "modes"                          # modes, onset, simulate, ensemble, cycle
+
+    [[study.axis]]                              # one axis of a grid
+    parameter = "friction.static"
+    range = [0.2, 0.5]
+    points = 61
+
+An axis may also have `values` instead of a range, `spacing = "log"`, several parameters that change `together`, or a
+`sample` of ranges and distributions.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from squealbox.designs import Design
+from squealbox.files.arrays import path_beside
+from squealbox.files.document import DesignFileError, Document, open_document
+from squealbox.files.numbers import shown, wrong
+from squealbox.files.reading import SECTIONS, DesignFile, design_of, read_file, section_of
+from squealbox.files.sheets import read_sheet
+from squealbox.files.study_axis import read_axes
+from squealbox.parameters import DataSheet, choice, known_names, parameter
+from squealbox.studies import Space
+
+ANALYSES = ("modes", "onset", "simulate", "ensemble", "cycle")
+OTHERS = ("axis", "keep", "observe")
+
+
+class Study(DataSheet):
+    """[study]: an analysis over a space of parameters."""
+
+    analysis: str = choice(*ANALYSES, default="modes", meaning="what is asked at every point")
+    seed: int = parameter("-", 0, 2**53, default=0, meaning="of samples and random numbers")
+    workers: int | None = parameter("-", 1, 4096, default=None, optional=True, meaning="processes on this machine")
+    chunk: int | None = parameter("-", 1, 2**40, default=None, optional=True, meaning="points in a block")
+    time_limit: float | None = parameter(
+        "s", 0.0, low_open=True, default=None, optional=True, meaning="of a block that a worker computes"
+    )
+    duration: float = parameter("s", 0.0, low_open=True, default=0.05, meaning="of each transient of an ensemble")
+
+
+@dataclass(frozen=True)
+class StudyFile:
+    """What a study file says."""
+
+    path: Path
+    brake: DesignFile
+    study: Study
+    space: Space
+    keep: tuple[str, ...] = ()
+    observe: tuple[str, ...] = ("amplitude", "frequency")
+
+
+def read_study(path: Path, *, allow_code: bool = False) -> StudyFile:
+    """The study that the file at `path` describes.
+
+    Raises `DesignFileError`, whose `problems` are all that is wrong with the file, each with line, key and a sentence.
+    """
+    document = open_document(Path(path))
+    document.allow_code = allow_code
+    tables = dict(document.tables)
+    asked = tables.pop("study", None)
+    brake = _brake(document, tables)
+    table = asked if isinstance(asked, Mapping) else {}
+    if asked is None:
+        document.problem((), "the section [study] is missing: it says which analysis is asked over which parameters")
+    elif not isinstance(asked, Mapping):
+        wrong(document, ("study",), asked, "a section [study]")
+    rest = {name: value for name, value in table.items() if name not in OTHERS}
+    study = read_sheet(document, Study, rest, ("study",), beside=OTHERS)
+    keep = _words(document, table, "keep", ())
+    observe = _words(document, table, "observe", ("amplitude", "frequency"))
+    space = None
+    if asked is not None:
+        space = read_axes(document, table.get("axis"), brake.design if brake else None, int(study.seed) if study else 0)
+    if study is not None and brake is not None and study.analysis == "onset" and brake.onset is None:
+        document.problem(("study", "analysis"), "'onset' needs a section [onset] with a parameter and its range")
+    if document.problems or brake is None or study is None or space is None:
+        raise document.error()
+    return StudyFile(document.path, brake, study, space, keep, observe)
+
+
+def _brake(document: Document, tables: dict[str, Any]) -> DesignFile | None:
+    """The design with the sections that say how it is analysed; from a file of its own, or from this one."""
+    sections = {name: tables.pop(name) for name in list(tables) if name in SECTIONS}
+    design = _other_file(document, tables) if "design" in tables else design_of(document, tables, beside=("design",))
+    read = {name: section_of(document, name, table, design) for name, table in sections.items()}
+    return None if design is None else DesignFile(document.path, design, **read)
+
+
+def _other_file(document: Document, tables: dict[str, Any]) -> Design | None:
+    name = tables.pop("design")
+    for key in tables:
+        known = known_names(key[:60], ["design", "study", *SECTIONS])
+        document.problem((key,), f"unknown key beside design = {shown(name)}, {known}")
+    if not isinstance(name, str):
+        wrong(document, ("design",), name, "the name of a design file beside this one, such as 'brake.toml'")
+        return None
+    try:
+        return read_file(path_beside(document.path, name), allow_code=document.allow_code).design
+    except DesignFileError as error:
+        for problem in error.problems:
+            document.problem(("design",), f"{problem}")
+    except (OSError, ValueError) as error:
+        document.problem(("design",), f"{shown(name)} cannot be read: {error}")
+    return None
+
+
+def _words(document: Document, table: Mapping[str, Any], name: str, default: tuple[str, ...]) -> tuple[str, ...]:
+    given = table.get(name)
+    if given is None:
+        return default
+    if isinstance(given, list) and given and all(isinstance(word, str) for word in given):
+        return tuple(given)
+    wrong(document, ("study", name), given, "a list of names in quotes")
+    return default
