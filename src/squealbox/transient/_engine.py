@@ -30,11 +30,7 @@ COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
 }  # fmt: skip
 ENTRIES = ("march", "time_stepping")
 HEADER = '"""Made by squealbox; safe to delete."""\n\nimport numpy as np\n\n{decorators}'
-COMPILED = """from numba import njit
-
-OPTIONS = dict(error_model="numpy", fastmath={{"contract", "nsz"}}, nogil=True)
-inner = njit(forceinline={inline}, **OPTIONS)
-entry = njit(cache=True, **OPTIONS)
+COMPILED = """from squealbox.transient._linking import entry, {inner}
 """
 PLAIN = """
 
@@ -86,7 +82,11 @@ def source(
 
 def head(inline: bool, plain: bool = False, own: tuple[tuple[str, str], ...] = ()) -> list[str]:
     """Decorators, and the laws and schedules behind one function each."""
-    parts = [HEADER.format(decorators=PLAIN if plain else COMPILED.format(inline=inline))]
+    parts = [
+        HEADER.format(
+            decorators=PLAIN if plain else COMPILED.format(inner="packed as inner" if inline else "inner, packed")
+        )
+    ]
     parts += _dispatcher("law_mu", [law.formula for law in LAWS], "v", [mu for mu, _ in own])
     parts += _dispatcher("law_slope", [law.slope_formula for law in LAWS], "v", _calls_of_mu(own))
     parts += _dispatcher("schedule_value", [schedule.formula for schedule in SCHEDULES], "t")

@@ -21,8 +21,6 @@ Motion = namedtuple("Motion", "t, q, qd, qdd")
 Sliding = namedtuple("Sliding", "t, velocity, normal, mode, work")
 State = namedtuple("State", "t, q, qd, qdd")
 
-packed = njit(forceinline=True, **OPTIONS)
-
 
 @packed
 def lane_tanh(x):
