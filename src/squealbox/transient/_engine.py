@@ -15,7 +15,7 @@ import re
 import sys
 import tempfile
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -80,17 +80,20 @@ def source(
     return "\n\n".join(parts) + "\n"
 
 
-def head(inline: bool, plain: bool = False, own: tuple[tuple[str, str], ...] = ()) -> list[str]:
-    """Decorators, and the laws and schedules behind one function each."""
-    parts = [
-        HEADER.format(
-            decorators=PLAIN if plain else COMPILED.format(inner="packed as inner" if inline else "inner, packed")
-        )
-    ]
-    parts += _dispatcher("law_mu", [law.formula for law in LAWS], "v", [mu for mu, _ in own])
-    parts += _dispatcher("law_slope", [law.slope_formula for law in LAWS], "v", _calls_of_mu(own))
-    parts += _dispatcher("schedule_value", [schedule.formula for schedule in SCHEDULES], "t")
-    return parts + _dispatcher("schedule_rate", [schedule.rate_formula for schedule in SCHEDULES], "t")
+def head(
+    inline: bool,
+    plain: bool = False,
+    own: tuple[tuple[str, str], ...] = (),
+    laws: Collection[int] | None = None,
+    schedules: Collection[int] | None = None,
+) -> list[str]:
+    """Decorators, and the laws and schedules behind one function each; of all kinds, or only of those named."""
+    decorators = PLAIN if plain else COMPILED.format(inner="packed as inner" if inline else "inner, packed")
+    parts = [HEADER.format(decorators=decorators)]
+    parts += _dispatcher("law_mu", [law.formula for law in LAWS], "v", laws, [mu for mu, _ in own])
+    parts += _dispatcher("law_slope", [law.slope_formula for law in LAWS], "v", laws, _calls_of_mu(own))
+    parts += _dispatcher("schedule_value", [each.formula for each in SCHEDULES], "t", schedules)
+    return parts + _dispatcher("schedule_rate", [each.rate_formula for each in SCHEDULES], "t", schedules)
 
 
 def cache_folder() -> Path:
@@ -108,12 +111,18 @@ def _calls_of_mu(own: tuple[tuple[str, str], ...]) -> list[str]:
 
 
 def _dispatcher(
-    name: str, formulas: list[Callable[..., Any]], argument: str, own: list[str] | None = None
+    name: str,
+    formulas: list[Callable[..., Any]],
+    argument: str,
+    kinds: Collection[int] | None,
+    own: list[str] | None = None,
 ) -> list[str]:
     """Each formula under a name of its own, and one function that chooses by kind."""
     parts = []
     lines = ["@inner", f"def {name}(kind, {argument}, p):"]
     for i, formula in enumerate([*map(inspect.getsource, formulas), *(own or ())]):
+        if kinds is not None and i not in kinds:
+            continue
         text = re.sub(r"^def \w+", f"def {name}_{i}", formula, count=1)
         parts.append("@inner\n" + text.rstrip().replace(": Any", "").replace(" -> Any", ""))
         lines.append(f"    if kind == {i}:\n        return float({name}_{i}({argument}, p))")
@@ -162,6 +171,17 @@ class _Fixed(ast.NodeTransformer):
         if known is None or not all(isinstance(side, ast.Constant) for side in sides):
             return node
         return ast.Constant(known(*(side.value for side in sides)))  # type: ignore[attr-defined]
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
+        """The product of two numbers becomes a number."""
+        self.generic_visit(node)
+        if (
+            isinstance(node.op, ast.Mult)
+            and isinstance(node.left, ast.Constant)
+            and isinstance(node.right, ast.Constant)
+        ):
+            return ast.Constant(node.left.value * node.right.value)  # type: ignore[operator]
+        return node
 
     def visit_BoolOp(self, node: ast.BoolOp) -> ast.expr:
         """``True and x`` is x, ``False and x`` is False."""

@@ -104,7 +104,10 @@ def _compiler(lower: Any) -> type[CompilerBase]:
     """Plain typed functions need few of numba's passes: no rewrites, no closures, no parallel loops."""
 
     class Pipeline(CompilerBase):
+        """The passes in their order."""
+
         def define_pipelines(self) -> list[Any]:
+            """One pipeline, without a second one to fall back to."""
             pm = PassManager("squealbox")
             for step in (
                 TranslateByteCode, FixupArgs, IRProcessing, ReconstructSSA, NopythonTypeInference, PreLowerStripPhis,

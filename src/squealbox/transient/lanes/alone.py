@@ -8,8 +8,6 @@ force that held it. `_modes.decide` comes to the same for one contact; compiled 
 # ruff: noqa: F821  (the places of the rows and the functions of one contact, contact_normal and so on, are generated)
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
-WIDTH = 16
-
 
 def change_alone(A, b, lane, j):
     """New mode of contact j if all others slip and it presses; False leaves everything to the general case."""

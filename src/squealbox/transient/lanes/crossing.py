@@ -10,7 +10,6 @@ event inherits the method's order.
 
 import numpy as np
 
-WIDTH = 16
 CLOSE = 1e-11  # share of the step to which an event is located
 
 

@@ -54,15 +54,21 @@ def source(shape: Shape) -> str:
     rows, step = layout(shape), Step(shape)
     fixed: dict[str, int] = {"WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples}
     fixed |= {"SIMPLE": shape.simple, "p.rigid[]": 0, "p.rigid_count": 0}
-    parts = [*_engine.head(inline=False, own=shape.own), HEAD, *formulas(shape), step.text()]
-    parts += [f"{name} = {rows.places.get(row, 0)}" for name, row in PLACES.items()]
+    fixed |= {} if shape.varying else {"p.varying": 0}
+    laws, schedules = {kind for kind, _ in shape.laws}, {kind for terms in shape.signals for kind, _ in terms}
+    parts = [
+        *_engine.head(inline=False, own=shape.own, laws=laws, schedules=schedules),
+        HEAD,
+        *formulas(shape),
+        step.text(),
+    ]
+    fixed |= {name: rows.places.get(row, 0) for name, row in PLACES.items()} | {"WIDTH": LANES}
     first = rows.places["o0_0_0"] if shape.observers else 0
-    counts = {
+    fixed |= {
         "DOFS": shape.n, "CONTACTS": shape.m, "FUNCTIONS": shape.functions, "GIVEN": len(parameter_rows(shape)),
         "ALL_ROWS": len(rows), "BREAKS": shape.breaks, "ROW_OBSERVED": first,
         "MEMORY": len(rows) - first if first else 0,
     }  # fmt: skip
-    parts += [f"{name} = {value}" for name, value in counts.items()]
     parts += [_gather(shape, rows.places), _observers(shape, rows.places)]
     parts += _one_contact(shape, rows.places) if shape.simple else []
     for module in (_motion, *((_rigid, _impacts, _modes, _events) if shape.exact else ())):

@@ -17,7 +17,6 @@ from squealbox.transient._rigid import solve
 from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
 
-WIDTH = 16
 DONE, LOST, OVER, EVENT, LANDED, DUE = 1, 2, 4, 8, 16, 32
 
 
