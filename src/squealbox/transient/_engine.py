@@ -15,7 +15,7 @@ import re
 import sys
 import tempfile
 import warnings
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -130,7 +130,7 @@ def _dispatcher(
     return [*parts, "\n".join(lines)]
 
 
-def definitions(module: ModuleType, fixed: dict[str, int], entries: tuple[str, ...] = ENTRIES) -> list[str]:
+def definitions(module: ModuleType, fixed: Mapping[str, float], entries: tuple[str, ...] = ENTRIES) -> list[str]:
     """Constants and functions of a plain module, in order, with their decorators."""
     parts = []
     for node in ast.parse(inspect.getsource(module)).body:
@@ -145,7 +145,7 @@ def definitions(module: ModuleType, fixed: dict[str, int], entries: tuple[str, .
 class _Fixed(ast.NodeTransformer):
     """Put numbers for names, and keep only the branches they leave, so the others are never compiled."""
 
-    def __init__(self, fixed: dict[str, int]) -> None:
+    def __init__(self, fixed: Mapping[str, float]) -> None:
         self.fixed = fixed
 
     def visit_Name(self, node: ast.Name) -> ast.expr:

@@ -10,7 +10,7 @@ event inherits the method's order.
 
 import numpy as np
 
-CLOSE = 1e-11  # share of the step to which an event is located
+CLOSEST, WIDEST = 1e-11, 1e-10  # shares of the step to which an event is located, for the finest and coarsest rtol
 
 
 def locate(A, b, lane):
@@ -61,7 +61,7 @@ def smooth(A, b, lane, j):
 def first_crossing(A, b, lane, j, h):
     """(share of the step at which function j first turns negative, or 2; whether a shorter step must tell).
 
-    The function is the cubic of its values and slopes; a margin of sticking is a straight line.
+    The function is the cubic of its values and slopes; a margin of sticking is a parabola through its value in a stage.
     """
     f0 = A[b + (ROW_PHI + j) * WIDTH + lane]
     f1 = A[b + (ROW_END + j) * WIDTH + lane]
@@ -70,7 +70,8 @@ def first_crossing(A, b, lane, j, h):
         if not f0 > 0.0:
             return (0.0 if f1 <= 0.0 else 2.0), False
         if f1 <= 0.0:
-            return f0 / (f0 - f1), False
+            middle = A[b + (ROW_MIDDLE + j) * WIDTH + lane]
+            return inverse_parabola(0.0, f0, 1.0, f1, MIDDLE, middle), False
         return 2.0, A[b + (ROW_INNER + j) * WIDTH + lane] <= 0.0
     b1 = f0 + h * A[b + (ROW_RATE + j) * WIDTH + lane] / 3.0
     b2 = f1 - h * A[b + (ROW_RATE_END + j) * WIDTH + lane] / 3.0
@@ -79,6 +80,8 @@ def first_crossing(A, b, lane, j, h):
         return 0.0, False
     if not fresh and not f0 > 0.0:
         return 0.0, False
+    if f0 >= 0.0 and b1 > 0.0 and b2 > 0.0 and f1 > 0.0:
+        return 2.0, False
     before = 0.0
     for k in range(1, 17):
         x = k / 16.0
@@ -130,40 +133,96 @@ def aim(A, b, lane, j, theta, h):
     if smooth(A, b, lane, j):
         slope = 3.0 * abs(y * y * (b1 - f0) + 2.0 * y * theta * (b2 - b1) + theta * theta * (f1 - b2))
     A[b + ROW_TARGET * WIDTH + lane] = j
-    A[b + ROW_TOLERANCE * WIDTH + lane] = CLOSE * slope
+    A[b + ROW_TOLERANCE * WIDTH + lane] = slope * min(max(1e-4 * A[b + ROW_RTOL * WIDTH + lane], CLOSEST), WIDEST)
     A[b + ROW_LOW * WIDTH + lane] = 0.0
     A[b + ROW_LOW_PHI * WIDTH + lane] = f0
     A[b + ROW_HIGH * WIDTH + lane] = h
-    A[b + ROW_HIGH_PHI * WIDTH + lane] = min(f1, 0.0)
+    A[b + ROW_HIGH_PHI * WIDTH + lane] = f1
+    A[b + ROW_HIGH_RATE * WIDTH + lane] = A[b + (ROW_RATE_END + j) * WIDTH + lane]
     A[b + ROW_TURNS * WIDTH + lane] = 0.0
     A[b + ROW_H * WIDTH + lane] = theta * h
 
 
 def refine(A, b, lane, j, h):
-    """A better length of the trial that aims at an event: Newton where the slope is known, else regula falsi."""
+    """A better length of the trial that aims at an event, inside a bracket that shrinks.
+
+    Where slopes are known, the root of the quintic of values and slopes at three instants, then Newton. Otherwise the
+    inverse parabola through the bracket and the end it lost last; when that is slow, the middle every third time.
+    """
     f = A[b + (ROW_END + j) * WIDTH + lane]
-    if f > 0.0:
-        A[b + ROW_LOW * WIDTH + lane] = h
-        A[b + ROW_LOW_PHI * WIDTH + lane] = f
-        A[b + ROW_HIGH_PHI * WIDTH + lane] *= 0.5
-    else:
-        A[b + ROW_HIGH * WIDTH + lane] = h
-        A[b + ROW_HIGH_PHI * WIDTH + lane] = f
-        A[b + ROW_LOW_PHI * WIDTH + lane] *= 0.5
+    points = (
+        A[b + (ROW_PHI + j) * WIDTH + lane],
+        A[b + (ROW_RATE + j) * WIDTH + lane],
+        A[b + ROW_HIGH * WIDTH + lane],
+        A[b + ROW_HIGH_PHI * WIDTH + lane],
+        A[b + ROW_HIGH_RATE * WIDTH + lane],
+    )
+    side = ROW_LOW if f > 0.0 else ROW_HIGH
+    third = A[b + side * WIDTH + lane]
+    f_third = A[b + (side + 1) * WIDTH + lane]
+    A[b + side * WIDTH + lane] = h
+    A[b + (side + 1) * WIDTH + lane] = f
     low = A[b + ROW_LOW * WIDTH + lane]
     high = A[b + ROW_HIGH * WIDTH + lane]
-    f_low = A[b + ROW_LOW_PHI * WIDTH + lane]
-    f_high = A[b + ROW_HIGH_PHI * WIDTH + lane]
+    turns = A[b + ROW_TURNS * WIDTH + lane] + 1.0
+    A[b + ROW_TURNS * WIDTH + lane] = turns
     x = 0.5 * (low + high)
     slope = A[b + (ROW_RATE_END + j) * WIDTH + lane]
     if smooth(A, b, lane, j) and slope < 0.0:
-        newton = h - f / slope
-        if low < newton < high:
-            x = newton
-    elif f_high < 0.0:
-        x = (low * f_high - high * f_low) / (f_high - f_low)
-    A[b + ROW_TURNS * WIDTH + lane] += 1.0
-    if A[b + ROW_TURNS * WIDTH + lane] > 60.0 or not abs(x - h) > 4e-16 * (A[b + ROW_T * WIDTH + lane] + h):
+        step = h - f / slope
+        if turns < 2.0:
+            step = quintic_root(points, h, f, slope, step)
+        if low < step < high:
+            x = step
+    elif turns < 10.0 or int(turns) % 3 != 0:
+        x = inverse_parabola(
+            low, A[b + ROW_LOW_PHI * WIDTH + lane], high, A[b + ROW_HIGH_PHI * WIDTH + lane], third, f_third
+        )
+    if turns > 60.0 or not abs(x - h) > 4e-16 * (A[b + ROW_T * WIDTH + lane] + h):
         A[b + ROW_TOLERANCE * WIDTH + lane] = np.inf
         x = h
     A[b + ROW_H * WIDTH + lane] = x
+
+
+def inverse_parabola(low, f_low, high, f_high, third, f_third):
+    """Where the parabola x(f) through three points has f = 0; the chord's root if that lies outside the bracket."""
+    x = 0.5 * (low + high)
+    if not f_low > f_high:
+        return x
+    chord = (low * f_high - high * f_low) / (f_high - f_low)
+    if low < chord < high:
+        x = chord
+    if f_third != f_low and f_third != f_high:
+        bend = ((third - low) / (f_third - f_low) - (high - low) / (f_high - f_low)) / (f_third - f_high)
+        curved = chord + bend * f_low * f_high
+        if low < curved < high:
+            x = curved
+    return x
+
+
+def quintic_root(points, h, f, slope, guess):
+    """Root near h of the quintic with given values and slopes at 0, at h and at an end: Newton's form over h, h, 0, 0.
+
+    `points` holds (f, slope) at 0, then the end and its (f, slope).
+    """
+    f0, rate0, end, f1, rate1 = points
+    back = (f - f0) / h
+    on = (f1 - f0) / end
+    bend = (back - rate0) / h
+    twist = (on - rate0) / end
+    two = (slope - back) / h
+    three = (two - bend) / h
+    across = (twist - bend) / (end - h)
+    four = (across - three) / (end - h)
+    five = ((((rate1 - on) / end - twist) / end - across) / (end - h) - four) / (end - h)
+    x = guess
+    for _ in range(3):
+        d = x - h
+        outer = four + (x - end) * five
+        third = three + x * outer
+        second = two + x * third
+        rate = slope + d * (2.0 * second + d * (third + x * (outer + x * five)))
+        if not rate < 0.0:
+            return guess
+        x -= (f + d * (slope + d * second)) / rate
+    return x

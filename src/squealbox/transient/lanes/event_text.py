@@ -15,6 +15,7 @@ class EventText:
 
     shape: Shape
     rule: Any
+    middle_stage: int
     put: Any
     row: Any
     keep: Any
@@ -62,6 +63,8 @@ class EventText:
         for j in range(shape.functions):
             for name, value in (("end", "value"), ("rate", "rate0"), ("rate_end", "rate1"), ("inner", "inner")):
                 self.keep(f"{name}{j}", f"{value}{j}")
+        for c in range(m):
+            self.keep(f"middle{c}", contact[self.middle_stage - 1]["margin"][c])
 
     def first_function(self, c: int, contact: Any, v: Any, a: Any, v1: Any, a1: Any) -> tuple[str, str, str, str]:
         """(value at the end, slopes at both ends, least value inside) of the function of a contact's mode."""

@@ -29,16 +29,17 @@ def lane_tanh(x):
     return where(x < 0.0, -size, size)
 """
 PLACES = {
-    "ROW_JOB": "job", "ROW_ALIVE": "alive", "ROW_T": "t", "ROW_H": "h", "ROW_T_END": "t_end", "ROW_TRIES":
-    "tries", "ROW_TAKEN": "taken", "ROW_CAUTIOUS": "cautious", "ROW_CODE": "code", "ROW_MOST": "most", "ROW_Q":
-    "q0", "ROW_V": "v0", "ROW_ACCELERATION": "a0", "ROW_START": "start0", "ROW_FIRST": "first", "ROW_WINDOW":
-    "window", "ROW_BREAK": "break0", "ROW_TARGET": "target", "ROW_TOLERANCE": "tolerance", "ROW_TRUST": "trust",
-    "ROW_RESUME": "resume", "ROW_EVENTS": "events", "ROW_WINDOW_START": "window_start", "ROW_WINDOW_EVENTS":
-    "window_events", "ROW_TURNS": "turns", "ROW_LOW": "low", "ROW_LOW_PHI": "low_phi", "ROW_HIGH": "high",
-    "ROW_HIGH_PHI": "high_phi", "ROW_SLIPS": "s0", "ROW_OPENED": "open0", "ROW_HOLD": "h0_0", "ROW_PHI": "phi0",
-    "ROW_FRESH": "fresh0", "ROW_END": "end0", "ROW_RATE": "rate0", "ROW_RATE_END": "rate_end0", "ROW_INNER":
-    "inner0", "ROW_FORCE": "force0", "ROW_ZERO": "zero0", "ROW_OWN_G": "own_g0",
-    "ROW_NEXT_SAMPLE": "next", "ROW_SAMPLE": "sample", "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0",
+    "ROW_JOB": "job", "ROW_ALIVE": "alive", "ROW_T": "t", "ROW_H": "h", "ROW_T_END": "t_end", "ROW_TRIES": "tries",
+    "ROW_TAKEN": "taken", "ROW_CAUTIOUS": "cautious", "ROW_CODE": "code", "ROW_MOST": "most", "ROW_Q": "q0",
+    "ROW_V": "v0", "ROW_ACCELERATION": "a0", "ROW_START": "start0", "ROW_FIRST": "first", "ROW_RTOL": "rtol",
+    "ROW_WINDOW": "window", "ROW_BREAK": "break0", "ROW_TARGET": "target", "ROW_TOLERANCE": "tolerance",
+    "ROW_TRUST": "trust", "ROW_RESUME": "resume", "ROW_EVENTS": "events", "ROW_WINDOW_START": "window_start",
+    "ROW_WINDOW_EVENTS": "window_events", "ROW_TURNS": "turns", "ROW_LOW": "low", "ROW_LOW_PHI": "low_phi",
+    "ROW_HIGH": "high", "ROW_HIGH_PHI": "high_phi", "ROW_HIGH_RATE": "high_rate", "ROW_MIDDLE": "middle0",
+    "ROW_SLIPS": "s0", "ROW_OPENED": "open0", "ROW_HOLD": "h0_0", "ROW_PHI": "phi0", "ROW_FRESH": "fresh0",
+    "ROW_END": "end0", "ROW_RATE": "rate0", "ROW_RATE_END": "rate_end0", "ROW_INNER": "inner0", "ROW_FORCE":
+    "force0", "ROW_ZERO": "zero0", "ROW_OWN_G": "own_g0", "ROW_NEXT_SAMPLE": "next", "ROW_SAMPLE": "sample",
+    "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0",
 }  # fmt: skip
 
 
@@ -52,7 +53,7 @@ def lane_kernel(shape: Shape) -> Callable[..., Any]:
 def source(shape: Shape) -> str:
     """The text of the generated file."""
     rows, step = layout(shape), Step(shape)
-    fixed: dict[str, int] = {"WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples}
+    fixed: dict[str, float] = {"WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples}
     fixed |= {"SIMPLE": shape.simple, "p.rigid[]": 0, "p.rigid_count": 0}
     fixed |= {} if shape.varying else {"p.varying": 0}
     laws, schedules = {kind for kind, _ in shape.laws}, {kind for terms in shape.signals for kind, _ in terms}
@@ -63,6 +64,7 @@ def source(shape: Shape) -> str:
         step.text(),
     ]
     fixed |= {name: rows.places.get(row, 0) for name, row in PLACES.items()} | {"WIDTH": LANES}
+    fixed["MIDDLE"] = step.middle
     first = rows.places["o0_0_0"] if shape.observers else 0
     fixed |= {
         "DOFS": shape.n, "CONTACTS": shape.m, "FUNCTIONS": shape.functions, "GIVEN": len(parameter_rows(shape)),

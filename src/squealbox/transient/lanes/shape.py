@@ -97,7 +97,7 @@ def layout(shape: Shape) -> Rows:
     rows.add(*(f"q{i}" for i in range(n)), *(f"v{i}" for i in range(n)), *(f"a{i}" for i in range(n)))
     if shape.exact:
         rows.add("target", "tolerance", "trust", "resume", "events", "window_start", "window_events", "turns")
-        rows.add("low", "low_phi", "high", "high_phi")
+        rows.add("low", "low_phi", "high", "high_phi", "high_rate", *(f"middle{c}" for c in range(m)))
         rows.add(*(f"s{c}" for c in range(m)), *(f"open{c}" for c in range(m)))
         rows.add(*(f"force{c}" for c in range(m)))
         rows.add(*(f"h{c}_{b}" for c in range(m) for b in range(m)))

@@ -27,6 +27,9 @@ class Step(EventText):
         self.scales: dict[float, str] = {}
         self.starting: dict[str, list[str]] | None = None
         self.rule = tableau(shape.tableau)
+        inside = [k for k in range(1, self.rule.stages) if 0.2 < self.rule.c[k] < 0.9]
+        self.middle_stage = inside[-1]  # the last stage inside the step, whose state is a good one
+        self.middle = float(self.rule.c[self.middle_stage])
 
     def put(self, line: str) -> None:
         """One more line."""
