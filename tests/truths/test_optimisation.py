@@ -102,7 +102,9 @@ def test_robust_goals_over_scatter():
     for over, place in wanted.items():
         limit = {"quantile": 1.0, "probability": 0.1, "mean": 1.0}[over]
         keep = Constraint(level, high=limit, over=over)
-        found = optimise(None, {"x": (-5.0, 5.0)}, Goal(level, "maximise"), [keep], scatter=scatter, samples=4096)
+        found = optimise(
+            None, {"x": (-5.0, 5.0)}, Goal(level, "maximise"), [keep], scatter=scatter, samples=2048, generations=60
+        )
         assert found.changes["x"] == pytest.approx(place, abs=5e-3), over
     plain = optimise(None, {"x": (-5.0, 5.0)}, Goal(level, "maximise"), [Constraint(level, high=1.0)])
     assert plain.changes["x"] == pytest.approx(1.0, abs=1e-6)
@@ -113,7 +115,12 @@ def test_the_robust_optimum_is_another_than_the_nominal_one():
     steep = Quantity(lambda at: np.maximum(at["x"], -9.0 * at["x"]), "f")
     scatter = Scatter({"x": Uniform(-1.0, 1.0)})
     robust = optimise(
-        None, {"x": (-3.0, 3.0)}, Goal(steep, over="quantile", share=0.9999), scatter=scatter, samples=1024
+        None,
+        {"x": (-3.0, 3.0)},
+        Goal(steep, over="quantile", share=0.9999),
+        scatter=scatter,
+        samples=512,
+        generations=60,
     )
     assert robust.changes["x"] == pytest.approx(0.8, abs=0.01)
     nominal = optimise(None, {"x": (-3.0, 3.0)}, Goal(steep), scatter=scatter)

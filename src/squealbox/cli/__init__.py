@@ -30,6 +30,8 @@ COMMANDS = {
     "map": Command("maps", "map_", "stability over two parameters, with the boundary as curves"),
     "simulate": Command("transient", "simulate", "what happens in time: a transient with verdict, figures and data"),
     "ensemble": Command("ensembles", "ensemble", "transients over two parameters: amplitude and frequency of each"),
+    "scatter": Command("uncertainty", "scatter", "parameters scatter: how probable is squeal, and which matters?"),
+    "optimise": Command("optimising", "optimise", "the best design within bounds: before and after, or a Pareto front"),
     "fit": Command("fitting", "fit", "measured friction coefficients (CSV) to a friction law, with confidence bands"),
     "cycle": Command("cycles", "cycle", "what the motion settles to: the limit cycle, its stability, figure and data"),
     "report": Command("reports", "report", "a design examined from every side, or any result, as one HTML page"),

@@ -15,6 +15,7 @@ from squealbox.files.mechanism import OwnMechanism
 from squealbox.files.numbers import WRONG, read_choice, wrong
 from squealbox.files.own_brake import OwnBrake
 from squealbox.files.sheets import read_sheet
+from squealbox.files.uncertain import Optimise, Scattered, read_optimise, read_scatter
 from squealbox.parameters import ParameterError, known_names
 from squealbox.system import InvalidSystem
 
@@ -25,6 +26,8 @@ SECTIONS: dict[str, Callable[..., Any]] = {
     "onset": analyses.read_onset,
     "map": analyses.read_map,
     "simulate": analyses.read_simulate,
+    "scatter": read_scatter,
+    "optimise": read_optimise,
 }
 
 
@@ -38,6 +41,8 @@ class DesignFile:
     onset: analyses.Axis | None = None
     map: analyses.Map | None = None
     simulate: analyses.Simulate | None = None
+    scatter: Scattered | None = None
+    optimise: Optimise | None = None
 
 
 def read_design(path: str | os.PathLike[str], *, allow_code: bool = False) -> Design:
@@ -50,7 +55,8 @@ def read_design(path: str | os.PathLike[str], *, allow_code: bool = False) -> De
 
 
 def read_file(path: str | os.PathLike[str], *, allow_code: bool = False) -> DesignFile:
-    """The brake that the file at `path` describes, and its sections [modes], [onset], [map] and [simulate].
+    """The brake that the file at `path` describes, and its sections: [modes], [onset], [map], [simulate],
+    [scatter] and [optimise].
 
     A friction law that is Python code (``law = "own"``) is run only with `allow_code`.
     Raises `DesignFileError`, whose `problems` are all that is wrong with the file, each with line, key and a sentence.

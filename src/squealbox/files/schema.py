@@ -10,6 +10,7 @@ from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES, STUDY
 from squealbox.files.sheets import LAW_NAMES, OWN, SCHEDULE_NAMES, field_type, is_required
 from squealbox.files.study import OTHERS, Study
+from squealbox.files.uncertain_schema import optimise_schema, scatter_schema
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, Parameter
 
@@ -39,6 +40,8 @@ def json_schema() -> Schema:
             "additionalProperties": False,
         },
         STUDY: _study(),
+        "scatter": scatter_schema(_sheet),
+        "optimise": optimise_schema(_sheet),
     }
     brakes = [_sheet(brake, first={"brake": {"const": name}}, more=sections) for name, brake in BRAKES.items()]
     return {

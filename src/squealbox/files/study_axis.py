@@ -153,7 +153,7 @@ def _sample(document: Document, table: Mapping[str, Any], key: Key, design: Desi
         ways = {"latin_hypercube": latin_hypercube, "sobol": sobol_sequence}
         if method in ways:
             return ways[method](spread, count, seed=seed)
-    pairs = _correlation(document, table.get("correlation", []), (*key, "correlation"))
+    pairs = read_correlation(document, table.get("correlation", []), (*key, "correlation"))
     try:
         uniform = DISTRIBUTIONS["uniform"]
         all_of = {name: uniform(*each[:2]) if isinstance(each, tuple) else each for name, each in spread.items()}
@@ -185,7 +185,7 @@ def _scattered(document: Document, table: Mapping[str, Any], key: Key, design: D
     return None if read is None else (name, read)
 
 
-def _correlation(document: Document, given: Any, key: Key) -> dict[tuple[str, str], float]:
+def read_correlation(document: Document, given: Any, key: Key) -> dict[tuple[str, str], float]:
     """``[["k1", "k2", 0.5]]`` as pairs."""
     expected = "a list such as [['k1', 'k2', 0.5]], two parameters and their correlation"
     if not isinstance(given, list):

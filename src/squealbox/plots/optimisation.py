@@ -1,5 +1,6 @@
 """Figures of optimised designs: the Pareto front, and how far each parameter moved within its bounds."""
 
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from squealbox.studies.optimisation import Optimum
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+WRAPPED = 42  # characters of a line of an axis label
 BEFORE, AFTER = "#888888", "#D55E00"
 
 
@@ -46,7 +48,7 @@ def _front(panel: Any, found: Optimum, title: str) -> None:
     if np.all(np.isfinite(found.goals_before)):
         panel.plot(*found.goals_before, "s", color=BEFORE, markersize=6, label="before")
     panel.legend(loc="best")
-    words = [f"{_label(about)}, {about['sense']}" for about in found.settings["goals"]]
+    words = ["\n".join(wrap(f"{_label(about)}, {about['sense']}", WRAPPED)) for about in found.settings["goals"]]
     panel.set(xlabel=words[0], ylabel=words[1], title=title)
 
 
@@ -76,7 +78,7 @@ def _parallel(panel: Any, found: Optimum, title: str) -> None:
     for row in scaled:
         panel.plot(places, row, color="#0072B2", linewidth=0.4, alpha=0.5)
     panel.plot(places, scaled[found.best], color=AFTER, linewidth=1.6, label="compromise")
-    panel.set_xticks(places, [about["name"] for about in found.settings["goals"]])
+    panel.set_xticks(places, ["\n".join(wrap(about["name"], 18)) for about in found.settings["goals"]])
     panel.set(ylabel="0 best, 1 worst of the front", title=title)
     panel.legend(loc="best")
 

@@ -1,11 +1,13 @@
 """What an optimisation wants: goals and constraints, each a quantity, plain or over scatter."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
 from squealbox.parameters import ParameterError
+from squealbox.studies.distributions import Distribution, Lognormal
 from squealbox.studies.quantity import Quantity, as_quantity, evaluate
 from squealbox.studies.scatter import Scatter
 
@@ -103,14 +105,15 @@ def measured(quantity: Quantity, values: Any, over: Over, share: float, factor: 
 class Candidates:
     """The numbers of goals and constraints at candidate designs, all of them in one batched call for each quantity.
 
-    A scattered parameter that is also varied keeps its scatter about the varied value: x - mean + value. The samples
-    are the same for every candidate, so that candidates are compared and not samples.
+    A scattered parameter that is also varied keeps its scatter about the varied value: x value/mean for a lognormal
+    one, x - mean + value for any other. The samples are the same for every candidate, so that candidates are compared
+    and not samples.
     """
 
     def __init__(self, design: Any, names: list[str], scatter: Scatter | None, samples: int, seed: int) -> None:
         self.design, self.names = design, names
         self.sample = {} if scatter is None else scatter.sample(samples, "sobol", seed)
-        self.means = {} if scatter is None else {n: d.average for n, d in scatter.distributions.items()}
+        self.given: Mapping[str, Distribution] = {} if scatter is None else scatter.distributions
         self.size = samples
         self.evaluations = 0
 
@@ -133,10 +136,16 @@ class Candidates:
             points[name] = np.repeat(x[:, i], size)
         if not nominal:
             for name, sample in self.sample.items():
-                moved = np.tile(sample, count)
-                points[name] = points[name] + moved - self.means[name] if name in points else moved
+                points[name] = self._about(name, points.get(name), np.tile(sample, count))
         self.evaluations += count * size
         return evaluate(self.design, quantity, points, strict=False).reshape(count, size)
+
+    def _about(self, name: str, varied: Any, sample: Any) -> Any:
+        """A sample of a parameter, about its varied value where it is varied."""
+        if varied is None:
+            return sample
+        given = self.given[name]
+        return varied * sample / given.average if isinstance(given, Lognormal) else varied + sample - given.average
 
 
 def _named(quantity: Quantity, over: Over, share: float) -> str:

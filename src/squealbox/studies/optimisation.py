@@ -120,8 +120,9 @@ def optimise(
     variables : dotted name to (low, high) in SI: the parameters that may be changed
     goals : one `Goal`, or several for a Pareto front
     constraints : what has to be kept
-    scatter : parameters that scatter, for goals and constraints over it. A scattered parameter that is varied too
-        scatters about its varied value with the same deviations; `samples` Sobol' points, the same for every candidate
+    scatter : parameters that scatter, for goals and constraints over it; `samples` Sobol' points, the same for every
+        candidate. A scattered parameter that is varied too scatters about its varied value: with the same relative
+        deviations when it is lognormal, with the same deviations otherwise
     method : for one goal "global" (differential evolution, then SLSQP) or "local" (SLSQP from the design given)
     population, generations : of the search
     seed : the same seed gives the same designs
@@ -203,6 +204,7 @@ def _limits(about: Mapping[str, Any]) -> str:
 
 def _compromise(costs: Any) -> int:
     """The row nearest to the best of every column, each scaled by its range."""
+    costs = np.where(np.isfinite(costs), costs, 1e30)
     low, width = np.min(costs, axis=0), np.ptp(costs, axis=0)
     return int(np.argmin(np.linalg.norm((costs - low) / np.where(width > 0.0, width, 1.0), axis=1)))
 

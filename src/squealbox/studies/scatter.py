@@ -71,13 +71,12 @@ class Scatter(DataSheet):
         return 6.0 / np.pi * np.arcsin(0.5 * self.correlation)
 
     def box(self, share: float = 0.99) -> dict[str, tuple[float, float]]:
-        """An interval for each parameter: all that can occur, or where that is infinite the central `share` of it."""
+        """An interval for each parameter: all that can occur where that is finite, else the central `share` of it."""
         edge = 0.5 * (1.0 - share)
         found = {}
         for name, each in self.distributions.items():
-            low, high = each.support
             inner = float(each.ppf(edge)), float(each.ppf(1.0 - edge))
-            found[name] = (low if np.isfinite(low) else inner[0], high if np.isfinite(high) else inner[1])
+            found[name] = each.support if np.all(np.isfinite(each.support)) else inner
         return found
 
     def from_uniform(self, u: Any) -> dict[str, Any]:

@@ -102,15 +102,17 @@ def pareto_front(
 
     class Design(Problem):
         def __init__(self) -> None:
-            count = 2 * len(constraints)
+            count = 1 + 2 * len(constraints)  # the first: every goal has an answer
             super().__init__(n_var=len(box), n_obj=len(goals), n_ieq_constr=count, xl=box[:, 0], xu=box[:, 1])
 
         def _evaluate(self, x: Any, out: dict[str, Any], *_: Any, **__: Any) -> None:
-            out["F"] = _costs(candidates, goals, x)
+            cost = _costs(candidates, goals, x)
+            kept = [np.where(np.any(np.abs(cost) >= WORST, axis=1), 1.0, -1.0)[:, None]]
             if constraints:
                 found = _finite(candidates.measures(constraints, x))
                 low, high = (np.array([getattr(c, end) for c in constraints]) for end in ("low", "high"))
-                out["G"] = np.concatenate([np.maximum(low - found, -WORST), np.maximum(found - high, -WORST)], axis=1)
+                kept += [np.maximum(low - found, -WORST), np.maximum(found - high, -WORST)]
+            out["F"], out["G"] = cost, np.concatenate(kept, axis=1)
 
     found = minimize(Design(), NSGA2(pop_size=population), ("n_gen", generations), seed=seed, verbose=False)
     if found.X is None:  # nothing keeps the constraints: the least bad of the last population

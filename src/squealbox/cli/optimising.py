@@ -1,0 +1,84 @@
+"""`squealbox optimise`: the best design within bounds, one or a front of them."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squealbox.cli.inputs import AllowCode, Changes, folder, read
+from squealbox.cli.progress import Progress
+from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.tables import write_csv, written
+from squealbox.files import write_design
+from squealbox.studies import Optimum
+from squealbox.studies import optimise as optimised
+from squealbox.studies.quantity import unit_of
+
+
+def optimise(
+    file: Path,
+    *,
+    seed: int | None = None,
+    changes: Changes = (),
+    allow_code: AllowCode = False,
+    out: Path | None = None,
+) -> None:
+    """The best design within bounds and constraints: before and after, what binds, and with several goals their front.
+
+    The section [optimise] of the file names what may be changed and what is wanted; goals over scatter take it from the
+    section [scatter].
+
+    Parameters
+    ----------
+    file
+        design file with a section [optimise]
+    seed
+        another seed than that of the file
+    changes
+        other values for this run: --set friction.static=0.4 load="2 kN"
+    allow_code
+        run the Python file of a friction law that the design file names
+    out
+        folder for the figure, the designs as a table, and the best one as a design file
+    """
+    found = read(file, changes, allow_code)
+    section = found.optimise
+    if section is None:
+        raise UsageError(f"{file} has no section [optimise], which says what may be changed and what is wanted")
+    over = [goal.over for goal in section.goals] + [each.over for each in section.constraints]
+    robust = set(over) != {"nominal"}
+    if robust and found.scatter is None:
+        raise UsageError(f"{file} has goals over scatter but no section [scatter]")
+    if seed is not None and seed < 0:
+        raise UsageError(f"--seed {seed}: expected a whole number of at least 0")
+    if out is not None:
+        folder(out)
+    effort = section.effort
+    with Progress(f"optimising {', '.join(section.variables)}"):
+        result = optimised(
+            found.design, section.variables, section.goals, section.constraints,
+            scatter=found.scatter.scatter if robust and found.scatter else None, samples=int(effort.samples),
+            method=effort.method, population=int(effort.population),  # type: ignore[arg-type]
+            generations=int(effort.generations), seed=int(effort.seed if seed is None else seed),
+        )  # fmt: skip
+    print(f"{found.design.title}, {file}\n{result.summary()}")
+    if out is not None:
+        print(written(*_files(result, found.path.name, out)))
+    if not result.outcome.ok:
+        raise ComputationFailed(result.outcome)
+
+
+def _files(found: Optimum, title: str, out: Path) -> list[Path]:
+    from squealbox import plots
+
+    design = found.inputs["design"]
+    columns: dict[str, Any] = {"best": np.arange(len(found.values)) == found.best}
+    columns |= {f"{n} [{unit_of(design, n) or '-'}]": found.values[:, i] for i, n in enumerate(found.names)}
+    for kind in ("goals", "constraints"):
+        for i, about in enumerate(found.settings[kind]):
+            columns[f"{about['name']} [{about['unit'] or '-'}]"] = getattr(found, kind)[:, i]
+    paths = [found.save(out / "optimum.nc"), write_csv(out / "optimum.csv", columns)]
+    if not found.outcome.ok:
+        return paths
+    write_design(found.design, out / "optimum.toml")
+    return [*paths, out / "optimum.toml", *plots.save(plots.plot(found, title=title), out / "optimum")]

@@ -1,0 +1,170 @@
+"""`squealbox scatter`: parameters scatter; how probable is squeal, and which parameter matters?"""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from cyclopts import Parameter
+
+from squealbox import studies
+from squealbox.cli.inputs import AllowCode, Changes, folder, read
+from squealbox.cli.progress import Progress
+from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.tables import write_csv, written
+from squealbox.files.uncertain import STUDIES, Sampled, Scattered
+from squealbox.parameters import ParameterError
+from squealbox.result import Result
+from squealbox.studies.quantity import unit_of
+
+if TYPE_CHECKING:
+    from squealbox.designs import Design
+
+Several = Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=True, show_default=False)]
+LEARNT = 512  # points a surrogate is made from at most
+
+
+def scatter(
+    file: Path,
+    *,
+    study: Several = (),
+    samples: int | None = None,
+    seed: int | None = None,
+    changes: Changes = (),
+    allow_code: AllowCode = False,
+    out: Path | None = None,
+) -> None:
+    """Parameters scatter: how probable is squeal, and which parameter is it that matters?
+
+    The section [scatter] of the file names the quantity, the distribution of each parameter and what is asked.
+
+    Parameters
+    ----------
+    file
+        design file with a section [scatter]
+    study
+        what is asked: probability, sobol, morris, form, subset, surrogate, bounds; one or several
+    samples
+        points of the samples, instead of those of the file
+    seed
+        another seed than that of the file
+    changes
+        other values for this run: --set friction.static=0.4 load="2 kN"
+    allow_code
+        run the Python file of a friction law that the design file names
+    out
+        folder for figures, tables and results
+    """
+    found = read(file, changes, allow_code)
+    section = found.scatter
+    if section is None:
+        raise UsageError(f"{file} has no section [scatter], which says what scatters and how")
+    wanted = _wanted(study or section.studies)
+    sampled = _sampled(section.sampled, samples, seed)
+    if out is not None:
+        folder(out)
+    print(f"{found.design.title}, {file}")
+    failed = None
+    files: list[Path] = []
+    for name in wanted:
+        with Progress(f"{name}: {section.quantity.name}"):
+            result = RUNS[name](found.design, section, sampled)
+        print(f"\n{name}\n{result}")
+        failed = failed or (None if result.outcome.ok else result.outcome)
+        if out is not None:
+            files += _files(name, result, found.design, out)
+    if out is not None:
+        print(f"\n{written(*files)}")
+    if failed is not None:
+        raise ComputationFailed(failed)
+
+
+def _wanted(names: tuple[str, ...]) -> list[str]:
+    for name in names:
+        if name not in STUDIES:
+            raise UsageError(f"--study {name[:40]}: expected one of {', '.join(STUDIES)}")
+    return list(dict.fromkeys(names))
+
+
+def _sampled(given: Sampled, samples: int | None, seed: int | None) -> Sampled:
+    changes = {name: value for name, value in (("samples", samples), ("seed", seed)) if value is not None}
+    try:
+        return given.replace(changes)
+    except ParameterError as error:
+        raise UsageError(f"--{error.name} {error.value}: {error.expectation}") from error
+
+
+def _probability(design: "Design", section: Scattered, how: Sampled) -> Result:
+    return studies.squeal_probability(
+        design, section.scatter, section.quantity, samples=int(how.samples), method=how.sampling,  # type: ignore[arg-type]
+        seed=int(how.seed), level=how.level,
+    )  # fmt: skip
+
+
+def _by(function: Callable[..., Result], **settings: Any) -> Callable[["Design", Scattered, Sampled], Result]:
+    """A study that takes no kind of points; a setting that is a function is one of the number of samples."""
+
+    def run(design: "Design", section: Scattered, how: Sampled) -> Result:
+        chosen = {name: value(int(how.samples)) if callable(value) else value for name, value in settings.items()}
+        if function is not studies.polynomial_chaos:
+            chosen["level"] = how.level
+        return function(design, section.scatter, section.quantity, seed=int(how.seed), **chosen)
+
+    return run
+
+
+def _bounds(design: "Design", section: Scattered, how: Sampled) -> Result:
+    return studies.interval_bounds(design, section.scatter.box(), section.quantity, seed=int(how.seed))
+
+
+RUNS: dict[str, Callable[["Design", Scattered, Sampled], Result]] = {
+    "probability": _probability,
+    "sobol": _by(studies.sobol_indices, samples=int),
+    "morris": _by(studies.morris_effects, trajectories=50),
+    "form": _by(studies.form, samples=int),
+    "subset": _by(studies.subset_simulation, samples=lambda samples: max(samples // 2, 500)),
+    "surrogate": _by(studies.polynomial_chaos, samples=lambda samples: min(samples, LEARNT)),
+    "bounds": _bounds,
+}
+
+
+def _files(name: str, result: Any, design: "Design", out: Path) -> list[Path]:
+    from squealbox import plots
+
+    paths = [result.save(out / f"{name}.nc"), write_csv(out / f"{name}.csv", _columns(name, result, design))]
+    return paths + (plots.save(plots.plot(result), out / name) if result.outcome.ok else [])
+
+
+def _columns(name: str, found: Any, design: "Design") -> dict[str, Any]:
+    about = found.settings["quantity"]
+    unit = about["unit"] or "-"
+    value = f"{about['name']} [{unit}]"
+    if name in ("probability", "surrogate"):
+        columns = {_headed(design, each): found.points[:, i] for i, each in enumerate(found.names)}
+        more = {"squeals": found.squeals} if name == "probability" else {f"{value}, not seen": found.held_out}
+        return {**columns, value: found.values, **more}
+    if name == "subset":
+        known = np.isfinite(found.thresholds)
+        runs = np.nonzero(known)[0] + 1
+        return {"run": runs, value: found.thresholds[known], "probability": found.exceedance[known]}
+    columns = {"parameter": np.array(found.names)}
+    if name == "sobol":
+        for each in ("first", "first_low", "first_high", "total", "total_low", "total_high"):
+            columns[each.replace("_", " ")] = getattr(found, each)
+    if name == "morris":
+        for each in ("strength", "strength_error", "direction", "spread"):
+            columns[f"{each.replace('_', ' ')} [{unit}]"] = getattr(found, each)
+    if name == "form":
+        columns |= {"unit": _units(design, found.names), "median": found.median, "squeals at": found.point}
+        columns |= {"in standard deviations": found.normal_point, "importance": found.importance}
+    if name == "bounds":
+        columns |= {"unit": _units(design, found.names), "least at": found.low_at, "largest at": found.high_at}
+    return columns
+
+
+def _headed(design: "Design", name: str) -> str:
+    return f"{name} [{unit_of(design, name) or '-'}]"
+
+
+def _units(design: "Design", names: Any) -> Any:
+    return np.array([unit_of(design, name) or "-" for name in names])
