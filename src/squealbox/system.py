@@ -345,8 +345,8 @@ def _condition(matrix: Any) -> Any:
     """Condition number by the inverse (1-norm); of 2 x 2 in closed form (Frobenius), many times faster on a map."""
     if matrix.shape[-1] != 2:
         return np.linalg.cond(matrix, 1)
-    determinant = matrix[..., 0, 0] * matrix[..., 1, 1] - matrix[..., 0, 1] * matrix[..., 1, 0]
-    return np.sum(matrix**2, axis=(-1, -2)) / np.abs(determinant)
+    a = matrix / np.max(np.abs(matrix), axis=(-1, -2), keepdims=True)
+    return np.sum(a**2, axis=(-1, -2)) / np.abs(a[..., 0, 0] * a[..., 1, 1] - a[..., 0, 1] * a[..., 1, 0])
 
 
 def _normal_forces(system: System, time: float, q: Any) -> Any:
@@ -374,9 +374,9 @@ def _equilibrium_outcome(singular: Any, sliding: Any, converged: Any, speed: Any
 
 def _array(name: str, value: Any, ndim: int) -> np.ndarray:
     try:
-        array = np.array(value, dtype=float)
+        array = np.array(value).astype(float, casting="same_kind")  # refuses complex numbers and texts
     except (TypeError, ValueError) as error:
-        raise InvalidSystem(f"{name}: expected an array of numbers") from error
+        raise InvalidSystem(f"{name}: expected an array of real numbers") from error
     if array.ndim < ndim:
         raise InvalidSystem(f"{name} has shape {array.shape}: expected at least {ndim} axes")
     if not np.all(np.isfinite(array)):

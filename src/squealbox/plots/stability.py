@@ -142,14 +142,10 @@ def boundary_curves(boundary: Boundary, *, scales: Scales = None, title: str = "
 @plot.register(ModeEnergy)
 def mode_energy(energy: ModeEnergy, *, title: str = "", axes: Any = None) -> "Figure":
     """What each contact and damper adds to the growth rate of a mode, as bars; their sum is the growth rate."""
-    per = 1.0 / (2.0 * energy.total)
-    rows = [
-        (f"{name}: normal force", value) for name, value in zip(energy.contacts, energy.circulation * per, strict=True)
-    ]
-    rows += [(f"{name}: slope", value) for name, value in zip(energy.contacts, energy.slope * per, strict=True)]
-    rows += [(f"damping of {name}", -value) for name, value in zip(energy.dofs, energy.dissipated * per, strict=True)]
-    if float(energy.structure):
-        rows.append(("skew stiffness", float(energy.structure) * per))
+    rows = list(energy.shares)
+    if energy.balanced:
+        rows.append(("sum", energy.power))
+        return _bars(rows, "mean power at 1 m", "W", title, axes)
     rows.append(("sum = growth rate", energy.growth_rate))
     return _bars(rows, "contribution to the growth rate", "1/s", title, axes)
 

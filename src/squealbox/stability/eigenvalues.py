@@ -79,6 +79,8 @@ class ComplexModes(Result):
     condition: Any = quantity("... mode", "1", "condition number of the eigenvalue; infinite = defective")
     steady: Any = quantity("... dof", "m", "steady sliding displacement")
     exists: Any = quantity("...", "1", "True where there is a spectrum")
+    normal_force: Any = quantity("... contact", "N", "normal force of each contact in steady sliding, < 0 in tension")
+    contacts: tuple[str, ...] = ()
 
     swept: ClassVar = {
         "largest_growth_rate": ("", "1/s", "largest growth rate"),
@@ -181,10 +183,11 @@ def complex_modes(design_or_system: Any, time: float = 0.0) -> ComplexModes:
     system = as_system(design_or_system)
     about = linearise(system, time)
     inputs = {"system": design_or_system, "time": time}
-    return modes_of(about, inputs)
+    names = tuple(contact.name or f"contact {i + 1}" for i, contact in enumerate(system.contacts))
+    return modes_of(about, inputs, names)
 
 
-def modes_of(about: Linearised, inputs: Any = None) -> ComplexModes:
+def modes_of(about: Linearised, inputs: Any = None, contacts: tuple[str, ...] = ()) -> ComplexModes:
     """The modes of linearised matrices; see :func:`complex_modes`."""
     matrix, rate, usable, outcome = state_matrix(about)
     scaled, states = np.linalg.eig(np.where(usable[..., None, None], matrix, _stand_in(matrix)))
@@ -201,6 +204,8 @@ def modes_of(about: Linearised, inputs: Any = None) -> ComplexModes:
         condition=np.where(missing[..., None], np.nan, condition),
         steady=np.where(missing[..., None], np.nan, about.equilibrium.q),
         exists=usable,
+        normal_force=about.equilibrium.normal_force,
+        contacts=contacts,
         inputs=inputs or {},
         outcome=outcome,
     )

@@ -8,7 +8,9 @@ changes at 2 Re(lambda) E, and that is exactly the sum of the mean powers
     structure:               -1/2 |lambda|^2 Re(u^H C u), by degree of freedom; and the skew part of K itself
 
 The symmetric part of mu d n' stores energy like a spring and is counted as strain. Work in a cycle is power times
-period.
+period. C is told apart into dampers: with symmetric C, v.C v = sum_i (sum_j C_ij) v_i^2 - sum_(i<j) C_ij (v_i - v_j)^2,
+that is one damper from each degree of freedom to ground and one between each two. In a mode that diverges without
+damping kinetic and strain energy cancel: E = 0, and the powers add up to nothing.
 """
 
 from dataclasses import dataclass
@@ -20,6 +22,8 @@ from squealbox.result import Result, quantity
 from squealbox.stability.eigenvalues import Mode, modes_of
 from squealbox.stability.family import steady_sliding
 from squealbox.system import System, as_system
+
+MOST_DAMPERS = 12  # named one by one; the damping of a larger structure is given by degree of freedom
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -33,6 +37,7 @@ class ModeEnergy(Result):
     circulation: Any = quantity("contact", "W", "mean power fed in by normal force varying, skew part")
     slope: Any = quantity("contact", "W", "mean power fed in by friction varying with speed")
     dissipated: Any = quantity("dof", "W", "mean power taken out by the damping C, by degree of freedom")
+    dampers: Any = quantity("damper", "W", "mean power taken out by each damper that C is made of")
     structure: Any = quantity("", "W", "mean power fed in by the skew part of the structure's own K")
     kinetic: Any = quantity("dof", "J", "mean kinetic energy, by degree of freedom")
     strain: Any = quantity("dof", "J", "mean strain energy with friction's symmetric part, by degree of freedom")
@@ -40,6 +45,7 @@ class ModeEnergy(Result):
     eigenvalue: Any = quantity("", "1/s", "eigenvalue of the mode")
     contacts: tuple[str, ...] = ()
     dofs: tuple[str, ...] = ()
+    damper_names: tuple[str, ...] = ()
 
     @property
     def total(self) -> float:
@@ -47,15 +53,43 @@ class ModeEnergy(Result):
         return float(np.sum(self.kinetic) + np.sum(self.strain))
 
     @property
+    def balanced(self) -> bool:
+        """True where kinetic and strain energy cancel to round-off, so that no growth rate follows from powers."""
+        return abs(self.total) <= 1e-12 * self._size
+
+    @property
+    def power(self) -> float:
+        """Sum of the mean powers [W]."""
+        fed = np.sum(self.circulation) + np.sum(self.slope) + float(self.structure)
+        return float(fed - np.sum(self.dissipated))
+
+    @property
     def growth_rate(self) -> float:
-        """Growth rate [1/s] from the sum of powers: sum / (2 E)."""
-        powers = np.sum(self.circulation) + np.sum(self.slope) + float(self.structure) - np.sum(self.dissipated)
-        return float(powers / (2.0 * self.total))
+        """Growth rate [1/s] from the sum of powers: sum / (2 E); NaN where E = 0 (`balanced`)."""
+        return np.nan if self.balanced else self.power / (2.0 * self.total)
 
     @property
     def residual(self) -> float:
-        """What the sum of powers misses of the growth rate, relative to |lambda| [-]."""
-        return abs(self.growth_rate - float(np.real(self.eigenvalue))) / abs(complex(self.eigenvalue))
+        """What the sum of powers misses of 2 Re(lambda) E, relative to 2 |lambda| (kinetic + |strain|) [-]."""
+        expected = 2.0 * float(np.real(self.eigenvalue)) * self.total
+        scale = 2.0 * abs(complex(self.eigenvalue)) * self._size
+        return abs(self.power - expected) / scale if scale > 0.0 else 0.0
+
+    @property
+    def shares(self) -> list[tuple[str, float]]:
+        """Name and contribution of each contact and damper: to the growth rate [1/s], or its power [W] where E = 0."""
+        per = 1.0 if self.balanced else 1.0 / (2.0 * self.total)
+        rows = list(zip((f"{name}: normal force" for name in self.contacts), self.circulation * per, strict=True))
+        rows += zip((f"{name}: slope" for name in self.contacts), self.slope * per, strict=True)
+        few = len(self.damper_names) <= MOST_DAMPERS
+        names = self.damper_names if few else tuple(f"damping of {name}" for name in self.dofs)
+        rows += zip(names, (self.dampers if few else self.dissipated) * -per, strict=True)
+        rows += [("skew stiffness of the structure", float(self.structure) * per)] * bool(self.structure)
+        return [(name, float(value) + 0.0) for name, value in rows]
+
+    @property
+    def _size(self) -> float:
+        return float(np.sum(np.abs(self.kinetic)) + np.sum(np.abs(self.strain)))
 
     @property
     def work_per_cycle(self) -> Any:
@@ -71,16 +105,15 @@ class ModeEnergy(Result):
 
     def summary(self) -> str:
         """What each contact and damper brings to the growth rate [1/s]."""
-        per = 1.0 / (2.0 * self.total)
         hertz = abs(np.imag(self.eigenvalue)) / (2.0 * np.pi)
         rows = [f"growth rate {float(np.real(self.eigenvalue)):+.6g} 1/s at {hertz:.6g} Hz"]
-        for i, name in enumerate(self.contacts):
-            rows.append(
-                f"  {name}: normal force {self.circulation[i] * per:+.6g}, slope {self.slope[i] * per:+.6g} 1/s, "
-                f"phase {np.rad2deg(self.phase[i]):+.4g} deg"
-            )
-        rows += [f"  damping of {name}: {-self.dissipated[i] * per:+.6g} 1/s" for i, name in enumerate(self.dofs)]
-        rows += [f"  skew stiffness of the structure: {float(self.structure) * per:+.6g} 1/s"] * bool(self.structure)
+        unit = "W" if self.balanced else "1/s"
+        rows += ["  kinetic and strain energy cancel; powers at 1 m instead"] * self.balanced
+        rows += [f"  {name}: {value:+.6g} {unit}" for name, value in self.shares]
+        rows += [
+            f"  {name}: normal force leads its sliding velocity by {np.rad2deg(phase):+.4g} deg"
+            for name, phase in zip(self.contacts, self.phase, strict=True)
+        ]
         return "\n".join(rows)
 
     def __repr__(self) -> str:
@@ -122,10 +155,12 @@ def mode_energy(design_or_system: Any, mode: Mode | int | None = None, time: flo
     own_skew = 0.5 * (structure - structure.T)
     own_skew = np.where(np.max(np.abs(own_skew)) <= 1e-13 * np.max(np.abs(structure)), 0.0, own_skew)  # round-off
     symmetric = 0.5 * (steady.K + steady.K.T)
+    damper_names, dampers = _dampers(steady.structural, velocity, system.names)
     return ModeEnergy(
         circulation=np.array(circulation),
         slope=np.array(slope),
         dissipated=0.5 * np.real(np.conj(velocity) * (steady.structural @ velocity)),
+        dampers=dampers,
         structure=float(-0.5 * np.real(np.conj(velocity) @ own_skew @ u)),
         kinetic=0.25 * np.real(np.conj(velocity) * (steady.M @ velocity)),
         strain=0.25 * np.real(np.conj(u) * (symmetric @ u)),
@@ -133,5 +168,22 @@ def mode_energy(design_or_system: Any, mode: Mode | int | None = None, time: flo
         eigenvalue=complex(value),
         contacts=tuple(contact.name or f"contact {i + 1}" for i, contact in enumerate(system.contacts)),
         dofs=system.names,
+        damper_names=damper_names,
         inputs={"system": design_or_system, "time": time},
     )
+
+
+def _dampers(damping: Any, velocity: Any, dofs: tuple[str, ...]) -> tuple[tuple[str, ...], Any]:
+    """Names and mean powers [W] of the dampers that C is made of: to ground, and between two degrees of freedom."""
+    symmetric = 0.5 * (damping + damping.T)  # the skew part does no work
+    rest = 1e-14 * np.max(np.abs(symmetric))
+    found = []
+    for i, name in enumerate(dofs):
+        grounded = float(np.sum(symmetric[i]))
+        if abs(grounded) > rest:
+            found.append((f"damping of {name}", 0.5 * grounded * abs(velocity[i]) ** 2))
+        for j in range(i):
+            if abs(symmetric[i, j]) > rest:
+                power = -0.5 * symmetric[i, j] * abs(velocity[i] - velocity[j]) ** 2
+                found.append((f"damping between {dofs[j]} and {name}", power))
+    return tuple(name for name, _ in found), np.array([float(power) for _, power in found])

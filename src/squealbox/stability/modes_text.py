@@ -19,7 +19,7 @@ def summary(modes: "ComplexModes") -> str:
     table = [HEADER, *rows]
     widths = [max(len(row[i]) for row in table) for i in range(len(HEADER))]
     padded = [[cell.rjust(width) for cell, width in zip(row, widths, strict=True)] for row in table]
-    return "\n".join([_verdict(modes, entry), *("  ".join(row).rstrip() for row in padded)])
+    return "\n".join([_verdict(modes, entry), *("  ".join(row).rstrip() for row in padded), *_cautions(modes, entry)])
 
 
 def html(modes: "ComplexModes") -> str:
@@ -29,7 +29,8 @@ def html(modes: "ComplexModes") -> str:
     entry, rows = _rows(modes)
     head = "".join(f"<th>{cell}</th>" for cell in HEADER)
     body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
-    return f"<p>{html_module.escape(_verdict(modes, entry))}</p><table><tr>{head}</tr>{body}</table>"
+    cautions = "".join(f"<p>{html_module.escape(text)}</p>" for text in _cautions(modes, entry))
+    return f"<p>{html_module.escape(_verdict(modes, entry))}</p><table><tr>{head}</tr>{body}</table>{cautions}"
 
 
 def _rows(modes: "ComplexModes") -> tuple[tuple[int, ...], list[tuple[str, ...]]]:
@@ -59,3 +60,12 @@ def _verdict(modes: "ComplexModes", entry: tuple[int, ...]) -> str:
         missing = int(np.sum(~modes.exists))
         text += f" (worst of {total} points, at {entry}; {unstable} unstable, {missing} without steady sliding)"
     return text
+
+
+def _cautions(modes: "ComplexModes", entry: tuple[int, ...]) -> list[str]:
+    """One sentence when steady sliding needs a contact to pull."""
+    forces = zip(modes.contacts, modes.normal_force[entry], strict=bool(modes.contacts))
+    pulled = [f"{name} ({force:.4g} N)" for name, force in forces if force < 0.0]
+    if not pulled:
+        return []
+    return [f"Caution: in steady sliding the equations let {', '.join(pulled)} pull; a real contact would lift off."]

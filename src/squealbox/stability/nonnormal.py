@@ -113,6 +113,9 @@ def _single(design_or_system: Any, time: float) -> Steady:
 def _energy_coordinates(steady: Steady) -> tuple[Any, Any]:
     """The state matrix in coordinates whose squared length is twice the energy, and the root that leads there."""
     size = steady.M.shape[-1]
+    least = float(np.linalg.eigvalsh(0.5 * (steady.M + steady.M.T))[0])
+    if not least > np.finfo(float).eps * np.max(np.abs(steady.M)):
+        raise ValueError(f"M has the eigenvalue {least:.6g} kg: an energy needs a positive definite mass")
     symmetric = 0.5 * (steady.K + steady.K.T)
     if np.linalg.eigvalsh(symmetric)[0] <= 0.0:
         symmetric = steady.M * np.linalg.norm(steady.K, 2) / np.linalg.norm(steady.M, 2)

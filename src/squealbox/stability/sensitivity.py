@@ -9,7 +9,8 @@ With Q = lambda^2 M + lambda C_eff + K_eff, Q u = 0, w^H Q = 0 and w^H (2 lambda
 with Q_l = dQ/dlambda, and u_p from the bordered system [[Q, Q_l u], [u^H, 0]]: exact for non-symmetric matrices. The
 matrices' own derivatives are central differences of sixth order (a design is an arbitrary function of its parameters),
 from one batched call, with one-sided ones at the end of a parameter's range. Near a coalescence no derivative exists;
-`near_defective` flags it.
+`near_defective` flags it. Where two modes share an eigenvalue without merging, each parameter parts them in a direction
+of its own, so neither has a gradient: `repeated` flags that, and the derivatives are NaN.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,6 +24,7 @@ from squealbox.stability.eigenvalues import NEAR_DEFECTIVE, Mode, modes_of
 from squealbox.stability.family import Family, steady_sliding
 
 CENTRAL = np.arange(-3.0, 4.0)
+REPEATED = 1e-9  # distance to the next eigenvalue, as a share of |lambda|, below which the two are one
 RELATIVE_STEP = 2e-3  # of a parameter's size: truncation (2e-3)^6 and round-off 1e-16/(2e-3)^2 are both far below 1e-9
 
 
@@ -35,7 +37,13 @@ class Sensitivity(Result):
     second: Any = quantity("parameter other", "", "d2 lambda / dp dq, in 1/s per units of the parameters")
     values: Any = quantity("parameter", "", "the parameters' values")
     condition: Any = quantity("", "1", "condition number of the eigenvalue")
+    separation: Any = quantity("", "1/s", "distance to the nearest other eigenvalue")
     parameters: tuple[str, ...] = ()
+
+    @property
+    def repeated(self) -> bool:
+        """True where another mode has the same eigenvalue but its own shape, so that no derivative exists."""
+        return not self.near_defective and bool(self.separation <= REPEATED * abs(complex(self.eigenvalue)))
 
     @property
     def near_defective(self) -> bool:
@@ -54,13 +62,16 @@ class Sensitivity(Result):
 
     def summary(self) -> str:
         """The ranking as a table: change of growth rate and frequency for one per cent more of each parameter."""
+        if self.repeated:
+            return f"two modes share the eigenvalue {self.eigenvalue:.6g} 1/s: neither has derivatives"
         rows = [f"{'parameter':<20} {'growth rate [1/s]':>18} {'frequency [Hz]':>16}   for +1 %"]
         order = np.argsort(-np.abs(self.relative), kind="stable")
         turn = np.sign(np.imag(self.eigenvalue)) / (2.0 * np.pi)
         for i in order:
             change = 0.01 * self.values[i] * self.first[i]
             rows.append(f"{self.parameters[i]:<20} {change.real:>+18.6g} {turn * change.imag:>+16.6g}")
-        return "\n".join(rows + ["two modes nearly merge here: derivatives mean little"] * self.near_defective)
+        rows += ["two modes nearly merge here: derivatives mean little"] * self.near_defective
+        return "\n".join(rows)
 
     def __repr__(self) -> str:
         return self.summary()
@@ -90,13 +101,19 @@ def sensitivity(
     values = np.array([float(design.value_of(name)) for name in names])
     matrices = matrix_derivatives(design, names, time)
     value, u, w = chosen.eigenvalue, chosen.shape, chosen.left
-    first, second = _derivatives(value, u, w, steady.M, steady.C, steady.K, matrices)
+    condition = float(modes.condition[chosen.index])
+    separation = float(np.min(np.abs(np.delete(modes.eigenvalues, chosen.index) - value)))
+    if condition <= NEAR_DEFECTIVE and separation <= REPEATED * abs(value):
+        first, second = np.full(len(names), np.nan + 0j), np.full((len(names), len(names)), np.nan + 0j)
+    else:
+        first, second = _derivatives(value, u, w, steady.M, steady.C, steady.K, matrices)
     return Sensitivity(
         eigenvalue=complex(value),
         first=first,
         second=second,
         values=values,
-        condition=float(modes.condition[chosen.index]),
+        condition=condition,
+        separation=separation,
         parameters=names,
         inputs={"system": design, "time": time},
     )
