@@ -6,11 +6,12 @@ Depends on: transient, stability, continuation, system, friction, schedules, res
 from squealbox.limit_cycles.attractors import Attractor
 from squealbox.limit_cycles.basins import Basin, basin
 from squealbox.limit_cycles.branches import Branch, branch
-from squealbox.limit_cycles.curves import PointCurve, hopf_curve, point_curve
+from squealbox.limit_cycles.curves import PointCurve, hopf_curve
 from squealbox.limit_cycles.cycle import Cycle
 from squealbox.limit_cycles.estimates import averaged_limit, averaged_swings, describing_function
 from squealbox.limit_cycles.harmonic_balance import harmonic_balance
 from squealbox.limit_cycles.hopf import HopfPoint, hopf_point
+from squealbox.limit_cycles.point_curves import point_curve
 from squealbox.limit_cycles.pushes import DangerousPush, dangerous_push, push_along
 from squealbox.limit_cycles.sections import lyapunov_exponents, maxima
 from squealbox.limit_cycles.shooting import shooting

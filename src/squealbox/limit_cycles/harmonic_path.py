@@ -86,9 +86,13 @@ class HarmonicPath:
         closed = np.vstack([states, states[:1]])
         t = np.append(self.grid.tau, 2.0 * np.pi) / omega
         low, high = extremes(t, closed[:, :n], closed[:, n:])
-        multipliers = ordered(np.linalg.eigvals(balance.monodromy(coefficients, omega, max(128, self.grid.samples))))
-        return {"period": 2.0 * np.pi / omega, "lowest": low, "highest": high, "multipliers": multipliers,
+        return {"period": 2.0 * np.pi / omega, "lowest": low, "highest": high, "multipliers": self.multipliers(x, p),
                 "least_slip": self.least_slip(x, p), "sticking": 0.0, "begin": states[0, :n]}  # fmt: skip
+
+    def multipliers(self, x: Any, p: float) -> Any:
+        """Floquet multipliers of the cycle at a point."""
+        steps = max(128, self.grid.samples)
+        return ordered(np.linalg.eigvals(self.balance(p).monodromy(*self.series(x), steps)))
 
     def cycle(self, x: Any, p: float) -> Cycle:
         """The cycle at a point, on a fine grid; its error is the share of the last quarter of harmonics."""

@@ -137,9 +137,13 @@ class ShootingPath:
         slip = motion.sliding_velocity * np.sign(self.field(p).V)
         sticking = np.sum((motion.mode[1:] == 0) * np.diff(motion.t)[:, None], axis=0)
         return {"period": float(x[-1]), "lowest": low, "highest": high,
-                "multipliers": ordered(np.linalg.eigvals(flown.phi)),
+                "multipliers": self.multipliers(x, p),
                 "least_slip": float(np.min(slip, initial=np.inf)),
                 "sticking": float(np.max(sticking, initial=0.0)), "begin": motion.q[0]}  # fmt: skip
+
+    def multipliers(self, x: Any, p: float) -> Any:
+        """Floquet multipliers of the cycle at a point."""
+        return ordered(np.linalg.eigvals(self.fly(x, p)[1].phi))
 
     def least_slip(self, x: Any, p: float) -> float:
         """Least sliding speed in the sense of V [m/s] at the instants of the motion."""
