@@ -11,6 +11,8 @@ from squealbox.limit_cycles.cycle import Cycle
 from squealbox.limit_cycles.estimates import averaged_limit, averaged_swings, describing_function
 from squealbox.limit_cycles.harmonic_balance import harmonic_balance
 from squealbox.limit_cycles.hopf import HopfPoint, hopf_point
+from squealbox.limit_cycles.isolated import isolated_branches, settled_cycles
+from squealbox.limit_cycles.joined import joined
 from squealbox.limit_cycles.point_curves import point_curve
 from squealbox.limit_cycles.pushes import DangerousPush, dangerous_push, push_along
 from squealbox.limit_cycles.sections import lyapunov_exponents, maxima
@@ -36,11 +38,14 @@ __all__ = [
     "harmonic_balance",
     "hopf_curve",
     "hopf_point",
+    "isolated_branches",
+    "joined",
     "lyapunov_exponents",
     "maxima",
     "point_curve",
     "push_along",
     "return_gap",
+    "settled_cycles",
     "shooting",
     "stick_slip_limit",
 ]

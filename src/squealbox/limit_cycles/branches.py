@@ -2,9 +2,10 @@
 
 Continuation walks the path (`squealbox.continuation`); this module starts it, reads each point and finds
 
-fold, period_doubling, neimark_sacker, grazing and sticking. They are solved for, not interpolated (`special_points`):
-`Branch.points` holds the cycle at each with what is left of its test function. Where a path could not be corrected
-between two points, the value is their middle, its uncertainty NaN, and there is no such cycle.
+fold, period_doubling, neimark_sacker, grazing, sticking and, at a corner (`corners`), event_order. They are solved for,
+not interpolated (`special_points`): `Branch.points` holds the cycle at each with what is left of its test function.
+Where a path could not be corrected between two points, the value is their middle, its uncertainty NaN, and there is no
+such cycle.
 """
 
 from dataclasses import dataclass, field
@@ -27,7 +28,8 @@ from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome, Result, quantity
 
 METHODS = ("harmonic_balance", "shooting")
-METHODS_FROM_HOPF = ("harmonic_balance", "exact")
+METHODS_FROM_HOPF = (("harmonic_balance", "exact"), ("shooting", "exact"))
+RISE = 6  # points by harmonic balance from a Hopf point to the cycle where shooting takes over
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -103,7 +105,8 @@ def branch(
     ----------
     design : a design, or a function of one value that returns a design or system
     parameter, bounds : dotted name and the range walked
-    start : a `HopfPoint` (the branch born there), a period doubling out of `Branch.points` (the branch of doubled
+    start : a `HopfPoint` (the branch born there; with method "shooting" on past the first contact at rest), a
+        period doubling out of `Branch.points` (the branch of doubled
         period, with method "shooting"), or what :func:`shooting` takes, at `value` of the parameter
     value : where to start from; None takes the middle of the bounds
     method : "harmonic_balance" (smooth or smoothed cycles, fast) or "shooting" (exact stick and slip)
@@ -112,9 +115,10 @@ def branch(
     points : most points; largest_step : longest step, in shares of the range and of the size of the motion
     rtol : for shooting
 
-    Outcome "completed" at a bound, "most_points", "grazing" (harmonic balance with exact contact at the first contact
-    that reverses), "step_underflow" (a corner: with shooting, where a sticking phase begins or ends) or why there was
-    no start. Accuracy: that of the method with these harmonics. Source: Keller 1977.
+    Outcome "completed" at a bound or where the cycle shrinks to steady sliding, "most_points", "grazing" (harmonic
+    balance with exact contact at the first contact that reverses), "jump" (shooting: no cycle lies beside the last),
+    "step_underflow" or why there was no start. Shooting goes on past corners, where a contact begins to touch v = 0 or
+    two events change places. Accuracy: that of the method with these harmonics. Source: Keller 1977.
 
     >>> from squealbox import DrumBrake, LinearSlope
     >>> from squealbox.limit_cycles import hopf_point
@@ -129,12 +133,16 @@ def branch(
     make = family(design, parameter)
     middle = 0.5 * (bounds[0] + bounds[1]) if value is None else value
     settings = {"bounds": list(bounds), "method": method, "contact": contact, "width": width, "harmonics": harmonics}
-    if isinstance(start, HopfPoint) and (method, contact) != METHODS_FROM_HOPF:
-        raise ParameterError("branch", "start", "a HopfPoint", "harmonic balance with exact contact from a Hopf point")
+    if isinstance(start, HopfPoint) and (method, contact) not in METHODS_FROM_HOPF:
+        raise ParameterError("branch", "start", "a HopfPoint", "shooting or exact contact from a Hopf point")
     if isinstance(start, BranchPoint):
         middle = float(start.value) if value is None else middle
         if start.kind == "period_doubling" and method != "shooting":
             raise ParameterError("branch", "method", method, '"shooting" from a period doubling')
+    if method == "shooting" and isinstance(start, HopfPoint):
+        start, middle, direction, outcome = _risen(make, start, bounds, harmonics, largest_step)
+        if not outcome.ok:
+            return _collect([], [], [], outcome, parameter, settings, make(middle))
     if method == "shooting":
         path, unknowns, p, outcome = _shooting_start(make, start, middle, rtol, span)
     else:
@@ -182,6 +190,27 @@ def _harmonic_start(
     series = path.grid.series(_resampled(found, path.grid))
     return path, path.begin(series, 2.0 * np.pi / float(found.period), value, float(np.max(found.amplitude))), value, \
         found.outcome  # fmt: skip
+
+
+def _risen(make: Any, hopf: HopfPoint, bounds: tuple[float, float], harmonics: int, largest: float) -> Any:
+    """A cycle a few points up the branch born at a Hopf point, its parameter, the way up, and the outcome."""
+    span = bounds[1] - bounds[0]
+    path, x, p, outcome = _harmonic_start(make, hopf, float(hopf.value), "exact", 1e-3, harmonics, span)
+    if not outcome.ok:
+        return hopf, p, 1.0, outcome
+    control = StepControl(first=min(1e-2, largest), largest=largest, most_points=RISE, tolerance=1e-9)
+    walk = follow(path.residual, x, p, jacobian=path.jacobian, control=control, bounds=bounds, x_scale=path.scale,
+                  p_scale=span, tangent=path.rise(x))  # fmt: skip
+    points = [point for point in walk if path.least_slip(point.x, point.p) > 0.0]
+    if not points:
+        return (
+            hopf,
+            p,
+            1.0,
+            walk.outcome if not walk.outcome.ok else Outcome("grazing", "no slipping cycle was reached"),
+        )
+    last = points[-1]
+    return path.cycle(last.x, last.p), last.p, float(np.sign(last.p - p)) or 1.0, Outcome(COMPLETED)
 
 
 def _resampled(cycle: Cycle, grid: Grid) -> Any:

@@ -132,7 +132,9 @@ def both_ways(
     low, high = next(iter(bounds.values()))
     walks = []
     for way in (-1.0, 1.0):
-        control = StepControl(first=1e-2, largest=0.2, most_points=points, tolerance=1e-9)
+        control = StepControl(
+            first=1e-2, largest=0.2, most_points=points, tolerance=1e-9, newton_steps=12, wanted_steps=5
+        )
         walk = follow(residual, x, b, control=control, direction=way, bounds=(bottom, top), x_scale=scale,
                       p_scale=top - bottom, jacobian=jacobian)  # fmt: skip
         kept, ended = [], None
