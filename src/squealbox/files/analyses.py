@@ -1,4 +1,4 @@
-"""What a design file may ask of its design: the sections [modes], [onset], [map] and [simulate].
+"""What a design file may ask of its design: the sections [modes], [onset], [branch], [map] and [simulate].
 
 Each section is a data sheet, declared with units and ranges like any other, so the file reader, the JSON schema and the
 command line know it from here.
@@ -105,7 +105,7 @@ def read_simulate(document: Document, table: Mapping[str, Any], key: Key, design
 
 
 def read_onset(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Axis | None:
-    """The section [onset]: ``parameter = "friction.static"`` and ``range = [0, 1]``."""
+    """The section [onset] or [branch]: ``parameter = "friction.static"`` and ``range = [0, 1]``."""
     return read_axis(document, table, key, design)
 
 

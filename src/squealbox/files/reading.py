@@ -24,6 +24,7 @@ STUDY = "study"  # a section that `study.read_study` reads
 SECTIONS: dict[str, Callable[..., Any]] = {
     "modes": analyses.read_modes,
     "onset": analyses.read_onset,
+    "branch": analyses.read_onset,
     "map": analyses.read_map,
     "simulate": analyses.read_simulate,
     "scatter": read_scatter,
@@ -39,6 +40,7 @@ class DesignFile:
     design: Design
     modes: analyses.Modes | None = None
     onset: analyses.Axis | None = None
+    branch: analyses.Axis | None = None
     map: analyses.Map | None = None
     simulate: analyses.Simulate | None = None
     scatter: Scattered | None = None
@@ -55,8 +57,8 @@ def read_design(path: str | os.PathLike[str], *, allow_code: bool = False) -> De
 
 
 def read_file(path: str | os.PathLike[str], *, allow_code: bool = False) -> DesignFile:
-    """The brake that the file at `path` describes, and its sections: [modes], [onset], [map], [simulate],
-    [scatter] and [optimise].
+    """The brake that the file at `path` describes, and its sections: [modes], [onset], [branch], [map],
+    [simulate], [scatter] and [optimise].
 
     A friction law that is Python code (``law = "own"``) is run only with `allow_code`.
     Raises `DesignFileError`, whose `problems` are all that is wrong with the file, each with line, key and a sentence.

@@ -32,6 +32,7 @@ def json_schema() -> Schema:
         "modes": _sheet(Modes),
         "simulate": _sheet(Simulate),
         "onset": _ref("axis"),
+        "branch": _ref("axis"),
         "map": {
             "type": "object",
             "description": "[map]: stability over two parameters",

@@ -8,7 +8,7 @@ from squealbox.limit_cycles.basins import Basin, basin
 from squealbox.limit_cycles.branches import Branch, branch
 from squealbox.limit_cycles.curves import PointCurve, hopf_curve
 from squealbox.limit_cycles.cycle import Cycle
-from squealbox.limit_cycles.estimates import averaged_limit, averaged_swings, describing_function
+from squealbox.limit_cycles.estimates import averaged_curve, averaged_limit, averaged_swings, describing_function
 from squealbox.limit_cycles.harmonic_balance import harmonic_balance
 from squealbox.limit_cycles.hopf import HopfPoint, hopf_point
 from squealbox.limit_cycles.isolated import isolated_branches, settled_cycles
@@ -29,6 +29,7 @@ __all__ = [
     "DangerousPush",
     "HopfPoint",
     "PointCurve",
+    "averaged_curve",
     "averaged_limit",
     "averaged_swings",
     "basin",

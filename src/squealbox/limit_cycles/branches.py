@@ -19,7 +19,7 @@ from squealbox.limit_cycles.doubling import doubled
 from squealbox.limit_cycles.harmonic_balance import Grid, harmonic_balance
 from squealbox.limit_cycles.harmonic_path import HarmonicPath
 from squealbox.limit_cycles.hopf import HopfPoint, family
-from squealbox.limit_cycles.phases import begun
+from squealbox.limit_cycles.phases import begun, heading
 from squealbox.limit_cycles.shooting import CONTACTS, shooting
 from squealbox.limit_cycles.shooting_path import ShootingPath
 from squealbox.limit_cycles.special_points import BranchPoint
@@ -139,17 +139,17 @@ def branch(
         middle = float(start.value) if value is None else middle
         if start.kind == "period_doubling" and method != "shooting":
             raise ParameterError("branch", "method", method, '"shooting" from a period doubling')
+    tangent = None
     if method == "shooting" and isinstance(start, HopfPoint):
-        start, middle, direction, outcome = _risen(make, start, bounds, harmonics, largest_step)
-        if not outcome.ok:
-            return _collect([], [], [], outcome, parameter, settings, make(middle))
-    if method == "shooting":
+        path, unknowns, p, tangent, outcome = _risen(make, start, bounds, harmonics, rtol)
+    elif method == "shooting":
         path, unknowns, p, outcome = _shooting_start(make, start, middle, rtol, span)
     else:
         path, unknowns, p, outcome = _harmonic_start(make, start, middle, CONTACTS[contact], width, harmonics, span)
     if not outcome.ok:
         return _collect([], [], [], outcome, parameter, settings, make(middle))
-    tangent = path.rise(unknowns) if isinstance(start, HopfPoint) else None
+    if method != "shooting" and isinstance(start, HopfPoint):
+        tangent = path.rise(unknowns)
     if isinstance(start, BranchPoint) and start.kind == "period_doubling":
         unknowns, tangent = doubled(path, unknowns, p)
     control = StepControl(first=min(1e-2, largest_step), largest=largest_step, most_points=points, tolerance=1e-9)
@@ -192,25 +192,28 @@ def _harmonic_start(
         found.outcome  # fmt: skip
 
 
-def _risen(make: Any, hopf: HopfPoint, bounds: tuple[float, float], harmonics: int, largest: float) -> Any:
-    """A cycle a few points up the branch born at a Hopf point, its parameter, the way up, and the outcome."""
+def _risen(make: Any, hopf: HopfPoint, bounds: tuple[float, float], harmonics: int, rtol: float) -> tuple[Any, ...]:
+    """(path, unknowns, p, tangent, outcome) by shooting, a few points by harmonic balance up from a Hopf point."""
     span = bounds[1] - bounds[0]
     path, x, p, outcome = _harmonic_start(make, hopf, float(hopf.value), "exact", 1e-3, harmonics, span)
     if not outcome.ok:
-        return hopf, p, 1.0, outcome
-    control = StepControl(first=min(1e-2, largest), largest=largest, most_points=RISE, tolerance=1e-9)
+        return path, None, p, None, outcome
+    control = StepControl(largest=0.1, most_points=RISE, tolerance=1e-9)
     walk = follow(path.residual, x, p, jacobian=path.jacobian, control=control, bounds=bounds, x_scale=path.scale,
                   p_scale=span, tangent=path.rise(x))  # fmt: skip
-    points = [point for point in walk if path.least_slip(point.x, point.p) > 0.0]
-    if not points:
+    points = [point for point in walk if path.least_slip(point.x, point.p) > 0.0][-2:]
+    if len(points) < 2:
         return (
-            hopf,
+            path,
+            None,
             p,
-            1.0,
-            walk.outcome if not walk.outcome.ok else Outcome("grazing", "no slipping cycle was reached"),
+            None,
+            Outcome("no_start", f"no slipping cycles were reached from the Hopf point: {walk.outcome}"),
         )
-    last = points[-1]
-    return path.cycle(last.x, last.p), last.p, float(np.sign(last.p - p)) or 1.0, Outcome(COMPLETED)
+    cycles = tuple(path.cycle(point.x, point.p) for point in points)
+    exact, p = ShootingPath(make, rtol, span), points[1].p
+    x = begun(exact, cycles[1], p)
+    return exact, x, p, heading(exact, x, p, cycles[::-1], points[0].p), outcome
 
 
 def _resampled(cycle: Cycle, grid: Grid) -> Any:

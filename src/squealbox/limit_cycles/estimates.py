@@ -19,6 +19,8 @@ import numpy as np
 from squealbox.friction import Cubic, FrictionLaw, Stribeck
 from squealbox.limit_cycles.cycle import Cycle
 from squealbox.limit_cycles.harmonic_balance import harmonic_balance
+from squealbox.limit_cycles.hopf import family
+from squealbox.schedules import value_at
 
 POINTS = 256  # of the average; exponentially accurate for a smooth law
 SCAN = 400
@@ -76,6 +78,42 @@ def averaged_swings(law: FrictionLaw, sliding_speed: float, normal_force: float,
         return float(averaged_excess(law, u, sliding_speed, normal_force, damping))
 
     return np.array([brentq(excess, grid[i], grid[i + 1], xtol=1e-15) for i in places])
+
+
+def averaged_curve(design: Any, parameter: str, values: Any) -> tuple[Any, Any]:
+    """(values, amplitudes [m]) of the averaged cycles over a parameter, for a figure; empty unless it is one block.
+
+    Parameters
+    ----------
+    design : a design, or a function of one value that returns a design or system
+    parameter : dotted name
+    values : of the parameter, shape (k,)
+
+    One degree of freedom with one contact whose normal force does not depend on the displacement is a block on a belt.
+    Accuracy: that of :func:`averaged_swings`; cycles that stick are not among them. Source: as this module.
+
+    >>> from squealbox import Contact, Cubic, System
+    >>> def block(speed):
+    ...     belt = Contact(n=[0.0], d=[1.0], t=[1.0], N0=1.0, V=speed, law=Cubic(0.4, 0.25, 0.5))
+    ...     return System([[1.0]], [[0.01]], [[1.0]], 0.0, (belt,))
+    >>> averaged_curve(block, "speed", [0.48])[1].round(9).tolist()
+    [0.237018518]
+    """
+    make, points = family(design, parameter), []
+    for value in np.asarray(values, dtype=float):
+        system = make(float(value))
+        if system.size != 1 or len(system.contacts) != 1 or np.any(system.contacts[0].n) or system.contacts[0].rigid:
+            break
+        (belt,) = system.contacts
+        along, across = float(belt.t[0]), float(belt.d[0])
+        speed, normal = abs(float(value_at(belt.V, 0.0))), float(value_at(belt.N0, 0.0)) * across / along
+        if speed <= 0.0 or along == 0.0:
+            continue
+        mass, damping, stiffness = (float(x[0, 0]) / along**2 for x in (system.M, system.C, system.K))
+        swings = averaged_swings(belt.law, speed, normal, damping)
+        points += [(value, swing * np.sqrt(mass / stiffness) / abs(along)) for swing in swings]
+    table = np.array(points).reshape(-1, 2)
+    return table[:, 0], table[:, 1]
 
 
 def averaged_limit(law: Stribeck, normal_force: float, damping: float) -> float:

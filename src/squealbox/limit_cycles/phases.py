@@ -57,12 +57,18 @@ def taken_up(path: ShootingPath, last: tuple[Any, float], earlier: tuple[Any, fl
     x, p = begun(other, cycle, last[1]), last[1]
     if touches_event(other, x, p):
         return None
-    state = other.start(x)
-    row = int(np.argmin(np.max(np.abs(np.hstack([cycle.q, cycle.qd]) - state) * other.field(p).scale, axis=1)))
+    return other, x, p, heading(other, x, p, (cycle, before), earlier[1])
+
+
+def heading(path: ShootingPath, x: Any, p: float, cycles: tuple[Cycle, Cycle], before: float) -> Any:
+    """Direction in scaled variables from an earlier cycle at `before` to the one at p that begins at x."""
+    cycle, earlier = cycles
+    state = path.start(x)
+    row = int(np.argmin(np.max(np.abs(np.hstack([cycle.q, cycle.qd]) - state) * path.field(p).scale, axis=1)))
     share = cycle.t[row] / float(cycle.period)
-    dof = other.column - cycle.q.shape[1]
-    beside = [(abs(before.t[i] / float(before.period) - share), i) for i, turned in turns(before) if turned == dof]
+    dof = path.column - cycle.q.shape[1]
+    beside = [(abs(earlier.t[i] / float(earlier.period) - share), i) for i, turned in turns(earlier) if turned == dof]
     row = min(beside)[1]
-    old = np.append(np.delete(np.concatenate([before.q[row], before.qd[row]]), other.column), before.period)
-    ahead = np.append((x - old) / other.scale, (p - earlier[1]) / path.span)
-    return other, x, p, ahead / np.linalg.norm(ahead)
+    old = np.append(np.delete(np.concatenate([earlier.q[row], earlier.qd[row]]), path.column), earlier.period)
+    ahead = np.append((x - old) / path.scale, (p - before) / path.span)
+    return ahead / np.linalg.norm(ahead)

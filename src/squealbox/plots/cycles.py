@@ -64,6 +64,7 @@ def branch_diagram(
     dof: int = 0,
     hopf: HopfPoint | None = None,
     runs: tuple[Any, Any] | None = None,
+    estimates: Sequence[tuple[str, Any, Any]] = (),
     labels: Sequence[str] = (),
     name: str | None = None,
     scale: float = 1.0,
@@ -78,6 +79,7 @@ def branch_diagram(
     dof : index of the degree of freedom
     hopf : marks where the branch is born
     runs : (values, amplitudes [m]) of long runs, drawn as crosses
+    estimates : (label, values, amplitudes [m]) of quick estimates, drawn as thin dotted curves
     labels, name : of the branches (each then has a colour of its own) and of the parameter, with its unit
     scale : what the parameter is divided by
     axes : draw here instead of in a new figure
@@ -93,6 +95,9 @@ def branch_diagram(
             _marks(panel, one, one.amplitude[:, dof] / factor, scale, shown)
         if hopf is not None and hopf.outcome.ok:
             panel.plot(hopf.value / scale, 0.0, "o", color="#000000", label="onset of instability", zorder=4)
+        for label, values, sizes in estimates:
+            panel.plot(np.asarray(values) / scale, np.asarray(sizes) / factor, ":", color="#0072B2", linewidth=1.0,
+                       label=label, zorder=1)  # fmt: skip
         if runs is not None:
             values, sizes = (np.asarray(x) for x in runs)
             panel.plot(values / scale, sizes / factor, "+", color="#555555", markersize=4.5, label="long run")

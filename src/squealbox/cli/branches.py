@@ -1,0 +1,178 @@
+"""`squealbox branch`: the cycles over a range of a parameter, stable and unstable, and where they begin and end."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, read, readable, with_points
+from squealbox.cli.progress import Progress
+from squealbox.cli.running import ComputationFailed
+from squealbox.cli.tables import write_csv, written
+from squealbox.limit_cycles import Branch, HopfPoint, averaged_curve, hopf_point, isolated_branches
+from squealbox.limit_cycles import branch as followed
+from squealbox.result import Outcome
+from squealbox.stability import complex_modes
+
+if TYPE_CHECKING:
+    from squealbox.designs import Design
+    from squealbox.files.analyses import Axis
+
+Start = Literal["all", "hopf", "runs"]
+
+
+def branch(
+    file: Path,
+    *,
+    parameter: str | None = None,
+    range: Ends = None,
+    start: Start = "all",
+    runs: int = 8,
+    at: int = 3,
+    points: int | None = None,
+    changes: Changes = (),
+    allow_code: AllowCode = False,
+    out: Path | None = None,
+) -> None:
+    """The limit cycles over a range of a parameter: amplitude, stability, and where they begin and end.
+
+    Parameters
+    ----------
+    file
+        design file; its section [branch] says what is varied, unless the options do
+    parameter
+        dotted name, such as friction.static
+    range
+        lowest and highest value, with or without a unit: 0.1 0.6
+    start
+        where branches begin: at the Hopf point of steady sliding (hopf), in what long runs settle to (runs), or both
+    runs
+        number of runs from different states at each value
+    at
+        number of values, evenly inside the range, at which runs are made
+    points
+        most cycles of one branch each way
+    changes
+        other values for this run: --set load="2 kN" reading=eq3
+    allow_code
+        run the Python file of a friction law that the design file names
+    out
+        folder for a figure, the tables branch.csv and special.csv, and the data of each branch
+    """
+    found = read(file, changes, allow_code)
+    varied = with_points(axis(found.design, found.branch, parameter, range, RANGE), points)
+    if out is not None:
+        folder(out)
+    with Progress("looking for the onset") as progress:
+        born, several = _all(found.design, varied, start, runs, at, progress)
+    if not several:
+        raise ComputationFailed(Outcome("no_cycle", "no cycle was found in the range: try more runs, or another range"))
+    print(f"{found.design.title}, {file}")
+    if born.outcome.ok:
+        value, unit = readable(found.design, varied, born.value)
+        print(
+            f"{born.kind} Hopf point at {varied.name} = {float(value):.8g} {unit}".rstrip()
+            + f", {born.frequency:.6g} Hz"
+        )
+    for i, one in enumerate(several, 1):
+        print(_said(f"Branch {i}", one, found.design, varied))
+    print(_coexistence(several, found.design, varied))
+    if out is not None:
+        print(written(*_files(several, born, found.design, varied, found.path.name, out)))
+
+
+def _all(
+    design: "Design", varied: "Axis", start: Start, runs: int, at: int, progress: Progress
+) -> tuple[HopfPoint, tuple[Branch, ...]]:
+    """The Hopf point, the branch from it and those that runs lead to."""
+    bounds, points = (varied.low, varied.high), int(varied.points)
+    several: tuple[Branch, ...] = ()
+    born = hopf_point(design, varied.name, bounds)
+    if born.outcome.ok and start != "runs":
+        progress("following the branch from the Hopf point")
+        first = followed(design, varied.name, bounds, born, method="shooting", points=points)
+        several = (first,) if len(first.value) else ()
+    if start != "hopf":
+        progress("runs, and the branches they lead to")
+        several += isolated_branches(design, varied.name, bounds, values=at, starts=runs, known=several, points=points)
+    return born, several
+
+
+def _stretches(one: Branch) -> list[tuple[float, float, bool]]:
+    """(lowest, highest value, stable) of each stretch of a branch, in the order walked."""
+    cuts = np.flatnonzero(one.stable[1:] != one.stable[:-1]) + 1
+    pieces = np.split(np.arange(len(one.value)), cuts)
+    return [(float(np.min(one.value[i])), float(np.max(one.value[i])), bool(one.stable[i[0]])) for i in pieces]
+
+
+def _said(name: str, one: Branch, design: "Design", varied: "Axis") -> str:
+    def shown(value: float) -> str:
+        number, unit = readable(design, varied, value)
+        return f"{float(number):.7g} {unit}".rstrip()
+
+    dofs = one.inputs["system"].names
+    sizes = [f"{dof} {np.min(a):.3g} to {np.max(a):.3g} m" for dof, a in zip(dofs, one.amplitude.T, strict=True)]
+    over = f"{varied.name} {shown(np.min(one.value))} to {shown(np.max(one.value))}"
+    pitch = f"{1.0 / np.max(one.period):.5g} to {1.0 / np.min(one.period):.5g} Hz"
+    lines = [f"{name}: {len(one.value)} cycles, {over}, {pitch}, amplitude {', '.join(sizes)}"]
+    for low, high, stable in _stretches(one):
+        lines.append(f"  {'stable' if stable else 'unstable'} from {shown(low)} to {shown(high)}")
+    for kind, value in zip(one.special_kind, one.special_value, strict=True):
+        lines.append(f"  {str(kind).replace('_', ' ')} at {shown(value)}")
+    lines.append(f"  ends: {one.outcome.message or one.outcome}")
+    return "\n".join(lines)
+
+
+def _coexistence(several: tuple[Branch, ...], design: "Design", varied: "Axis") -> str:
+    """Where a stable cycle exists beside stable steady sliding, as no eigenvalue shows."""
+    values = np.concatenate([one.value[one.stable] for one in several])
+    both = [v for v in values if complex_modes(design.replace({varied.name: float(v)})).stable]
+    if not both:
+        return "No stable cycle was found where steady sliding is stable."
+    ends, unit = readable(design, varied, np.array([min(both), max(both)]))
+    over = f"{varied.name} from {ends[0]:.7g} to {ends[1]:.7g} {unit}".rstrip()
+    return f"Stable sliding and a stable cycle coexist: {over}. A run there ends in either, by its start."
+
+
+def _files(
+    several: tuple[Branch, ...], born: HopfPoint, design: "Design", varied: "Axis", title: str, out: Path
+) -> list[Path]:
+    """Figure, tables, and the data of each branch."""
+    from squealbox import plots
+
+    scale, unit = readable(design, varied, 1.0)
+    name = f"{varied.name} [{unit or '-'}]"
+    dof = int(np.argmax(np.max(np.concatenate([one.amplitude for one in several]), axis=0)))
+    labels = [f"branch {i}" for i in range(1, len(several) + 1)] if len(several) > 1 else []
+    curves = averaged_curve(design, varied.name, varied.values)
+    estimates = [("averaging, slip only", *curves)] if len(curves[0]) else []
+    title = f"{title}, {several[0].inputs['system'].names[dof]}"
+    figure = plots.branch_diagram(several, dof=dof, hopf=born, labels=labels, name=name, scale=1.0 / scale,
+                                  estimates=estimates, title=title)  # fmt: skip
+    paths = [*plots.save(figure, out / "branch"), write_csv(out / "branch.csv", _columns(several, name, scale))]
+    special: dict[str, list[Any]] = {"branch": [], "kind": [], name: [], "uncertainty": []}
+    for i, one in enumerate(several, 1):
+        special["branch"] += [i] * len(one.special_kind)
+        special["kind"] += [str(kind) for kind in one.special_kind]
+        special[name] += list(one.special_value * scale)
+        special["uncertainty"] += list(one.special_uncertainty * scale)
+    paths.append(write_csv(out / "special.csv", special))
+    return paths + [one.save(out / f"branch_{i}.nc") for i, one in enumerate(several, 1)]
+
+
+def _columns(several: tuple[Branch, ...], name: str, scale: float) -> dict[str, Any]:
+    def column(part: Any) -> Any:
+        return np.concatenate([part(one) for one in several])
+
+    columns = {
+        "branch": np.repeat(np.arange(1, len(several) + 1), [len(one.value) for one in several]),
+        name: column(lambda one: one.value * scale),
+        "frequency [Hz]": column(lambda one: 1.0 / one.period),
+        "period [s]": column(lambda one: one.period),
+        "stable": column(lambda one: one.stable),
+        "largest multiplier [-]": column(lambda one: np.max(np.abs(one.multipliers[:, 1:]), axis=1)),
+        "longest sticking [s]": column(lambda one: one.sticking),
+    }
+    for i, dof in enumerate(several[0].inputs["system"].names):
+        columns[f"amplitude {dof} [m]"] = column(lambda one, i=i: one.amplitude[:, i])
+    return columns
