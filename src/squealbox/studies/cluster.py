@@ -56,12 +56,21 @@ class _Cluster:
         self.work.seconds = max(self.work.seconds, overhead / SHARE)
         text = f"{self.work.slots} threads at {self.address}; handing out a piece costs {1e3 * overhead:.1f} ms"
         self.work.target.log(f"{text}, so one takes {self.work.seconds:.2g} s")
+        began = time.perf_counter()
         try:
             while self.work.left:
                 self._fill()
                 self._hear()
         finally:
             self.client.cancel([future for future, _, _ in self.out.values()], force=True)
+        spent = time.perf_counter() - began
+        idle = self.work.slots * spent - self.work.computed
+        each = f"{1e3 * idle / max(self.work.blocks, 1):.1f} ms a piece"
+        share = 100.0 * idle / max(self.work.slots * spent, 1e-9)
+        text = (
+            f"{self.work.blocks} pieces computed in {spent:.3f} s; threads that did not compute: {each}, {share:.1f} %"
+        )
+        self.work.target.log(text)
 
     def _fill(self) -> None:
         while len(self.out) < AHEAD * self.work.slots and (piece := self.work.take()) is not None:

@@ -261,7 +261,7 @@ def _run(work: Work, execute: Executor) -> None:
     except KeyboardInterrupt:
         work.target.log(f"stopped by the user: {work.pace}")
         return
-    work.target.log(f"done: {work.pace}")
+    work.target.log(f"done: {work.pace}; {work.computed:.3g} s of analysis in {work.blocks} blocks")
 
 
 def _check(task: Task, points: Space, chunk: int | None) -> None:
