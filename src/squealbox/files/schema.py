@@ -9,7 +9,7 @@ from squealbox.files.analyses import Axis, Modes, Simulate
 from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES, STUDY
 from squealbox.files.sheets import LAW_NAMES, OWN, SCHEDULE_NAMES, field_type, is_required
-from squealbox.files.study import OTHERS, Study
+from squealbox.files.study import OTHERS, Refine, Study
 from squealbox.files.uncertain_schema import optimise_schema, scatter_schema
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, Parameter
@@ -151,7 +151,7 @@ def _study() -> Schema:
     """[study]; its axes come in several forms, which the reader checks."""
     words = {"type": "array", "items": {"type": "string"}, "minItems": 1}
     axes = {"type": "array", "items": {"type": "object"}, "minItems": 1, "description": "the axes of the space"}
-    return _sheet(Study, more=dict(zip(OTHERS, (axes, words, words), strict=True)))
+    return _sheet(Study, more=dict(zip(OTHERS, (axes, words, words, _sheet(Refine)), strict=True)))
 
 
 def _one_key(name: str, value: Schema) -> Schema:

@@ -26,11 +26,12 @@ from squealbox.files.numbers import shown, wrong
 from squealbox.files.reading import SECTIONS, DesignFile, design_of, read_file, section_of
 from squealbox.files.sheets import read_sheet
 from squealbox.files.study_axis import read_axes
-from squealbox.parameters import DataSheet, choice, known_names, parameter
-from squealbox.studies import Space
+from squealbox.parameters import DataSheet, ParameterError, choice, known_names, parameter
+from squealbox.studies import Refined, Space
+from squealbox.studies.refinement import FINEST
 
 ANALYSES = ("modes", "onset", "simulate", "ensemble", "cycle")
-OTHERS = ("axis", "keep", "observe")
+OTHERS = ("axis", "keep", "observe", "refine")
 
 
 class Study(DataSheet):
@@ -44,6 +45,14 @@ class Study(DataSheet):
         "s", 0.0, low_open=True, default=None, optional=True, meaning="of a block that a worker computes"
     )
     duration: float = parameter("s", 0.0, low_open=True, default=0.05, meaning="of each transient of an ensemble")
+
+
+class Refine(DataSheet):
+    """[study.refine]: the grid grows finer where an answer crosses a level."""
+
+    of: str
+    level: float = parameter("-", default=0.0, meaning="that is crossed, in the SI unit of the answer")
+    rounds: int = parameter("-", 1, FINEST, default=4, meaning="of refinement; each halves the cells")
 
 
 @dataclass(frozen=True)
@@ -80,11 +89,30 @@ def read_study(path: Path, *, allow_code: bool = False) -> StudyFile:
     space = None
     if asked is not None:
         space = read_axes(document, table.get("axis"), brake.design if brake else None, int(study.seed) if study else 0)
+    if "refine" in table:
+        space = _refined(document, table["refine"], space)
     if study is not None and brake is not None and study.analysis == "onset" and brake.onset is None:
         document.problem(("study", "analysis"), "'onset' needs a section [onset] with a parameter and its range")
     if document.problems or brake is None or study is None or space is None:
         raise document.error()
     return StudyFile(document.path, brake, study, space, keep, observe)
+
+
+def _refined(document: Document, table: Any, space: Space | None) -> Space | None:
+    key = ("study", "refine")
+    if not isinstance(table, Mapping):
+        return wrong(document, key, table, "a section [study.refine] with the key of")
+    read = read_sheet(document, Refine, table, key)
+    if read is None or space is None:
+        return None
+    try:
+        axes = {name: values for axis in space.axes if axis.dim in axis.values for name, values in axis.values.items()}
+        if len(axes) < len(space.names):
+            raise ParameterError("study", "axis", "lists side by side or a sample", "ranges or values alone")
+        return Refined(axes, read.of, read.level, int(read.rounds))
+    except ParameterError as error:
+        document.problem(key, f"{error.name}: {error.value} cannot be refined: {error.expectation}")
+        return None
 
 
 def _brake(document: Document, tables: dict[str, Any]) -> DesignFile | None:

@@ -28,6 +28,7 @@ from squealbox.studies.morris import MorrisEffects, morris_effects
 from squealbox.studies.optimisation import Optimum, optimise
 from squealbox.studies.probability import SquealProbability, squeal_probability
 from squealbox.studies.quantity import Quantity, evaluate
+from squealbox.studies.refinement import Refined
 from squealbox.studies.scatter import SAMPLINGS, Scatter
 from squealbox.studies.sobol import SobolIndices, sobol_indices
 from squealbox.studies.space import Axis, Space, grid, latin_hypercube, sampled, sobol_sequence, zipped
@@ -61,6 +62,7 @@ __all__ = [
     "Optimum",
     "Pace",
     "Quantity",
+    "Refined",
     "Scatter",
     "ScipyDistribution",
     "SobolIndices",

@@ -1,7 +1,7 @@
 """The dataset of a sweep, in memory or as a file written block by block, so that memory holds one block at a time."""
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -42,7 +42,7 @@ def in_memory(plan: Layout, blocks: Iterable[Block]) -> "xarray.Dataset":
         name: np.full((frame.total, *v.tail), missing(v.dtype), dtype=v.dtype) for name, v in plan.variables.items()
     }
     ended = np.full(frame.total, NOT_RUN, dtype=_words(plan))
-    for block in blocks:
+    for block in _within(plan, blocks):
         ended[block.start : block.stop] = block.outcome
         for name, array in arrays.items():
             array[block.start : block.stop] = filled(plan, name, block)
@@ -75,7 +75,7 @@ def write_file(path: Path, plan: Layout, blocks: Iterable[Block]) -> None:
         targets = {
             name: _created(file, plan.names[name], about, _widest(about)) for name, about in plan.variables.items()
         }
-        for block in blocks:
+        for block in _within(plan, blocks):
             words = _bytes(block.outcome)
             for index, part, shape in slabs(block.start, block.stop, frame.shape):
                 ended[index] = words[part].reshape(shape)
@@ -88,6 +88,11 @@ def write_file(path: Path, plan: Layout, blocks: Iterable[Block]) -> None:
         more = {"coordinates": " ".join(aside)} if aside else {}
         for name, value in {**attributes_of(plan), **more}.items():
             file.attrs[name] = value
+
+
+def _within(plan: Layout, blocks: Iterable[Block]) -> Iterator[Block]:
+    """The blocks of the points there are; those of a later round may be there already when a refinement goes on."""
+    return (block for block in blocks if block.stop <= plan.frame.total)
 
 
 def attributes_of(plan: Layout) -> dict[str, str]:

@@ -12,17 +12,18 @@ import numpy as np
 from squealbox.parameters import DataSheet, to_plain
 from squealbox.result import provenance
 from squealbox.studies.analysis import Task, plain_function
+from squealbox.studies.refinement import Refined
 from squealbox.studies.space import Space
 
 MOST = 6  # differences said in full
 _ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 
 
-def record(task: Task, space: Any) -> dict[str, Any]:
+def record(task: Task, space: Space) -> dict[str, Any]:
     """Everything the answers depend on, as plain data."""
     return {
         "design": plain(task.design),
-        "space": described(space) if isinstance(space, Space) else space.record(),
+        "space": described(space),
         "analysis": plain(task.analysis),
         "keep": list(task.keep),
         "units": dict(task.units),
@@ -33,6 +34,9 @@ def record(task: Task, space: Any) -> dict[str, Any]:
 
 def described(space: Space) -> dict[str, Any]:
     """Names, lengths and ends of the axes, and a digest of all their values."""
+    if isinstance(space, Refined):
+        about = {"of": space.of, "level": space.level, "rounds": space.rounds}
+        return {**described(space.base), "refined": about}
     axes = {}
     for axis in space.axes:
         for name, values in axis.values.items():

@@ -111,6 +111,7 @@ def summary_of(block: Block) -> Summary:
 
 def layout(frame: Frame, done: Mapping[tuple[int, int], Summary]) -> Layout:
     """The variables that hold every block of `done`."""
+    done = {place: summary for place, summary in done.items() if place[1] <= frame.total}
     shapes: dict[str, list[Shape]] = {}
     for place in sorted(done):
         for name, shape in done[place].columns.items():

@@ -78,6 +78,14 @@ class Space:
     def __mul__(self, other: "Space") -> "Space":
         return Space([*self.axes, *other.axes])
 
+    def fresh(self) -> "Space":
+        """The space as it is before a sweep; only a refined one changes in it."""
+        return self
+
+    def grow(self, blocks: Any) -> bool:
+        """Add points that follow from the answers so far; False, since this space has all its points."""
+        return False
+
     def points(self, start: int, stop: int) -> dict[str, Any]:
         """Values of each parameter at the points start, ..., stop - 1, arrays (stop - start,)."""
         places = np.unravel_index(np.arange(start, stop), self.shape)

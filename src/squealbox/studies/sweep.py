@@ -1,5 +1,6 @@
 """`sweep`: any analysis over a space of parameters, as one labelled dataset; and `Sweep`, what it returns."""
 
+import functools
 import json
 import os
 from collections.abc import Iterator, Mapping
@@ -191,22 +192,21 @@ def sweep(
     >>> table["largest_growth_rate"].dims, table.outcome.ok
     (('friction.static', 'load'), True)
     """
-    points = as_space(space)
+    points = as_space(space).fresh()
     kept = (keep,) if isinstance(keep, str) else tuple(keep)
     task = Task(design, analysis, kept, dict(units or {}), int(seed))
     execute = executor(workers, scheduler, time_limit)
     _check(task, points, chunk)
-    frame = frame_of(task, points)
+    run = functools.partial(_run, task, points, execute, chunk, progress)
     if out is None:
         memory = Memory()
-        _run(Work(task, points, memory, chunk=chunk, progress=progress), execute)
-        return Sweep.from_dataset(in_memory(layout(frame, memory.done), memory.blocks()))
+        run(memory)
+        return Sweep.from_dataset(in_memory(layout(frame_of(task, points), memory.done), memory.blocks()))
     with Store.created_or_resumed(Path(out), record(task, points)) as store:
         if store.finished:
             return Sweep.opened(store.result())
-        store.keep_frame(frame)
-        _run(Work(task, points, store, chunk=chunk, progress=progress), execute)
-        return Sweep.opened(consolidated(store, frame))
+        run(store)
+        return Sweep.opened(consolidated(store, frame_of(task, points)))
 
 
 def open_sweep(path: str | os.PathLike[str]) -> Sweep:
@@ -253,15 +253,23 @@ def frame_of(task: Task, points: Space) -> Frame:
     return Frame(points.dims, points.shape, coordinates, {"kind": Sweep.kind_name(), **attributes})
 
 
-def _run(work: Work, execute: Executor) -> None:
-    """All that is left, or until Ctrl-C."""
-    work.target.log(f"begins: {work.left} of {len(work.points)} points to compute")
-    try:
-        execute(work)
-    except KeyboardInterrupt:
-        work.target.log(f"stopped by the user: {work.pace}")
-        return
-    work.target.log(f"done: {work.pace}; {work.computed:.3g} s of analysis in {work.blocks} blocks")
+def _run(
+    task: Task, points: Space, execute: Executor, chunk: int | None, progress: Progress | None, target: Store | Memory
+) -> None:
+    """All that is left, round by round where the space grows; or until Ctrl-C."""
+    growing = True
+    while growing:
+        if isinstance(target, Store):
+            target.keep_frame(frame_of(task, points))
+        work = Work(task, points, target, chunk=chunk, progress=progress)
+        target.log(f"begins: {work.left} of {len(points)} points to compute")
+        try:
+            execute(work)
+        except KeyboardInterrupt:
+            target.log(f"stopped by the user: {work.pace}")
+            return
+        target.log(f"done: {work.pace}; {work.computed:.3g} s of analysis in {work.blocks} blocks")
+        growing = points.grow(target.blocks())
 
 
 def _check(task: Task, points: Space, chunk: int | None) -> None:
