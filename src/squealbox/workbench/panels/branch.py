@@ -1,0 +1,154 @@
+"""Limit cycles over a parameter: stable and unstable parts, where they are born, and where they exist beside stable sliding.
+
+Two walks: the branch born at the onset (harmonic balance, until a contact comes to rest), and the cycle at the present
+design (shooting, exact stick and slip) to both sides. Every system that is made on the way asks whether somebody still
+waits, so a walk can be stopped at any point.
+"""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from squealbox.designs import Design
+from squealbox.limit_cycles import Branch, Cycle, HopfPoint, branch, hopf_point, shooting
+from squealbox.parameters import ParameterError
+from squealbox.plots.style import scaled
+from squealbox.stability import complex_modes
+from squealbox.system import System
+from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, axis_of
+
+POINTS = 30  # of each walk to one side
+STEP = 0.1  # longest, in shares of the range and of the motion
+GRID = 201  # values at which steady sliding is looked at
+PUSHES = (0.5, 1.0, 3.0)  # of the contacts' velocity over the sliding speed, from which a cycle is looked for
+Make = Callable[[float], System]
+
+
+def answer(design: Design, options: Options, work: Work) -> Answer:
+    """The branches as curves (value, amplitude, stable), their special points, and the stretches of coexistence."""
+    parameter = options.parameter("parameter", design, "friction.static")
+    span = options.span("span", design, parameter)
+    usual = float(design.value_of(parameter) or span[0])
+    at = options.number("at", usual, *span)
+    dof = int(options.number("dof", 0, 0, 10_000))
+    if dof >= design.system().size:
+        raise OptionError(f"dof: expected 0 to {design.system().size - 1}")
+    watched = _Watched(design, parameter, span, at, work)
+    try:
+        born = watched.part(0.02, "looking for the onset", lambda make: hopf_point(make, parameter, span))
+        cycle, start = _cycle(watched, design.replace({parameter: at}))
+        walks = list(_walks(watched, parameter, span, at, born, cycle))
+    except ParameterError as error:
+        raise OptionError(f"no limit cycles here: {error.expectation}") from error
+    return _drawn(design, parameter, span, dof, born, [walk for walk in walks if len(walk.value)], start)
+
+
+class _Watched:
+    """The design as a function of one value that says how far a walk is, and ends where nobody waits any more."""
+
+    def __init__(self, design: Design, parameter: str, span: tuple[float, float], at: float, work: Work) -> None:
+        self.design, self.parameter, self.span, self.at, self.work = design, parameter, span, at, work
+        self.share, self.room, self.text = 0.0, 0.0, ""
+
+    def part(self, share: float, text: str, run: Callable[[Make], Any], room: float = 0.0) -> Any:
+        """One part of the work, which takes the share `room` of the whole."""
+        self.share, self.room, self.text = share, room, text
+        return run(self.make)
+
+    def make(self, value: float) -> System:
+        """The system at a value of the parameter."""
+        way = abs(value - self.at) / (self.span[1] - self.span[0])
+        self.work.progress(min(self.share + self.room * min(way, 1.0), 0.99), self.text)
+        return self.design.replace({self.parameter: value}).system()
+
+
+def _cycle(watched: _Watched, here: Design) -> tuple[Cycle | None, str]:
+    """A stable cycle at the present design and from where it was reached; None where no start led to one."""
+    found = None
+    for name, start in _starts(here):
+        cycle = watched.part(0.1, f"cycle from {name}", lambda make, s=start: shooting(make(watched.at), s))
+        if cycle.outcome.ok and cycle.stable:
+            return cycle, name
+        found = found or ((cycle, name) if cycle.outcome.ok else None)
+    return found or (None, "")
+
+
+def _starts(here: Design) -> Iterator[tuple[str, Any]]:
+    modes = complex_modes(here)
+    if not bool(modes.exists):
+        yield "rest", "rest"
+        return
+    mode = modes.most_unstable
+    rows = [(abs(float(c.V)), abs(c.t @ (mode.eigenvalue * mode.shape))) for c in here.system().contacts]
+    swings = [moves / speed for speed, moves in rows if speed > 0.0 and moves > 0.0]
+    if swings:
+        for push in PUSHES:
+            yield f"a push to {push:g} times the sliding speed", mode.start(push / max(swings))
+
+
+def _walks(
+    watched: _Watched, parameter: str, span: tuple[float, float], at: float, born: HopfPoint, cycle: Cycle | None
+) -> Iterator[Branch]:
+    if born.outcome.ok:
+        yield watched.part(0.25, "the branch born at the onset", lambda make: branch(
+            make, parameter, span, born, points=2 * POINTS), 0.1)  # fmt: skip
+    if cycle is None:
+        return
+    for share, way, side in ((0.4, -1.0, "lower"), (0.7, 1.0, "higher")):
+        yield watched.part(share, f"cycles at {side} values", lambda make, way=way: branch(
+            make, parameter, span, cycle, value=at, method="shooting", direction=way, points=POINTS, largest_step=STEP,
+        ), 0.3)  # fmt: skip
+
+
+def _drawn(
+    design: Design, parameter: str, span: tuple[float, float], dof: int, born: HopfPoint, walks: list[Branch], start: str
+) -> Answer:
+    axis = axis_of(design, parameter)
+    metre, unit = scaled("m", *(walk.amplitude[:, dof] for walk in walks)) if walks else (1.0, "m")
+    grid = np.linspace(*span, GRID)
+    quiet = np.asarray(complex_modes(design.replace({parameter: grid})).stable)
+    data: dict[str, Any] = {
+        "axis": axis,
+        "span": [end / axis["factor"] for end in span],
+        "unit": unit,
+        "names": list(design.system().names),
+        "dof": dof,
+        "hopf": finite(born.value / axis["factor"]) if born.outcome.ok else None,
+        "kind": born.kind if born.outcome.ok else "",
+        "start": start,
+        "walks": [_walk(walk, dof, axis["factor"], metre) for walk in walks],
+        "quiet": [[a / axis["factor"], b / axis["factor"]] for a, b in _stretches(grid, quiet)],
+        "together": [[a / axis["factor"], b / axis["factor"]] for a, b in _together(walks, grid, quiet)],
+    }
+    arrays = {}
+    for i, walk in enumerate(walks):
+        arrays |= {f"value{i}": walk.value / axis["factor"], f"size{i}": walk.amplitude[:, dof] / metre}
+        arrays[f"stable{i}"] = np.asarray(walk.stable, dtype=float)
+    return Answer(data, arrays)
+
+
+def _walk(walk: Branch, dof: int, factor: float, metre: float) -> dict[str, Any]:
+    specials = [
+        [str(kind).replace("_", " "), float(value) / factor, float(walk.amplitude[int(point), dof]) / metre]
+        for kind, value, point in zip(walk.special_kind, walk.special_value, walk.special_point, strict=True)
+    ]
+    return {"specials": specials, "ended": f"{walk.outcome} {walk.outcome.message}".strip()}
+
+
+def _together(walks: list[Branch], grid: Any, quiet: Any) -> list[tuple[float, float]]:
+    """Stretches in which a stable cycle and stable sliding exist at the same value."""
+    cycles = np.zeros(grid.size, dtype=bool)
+    for walk in walks:
+        for i in np.nonzero(walk.stable[:-1] & walk.stable[1:])[0]:
+            low, high = sorted((walk.value[i], walk.value[i + 1]))
+            cycles |= (grid >= low) & (grid <= high)
+    return _stretches(grid, cycles & quiet)
+
+
+def _stretches(grid: Any, inside: Any) -> list[tuple[float, float]]:
+    """First and last value of each run of True."""
+    edges = np.diff(np.r_[False, inside, False].astype(int))
+    begins, ends = np.nonzero(edges == 1)[0], np.nonzero(edges == -1)[0] - 1
+    return [(float(grid[a]), float(grid[b])) for a, b in zip(begins, ends, strict=True)]

@@ -1,0 +1,28 @@
+"""The report of the present design as one HTML file, the same that `squealbox report` writes."""
+
+import threading
+
+from squealbox.designs import Design
+from squealbox.workbench.panels.panel import Answer, Options, Work
+
+PARTS = 9  # of an examination, and writing
+DRAWING = threading.Lock()  # matplotlib's settings belong to the whole process: one report is drawn at a time
+
+
+def answer(design: Design, options: Options, work: Work) -> Answer:
+    """The text of the HTML file, with the design as a file inside it."""
+    from squealbox.report import design_page, examine, render
+
+    done = 0
+
+    def progress(text: str) -> None:
+        nonlocal done
+        work.progress(min(done / PARTS, 0.95), text)
+        done += 1
+
+    found = examine(design, progress=progress)
+    progress("drawing")
+    with DRAWING:
+        html = render(design_page(found, title=design.title, command="squealbox lab"))
+    work.progress(0.99, "done")
+    return Answer({"html": html, "missing": list(found.missing)})
