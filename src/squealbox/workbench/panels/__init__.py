@@ -29,6 +29,11 @@ PANELS: dict[str, Panel] = {
     "motion": Panel("Motion", columns=2, slow=True),
     "energy": Panel("Energy by contact"),
     "sensitivity": Panel("Which parameter to change"),
+    "branch": Panel("Limit cycles over a parameter", slow=True),
+    "listen": Panel("Listen", slow=True),
+    "compare": Panel("Compare two designs", columns=2),
+    "report": Panel("Report", slow=True),
+    "tour": Panel("Tour: the drum-brake paper of 2011", slow=True),
 }
 
 

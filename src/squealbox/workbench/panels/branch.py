@@ -1,4 +1,4 @@
-"""Limit cycles over a parameter: stable and unstable parts, where they are born, and where they exist beside stable sliding.
+"""Limit cycles over a parameter: stable and unstable parts, where they are born, where they coexist with sliding.
 
 Two walks: the branch born at the onset (harmonic balance, until a contact comes to rest), and the cycle at the present
 design (shooting, exact stick and slip) to both sides. Every system that is made on the way asks whether somebody still
@@ -21,6 +21,9 @@ from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work,
 
 POINTS = 30  # of each walk to one side
 STEP = 0.1  # longest, in shares of the range and of the motion
+EDGE = (
+    0.01  # share of the range left out at its lower end, where friction or load may be zero and derivatives are taken
+)
 GRID = 201  # values at which steady sliding is looked at
 PUSHES = (0.5, 1.0, 3.0)  # of the contacts' velocity over the sliding speed, from which a cycle is looked for
 Make = Callable[[float], System]
@@ -30,14 +33,17 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     """The branches as curves (value, amplitude, stable), their special points, and the stretches of coexistence."""
     parameter = options.parameter("parameter", design, "friction.static")
     span = options.span("span", design, parameter)
-    usual = float(design.value_of(parameter) or span[0])
-    at = options.number("at", usual, *span)
+    span = (span[0] + EDGE * (span[1] - span[0]), span[1])
+    usual = min(max(float(design.value_of(parameter) or span[0]), span[0]), span[1])
+    at = max(options.number("at", usual, -1e300, 1e300), span[0])
+    if at > span[1]:
+        raise OptionError(f"at: expected a number in [{span[0]:g}, {span[1]:g}]")
     dof = int(options.number("dof", 0, 0, 10_000))
     if dof >= design.system().size:
         raise OptionError(f"dof: expected 0 to {design.system().size - 1}")
     watched = _Watched(design, parameter, span, at, work)
     try:
-        born = watched.part(0.02, "looking for the onset", lambda make: hopf_point(make, parameter, span))
+        born = hopf_point(watched.at_part(0.02, "looking for the onset"), parameter, span)
         cycle, start = _cycle(watched, design.replace({parameter: at}))
         walks = list(_walks(watched, parameter, span, at, born, cycle))
     except ParameterError as error:
@@ -52,10 +58,10 @@ class _Watched:
         self.design, self.parameter, self.span, self.at, self.work = design, parameter, span, at, work
         self.share, self.room, self.text = 0.0, 0.0, ""
 
-    def part(self, share: float, text: str, run: Callable[[Make], Any], room: float = 0.0) -> Any:
-        """One part of the work, which takes the share `room` of the whole."""
+    def at_part(self, share: float, text: str, room: float = 0.0) -> Make:
+        """The function for one part of the work, which begins at `share` and takes `room` of the whole."""
         self.share, self.room, self.text = share, room, text
-        return run(self.make)
+        return self.make
 
     def make(self, value: float) -> System:
         """The system at a value of the parameter."""
@@ -68,7 +74,7 @@ def _cycle(watched: _Watched, here: Design) -> tuple[Cycle | None, str]:
     """A stable cycle at the present design and from where it was reached; None where no start led to one."""
     found = None
     for name, start in _starts(here):
-        cycle = watched.part(0.1, f"cycle from {name}", lambda make, s=start: shooting(make(watched.at), s))
+        cycle = shooting(watched.at_part(0.1, f"cycle from {name}")(watched.at), start)
         if cycle.outcome.ok and cycle.stable:
             return cycle, name
         found = found or ((cycle, name) if cycle.outcome.ok else None)
@@ -92,18 +98,24 @@ def _walks(
     watched: _Watched, parameter: str, span: tuple[float, float], at: float, born: HopfPoint, cycle: Cycle | None
 ) -> Iterator[Branch]:
     if born.outcome.ok:
-        yield watched.part(0.25, "the branch born at the onset", lambda make: branch(
-            make, parameter, span, born, points=2 * POINTS), 0.1)  # fmt: skip
+        make = watched.at_part(0.25, "the branch born at the onset", 0.1)
+        yield branch(make, parameter, span, born, points=2 * POINTS)
     if cycle is None:
         return
+    how: dict[str, Any] = {"value": at, "method": "shooting", "points": POINTS, "largest_step": STEP}
     for share, way, side in ((0.4, -1.0, "lower"), (0.7, 1.0, "higher")):
-        yield watched.part(share, f"cycles at {side} values", lambda make, way=way: branch(
-            make, parameter, span, cycle, value=at, method="shooting", direction=way, points=POINTS, largest_step=STEP,
-        ), 0.3)  # fmt: skip
+        make = watched.at_part(share, f"cycles at {side} values", 0.3)
+        yield branch(make, parameter, span, cycle, direction=way, **how)
 
 
 def _drawn(
-    design: Design, parameter: str, span: tuple[float, float], dof: int, born: HopfPoint, walks: list[Branch], start: str
+    design: Design,
+    parameter: str,
+    span: tuple[float, float],
+    dof: int,
+    born: HopfPoint,
+    walks: list[Branch],
+    start: str,
 ) -> Answer:
     axis = axis_of(design, parameter)
     metre, unit = scaled("m", *(walk.amplitude[:, dof] for walk in walks)) if walks else (1.0, "m")
@@ -122,7 +134,7 @@ def _drawn(
         "quiet": [[a / axis["factor"], b / axis["factor"]] for a, b in _stretches(grid, quiet)],
         "together": [[a / axis["factor"], b / axis["factor"]] for a, b in _together(walks, grid, quiet)],
     }
-    arrays = {}
+    arrays: dict[str, Any] = {}
     for i, walk in enumerate(walks):
         arrays |= {f"value{i}": walk.value / axis["factor"], f"size{i}": walk.amplitude[:, dof] / metre}
         arrays[f"stable{i}"] = np.asarray(walk.stable, dtype=float)

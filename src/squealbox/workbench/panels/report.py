@@ -22,7 +22,14 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
 
     found = examine(design, progress=progress)
     progress("drawing")
+    again = "squealbox report design.toml   # the file above, saved under that name"
     with DRAWING:
-        html = render(design_page(found, title=design.title, command="squealbox lab"))
+        html = render(
+            design_page(
+                found,
+                title=design.title,
+                command=again,
+            )
+        )
     work.progress(0.99, "done")
     return Answer({"html": html, "missing": list(found.missing)})
