@@ -278,6 +278,19 @@ def test_simulate(said, brake, tmp_path):
     assert float(table[-1]["x [m]"]) == pytest.approx(motion.q[-1, 0], rel=1e-9)
 
 
+def test_basin(said, brake, tmp_path):
+    out_folder = tmp_path / "basin"
+    options = ("--set", "friction.static=0.3", "--starts", "64", "--spread", "2")
+    code, out, err = said("basin", brake, *options, "--plane", "x'", "y'", "--out", out_folder)
+    assert (code, err) == (0, "")
+    assert "% of 64 starts vibrate" in out
+    assert "stable cycle, amplitude" in out
+    assert sorted(path.name for path in out_folder.iterdir()) == ["basin.csv", "basin.nc", "basin.png", "basin.svg"]
+    code, _, err = said("basin", brake, *options, "--plane", "x", "z")
+    assert code == 2
+    assert "plane" in err
+
+
 def test_cycle(said, brake, tmp_path):
     code, out, err = said("cycle", brake, "--set", "friction.static=0.45", "--out", tmp_path / "cycle")
     assert (code, err) == (0, "")

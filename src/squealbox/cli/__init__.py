@@ -42,6 +42,7 @@ COMMANDS = {
     "status": Command("studies", "status", "how far a study is, and what it said last"),
     "show": Command("studies", "show", "what a study has found, also while it runs: table and figure"),
     "export": Command("studies", "export", "what a study has found as CSV, NetCDF or MAT"),
+    "basin": Command("basins", "basin_", "which starts lead to which motion: shares, a picture, the smallest push"),
     "paper": Command("papers", "paper", "reproduce a published study: figures, claims and one page"),
     "schema": Command("starter", "schema", "the JSON schema of a design file, for editors"),
 }

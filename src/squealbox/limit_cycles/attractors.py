@@ -16,6 +16,7 @@ from squealbox.limit_cycles.shooting import shooting
 from squealbox.system import System
 
 SLIDING, REST, CYCLE, VIBRATION, IRREGULAR = "steady sliding", "rest elsewhere", "cycle", "vibration", "irregular"
+UNSTABLE = "unstable cycle"
 SAME_SIGNATURE, SAME_IRREGULAR = 0.01, 0.2
 SAME_CYCLE = 1e-6  # in period and extremes: cycles found twice
 NOT_SETTLED, NO_END = -1, -2
@@ -26,7 +27,8 @@ class Attractor:
     """What motions settle to.
 
     kind : "steady sliding", "rest elsewhere", "cycle" (confirmed by shooting), "vibration" (repeats itself; not
-        confirmed) or "irregular" (does not repeat itself: quasi-periodic, chaotic or very slow)
+        confirmed), "unstable cycle" (a motion that lingers beside one) or "irregular" (does not repeat itself:
+        quasi-periodic, chaotic or very slow)
     low, high : extremes of each degree of freedom [m], of the motion that came closest to it
     maxima : its last eight maxima [m], shape (n, 8), newest first
     frequency : of the maxima [Hz]
@@ -52,8 +54,8 @@ class Attractor:
         if self.kind in (SLIDING, REST):
             return self.kind
         sizes = ", ".join(f"{a:.4g}" for a in self.amplitude)
-        if self.kind == CYCLE and self.cycle is not None:
-            kind = "stable cycle" if self.cycle.stable else "unstable cycle"
+        if self.kind in (CYCLE, UNSTABLE) and self.cycle is not None:
+            kind = "stable cycle" if self.kind == CYCLE else UNSTABLE
             return f"{kind}, amplitude {sizes} m, {self.cycle.frequency:.6g} Hz"
         return f"{self.kind}, amplitude {sizes} m, maxima at {self.frequency:.5g} Hz"
 
@@ -125,9 +127,9 @@ def _confirmed(system: System, groups: list[tuple[Attractor, Any]], refine: bool
             found.append((_with(attractor, VIBRATION, cycle), members))
             continue
         twin = next((i for i, (other, _) in enumerate(found)
-                     if other.kind == CYCLE and _alike(cycle, other, SAME_CYCLE)), None)  # fmt: skip
+                     if other.kind in (CYCLE, UNSTABLE) and _alike(cycle, other, SAME_CYCLE)), None)  # fmt: skip
         if twin is None:
-            found.append((_with(attractor, CYCLE, cycle), members))
+            found.append((_with(attractor, CYCLE if cycle.stable else UNSTABLE, cycle), members))
         else:
             found[twin] = (found[twin][0], np.concatenate([found[twin][1], members]))
     return found
@@ -135,7 +137,7 @@ def _confirmed(system: System, groups: list[tuple[Attractor, Any]], refine: bool
 
 def _with(attractor: Attractor, kind: str, cycle: Cycle) -> Attractor:
     """The attractor with what shooting found: its extremes and start where that is a cycle."""
-    if kind != CYCLE:
+    if kind not in (CYCLE, UNSTABLE):
         return replace(attractor, cycle=cycle)
     return replace(attractor, kind=kind, low=cycle.lowest, high=cycle.highest, start=cycle.start, cycle=cycle)
 

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.attractors import NO_END, SLIDING, Attractor, attractors
-from squealbox.limit_cycles.settling import RESTS, Batch, Scales, settle
+from squealbox.limit_cycles.attractors import IRREGULAR, NO_END, UNSTABLE, VIBRATION, Attractor, attractors
+from squealbox.limit_cycles.settling import LOOSE, RESTS, TIGHT, Batch, Scales, settle, settle_on
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome, Result, quantity
 from squealbox.system import System, as_system
@@ -34,7 +34,9 @@ class Basin(Result):
     level: Any = quantity("start", "1", "half range at the end over V/w1, w1 the slowest frequency")
     time: Any = quantity("start", "s", "time it ran")
     vibrates: Any = quantity("start", "1", "True where the run does not come to rest")
-    kind: Any = quantity("attractor", "", "steady sliding, rest elsewhere, cycle, vibration or irregular")
+    kind: Any = quantity(
+        "attractor", "", "steady sliding, rest elsewhere, cycle, unstable cycle, vibration or irregular"
+    )
     count: Any = quantity("attractor", "1", "number of starts that lead there")
     shares: Any = quantity("attractor", "1", "share of the starts that lead there")
     intervals: Any = quantity("attractor end", "1", "its confidence interval, 95 %")
@@ -42,7 +44,8 @@ class Basin(Result):
     highest: Any = quantity("attractor dof", "m", "largest displacement")
     share: Any = quantity("", "1", "share of the starts that vibrate")
     interval: Any = quantity("end", "1", "its confidence interval, 95 %")
-    through: Any = quantity("state", "m", "state the plane or the box goes through")
+    rest: Any = quantity("state", "m", "steady sliding")
+    through: Any = quantity("state", "m", "state in the middle of the box, or that the plane goes through")
     plane: tuple[str, ...] = ()
     attractors: tuple[Attractor, ...] = field(default=(), metadata={"transient": True})
 
@@ -93,15 +96,16 @@ def basin(
     starts : number of starts, a Sobol sequence with `seed`; with `plane`, about that many on a square grid
     plane : two states, by place in (q, q') or by name, as in ("x", "x'"); the others stay at `through`
     through : (q, qd) in the middle of the box or plane, such as a state on a cycle; None takes steady sliding
-    duration : [s] of the first stretch; None takes 60 periods of the slowest mode. What has not settled runs on, up to
-        63 times that
+    duration : [s] of the first stretch; None takes 60 periods of the slowest mode. What has not settled, or lingers
+        where shooting finds no stable cycle, runs on for some 63 times that and more
     refine : confirm each attractor by shooting
     threads : how many; None takes one for each core
 
-    Outcome "completed", "not_settled" (some runs neither rest nor repeat: they count as vibrating and are an attractor
-    of the kind "irregular"), "failed_runs" or "no_sliding". Accuracy: shares as their intervals, for starts uniform in
-    the box (a Sobol sequence does better). A cycle below 5 % of V that attracts slowly may pass for rest. Rigid
-    contacts raise `InvalidSystem`. Source: as this module.
+    Outcome "completed", "not_settled" (some runs neither rest nor repeat, or linger beside an unstable cycle: they
+    count as vibrating, and their attractor is of the kind "irregular" or "unstable cycle"), "failed_runs" or
+    "no_sliding". Accuracy: shares as their intervals, for starts uniform in the box (a Sobol sequence does better). A
+    cycle below 5 % of V that attracts slowly may pass for rest. Rigid contacts raise `InvalidSystem`. Source: as this
+    module.
 
     >>> from squealbox import DrumBrake, LinearSlope
     >>> basin(DrumBrake(friction=LinearSlope(0.3, -0.05)), [1e-6, 1e-6, 0.0, 0.0], 4).share
@@ -113,15 +117,21 @@ def basin(
     n = system.size
     names = state_names(system)
     half = _spread(spread, scales, n)
-    centre = np.concatenate([scales.rest[0], np.zeros(n)]) if through is None else _state(through, n)
+    rest = np.concatenate([scales.rest[0], np.zeros(n)])
+    centre = rest if through is None else _state(through, n)
     points = np.zeros((0, 2 * n))
     places = None if plane is None else [place(names, each) for each in plane]
     if places is not None and (len(places) != 2 or places[0] == places[1]):
         raise ParameterError("basin", "plane", plane, "two different states")
-    if np.all(np.isfinite(centre)) and np.all(np.isfinite(scales.rest)):
+    if np.all(np.isfinite(rest)):
         points = centre + half * unit_starts(2 * n, starts, seed, places)
-    ends = settle(batch, points[:, :n], points[:, n:], duration=duration, threads=threads)
+    ends = settle(batch, points[:, :n], points[:, n:], duration=duration, same=LOOSE if refine else TIGHT,
+                  threads=threads)  # fmt: skip
     found, label = attractors(system, ends, refine)
+    doubtful = np.flatnonzero(np.isin(label, [i for i, each in enumerate(found) if each.kind in (VIBRATION, UNSTABLE)]))
+    if refine and doubtful.size:
+        ends = settle_on(ends, batch, doubtful, threads)
+        found, label = attractors(system, ends, refine)
     counts = np.array([int(np.sum(label == i)) for i in range(len(found))], dtype=np.int64)
     total = len(label)
     spans = [interval(int(k), total) for k in counts]
@@ -134,7 +144,7 @@ def basin(
         shares=np.array([s for s, _ in spans]), intervals=np.array([i for _, i in spans]).reshape(-1, 2),
         lowest=np.array([each.low for each in found]).reshape(-1, n),
         highest=np.array([each.high for each in found]).reshape(-1, n), share=np.asarray(share), interval=span,
-        through=centre, plane=() if places is None else tuple(names[i] for i in places), attractors=tuple(found),
+        rest=rest, through=centre, plane=tuple(names[i] for i in places or ()), attractors=tuple(found),
     )  # fmt: skip
 
 
@@ -202,14 +212,9 @@ def _outcome(label: Any, found: Sequence[Attractor]) -> Outcome:
     failed = int(np.sum(label == NO_END))
     if failed:
         return Outcome("failed_runs", f"{failed} of {len(label)} runs did not reach their end", failed=failed)
-    wild = [i for i, each in enumerate(found) if each.kind == "irregular"]
+    wild = [i for i, each in enumerate(found) if each.kind in (IRREGULAR, UNSTABLE)]
     moving = int(np.sum(np.isin(label, wild)))
     if moving:
         message = f"{moving} of {len(label)} runs neither came to rest nor repeated themselves in their time"
         return Outcome("not_settled", message, moving=moving)
     return Outcome(COMPLETED)
-
-
-def resting(attractor: Attractor) -> bool:
-    """True for steady sliding and other states of rest."""
-    return attractor.kind in (SLIDING, "rest elsewhere")

@@ -6,7 +6,7 @@ frequency of the system [rad/s]. A motion
 
     rests    when its level is below 0.05 and falls at no less than a quarter of the rate -s of the linear theory,
              A2/A1 <= 1 - min(1, -s w)/4, or is below 1e-9 of V
-    repeats  when its extremes in both windows agree to 1e-3 of their range
+    repeats  when its extremes in both windows agree to a tolerance times their range
 
 and what does neither is run on, for stretches of twice the length.
 """
@@ -29,7 +29,8 @@ from squealbox.transient.observers import amplitude_update, frequency, poincare
 STRETCH = 60.0  # periods of the slowest mode, of the first stretch
 WINDOW = 0.2  # of a stretch
 STRETCHES = 6  # at most: 63 times the first
-RAN, STILL, SAME = 0.05, 1e-9, 1e-3
+RAN, STILL = 0.05, 1e-9
+LOOSE, TIGHT = 1e-3, 3e-5  # of the range: two windows that may be alike, and that are
 METHOD = Method("dormand-prince-8", rtol=1e-7, most_steps=1_000_000)
 
 FAILED, MOVING, RESTS, REPEATS = range(-1, 3)
@@ -140,9 +141,9 @@ class Settled:
 
 def settle(
     batch: Batch, q: Any, qd: Any, *, duration: float | None = None, stretches: int = STRETCHES,
-    threads: int | None = None,
+    same: float = TIGHT, threads: int | None = None,
 ) -> Settled:  # fmt: skip
-    """Run all from (q, qd), each (k, n), until they rest or repeat, for at most 2^stretches - 1 durations."""
+    """Run all from (q, qd), each (k, n), until they rest or repeat to `same`, for at most 2^stretches - 1 durations."""
     q, qd = (np.array(x, dtype=float) for x in (q, qd))
     count, n = q.shape
     scales = Scales.of(batch, count)
@@ -161,7 +162,7 @@ def settle(
         first = part.run(q[todo], qd[todo], early, _observers(WINDOW * length / early), threads)
         second = part.run(_finite(first.q), _finite(first.qd), WINDOW * length, _observers(1.0), threads)
         windows = [np.moveaxis(run["extent"], -1, 0) for run in (first, second)]
-        kind[todo] = _judge(windows, WINDOW * length, scales.take(todo))
+        kind[todo] = _judge(windows, WINDOW * length, scales.take(todo), same)
         kind[todo[(first.ended != "completed") | (second.ended != "completed")]] = FAILED
         low[todo], high[todo] = windows[1]
         tone[todo], tops[todo] = second["frequency"], second["poincare"]
@@ -169,6 +170,16 @@ def settle(
         time[todo] += length
         todo, length = todo[kind[todo] == MOVING], 2.0 * length
     return Settled(kind, low, high, tops, tone, q, qd, time, scales)
+
+
+def settle_on(ends: Settled, batch: Batch, which: Any, threads: int | None = None) -> Settled:
+    """The same with some of the motions run on, from where they ended, until they are surely settled."""
+    longer = settle(batch.take(which), ends.q[which], ends.qd[which], duration=float(np.max(ends.time[which])),
+                    stretches=STRETCHES - 1, threads=threads)  # fmt: skip
+    merged = {each.name: np.array(getattr(ends, each.name)) for each in fields(ends) if each.name != "scales"}
+    for name, values in merged.items():
+        values[which] = getattr(longer, name) + (values[which] if name == "time" else 0)
+    return Settled(**merged, scales=ends.scales)
 
 
 def _observers(last: float) -> tuple[Observer, ...]:
@@ -185,7 +196,7 @@ def _level(low: Any, high: Any, scales: Scales) -> Any:
     return np.where(scales.speed > 0.0, half / np.where(scales.speed > 0.0, scales.speed, 1.0), half)
 
 
-def _judge(windows: Sequence[Any], apart: float, scales: Scales) -> Any:
+def _judge(windows: Sequence[Any], apart: float, scales: Scales, same: float) -> Any:
     """MOVING, RESTS or REPEATS of each, from (low, high) in two windows whose middles lie `apart` [s]."""
     (low1, high1), (low2, high2) = windows
     before, now = (_level(low, high, scales) for low, high in windows)
@@ -195,5 +206,5 @@ def _judge(windows: Sequence[Any], apart: float, scales: Scales) -> Any:
         rests = decays | (now < STILL)
         reach = np.max(high2 - low2, axis=-1)
         off = np.max(np.maximum(np.abs(low2 - low1), np.abs(high2 - high1)), axis=-1)
-        repeats = off <= SAME * reach
+        repeats = off <= same * reach
     return np.where(rests, RESTS, np.where(repeats, REPEATS, MOVING))

@@ -4,6 +4,7 @@
 larger figure made with `panels`. Matplotlib is loaded at the first drawing.
 """
 
+from squealbox.plots.basins import basin_picture
 from squealbox.plots.brakes import brake_drawing
 from squealbox.plots.cards import card
 from squealbox.plots.contact import contact_comparison
@@ -24,7 +25,7 @@ from squealbox.plots.points import (
     merging_points,
     point_curve,
 )
-from squealbox.plots.populations import basin_of_starts, ensemble_overview
+from squealbox.plots.populations import ensemble_overview
 from squealbox.plots.reliability import design_point, subset_probability, surrogate
 from squealbox.plots.spectra import component_growth, loudness, spectrogram, spectrum
 from squealbox.plots.stability import (
@@ -44,7 +45,7 @@ from squealbox.plots.uncertainty import interval_bounds, morris_effects, sobol_i
 __all__ = [
     "amplitude_course",
     "amplitude_map",
-    "basin_of_starts",
+    "basin_picture",
     "birth_of_a_cycle",
     "boundary_curves",
     "brake_drawing",

@@ -1,14 +1,13 @@
-"""Figures of many motions at once: an ensemble over its parameters, starts and what became of them."""
+"""Figures of many motions at once: an ensemble over its parameters."""
 
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.limit_cycles.basins import Basin
 from squealbox.plots.dispatch import plot
 from squealbox.plots.facts import unit_of
 from squealbox.plots.maps import amplitude_map
-from squealbox.plots.style import LINES, drawing, figure_of, line, number, quantity_label, scaled
+from squealbox.plots.style import LINES, drawing, figure_of, quantity_label, scaled
 from squealbox.transient import Ensemble
 
 if TYPE_CHECKING:
@@ -44,35 +43,4 @@ def ensemble_overview(found: Ensemble, *, observer: str | None = None, title: st
     with drawing(axes, height=2.6) as panel:
         panel.plot(across, values / factor, ".", color=LINES[0][0], markersize=3.0)
         panel.set(xlabel=along, ylabel=quantity_label(label, read), title=title)
-        return figure_of(panel)
-
-
-@plot.register(Basin)
-def basin_of_starts(
-    found: Basin, *, places: tuple[int, int] | None = None, title: str = "", axes: Any = None
-) -> "Figure":
-    """Starts in the plane of two states: dots come to rest in steady sliding, crosses vibrate.
-
-    `places` are two columns of the state (q, q'), by default the first two in which the starts differ.
-    """
-    spread = np.ptp(found.start, axis=0)
-    half = found.start.shape[-1] // 2
-    first, second = places or tuple(sorted(np.argsort(spread == 0.0, kind="stable")[:2]))
-    names = [f"q{i + 1}" for i in range(half)] + [f"q{i + 1}'" for i in range(half)]
-    x, y = found.start[:, first], found.start[:, second]
-    (x_factor, x_unit), (y_factor, y_unit) = (
-        scaled("m" if place < half else "m/s", column) for place, column in ((first, x), (second, y))
-    )
-    vibrates = np.asarray(found.vibrates, dtype=bool)
-    with drawing(axes, width=3.8, height=3.2) as panel:
-        for here, marker, look, label in (
-            (~vibrates, ".", line(1), "comes to steady sliding"),
-            (vibrates, "x", line(2), "vibrates"),
-        ):
-            panel.plot(x[here] / x_factor, y[here] / y_factor, marker, color=look["color"], label=label)
-        panel.set(xlabel=quantity_label(names[first], x_unit), ylabel=quantity_label(names[second], y_unit))
-        low, high = (100.0 * float(end) for end in found.interval)
-        said = f"{number(100.0 * float(found.share), 3)} % vibrate ({number(low, 3)} to {number(high, 3)} %)"
-        panel.set_title(". ".join(filter(None, (title, said))))
-        panel.legend(loc="upper right")
         return figure_of(panel)

@@ -1,0 +1,91 @@
+"""`squealbox basin`: which starts lead to which motion, how likely each is, and the smallest dangerous push."""
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from cyclopts import Parameter
+
+from squealbox.cli.inputs import AllowCode, Changes, folder, read
+from squealbox.cli.progress import Progress
+from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.tables import write_csv, written
+from squealbox.limit_cycles import Basin, basin, dangerous_push
+from squealbox.limit_cycles.basins import state_names
+
+Two = Annotated[tuple[str, str] | None, Parameter(negative="")]
+Push = Annotated[bool, Parameter(negative="")]
+
+
+def basin_(
+    file: Path,
+    *,
+    starts: int = 2000,
+    spread: float = 1.0,
+    plane: Two = None,
+    push: Push = False,
+    seed: int = 1,
+    changes: Changes = (),
+    allow_code: AllowCode = False,
+    out: Path | None = None,
+) -> None:
+    """Which starts lead to which motion: the share of each with its interval, for starts about steady sliding.
+
+    The starts fill a box of half widths V/w (displacements) and V (velocities) times --spread, with V the fastest
+    sliding speed and w the slowest frequency. With --plane they lie on a grid in that plane and make a picture.
+
+    Parameters
+    ----------
+    file
+        design file; squealbox init writes a first one
+    starts
+        number of starts
+    spread
+        size of the box, in V/w and V
+    plane
+        two states to draw: x y' (a prime is a velocity)
+    push
+        look for the smallest push that ends in a vibration, too
+    seed
+        of the starts
+    changes
+        other values for this run: --set friction.static=0.3
+    allow_code
+        run the Python file of a friction law that the design file names
+    out
+        folder for basin.nc, basin.csv and the figure
+    """
+    if starts < 1 or not (np.isfinite(spread) and spread > 0.0):
+        raise UsageError(f"--starts {starts} --spread {spread:g}: expected at least one start and a spread above 0")
+    found = read(file, changes, allow_code)
+    if out is not None:
+        folder(out)
+    with Progress(f"{starts} starts") as progress:
+        result = basin(found.design, spread, starts, plane=plane, seed=seed)
+        if result.outcome in ("no_sliding", "failed_runs"):
+            raise ComputationFailed(result.outcome)
+        smallest = None
+        if push:
+            progress("the smallest push")
+            smallest = dangerous_push(found.design, seed=seed)
+    print(f"{found.design.title}, {file}\n{result.summary()}")
+    if smallest is not None:
+        print(smallest.summary())
+    if out is not None:
+        from squealbox import plots
+
+        figure = plots.basin_picture(result, push=smallest, title=found.path.name)
+        files = [result.save(out / "basin.nc"), write_csv(out / "basin.csv", _columns(result))]
+        if smallest is not None:
+            files.append(smallest.save(out / "push.nc"))
+        print(written(*files, *plots.save(figure, out / "basin")))
+
+
+def _columns(result: Basin) -> dict[str, object]:
+    """One row for each start: the state, what it leads to, and how long it ran."""
+    names, half = state_names(result.system), len(result.rest) // 2
+    columns: dict[str, object] = {
+        f"{name} [{'m' if i < half else 'm/s'}]": result.start[:, i] for i, name in enumerate(names)
+    }
+    kinds = np.array([*result.kind, "failed", "not settled"], dtype=str)
+    return {**columns, "attractor": result.attractor, "kind": kinds[result.attractor], "time [s]": result.time}
