@@ -10,7 +10,7 @@ from squealbox import quantities, signals, stability, studies
 from squealbox.designs import DampingParadox, DrumBrake, MassOnBelt
 from squealbox.fit import fit_friction
 from squealbox.friction import Coulomb
-from squealbox.limit_cycles import basin, branch, dangerous_push, hopf_point, shooting
+from squealbox.limit_cycles import basin, bifurcation_diagram, branch, coexistence, dangerous_push, hopf_point, shooting
 from squealbox.limit_cycles.curves import hopf_curve
 from squealbox.result import Result
 from squealbox.studies import sweep
@@ -91,6 +91,10 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
     "Sweep": lambda: sweep(drum(), {FRICTION: np.linspace(0.1, 0.4, 4)}, stability.complex_modes),
     "DangerousPush": lambda: dangerous_push(
         drum().replace({FRICTION: 0.3}), (2e-3, 5e-2), directions=32, rounds=1, drawn=8
+    ),
+    "BifurcationDiagram": lambda: bifurcation_diagram(drum(), FRICTION, [0.1, 0.3]),
+    "Coexistence": lambda: coexistence(
+        drum(), {FRICTION: (0.1, 0.4), "load": (900.0, 1100.0)}, columns=4, rows=2, starts=4
     ),
     "PointCurve": lambda: hopf_curve(drum(), {FRICTION: RANGE, "k1": (18e6, 20e6)}, points=6),
     "SquealProbability": lambda: scattered(studies.squeal_probability, samples=512),

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from small_systems import block_on_belt, drum
-from squealbox import Coulomb, Stribeck, branch, harmonic_balance, hopf_point, shooting, simulate
-from squealbox.limit_cycles import basin, dangerous_push, lyapunov_exponents, maxima, push_along
+from small_systems import block_on_belt, drum, two_masses
+from squealbox import Contact, Coulomb, Stribeck, System, branch, harmonic_balance, hopf_point, shooting, simulate
+from squealbox.limit_cycles import basin, dangerous_push, lyapunov_exponents, maxima, poincare_section, push_along
 from squealbox.limit_cycles.basins import interval
+from squealbox.parameters import ParameterError
 from squealbox.system import equilibrium
 
 
@@ -80,6 +81,74 @@ def test_maxima_of_a_free_swing():
     instants, heights = maxima(motion)
     np.testing.assert_allclose(instants, np.pi / 2.0 + 2.0 * np.pi * np.arange(len(instants)), atol=1e-6)
     np.testing.assert_allclose(heights, 1.0, atol=1e-9)
+
+
+def test_a_section_is_met_where_the_motion_passes_it():
+    """x = sin t passes x/2 + x' = 0.3 from above once a period; the error falls with the cube of the output's step."""
+    system = block_on_belt(Coulomb(0.0), 10.0)
+    exact = np.arccos(0.3 / np.hypot(0.5, 1.0)) + np.arctan(0.5)  # 0.5 sin t + cos t = hypot(0.5, 1) cos(t - atan 0.5)
+    errors = []
+    for steps in (200, 400):
+        motion = simulate(system, 20.0, ([0.0], [1.0]), rtol=1e-12, times=steps + 1)
+        instants, states = poincare_section(motion, [0.5, 1.0], 0.3, direction=-1)
+        expected = exact + 2.0 * np.pi * np.arange(len(instants))
+        errors.append(np.max(np.abs(instants - expected)))
+        assert len(instants) == 3
+        assert np.max(np.abs(states @ [0.5, 1.0] - 0.3)) < 1e-12
+    assert np.log2(errors[0] / errors[1]) > 2.8
+    rising, _ = poincare_section(motion, [0.5, 1.0], 0.3, direction=1)
+    both, _ = poincare_section(motion, [0.5, 1.0], 0.3, direction=0)
+    assert len(both) == len(rising) + 3
+    with pytest.raises(ParameterError, match="normal"):
+        poincare_section(motion, [1.0, 0.0, 0.0])
+
+
+def test_exponents_of_a_linear_system_are_its_growth_rates():
+    """They converge as 1/time: over four times the time the error is a quarter."""
+    system = two_masses()
+    expected = np.sort(np.linalg.eigvals(companion(system)).real)[::-1]
+    seen = lyapunov_exponents(system, ([1.0, 0.0], [0.0, 0.0]), 2.0, 800, history=True)
+    early, late = (np.max(np.abs(seen[i] - expected)) for i in (199, 799))
+    assert late < 2e-3
+    assert late < 0.5 * early
+
+
+def companion(system):
+    inverse = np.linalg.inv(system.M)
+    return np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ system.K, -inverse @ system.C]])
+
+
+def driven_dry_friction():
+    """x'' + 0.03 x' + x + (1 + 1.5 x) sgn(x') = 1.9 cos(1.25 t): chaotic, Feeny and Moon 1989. The drive is the second
+    degree of freedom, undamped and coupled one way."""
+    contact = Contact(n=[1.5, 0.0], d=[1.0, 0.0], t=[1.0, 0.0], N0=1.0, V=0.0, law=Coulomb(1.0))
+    return System(np.eye(2), np.diag([0.03, 0.0]), [[1.0, -1.9], [0.0, 1.25**2]], [0.0, 0.0], (contact,))
+
+
+def test_chaos_with_sticking_by_two_roads():
+    """Saltation matrices, and two motions side by side brought back to 1e-7 after each period of the drive.
+
+    The drive has two exponents 0, sticking forgets one direction, and the largest is positive and the same on both
+    roads. Both see the same 120 periods of one orbit but for the 1e-7, so their means differ by no more than that and
+    what the first directions leave, of order 1/time.
+    """
+    system, period = driven_dry_friction(), 2.0 * np.pi / 1.25
+    settled = simulate(system, 40.0 * period, ([0.3, 1.0], [0.0, 0.0]), rtol=1e-11)
+    start = (settled.q[-1], settled.qd[-1])
+    found = lyapunov_exponents(system, start, period, 120)
+    assert found[0] > 0.05
+    assert np.max(np.abs(found[1:3])) < 5e-3
+    assert found[3] == -np.inf
+    x, away, total = np.concatenate(start), np.array([1e-7, 0.0, 0.0, 0.0]), 0.0
+    for _ in range(120):
+        ends = []
+        for state in (x, x + away):
+            run = simulate(system, period, (state[:2], state[2:]), rtol=1e-12)
+            ends.append(np.concatenate([run.q[-1], run.qd[-1]]))
+        x, away = ends[0], ends[1] - ends[0]
+        total += np.log(np.linalg.norm(away) / 1e-7)
+        away *= 1e-7 / np.linalg.norm(away)
+    assert total / (120.0 * period) == pytest.approx(found[0], abs=0.01)
 
 
 def test_exponents_of_a_cycle_are_those_of_its_multipliers():

@@ -6,8 +6,10 @@ Depends on: transient, stability, continuation, system, friction, schedules, res
 from squealbox.limit_cycles.attractors import Attractor
 from squealbox.limit_cycles.basins import Basin, basin
 from squealbox.limit_cycles.branches import Branch, branch
+from squealbox.limit_cycles.coexistence import Coexistence, coexistence, cycle_ends
 from squealbox.limit_cycles.curves import PointCurve, hopf_curve
 from squealbox.limit_cycles.cycle import Cycle
+from squealbox.limit_cycles.diagrams import BifurcationDiagram, bifurcation_diagram
 from squealbox.limit_cycles.estimates import averaged_curve, averaged_limit, averaged_swings, describing_function
 from squealbox.limit_cycles.harmonic_balance import harmonic_balance
 from squealbox.limit_cycles.hopf import HopfPoint, hopf_point
@@ -15,7 +17,7 @@ from squealbox.limit_cycles.isolated import isolated_branches, settled_cycles
 from squealbox.limit_cycles.joined import joined
 from squealbox.limit_cycles.point_curves import point_curve
 from squealbox.limit_cycles.pushes import DangerousPush, dangerous_push, push_along
-from squealbox.limit_cycles.sections import lyapunov_exponents, maxima
+from squealbox.limit_cycles.sections import lyapunov_exponents, maxima, poincare_section
 from squealbox.limit_cycles.shooting import shooting
 from squealbox.limit_cycles.special_points import BranchPoint
 from squealbox.limit_cycles.stick_slip_limit import return_gap, stick_slip_limit
@@ -23,8 +25,10 @@ from squealbox.limit_cycles.stick_slip_limit import return_gap, stick_slip_limit
 __all__ = [
     "Attractor",
     "Basin",
+    "BifurcationDiagram",
     "Branch",
     "BranchPoint",
+    "Coexistence",
     "Cycle",
     "DangerousPush",
     "HopfPoint",
@@ -33,7 +37,10 @@ __all__ = [
     "averaged_limit",
     "averaged_swings",
     "basin",
+    "bifurcation_diagram",
     "branch",
+    "coexistence",
+    "cycle_ends",
     "dangerous_push",
     "describing_function",
     "harmonic_balance",
@@ -43,6 +50,7 @@ __all__ = [
     "joined",
     "lyapunov_exponents",
     "maxima",
+    "poincare_section",
     "point_curve",
     "push_along",
     "return_gap",

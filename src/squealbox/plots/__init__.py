@@ -9,6 +9,7 @@ from squealbox.plots.brakes import brake_drawing
 from squealbox.plots.cards import card
 from squealbox.plots.contact import contact_comparison
 from squealbox.plots.cycles import branch_diagram, cycle_overview
+from squealbox.plots.diagrams import bifurcation_diagram, coexistence_region
 from squealbox.plots.dispatch import plot
 from squealbox.plots.facts import facts
 from squealbox.plots.fits import friction_fit
@@ -46,12 +47,14 @@ __all__ = [
     "amplitude_course",
     "amplitude_map",
     "basin_picture",
+    "bifurcation_diagram",
     "birth_of_a_cycle",
     "boundary_curves",
     "brake_drawing",
     "branch_diagram",
     "card",
     "coalescence",
+    "coexistence_region",
     "component_growth",
     "contact_comparison",
     "crossings",
