@@ -129,7 +129,7 @@ class Field:
         if np.any(opened):
             out[:, n:, :n] += np.einsum("...c,ci,cj->...ij", 1.0 * opened, self.mw, self.n)
         out[:, n:, n:] = -self.mc - np.einsum("...c,ci,cj->...ij", by_speed, self.md, self.t)
-        stuck = self.sticking(np.reshape(mode, (-1, len(self.V)))[0])
+        stuck = self.sticking(np.atleast_2d(mode)[0])
         if stuck.size:
             hold = self.md[stuck].T @ np.linalg.pinv(self.t[stuck] @ self.md[stuck].T) @ self.t[stuck]
             out[:, n:] -= hold @ out[:, n:]
