@@ -1,7 +1,19 @@
 # The public names in the order of the story. `lazy_loader` reads the imports; people, editors and type checkers read both.
 # A room with more names than the story needs is public as a whole: `squealbox.friction.Table`, `squealbox.schedules.Table`.
 
-from . import designs, files, friction, limit_cycles, plots, schedules, signals, stability, studies, transient
+from . import (
+    designs,
+    files,
+    friction,
+    limit_cycles,
+    plots,
+    quantities,
+    schedules,
+    signals,
+    stability,
+    studies,
+    transient,
+)
 from .continuation import Follower, follow
 from .designs import (
     BlockChain,
@@ -44,7 +56,20 @@ from .stability import (
     stability_map,
     tracked_modes,
 )
-from .studies import Space, Sweep, sweep
+from .studies import (
+    Constraint,
+    Goal,
+    Optimum,
+    Quantity,
+    Scatter,
+    Space,
+    SquealProbability,
+    Sweep,
+    optimise,
+    sobol_indices,
+    squeal_probability,
+    sweep,
+)
 from .system import Contact, System, equilibrium, linearise
 from .transient import (
     Ensemble,
@@ -154,6 +179,17 @@ __all__ = [
     "sweep",
     "Sweep",
     "Space",
+    # how probable is squeal when parameters scatter, which matters, and what to change?
+    "Scatter",
+    "Quantity",
+    "squeal_probability",
+    "SquealProbability",
+    "sobol_indices",
+    "optimise",
+    "Goal",
+    "Constraint",
+    "Optimum",
+    "quantities",
     # what a signal holds
     "signals",
     "spectrum",

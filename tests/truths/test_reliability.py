@@ -27,7 +27,7 @@ from squealbox.studies import (
 from truths.test_uncertainty import ISHIGAMI, ishigami, ishigami_truth
 
 PAIR = Scatter({"a": Normal(0.0, 1.0), "b": Normal(0.0, 1.0)})
-MARGIN = quantities.margin("friction.static", (0.0, 3.0))
+MARGIN = quantities.margin("friction.static", (0.0, 3.0), points=13)
 
 
 def coupling(rho):
@@ -41,7 +41,7 @@ def coupling(rho):
 def test_form_is_exact_for_a_straight_boundary(rho):
     """Through eigenvalues and a root search: the onset is good to 1e-12, the search of the point to 1e-7."""
     scatter, beta = coupling(rho)
-    found = form(ModeCoupling(), scatter, MARGIN, samples=2000)
+    found = form(ModeCoupling(), scatter, MARGIN, samples=1000)
     assert float(found.beta) == pytest.approx(beta, rel=1e-6)
     assert float(found.probability) == pytest.approx(norm.sf(beta), rel=1e-4)
     assert found.straight

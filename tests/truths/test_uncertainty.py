@@ -17,11 +17,12 @@ import pytest
 from scipy.stats import norm
 
 from squealbox import quantities
-from squealbox.designs import DampingParadox, ModeCoupling
+from squealbox.designs import DampingParadox, DrumBrake, ModeCoupling
+from squealbox.friction import Coulomb
 from squealbox.parameters import ParameterError
 from squealbox.plots import plot
 from squealbox.result import Result
-from squealbox.stability import critical_value, first_crossings
+from squealbox.stability import complex_modes, critical_value, first_crossings
 from squealbox.studies import (
     Lognormal,
     Normal,
@@ -35,6 +36,7 @@ from squealbox.studies import (
     squeal_probability,
 )
 from squealbox.studies.replicates import binomial_interval, student_interval
+from squealbox.transient import simulate_ensemble
 
 CIRCLE = Uniform(-np.pi, np.pi)
 ISHIGAMI = Scatter(dict.fromkeys(("x1", "x2", "x3"), CIRCLE))
@@ -189,7 +191,7 @@ def test_effects_of_a_linear_and_of_a_curved_quantity():
 
 def test_range_over_a_box():
     """The onset [k12 + (k11 - k22)^2/(4 k12)]/k3 is least inside the box, at k11 = k22, and largest in a corner."""
-    onset = quantities.critical_value("friction.static", (0.0, 10.0), limit=0.4)
+    onset = quantities.critical_value("friction.static", (0.0, 10.0), limit=0.4, points=21)
     found = interval_bounds(ModeCoupling(k12=0.4), {"k11": (1.5, 2.8), "k3": (0.8, 1.25)}, onset, runs=2)
     assert float(found.low) == pytest.approx(0.4 / 1.25, rel=1e-6)
     assert float(found.high) == pytest.approx((0.4 + 0.8**2 / 1.6) / 0.8, rel=1e-9)
@@ -230,6 +232,20 @@ def test_a_hundred_thousand_points_are_one_batched_call():
         evaluate(ModeCoupling(), Quantity(lambda design: 1.0, "one"), {"k12": points["k12"][:50]})
 
 
+def test_quantities_are_what_the_analyses_say():
+    """Each beside the analysis it stands for, asked of a batch and of one brake."""
+    design = DampingParadox(eta1=np.array([0.005, 0.02, 0.04]), friction=Coulomb(0.3))
+    modes = complex_modes(design)
+    assert quantities.growth_rate()(design) == pytest.approx(modes.largest_growth_rate, rel=1e-9)
+    assert quantities.damping_ratio()(design) == pytest.approx(np.min(modes.damping_ratio, axis=-1), rel=1e-9)
+    assert quantities.damping_ratio().excess(-0.01) > 0.0  # a negative damping ratio squeals
+    brake = DrumBrake(load1=np.array([500.0, 1000.0]))
+    many = simulate_ensemble(brake, None, 2e-3)
+    assert np.array_equal(quantities.amplitude(2e-3, limit=1e-6)(brake), np.max(many["amplitude"], axis=-1))
+    assert quantities.parameter_value("load1", unit="N")(brake).tolist() == [500.0, 1000.0]
+    assert quantities.weighted_sum({"m": 2.0})(brake).shape == (2,)
+
+
 def test_correlated_parameters_have_no_shares():
     tied = Scatter({"a": Normal(0.0, 1.0), "b": Normal(0.0, 1.0)}, {("a", "b"): 0.5})
     for study in (sobol_indices, morris_effects):
@@ -257,7 +273,7 @@ def test_failures_are_outcomes_with_evidence():
 
 def test_results_are_saved_read_back_and_drawn(tmp_path):
     scatter = Scatter({"friction.static": Normal(0.5, 0.05), "k12": Normal(0.6, 0.04)})
-    ask = quantities.margin("friction.static", (0.0, 5.0))
+    ask = quantities.margin("friction.static", (0.0, 5.0), points=13)
     runs = (squeal_probability, {}), (sobol_indices, {"samples": 256}), (morris_effects, {"trajectories": 10})
     for i, (study, settings) in enumerate(runs):
         found = study(ModeCoupling(), scatter, ask, **settings)

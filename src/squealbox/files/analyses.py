@@ -133,7 +133,7 @@ def read_axis(document: Document, table: Mapping[str, Any], key: Key, design: De
     if "range" not in table:
         document.problem(key, "the key 'range' is missing, expected two values such as [0, 1]")
     given = {name: value for name, value in table.items() if name != "range"}
-    ends = _ends(document, table.get("range"), (*key, "range"), _about(document, table, key, design))
+    ends = read_ends(document, table.get("range"), _about(document, table, key, design), (*key, "range"))
     low, high = ends or (0.0, 1.0)
     axis = read_sheet(document, Axis, {**given, "low": low, "high": high}, key)
     return axis if ends else None
@@ -153,7 +153,8 @@ def _about(document: Document, table: Mapping[str, Any], key: Key, design: Desig
         return None
 
 
-def _ends(document: Document, value: Any, key: Key, about: Parameter | None) -> tuple[float, float] | None:
+def read_ends(document: Document, value: Any, about: Parameter | None, key: Key) -> tuple[float, float] | None:
+    """Two numbers in the unit and range of `about`, the lower first; None when there are none or one is wrong."""
     if value is None or about is None:
         return None
     if not isinstance(value, list) or len(value) != 2:

@@ -5,7 +5,7 @@ from typing import Any
 
 from squealbox import quantities
 from squealbox.designs import Design
-from squealbox.files.analyses import quantity_of, scalar_parameters
+from squealbox.files.analyses import quantity_of, read_ends, scalar_parameters
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
@@ -114,20 +114,6 @@ def known(document: Document, name: Any, key: Key, design: Design | None) -> Par
     except ParameterError as error:
         document.problem(key, f"unknown parameter {name[:60]!r}, {error.expectation}")
         return None
-
-
-def read_ends(document: Document, value: Any, about: Parameter, key: Key) -> tuple[float, float] | None:
-    """Two numbers in the unit and range of `about`, the lower first."""
-    if not isinstance(value, list) or len(value) != 2:
-        wrong(document, key, value, "two values such as [0, 1]")
-        return None
-    low, high = (read_number(document, end, about, (*key, i)) for i, end in enumerate(value))
-    if low is WRONG or high is WRONG:
-        return None
-    if not low < high:
-        wrong(document, key, value, "the lower value first and the higher one second")
-        return None
-    return low, high
 
 
 def flattened(table: Mapping[str, Any], key: Key, design: Design | None) -> list[tuple[str, Any, Key]]:

@@ -16,7 +16,8 @@ from typing import Any, get_args
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.files.asked import flattened, known, read_ends, read_quantity
+from squealbox.files.analyses import read_ends
+from squealbox.files.asked import flattened, known, read_quantity
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
