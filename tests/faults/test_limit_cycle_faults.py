@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from small_systems import block_on_belt, drum
-from squealbox import Coulomb, ParameterError, Ramp, Stribeck, branch, harmonic_balance, hopf_point, shooting
+from squealbox import Coulomb, ParameterError, Ramp, Stribeck, System, branch, harmonic_balance, hopf_point, shooting
+from squealbox.system import InvalidSystem
 
 QUIET = block_on_belt(Coulomb(0.3), 0.2, damping=0.5)
 
@@ -53,3 +54,41 @@ def test_no_hopf_point():
 def test_senseless_input(call, word):
     with pytest.raises(ParameterError, match=word):
         call()
+
+
+HOSTILE = {
+    "no contact": System([[1.0]], [[0.1]], [[1.0]], [0.0]),
+    "undamped centre": System([[1.0]], [[0.0]], [[1.0]], [0.0]),
+    "growth without bound": System([[1.0]], [[-0.5]], [[1.0]], [0.0]),
+    "no stiffness": System([[1.0]], [[0.1]], [[0.0]], [0.0]),
+    "no friction": block_on_belt(Coulomb(0.0), 0.2),
+    "no speed": block_on_belt(Coulomb(0.4, 0.25), 0.0),
+    "no normal force": block_on_belt(Coulomb(0.4, 0.25), 0.1, normal=0.0),
+    "negative stiffness": block_on_belt(Coulomb(0.4, 0.25), 0.1, stiffness=-1.0),
+}
+FINDS = {
+    "shooting": shooting,
+    "three shots": lambda system: shooting(system, shots=3),
+    "a guess": lambda system: shooting(system, ([0.3], [0.05], 6.0)),
+    "harmonic balance": harmonic_balance,
+    "a branch": lambda system: branch(lambda _: system, "v", (0.1, 1.0), method="shooting", points=3),
+    "a Hopf point": lambda system: hopf_point(lambda _: system, "v", (0.1, 1.0)),
+}
+
+
+@pytest.mark.parametrize("find", FINDS)
+@pytest.mark.parametrize("kind", HOSTILE)
+def test_systems_without_a_cycle_end_in_a_named_outcome(kind, find):
+    found = FINDS[find](HOSTILE[kind])
+    assert not found.outcome.ok
+    assert found.outcome.message
+    assert str(found.outcome) in (
+        "steady_sliding", "no_cycle", "no_convergence", "no_onset", "no_equilibrium", "no_hopf"
+    )  # fmt: skip
+    assert found.summary()
+
+
+def test_a_singular_mass_is_refused():
+    massless = System(np.diag([1.0, 0.0]), 0.1 * np.eye(2), np.eye(2), np.zeros(2))
+    with pytest.raises(InvalidSystem, match="singular"):
+        shooting(massless)
