@@ -31,18 +31,18 @@ def lab(
     """
     if port is not None and not 0 <= port <= 65535:
         raise UsageError(f"--port {port}: expected 0 to 65535")
-    text, fragment = "", ""
+    text, fragment, design = "", "", None
     if file is not None and LINK in file:
         fragment = "d=" + file.partition(LINK)[2]
     elif file is not None:
         from squealbox.files import read_file
 
-        read_file(Path(file))  # says all that is wrong with it before anything is served
+        design = read_file(Path(file)).design  # says all that is wrong with it before anything is served
         text = Path(file).read_text(encoding="utf-8")
     try:
         from squealbox.workbench.lab import serve
 
-        serve(text, port, browser=browser, fragment=fragment)
+        serve(text, port, design=design, browser=browser, fragment=fragment)
     except ModuleNotFoundError as error:
         if str(error.name).startswith("squealbox"):
             raise

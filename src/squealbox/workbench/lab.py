@@ -1,5 +1,6 @@
 """From the command to the page: a free port on loopback, the token, the server, the browser."""
 
+import logging
 import os
 import secrets
 import socket
@@ -7,6 +8,7 @@ import sys
 import threading
 import webbrowser
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote
 
 HOST = "127.0.0.1"
@@ -14,12 +16,14 @@ PORT = 8642
 TRIES = 20  # ports after the usual one that are tried
 
 
-def serve(text: str = "", port: int | None = None, *, browser: bool = True, fragment: str = "") -> None:
+def serve(
+    text: str = "", port: int | None = None, *, design: Any = None, browser: bool = True, fragment: str = ""
+) -> None:
     """Serve the workbench on loopback until it is stopped with Ctrl-C.
 
     Parameters
     ----------
-    text : a design file to start with
+    text, design : a design file to start with, and the design read from it where matrices stand beside it
     port : None takes 8642 or the next free one
     browser : open the page in the browser
     fragment : what stands behind the # of the page's address: a design shared by its link
@@ -28,24 +32,30 @@ def serve(text: str = "", port: int | None = None, *, browser: bool = True, frag
     """
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")  # many small matrices: threads of the algebra only stand in each other's way
+    listening = listen(port)
+    port = listening.getsockname()[1]
+    token = kept_token()
+    address = f"http://{HOST}:{port}/?token={quote(token)}{'#' + fragment if fragment else ''}"
+    print(f"squealbox lab: {address}\nstop it with Ctrl-C", flush=True)  # who comes early waits in the socket's queue
+    if browser:
+        threading.Thread(target=webbrowser.open, args=[address], daemon=True).start()
     import uvicorn
 
     from squealbox.workbench.guard import Token
     from squealbox.workbench.server import LARGEST_MESSAGE, Workbench
 
-    listening = listen(port)
-    port = listening.getsockname()[1]
-    token = kept_token()
-    address = f"http://{HOST}:{port}/?token={quote(token)}{'#' + fragment if fragment else ''}"
-    app = Workbench(Token(token, port), text).app()
+    app = Workbench(Token(token, port), text, design).app()
     config = uvicorn.Config(
         app, log_level="warning", ws="websockets-sansio", ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False,
         lifespan="on", timeout_graceful_shutdown=2, access_log=False, server_header=False,
     )  # fmt: skip
-    print(f"squealbox lab: {address}\nstop it with Ctrl-C", flush=True)
-    if browser:
-        threading.Timer(0.2, webbrowser.open, [address]).start()
+    logging.getLogger("uvicorn.error").addFilter(_is_news)
     uvicorn.Server(config).run(sockets=[listening])
+
+
+def _is_news(record: logging.LogRecord) -> bool:
+    """A foreign page that was refused is no news; uvicorn takes the refusal for an unfinished handshake."""
+    return "without completing handshake" not in record.getMessage()
 
 
 def listen(port: int | None) -> socket.socket:

@@ -2,7 +2,6 @@
 
 import asyncio
 import importlib.util
-import os
 from collections.abc import AsyncIterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
@@ -30,12 +29,11 @@ NO_TOKEN = """<!doctype html><html lang="en"><meta charset="utf-8"><title>squeal
 
 
 class Workbench:
-    """The parts of one running workbench: token, file to start with, and the threads that compute."""
+    """The parts of one running workbench: token, file to start with and its design, and the threads that compute."""
 
-    def __init__(self, token: Token, text: str = "") -> None:
-        self.token, self.text = token, text
-        self.quick = ThreadPoolExecutor(2, "squealbox-quick")
-        self.slow = ThreadPoolExecutor(max(1, (os.cpu_count() or 2) - 1), "squealbox-slow")
+    def __init__(self, token: Token, text: str = "", design: Any = None) -> None:
+        self.token, self.text, self.design = token, text, design
+        self.pools = {"quick": ThreadPoolExecutor(2, "quick"), "warming": ThreadPoolExecutor(1, "warming")}
         self.pages = 0
 
     def app(self) -> Starlette:
@@ -56,12 +54,12 @@ class Workbench:
 
     @asynccontextmanager
     async def _life(self, app: Starlette) -> AsyncIterator[None]:
-        warming = asyncio.get_running_loop().run_in_executor(self.slow, _warm)
+        warming = asyncio.get_running_loop().run_in_executor(self.pools["warming"], self._warm)
         try:
             yield
         finally:
             warming.cancel()
-            for pool in (self.quick, self.slow):
+            for pool in self.pools.values():
                 pool.shutdown(wait=False, cancel_futures=True)
 
     async def page(self, request: Request) -> Response:
@@ -80,8 +78,9 @@ class Workbench:
             await socket.close(1008)  # before it is accepted: the handshake is answered with 403
             return
         await socket.accept()
-        from squealbox.workbench.session import Session
+        from squealbox.workbench.session import Session, name_of_text
 
+        self._slow_pools()
         writing = asyncio.Lock()
 
         async def send(data: bytes) -> None:
@@ -91,7 +90,9 @@ class Workbench:
                 except (WebSocketDisconnect, RuntimeError):  # the page left while its answer was computed
                     session.close()
 
-        session = Session(send, self.quick, self.slow)
+        session = Session(send, self.pools)
+        if self.design is not None:
+            session.bases[name_of_text(self.text)] = self.design
         self.pages += 1
         try:
             await send(frame({"kind": "hello", **_hello(self.text)}))
@@ -103,6 +104,25 @@ class Workbench:
         finally:
             self.pages -= 1
             session.close()
+
+    def _slow_pools(self) -> None:
+        """Threads for each slow panel, so that none holds up another; made with the first page."""
+        from squealbox.workbench.panels import PANELS
+
+        for name, panel in PANELS.items():
+            if panel.slow and name not in self.pools:
+                self.pools[name] = ThreadPoolExecutor(2, name)
+
+    def _warm(self) -> None:
+        """Load what the first questions need, while the browser is still opening."""
+        from squealbox.designs import DrumBrake
+        from squealbox.workbench.panels import PANELS, Options, Work, function_of
+        from squealbox.workbench.sheet import sheet
+
+        sheet(DrumBrake())
+        for name in sorted(PANELS, key=lambda name: name not in ("locus", "verdict")):
+            if name == "map" or not PANELS[name].slow:
+                function_of(name)(DrumBrake(), Options({}), Work())
 
 
 def chart_library() -> Path:
@@ -134,13 +154,3 @@ def _hello(text: str) -> dict[str, Any]:
             for name, panel in PANELS.items()
         ],
     }
-
-
-def _warm() -> None:
-    """Load what the first questions need, while the page is still being read."""
-    from squealbox.designs import DrumBrake
-    from squealbox.workbench.panels import PANELS, Options, Work, function_of
-
-    for name, panel in PANELS.items():
-        if not panel.slow:
-            function_of(name)(DrumBrake(), Options({}), Work())

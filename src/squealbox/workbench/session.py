@@ -46,11 +46,14 @@ class Slot:
 
 @dataclass
 class Session:
-    """A page's conversation: `send` takes a frame, `quick` and `slow` are where answers are computed."""
+    """A page's conversation: `send` takes a frame, `pools` are where answers are computed.
+
+    A slow panel has a pool of its own name, the others share the one called "quick". `bases` are the designs of opened
+    files; it may begin with the file the workbench was started with.
+    """
 
     send: Callable[[bytes], Awaitable[None]]
-    quick: Executor
-    slow: Executor
+    pools: Mapping[str, Executor]
     bases: dict[str, Design] = field(default_factory=dict)
     slots: dict[str, Slot] = field(default_factory=dict)
     tasks: set[asyncio.Task[None]] = field(default_factory=set)
@@ -115,8 +118,9 @@ class Session:
 
     async def _answer(self, name: str, message: dict[str, Any], work: Work) -> None:
         loop = asyncio.get_running_loop()
-        pool = self.slow if PANELS[name].slow else self.quick
-        data = await loop.run_in_executor(pool, answered, name, message, dict(self.bases), work)
+        data = await loop.run_in_executor(
+            self.pools.get(name, self.pools["quick"]), answered, name, message, dict(self.bases), work
+        )
         await self.send(data)
 
     async def _ask(self, message: dict[str, Any]) -> None:
@@ -128,9 +132,9 @@ class Session:
                 slot.work.stop()
             await self.send(frame({"id": message["id"], "kind": "done"}))
         elif ask == "sheet":
-            await self.send(await asyncio.get_running_loop().run_in_executor(self.quick, self._sheet, message))
+            await self.send(await asyncio.get_running_loop().run_in_executor(self.pools["quick"], self._sheet, message))
         elif ask == "open":
-            await self.send(await asyncio.get_running_loop().run_in_executor(self.quick, self._open, message))
+            await self.send(await asyncio.get_running_loop().run_in_executor(self.pools["quick"], self._open, message))
         else:
             raise Malformed("ask: expected one of sheet, open, stop; or view")
 
@@ -148,16 +152,24 @@ class Session:
         if not isinstance(text, str) or len(text) > LONGEST_TEXT:
             problem = {"line": 0, "field": "", "message": f"expected a text of at most {LONGEST_TEXT} characters"}
             return frame({**about, "kind": "wrong", "wrong": [problem]})
+        if name_of_text(text) in self.bases:  # the file of the command line, whose matrices may stand beside it
+            base = name_of_text(text)
+            return frame({**about, "kind": "opened", "base": base, "brake": _name(self.bases[base])})
         try:
             design = read_text(text, "the file").design
         except DesignFileError as error:
             wrong = [{"line": each.line, "field": each.key, "message": each.message} for each in error.problems]
             return frame({**about, "kind": "wrong", "wrong": wrong})
-        base = hashlib.sha256(text.encode()).hexdigest()[:16]
+        base = name_of_text(text)
         while len(self.bases) >= MOST_BASES:
             self.bases.pop(next(iter(self.bases)))
         self.bases[base] = design
         return frame({**about, "kind": "opened", "base": base, "brake": _name(design)})
+
+
+def name_of_text(text: str) -> str:
+    """The name under which a page speaks of a text it opened: the same for the same text."""
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design], work: Work) -> bytes:

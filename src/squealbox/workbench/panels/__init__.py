@@ -24,7 +24,7 @@ PANELS: dict[str, Panel] = {
     "drawing": Panel("The brake", shown=False),
     "verdict": Panel("Verdict", shown=False),
     "locus": Panel("Modes over a parameter", columns=2),
-    "map": Panel("Stability map"),
+    "map": Panel("Stability map", slow=True),
     "friction": Panel("Friction curve"),
     "motion": Panel("Motion", columns=2, slow=True),
     "energy": Panel("Energy by contact"),

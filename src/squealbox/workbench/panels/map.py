@@ -8,6 +8,8 @@ from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, axis_of
 
 POINTS = 101
+FEWER = 51  # along each axis, for designs of more than two degrees of freedom
+BLOCKS = 8  # parts of a map between which it can be stopped
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
@@ -18,9 +20,20 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         raise OptionError(f"x and y are both {across}: choose two different parameters")
     show = options.word("show", ("growth", "frequency", "mechanism"))
     spans = [options.span(name, design, parameter) for name, parameter in (("xspan", across), ("yspan", up))]
-    points = int(options.number("points", POINTS, 11, 401))
+    few = design.system().size > 2
+    points = int(options.number("points", FEWER if few else POINTS, 11, 401))
     values = [np.linspace(*span, points) for span in spans]
-    grid = stability_map(design, dict(zip((across, up), values, strict=True)), mechanism=show == "mechanism")
+    parts = []
+    for i, block in enumerate(np.array_split(values[0], BLOCKS if few or show == "mechanism" else 1)):
+        work.progress(i / BLOCKS, "computing the map")
+        parts.append(
+            stability_map(design, {across: block, up: values[1]}, mechanism=show == "mechanism", engine="compiled")
+        )
+    growth, frequency, why, unstable = (
+        np.concatenate([getattr(part, name) for part in parts])
+        for name in ("growth_rate", "frequency", "mechanism", "unstable")
+    )
+    exists = np.isfinite(growth)
     axes = [axis_of(design, parameter) for parameter in (across, up)]
     data = {
         "x": axes[0],
@@ -28,14 +41,14 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "xspan": [end / axes[0]["factor"] for end in spans[0]],
         "yspan": [end / axes[1]["factor"] for end in spans[1]],
         "show": show,
-        "unstable": float(np.mean(grid.unstable[grid.exists])) if np.any(grid.exists) else None,
-        "missing": int(np.sum(~grid.exists)),
-        "largest": finite(np.nanmax(grid.growth_rate)) if np.any(grid.exists) else None,
+        "unstable": float(np.mean(unstable[exists])) if np.any(exists) else None,
+        "missing": int(np.sum(~exists)),
+        "largest": finite(np.nanmax(growth)) if np.any(exists) else None,
         "mechanisms": list(StabilityMap.mechanism_names),
     }
-    arrays = {"growth": grid.growth_rate.T}
+    arrays = {"growth": growth.T}
     if show == "frequency":
-        arrays["frequency"] = grid.frequency.T
+        arrays["frequency"] = frequency.T
     if show == "mechanism":
-        arrays["mechanism"] = grid.mechanism.T
+        arrays["mechanism"] = why.T
     return Answer(data, arrays)

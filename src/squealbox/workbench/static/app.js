@@ -12,6 +12,8 @@ import { chooseTheme, nextTheme } from "./theme.js";
 import { Verdict } from "./verdict.js";
 
 const LEADING = "locus"; // the view whose pace a moving slider keeps
+const QUIET = 40; // ms without a change after which the other views are asked
+const PATIENCE = 250; // ms they wait at most while a slider moves
 
 class App extends EventTarget {
   constructor() {
@@ -47,6 +49,27 @@ class App extends EventTarget {
 
   answered(name) {
     if (name === LEADING) this.store.answered();
+  }
+
+  /** Ask the leading view and the drawing at once, and the others when the slider rests or has moved for long. */
+  #update() {
+    const leading = this.panels.get(LEADING)?.view;
+    leading?.update();
+    this.drawing.view.update();
+    const now = performance.now();
+    this.changedAt ??= now;
+    clearTimeout(this.later);
+    const others = () => {
+      if (leading?.busy && performance.now() - this.changedAt < PATIENCE) this.later = setTimeout(others, 10);
+      else this.#others();
+    };
+    for (const view of this.views) view.stale();
+    this.later = setTimeout(others, Math.max(0, Math.min(QUIET, this.changedAt + PATIENCE - now)));
+  }
+
+  #others() {
+    this.changedAt = null;
+    for (const view of this.views) view.update();
   }
 
   /** What the motion panel found goes into the verdict and onto the friction curve. */
@@ -162,10 +185,6 @@ class App extends EventTarget {
     byId("source").textContent = frame.sheet.source ? `Source: ${frame.sheet.source}` : "";
     this.store.dispatchEvent(new Event("fields"));
     this.#update();
-  }
-
-  #update() {
-    for (const view of this.views) view.update();
   }
 
   #history() {

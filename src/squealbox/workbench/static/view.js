@@ -32,6 +32,13 @@ export class View {
     else if (this.slow && key !== this.asked) this.app.connection.ask({ ask: "stop", view: this.name }).catch(quiet);
   }
 
+  /** What is drawn may be that of an older design: say so until it is asked for. */
+  stale() {
+    if (!this.visible || !this.app.ready) return;
+    const question = this.request();
+    if (question && JSON.stringify(question) !== this.drawn) this.#tell("waiting");
+  }
+
   /** Stop a slow computation; the panel stays as it is until something changes. */
   stop() {
     if (this.asked !== null) this.app.connection.ask({ ask: "stop", view: this.name }).catch(quiet);
