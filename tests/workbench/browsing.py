@@ -53,7 +53,7 @@ class Page:
     def __exit__(self, kind, *rest):
         self.context.close()
         unexpected = [each for each in self.errors if not any(part in each for part in self.expected)]
-        assert kind is not None or unexpected == []
+        assert kind is not None or not unexpected, unexpected
 
     def goto(self, fragment=""):
         """Open the start address and wait until the first figure is there."""

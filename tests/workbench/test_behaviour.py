@@ -47,7 +47,7 @@ def test_an_old_answer_is_never_drawn_under_a_new_design(page):
             0.3 + 0.01 * i,
         )
         page.page.wait_for_timeout(70)
-    page.page.wait_for_function("window.drawings.some(([name]) => name === 'verdict')")
+    page.page.wait_for_function("() => window.drawings.some(([name]) => name === 'verdict')")
     page.drawn("locus")
     drawings = page.page.evaluate("window.drawings")
     assert all(current for _, current in drawings)

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+from concurrent.futures import ThreadPoolExecutor
 
 import psutil
 from websockets.asyncio.client import connect
@@ -12,6 +13,12 @@ from workbench.conftest import Server
 PAGES, MOVES = 20, 12
 MESSAGES = 4000
 STATE = {"brake": "drum_brake", "laws": {}, "values": {}}
+
+
+def run(coroutine):
+    """Run it in a thread of its own: the browser's driver keeps a loop in this one."""
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(asyncio.run, coroutine).result()
 
 
 def address(server):
@@ -36,7 +43,7 @@ def test_twenty_pages_move_their_sliders_at_once(server):
     async def everybody():
         return await asyncio.gather(*(slide(server, n) for n in range(PAGES)))
 
-    answers = asyncio.run(everybody())
+    answers = run(everybody())
     assert [len(each) for each in answers] == [MOVES] * PAGES
     assert all(all(pair) for each in answers for pair in each)
 
@@ -57,10 +64,10 @@ def test_memory_does_not_grow_with_messages(tmp_path):
                 await socket.recv()
 
     try:
-        asyncio.run(messages(1500))
+        run(messages(1500))
         before = process.memory_info().rss
         for _ in range(4):
-            asyncio.run(messages(MESSAGES // 4))
+            run(messages(MESSAGES // 4))
         assert process.memory_info().rss - before < 4e6
     finally:
         server.stop()

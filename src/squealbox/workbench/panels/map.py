@@ -34,12 +34,12 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         for name in ("growth_rate", "frequency", "mechanism", "unstable")
     )
     exists = np.isfinite(growth)
-    axes = [axis_of(design, parameter) for parameter in (across, up)]
+    read = [axis_of(design, parameter) for parameter in (across, up)]
     data = {
-        "x": axes[0],
-        "y": axes[1],
-        "xspan": [end / axes[0]["factor"] for end in spans[0]],
-        "yspan": [end / axes[1]["factor"] for end in spans[1]],
+        "x": read[0],
+        "y": read[1],
+        "xspan": [end / read[0]["factor"] for end in spans[0]],
+        "yspan": [end / read[1]["factor"] for end in spans[1]],
         "show": show,
         "unstable": float(np.mean(unstable[exists])) if np.any(exists) else None,
         "missing": int(np.sum(~exists)),

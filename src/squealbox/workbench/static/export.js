@@ -2,8 +2,8 @@
 
 const KEPT = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-opacity", "opacity", "font-family", "font-size", "font-weight"];
 
-/** The SVG of a chart as text; the picture beneath it goes in as an image, the look as attributes. */
-export function svgText(chart) {
+/** The SVG of a chart as text with its look as attributes; `ground` are the elements beneath it, as text. */
+function serialised(chart, ground) {
   const live = chart.svg.node();
   const copy = live.cloneNode(true);
   const from = [live, ...live.querySelectorAll("*")];
@@ -15,26 +15,27 @@ export function svgText(chart) {
   });
   copy.querySelectorAll('[display="none"]').forEach((element) => element.remove());
   copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
-  const namespace = "http://www.w3.org/2000/svg";
-  const add = (tag, about) => {
-    const element = document.createElementNS(namespace, tag);
-    for (const [name, value] of Object.entries(about)) element.setAttribute(name, value);
-    return element;
-  };
-  const size = { width: live.getAttribute("width"), height: live.getAttribute("height") };
-  const parts = [add("rect", { ...size, fill: getComputedStyle(document.body).backgroundColor })];
-  if (!chart.canvas.hidden) {
-    const box = { x: chart.margin.left, y: chart.margin.top, width: chart.inner.width, height: chart.inner.height };
-    parts.push(add("image", { ...box, preserveAspectRatio: "none", href: chart.canvas.toDataURL() }));
-  }
-  copy.prepend(...parts);
-  return new XMLSerializer().serializeToString(copy);
+  const text = new XMLSerializer().serializeToString(copy);
+  const inside = text.indexOf(">") + 1;
+  return text.slice(0, inside) + ground + text.slice(inside);
 }
 
-/** The chart as a PNG of twice its size on the page. */
+const box = (chart) => ({ x: chart.margin.left, y: chart.margin.top, width: chart.inner.width, height: chart.inner.height });
+const paper = () => getComputedStyle(document.body).backgroundColor;
+
+/** The chart as an SVG file; a picture of values goes in as an image, written as text so that this page loads nothing. */
+export function svgText(chart) {
+  let ground = `<rect width="100%" height="100%" fill="${paper()}"/>`;
+  if (!chart.canvas.hidden) {
+    const place = Object.entries(box(chart)).map(([name, value]) => `${name}="${value}"`).join(" ");
+    ground += `<image ${place} preserveAspectRatio="none" href="${chart.canvas.toDataURL()}"/>`;
+  }
+  return serialised(chart, ground);
+}
+
+/** The chart as a PNG of twice its size on the page: paper, picture, and the drawing over them. */
 export async function pngBlob(chart) {
-  const text = svgText(chart);
-  const address = URL.createObjectURL(new Blob([text], { type: "image/svg+xml" }));
+  const address = URL.createObjectURL(new Blob([serialised(chart, "")], { type: "image/svg+xml" }));
   try {
     const image = new Image();
     image.src = address;
@@ -42,7 +43,14 @@ export async function pngBlob(chart) {
     const canvas = document.createElement("canvas");
     canvas.width = 2 * image.width;
     canvas.height = 2 * image.height;
-    canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+    const pen = canvas.getContext("2d");
+    pen.fillStyle = paper();
+    pen.fillRect(0, 0, canvas.width, canvas.height);
+    pen.imageSmoothingEnabled = false;
+    const { x, y, width, height } = box(chart);
+    if (!chart.canvas.hidden) pen.drawImage(chart.canvas, 2 * x, 2 * y, 2 * width, 2 * height);
+    pen.imageSmoothingEnabled = true;
+    pen.drawImage(image, 0, 0, canvas.width, canvas.height);
     return await new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
   } finally {
     URL.revokeObjectURL(address);
