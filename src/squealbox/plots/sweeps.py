@@ -112,7 +112,7 @@ def _lines(panel: Any, found: Sweep, values: "xarray.DataArray", dim: Any, ended
         panel.plot(
             x[~ended], np.full(np.count_nonzero(~ended), 0.03), "x", color="#D55E00", transform=where, clip_on=False
         )
-        panel.text(0.98, 0.05, "x failed", color="#D55E00", transform=panel.transAxes, ha="right", fontsize=7.0)
+        panel.set_title("crosses: failed", loc="right", color="#D55E00", fontsize=7.0)
     panel.set_xlabel(label)
 
 
@@ -160,7 +160,10 @@ def _points(panel: Any, found: Sweep, values: "xarray.DataArray", dims: list[Any
         panel.set_ylabel(label)
         return
     x, y = places[:2]
-    dots = panel.scatter(x.ravel(), y.ravel(), c=flat.ravel(), s=7.0, cmap="viridis", plotnonfinite=False)
+    top = float(np.nanmax(np.abs(flat), initial=0.0))
+    signed = bool(np.any(flat < 0.0) and np.any(flat > 0.0))
+    look = {"vmin": -top, "vmax": top, "cmap": "PuOr_r", "edgecolors": "#888888"} if signed else {"cmap": "viridis"}
+    dots = panel.scatter(x.ravel(), y.ravel(), c=flat.ravel(), s=9.0, linewidths=0.2, **look)
     panel.plot(x[~ended], y[~ended], "x", color="#D55E00", markersize=3.0)
     figure_of(panel).colorbar(dots, ax=panel, pad=0.02).set_label(label)
     panel.set_ylabel(labels[1])
@@ -181,7 +184,9 @@ def _word_map(panel: Any, x: Any, y: Any, grid: Any, words: list[str]) -> None:
     shown = np.ma.masked_less(grid.reshape(len(x), len(y)), 0)
     panel.pcolormesh(x, y, shown.T, cmap=ListedColormap(colours), vmin=-0.5, vmax=len(words) - 0.5, rasterized=True)
     names = [word.replace("_", " ") or "none" for word in words]
-    panel.legend(handles=[Patch(color=c, label=n) for c, n in zip(colours, names, strict=True)], loc="best")
+    there = set(np.unique(shown.compressed()).tolist())
+    handles = [Patch(color=colours[i], label=name) for i, name in enumerate(names) if i in there]
+    panel.legend(handles=handles, loc="best")
 
 
 def _crossed(panel: Any, x: Any, y: Any, ended: Any) -> None:
