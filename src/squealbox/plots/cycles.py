@@ -7,11 +7,12 @@ import numpy as np
 
 from squealbox.limit_cycles import Branch, Cycle, HopfPoint
 from squealbox.plots.dispatch import plot
-from squealbox.plots.style import drawing, figure_of, line, note, number, panels, quantity_label, scaled
+from squealbox.plots.style import WIDTH, drawing, figure_of, line, note, number, panels, quantity_label, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+BESIDE = 4  # entries; a longer legend stands beside the panel
 # Marks of the special points: shape, and what the legend calls them.
 MARKS = {
     "fold": ("o", "fold"),
@@ -104,9 +105,19 @@ def branch_diagram(
         panel.set(xlabel=name or several[0].parameter, ylabel=quantity_label("amplitude", read), title=title)
         panel.set_ylim(bottom=0.0)
         panel.margins(x=0.05)
-        if panel.get_legend_handles_labels()[1]:
-            panel.legend(loc="best")
+        _legend(panel, alone=axes is None)
         return figure_of(panel)
+
+
+def _legend(panel: Any, alone: bool) -> None:
+    """Within the panel, or beside it where a long one would hide the curves and the figure is ours."""
+    handles, texts = panel.get_legend_handles_labels()
+    if alone and len(texts) > BESIDE:
+        figure = figure_of(panel)
+        figure.set_size_inches(WIDTH, figure.get_size_inches()[1])
+        figure.legend(handles, texts, loc="outside right upper")
+    elif texts:
+        panel.legend(loc="best")
 
 
 def _parts(panel: Any, one: Branch, size: Any, scale: float, colour: str, label: str, shown: set[str]) -> None:

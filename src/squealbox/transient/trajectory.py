@@ -40,6 +40,15 @@ class EnergyAudit:
         worst = float(np.max(np.abs(self.residual), initial=0.0))
         return worst / scale if scale > 0.0 else worst
 
+    def __repr__(self) -> str:
+        if len(self.stored) == 0:
+            return "EnergyAudit of no instants"
+        ends = {"stored": self.stored[-1], "friction": float(np.sum(self.friction[-1])), "load": self.load[-1],
+                "circulation": self.circulation[-1], "opening": self.opening[-1], "impact": self.impact[-1],
+                "dissipated": self.dissipated[-1]}  # fmt: skip
+        said = ", ".join(f"{name} {value:.6g} J" for name, value in ends.items())
+        return f"EnergyAudit at the end: {said}; closes to {self.relative_residual:.1e}"
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Trajectory(Result):
