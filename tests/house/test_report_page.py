@@ -15,6 +15,7 @@ from squealbox.cli import BAD_INPUT, DONE, main
 from squealbox.files import write_design
 from squealbox.report import Examination, ReportError, design_page, examine, report
 from squealbox.signals import dominant_frequency
+from squealbox.studies import sweep
 
 FLAGS = [
     "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
@@ -208,6 +209,20 @@ def test_a_result_and_a_folder_of_results(tmp_path, browser):
         text = reading.page.inner_text("body")
         assert [part for part in parts if part not in text] == []
         reading.page.close()
+
+
+def test_a_study_and_its_folder(tmp_path, browser):
+    axes = {"friction.static": np.linspace(0.1, 0.5, 9), "load": np.linspace(500.0, 2000.0, 5)}
+    sweep(DrumBrake(), axes, complex_modes, keep=["largest_growth_rate", "stable"], out=tmp_path / "study")
+    assert main(["report", str(tmp_path / "study"), "--out", str(tmp_path / "study.html")]) == DONE
+    reading = Opened(browser, tmp_path / "study.html")
+    reading.page.wait_for_load_state()
+    assert reading.errors == []
+    text = reading.page.inner_text("body")
+    assert "45 points, friction.static (9) x load (5): 45 completed" in text
+    assert "completed" in reading.page.locator("td", has_text="how the computation").locator("xpath=..").text_content()
+    assert reading.page.locator("figure img").count() >= 2
+    reading.page.close()
 
 
 @pytest.mark.parametrize(

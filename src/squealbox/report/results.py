@@ -9,14 +9,18 @@ import numpy as np
 from squealbox import plots
 from squealbox.designs import Design
 from squealbox.plots.cards import has_drawing, has_figure, parameter_rows
+from squealbox.plots.sweeps import numeric_answers
 from squealbox.report.blocks import Code, Page, Picture, Points, ReportError, Section, Sound, Table, Text
 from squealbox.report.pictures import picture, wav
 from squealbox.result import Result, provenance
 from squealbox.signals import LEAST, equal_steps
 from squealbox.signals.radiation import AUDIBLE
+from squealbox.studies import Sweep
 from squealbox.transient import Trajectory, verdict
 
 MOST_RESULTS = 40  # of a folder on one page
+MOST_ANSWERS = 6  # of a sweep that are drawn
+MOST_WORDS = 8  # of an array of words that are named
 
 
 def result_page(result: Result, *, title: str = "") -> Page:
@@ -62,7 +66,10 @@ def _about(result: Result) -> Iterator[Any]:
     numbers = tuple((name, f"{value} {unit}".rstrip()) for name, value, unit in plots.facts(result))
     if numbers:
         yield Table(("", "value"), numbers)
-    if has_figure(result):
+    if isinstance(result, Sweep):
+        for name in numeric_answers(result)[:MOST_ANSWERS]:
+            yield picture(plots.plot(result, answer=name), f"{name.replace('_', ' ')}.")
+    elif has_figure(result):
         yield picture(plots.plot(result), f"{type(result).__name__}.")
     if isinstance(result, Trajectory) and len(result.t) >= LEAST:
         yield from _motion(result)
@@ -107,11 +114,13 @@ def result_section(title: str, result: Result, pictures: tuple[Picture, ...] = (
 
 def _array_row(name: Any, about: Any) -> tuple[str, ...]:
     values = about.values
+    shape = " by ".join(f"{size} {dim}" for dim, size in about.sizes.items()) or "one value"
+    said = (str(name), str(about.attrs.get("units", "")), str(about.attrs.get("long_name", "")), shape)
+    if values.dtype.kind not in "biufc":  # words: which there are
+        return *said, ", ".join(sorted({str(word) for word in np.ravel(values)})[:MOST_WORDS]), ""
     finite = np.abs(values) if np.iscomplexobj(values) else np.asarray(values, dtype=float)
     finite = finite[np.isfinite(finite)]
-    least, greatest = (f"{finite.min():.6g}", f"{finite.max():.6g}") if finite.size else ("", "")
-    shape = " by ".join(f"{size} {dim}" for dim, size in about.sizes.items()) or "one value"
-    return str(name), about.attrs["units"], about.attrs["long_name"], shape, least, greatest
+    return *said, *((f"{finite.min():.6g}", f"{finite.max():.6g}") if finite.size else ("", ""))
 
 
 def _facts(kind: str, items: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
