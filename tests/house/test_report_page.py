@@ -221,7 +221,8 @@ def test_a_study_and_its_folder(tmp_path, browser):
     text = reading.page.inner_text("body")
     assert "45 points, friction.static (9) x load (5): 45 completed" in text
     assert "completed" in reading.page.locator("td", has_text="how the computation").locator("xpath=..").text_content()
-    assert reading.page.locator("figure img").count() >= 2
+    assert "mass of the drum" in text
+    assert reading.page.locator("figure img").count() >= 3
     reading.page.close()
 
 

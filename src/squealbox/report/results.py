@@ -27,8 +27,8 @@ def result_page(result: Result, *, title: str = "") -> Page:
     """The page of one result, with the design or system it was computed from where it kept one."""
     kind = type(result).__name__
     sections = [Section(kind, tuple(_about(result)))]
-    design = result.inputs.get("system")
-    if isinstance(design, Design):
+    design = _design_of(result)
+    if design is not None:
         sections.append(Section("The brake", tuple(_design(design))))
     sections.append(Section("Arrays, settings and versions", result_section(kind, result).blocks))
     return Page(title or kind, _ended(result), tuple(sections), _made())
@@ -43,11 +43,18 @@ def folder_page(folder: Path) -> Page:
         raise ReportError(f"{folder}: holds {len(paths)} results, expected at most {MOST_RESULTS} on one page")
     results = [(path, Result.load(path)) for path in paths]
     sections = tuple(Section(f"{type(each).__name__}: {path.name}", tuple(_about(each))) for path, each in results)
-    design = next((each.inputs["system"] for _, each in results if isinstance(each.inputs.get("system"), Design)), None)
+    design = next((kept for _, each in results if (kept := _design_of(each)) is not None), None)
     brake = (Section("The brake", tuple(_design(design))),) if design is not None else ()
     details = tuple(Section(path.name, result_section(path.name, each).blocks, folded=True) for path, each in results)
     last = Section("Arrays, settings and versions", details)
-    return Page(folder.resolve().name, f"{len(results)} results.", (*sections, *brake, last), _made())
+    return Page(
+        folder.resolve().name, f"{len(results)} result{'s' * (len(results) > 1)}.", (*sections, *brake, last), _made()
+    )
+
+
+def _design_of(result: Result) -> Design | None:
+    """The design a result was computed from, where it kept one."""
+    return next((kept for kept in result.inputs.values() if isinstance(kept, Design)), None)
 
 
 def _ended(result: Result) -> str:
