@@ -1,6 +1,7 @@
 """Is steady sliding stable? Depends on: system, continuation, result; numba only when a kernel is needed."""
 
 from squealbox.stability.boundary import Boundary, stability_boundary
+from squealbox.stability.conventions import as_printed_by, eigenvalues_printed_by
 from squealbox.stability.crossings import first_crossings
 from squealbox.stability.eigenvalues import ComplexModes, Mode, complex_modes
 from squealbox.stability.energy import ModeEnergy, mode_energy
@@ -32,12 +33,14 @@ __all__ = [
     "TrackedModes",
     "TrackedPoint",
     "TransientGrowth",
+    "as_printed_by",
     "compiled_eigenvalues",
     "complex_modes",
     "critical_value",
     "critical_values",
     "damping_ratio_from",
     "damping_split",
+    "eigenvalues_printed_by",
     "exceptional_points",
     "finite_spectrum",
     "first_crossings",

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.result import Result, quantity
-from squealbox.stability.eigenvalues import ComplexModes, modes_of
+from squealbox.stability.eigenvalues import MARGINAL, ComplexModes, modes_of
 from squealbox.stability.family import Family, Steady
 
 if TYPE_CHECKING:
@@ -61,8 +61,31 @@ class TrackedModes(Result):
         return np.abs(np.imag(self.eigenvalues)) / (2.0 * np.pi)
 
     def to_dataset(self) -> "xarray.Dataset":
-        """The arrays with the parameter as coordinate."""
-        return super().to_dataset().set_coords("value")
+        """The arrays with the parameter as coordinate, and growth rate and frequency beside the eigenvalues."""
+        rate = (["value", "mode"], self.growth_rate, {"units": "1/s", "long_name": "growth rate"})
+        hertz = (["value", "mode"], self.frequency, {"units": "Hz", "long_name": "frequency"})
+        return super().to_dataset().set_coords("value").assign(growth_rate=rate, frequency=hertz)
+
+    def summary(self) -> str:
+        """Each mode with its frequency and growth rate at both ends, and the values between which it begins to grow."""
+        first, last = float(self.value[0]), float(self.value[-1])
+        half = self.eigenvalues.shape[-1] // 2
+        rows = [f"{half} modes along {self.parameter} = {first:.6g} to {last:.6g}, {len(self.value)} values"]
+        growing = self.growth_rate > MARGINAL * np.max(np.abs(self.eigenvalues), axis=-1, keepdims=True)
+        for i in range(half):
+            hertz, rate = self.frequency[:, i], self.growth_rate[:, i]
+            text = f"  mode {i + 1}: {hertz[0]:.6g} to {hertz[-1]:.6g} Hz, {rate[0]:+.6g} to {rate[-1]:+.6g} 1/s"
+            starts = np.nonzero(growing[1:, i] & ~growing[:-1, i])[0]
+            spans = [f"{self.value[k]:.6g} and {self.value[k + 1]:.6g}" for k in starts]
+            text += ", grows everywhere" if np.all(growing[:, i]) else ""
+            rows.append(text + (f", begins to grow between {'; '.join(spans)}" if spans else ""))
+        unclear = ", ".join(f"{value:.6g}" for value in self.value[~np.asarray(self.clear, dtype=bool)])
+        return "\n".join(
+            rows + [f"  modes merge, pairing decided by the nearest eigenvalue: at {unclear}"] * bool(unclear)
+        )
+
+    def __repr__(self) -> str:
+        return self.summary()
 
 
 def track(design: Any, parameter: str, values: Any, *, time: float = 0.0) -> Iterator[TrackedPoint]:
