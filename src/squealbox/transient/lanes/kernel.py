@@ -14,7 +14,7 @@ HEAD = """
 from collections import namedtuple
 
 from squealbox.transient.lanes.vectors import (
-    arctan, bits, cos, exp, load, log, maximum, minimum, rough_power, sin, sqrt, store, take, where,
+    arctan, bits, cos, exp, forget, load, log, maximum, minimum, rough_power, sin, sqrt, store, take, where,
 )
 
 Motion = namedtuple("Motion", "t, q, qd, qdd")

@@ -43,6 +43,11 @@ class Step(EventText):
             self.put(f"{local} = load(A, b + {self.rows.places[name] * LANES})")
         return local
 
+    def forget(self) -> None:
+        """Rows are read again after this point."""
+        self.put("forget()")
+        self.loaded.clear()
+
     def keep(self, name: str, value: str) -> None:
         """Write a row."""
         self.put(f"store(A, b + {self.rows.places[name] * LANES}, {value})")
@@ -157,6 +162,7 @@ class Step(EventText):
         contact: list[dict[str, list[str]]] = []
         for stage in range(1, rule.stages + 1):
             weights = rule.b if stage == rule.stages else rule.a[stage, :stage]
+            self.forget()
             qs = [self.combined(f"q{i}s{stage}", q[i], weights, vs, i) for i in range(n)]
             us = [self.combined(f"v{i}s{stage}", v[i], weights, as_, i) for i in range(n)]
             time = "t_ + hh" if stage == rule.stages else f"t_ + {rule.c[stage]!r} * hh"
@@ -165,12 +171,14 @@ class Step(EventText):
             as_.append(contact[-1]["a"])
         q1, v1, a1 = qs, us, as_[-1]
         self.end = contact[-1]
+        self.forget()
         self.error(q, v, q1, v1, vs, as_)
         self.put("fine = square <= 1.0")
         if shape.exact:
             self.events(contact, v, a, q1, v1, a1)
         else:
             self.put("accepted = fine")
+        self.forget()
         self.control()
         self.put("t1 = where(last, t_end_, t_ + hh)")
         self.observe(contact, (q, v, a), (q1, v1, a1))

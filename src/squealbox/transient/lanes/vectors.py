@@ -212,6 +212,17 @@ def store(typing: Any, array: Any, offset: Any, value: Any) -> Any:
 
 
 @intrinsic
+def forget(typing: Any) -> Any:
+    """Let rows be read again after this point: a load folds into an operation, a spilled register does not."""
+
+    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        builder.asm(ir.FunctionType(ir.VoidType(), []), "", "~{memory}", [], True)
+        return context.get_dummy_value()
+
+    return types.void(), generate
+
+
+@intrinsic
 def where(typing: Any, truth: Any, yes: Any, no: Any) -> Any:
     """`yes` in the lanes where it is true, else `no`; as `numpy.where`."""
 
