@@ -32,6 +32,13 @@ def test_exact_lanes_agree_with_single_runs(reading):
         assert many["energy"][k] == pytest.approx(one.work_friction[-1], rel=1e-5)
 
 
+def test_an_event_takes_few_trials():
+    """A rejected step, the first aim, one or two better ones: not the bisection that an unknown slope invites."""
+    many = simulate_ensemble(drum(), {"friction.static": [0.43, 0.44]}, 0.02, observe=OBSERVE, rtol=1e-9)
+    assert np.all(many.events > 100)
+    assert np.sum(many.tried - many.steps) < 6 * np.sum(many.events)
+
+
 def test_another_friction_is_not_the_same_answer():
     many = simulate_ensemble(drum(), {"friction.static": [0.37, 0.38]}, 0.02, observe=OBSERVE, rtol=1e-9)
     assert distance(many.q[0], many.q[1], np.max(np.abs(many.q))) > 1e-3
