@@ -216,7 +216,9 @@ def operations(shape):
     for text in (*formulas(shape), Step(shape).text()):
         function = ast.parse(text).body[0]
         nodes = list(ast.walk(function))
-        own = sum(isinstance(n, ast.BinOp) and isinstance(n.op, (ast.Add, ast.Sub, ast.Mult, ast.Div)) for n in nodes)
+        kinds = (ast.Add, ast.Sub, ast.Mult, ast.Div)
+        sums = [n for n in nodes if isinstance(n, ast.BinOp) and isinstance(n.op, kinds)]
+        own = sum(not (isinstance(n.left, ast.Name) and n.left.id == "b") for n in sums)  # b + place is an address
         called = [n.func.id for n in nodes if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)]
         counts[function.name] = own + sum(counts.get(name, 0) for name in called)
     return counts["step"]
