@@ -73,7 +73,7 @@ def transients(folder, count):
     drum = DrumBrake()
     space = grid({"friction.static": np.linspace(0.1, 0.4, count // 100), "load": np.linspace(1e3, 2e3, 100)})
     ask = functools.partial(simulate_ensemble, duration=0.02, observe=("amplitude", "frequency"))
-    ask(drum.replace({"load": np.array([1e3, 2e3])}))  # compiles
+    sweep(drum, {"load": [1e3, 2e3]}, ask, out=folder / "warm_motions")  # compiles, loads xarray and HDF5
 
     def bare():
         for start in range(0, count, BATCH):
