@@ -17,12 +17,14 @@ import numpy as np
 from squealbox.limit_cycles.cycle import Cycle, extremes, ordered
 from squealbox.limit_cycles.field import Field
 from squealbox.limit_cycles.starting import first_guess
-from squealbox.limit_cycles.variation import Flight, flight, fly
+from squealbox.limit_cycles.variation import Flight, flight, fly, quick_flight
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import as_system
 
 CONTACTS = {"exact": "exact", "smooth": "arctan", "arctan": "arctan", "tanh": "tanh"}
+TURNS = (1, 2, 4)  # past a doubling, a run settles on the cycle that closes after two turns, past the next after four
+COARSE = 1e-5  # residual above which a derivative to 1e-8 is as good as the exact one
 ADVICE = "give a start nearer to the cycle, a longer `settle`, or more `shots`"
 
 
@@ -45,8 +47,9 @@ def shooting(
     ----------
     design_or_system : a design or a `System`, with constant loads and speeds
     start : None (the most unstable mode, else rest), a `Mode`, (q, qd) or a `Trajectory`, from which a run of `settle`
-        seconds leads to the cycle; (q, qd, period) or a `Cycle`, taken as they are (this is how an unstable cycle is
-        found)
+        seconds leads to the cycle (past a period doubling to the stable one of two or four turns, where Newton's
+        method finds it; else to the unstable one); (q, qd, period) or a `Cycle`, taken as they are (this is how an
+        unstable cycle is found)
     contact, width : "exact", or "smooth" = "arctan", "tanh" with `width` [m/s]
     shots : 1 for single shooting, more where the cycle is strongly unstable
     settle : [s] of the run before; None takes 300 periods of the slowest mode
@@ -76,11 +79,25 @@ def shooting(
     settings = {"contact": contact, "width": width, "shots": shots, "rtol": rtol, "tolerance": tolerance}
     if not found.ok:
         return cycle_through(field, x, period, np.full((x.size, x.size), np.nan), found, settings, samples, np.nan)
-    newton = Newton(field, _nodes(field, x, period, int(shots), rtol), period, rtol)
-    outcome = newton.solve(tolerance, most_steps)
-    error = newton.history[-1] if newton.history else np.inf
-    return cycle_through(field, newton.nodes[0], newton.period, newton.monodromy, outcome, settings, samples, error,
-                  newton.flights)  # fmt: skip
+    known = isinstance(start, Cycle) or (isinstance(start, (tuple, list)) and len(start) == 3)
+    first = cycle = None
+    for turns in (1,) if known else TURNS:
+        turned = turns * (period if first is None else float(first.period))
+        newton = Newton(field, _nodes(field, x, turned, int(shots), rtol), turned, rtol)
+        outcome = newton.solve(tolerance, most_steps)
+        error = newton.history[-1] if newton.history else np.inf
+        cycle = cycle_through(field, newton.nodes[0], newton.period, newton.monodromy, outcome, settings, samples, error,
+                              newton.flights)  # fmt: skip
+        first = first or cycle
+        if not cycle.outcome.ok or not _flips(cycle):
+            break
+    return cycle if cycle is not None and cycle.stable else first
+
+
+def _flips(cycle: Cycle) -> bool:
+    """Whether what leaves the cycle changes sides from turn to turn: a real multiplier below -1."""
+    flipping = (np.abs(cycle.multipliers.imag) < 1e-9) & (cycle.multipliers.real < -1.0)
+    return bool(np.any(flipping)) and not cycle.stable
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +115,7 @@ class Newton:
     def __init__(self, field: Field, nodes: Any, period: float, rtol: float) -> None:
         self.field, self.nodes, self.period, self.rtol = field, nodes, period, rtol
         self.reference = nodes[0].copy()
+        self.coarse = field.contact == "exact"  # the derivative to 1e-8, far from the cycle
         self.history: list[float] = []
         self.flights: list[Flight] = []
         self.monodromy = np.full((nodes.shape[1],) * 2, np.nan)
@@ -111,11 +129,18 @@ class Newton:
         normal = self._phase(heading)
         for _ in range(most):
             self.history.append(now.norm)
+            if self.coarse and now.norm < COARSE:
+                self.coarse, now = False, self._shoot(self.nodes, self.period)
             step = self._step(now, normal)
             following = self._damped(now, step, most_halvings=0 if now.norm < tolerance else 6)
-            if following is None:
+            if following is None and not self.coarse:
                 break
-            now, self.nodes, self.period = following
+            if following is None:
+                self.coarse, now = False, self._shoot(self.nodes, self.period)
+            else:
+                now, self.nodes, self.period = following
+        if self.coarse:
+            self.coarse, now = False, self._shoot(self.nodes, self.period)
         self.flights = now.flights
         self.monodromy = _product([f.phi for f in now.flights])
         if now.norm > tolerance or not np.isfinite(now.norm):
@@ -126,7 +151,8 @@ class Newton:
     def _shoot(self, nodes: Any, period: float) -> _Shots:
         flights = []
         for node in nodes:
-            flights.append(flight(self.field, node, period / len(nodes), self.rtol))
+            fly_to = quick_flight if self.coarse else flight
+            flights.append(fly_to(self.field, node, period / len(nodes), self.rtol))
             if not flights[-1].outcome.ok:
                 return _Shots(None, np.inf, flights)
         ends = np.array([f.x for f in flights])
