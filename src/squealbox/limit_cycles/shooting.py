@@ -80,18 +80,19 @@ def shooting(
     if not found.ok:
         return cycle_through(field, x, period, np.full((x.size, x.size), np.nan), found, settings, samples, np.nan)
     known = isinstance(start, Cycle) or (isinstance(start, (tuple, list)) and len(start) == 3)
-    first = cycle = None
+    first: Any = None
     for turns in (1,) if known else TURNS:
         turned = turns * (period if first is None else float(first.period))
         newton = Newton(field, _nodes(field, x, turned, int(shots), rtol), turned, rtol)
         outcome = newton.solve(tolerance, most_steps)
         error = newton.history[-1] if newton.history else np.inf
-        cycle = cycle_through(field, newton.nodes[0], newton.period, newton.monodromy, outcome, settings, samples, error,
-                              newton.flights)  # fmt: skip
-        first = first or cycle
+        cycle = cycle_through(
+            field, newton.nodes[0], newton.period, newton.monodromy, outcome, settings, samples, error, newton.flights
+        )
+        first = cycle if first is None else first
         if not cycle.outcome.ok or not _flips(cycle):
             break
-    return cycle if cycle is not None and cycle.stable else first
+    return cycle if cycle.stable else first
 
 
 def _flips(cycle: Cycle) -> bool:
