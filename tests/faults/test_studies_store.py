@@ -2,9 +2,12 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
 import textwrap
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -241,13 +244,19 @@ def test_a_full_disk_is_said_and_the_store_stays_valid(tmp_path, whole, limit, b
     assert (folder / "sweep.nc").read_bytes() == whole
 
 
-def test_a_folder_that_may_not_be_written_is_said(tmp_path, folder, whole):
-    before = contents(folder)
+@pytest.fixture
+def reachable(folder):
+    """The study's folder in a place that another user may pass through, unlike pytest's own."""
+    with tempfile.TemporaryDirectory() as place:
+        os.chmod(place, 0o755)
+        yield Path(shutil.copytree(folder, Path(place) / "study"))
+
+
+def test_a_folder_that_may_not_be_written_is_said(reachable, whole):
+    folder, before = reachable, contents(reachable)
     tests = os.path.dirname(os.path.dirname(__file__))
     for path in [folder, *folder.rglob("*")]:
         path.chmod(0o555 if path.is_dir() else 0o444)
-    for path in [tmp_path, *tmp_path.parents][:3]:
-        path.chmod(0o755)
     code = f"""
         import os, sys
         sys.path.insert(0, {tests!r})
