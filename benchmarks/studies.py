@@ -21,10 +21,13 @@ import tempfile
 import time
 from pathlib import Path
 
-import numpy as np
+for _name in ("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE"):  # they slow NumPy, and are read when it is loaded
+    os.environ.pop(_name, None)
 
-from squealbox import DrumBrake, complex_modes, simulate_ensemble
-from squealbox.studies import grid, sweep
+import numpy as np  # noqa: E402
+
+from squealbox import DrumBrake, complex_modes, simulate_ensemble  # noqa: E402
+from squealbox.studies import grid, sweep  # noqa: E402
 
 BATCH = 16_384
 MEMORY = """
@@ -136,8 +139,6 @@ def main():
     parser.add_argument("--quick", action="store_true", help="a tenth of the points")
     parser.add_argument("--only", choices=("stability", "transients", "memory", "cluster"))
     asked = parser.parse_args()
-    for name in ("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE"):
-        os.environ.pop(name, None)
     share = 10 if asked.quick else 1
     folder = Path(tempfile.mkdtemp(prefix="squealbox-studies-"))
     try:

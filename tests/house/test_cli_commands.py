@@ -21,19 +21,6 @@ def brake(tmp_path, capsys):
 
 
 @pytest.fixture
-def said(capsys):
-    """Run the words of a command; gives exit code, stdout and stderr."""
-
-    def run(*words):
-        code = main([str(word) for word in words])
-        out, err = capsys.readouterr()
-        assert "Traceback" not in err
-        return code, out, err
-
-    return run
-
-
-@pytest.fixture
 def undrawn(monkeypatch):
     """No figures, for tests of something else."""
     monkeypatch.setattr("squealbox.plots.save", lambda figure, path: [])

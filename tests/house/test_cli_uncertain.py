@@ -2,28 +2,12 @@
 
 import csv
 
-import pytest
-
 from house.rooms import PROJECT
-from squealbox.cli import main
 from squealbox.files import read_file
 from squealbox.result import Result
 from squealbox.studies import squeal_probability
 
 EXAMPLE = PROJECT / "examples" / "scatter.toml"
-
-
-@pytest.fixture
-def said(capsys):
-    """Run the words of a command; gives exit code, stdout and stderr."""
-
-    def run(*words):
-        code = main([str(word) for word in words])
-        out, err = capsys.readouterr()
-        assert "Traceback" not in err
-        return code, out, err
-
-    return run
 
 
 def rows(path):

@@ -39,7 +39,7 @@ def run(
     Parameters
     ----------
     file
-        study file: a brake and a section [study]; squealbox init writes a first one
+        study file: a brake and a section [study]; examples/study.toml is one to start from
     out
         folder of the study; what was finished there is kept
     workers

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.files.analyses import scalar_parameters
+from squealbox.files.analyses import read_ends, scalar_parameters
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
@@ -18,7 +18,6 @@ from squealbox.studies.space import POINT, Axis, sobol_sequence
 EXAMPLE = "parameter = 'friction.static', range = [0.2, 0.5], points = 61"
 MOST = 10**8
 SPACINGS = {"linear": np.linspace, "log": np.geomspace}
-COUNT = Parameter("-", 2, MOST, meaning="number of values")
 
 
 def read_axes(document: Document, given: Any, design: Design | None, seed: int) -> Space | None:
@@ -117,19 +116,11 @@ def _range(document: Document, table: Mapping[str, Any], about: Parameter | Choi
 
 
 def _ends(document: Document, table: Mapping[str, Any], about: Parameter, key: Key) -> tuple[float, float] | None:
-    given = table.get("range")
-    if not isinstance(given, list) or len(given) != 2:
-        wrong(document, (*key, "range"), given, "two values such as [0, 1]") if "range" in table else document.problem(
-            key, "the key 'range' or 'values' is missing, expected two values such as [0, 1], or a list of values"
-        )
+    if "range" not in table:
+        said = "the key 'range' or 'values' is missing, expected two values such as [0, 1], or a list of values"
+        document.problem(key, said)
         return None
-    low, high = (read_number(document, end, about, (*key, "range", i)) for i, end in enumerate(given))
-    if low is WRONG or high is WRONG:
-        return None
-    if not low < high:
-        wrong(document, (*key, "range"), given, "the lower value first and the higher one second")
-        return None
-    return low, high
+    return read_ends(document, table["range"], about, (*key, "range"))
 
 
 def _sample(document: Document, table: Mapping[str, Any], key: Key, design: Design | None, seed: int) -> Space | None:

@@ -9,7 +9,7 @@ from squealbox.signals.radiation import AREA, AUDIBLE
 from squealbox.signals.wav import SAMPLING
 from squealbox.transient import simulate
 from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.motion import STARTS, _beginning
+from squealbox.workbench.panels.motion import STARTS, beginning_of
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
 
 SECONDS = 1.5
@@ -26,7 +26,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     if dof >= system.size:
         raise OptionError(f"dof: expected 0 to {system.size - 1}")
     work.progress(0.0, "following the motion")
-    beginning = _beginning(design, start, options.number("push", 0.05, 0.0, 10.0))
+    beginning = beginning_of(design, start, options.number("push", 0.05, 0.0, 10.0))
     motion = simulate(system, SECONDS, start=beginning, times=int(SECONDS * RATE) + 1)
     work.progress(0.8, "listening")
     data = {"names": list(system.names), "dof": dof, "rate": SAMPLING, "outcome": str(motion.outcome)}

@@ -30,7 +30,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     if dof >= system.size:
         raise OptionError(f"dof: expected 0 to {system.size - 1}")
     work.progress(0.0, "following the motion")
-    beginning = _beginning(design, start, options.number("push", 0.05, 0.0, 10.0))
+    beginning = beginning_of(design, start, options.number("push", 0.05, 0.0, 10.0))
     motion = simulate(system, duration, start=beginning, times=SAMPLES, contact=contact)
     work.progress(0.6, "spectrum")
     data = {
@@ -58,7 +58,7 @@ def usual_duration(design: Design) -> float:
     return PERIODS / chosen if chosen > 0.0 else 1.0
 
 
-def _beginning(design: Design, start: str, push: float) -> Any:
+def beginning_of(design: Design, start: str, push: float) -> Any:
     """Steady sliding with a push along the mode that grows first, or one of the starts `simulate` knows.
 
     The push is a share of the static deflection, so that it is large for no brake and small for none.
