@@ -38,6 +38,7 @@ COMMANDS = {
     "listen": Command("listening", "listen", "the motion as sound at its true frequency (WAV), and how loud it may be"),
     "lab": Command("lab", "lab", "the workbench: a page in the browser where a brake is explored live"),
     "branch": Command("branches", "branch", "limit cycles over a range of a parameter: stable, unstable, folds, onset"),
+    "diagram": Command("diagrams", "diagram", "what transients settle to over a parameter, with a Poincare section"),
     "run": Command("studies", "run", "a study: any analysis over a space of parameters; stopped or killed, it goes on"),
     "status": Command("studies", "status", "how far a study is, and what it said last"),
     "show": Command("studies", "show", "what a study has found, also while it runs: table and figure"),

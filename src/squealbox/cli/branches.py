@@ -64,7 +64,7 @@ def branch(
     if out is not None:
         folder(out)
     with Progress("looking for the onset") as progress:
-        born, several = _all(found.design, varied, start, runs, at, progress)
+        born, several = all_branches(found.design, varied, start, runs, at, progress)
     if not several:
         raise ComputationFailed(Outcome("no_cycle", "no cycle was found in the range: try more runs, or another range"))
     print(f"{found.design.title}, {file}")
@@ -81,19 +81,19 @@ def branch(
         print(written(*_files(several, born, found.design, varied, found.path.name, out)))
 
 
-def _all(
-    design: "Design", varied: "Axis", start: Start, runs: int, at: int, progress: Progress
+def all_branches(
+    design: "Design", varied: "Axis", start: Start = "all", runs: int = 8, at: int = 3, progress: Progress | None = None
 ) -> tuple[HopfPoint, tuple[Branch, ...]]:
     """The Hopf point, the branch from it and those that runs lead to."""
-    bounds, points = (varied.low, varied.high), int(varied.points)
+    bounds, points, say = (varied.low, varied.high), int(varied.points), progress or (lambda text: None)
     several: tuple[Branch, ...] = ()
     born = hopf_point(design, varied.name, bounds)
     if born.outcome.ok and start != "runs":
-        progress("following the branch from the Hopf point")
+        say("following the branch from the Hopf point")
         first = followed(design, varied.name, bounds, born, method="shooting", points=points)
         several = (first,) if len(first.value) else ()
     if start != "hopf":
-        progress("runs, and the branches they lead to")
+        say("runs, and the branches they lead to")
         several += isolated_branches(design, varied.name, bounds, values=at, starts=runs, known=several, points=points)
     return born, several
 

@@ -1,33 +1,52 @@
 """`squealbox cycle`: what the motion settles to."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from squealbox.cli.inputs import Changes, folder, read
-from squealbox.cli.running import ComputationFailed
+from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import written
-from squealbox.limit_cycles import shooting
+from squealbox.limit_cycles import Cycle, lyapunov_exponents, shooting
+from squealbox.limit_cycles.exponents import LOST
+from squealbox.stability import complex_modes
+from squealbox.transient import simulate
+
+if TYPE_CHECKING:
+    from squealbox.designs import Design
+
+SETTLE = 300.0  # periods of the slowest mode
+ALIGNED = 50  # periods run before exponents are counted
 
 
-def cycle(file: Path, *, changes: Changes = (), out: Path | None = None) -> None:
+def cycle(file: Path, *, exponents: int = 0, changes: Changes = (), out: Path | None = None) -> None:
     """What does the motion settle to? The limit cycle, with stick and slip, and its Floquet multipliers.
 
     Parameters
     ----------
     file
         design file; squealbox init writes a first one
+    exponents
+        number of periods over which Lyapunov exponents are computed as well, such as 50; where no cycle is found, of
+        the motion from rest after 300 periods of the slowest mode
     changes
         other values for this run: --set friction.static=0.45
     out
         folder for cycle.nc, cycle.png and cycle.svg
     """
+    if exponents < 0:
+        raise UsageError(f"--exponents {exponents}: expected a number of periods")
     found = read(file, changes)
     result = shooting(found.design)
     if not result.outcome.ok:
+        if exponents:
+            print(f"{found.design.title}, {file}\n{_of_the_motion(found.design, exponents)}")
         raise ComputationFailed(result.outcome)
     print(f"{found.design.title}, {file}\n{result.summary()}")
     print("Floquet multipliers: " + ", ".join(f"{value:.6g}" for value in np.abs(result.multipliers)) + " (absolute)")
+    if exponents:
+        print(_beside_multipliers(result, exponents))
     if result.caution:
         print(f"Note: {result.caution}")
     if out is not None:
@@ -35,3 +54,30 @@ def cycle(file: Path, *, changes: Changes = (), out: Path | None = None) -> None
 
         folder(out)
         print(written(result.save(out / "cycle.nc"), *plots.save(plots.plot(result), out / "cycle")))
+
+
+def _beside_multipliers(cycle: Cycle, periods: int) -> str:
+    """Lyapunov exponents of the motion on a cycle, and what its multipliers say they are: log|m|/T."""
+    found = lyapunov_exponents(cycle.system, cycle.start, float(cycle.period), periods, aligned=ALIGNED)
+    sizes = np.abs(cycle.multipliers)
+    with np.errstate(divide="ignore"):
+        expected = np.sort(np.log(np.where(sizes > LOST, sizes, 0.0)) / float(cycle.period))[::-1]
+    return (f"Lyapunov exponents over {periods} periods: {_listed(found)} 1/s\n"
+            f"  by the multipliers, log|m|/T: {_listed(expected)} 1/s")  # fmt: skip
+
+
+def _of_the_motion(design: "Design", periods: int) -> str:
+    """Lyapunov exponents of where the motion from rest has come to, over periods of the slowest mode."""
+    rates = complex_modes(design).angular_frequency
+    slow = 2.0 * np.pi / float(np.min(rates[rates > 0.0]))
+    motion = simulate(design, SETTLE * slow)
+    found = lyapunov_exponents(design, (motion.q[-1], motion.qd[-1]), slow, periods, aligned=ALIGNED)
+    if np.isnan(found[0]):
+        return "Lyapunov exponents: the motion from rest does not go on"
+    error = 3.0 / (periods * slow)
+    kind = "more than 0: the motion is chaotic" if found[0] > error else "not above 0 by more than it is uncertain"
+    return f"Lyapunov exponents over {periods} periods of {slow:.4g} s: {_listed(found)} 1/s; the largest is {kind}"
+
+
+def _listed(values: Any) -> str:
+    return ", ".join(f"{value:.5g}" for value in values)

@@ -60,7 +60,7 @@ def axis(design: Design, given: Axis | None, name: str | None, ends: tuple[str, 
         return given
     label = f"{option.word} {' '.join(ends)[:60]}"
     about = _quantity(design, name, option.word)
-    low, high = (_number(end, about.unit, label) for end in ends)
+    low, high = (number(end, about.unit, label) for end in ends)
     if not about.accepts(np.array([low, high])):
         raise UsageError(f"{label}: expected finite numbers in {about.range}")
     if not low < high:
@@ -86,7 +86,7 @@ def readable(design: Design, varied: Axis, values: Any) -> tuple[Any, str]:
 
 def time_of(option: str, text: str) -> float:
     """A time [s] from the command line."""
-    return _number(text, "s", f"{option} {text[:60]}")
+    return number(text, "s", f"{option} {text[:60]}")
 
 
 def folder(path: Path) -> Path:
@@ -101,7 +101,7 @@ def _changed(design: Design, name: str, text: str, change: str) -> Design:
         if name in design.choices():
             return design.replace({name: text})
         about = _quantity(design, name, label)
-        return design.replace({name: _number(text, about.unit, label)})
+        return design.replace({name: number(text, about.unit, label)})
     except ParameterError as error:
         raise UsageError(f"{label}: {error.expectation}") from error
 
@@ -113,7 +113,8 @@ def _quantity(design: Design, name: str, label: str) -> Parameter:
         raise UsageError(f"{label}: unknown parameter, {error.expectation}") from error
 
 
-def _number(text: str, unit: str, label: str) -> float:
+def number(text: str, unit: str, label: str) -> float:
+    """A number with or without a unit, in SI; `label` is what an error calls it."""
     try:
         return in_si(text, unit)
     except UnitError as error:

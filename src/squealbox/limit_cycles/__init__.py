@@ -11,13 +11,14 @@ from squealbox.limit_cycles.curves import PointCurve, hopf_curve
 from squealbox.limit_cycles.cycle import Cycle
 from squealbox.limit_cycles.diagrams import BifurcationDiagram, bifurcation_diagram
 from squealbox.limit_cycles.estimates import averaged_curve, averaged_limit, averaged_swings, describing_function
+from squealbox.limit_cycles.exponents import lyapunov_exponents
 from squealbox.limit_cycles.harmonic_balance import harmonic_balance
 from squealbox.limit_cycles.hopf import HopfPoint, hopf_point
 from squealbox.limit_cycles.isolated import isolated_branches, settled_cycles
 from squealbox.limit_cycles.joined import joined
 from squealbox.limit_cycles.point_curves import point_curve
 from squealbox.limit_cycles.pushes import DangerousPush, dangerous_push, push_along
-from squealbox.limit_cycles.sections import lyapunov_exponents, maxima, poincare_section
+from squealbox.limit_cycles.sections import Section, maxima, poincare_section
 from squealbox.limit_cycles.shooting import shooting
 from squealbox.limit_cycles.special_points import BranchPoint
 from squealbox.limit_cycles.stick_slip_limit import return_gap, stick_slip_limit
@@ -33,6 +34,7 @@ __all__ = [
     "DangerousPush",
     "HopfPoint",
     "PointCurve",
+    "Section",
     "averaged_curve",
     "averaged_limit",
     "averaged_swings",

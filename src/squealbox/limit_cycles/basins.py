@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.limit_cycles.attractors import IRREGULAR, NO_END, UNSTABLE, VIBRATION, Attractor, attractors
+from squealbox.limit_cycles.sections import state_names
 from squealbox.limit_cycles.settling import LOOSE, RESTS, TIGHT, Batch, Scales, settle, settle_on
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome, Result, quantity
@@ -156,11 +157,6 @@ def interval(count: int, total: int) -> tuple[float, Any]:
 
     span = binomtest(count, total).proportion_ci(CONFIDENCE, method="wilson")
     return count / total, np.array([span.low, span.high])
-
-
-def state_names(system: System) -> list[str]:
-    """Names of the states: the degrees of freedom, then their velocities with a prime."""
-    return [*system.names, *(f"{name}'" for name in system.names)]
 
 
 def place(names: Sequence[str], given: Any) -> int:

@@ -19,7 +19,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.limit_cycles.attractors import Attractor, attractors
-from squealbox.limit_cycles.basins import interval, state_names
+from squealbox.limit_cycles.basins import interval
+from squealbox.limit_cycles.sections import state_names
 from squealbox.limit_cycles.settling import RESTS, Batch, Scales, settle
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Outcome, Result, quantity

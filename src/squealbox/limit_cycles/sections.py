@@ -1,23 +1,23 @@
-"""Poincare sections and Lyapunov exponents of motions with stick and slip.
+"""Poincare sections: where a motion passes a plane of the state space, and what is read there.
 
-A section is a plane of the state space, or the plane where the velocity of one degree of freedom falls through zero,
-that is at its maxima. The Lyapunov exponents come from the derivative of the flow, saltation matrices included,
-re-orthonormalised by QR: sum log|R_ii| / time. A sticking phase forgets a direction; its exponent is minus infinity.
-Sources: Benettin, Galgani, Giorgilli and Strelcyn 1980, Meccanica 15, 9-30; Mueller 1995, Chaos, Solitons and
-Fractals 5, 1671-1681 (jumps at events).
+A plane is normal.(q, q') = offset. The maxima of a degree of freedom lie in the plane where its velocity falls through
+zero. A plane on which a motion stays for a while, as on v = 0 while a contact sticks, is passed where it is reached.
+Source: Parker and Chua 1989, Practical Numerical Algorithms for Chaotic Systems, Ch. 2 (its method, on the Hermite
+cubic of each interval of output).
 """
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.field import Field
-from squealbox.limit_cycles.variation import quick_flight
-from squealbox.parameters import ParameterError
-from squealbox.system import as_system
+from squealbox.parameters import ParameterError, known_names
+from squealbox.schedules import value_at
+from squealbox.system import System
 from squealbox.transient import Trajectory
 
-LOST = 1e-13  # growth over a span below which a direction is forgotten
+ON = 1e-9  # of the largest distance from a plane: nearer is on it
+BISECTIONS = 50
 
 
 def maxima(motion: Trajectory, dof: int = 0) -> tuple[Any, Any]:
@@ -42,12 +42,12 @@ def poincare_section(motion: Trajectory, normal: Any, offset: float = 0.0, *, di
 
     Parameters
     ----------
-    motion : with enough instants of output: error of order 4 in their distance in q, of order 3 in q'
+    motion : with enough instants of output: error of order 4 in their distance in q, of order 3 in q'; of order 2
+        where an event lies between two of them
     normal : (2n,), weights of displacements and velocities; offset : where the plane lies, in the unit of the product
     direction : +1 only where the product rises through offset, -1 only where it falls, 0 both
 
-    Raises `ParameterError` for a normal of another length, or zero. Source: Parker and Chua 1989, Practical Numerical
-    Algorithms for Chaotic Systems, Ch. 2 (its method, on the Hermite cubic of each interval of output).
+    Raises `ParameterError` for a normal of another length, or zero. Source: as this module.
 
     >>> from squealbox import DrumBrake, simulate
     >>> motion = simulate(DrumBrake(), 1e-3, times=2001)
@@ -59,72 +59,103 @@ def poincare_section(motion: Trajectory, normal: Any, offset: float = 0.0, *, di
     weights = np.asarray(normal, dtype=float)
     if weights.shape != (2 * n,) or not np.all(np.isfinite(weights)) or not np.any(weights):
         raise ParameterError("poincare_section", "normal", normal, f"{2 * n} finite weights, not all zero")
-    beside = np.hstack([motion.q, motion.qd]) @ weights - offset
-    rises, falls = (beside[:-1] < 0.0) & (beside[1:] >= 0.0), (beside[:-1] > 0.0) & (beside[1:] <= 0.0)
-    i = np.flatnonzero({1: rises, -1: falls}.get(int(direction), rises | falls))
-    low, high = np.zeros(len(i)), np.ones(len(i))
-    for _ in range(60):  # bisection, of all crossings at once
+    _, instants, states = passages(motion.t, motion.q[None], motion.qd[None], weights[None], [offset], direction)
+    return instants, states
+
+
+def passages(t: Any, q: Any, qd: Any, normal: Any, offset: Any, direction: int) -> tuple[Any, Any, Any]:
+    """(index of the motion, instant, state) of each passage in order, of q, qd (m, k, n) through normal (m, 2n)."""
+    states, offset = np.concatenate([q, qd], axis=-1), np.asarray(offset, dtype=float)
+    beside = np.einsum("mki,mi->mk", states, normal) - offset[:, None]
+    on = ON * np.max(np.abs(beside), axis=1, keepdims=True, initial=0.0)
+    before, after = beside[:, :-1], beside[:, 1:]
+    falls, rises = (before > on) & (after <= on), (before < -on) & (after >= -on)
+    which, i = np.nonzero({1: rises, -1: falls}.get(int(direction), rises | falls))
+    side, near, weights = np.sign(beside[which, i]), on[which, 0], normal[which]
+    landed = (np.abs(beside[which, i + 1]) <= near) & (i > 0)  # an event on the plane: from before it, extrapolated
+    first = i - landed
+    ends, h = (states[which, first], states[which, first + 1]), t[first + 1] - t[first]
+    low, high = 1.0 * landed, 1.0 + landed
+    for _ in range(BISECTIONS):  # of all passages at once
         middle = 0.5 * (low + high)
-        before = (_between(motion, i, middle) @ weights - offset) * np.sign(beside[i]) > 0.0
-        low, high = np.where(before, middle, low), np.where(before, high, middle)
-    share = 0.5 * (low + high)
-    return motion.t[i] + share * (motion.t[i + 1] - motion.t[i]), _between(motion, i, share)
+        early = side * (np.sum(_between(ends, h, middle) * weights, axis=1) - offset[which]) > near
+        low, high = np.where(early, middle, low), np.where(early, high, middle)
+    return which, t[first] + high * h, _between(ends, h, high)
 
 
-def _between(motion: Trajectory, i: Any, share: Any) -> Any:
-    """States (k, 2n) at shares of the intervals i: the Hermite cubic of q, and its derivative."""
-    s, h = share[:, None], (motion.t[i + 1] - motion.t[i])[:, None]
-    q, v, rise = motion.q[i], h * motion.qd[i], motion.q[i + 1] - motion.q[i]
-    w = h * motion.qd[i + 1]
+def _between(ends: tuple[Any, Any], h: Any, share: Any) -> Any:
+    """States (k, 2n) at shares of intervals h between two states: the Hermite cubic of q, and its derivative."""
+    (first, last), n, s, h = ends, ends[0].shape[1] // 2, share[:, None], h[:, None]
+    q, v, rise, w = first[:, :n], h * first[:, n:], last[:, :n] - first[:, :n], h * last[:, n:]
     b, a = 3.0 * rise - 2.0 * v - w, v + w - 2.0 * rise
     return np.hstack([q + s * (v + s * (b + s * a)), (v + s * (2.0 * b + s * 3.0 * a)) / h])
 
 
-def lyapunov_exponents(
-    design_or_system: Any, start: Any, span: float, spans: int, *, rtol: float = 1e-11, history: bool = False
-) -> Any:
-    """Lyapunov exponents [1/s] in falling order, shape (2n,), over `spans` stretches of `span` seconds from (q, qd).
+@dataclass(frozen=True)
+class Section:
+    """A Poincare section by names: `read` is what is drawn where `where` passes `level` in a `direction`.
 
-    Parameters
-    ----------
-    design_or_system : with constant loads and speeds; a harmonic drive is one more degree of freedom without damping,
-        coupled one way, which adds two exponents 0
-    start : (q, qd), on the attractor: leave transients behind first
-    span : [s] between two orthonormalisations, such as a period; spans : how many
-    history : return the estimates after each span, shape (spans, 2n), which tell whether they have converged
+    read : a displacement or a velocity of the system: "y" or "y'"
+    where : a displacement, counted from steady sliding; a velocity; or "v1", "v2" ..., sliding velocity of a contact
+    level : [m] or [m/s]
+    direction : +1 where it rises, -1 where it falls, 0 both
 
-    -inf where sticking forgets a direction. Accuracy: statistical, about 1/(spans span) for regular motions, slower,
-    as 1/sqrt, for chaotic ones; NaN when a run fails. Source: as this module.
-
-    >>> from squealbox import Contact, Coulomb, System
-    >>> belt = Contact(n=[0.0], d=[1.0], t=[1.0], N0=1.0, V=0.1, law=Coulomb(0.4, 0.25))
-    >>> block = System([[1.0]], [[0.0]], [[1.0]], 0.0, (belt,))
-    >>> bool(abs(lyapunov_exponents(block, ([0.4], [0.0999]), 7.317597861, 40)[0]) < 0.02)
-    True
+    >>> Section.maxima("y")
+    Section(read='y', where="y'", level=0.0, direction=-1)
     """
-    field = Field(as_system(design_or_system))
-    x = np.concatenate([np.asarray(part, dtype=float) for part in start])
-    frame, total = np.eye(x.size), np.zeros(x.size)
-    seen = np.full((spans, x.size), np.nan)
-    for k in range(spans):
-        flown = quick_flight(field, x, span, rtol)
-        if not flown.outcome.ok:
-            return seen if history else np.full(x.size, np.nan)
-        x = flown.x
-        frame, total = _grown(flown.phi * (field.scale[:, None] / field.scale) @ frame, total)
-        seen[k] = np.sort(total / (span * (k + 1)))[::-1]
-    return seen if history else seen[-1]
+
+    read: str
+    where: str
+    level: float = 0.0
+    direction: int = -1
+
+    @classmethod
+    def maxima(cls, name: str) -> "Section":
+        """The largest values of a displacement."""
+        return cls(name, f"{name}'")
+
+    @classmethod
+    def minima(cls, name: str) -> "Section":
+        """The least values of a displacement."""
+        return cls(name, f"{name}'", direction=1)
+
+    @classmethod
+    def returns(cls, name: str) -> "Section":
+        """The velocities at which a displacement rises through steady sliding: a return map."""
+        return cls(f"{name}'", name, direction=1)
+
+    def __str__(self) -> str:
+        verb = {1: "rises through", -1: "falls through"}.get(self.direction, "passes")
+        if self.level == 0.0 and self.where == f"{self.read}'" and self.direction:
+            return f"{self.read} at its {'maxima' if self.direction < 0 else 'minima'}"
+        level = "steady sliding" if self.level == 0.0 and not self.where.endswith("'") else f"{self.level:g}"
+        level = "0" if self.where.startswith("v") and self.level == 0.0 else level
+        return f"{self.read} where {self.where} {verb} {level}"
+
+    def column(self, system: System) -> int:
+        """Place of `read` in (q, q')."""
+        return _place("read", self.read, state_names(system))
+
+    def plane(self, system: System, rest: Any) -> tuple[Any, Any]:
+        """normal (..., 2n) and offset (...) beside steady sliding, rest (..., n)."""
+        names, n, shape = state_names(system), system.size, np.shape(rest)[:-1]
+        contacts = [f"v{i + 1}" for i in range(len(system.contacts))]
+        normal = np.zeros((*shape, 2 * n))
+        if self.where in contacts and self.where not in names:
+            contact = system.contacts[contacts.index(self.where)]
+            normal[..., n:] = -np.asarray(contact.t)
+            return normal, self.level - np.broadcast_to(np.asarray(value_at(contact.V, 0.0), dtype=float), shape)
+        column = _place("where", self.where, [*names, *contacts])
+        normal[..., column] = 1.0
+        return normal, self.level + (rest[..., column] if column < n else np.zeros(shape))
 
 
-def _grown(moved: Any, total: Any) -> tuple[Any, Any]:
-    """The frame orthonormal again, and the sums of logarithms; directions that were forgotten come last.
+def _place(key: str, name: str, names: list[str]) -> int:
+    if name not in names:
+        raise ParameterError("Section", key, name, known_names(str(name), names))
+    return names.index(name)
 
-    A column that falls into the span of those before it grows no more. Left in its place, the arbitrary direction that
-    QR puts there would take the growth of a later column, and that of a forgotten direction would be counted twice.
-    """
-    size = np.abs(np.diag(np.linalg.qr(moved)[1]))
-    order = np.argsort(size <= LOST, kind="stable")
-    frame, growth = np.linalg.qr(moved[:, order])
-    size = np.abs(np.diag(growth))
-    with np.errstate(divide="ignore"):
-        return frame, total[order] + np.where(size > LOST, np.log(size), -np.inf)
+
+def state_names(system: System) -> list[str]:
+    """Names of the state (q, q'): those of the degrees of freedom, then with a prime."""
+    return [*system.names, *(f"{name}'" for name in system.names)]

@@ -78,6 +78,17 @@ class Batch:
             return Batch([self.design[i] for i in which], {})
         return Batch(self.design, {name: value[which] for name, value in self.parameters.items()})
 
+    @property
+    def one(self) -> System:
+        """Its first system, without leading axes."""
+        return first_of(self.system)
+
+    def sampled(self, q: Any, qd: Any, times: Any, threads: int | None = None) -> tuple[Any, Any, Any]:
+        """(t, q, qd) of the motions from (q, qd), each (k, n), at the given instants, (k, instants, n)."""
+        run = simulate_ensemble(self.design, self.parameters or None, float(times[-1]), METHOD, (), start=(q, qd),
+                                times=times, threads=threads)  # fmt: skip
+        return run.sample_time, run.sample_q, run.sample_qd
+
     def run(self, q: Any, qd: Any, duration: float, observe: Sequence[Observer], threads: int | None = None) -> Any:
         """The ensemble from (q, qd), each (k, n)."""
         return simulate_ensemble(self.design, self.parameters or None, duration, METHOD, observe, start=(q, qd),
@@ -127,6 +138,11 @@ class Settled:
     qd: Any
     time: Any
     scales: Scales
+
+    def take(self, which: Any) -> "Settled":
+        """Some of the motions."""
+        return Settled(**{each.name: getattr(self, each.name)[which] for each in fields(self) if each.name != "scales"},
+                       scales=self.scales.take(which))  # fmt: skip
 
     @property
     def level(self) -> Any:

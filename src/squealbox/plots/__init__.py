@@ -9,7 +9,7 @@ from squealbox.plots.brakes import brake_drawing
 from squealbox.plots.cards import card
 from squealbox.plots.contact import contact_comparison
 from squealbox.plots.cycles import branch_diagram, cycle_overview
-from squealbox.plots.diagrams import bifurcation_diagram, coexistence_region
+from squealbox.plots.diagrams import amplitude_and_section, bifurcation_diagram, coexistence_region
 from squealbox.plots.dispatch import plot
 from squealbox.plots.facts import facts
 from squealbox.plots.fits import friction_fit
@@ -44,6 +44,7 @@ from squealbox.plots.sweeps import search_for_a_push, sweep_overview
 from squealbox.plots.uncertainty import interval_bounds, morris_effects, sobol_indices, squeal_probability
 
 __all__ = [
+    "amplitude_and_section",
     "amplitude_course",
     "amplitude_map",
     "basin_picture",

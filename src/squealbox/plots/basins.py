@@ -6,7 +6,8 @@ import numpy as np
 
 from squealbox.limit_cycles import Basin, DangerousPush
 from squealbox.limit_cycles.attractors import CYCLE, REST, SLIDING
-from squealbox.limit_cycles.basins import place, state_names
+from squealbox.limit_cycles.basins import place
+from squealbox.limit_cycles.sections import state_names
 from squealbox.plots.dispatch import plot
 from squealbox.plots.style import drawing, figure_of, number, quantity_label, scaled
 

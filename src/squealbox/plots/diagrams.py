@@ -8,7 +8,7 @@ import numpy as np
 from squealbox.limit_cycles import BifurcationDiagram, Branch, Coexistence
 from squealbox.plots.dispatch import plot
 from squealbox.plots.facts import unit_of
-from squealbox.plots.style import drawing, figure_of, quantity_label, scaled
+from squealbox.plots.style import WIDTH, drawing, figure_of, note, panels, quantity_label, scaled, styled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,7 +18,9 @@ SWEPT = {
     "up": ("^", "#0072B2", "swept up"),
     "down": ("v", "#D55E00", "swept down"),
     "rest": ("o", "#000000", "each from rest"),
+    "start": ("x", "#009E73", "from drawn starts"),
 }
+SHOWN = ("amplitude", "maxima", "section")
 
 
 @plot.register(BifurcationDiagram)
@@ -39,34 +41,72 @@ def bifurcation_diagram(
     ----------
     diagram, branches : both over the same parameter
     dof : index of the degree of freedom
-    show : "amplitude" (half peak to peak) or "maxima" (the last eight, beside steady sliding: several marks at one
-        value are a cycle of several maxima, or a motion that does not repeat itself)
+    show : "amplitude" (half peak to peak), "maxima" (the last eight, beside steady sliding: several marks at one
+        value are a cycle of several maxima, or a motion that does not repeat itself) or "section" (what the diagram's
+        section reads, a displacement beside steady sliding; branches lie over maxima and minima of `dof` only)
     name : of the parameter, with its unit; scale : what it is divided by
     axes : draw here instead of in a new figure
     """
-    if show not in ("amplitude", "maxima"):
-        raise ValueError(f'show = {show!r}: expected "amplitude" or "maxima"')
+    if show not in SHOWN:
+        raise ValueError(f"show = {show!r}: expected one of {', '.join(SHOWN)}")
     several = [branches] if isinstance(branches, Branch) else list(branches)
-    beside = diagram.sliding[:, dof]
-    marks = diagram.amplitude[..., dof, None] if show == "amplitude" else diagram.maxima[:, :, dof] - beside[:, None]
-    factor, unit = scaled("m", np.where(np.isfinite(marks), marks, 0.0))
+    marks, unit, words = _marks(diagram, dof, show)
+    factor, unit = scaled(unit, np.where(np.isfinite(marks), marks, 0.0))
+    told: set[str] = set()
     with drawing(axes, width=5.0, height=3.0) as panel:
         for one in several:
-            _branch(panel, one, _height(one, diagram, dof, show) / factor, scale)
+            height = _height(one, diagram, dof, show)
+            if height is not None:
+                _branch(panel, one, height / factor, scale)
         for i, sweep in enumerate(diagram.sweeps):
-            mark, colour, words = SWEPT[sweep]
+            kind = sweep.split()[0]
+            mark, colour, text = SWEPT[kind]
             at, up = np.broadcast_arrays(diagram.value[:, None] / scale, marks[i] / factor)
-            size = 3.2 if show == "amplitude" else 2.2
+            size, rim = {"amplitude": (3.2, 0.6), "maxima": (2.2, 0.6), "section": (1.8, 0.4)}[show]
             panel.plot(at.ravel(), up.ravel(), mark, color=colour, markersize=size, markerfacecolor="none",
-                       markeredgewidth=0.6, label=words)  # fmt: skip
+                       markeredgewidth=rim, label=None if kind in told else text)  # fmt: skip
+            told.add(kind)
         unit_x = _unit(diagram, diagram.parameter)
-        words = "amplitude" if show == "amplitude" else "maxima beside steady sliding"
         panel.set(xlabel=name or quantity_label(diagram.parameter, unit_x), ylabel=quantity_label(words, unit))
         panel.set_title(title)
         panel.set_xlim(*(diagram.value[[0, -1]] / scale) if len(diagram.value) > 1 else (None, None))
         panel.margins(y=0.08)
         panel.legend(loc="best")
         return figure_of(panel)
+
+
+def amplitude_and_section(
+    diagram: BifurcationDiagram, *, branches: Branch | Sequence[Branch] = (), dof: int = 0, title: str = "", **look: Any
+) -> "Figure":
+    """Amplitude over the parameter, and beneath it what the section reads, with one legend.
+
+    Parameters are those of :func:`bifurcation_diagram`.
+    """
+    figure, (above, below) = panels(2, 1, width=WIDTH, height=4.6, sharex=True)
+    bifurcation_diagram(diagram, branches=branches, dof=dof, title=title, axes=above, **look)
+    bifurcation_diagram(diagram, branches=branches, dof=dof, show="section", axes=below, **look)
+    above.set(xlabel="", ylabel=f"{above.get_ylabel().replace(' [', f' of {diagram.dofs[dof]} [')}")
+    if diagram.read in diagram.dofs:
+        note(below, "counted from steady sliding", "upper left")
+    handles, texts = above.get_legend_handles_labels()
+    for panel in (above, below):
+        panel.get_legend().remove()
+    with styled():
+        figure.legend(handles, texts, loc="outside lower center", ncols=4)
+    return figure
+
+
+def _marks(diagram: BifurcationDiagram, dof: int, show: str) -> tuple[Any, str, str]:
+    """What is drawn, (sweep, point, mark), with its unit and words."""
+    if show == "amplitude":
+        return diagram.amplitude[..., dof, None], "m", "amplitude"
+    if show == "maxima":
+        return diagram.maxima[:, :, dof] - diagram.sliding[:, dof, None], "m", "maxima beside steady sliding"
+    if not diagram.section:
+        raise ValueError('show = "section": expected a diagram that was made with a section')
+    if diagram.read in diagram.dofs:
+        return diagram.crossings - diagram.sliding[:, diagram.dofs.index(diagram.read), None], "m", diagram.section
+    return diagram.crossings, "m/s", diagram.section
 
 
 def _unit(result: Any, parameter: str) -> str:
@@ -76,9 +116,14 @@ def _unit(result: Any, parameter: str) -> str:
 
 
 def _height(one: Branch, diagram: BifurcationDiagram, dof: int, show: str) -> Any:
+    """What a branch has at the height of the marks; None where it does not say."""
     if show == "amplitude":
         return one.amplitude[:, dof]
-    return one.highest[:, dof] - np.interp(one.value, diagram.value, diagram.sliding[:, dof])
+    name = one.inputs["system"].names[dof]
+    least = show == "section" and diagram.section == f"{name} at its minima"
+    if show == "section" and not least and diagram.section != f"{name} at its maxima":
+        return None
+    return (one.lowest if least else one.highest)[:, dof] - np.interp(one.value, diagram.value, diagram.sliding[:, dof])
 
 
 def _branch(panel: Any, one: Branch, height: Any, scale: float) -> None:

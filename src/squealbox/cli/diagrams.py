@@ -1,0 +1,190 @@
+"""`squealbox diagram`: a bifurcation diagram by brute force, ensembles over a parameter, with a Poincare section."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import numpy as np
+from cyclopts import Parameter
+
+from squealbox.cli.branches import all_branches
+from squealbox.cli.inputs import (
+    RANGE,
+    AllowCode,
+    Changes,
+    Ends,
+    axis,
+    folder,
+    number,
+    read,
+    readable,
+    time_of,
+    with_points,
+)
+from squealbox.cli.progress import Progress
+from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.tables import write_csv, written
+from squealbox.limit_cycles import BifurcationDiagram, Branch, Section, bifurcation_diagram
+from squealbox.limit_cycles.settling import KINDS
+from squealbox.parameters import known_names
+
+if TYPE_CHECKING:
+    from squealbox.designs import Design
+    from squealbox.files.analyses import Axis
+
+Sweep = Literal["up", "down", "rest"]
+Sweeps = Annotated[tuple[Sweep, ...], Parameter(negative="", consume_multiple=True)]
+Drawn = Annotated[bool, Parameter(negative="")]
+WAYS = {"rises": 1, "falls": -1, "passes": 0}
+NAMED = {"maxima": Section.maxima, "minima": Section.minima, "return": Section.returns}
+
+
+def diagram(
+    file: Path,
+    *,
+    parameter: str | None = None,
+    range: Ends = None,
+    points: int | None = None,
+    sweeps: Sweeps = ("up", "down", "rest"),
+    starts: int = 0,
+    dof: str | None = None,
+    section: str = "maxima",
+    returns: int = 40,
+    duration: str | None = None,
+    branches: Drawn = False,
+    seed: int = 0,
+    changes: Changes = (),
+    allow_code: AllowCode = False,
+    out: Path | None = None,
+) -> None:
+    """What the motion settles to over a range of a parameter, by transients alone: a bifurcation diagram.
+
+    A sweep up or down goes on from value to value with the state in which the last one ended; "rest" starts each anew.
+    Where they differ, attractors coexist. Several points of the section at one value are a cycle of several turns, or
+    a motion that never repeats itself.
+
+    Parameters
+    ----------
+    file
+        design file; its section [branch] says what is varied, unless the options do
+    parameter
+        dotted name, such as friction.static
+    range
+        lowest and highest value, with or without a unit: 0.1 0.6
+    points
+        number of values
+    sweeps
+        some of up, down and rest
+    starts
+        number of further starts at every value, drawn about steady sliding
+    dof
+        degree of freedom that is drawn, or y' for its velocity in a plane of --section; the largest unless said
+    section
+        maxima or minima of it; return (its velocity where it rises through steady sliding); or a plane: "x' falls 0.1",
+        "x rises 2um", "v1 falls 0" with v1, v2 ... the sliding velocities of the contacts
+    returns
+        about how many points of the section are kept of each motion
+    duration
+        of the first stretch at each value, such as 20ms; what has not settled runs on
+    branches
+        follow the cycles as well (as squealbox branch) and draw them beneath
+    seed
+        of the drawn starts
+    changes
+        other values for this run: --set load="2 kN" reading=eq3
+    allow_code
+        run the Python file of a friction law that the design file names
+    out
+        folder for a figure, the tables diagram.csv and section.csv, and diagram.nc
+    """
+    found = read(file, changes, allow_code)
+    varied = with_points(axis(found.design, found.branch, parameter, range, RANGE), points)
+    length = None if duration is None else time_of("--duration", duration)
+    plane = _section(found.design, section, dof)
+    if out is not None:
+        folder(out)
+    with Progress(f"{varied.points} values") as progress:
+        result = bifurcation_diagram(
+            found.design, varied.name, varied.values, sweeps=sweeps, starts=starts, section=plane, returns=returns,
+            duration=length, seed=seed,
+        )  # fmt: skip
+        if np.all(result.kind < 0):
+            raise ComputationFailed(result.outcome)
+        progress("following the cycles")
+        _, several = all_branches(found.design, varied, progress=progress) if branches else (None, ())
+    print(f"{found.design.title}, {file}\n{_said(result, found.design, varied)}")
+    if out is not None:
+        print(written(*_files(result, several, found.design, varied, found.path.name, out)))
+
+
+def _section(design: "Design", text: str, dof: str | None) -> Section:
+    """The section of --section and --dof."""
+    system = design.system()
+    name = system.names[-1] if dof is None else dof
+    known = [*system.names, *(f"{each}'" for each in system.names)]
+    if name not in known:
+        raise UsageError(f"--dof {name[:40]}: {known_names(name[:40], known)}")
+    if text in NAMED:
+        if name.endswith("'"):
+            raise UsageError(f"--dof {name[:40]}: expected a displacement for --section {text}")
+        return NAMED[text](name)
+    words = text.split()
+    if len(words) not in (2, 3) or words[1] not in WAYS:
+        shapes = 'maxima, minima, return, or a plane such as "x\' falls 0.1", "x rises 2um" or "v1 falls 0"'
+        raise UsageError(f"--section {text[:60]}: expected {shapes}")
+    where, way = words[0], WAYS[words[1]]
+    planes = [*known, *(f"v{i + 1}" for i, _ in enumerate(system.contacts))]
+    if where not in planes:
+        raise UsageError(f"--section {text[:60]}: {known_names(where[:40], planes)}")
+    unit = "m" if where in system.names else "m/s"
+    return Section(name, where, number(words[2], unit, f"--section {text[:60]}") if len(words) == 3 else 0.0, way)
+
+
+def _said(result: BifurcationDiagram, design: "Design", varied: "Axis") -> str:
+    def shown(value: float) -> str:
+        read_, unit = readable(design, varied, value)
+        return f"{float(read_):.6g} {unit}".rstrip()
+
+    lines = [
+        f"{varied.name} from {shown(varied.low)} to {shown(varied.high)}, {len(result.value)} values; {result.section}"
+    ]
+    for sweep, kind, size in zip(result.sweeps, result.kind, result.amplitude, strict=True):
+        counts = ", ".join(
+            f"{int(np.sum(kind == code))} {KINDS[code]}" for code in (1, 2, 0, -1) if np.any(kind == code)
+        )
+        moves = result.value[(kind == 2) | (kind == 0)]
+        where = f"; vibrates from {shown(moves.min())} to {shown(moves.max())}" if moves.size else ""
+        most = ", ".join(f"{name} {np.nanmax(a):.3g} m" for name, a in zip(result.dofs, size.T, strict=True))
+        lines.append(f"{sweep}: {counts}{where}; largest amplitude {most}")
+    both = result.value[result.coexist]
+    if both.size:
+        lines.append(f"Rest and vibration coexist at {both.size} values, {shown(both.min())} to {shown(both.max())}.")
+    if not result.outcome.ok:
+        lines.append(f"Note: {result.outcome.message}")
+    return "\n".join(lines)
+
+
+def _files(
+    result: BifurcationDiagram, several: tuple[Branch, ...], design: "Design", varied: "Axis", title: str, out: Path
+) -> list[Path]:
+    """Figure, tables and data."""
+    from squealbox import plots
+
+    scale, unit = readable(design, varied, 1.0)
+    name = f"{varied.name} [{unit or '-'}]"
+    dof = result.dofs.index(result.read.rstrip("'"))
+    figure = plots.amplitude_and_section(result, branches=several, dof=dof, name=name, scale=1.0 / scale, title=title)
+    values = result.value * scale
+    rows: dict[str, Any] = {"sweep": np.repeat(np.array(result.sweeps), len(values)),
+                            name: np.tile(values, len(result.sweeps)),
+                            "kind": np.array([KINDS[int(code)] for code in result.kind.ravel()])}  # fmt: skip
+    for i, each in enumerate(result.dofs):
+        rows |= {f"amplitude {each} [m]": result.amplitude[..., i].ravel(),
+                 f"least {each} [m]": result.lowest[..., i].ravel(),
+                 f"largest {each} [m]": result.highest[..., i].ravel(),
+                 f"frequency of {each} [Hz]": result.frequency[..., i].ravel()}  # fmt: skip
+    sweep, point, _ = held = np.nonzero(np.isfinite(result.crossings))
+    read_unit = "m" if result.read in result.dofs else "m/s"
+    passed = {"sweep": np.array(result.sweeps)[sweep], name: values[point],
+              f"{result.section} [{read_unit}]": result.crossings[held]}  # fmt: skip
+    return [*plots.save(figure, out / "diagram"), write_csv(out / "diagram.csv", rows),
+            write_csv(out / "section.csv", passed), result.save(out / "diagram.nc")]  # fmt: skip
