@@ -78,7 +78,7 @@ def passages(t: Any, q: Any, qd: Any, normal: Any, offset: Any, direction: int) 
     low, high = 1.0 * landed, 1.0 + landed
     for _ in range(BISECTIONS):  # of all passages at once
         middle = 0.5 * (low + high)
-        early = side * (np.sum(_between(ends, h, middle) * weights, axis=1) - offset[which]) > near
+        early = side * (np.sum(_between(ends, h, middle) * weights, axis=1) - offset[which]) > 0.0
         low, high = np.where(early, middle, low), np.where(early, high, middle)
     return which, t[first] + high * h, _between(ends, h, high)
 
