@@ -3,7 +3,7 @@
 The brake is the drum, reading `consistent`, mu 0.1 to 0.101: both contacts slip forward all the time, so nothing but
 the integration is compared. Errors are those of the end state against our rtol 1e-12, relative to the largest
 displacement. Times are of the processor and per trajectory, after one run that compiles. Each row of heyoka is compared
-with our coarsest row that is at least as exact. With events (stick, reversal) no rival has been compared yet.
+with our coarsest row that is at least as exact. Motion with events is compared in `rivals.py`.
 """
 
 import ensembles
