@@ -88,7 +88,7 @@ def test_interrupted(monkeypatch):
         return run
 
     monkeypatch.setattr(_engine, "kernel", impatient)
-    monkeypatch.setattr(module, "BUDGET", 20)
+    monkeypatch.setattr(module, "BUDGET", (20, 20))
     motion = simulate(drum(0.3), 0.05)
     assert motion.outcome == "interrupted"
     assert motion.steps > 0

@@ -1,6 +1,7 @@
 """Is steady sliding stable? Depends on: system, continuation, result; numba only when a kernel is needed."""
 
 from squealbox.stability.boundary import Boundary, stability_boundary
+from squealbox.stability.contour import map_boundary
 from squealbox.stability.conventions import as_printed_by, eigenvalues_printed_by
 from squealbox.stability.crossings import first_crossings
 from squealbox.stability.eigenvalues import ComplexModes, Mode, complex_modes
@@ -47,6 +48,7 @@ __all__ = [
     "indices",
     "logarithmic_decrement",
     "loss_factor",
+    "map_boundary",
     "mechanism",
     "mode_energy",
     "pseudospectrum",

@@ -2,6 +2,7 @@ from .comparison import ContactComparison, compare_contact
 from .ensemble import Ensemble, simulate_ensemble
 from .methods import TABLEAUX, Method, Tableau
 from .observers import OBSERVERS, Observer
+from .readiness import needs_compiling
 from .simulate import simulate
 from .trajectory import EnergyAudit, Trajectory
 from .verdict import Verdict, verdict
@@ -18,6 +19,7 @@ __all__ = [
     "Trajectory",
     "Verdict",
     "compare_contact",
+    "needs_compiling",
     "simulate",
     "simulate_ensemble",
     "verdict",

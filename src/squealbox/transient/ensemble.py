@@ -142,7 +142,8 @@ def simulate_ensemble(
     times : instants at which q and qd are sampled [s]; they do not influence the steps
     rtol, atol, width, start_time : as in `simulate`
     threads : how many; None takes one for each core
-    progress : called with (trajectories done, in all, seconds) about five times a second
+    progress : called with (trajectories done, in all, seconds) about five times a second; what it raises ends the
+        computation and reaches the caller
 
     Returns
     -------

@@ -1,5 +1,7 @@
 """What happens in time: one transient of one system."""
 
+import time as clock
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -18,7 +20,9 @@ SCHEMES = {"exact": EXACT, "raw": RAW, "tanh": TANH, "smooth": ARCTAN, "arctan":
 TIME_STEPPING = "time-stepping"
 USUAL_RTOL = {"bogacki-shampine": 1e-6, "dormand-prince": 1e-8, "tsitouras": 1e-8, "dormand-prince-8": 3e-10}
 ROWS = 32_768  # room for steps at first; memory is touched only as rows are written
-BUDGET = 50_000  # steps between two looks at the keyboard, about 20 ms
+BUDGET = (5_000, 50_000)  # least and most steps between two looks at the keyboard
+LOOK = 0.02  # s that should pass between them
+Progress = Callable[[float, float, float], None]
 
 MESSAGES = {
     _march.UNDERFLOW: ("step_underflow", "no step was small enough for the tolerance"),
@@ -56,6 +60,7 @@ def simulate(
     width: float = 1e-3,
     step: float | None = None,
     start_time: float = 0.0,
+    progress: Progress | None = None,
 ) -> Trajectory:
     """Integrate the equation of motion over `duration` seconds.
 
@@ -74,6 +79,8 @@ def simulate(
     width : [m/s] of the smoothed sgn
     step : [s] of time stepping; None takes 1/400 of the shortest period. The other schemes choose their steps.
     start_time : [s], where the schedules begin
+    progress : called with (time reached, end, seconds since the start of the run) some fifty times a second; what it
+        raises ends the run and reaches the caller. Time stepping, which is one call, does not call it.
 
     Returns
     -------
@@ -102,7 +109,7 @@ def simulate(
     if contact == TIME_STEPPING:
         return moreau.time_stepping(system, duration, q, qd, start_time, requested, step)
     run = _Run(system, chosen, SCHEMES[contact], width, q, qd, start_time, requested)
-    outcome = run.to(start_time + duration, duration)
+    outcome = run.to(start_time + duration, duration, progress)
     settings = {
         "duration": duration, "start": [q.tolist(), qd.tolist()], "start_time": start_time, "contact": contact,
         "width": width, "tableau": chosen.tableau, "rtol": chosen.rtol, "atol": run.atol.tolist(),
@@ -127,25 +134,34 @@ class _Run:
         room = len(self.problem["mk"])
         self.atol = self.problem["atol"].reshape(2, room)[:, : system.size].ravel()
 
-    def to(self, end: float, span: float) -> Outcome:
+    def to(self, end: float, span: float, progress: Progress | None = None) -> Outcome:
         """March from the start to `end`, `span` seconds later."""
-        from squealbox.transient._engine import kernel
-
-        events = bool(self.problem["scheme"] == EXACT and self.problem["contacts"] > 0)
-        counts = () if events else self._counts()
-        march = kernel(events, counts=counts, own=own_texts(self.system.contacts))
-        largest = self.method.largest_step or (min(span, self.period / 6.0) if events else span)
-        records = (self.problem, self.rule, self.scratch, self.times)
-        limits = (end, largest, 1e-14 * self.period, self.method.most_steps, BUDGET)
-        code = _march.RUNNING
+        march, arguments = self.call(end, span)
+        code, budget, began = _march.RUNNING, BUDGET[0], clock.monotonic()
         try:
             while code == _march.RUNNING:
                 self._make_room()
-                code = march(*records, self.rows, self.events, *limits)
+                before = clock.monotonic()
+                code = march(*arguments[:4], self.rows, self.events, *arguments[6:10], budget)
+                now = clock.monotonic()
+                wanted = int(budget * LOOK / max(now - before, 1e-4))
+                budget = min(max(wanted, BUDGET[0]), BUDGET[1])
+                if progress is not None:
+                    progress(float(self.scratch["clock"][_motion.TIME]), end, now - began)
         except KeyboardInterrupt:
             reached = float(self.scratch["clock"][_motion.TIME])
             return Outcome("interrupted", f"stopped by the user at t = {reached:g} s", time=reached)
         return self._outcome(code, end)
+
+    def call(self, end: float, span: float) -> tuple[Any, tuple[Any, ...]]:
+        """The compiled march of this run, and what it is called with."""
+        from squealbox.transient._engine import kernel
+
+        events = bool(self.problem["scheme"] == EXACT and self.problem["contacts"] > 0)
+        march = kernel(events, counts=() if events else self._counts(), own=own_texts(self.system.contacts))
+        largest = self.method.largest_step or (min(span, self.period / 6.0) if events else span)
+        records = (self.problem, self.rule, self.scratch, self.times, self.rows, self.events)
+        return march, (*records, end, largest, 1e-14 * self.period, self.method.most_steps, BUDGET[0])
 
     def _counts(self) -> tuple[tuple[str, int], ...]:
         """What the kernel without events is compiled for; the one with events compiles longer and stays general."""
@@ -210,6 +226,12 @@ class _Run:
             rejected=count[_motion.REJECTED],
             evaluations=count[_motion.EVALUATIONS],
         )
+
+
+def exact_call(system: System) -> tuple[Any, tuple[Any, ...]]:
+    """The compiled march of an exact run of the usual method with given instants, and what it is called with."""
+    method, rest = chosen_method("dormand-prince-8", None, None), np.zeros(system.size)
+    return _Run(system, method, EXACT, 1e-3, rest, rest, 0.0, np.array([0.0, 1.0])).call(1.0, 1.0)
 
 
 def _caution(settings: dict[str, Any], reversals: int) -> str:

@@ -17,6 +17,7 @@ from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from squealbox.workbench.apart import Processes
 from squealbox.workbench.frames import frame
 from squealbox.workbench.guard import Headers, SameOrigin, Token
 
@@ -34,6 +35,7 @@ class Workbench:
     def __init__(self, token: Token, text: str = "", design: Any = None) -> None:
         self.token, self.text, self.design = token, text, design
         self.pools = {"quick": ThreadPoolExecutor(2, "quick"), "warming": ThreadPoolExecutor(1, "warming")}
+        self.processes = Processes()
         self.pages = 0
 
     def app(self) -> Starlette:
@@ -59,6 +61,7 @@ class Workbench:
             yield
         finally:
             warming.cancel()
+            self.processes.close()
             for pool in self.pools.values():
                 pool.shutdown(wait=False, cancel_futures=True)
 
@@ -90,7 +93,7 @@ class Workbench:
                 except (WebSocketDisconnect, RuntimeError):  # the page left while its answer was computed
                     session.close()
 
-        session = Session(send, self.pools)
+        session = Session(send, self.pools, self.processes)
         if self.design is not None:
             session.bases[name_of_text(self.text)] = self.design
         self.pages += 1

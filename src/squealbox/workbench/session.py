@@ -8,12 +8,14 @@ A question is a JSON text, an answer a binary frame (`frames`) with the question
     {"id": 10, "ask": "stop", "view": "motion"}                     stop a panel's computation
 
 Of each view one question is answered at a time; of those that arrive meanwhile only the newest waits, and the others
-are answered at once with `superseded`. Views do not wait for each other, and slow ones have threads of their own.
+are answered at once with `superseded`. Views do not wait for each other, and slow ones have threads of their own; those
+that cannot look every tenth of a second whether they are still wanted have processes of their own (`apart`).
 """
 
 import asyncio
 import hashlib
 import json
+import time
 from collections.abc import Awaitable, Callable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
@@ -22,13 +24,15 @@ from typing import Any
 from squealbox.designs import DESIGNS, Design
 from squealbox.files import DesignFileError, NotWritable, read_text
 from squealbox.files.writing import design_text
+from squealbox.workbench.apart import Died, Processes
 from squealbox.workbench.frames import frame
-from squealbox.workbench.panels import PANELS, Answer, OptionError, Options, Stopped, Work, function_of
+from squealbox.workbench.panels import PANELS, Answer, Elsewhere, OptionError, Options, Stopped, Work, function_of
 from squealbox.workbench.sheet import sheet
 from squealbox.workbench.state import StateError, UnknownBase, design_of
 
 LONGEST_TEXT = 1_000_000  # characters of an opened file
 MOST_BASES = 8  # opened files kept for a page; the page sends an older one again
+SAID = 0.1  # s after which a progress is told again
 LONGEST_ID = 9_007_199_254_740_991  # the largest whole number a page can count to
 
 
@@ -48,12 +52,13 @@ class Slot:
 class Session:
     """A page's conversation: `send` takes a frame, `pools` are where answers are computed.
 
-    A slow panel has a pool of its own name, the others share the one called "quick". `bases` are the designs of opened
-    files; it may begin with the file the workbench was started with.
+    A slow panel has a pool of its own name, the others share the one called "quick"; `processes` are for those apart.
+    `bases` are the designs of opened files; it may begin with the file the workbench was started with.
     """
 
     send: Callable[[bytes], Awaitable[None]]
     pools: Mapping[str, Executor]
+    processes: Processes
     bases: dict[str, Design] = field(default_factory=dict)
     slots: dict[str, Slot] = field(default_factory=dict)
     tasks: set[asyncio.Task[None]] = field(default_factory=set)
@@ -109,8 +114,14 @@ class Session:
 
     def _work(self, name: str, number: int) -> Work:
         loop = asyncio.get_running_loop()
+        said: tuple[float, str] = (0.0, "")
 
         def report(share: float, text: str) -> None:
+            nonlocal said
+            now = time.monotonic()
+            if text == said[1] and now - said[0] < SAID:
+                return
+            said = (now, text)
             data = frame({"id": number, "view": name, "kind": "progress", "share": share, "text": text})
             loop.call_soon_threadsafe(lambda: self._start(self.send(data)))
 
@@ -119,9 +130,24 @@ class Session:
     async def _answer(self, name: str, message: dict[str, Any], work: Work) -> None:
         loop = asyncio.get_running_loop()
         data = await loop.run_in_executor(
-            self.pools.get(name, self.pools["quick"]), answered, name, message, dict(self.bases), work
+            self.pools.get(name, self.pools["quick"]), self._computed, name, message, dict(self.bases), work
         )
         await self.send(data)
+
+    def _computed(self, name: str, message: dict[str, Any], bases: dict[str, Design], work: Work) -> bytes:
+        """The answer of a panel, in this thread or in a process of its own."""
+        usual = None
+        if not PANELS[name].apart:
+            try:
+                return answered(name, message, bases, work)
+            except Elsewhere as reason:
+                usual = (reason.text, reason.seconds)
+        about = {"id": message["id"], "view": name}
+        try:
+            found = self.processes.answer((name, message, bases), work.say, lambda: work.stopped, usual)
+        except Died as error:
+            return frame({**about, "kind": "failed", "message": str(error)})
+        return frame({**about, "kind": "stopped"}) if found is None else found
 
     async def _ask(self, message: dict[str, Any]) -> None:
         ask = message.get("ask")
@@ -173,7 +199,10 @@ def name_of_text(text: str) -> str:
 
 
 def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design], work: Work) -> bytes:
-    """The frame that answers a question to a panel; whatever goes wrong is an answer too."""
+    """The frame that answers a question to a panel; whatever goes wrong is an answer too.
+
+    Raises `Elsewhere` where the answer needs a process of its own.
+    """
     about = {"id": message["id"], "view": name}
     try:
         if work.stopped:
@@ -186,6 +215,8 @@ def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design],
         return frame({**about, "kind": "wrong", "wrong": [{"field": "", "message": str(error)}]})
     except Stopped:
         return frame({**about, "kind": "stopped"})
+    except Elsewhere:
+        raise
     except Exception as error:  # a panel that fails says so in its own place; the others go on
         text = " ".join(str(error).split())[:500]
         return frame({**about, "kind": "failed", "message": f"{type(error).__name__}: {text}"})

@@ -116,11 +116,13 @@ class Work:
                     thread.join(0.2)
                     if self.progress is not None:
                         self.progress(min(before + int(counter[0]), total), total, time.monotonic() - self.began)
-        except KeyboardInterrupt:
-            self.interrupted = True
+        except BaseException as error:  # Ctrl-C, or what `progress` raised
             stop[0] = 1
             for thread in threads:
                 thread.join()
+            if not isinstance(error, KeyboardInterrupt):
+                raise
+            self.interrupted = True
 
 
 def _starts(

@@ -7,16 +7,20 @@ the page; a file is imported when its panel is first asked.
 import importlib
 from dataclasses import dataclass
 
-from squealbox.workbench.panels.panel import Answer, Function, OptionError, Options, Stopped, Work
+from squealbox.workbench.panels.panel import Answer, Elsewhere, Function, OptionError, Options, Stopped, Work
 
 
 @dataclass(frozen=True)
 class Panel:
-    """A panel: its title, how wide it is in columns of the page, and whether its answer may take seconds."""
+    """A panel: its title, how wide it is in columns of the page, and whether its answer may take seconds.
+
+    `apart`: it is computed in a process of its own, which takes a second to start and can be ended at any instant.
+    """
 
     title: str
     columns: int = 1
     slow: bool = False
+    apart: bool = False
     shown: bool = True  # False: it answers the page itself, not a place on it
 
 
@@ -29,11 +33,11 @@ PANELS: dict[str, Panel] = {
     "motion": Panel("Motion", columns=2, slow=True),
     "energy": Panel("Energy by contact"),
     "sensitivity": Panel("Which parameter to change"),
-    "branch": Panel("Limit cycles over a parameter", slow=True),
+    "branch": Panel("Limit cycles over a parameter", slow=True, apart=True),
     "listen": Panel("Listen", slow=True),
     "compare": Panel("Compare two designs", columns=2),
-    "report": Panel("Report", slow=True),
-    "tour": Panel("Tour: the drum-brake paper of 2011", slow=True),
+    "report": Panel("Report", slow=True, apart=True),
+    "tour": Panel("Tour: the drum-brake paper of 2011", slow=True, apart=True),
 }
 
 
@@ -44,4 +48,4 @@ def function_of(name: str) -> Function:
     return function
 
 
-__all__ = ["PANELS", "Answer", "OptionError", "Options", "Panel", "Stopped", "Work", "function_of"]
+__all__ = ["PANELS", "Answer", "Elsewhere", "OptionError", "Options", "Panel", "Stopped", "Work", "function_of"]

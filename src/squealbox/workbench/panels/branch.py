@@ -38,9 +38,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     at = max(options.number("at", usual, -1e300, 1e300), span[0])
     if at > span[1]:
         raise OptionError(f"at: expected a number in [{span[0]:g}, {span[1]:g}]")
-    dof = int(options.number("dof", 0, 0, 10_000))
-    if dof >= design.system().size:
-        raise OptionError(f"dof: expected 0 to {design.system().size - 1}")
+    dof = options.dof(design)
     watched = _Watched(design, parameter, span, at, work)
     try:
         born = hopf_point(watched.at_part(0.02, "looking for the onset"), parameter, span)

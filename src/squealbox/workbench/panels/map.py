@@ -1,14 +1,19 @@
-"""Stability over two parameters; the page draws the boundary where the growth rate passes zero."""
+"""Stability over two parameters, with the boundary exact on every line of the grid."""
+
+import sys
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.stability import StabilityMap, stability_map
+from squealbox.stability import Boundary, StabilityMap, map_boundary, stability_map
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, axis_of
 
 POINTS = 101
 FEWER = 51  # along each axis, for designs of more than two degrees of freedom
+CLOSE = 1e-9  # of a cell: numbers travel with seven digits
 BLOCKS = 8  # parts of a map between which it can be stopped
 
 
@@ -23,17 +28,18 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     few = design.system().size > 2
     points = int(options.number("points", FEWER if few else POINTS, 11, 401))
     values = [np.linspace(*span, points) for span in spans]
-    parts = []
+    parts, text = [], "computing the map"
+    if "numba" not in sys.modules:
+        text = "loading the kernel of the map, and compiling it on its first day here: some seconds"
     for i, block in enumerate(np.array_split(values[0], BLOCKS if few or show == "mechanism" else 1)):
-        work.progress(i / BLOCKS, "computing the map")
+        work.progress(i / BLOCKS, text)
         parts.append(
             stability_map(design, {across: block, up: values[1]}, mechanism=show == "mechanism", engine="compiled")
         )
-    growth, frequency, why, unstable = (
-        np.concatenate([getattr(part, name) for part in parts])
-        for name in ("growth_rate", "frequency", "mechanism", "unstable")
-    )
-    exists = np.isfinite(growth)
+    found = _joined(parts, {across: values[0], up: values[1]})
+    work.progress(0.95, "locating the boundary")
+    edge = map_boundary(found, close=CLOSE)
+    growth, exists = found.growth_rate, np.isfinite(found.growth_rate)
     read = [axis_of(design, parameter) for parameter in (across, up)]
     data = {
         "x": read[0],
@@ -41,14 +47,26 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "xspan": [end / read[0]["factor"] for end in spans[0]],
         "yspan": [end / read[1]["factor"] for end in spans[1]],
         "show": show,
-        "unstable": float(np.mean(unstable[exists])) if np.any(exists) else None,
+        "unstable": float(np.mean(found.unstable[exists])) if np.any(exists) else None,
         "missing": int(np.sum(~exists)),
         "largest": finite(np.nanmax(growth)) if np.any(exists) else None,
         "mechanisms": list(StabilityMap.mechanism_names),
     }
-    arrays = {"growth": growth.T}
+    arrays = {"growth": growth.T, "edge": _scaled(edge, read), "curve": edge.curve}
     if show == "frequency":
-        arrays["frequency"] = frequency.T
+        arrays["frequency"] = found.frequency.T
     if show == "mechanism":
-        arrays["mechanism"] = why.T
+        arrays["mechanism"] = found.mechanism.T
     return Answer(data, arrays)
+
+
+def _joined(parts: list[StabilityMap], axes: dict[str, Any]) -> StabilityMap:
+    """The blocks of a map, one after the other along its first axis."""
+    names = ("growth_rate", "frequency", "circulation", "slope", "unstable_modes", "mechanism")
+    arrays: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
+    return replace(parts[0], axes=axes, **arrays)
+
+
+def _scaled(edge: Boundary, read: list[dict[str, Any]]) -> Any:
+    """Points of the boundary (points, 2) in the units of the axes."""
+    return np.column_stack([edge.x / read[0]["factor"], edge.y / read[1]["factor"]])

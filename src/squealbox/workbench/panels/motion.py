@@ -8,30 +8,27 @@ from squealbox.designs import Design
 from squealbox.plots.style import scaled
 from squealbox.signals import SignalError, dominant_frequency, peaks, spectrogram, spectrum
 from squealbox.stability import complex_modes
-from squealbox.system import equilibrium
-from squealbox.transient import Trajectory, simulate, verdict
+from squealbox.transient import Trajectory, verdict
 from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
+from squealbox.workbench.panels.following import followed
+from squealbox.workbench.panels.loudness import loudness
+from squealbox.workbench.panels.panel import Answer, Options, Work
+from squealbox.workbench.panels.start import start_and_dof
 
 SAMPLES = 4096  # instants kept: 40 a period over a hundred periods
 DRAWN = 1024  # pairs of least and largest value along the time axis
+LAST = 0.25  # share of the motion that the verdict and the estimate of the sound level are about
 PERIODS = 100  # followed when nothing is given
-STARTS = ("push", "rest", "sliding")
 CONTACTS = ("exact", "smooth")
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """The motion of one degree of freedom over time, and what a signal analysis says of it."""
     system = design.system()
-    start = options.word("start", STARTS)
+    start, dof = start_and_dof(design, options)
     contact = options.word("contact", CONTACTS)
     duration = options.number("duration", 0.0, 0.0, 1e6) or usual_duration(design)
-    dof = int(options.number("dof", 0, 0, 10_000))
-    if dof >= system.size:
-        raise OptionError(f"dof: expected 0 to {system.size - 1}")
-    work.progress(0.0, "following the motion")
-    beginning = beginning_of(design, start, options.number("push", 0.05, 0.0, 10.0))
-    motion = simulate(system, duration, start=beginning, times=SAMPLES, contact=contact)
+    motion = followed(system, duration, work, 0.6, start=start, times=SAMPLES, contact=contact)
     work.progress(0.6, "spectrum")
     data = {
         "names": list(system.names),
@@ -58,22 +55,6 @@ def usual_duration(design: Design) -> float:
     return PERIODS / chosen if chosen > 0.0 else 1.0
 
 
-def beginning_of(design: Design, start: str, push: float) -> Any:
-    """Steady sliding with a push along the mode that grows first, or one of the starts `simulate` knows.
-
-    The push is a share of the static deflection, so that it is large for no brake and small for none.
-    """
-    if start != "push":
-        return start
-    modes = complex_modes(design)
-    if not bool(modes.exists):
-        return "rest"
-    mode = modes.most_unstable
-    state = equilibrium(design.system())
-    size = float(np.max(np.abs(state.q))) or 1e-6
-    return mode.start(push * size)
-
-
 def _signals(motion: Trajectory, dof: int, data: dict[str, Any]) -> Answer:
     x, v, t = motion.q[:, dof], motion.qd[:, dof], motion.t
     metre, size = scaled("m", x)
@@ -86,6 +67,7 @@ def _signals(motion: Trajectory, dof: int, data: dict[str, Any]) -> Answer:
         "fate": judged.fate,
         "amplitude": finite(judged.amplitude),
         "frequency": finite(judged.frequency),
+        "loud": loudness(motion, dof, begin=float(t[-1] - LAST * (t[-1] - t[0]))),
         "sticking": [finite(np.mean(motion.mode[:, i] == 0)) for i in range(motion.mode.shape[1])],
         "speeds": [
             [finite(np.min(column)), finite(np.max(column))] for column in motion.sliding_velocity[len(t) // 2 :].T

@@ -21,6 +21,14 @@ class Stopped(Exception):
     """The user stopped the computation, or a newer question made it needless."""
 
 
+class Elsewhere(Exception):
+    """The answer needs a process of its own: what the page says meanwhile, and how many seconds it usually takes."""
+
+    def __init__(self, text: str, seconds: float) -> None:
+        self.text, self.seconds = text, seconds
+        super().__init__(text)
+
+
 @dataclass(frozen=True)
 class Answer:
     """What a panel draws: `data` goes into the header (plain JSON), `arrays` follow as float32.
@@ -33,10 +41,13 @@ class Answer:
 
 
 class Work:
-    """How a long answer says how far it is, and learns that nobody waits for it any more."""
+    """How a long answer says how far it is, and learns that nobody waits for it any more.
 
-    def __init__(self, report: Callable[[float, str], None] | None = None) -> None:
-        self._report, self._stop = report, threading.Event()
+    `apart` is true in a process of its own, which nobody else waits for.
+    """
+
+    def __init__(self, report: Callable[[float, str], None] | None = None, apart: bool = False) -> None:
+        self._report, self._stop, self.apart = report, threading.Event(), apart
 
     def stop(self) -> None:
         """Ask the answer to end; it raises `Stopped` at its next `progress`."""
@@ -51,6 +62,10 @@ class Work:
         """Say how far the answer is, 0 to 1, and raise `Stopped` where it is no longer wanted."""
         if self.stopped:
             raise Stopped
+        self.say(share, text)
+
+    def say(self, share: float, text: str) -> None:
+        """Say how far the answer is."""
         if self._report is not None:
             self._report(share, text)
 
@@ -81,6 +96,14 @@ class Options:
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not low <= value <= high:
             raise OptionError(f"{name}: expected a number in [{low:g}, {high:g}]")
         return float(value)
+
+    def dof(self, design: Design) -> int:
+        """The index of a degree of freedom; the first where nothing is given."""
+        last = design.system().size - 1
+        value = self.number("dof", 0, 0, 1e9)
+        if value > last or value != int(value):
+            raise OptionError(f"dof: expected a whole number from 0 to {last}")
+        return int(value)
 
     def parameter(self, name: str, design: Design, *usual: str) -> str:
         """The name of a parameter a study can vary; left out, the first of `usual` that the design has."""

@@ -1,12 +1,9 @@
 """The report of the present design as one HTML file, the same that `squealbox report` writes."""
 
-import threading
-
 from squealbox.designs import Design
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
 PARTS = 9  # of an examination, and writing
-DRAWING = threading.Lock()  # matplotlib's settings belong to the whole process: one report is drawn at a time
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
@@ -23,13 +20,6 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     found = examine(design, progress=progress)
     progress("drawing")
     again = "squealbox report design.toml   # the file above, saved under that name"
-    with DRAWING:
-        html = render(
-            design_page(
-                found,
-                title=design.title,
-                command=again,
-            )
-        )
+    html = render(design_page(found, title=design.title, command=again))
     work.progress(0.99, "done")
     return Answer({"html": html, "missing": list(found.missing)})

@@ -4,6 +4,7 @@ import { Connection } from "./connection.js";
 import { Drawing } from "./drawing.js";
 import { make, note } from "./elements.js";
 import { download } from "./export.js";
+import { typographic } from "./numbers.js";
 import { Opener } from "./opener.js";
 import { Panel } from "./panel.js";
 import { Parameters } from "./parameters.js";
@@ -14,6 +15,8 @@ import { Verdict } from "./verdict.js";
 const LEADING = "locus"; // the view whose pace a moving slider keeps
 const QUIET = 40; // ms without a change after which the other views are asked
 const PATIENCE = 250; // ms they wait at most while a slider moves
+const TOLD = "motion"; // the view whose answer is part of the verdict, also while it is out of sight
+const REST = 600; // ms without a change after which it is asked then
 
 class App extends EventTarget {
   constructor() {
@@ -70,11 +73,14 @@ class App extends EventTarget {
   #others() {
     this.changedAt = null;
     for (const view of this.views) view.update();
+    clearTimeout(this.resting);
+    this.resting = setTimeout(() => this.panels.get(TOLD)?.view.update(true), REST);
   }
 
   /** What the motion panel found goes into the verdict and onto the friction curve. */
   heard(data) {
-    this.motion = { design: this.store.design, text: (data.verdict ?? data.message).replaceAll("+-", "±").replaceAll(" -", " −"), speeds: data.speeds };
+    const text = typographic(data.verdict ?? data.message);
+    this.motion = { design: this.store.design, text, speeds: data.speeds, fate: data.fate, loud: data.loud, of: data.names[data.dof] };
     this.verdict.amplitude(this.motion);
     this.dispatchEvent(new Event("motion"));
   }

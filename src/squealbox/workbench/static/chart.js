@@ -161,6 +161,7 @@ export class Chart {
     for (const [i, layer] of layers.entries()) {
       const name = layer.name || layer.column || `line ${i + 1}`;
       if (layer.kind === "line" || layer.kind === "points") columns.push([`${name}: ${x.label}`, layer.x], [`${name}: ${y.label}`, layer.y]);
+      if (layer.kind === "path") columns.push([`${name}: ${x.label}`, layer.rings.flatMap((ring) => [...ring.map((at) => at[0]), NaN])], [`${name}: ${y.label}`, layer.rings.flatMap((ring) => [...ring.map((at) => at[1]), NaN])]);
       if (layer.kind === "hull") columns.push([`${x.label}`, layer.x], [`least ${y.label}`, layer.low], [`largest ${y.label}`, layer.high]);
     }
     if (heat) {

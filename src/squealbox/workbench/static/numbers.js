@@ -32,6 +32,9 @@ export function prefix(unit, largest) {
   return choices.find(([factor]) => largest >= 0.999 * factor) ?? choices[choices.length - 1];
 }
 
+/** Signs of plain text as they are printed. */
+export const typographic = (text) => text.replaceAll("+-", "±").replaceAll(" -", " −").replaceAll(" um ", " µm ");
+
 /** As many digits as a field needs to hold the number. */
 export const plain = (value) => (value === null || value === undefined ? "" : String(Number(value.toPrecision(7))));
 

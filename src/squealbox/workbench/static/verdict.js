@@ -36,8 +36,18 @@ export class Verdict {
     this.motion = motion;
     this.place.querySelector(".heard")?.remove();
     if (!motion || motion.design !== this.app.store.design || !this.data) return;
-    this.place.insertBefore(make("p", { class: "heard" }, `In time: ${motion.text}`), this.place.lastChild);
+    const words = make("p", { class: "heard", title: motion.loud?.assumption ?? "" }, `In time: ${motion.text} `, ...loud(motion));
+    this.place.insertBefore(words, this.place.lastChild);
   }
+}
+
+/** The estimate of the sound level with what it rests on; a motion that dies away has none. */
+function loud({ fate, loud: found, of }) {
+  if (!found || fate === "decays" || fate === "not_decided") return [];
+  if (found.level === null || found.level < 0) return ["Nothing of it can be heard."];
+  const level = make("b", {}, `about ${shown(found.weighted, 2)} dB(A) at 1 m`);
+  const until = fate === "grows" ? " at the end of the run, and rising" : "";
+  return [`Sound of ${of}: `, level, `${until}, an estimate: ${shown(1e4 * found.area)} cm² moving as a whole; a real brake may be 10 dB louder or quieter.`];
 }
 
 function headline(data) {

@@ -7,6 +7,7 @@ export class View {
   /** name; request() -> { state, options } or null; draw(frame); status(kind, text) */
   constructor(app, name, { request, draw, status, slow = false }) {
     Object.assign(this, { app, name, request, draw, status, slow });
+    this.stopping = false; // the user pressed Stop
     this.asked = null; // the key of the question under way
     this.drawn = null; // the key of what is drawn
     this.visible = true;
@@ -17,9 +18,9 @@ export class View {
     return this.asked !== null;
   }
 
-  /** Something may have changed: ask if what is drawn is no longer right. */
-  update() {
-    if (!this.visible || !this.app.ready) return;
+  /** Something may have changed: ask if what is drawn is no longer right; out of sight only where `unseen` says so. */
+  update(unseen = false) {
+    if (!(this.visible || unseen) || !this.app.ready) return;
     const question = this.request();
     if (!question) return;
     const key = JSON.stringify(question);
@@ -41,12 +42,12 @@ export class View {
 
   /** Stop a slow computation; the panel stays as it is until something changes. */
   stop() {
+    this.stopping = this.asked !== null;
     if (this.asked !== null) this.app.connection.ask({ ask: "stop", view: this.name }).catch(quiet);
   }
 
   forget() {
     this.drawn = null;
-    this.asked = null;
   }
 
   #ask(question, key) {
@@ -62,6 +63,8 @@ export class View {
 
   #answered(frame, key) {
     this.asked = null;
+    const stopped = this.stopping;
+    this.stopping = false;
     const current = this.request();
     const wanted = current && JSON.stringify(current) === key;
     if (frame.kind === "unknown_base") {
@@ -74,13 +77,13 @@ export class View {
       this.outcome = ["drawn", null];
       this.#tell("drawn");
       this.app.painted(this.name, key);
-    } else if (wanted && frame.kind !== "superseded") {
-      this.drawn = frame.kind === "stopped" ? null : key;
+    } else if (wanted && frame.kind !== "superseded" && (stopped || frame.kind !== "stopped")) {
+      this.drawn = key;
       this.outcome = [frame.kind, frame];
       this.#tell(frame.kind, frame);
     }
     this.app.answered(this.name);
-    if (!wanted) this.update();
+    if (this.drawn !== key) this.update(); // a newer question, or this one again where it was stopped for another
   }
 
   #tell(kind, frame = null) {

@@ -2,9 +2,10 @@
 
 import { Asked, button, style } from "../asked.js";
 import { Chart, band, line, points, span, upright } from "../chart.js";
-import { choose, make } from "../elements.js";
+import { make } from "../elements.js";
 import { label, shown } from "../numbers.js";
 import { stateWithout } from "../panel.js";
+import { degrees } from "../start.js";
 
 const parameter = (panel) => panel.parameter("parameter", "friction.static");
 
@@ -82,11 +83,4 @@ function words(data) {
   const specials = data.walks.flatMap((walk) => walk.specials.map(([kind, value]) => `${kind} at ${shown(value, 5)}`));
   if (specials.length) said.push(`Circles: ${[...new Set(specials)].slice(0, 6).join(", ")}.`);
   return said.join(" ");
-}
-
-function degrees(panel, data) {
-  const key = JSON.stringify([data.names, data.dof]);
-  if (panel.degrees.dataset.key === key) return;
-  panel.degrees.dataset.key = key;
-  panel.degrees.replaceChildren(choose("of", data.names.map((name, i) => [String(i), name]), String(data.dof), (dof) => panel.choose({ dof: Number(dof) })));
 }

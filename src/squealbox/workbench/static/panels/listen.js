@@ -2,9 +2,10 @@
 
 import { Asked, button, style } from "../asked.js";
 import { Chart, line, span } from "../chart.js";
-import { choose, make } from "../elements.js";
+import { make } from "../elements.js";
 import { download } from "../export.js";
 import { label, shown, withUnit } from "../numbers.js";
+import { degrees, startOf } from "../start.js";
 import { wavBlob } from "../wav.js";
 
 const PERIODS = 6; // drawn, of the end of the sound
@@ -35,8 +36,8 @@ export default {
 
   options(panel) {
     if (!panel.asked.current) return null;
-    const { start = "push", push = 0.05, dof = 0 } = panel.app.store.settings.motion ?? {};
-    return { start, push, dof: panel.chosen.dof ?? dof };
+    const motion = startOf(panel.app.store);
+    return { ...motion, dof: panel.chosen.dof ?? motion.dof };
   },
 
   draw(panel, { data, arrays }) {
@@ -116,11 +117,4 @@ function figure(panel) {
     layers,
   });
   panel.words.textContent = `${first.assumption}${now && kept ? ` Before: ${withUnit(kept.pitch, "Hz", 5)}, ${loudness(kept)}.` : ""}`;
-}
-
-function degrees(panel, data) {
-  const key = JSON.stringify([data.names, data.dof]);
-  if (panel.degrees.dataset.key === key) return;
-  panel.degrees.dataset.key = key;
-  panel.degrees.replaceChildren(choose("of", data.names.map((name, i) => [String(i), name]), String(data.dof), (dof) => panel.choose({ dof: Number(dof) })));
 }

@@ -6,8 +6,6 @@ import { label, shown } from "../numbers.js";
 import { stateWithout } from "../panel.js";
 import { diverging, mechanismColours, sequential } from "../colours.js";
 
-const d3 = window.d3;
-
 export default {
   setup(panel) {
     panel.parameterChoice("x", "x", "friction.static");
@@ -37,7 +35,7 @@ export default {
     const [rows, columns] = arrays.growth.shape;
     const heat = { rows, columns, ...coloured(panel, data, arrays) };
     const domain = (axis, span) => ({ label: label(axis.parameter, axis.unit), domain: span, axis });
-    panel.spec = { x: domain(data.x, data.xspan), y: domain(data.y, data.yspan), heat, edges: boundary(data, arrays.growth) };
+    panel.spec = { x: domain(data.x, data.xspan), y: domain(data.y, data.yspan), heat, edges: boundary(arrays) };
     const share = data.unstable === null ? "no steady sliding anywhere" : `${shown(100 * data.unstable, 3)} % of the plane is unstable`;
     panel.remark = data.missing ? `${share}; ${data.missing} points have no steady sliding` : share;
     mark(panel);
@@ -102,25 +100,10 @@ const rounded = (value, [low, high]) => {
   return Number(value.toFixed(Math.min(digits, 12)));
 };
 
-/** Curves of zero growth in the axes' units, by D3's marching squares on the grid. */
-function boundary(data, growth) {
-  const [rows, columns] = growth.shape;
-  const known = Array.from(growth, (g) => (Number.isFinite(g) ? g : -1e30));
-  const found = d3.contours().size([columns, rows]).smooth(true).contour(known, 0);
-  const x = ([a, b], i) => a + ((b - a) * (i - 0.5)) / (columns - 1);
-  const inside = ([i, j]) => i > 0.5 && j > 0.5 && i < columns - 0.5 && j < rows - 0.5;
+/** The curves of the boundary, from its points and the number of the curve each is on. */
+function boundary({ edge, curve }) {
   const curves = [];
-  for (const ring of found.coordinates.flat()) {
-    let curve = [];
-    for (const at of ring) {
-      if (inside(at)) curve.push([x(data.xspan, at[0]), x(data.yspan, at[1])]);
-      else if (curve.length) {
-        curves.push(curve);
-        curve = [];
-      }
-    }
-    if (curve.length > 1) curves.push(curve);
-  }
+  for (let i = 0; i < curve.length; i++) (curves[curve[i]] ??= []).push([edge[2 * i], edge[2 * i + 1]]);
   return curves;
 }
 

@@ -3,16 +3,17 @@
 import { Chart, across, hull, line, span, text } from "../chart.js";
 import { sequential } from "../colours.js";
 import { choose, make } from "../elements.js";
-import { label, prefix, shown } from "../numbers.js";
+import { label, prefix, shown, typographic } from "../numbers.js";
+import { degrees, startOf } from "../start.js";
 
-const START = [["push", "steady sliding, pushed"], ["rest", "loads applied at rest"], ["sliding", "steady sliding"]];
+const STARTS = [["push", "steady sliding, pushed"], ["rest", "loads applied at rest"], ["sliding", "steady sliding"]];
 
 export default {
   setup(panel) {
     panel.degrees = make("span");
     panel.controls.append(
-      choose("start", START, panel.chosen.start ?? "push", (start) => panel.choose({ start })),
-      choose("push", [["0.001", "0.1 %"], ["0.05", "5 %"], ["0.5", "50 %"], ["2", "200 %"]], String(panel.chosen.push ?? 0.05), (push) => panel.choose({ push: Number(push) })),
+      choose("start", STARTS, startOf(panel.app.store).start, (start) => panel.choose({ start })),
+      choose("push", [["0.001", "0.1 %"], ["0.05", "5 %"], ["0.5", "50 %"], ["2", "200 %"]], String(startOf(panel.app.store).push), (push) => panel.choose({ push: Number(push) })),
       panel.degrees,
     );
     const place = make("div", { class: "charts two" });
@@ -25,12 +26,12 @@ export default {
     ];
   },
 
-  options: (panel) => ({ start: panel.chosen.start ?? "push", push: panel.chosen.push ?? 0.05, dof: panel.chosen.dof ?? 0 }),
+  options: (panel) => startOf(panel.app.store),
 
   draw(panel, { data, arrays }) {
     degrees(panel, data);
     panel.app.heard(data);
-    panel.remark = [data.verdict, data.caution, data.outcome === "completed" ? "" : `${data.message}.`].filter(Boolean).join(" ").replaceAll("+-", "±").replaceAll(" -", " −");
+    panel.remark = [data.verdict, data.caution, data.outcome === "completed" ? "" : `${data.message}.`].filter(Boolean).map(typographic).join(" ");
     panel.element.dataset.fate = data.fate ?? "";
     panel.element.dataset.frequency = data.peaks?.[0]?.[0] ?? "";
     if (data.short) return;
@@ -65,10 +66,3 @@ export default {
     });
   },
 };
-
-function degrees(panel, data) {
-  const key = JSON.stringify([data.names, data.dof]);
-  if (panel.degrees.dataset.key === key) return;
-  panel.degrees.dataset.key = key;
-  panel.degrees.replaceChildren(choose("of", data.names.map((name, i) => [String(i), name]), String(data.dof), (dof) => panel.choose({ dof: Number(dof) })));
-}

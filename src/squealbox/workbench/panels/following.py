@@ -1,0 +1,27 @@
+"""A motion followed for a panel: with its progress, and with an end as soon as nobody waits for it."""
+
+from typing import Any
+
+from squealbox.system import System
+from squealbox.transient import Trajectory, needs_compiling, simulate
+from squealbox.workbench.panels.panel import Elsewhere, Work
+
+COMPILING = "compiling the kernel for this design, which happens once"
+SECONDS = 15.0  # of a processor of 2020 and later, for the kernel with exact contacts
+
+
+def followed(system: System, duration: float, work: Work, share: float, **how: Any) -> Trajectory:
+    """`simulate` with `how`, which takes `share` of the whole work.
+
+    Raises `Elsewhere` where the kernel must be compiled first, unless this is that other process; `Stopped` where
+    nobody waits any more, within some hundredths of a second.
+    """
+    work.progress(0.0, "following the motion")
+    if how.get("contact", "exact") == "exact" and not work.apart and needs_compiling(system):
+        raise Elsewhere(COMPILING, SECONDS)
+    return simulate(
+        system,
+        duration,
+        progress=lambda reached, end, _: work.progress(share * reached / end, "following the motion"),
+        **how,
+    )
