@@ -10,8 +10,9 @@ Cameron and Griffin 1989, Journal of Applied Mechanics 56, 149-154). The Jacobia
 Stability: Phi' = A(t) Phi over one period, by exponentials of the fourth-order Magnus series.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -25,8 +26,10 @@ from squealbox.result import COMPLETED, Outcome
 from squealbox.system import as_system
 
 LARGEST = 512  # harmonics; beyond this a smoothed cycle is better found by shooting
+ABSENT = 1e-9  # of the largest harmonic: Newton's method leaves less than its tolerance
 FAILURES = 4  # doublings in a row without convergence after which the search ends
 ADVICE = "give a start nearer to the cycle, more harmonics, or a wider smoothing; or use shooting"
+Guess: TypeAlias = "Callable[[Grid], Any]"
 
 
 def harmonic_balance(
@@ -73,44 +76,67 @@ def harmonic_balance(
     settings = {"contact": contact, "width": width, "tolerance": tolerance}
     grid = Grid(harmonics or 8, samples)
     balance = Balance(field, grid)
-    guess, found = _guess(field, grid, x, period, found)
+    guess, found = _guess(field, x, period, found)
     if not found.ok:
-        return cycle_of(balance, guess, 2.0 * np.pi / period, found, settings, np.nan)
-    if harmonics is not None:
-        coefficients, omega, outcome = balance.solve(guess, 2.0 * np.pi / period, most_steps)
-        error = balance.tail(coefficients)
-    else:
-        balance, coefficients, omega, outcome, error = _refined(balance, guess, period, tolerance, most_steps)
-    return cycle_of(balance, coefficients, omega, outcome, settings, error)
+        return cycle_of(balance, guess(grid), 2.0 * np.pi / period, found, settings, np.nan)
+
+    def solved(guess: Guess, period: float) -> tuple[Any, ...]:
+        if harmonics is None:
+            return _refined(balance, guess, period, tolerance, most_steps)
+        coefficients, omega, outcome = balance.solve(guess(grid), 2.0 * np.pi / period, most_steps)
+        return balance, coefficients, omega, outcome, balance.tail(coefficients)
+
+    done = solved(guess, period)
+    rounds = rounds_of(done[1]) if done[3].ok else 1
+    if rounds > 1:
+        once = once_round(done[1], rounds)
+        done = solved(lambda grid: grid.padded(once), 2.0 * np.pi / (rounds * done[2]))
+    return cycle_of(done[0], done[1], done[2], done[3], settings, done[4])
 
 
-def _guess(field: Field, grid: "Grid", x: Any, period: float, found: Outcome) -> tuple[Any, Outcome]:
-    """The series of the motion from x over a period; of rest at x where there is no such motion, and then why."""
-    run = fly(field, x, period, 1e-9, np.linspace(0.0, period, grid.samples + 1)) if found.ok else None
-    if run is not None and run.outcome.ok:
-        return grid.series(run.q[: grid.samples]), found
-    if run is not None:
-        found = Outcome(
-            "no_convergence", f"the first period ended early: {run.outcome.message}", history=[], advice=ADVICE
-        )
-    return grid.series(np.tile(x[: field.size], (grid.samples, 1))), found
+def rounds_of(coefficients: Any) -> int:
+    """How often the motion of a series goes round in its period: the common divisor of the harmonics it has."""
+    sizes = np.linalg.norm(coefficients[1:].reshape(-1, 2 * coefficients.shape[1]), axis=1)
+    return int(np.gcd.reduce(1 + np.flatnonzero(sizes > ABSENT * np.max(sizes)))) or 1
 
 
-def _refined(balance: "Balance", guess: Any, period: float, tolerance: float, most: int) -> tuple[Any, ...]:
+def once_round(coefficients: Any, rounds: int) -> Any:
+    """The series of one of the rounds."""
+    pairs = coefficients[1:].reshape(-1, 2, coefficients.shape[1])[rounds - 1 :: rounds]
+    return np.concatenate([coefficients[:1], pairs.reshape(-1, coefficients.shape[1])])
+
+
+def _guess(field: Field, x: Any, period: float, found: Outcome) -> tuple[Guess, Outcome]:
+    """The series, on any grid, of the motion from x over a period; of rest at x where there is none, and then why."""
+    run = fly(field, x, period, 1e-9) if found.ok else None
+    if run is None or not run.outcome.ok:
+        if run is not None:
+            message = f"the first period ended early: {run.outcome.message}"
+            found = Outcome("no_convergence", message, history=[], advice=ADVICE)
+        return lambda grid: grid.series(np.tile(x[: field.size], (grid.samples, 1))), found
+
+    def along(grid: Grid) -> Any:
+        return grid.series(fly(field, x, period, 1e-9, np.linspace(0.0, period, grid.samples + 1)).q[: grid.samples])
+
+    return along, found
+
+
+def _refined(balance: "Balance", guess: Guess, period: float, tolerance: float, most: int) -> tuple[Any, ...]:
     """Double the harmonics until the motion changes by less than `tolerance` of its size."""
-    coefficients, omega, outcome = balance.solve(guess, 2.0 * np.pi / period, most)
+    coefficients, omega, outcome = balance.solve(guess(balance.grid), 2.0 * np.pi / period, most)
     error, failures = np.inf, 0 if outcome.ok else 1
     while 2 * balance.grid.harmonics <= LARGEST and error > tolerance and failures < FAILURES:
+        coarse = outcome
         finer = Balance(balance.field, Grid(2 * balance.grid.harmonics))
-        usable = coefficients if outcome.ok else guess
-        turned, phase = finer.grid.padded(usable), omega if outcome.ok else 2.0 * np.pi / period
-        new, new_omega, outcome = finer.solve(turned, phase, most)
+        begin = finer.grid.padded(coefficients) if coarse.ok else guess(finer.grid)
+        phase = omega if coarse.ok else 2.0 * np.pi / period
+        coefficients, omega, outcome = finer.solve(begin, phase, most)
         failures = 0 if outcome.ok else failures + 1
-        if outcome.ok:
-            change = np.max(np.linalg.norm(new - finer.grid.padded(coefficients), axis=0))
-            size = np.max(np.linalg.norm(new[1:], axis=0)) or 1.0
-            error = max(float(change / size), abs(new_omega / omega - 1.0))
-        balance, coefficients, omega = finer, new, new_omega
+        if outcome.ok and coarse.ok:  # what did not converge tells no error
+            change = np.max(np.linalg.norm(coefficients - begin, axis=0))
+            size = np.max(np.linalg.norm(coefficients[1:], axis=0)) or 1.0
+            error = max(float(change / size), abs(omega / phase - 1.0))
+        balance = finer
     if outcome.ok and error > tolerance:
         message = f"{balance.grid.harmonics} harmonics leave an estimated error of {error:.2g}: {ADVICE}"
         outcome = Outcome("too_few_harmonics", message, error=error, advice=ADVICE)

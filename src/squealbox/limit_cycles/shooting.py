@@ -9,23 +9,22 @@ are solved by Newton with the exact derivative of the flow, saltation matrices i
 are the eigenvalues of the product of the shots' derivatives.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from squealbox.limit_cycles.cycle import Cycle, extremes, ordered
 from squealbox.limit_cycles.field import Field
+from squealbox.limit_cycles.rounds import rounds
+from squealbox.limit_cycles.shots import Newton, nodes_along
 from squealbox.limit_cycles.starting import first_guess
-from squealbox.limit_cycles.variation import Flight, flight, fly, quick_flight
+from squealbox.limit_cycles.variation import Flight, fly
 from squealbox.parameters import ParameterError, known_names
-from squealbox.result import COMPLETED, Outcome
+from squealbox.result import Outcome
 from squealbox.system import as_system
 
 CONTACTS = {"exact": "exact", "smooth": "arctan", "arctan": "arctan", "tanh": "tanh"}
 TURNS = (1, 2, 4)  # past a doubling, a run settles on the cycle that closes after two turns, past the next after four
-COARSE = 1e-5  # residual above which a derivative to 1e-8 is as good as the exact one
-ADVICE = "give a start nearer to the cycle, a longer `settle`, or more `shots`"
 
 
 def shooting(
@@ -83,8 +82,7 @@ def shooting(
     first: Any = None
     for turns in (1,) if known else TURNS:
         turned = turns * (period if first is None else float(first.period))
-        newton = Newton(field, _nodes(field, x, turned, int(shots), rtol), turned, rtol)
-        outcome = newton.solve(tolerance, most_steps)
+        newton, outcome = _solved(field, x, turned, int(shots), rtol, tolerance, most_steps)
         error = newton.history[-1] if newton.history else np.inf
         cycle = cycle_through(
             field, newton.nodes[0], newton.period, newton.monodromy, outcome, settings, samples, error, newton.flights
@@ -95,131 +93,24 @@ def shooting(
     return cycle if cycle.stable else first
 
 
+def _solved(
+    field: Field, x: Any, period: float, shots: int, rtol: float, tolerance: float, most: int
+) -> tuple[Newton, Outcome]:
+    """Newton's method from x; where it converged on a cycle wound several times, again for one round of it."""
+    for _ in range(2):
+        newton = Newton(field, nodes_along(field, x, period, shots, rtol), period, rtol)
+        outcome = newton.solve(tolerance, most)
+        wound = rounds(field, newton.nodes[0], newton.period, newton.size, rtol, tolerance) if outcome.ok else 1
+        if wound == 1:
+            break
+        x, period = newton.nodes[0], newton.period / wound
+    return newton, outcome
+
+
 def _flips(cycle: Cycle) -> bool:
     """Whether what leaves the cycle changes sides from turn to turn: a real multiplier below -1."""
     flipping = (np.abs(cycle.multipliers.imag) < 1e-9) & (cycle.multipliers.real < -1.0)
     return bool(np.any(flipping)) and not cycle.stable
-
-
-@dataclass(frozen=True, eq=False)
-class _Shots:
-    """Residual, its norm [-], and the flights behind it."""
-
-    residual: Any
-    norm: float
-    flights: list[Flight]
-
-
-class Newton:
-    """Newton's method on the shots, in states scaled to velocities; keeps the history of the scaled residual."""
-
-    def __init__(self, field: Field, nodes: Any, period: float, rtol: float) -> None:
-        self.field, self.nodes, self.period, self.rtol = field, nodes, period, rtol
-        self.reference = nodes[0].copy()
-        self.coarse = field.contact == "exact"  # the derivative to 1e-8, far from the cycle
-        self.history: list[float] = []
-        self.flights: list[Flight] = []
-        self.monodromy = np.full((nodes.shape[1],) * 2, np.nan)
-
-    def solve(self, tolerance: float, most: int) -> Outcome:
-        """Iterate until the residual is below `tolerance` and no longer falls."""
-        now = self._shoot(self.nodes, self.period)
-        if not now.flights[-1].outcome.ok:
-            return Outcome("no_convergence", f"a shot ended early: {now.flights[-1].outcome.message}", advice=ADVICE)
-        heading = now.flights[0]
-        normal = self._phase(heading)
-        for _ in range(most):
-            self.history.append(now.norm)
-            if self.coarse and now.norm < COARSE:
-                self.coarse, now = False, self._shoot(self.nodes, self.period)
-            step = self._step(now, normal)
-            following = self._damped(now, step, most_halvings=0 if now.norm < tolerance else 6)
-            if following is None and not self.coarse:
-                break
-            if following is None:
-                self.coarse, now = False, self._shoot(self.nodes, self.period)
-            else:
-                now, self.nodes, self.period = following
-        if self.coarse:
-            self.coarse, now = False, self._shoot(self.nodes, self.period)
-        self.flights = now.flights
-        self.monodromy = _product([f.phi for f in now.flights])
-        if now.norm > tolerance or not np.isfinite(now.norm):
-            message = f"Newton's method stopped at a scaled residual of {now.norm:.3g}: {ADVICE}"
-            return Outcome("no_convergence", message, history=self.history, advice=ADVICE)
-        return self._degenerate(now) or Outcome(COMPLETED, "", history=self.history)
-
-    def _shoot(self, nodes: Any, period: float) -> _Shots:
-        flights = []
-        for node in nodes:
-            fly_to = quick_flight if self.coarse else flight
-            flights.append(fly_to(self.field, node, period / len(nodes), self.rtol))
-            if not flights[-1].outcome.ok:
-                return _Shots(None, np.inf, flights)
-        ends = np.array([f.x for f in flights])
-        residual = np.roll(nodes, -1, axis=0) - ends
-        scale = self.field.scale
-        states = np.vstack([np.hstack([f.motion.q, f.motion.qd]) for f in flights])
-        size = float(np.max(np.ptp(states, axis=0) * scale)) or 1.0
-        return _Shots(residual, float(np.max(np.abs(residual * scale))) / size, flights)
-
-    def _phase(self, flight_: Flight) -> Any:
-        mode = flight_.motion.mode[0]
-        normal = self.field.rate(self.reference, mode) * self.field.scale
-        return normal / np.linalg.norm(normal)
-
-    def _step(self, now: _Shots, normal: Any) -> Any:
-        """Newton step (k 2n + 1,), in scaled states and the share of the period."""
-        k, size = self.nodes.shape
-        scale = self.field.scale
-        matrix = np.zeros((k * size + 1, k * size + 1))
-        for i, f in enumerate(now.flights):
-            rows = slice(i * size, (i + 1) * size)
-            after = (i + 1) % k
-            matrix[rows, after * size : (after + 1) * size] += np.eye(size)
-            matrix[rows, rows] -= f.phi * (scale[:, None] / scale)
-            matrix[rows, -1] = -f.rate * scale * self.period / k
-        matrix[-1, :size] = normal
-        right = np.append((now.residual * scale).ravel(), normal @ ((self.nodes[0] - self.reference) * scale))
-        weight = np.max(np.abs(matrix[:, -1])) or 1.0
-        matrix[:, -1] /= weight
-        step = np.linalg.lstsq(matrix, -right, rcond=1e-14)[0]
-        step[-1] /= weight
-        return step
-
-    def _damped(self, now: _Shots, step: Any, most_halvings: int) -> tuple[_Shots, Any, float] | None:
-        """The first of the step, its half, its quarter ... that lowers the residual; None when none does."""
-        share = min(1.0, 0.3 / max(abs(step[-1]), 1e-300))
-        for _ in range(most_halvings + 1):
-            nodes = self.nodes + share * step[:-1].reshape(self.nodes.shape) / self.field.scale
-            period = self.period * (1.0 + share * step[-1])
-            trial = self._shoot(nodes, period)
-            if trial.norm < now.norm:
-                return trial, nodes, period
-            share *= 0.5
-        return None
-
-    def _degenerate(self, now: _Shots) -> Outcome | None:
-        speed = max(float(np.ptp(f.motion.qd, axis=0).max()) for f in now.flights)
-        reference = float(np.max(np.abs(self.field.V), initial=0.0)) or 1.0
-        if speed > 1e-9 * reference:
-            return None
-        return Outcome("steady_sliding", "the shots met on steady sliding, not on a cycle", history=self.history)
-
-
-def _product(matrices: Any) -> Any:
-    total = matrices[0]
-    for matrix in matrices[1:]:
-        total = matrix @ total
-    return total
-
-
-def _nodes(field: Field, x: Any, period: float, shots: int, rtol: float) -> Any:
-    """Starts of the shots, along the motion from x."""
-    if shots == 1:
-        return x[None].copy()
-    run = fly(field, x, period, rtol, np.linspace(0.0, period, shots + 1))
-    return np.hstack([run.q, run.qd])[:shots]
 
 
 def cycle_through(

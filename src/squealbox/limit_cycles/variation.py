@@ -44,9 +44,14 @@ def fly(field: Field, x: Any, duration: float, rtol: float = 1e-13, times: Any =
     return simulate(field.system, duration, start, times, method, field.contact, width=field.width)
 
 
-def flight(field: Field, x: Any, duration: float, rtol: float = 1e-13) -> Flight:
-    """The motion from x over `duration` [s] and its derivative by x."""
-    motion = fly(field, x, duration, rtol)
+def flight(
+    field: Field, x: Any, duration: float, rtol: float = 1e-13, *, motion: Trajectory | None = None
+) -> Flight:  # fmt: skip
+    """The motion from x over `duration` [s] and its derivative by x.
+
+    motion : that of `fly`, where it is known
+    """
+    motion = fly(field, x, duration, rtol) if motion is None else motion
     size = 2 * field.size
     if not motion.outcome.ok:
         return Flight(np.full(size, np.nan), np.full(size, np.nan), np.full((size, size), np.nan), motion)
@@ -76,7 +81,7 @@ def quick_flight(
     """
     motion = fly(field, x, duration, rtol) if motion is None else motion
     if not motion.outcome.ok:
-        return flight(field, x, duration, rtol)
+        return flight(field, x, duration, rtol, motion=motion)
     states = np.hstack([motion.q, motion.qd])
     rows = [0, *(_cuts(motion) if field.contact == "exact" else []), len(motion.t) - 1]
     counts = [max(8, int(np.ceil(steps * (motion.t[k] - motion.t[i]) / duration))) for i, k in itertools.pairwise(rows)]
