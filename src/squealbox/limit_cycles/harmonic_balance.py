@@ -5,9 +5,10 @@ inverse and D the derivative by tau, the coefficients Q (2H + 1, n) obey
 
     R(Q, omega) = omega^2 D^2 Q M' + omega D Q C' + Q K' - E+ [f + sum_c d_c F_c(E Q, omega E D Q)] = 0
 
-and one coefficient b_1 = 0 fixes the phase. F is evaluated in time and brought back (alternating frequency-time;
-Cameron and Griffin 1989, Journal of Applied Mechanics 56, 149-154). The Jacobian is analytic, from dF/dN and dF/dv.
-Stability: Phi' = A(t) Phi over one period, by exponentials of the fourth-order Magnus series.
+and one coefficient, b_h = 0 of the largest harmonic, fixes the phase. F is evaluated in time and brought back
+(alternating frequency-time; Cameron and Griffin 1989, Journal of Applied Mechanics 56, 149-154). The Jacobian is
+analytic, from dF/dN and dF/dv. Stability: Phi' = A(t) Phi over one period, by exponentials of the fourth-order Magnus
+series. A series that only has every m-th harmonic goes round m times in its period, and is given once round.
 """
 
 from collections.abc import Callable
@@ -236,7 +237,7 @@ class Balance:
         return total.reshape(rows * n, rows * n), by_omega.ravel()
 
     def solve(self, guess: Any, omega: float, most: int = 40) -> tuple[Any, float, Outcome]:
-        """Newton with halved steps; the phase is turned so that b_1 of the largest degree of freedom is zero."""
+        """Newton with halved steps; the phase is turned so that b_h of the largest harmonic is zero."""
         coefficients, column = self.turned(guess)
         history: list[float] = []
         scale = omega**2 * max(float(np.max(np.linalg.norm(coefficients[1:], axis=0))), 1e-300)
@@ -278,12 +279,12 @@ class Balance:
         return Outcome(COMPLETED, "", history=history)
 
     def turned(self, coefficients: Any) -> tuple[Any, int]:
-        """The series begun where b_1 = 0 > -a_1 in the degree of freedom that moves most; the place of that b_1."""
-        dof = int(np.argmax(np.hypot(coefficients[1], coefficients[2])))
-        phase = np.arctan2(coefficients[2, dof], coefficients[1, dof])
-        turned = self.grid.shifted(coefficients, float(phase))
-        turned[2, dof] = 0.0
-        return turned, 2 * coefficients.shape[1] + dof
+        """The series begun where the largest harmonic of any displacement has b_h = 0 < a_h; the place of that b_h."""
+        a, b = coefficients[1::2], coefficients[2::2]
+        h, dof = np.unravel_index(int(np.argmax(np.hypot(a, b))), a.shape)
+        turned = self.grid.shifted(coefficients, float(np.arctan2(b[h, dof], a[h, dof])) / (int(h) + 1))
+        turned[2 * h + 2, dof] = 0.0
+        return turned, int((2 * h + 2) * coefficients.shape[1] + dof)
 
     def tail(self, coefficients: Any) -> float:
         """Share of the last quarter of harmonics in the motion [-]."""
