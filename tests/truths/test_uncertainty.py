@@ -35,7 +35,7 @@ from squealbox.studies import (
     sobol_indices,
     squeal_probability,
 )
-from squealbox.studies.replicates import binomial_interval, student_interval
+from squealbox.studies.uncertainty.replicates import binomial_interval, student_interval
 from squealbox.transient import simulate_ensemble
 
 CIRCLE = Uniform(-np.pi, np.pi)

@@ -20,7 +20,7 @@ from squealbox.files.own_law import OwnLaw, own_law
 from squealbox.friction import LAWS, FrictionLaw
 from squealbox.parameters import DataSheet, Parameter, ParameterError, known_names
 from squealbox.schedules import SCHEDULES, Schedule
-from squealbox.studies.distributions import Distribution
+from squealbox.studies.uncertainty.distributions import Distribution
 
 Sheet = TypeVar("Sheet", bound=DataSheet)
 

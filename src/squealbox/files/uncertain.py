@@ -25,7 +25,7 @@ from squealbox.files.sheets import read_sheet
 from squealbox.files.study_axis import read_correlation
 from squealbox.parameters import DataSheet, Parameter, ParameterError, choice, known_names, parameter
 from squealbox.studies import DISTRIBUTIONS, SAMPLINGS, Constraint, Distribution, Goal, Quantity, Scatter
-from squealbox.studies.goals import Over
+from squealbox.studies.optimisation.goals import Over
 
 STUDIES = ("probability", "sobol", "morris", "form", "subset", "surrogate", "bounds")
 SENSES = ("minimise", "maximise")

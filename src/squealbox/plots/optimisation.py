@@ -7,7 +7,7 @@ import numpy as np
 
 from squealbox.plots.dispatch import plot
 from squealbox.plots.style import COLUMN, LINES, WIDTH, drawing, figure_of, line, number, quantity_label
-from squealbox.studies.optimisation import Optimum
+from squealbox.studies.optimisation.optimum import Optimum
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,9 +7,9 @@ import numpy as np
 from squealbox.plots.dispatch import plot
 from squealbox.plots.style import COLUMN, WIDTH, drawing, figure_of, line, number, quantity_label
 from squealbox.plots.uncertainty import QUIET, SQUEAL
-from squealbox.studies.chaos import Surrogate
-from squealbox.studies.form import DesignPoint
-from squealbox.studies.subset import SubsetProbability
+from squealbox.studies.uncertainty.chaos import Surrogate
+from squealbox.studies.uncertainty.form import DesignPoint
+from squealbox.studies.uncertainty.subset import SubsetProbability
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

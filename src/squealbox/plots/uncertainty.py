@@ -6,11 +6,11 @@ import numpy as np
 
 from squealbox.plots.dispatch import plot
 from squealbox.plots.style import COLUMN, LINES, WIDTH, drawing, figure_of, line, number, quantity_label
-from squealbox.studies.intervals import IntervalBounds
-from squealbox.studies.morris import MorrisEffects
-from squealbox.studies.probability import SquealProbability
 from squealbox.studies.quantity import unit_of
-from squealbox.studies.sobol import SobolIndices
+from squealbox.studies.uncertainty.intervals import IntervalBounds
+from squealbox.studies.uncertainty.morris import MorrisEffects
+from squealbox.studies.uncertainty.probability import SquealProbability
+from squealbox.studies.uncertainty.sobol import SobolIndices
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

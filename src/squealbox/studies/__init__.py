@@ -8,8 +8,23 @@ Depends on: system, result, parameters.
 
 from squealbox.result import batched
 from squealbox.studies.analysis import StudyError
-from squealbox.studies.chaos import Surrogate, polynomial_chaos
-from squealbox.studies.distributions import (
+from squealbox.studies.optimisation.goals import Constraint, Goal
+from squealbox.studies.optimisation.optimum import Optimum, optimise
+from squealbox.studies.quantity import Quantity, evaluate
+from squealbox.studies.refinement import Refined
+from squealbox.studies.space import Axis, Space, grid, latin_hypercube, sampled, sobol_sequence, zipped
+from squealbox.studies.store import (
+    ForeignStore,
+    Store,
+    StoreDamaged,
+    StoreError,
+    StoreFull,
+    StoreLocked,
+    StudyChanged,
+)
+from squealbox.studies.sweep import Sweep, open_sweep, sweep
+from squealbox.studies.uncertainty.chaos import Surrogate, polynomial_chaos
+from squealbox.studies.uncertainty.distributions import (
     DISTRIBUTIONS,
     Beta,
     Distribution,
@@ -21,28 +36,13 @@ from squealbox.studies.distributions import (
     Uniform,
     as_distribution,
 )
-from squealbox.studies.form import DesignPoint, form
-from squealbox.studies.goals import Constraint, Goal
-from squealbox.studies.intervals import IntervalBounds, interval_bounds
-from squealbox.studies.morris import MorrisEffects, morris_effects
-from squealbox.studies.optimisation import Optimum, optimise
-from squealbox.studies.probability import SquealProbability, squeal_probability
-from squealbox.studies.quantity import Quantity, evaluate
-from squealbox.studies.refinement import Refined
-from squealbox.studies.scatter import SAMPLINGS, Scatter
-from squealbox.studies.sobol import SobolIndices, sobol_indices
-from squealbox.studies.space import Axis, Space, grid, latin_hypercube, sampled, sobol_sequence, zipped
-from squealbox.studies.store import (
-    ForeignStore,
-    Store,
-    StoreDamaged,
-    StoreError,
-    StoreFull,
-    StoreLocked,
-    StudyChanged,
-)
-from squealbox.studies.subset import SubsetProbability, subset_simulation
-from squealbox.studies.sweep import Sweep, open_sweep, sweep
+from squealbox.studies.uncertainty.form import DesignPoint, form
+from squealbox.studies.uncertainty.intervals import IntervalBounds, interval_bounds
+from squealbox.studies.uncertainty.morris import MorrisEffects, morris_effects
+from squealbox.studies.uncertainty.probability import SquealProbability, squeal_probability
+from squealbox.studies.uncertainty.scatter import SAMPLINGS, Scatter
+from squealbox.studies.uncertainty.sobol import SobolIndices, sobol_indices
+from squealbox.studies.uncertainty.subset import SubsetProbability, subset_simulation
 from squealbox.studies.work import Pace
 
 __all__ = [

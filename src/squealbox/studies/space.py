@@ -12,7 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from squealbox.parameters import ParameterError
-from squealbox.studies.scatter import Sampling, unit_points
+from squealbox.studies.uncertainty.scatter import Sampling, unit_points
 
 POINT = "point"  # the dimension of an axis with several parameters
 

@@ -16,8 +16,8 @@ import numpy as np
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
-from squealbox.studies.replicates import ratio_interval
-from squealbox.studies.scatter import Scatter, unit_points
+from squealbox.studies.uncertainty.replicates import ratio_interval
+from squealbox.studies.uncertainty.scatter import Scatter, unit_points
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -7,9 +7,9 @@ from typing import Any, Literal
 import numpy as np
 
 from squealbox.parameters import ParameterError
-from squealbox.studies.distributions import Distribution, Lognormal
 from squealbox.studies.quantity import Quantity, as_quantity, evaluate
-from squealbox.studies.scatter import Scatter
+from squealbox.studies.uncertainty.distributions import Distribution, Lognormal
+from squealbox.studies.uncertainty.scatter import Scatter
 
 Over = Literal["nominal", "mean", "quantile", "probability"]
 

@@ -16,9 +16,9 @@ import numpy as np
 
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome, Result, quantity
-from squealbox.studies.limit_state import LimitState, seeded
 from squealbox.studies.quantity import as_quantity, input_of, unit_of
-from squealbox.studies.scatter import Scatter
+from squealbox.studies.uncertainty.limit_state import LimitState, seeded
+from squealbox.studies.uncertainty.scatter import Scatter
 
 ALONG = 61  # points on the line through the design point
 CLOSE = 1e-4  # |g| at the design point, as a share of its change over one standard deviation

@@ -19,10 +19,10 @@ import numpy as np
 
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome, Result, quantity
-from squealbox.studies.distributions import Lognormal, Normal
 from squealbox.studies.quantity import Quantity, as_quantity, evaluate, input_of
-from squealbox.studies.scatter import Scatter
-from squealbox.studies.sobol import finite_outcome
+from squealbox.studies.uncertainty.distributions import Lognormal, Normal
+from squealbox.studies.uncertainty.scatter import Scatter
+from squealbox.studies.uncertainty.sobol import finite_outcome
 
 FOLDS = 10
 GOOD = 0.95  # Q2 below which the surrogate says that it is not to be trusted

@@ -8,8 +8,8 @@ import numpy as np
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
-from squealbox.studies.replicates import binomial_interval, student_interval
-from squealbox.studies.scatter import Sampling, Scatter, unit_points
+from squealbox.studies.uncertainty.replicates import binomial_interval, student_interval
+from squealbox.studies.uncertainty.scatter import Sampling, Scatter, unit_points
 
 ENOUGH = 5  # squealing and quiet points that every replicate must hold before their spread is trusted
 

@@ -14,10 +14,10 @@ import numpy as np
 
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome, Result, quantity
-from squealbox.studies.form import lognormal_interval
-from squealbox.studies.limit_state import LimitState, seeded
 from squealbox.studies.quantity import as_quantity, input_of
-from squealbox.studies.scatter import Scatter
+from squealbox.studies.uncertainty.form import lognormal_interval
+from squealbox.studies.uncertainty.limit_state import LimitState, seeded
+from squealbox.studies.uncertainty.scatter import Scatter
 
 SHARE = 0.1  # conditional probability of a level
 

@@ -14,11 +14,11 @@ import numpy as np
 
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Outcome, Result, quantity
-from squealbox.studies.goals import Candidates, Constraint, Goal
-from squealbox.studies.intervals import checked_box
+from squealbox.studies.optimisation.goals import Candidates, Constraint, Goal
+from squealbox.studies.optimisation.search import FEASIBLE, best_of_one, pareto_front
 from squealbox.studies.quantity import input_of, unit_of
-from squealbox.studies.scatter import Scatter
-from squealbox.studies.search import FEASIBLE, best_of_one, pareto_front
+from squealbox.studies.uncertainty.intervals import checked_box
+from squealbox.studies.uncertainty.scatter import Scatter
 
 METHODS = ("global", "local")
 NEAR = 1e-4  # share of the range, or of the size of a constraint's limit, within which it is said to bind

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.studies.goals import Candidates, Constraint, Goal
+from squealbox.studies.optimisation.goals import Candidates, Constraint, Goal
 
 FEASIBLE = 1e-6  # relative violation of a constraint that still counts as kept
 WORST = 1e30  # stands for a goal that is unknown or infinite

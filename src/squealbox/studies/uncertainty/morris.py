@@ -14,8 +14,8 @@ import numpy as np
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
-from squealbox.studies.scatter import Scatter
-from squealbox.studies.sobol import finite_outcome, need_independent
+from squealbox.studies.uncertainty.scatter import Scatter
+from squealbox.studies.uncertainty.sobol import finite_outcome, need_independent
 
 COVERED = 0.99  # central share of each distribution that the trajectories span
 LEVELS = 4
