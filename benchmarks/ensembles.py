@@ -221,7 +221,7 @@ def operations(shape):
         own = sum(not (isinstance(n.left, ast.Name) and n.left.id == "b") for n in sums)  # b + place is an address
         called = [n.func.id for n in nodes if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)]
         counts[function.name] = own + sum(counts.get(name, 0) for name in called)
-    return counts["step"]
+    return counts["trial"]
 
 
 def peak_rate(library):
@@ -354,13 +354,20 @@ def sizes():
 
 
 MEMORY = """
-import resource, sys
+import sys
 import numpy as np
 from squealbox import DrumBrake, simulate_ensemble
+
+
+def peak():  # of this program; getrusage would count that of the one which started it
+    line = next(line for line in open("/proc/self/status") if line.startswith("VmHWM"))
+    return int(line.split()[1]) / 2**10
+
+
 simulate_ensemble(DrumBrake(), {"friction.static": np.linspace(0.1, 0.4, 100)}, 1e-4)
-before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+before = peak()
 found = simulate_ensemble(DrumBrake(), {"friction.static": np.linspace(0.1, 0.4, int(sys.argv[1]))}, 1e-4)
-print(before / 2**10, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**10, found.seconds, found.outcome)
+print(before, peak(), found.seconds, found.outcome)
 """
 
 

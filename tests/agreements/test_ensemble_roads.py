@@ -1,16 +1,34 @@
 """Lanes and the scalar march solve the same equation: one answer, whatever the place of a trajectory."""
 
+import platform
+import re
+
 import numpy as np
 import pytest
 
-from squealbox import Contact, Coulomb, DrumBrake, LinearSlope, Ramp, Stribeck, System, simulate, simulate_ensemble
+from squealbox import (
+    Contact,
+    Coulomb,
+    DrumBrake,
+    LinearSlope,
+    Ramp,
+    Stribeck,
+    System,
+    own_law,
+    schedules,
+    simulate,
+    simulate_ensemble,
+)
+from squealbox.friction import Table
+from squealbox.transient import _engine
+from squealbox.transient.lanes import kernel
 
 OBSERVE = ("amplitude", "peak", "frequency", "energy", "sticking")
 
 
-def drum(reading="consistent", friction=0.3):
+def drum(reading="consistent", static=0.3):
     """The drum of the paper."""
-    return DrumBrake(friction=LinearSlope(friction, -0.05), reading=reading)
+    return DrumBrake(friction=LinearSlope(static, -0.05), reading=reading)
 
 
 def distance(one, other, scale):
@@ -50,7 +68,7 @@ def test_schemes_without_events_agree_with_single_runs(contact):
     options = {"contact": contact, "rtol": 1e-6, "width": 0.02, "method": "bogacki-shampine"}
     many = simulate_ensemble(drum(), {"friction.static": frictions}, 0.01, observe=(), **options)
     for k, friction in enumerate(frictions):
-        one = simulate(drum(friction=friction), 0.01, **options)
+        one = simulate(drum(static=friction), 0.01, **options)
         assert distance(many.q[k], one.q[-1], np.max(np.abs(one.q))) < 1e-4  # both controllers keep 1e-6 a step
 
 
@@ -113,7 +131,7 @@ def test_lift_off_and_landing_agree_with_single_runs():
 
 def test_braking_to_standstill_agrees_with_single_runs():
     """A schedule with a kink: speed falls to zero within the run, and the brake sticks."""
-    brake = drum(friction=0.3).replace({"sliding_speed": Ramp(start=0.2, slope=-40.0)})
+    brake = drum(static=0.3).replace({"sliding_speed": Ramp(start=0.2, slope=-40.0)})
     many = simulate_ensemble(brake, {"friction.static": [0.2, 0.3]}, 0.01, observe=(), rtol=1e-9)
     for k, friction in enumerate((0.2, 0.3)):
         one = simulate(brake.replace({"friction.static": friction}), 0.01, rtol=1e-9)
@@ -125,6 +143,53 @@ def test_samples_lie_on_the_single_run():
     instants = np.linspace(0.0, 0.01, 41)
     many = simulate_ensemble(drum(), {"friction.static": [0.3, 0.44]}, 0.01, observe=(), times=instants, rtol=1e-9)
     for k, friction in enumerate((0.3, 0.44)):
-        one = simulate(drum(friction=friction), 0.01, times=instants, rtol=1e-9)
+        one = simulate(drum(static=friction), 0.01, times=instants, rtol=1e-9)
         assert distance(many.sample_q[k], one.q, np.max(np.abs(one.q))) < 1e-5  # quintic between steps
         assert distance(many.sample_qd[k], one.qd, np.max(np.abs(one.qd))) < 1e-4
+
+
+SPEEDS, MEASURED = np.linspace(0.0, 1.0, 9), 0.3 - 0.1 * np.linspace(0.0, 1.0, 9) ** 2
+LAWS = {
+    "measured points": Table(SPEEDS, MEASURED),
+    "own text": own_law(
+        "def mu(v, p):\n    return p[0] - np.float64(0.02) * v**3 + 0.01 * v**2\n", numbers=(0.3,), static=0.3
+    ),
+}
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_laws_of_many_numbers_and_of_plain_text_agree_with_single_runs(law):
+    many = simulate_ensemble(DrumBrake(friction=LAWS[law]), {"theta1": [0.6, 0.65]}, 2e-3, observe=(), rtol=1e-9)
+    one = simulate(DrumBrake(friction=LAWS[law], theta1=0.65), 2e-3, rtol=1e-9)
+    assert many.events[1] == len(one.event_time)
+    assert distance(many.q[1], one.q[-1], np.max(np.abs(one.q))) < 1e-6
+    assert distance(many.q[0], one.q[-1], np.max(np.abs(one.q))) > 1e-3
+
+
+def test_a_schedule_of_measured_points_agrees_with_single_runs():
+    load = schedules.Table([0.0, 1e-3, 2e-3], [500.0, 900.0, 700.0])
+    brakes = [drum(static=mu).system() for mu in (0.2, 0.25)]
+    systems = [s.replace({"contacts": tuple(c.replace({"N0": load}) for c in s.contacts)}) for s in brakes]
+    many = simulate_ensemble(systems, None, 2e-3, observe=(), rtol=1e-9)
+    one = simulate(systems[1], 2e-3, rtol=1e-9)
+    assert distance(many.q[1], one.q[-1], np.max(np.abs(one.q))) < 1e-6
+    assert distance(many.q[0], one.q[-1], np.max(np.abs(one.q))) > 1e-3
+
+
+@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="reads the assembly of this family")
+def test_the_step_is_packed(tmp_path, monkeypatch):
+    """Arithmetic of the step in the assembly of a kernel: whole registers and nothing else."""
+    monkeypatch.setenv("SQUEALBOX_CACHE", str(tmp_path))
+    made = []
+
+    def fresh(shape):
+        made.append(_engine.load_module(kernel.source(shape) + "# once more\n").run)
+        return made[0]
+
+    monkeypatch.setattr(kernel, "lane_kernel", fresh)
+    raw = {"contact": "raw", "method": "bogacki-shampine", "rtol": 1e-3, "observe": ()}
+    simulate_ensemble(drum(), {"friction.static": [0.1, 0.2]}, 1e-4, **raw)
+    text = made[0].inspect_asm(made[0].signatures[0])
+    step = re.search(r"^_ZN\w+?step\w*:\n(.*?)\n\.Lfunc_end", text, re.MULTILINE | re.DOTALL).group(1)
+    packed, scalar = (re.findall(rf"\tv?(?:add|sub|mul|div|fn?m\w+){kind}\t", step) for kind in ("pd", "sd"))
+    assert len(packed) > 200 > len(scalar) == 0

@@ -121,6 +121,20 @@ def test_an_observer_whose_text_cannot_be_read_is_refused():
         simulate_ensemble(DrumBrake(), {"friction.static": [0.1]}, SHORT, observe=Observer("own", abs, (0.0,)))
 
 
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ("if v > 1.0:\n        return p[0]\n    return p[1]", "numpy.where"),
+        ("return p[0] - 0.01 * v**0.5", "power of 0.5"),
+        ("return p[0] - 0.01 * np.sinh(v)", "numpy.sinh"),
+    ],
+)
+def test_a_law_that_lanes_cannot_run_is_refused_in_one_sentence(body, said):
+    law = own_law(f"def mu(v, p):\n    {body}\n", numbers=(0.2,), static=0.3)
+    with pytest.raises(InvalidSystem, match=said):
+        simulate_ensemble(DrumBrake(friction=law), {"theta1": [0.6, 0.61]}, SHORT)
+
+
 @pytest.mark.parametrize("change", [{"of": "brake"}, {"last": 0.0}])
 def test_an_observer_of_nothing_is_refused(change):
     with pytest.raises(ParameterError):

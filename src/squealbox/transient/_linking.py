@@ -1,18 +1,20 @@
 """Compilation of a generated file as one whole: its functions are typed one by one, but optimised and assembled once.
 
-numba optimises and assembles every function by itself and again inside each of its callers. A generated file has some
-hundred functions of which one is called from Python, so most of that work is thrown away. Here a function marked
+numba optimises and assembles every function by itself and again inside each of its callers, and asks all templates of
+an operator at each of its uses. A generated file has some seventy functions of which one is called from Python, so most
+of that work is thrown away. Here a function marked
 `inner` only contributes its LLVM module; the function marked `entry` links all of them and is optimised and assembled
 with them, and kept on disk by numba's own cache.
 
 Importing this module loads numba; only generated files do.
 """
 
-from typing import Any
+import operator
+from typing import Any, ClassVar
 
 import numba
 from numba import _dynfunc  # type: ignore[attr-defined]
-from numba.core import funcdesc, lowering, typed_passes
+from numba.core import funcdesc, lowering, typed_passes, types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, _LowerResult
 from numba.core.compiler_machinery import PassManager, register_pass
@@ -62,6 +64,75 @@ class Whole(JITCodeLibrary):
             self.add_linking_library(other)
 
 
+class Remembering:
+    """A typing context that keeps what an operation on numbers and arrays comes to.
+
+    numba asks all templates of an operator anew at each of its uses, half a millisecond each; the answer depends on the
+    types alone, and a literal number is a number here.
+    """
+
+    known: ClassVar[dict[Any, Any]] = {}
+    KINDS = (types.Number, types.Boolean, types.Array)
+
+    def __init__(self, context: Any) -> None:
+        self._context = context
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._context, name)
+
+    def resolve_function_type(self, function: Any, args: Any, keywords: Any) -> Any:
+        """As numba's, once for each combination of types."""
+        plain = tuple(types.unliteral(each) for each in args)
+        if keywords or isinstance(function, types.Dispatcher) or not all(isinstance(x, self.KINDS) for x in plain):
+            return self._context.resolve_function_type(function, args, keywords)
+        key = function, plain
+        if key not in self.known:
+            self.known[key] = self._context.resolve_function_type(function, plain, keywords)
+        return self.known[key]
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class QuickTyping(NopythonTypeInference):
+    """Type inference with a memory."""
+
+    _name = "quick_typing"
+
+    def run_pass(self, state: Any) -> bool:
+        """As numba's."""
+        context = state.typingctx
+        state.typingctx = Remembering(context)
+        try:
+            done: bool = super().run_pass(state)
+        finally:
+            state.typingctx = context
+        return done
+
+
+class QuickLower(lowering.Lower):
+    """Lowering that takes the signature of an operation from type inference, not up to four times anew."""
+
+    def lower_binop(self, resty: Any, expr: Any, op: Any) -> Any:
+        """As numba's, without looking for a variant for a literal operand: only powers have one."""
+        signature = self.fndesc.calltypes[expr]
+        if op in (operator.pow, operator.ipow) or not all(isinstance(x, Remembering.KINDS) for x in signature.args):
+            return super().lower_binop(resty, expr, op)
+        return self._applied(op, (expr.lhs, expr.rhs), signature, resty)
+
+    def lower_getitem(self, resty: Any, expr: Any, value: Any, index: Any, signature: Any) -> Any:
+        """As numba's."""
+        if not all(isinstance(x, Remembering.KINDS) for x in signature.args):
+            return super().lower_getitem(resty, expr, value, index, signature)
+        return self._applied(operator.getitem, (value, index), signature, resty)
+
+    def _applied(self, op: Any, operands: tuple[Any, ...], signature: Any, resty: Any) -> Any:
+        function = self.context.typing_context.resolve_value_type(op)
+        if signature.args not in function._impl_keys:
+            signature = function.get_call_type(self.context.typing_context, signature.args, {})
+        values = [self._cast_var(x, kind) for x, kind in zip(operands, signature.args, strict=True)]
+        found = self.context.get_function(function, signature)(self.builder, values)
+        return self.context.cast(self.builder, found, signature.return_type, resty)
+
+
 @register_pass(mutates_CFG=True, analysis_only=False)
 class PartLowering(NativeLowering):
     """Lower a function into a `Part`; it cannot be called from Python."""
@@ -77,7 +148,7 @@ class PartLowering(NativeLowering):
             inline=flags.forceinline, noalias=flags.noalias, abi_tags=[flags.get_mangle_string()],
         )  # fmt: skip
         with target.push_code_library(library):
-            lower = lowering.Lower(target, library, description, state.func_ir, metadata=state.metadata)
+            lower = QuickLower(target, library, description, state.func_ir, metadata=state.metadata)
             lower.lower()
         name = description.qualname.split(".")[-1]
         named = _dynfunc.make_function(description.lookup_module(), name, NO_CODE, 0, lower.env, (library,))
@@ -110,7 +181,7 @@ def _compiler(lower: Any) -> type[CompilerBase]:
             """One pipeline, without a second one to fall back to."""
             pm = PassManager("squealbox")
             for step in (
-                TranslateByteCode, FixupArgs, IRProcessing, ReconstructSSA, NopythonTypeInference, PreLowerStripPhis,
+                TranslateByteCode, FixupArgs, IRProcessing, ReconstructSSA, QuickTyping, PreLowerStripPhis,
                 IRLegalization, AnnotateTypes, lower, typed_passes.NoPythonBackend,
             ):  # fmt: skip
                 pm.add_pass(step, step.__name__)

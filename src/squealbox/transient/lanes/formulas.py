@@ -3,9 +3,10 @@
 import ast
 import inspect
 import textwrap
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
+from squealbox import friction, schedules
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
 from squealbox.system import InvalidSystem
@@ -17,16 +18,24 @@ VECTOR_FUNCTIONS = ("where", "minimum", "maximum", "sqrt", "exp", "sin", "cos", 
 
 def formulas(shape: Shape) -> list[str]:
     """The laws, schedules and observers of a kernel as functions of lanes."""
+    parts: list[str] = []
     laws = [*(inspect.getsource(law.formula) for law in LAWS), *(mu for mu, _ in shape.own)]
-    parts = [lane_function(laws[kind], f"lane_mu_{kind}") for kind in sorted({kind for kind, _ in shape.laws})]
+    for kind in sorted({kind for kind, _ in shape.laws}):
+        parts.append(lane_function(laws[kind], f"lane_mu_{kind}", is_table(LAWS, kind)))
     for kind in sorted({kind for terms in shape.signals for kind, _ in terms}):
-        parts.append(lane_function(inspect.getsource(SCHEDULES[kind].formula), f"lane_value_{kind}"))
-        parts.append(lane_function(inspect.getsource(SCHEDULES[kind].rate_formula), f"lane_rate_{kind}"))
+        for name, formula in (("value", SCHEDULES[kind].formula), ("rate", SCHEDULES[kind].rate_formula)):
+            text = inspect.getsource(formula)
+            parts.append(lane_function(text, f"lane_{name}_{kind}", is_table(SCHEDULES, kind)))
     if shape.observers:
         parts.append(lane_function(inspect.getsource(extreme), "extreme"))
     for k, observer in enumerate(shape.observers):
         parts.append(lane_function(source_of(observer.update), f"observe_{k}"))
     return parts
+
+
+def is_table(kinds: Sequence[type], kind: int) -> bool:
+    """Whether it is a table, whose coefficients are as many as its points; kinds after the known ones are own laws."""
+    return kind < len(kinds) and kinds[kind] in (friction.Table, schedules.Table)
 
 
 def source_of(function: Callable[..., Any]) -> str:
@@ -37,8 +46,8 @@ def source_of(function: Callable[..., Any]) -> str:
         raise InvalidSystem(f"{function!r}: expected a plain function whose source can be read, from a file") from error
 
 
-def lane_function(text: str, name: str) -> str:
-    """A plain formula under another name, its NumPy functions replaced by those of lanes."""
+def lane_function(text: str, name: str, table: bool = False) -> str:
+    """A plain formula under another name, its NumPy functions replaced by those of lanes; that of a table is called."""
     tree = ast.parse(textwrap.dedent(text))
     function = tree.body[0]
     if not isinstance(function, ast.FunctionDef):
@@ -46,7 +55,7 @@ def lane_function(text: str, name: str) -> str:
     function.name, function.returns, function.decorator_list = name, None, []
     for argument in function.args.args:
         argument.annotation = None
-    return "@packed\n" + ast.unparse(ast.fix_missing_locations(_OfLanes().visit(tree)))
+    return "@apart\n" * table + ast.unparse(ast.fix_missing_locations(_OfLanes().visit(tree)))
 
 
 class _OfLanes(ast.NodeTransformer):

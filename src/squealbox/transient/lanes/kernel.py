@@ -14,19 +14,13 @@ HEAD = """
 from collections import namedtuple
 
 from squealbox.transient.lanes.vectors import (
-    arctan, bits, cos, exp, forget, load, log, maximum, minimum, rough_power, sin, sqrt, store, take, where,
+    Given, apart, arctan, bits, cos, exp, forget, lane_tanh, load, log, maximum, minimum, rough_power, sin, sqrt, store,
+    take, traced, where,
 )
 
 Motion = namedtuple("Motion", "t, q, qd, qdd")
 Sliding = namedtuple("Sliding", "t, velocity, normal, mode, work")
 State = namedtuple("State", "t, q, qd, qdd")
-
-
-@packed
-def lane_tanh(x):
-    a = exp(-2.0 * abs(x))
-    size = (1.0 - a) / (1.0 + a)
-    return where(x < 0.0, -size, size)
 """
 PLACES = {
     "ROW_JOB": "job", "ROW_ALIVE": "alive", "ROW_T": "t", "ROW_H": "h", "ROW_T_END": "t_end", "ROW_TRIES": "tries",

@@ -10,10 +10,20 @@ them; the rows H hold G_ss^-1, zero for the others, and change only at events.
 
 from typing import Any
 
+from squealbox.friction import LAWS
+from squealbox.schedules import SCHEDULES
 from squealbox.transient._motion import ARCTAN, RAW
 from squealbox.transient.lanes.event_text import EventText, minus
+from squealbox.transient.lanes.formulas import is_table
 from squealbox.transient.lanes.shape import LANES, Shape, layout
 from squealbox.transient.methods import tableau
+
+CALLED = """
+
+@inner
+def step(A, b):
+    return trial(A, b)
+"""
 
 
 class Step(EventText):
@@ -73,11 +83,17 @@ class Step(EventText):
             return [] if value is None else [value]
         parts = []
         for k, (kind, count) in enumerate(self.shape.signals[index]):
-            p = ", ".join(self.row(f"given{index}_{k}_{i}") for i in range(count))
-            parts.append(
-                f"{self.row(f'weight{index}_{k}')} * lane_{'rate' if rate else 'value'}_{kind}({time}, ({p},))"
-            )
+            p = self.given(f"given{index}_{k}_", count, is_table(SCHEDULES, kind), 0)
+            parts.append(f"{self.row(f'weight{index}_{k}')} * lane_{'rate' if rate else 'value'}_{kind}({time}, {p})")
         return parts
+
+    def given(self, name: str, count: int, table: bool, at: int) -> str:
+        """The coefficients name0, name1, ... of a formula; of a table they stay in memory, their number p[at] known."""
+        if not table:
+            return "(" + ", ".join(self.row(f"{name}{i}") for i in range(count)) + ",)"
+        columns = 3 - (at == 0)  # speeds, coefficients and slopes of a law; instants and values of a schedule
+        known = {at: (count - 1) // columns}
+        return f"Given(A, b + {self.rows.places[f'{name}0'] * LANES}, {count}, {known})"
 
     def accelerations(self, q: list[str], v: list[str], time: str) -> dict[str, list[str]]:
         """q'' in locals, with the speed, normal force, friction force and stick margin of each contact."""
@@ -109,7 +125,7 @@ class Step(EventText):
         """Friction force of a sliding contact; 0 while it sticks or is open."""
         shape, force = self.shape, f"f{c}_{k}"
         kind, count = shape.laws[c]
-        p = "(" + ", ".join(self.row(f"law{c}_{i}") for i in range(count)) + ",)"
+        p = self.given(f"law{c}_", count, is_table(LAWS, kind), 1)
         if shape.exact:
             s = self.row(f"s{c}")
             self.put(f"u{c}_{k} = {s} * {speed}")
@@ -183,7 +199,8 @@ class Step(EventText):
         self.put("t1 = where(last, t_end_, t_ + hh)")
         self.observe(contact, (q, v, a), (q1, v1, a1))
         self.advance((q, v, a), (q1, v1, a1))
-        return "\n".join(["@inner", "def step(A, b):", *self.lines, "    return flags"]) + "\n"
+        head, tail = ["@traced", "def trial(A, b):"], ["    return flags", CALLED]
+        return "\n".join([*head, *self.lines, *tail])
 
     def combined(self, name: str, base: str, weights: Any, parts: list[list[str]], i: int) -> str:
         """base + sum of hh * weight * part; the products hh * weight serve all states of a stage."""

@@ -1,350 +1,325 @@
-"""Sixteen doubles as one number of the compiler: arithmetic, comparisons and a few functions on packed registers.
+"""Sixteen doubles as one number: plain Python run once on such numbers writes packed code.
 
-A loop over lanes leaves it to the optimiser whether registers are packed, and it fails silently. Here one value is an
+A loop over lanes leaves it to the optimiser whether registers are packed, and it fails silently. Here a number is an
 LLVM vector, so the operations on it are packed whatever surrounds them: 512 bits wide where the processor has them,
-split in two or four or eight where it has not. The formulas of friction laws and schedules run on such values as they
-stand, which is how one plain function serves NumPy, the scalar march and the lanes.
+split in two or four or eight where it has not. The step and the formulas of friction laws, schedules and observers run
+as they stand, once, and each operation on a `Lanes` adds one instruction. So nothing of them is typed or lowered by
+numba, and one plain function serves NumPy, the scalar march and the lanes.
 
-Importing this module loads numba; only generated files do.
+Importing this module loads llvmlite and numba; only generated files do.
 """
 
 import math
 import operator
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
 from llvmlite import ir
 from numba import extending, types
 from numba.core import cgutils
-from numba.core.typing.templates import AbstractTemplate, ConcreteTemplate, infer_global, signature
-from numba.extending import lower_builtin, models, register_model
+
+from squealbox.system import InvalidSystem
 
 LANES = 16
 FLAGS = ("contract", "nsz", "arcp")  # nnan and ninf would remove the tests for failed lanes
-DOUBLE, INTEGER = ir.DoubleType(), ir.IntType(64)
+DOUBLE, INTEGER, SHORT = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
 PACKED, LOGICAL = ir.VectorType(DOUBLE, LANES), ir.VectorType(ir.IntType(1), LANES)
 WIDE = ir.VectorType(INTEGER, LANES)
+ALIGNED = 64  # bytes: rows begin with a line of the cache
+BRANCH = (
+    "a friction law, schedule or observer chooses by if, and, or, min or max: lanes compute both sides, "
+    "and numpy.where, &, |, numpy.minimum or numpy.maximum select"
+)
+KNOWN = (
+    "expected arithmetic, or of NumPy where, minimum, maximum, sqrt, exp, log, sin, cos, arctan, tanh or abs, "
+    "which is what lanes know"
+)
+ARITHMETIC = {
+    "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "divide": operator.truediv,
+    "less": operator.lt, "less_equal": operator.le, "greater": operator.gt, "greater_equal": operator.ge,
+}  # fmt: skip
 intrinsic: Any = extending.intrinsic  # untyped, and its calls leave out the typing context
+BUILDER: ContextVar[Any] = ContextVar("builder of the function being written")
 
 
-class Lanes(types.Type):
-    """One double in each lane."""
-
-    def __init__(self) -> None:
-        super().__init__("lanes")
-
-
-class Mask(types.Type):
-    """One truth value in each lane."""
-
-    def __init__(self) -> None:
-        super().__init__("lane mask")
+@contextmanager
+def writing(builder: Any) -> Iterator[None]:
+    """Let operations add their instructions there."""
+    token = BUILDER.set(builder)
+    try:
+        yield
+    finally:
+        BUILDER.reset(token)
 
 
-lanes, mask = Lanes(), Mask()
+def number(value: float) -> Any:
+    """The same number in every lane."""
+    return ir.Constant(PACKED, [float(value)] * LANES)
 
 
-@register_model(Lanes)
-class _LanesModel(models.PrimitiveModel):
-    def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, PACKED)
+def packed(x: Any) -> Any:
+    """The vector of a `Lanes`, or of a plain number."""
+    return x.vector if isinstance(x, Lanes) else number(x)
 
 
-@register_model(Mask)
-class _MaskModel(models.PrimitiveModel):
-    def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, LOGICAL)
-
-
-def spread(builder: Any, value: Any) -> Any:
-    """A scalar in every lane; a vector as it is."""
-    if isinstance(value.type, ir.VectorType):
-        return value
-    if isinstance(value, ir.Constant):
-        return ir.Constant(PACKED, [value.constant] * LANES)
-    one = builder.insert_element(ir.Constant(PACKED, ir.Undefined), value, ir.Constant(ir.IntType(32), 0))
-    zeros = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
-    return builder.shuffle_vector(one, ir.Constant(PACKED, ir.Undefined), zeros)
-
-
-def _number(value: float) -> Any:
-    return ir.Constant(PACKED, [value] * LANES)
-
-
-def _call(builder: Any, name: str, *values: Any) -> Any:
+def _call(name: str, *values: Any) -> Any:
+    builder = BUILDER.get()
     kind = ir.FunctionType(PACKED, [PACKED] * len(values))
     return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"{name}.v{LANES}f64"), values)
 
 
-def _binary(operation: Any, method: str) -> None:
-    cases = [signature(lanes, a, b) for a, b in ((lanes, lanes), (lanes, types.float64), (types.float64, lanes))]
-    infer_global(operation)(type("Rule", (ConcreteTemplate,), {"cases": cases}))
-    for case in cases:
+def _operation(method: str, turned: bool = False) -> Callable[[Any, Any], Any]:
+    def operate(self: Any, other: Any) -> Any:
+        if isinstance(other, Truth):
+            return NotImplemented
+        a, b = (packed(other), self.vector) if turned else (self.vector, packed(other))
+        return Lanes(getattr(BUILDER.get(), method)(a, b, flags=FLAGS))
 
-        def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-            a, b = (spread(builder, arg) for arg in args)
-            return getattr(builder, method)(a, b, flags=FLAGS)
-
-        lower_builtin(operation, *case.args)(lower)
+    return operate
 
 
-def _comparison(operation: Any, sign: str) -> None:
-    cases = [signature(mask, a, b) for a, b in ((lanes, lanes), (lanes, types.float64), (types.float64, lanes))]
-    infer_global(operation)(type("Rule", (ConcreteTemplate,), {"cases": cases}))
-    for case in cases:
+def _comparison(sign: str) -> Callable[[Any, Any], Any]:
+    def compare(self: Any, other: Any) -> Any:
+        builder = BUILDER.get()
+        order = builder.fcmp_unordered if sign == "!=" else builder.fcmp_ordered
+        return Truth(order(sign, self.vector, packed(other)))
 
-        def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-            a, b = (spread(builder, arg) for arg in args)
-            order = builder.fcmp_unordered if sign == "!=" else builder.fcmp_ordered
-            return order(sign, a, b)
-
-        lower_builtin(operation, *case.args)(lower)
+    return compare
 
 
-def _logical(operation: Any, method: str) -> None:
-    infer_global(operation)(type("Rule", (ConcreteTemplate,), {"cases": [signature(mask, mask, mask)]}))
-
-    def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        return getattr(builder, method)(*args)
-
-    lower_builtin(operation, mask, mask)(lower)
+def _refused(self: Any) -> Any:
+    raise InvalidSystem(BRANCH)
 
 
-for _operation, _method in (
-    (operator.add, "fadd"), (operator.sub, "fsub"), (operator.mul, "fmul"), (operator.truediv, "fdiv"),
-    (operator.iadd, "fadd"), (operator.isub, "fsub"), (operator.imul, "fmul"), (operator.itruediv, "fdiv"),
-):  # fmt: skip
-    _binary(_operation, _method)
-for _operation, _sign in (
-    (operator.lt, "<"), (operator.le, "<="), (operator.gt, ">"), (operator.ge, ">="), (operator.eq, "=="),
-    (operator.ne, "!="),
-):  # fmt: skip
-    _comparison(_operation, _sign)
-for _operation, _method in ((operator.and_, "and_"), (operator.or_, "or_"), (operator.xor, "xor")):
-    _logical(_operation, _method)
+class Lanes:
+    """One double in each lane."""
+
+    __slots__ = ("vector",)
+
+    def __init__(self, vector: Any) -> None:
+        self.vector = vector
+
+    __add__, __radd__ = _operation("fadd"), _operation("fadd", True)
+    __sub__, __rsub__ = _operation("fsub"), _operation("fsub", True)
+    __mul__, __rmul__ = _operation("fmul"), _operation("fmul", True)
+    __truediv__, __rtruediv__ = _operation("fdiv"), _operation("fdiv", True)
+    __lt__, __le__, __gt__, __ge__ = (_comparison(sign) for sign in ("<", "<=", ">", ">="))
+    __eq__, __ne__ = _comparison("=="), _comparison("!=")
+    __bool__ = __int__ = __float__ = __index__ = _refused
+
+    def __array_ufunc__(self, function: Any, method: str, *given: Any, **_: Any) -> Any:
+        """Arithmetic with a NumPy number on the left; any other function of NumPy is refused by its name."""
+        known = ARITHMETIC.get(function.__name__)
+        if known is None:
+            raise InvalidSystem(f"numpy.{function.__name__} in a friction law, schedule or observer: {KNOWN}")
+        return known(*(x if isinstance(x, Lanes) else float(x) for x in given))
+
+    def __neg__(self) -> "Lanes":
+        return Lanes(BUILDER.get().fneg(self.vector, flags=FLAGS))
+
+    def __abs__(self) -> "Lanes":
+        return Lanes(_call("llvm.fabs", self.vector))
+
+    def __pow__(self, exponent: int) -> Any:
+        """A whole power by squaring."""
+        if int(exponent) != exponent or not 0 <= exponent <= 64:
+            raise InvalidSystem(f"a power of {exponent} in a law or observer: expected a whole number from 0 to 64")
+        total: Any = 1.0
+        square, rest = self, int(exponent)
+        while rest:
+            total = total * square if rest & 1 else total
+            rest >>= 1
+            square = square * square if rest else square
+        return total
 
 
-def _truth_times(a: Any, b: Any) -> None:
-    """A truth value times a number is the number or 0, as in NumPy."""
+class Truth:
+    """One truth value in each lane; times a number it is the number or 0, as in NumPy."""
 
-    def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        truth, value = args if a is mask else (args[1], args[0])
-        return builder.select(truth, spread(builder, value), _number(0.0))
+    __slots__ = ("vector",)
+    __array_ufunc__ = None
 
-    lower_builtin(operator.mul, a, b)(lower)
+    def __init__(self, vector: Any) -> None:
+        self.vector = vector
 
+    def __and__(self, other: Any) -> "Truth":
+        return Truth(BUILDER.get().and_(self.vector, other.vector))
 
-class _TruthTimes(ConcreteTemplate):
-    pairs = ((mask, lanes), (lanes, mask), (mask, types.float64), (types.float64, mask))
-    cases = [signature(lanes, a, b) for a, b in pairs]  # noqa: RUF012
+    def __or__(self, other: Any) -> "Truth":
+        return Truth(BUILDER.get().or_(self.vector, other.vector))
 
+    def __xor__(self, other: Any) -> "Truth":
+        return Truth(BUILDER.get().xor(self.vector, other.vector))
 
-infer_global(operator.mul)(_TruthTimes)
-for _a, _b in _TruthTimes.pairs:
-    _truth_times(_a, _b)
+    def __invert__(self) -> "Truth":
+        return Truth(BUILDER.get().not_(self.vector))
 
+    def __mul__(self, other: Any) -> Lanes:
+        return where(self, other, 0.0)
 
-class _Unary(ConcreteTemplate):
-    cases = [signature(lanes, lanes)]  # noqa: RUF012
-
-
-class _Not(ConcreteTemplate):
-    cases = [signature(mask, mask)]  # noqa: RUF012
-
-
-class _Whole(AbstractTemplate):
-    def generic(self, args: Any, keywords: Any) -> Any:
-        return signature(types.intp, lanes) if args == (lanes,) else None
+    __rmul__ = __mul__
+    __bool__ = _refused
 
 
-infer_global(operator.neg)(_Unary)
-infer_global(abs)(_Unary)
-infer_global(operator.invert)(_Not)
-infer_global(int)(_Whole)
+class Group:
+    """The rows of a group in memory; indices are places of doubles."""
+
+    def __init__(self, data: Any) -> None:
+        self.data = data
+
+    def at(self, place: int) -> Any:
+        """Pointer to the row that begins there."""
+        builder = BUILDER.get()
+        return builder.bitcast(builder.gep(self.data, [INTEGER(place)]), PACKED.as_pointer())
 
 
-@lower_builtin(operator.neg, lanes)
-def _negative(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    return builder.fneg(args[0], flags=FLAGS)
+class Given:
+    """Coefficients that lie in `count` rows one after another; those in `whole` are numbers known beforehand."""
+
+    def __init__(self, group: Group, place: int, count: int, whole: dict[int, int]) -> None:
+        self.group, self.place, self.count, self.whole = group, place, count, whole
+
+    def __getitem__(self, i: int) -> Any:
+        return self.whole[i] if i in self.whole else load(self.group, self.place + i * LANES)
 
 
-@lower_builtin(abs, lanes)
-def _absolute(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    return _call(builder, "llvm.fabs", args[0])
+def load(group: Group, place: int) -> Lanes:
+    """The row that begins there."""
+    value = BUILDER.get().load(group.at(place))
+    value.align = ALIGNED
+    return Lanes(value)
 
 
-@lower_builtin(operator.invert, mask)
-def _inverse(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    return builder.not_(args[0])
+def store(group: Group, place: int, value: Any) -> None:
+    """Write a row."""
+    BUILDER.get().store(packed(value), group.at(place)).align = ALIGNED
 
 
-@lower_builtin(int, lanes)
-def _whole(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    """A count is the same in all lanes of a kernel."""
-    return builder.fptosi(builder.extract_element(args[0], ir.Constant(ir.IntType(32), 0)), INTEGER)
-
-
-def _place(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    data = context.make_array(sig.args[0])(context, builder, args[0]).data
-    return builder.bitcast(builder.gep(data, [args[1]]), PACKED.as_pointer())
-
-
-@intrinsic
-def load(typing: Any, array: Any, offset: Any) -> Any:
-    """The lanes that begin at array[offset]."""
-
-    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        value = builder.load(_place(context, builder, sig, args))
-        value.align = 8
-        return value
-
-    return lanes(array, types.intp), generate
-
-
-@intrinsic
-def store(typing: Any, array: Any, offset: Any, value: Any) -> Any:
-    """Write the lanes that begin at array[offset]."""
-
-    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        builder.store(spread(builder, args[2]), _place(context, builder, sig, args)).align = 8
-        return context.get_dummy_value()
-
-    return types.void(array, types.intp, value), generate
-
-
-@intrinsic
-def forget(typing: Any) -> Any:
+def forget() -> None:
     """Let rows be read again after this point: a load folds into an operation, a spilled register does not."""
-
-    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        builder.asm(ir.FunctionType(ir.VoidType(), []), "", "~{memory}", [], True)
-        return context.get_dummy_value()
-
-    return types.void(), generate
+    BUILDER.get().asm(ir.FunctionType(ir.VoidType(), []), "", "~{memory}", [], True)
 
 
-@intrinsic
-def where(typing: Any, truth: Any, yes: Any, no: Any) -> Any:
+def where(truth: Any, yes: Any, no: Any) -> Lanes:
     """`yes` in the lanes where it is true, else `no`; as `numpy.where`."""
-
-    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        return builder.select(args[0], spread(builder, args[1]), spread(builder, args[2]))
-
-    kinds = [lanes if kind is lanes else types.float64 for kind in (yes, no)]
-    return lanes(mask, *kinds), generate
+    return Lanes(BUILDER.get().select(truth.vector, packed(yes), packed(no)))
 
 
-def _pairwise(sign: str) -> Any:
-    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        a, b = (spread(builder, arg) for arg in args)
-        return builder.select(builder.fcmp_ordered(sign, a, b), a, b)
-
-    return generate
-
-
-@intrinsic
-def minimum(typing: Any, a: Any, b: Any) -> Any:
+def minimum(a: Any, b: Any) -> Any:
     """The smaller of two; b when either is not a number."""
-    return lanes(*[lanes if kind is lanes else types.float64 for kind in (a, b)]), _pairwise("<")
+    if not isinstance(a, Lanes) and not isinstance(b, Lanes):
+        return min(b, a)
+    return where(a < b, a, b) if isinstance(a, Lanes) else where(b > a, a, b)
 
 
-@intrinsic
-def maximum(typing: Any, a: Any, b: Any) -> Any:
+def maximum(a: Any, b: Any) -> Any:
     """The larger of two; b when either is not a number."""
-    return lanes(*[lanes if kind is lanes else types.float64 for kind in (a, b)]), _pairwise(">")
+    if not isinstance(a, Lanes) and not isinstance(b, Lanes):
+        return max(b, a)
+    return where(a > b, a, b) if isinstance(a, Lanes) else where(b < a, a, b)
 
 
-@intrinsic
-def bits(typing: Any, truth: Any) -> Any:
+def bits(truth: Truth) -> Any:
     """The truth values as the bits of one integer; 0 when none holds."""
-
-    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        return builder.zext(builder.bitcast(args[0], ir.IntType(LANES)), INTEGER)
-
-    return types.int64(mask), generate
+    builder = BUILDER.get()
+    return builder.zext(builder.bitcast(truth.vector, ir.IntType(LANES)), INTEGER)
 
 
-@intrinsic
-def sqrt(typing: Any, x: Any) -> Any:
+def sqrt(x: Lanes) -> Lanes:
     """Square root."""
-
-    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        return _call(builder, "llvm.sqrt", args[0])
-
-    return lanes(lanes), generate
+    return Lanes(_call("llvm.sqrt", x.vector))
 
 
-@intrinsic
-def rough_power(typing: Any, x: Any, exponent: Any) -> Any:
+def rough_power(x: Lanes, exponent: float) -> Lanes:
     """x**exponent to a few per cent for x > 0, by the exponent and mantissa as a logarithm: for step factors."""
-
-    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        one = float(1023 << 52)
-        whole = builder.sitofp(builder.bitcast(args[0], WIDE), PACKED)
-        scaled = builder.fmul(builder.fsub(whole, _number(one)), spread(builder, args[1]))
-        return builder.bitcast(builder.fptosi(builder.fadd(scaled, _number(one)), WIDE), PACKED)
-
-    return lanes(lanes, types.float64), generate
+    builder, one = BUILDER.get(), float(1023 << 52)
+    whole = builder.sitofp(builder.bitcast(x.vector, WIDE), PACKED)
+    scaled = builder.fmul(builder.fsub(whole, number(one)), number(exponent))
+    return Lanes(builder.bitcast(builder.fptosi(builder.fadd(scaled, number(one)), WIDE), PACKED))
 
 
 EXP_TERMS = tuple(1.0 / math.factorial(k) for k in range(14))
 
 
-@intrinsic
-def exp(typing: Any, x: Any) -> Any:
+def exp(x: Any) -> Any:
     """e**x to about 1e-15: 2**k times the Taylor sum of degree 13 on |r| <= ln 2 / 2; 0 and inf at the ends."""
+    if not isinstance(x, Lanes):
+        return math.exp(x)
+    builder = BUILDER.get()
+    low = builder.select(builder.fcmp_unordered("<", x.vector, number(709.0)), x.vector, number(709.0))
+    clipped = builder.select(builder.fcmp_unordered(">", low, number(-708.0)), low, number(-708.0))
+    k = _call("llvm.rint", builder.fmul(clipped, number(1.0 / math.log(2.0))))
+    r = builder.fsub(clipped, builder.fmul(k, number(0.6931471803691238)))
+    r = builder.fsub(r, builder.fmul(k, number(1.9082149292705877e-10)))
+    total = number(EXP_TERMS[-1])
+    for term in reversed(EXP_TERMS[:-1]):
+        total = builder.fadd(builder.fmul(total, r, flags=FLAGS), number(term), flags=FLAGS)
+    power = builder.add(builder.fptosi(k, WIDE), ir.Constant(WIDE, [1023] * LANES))
+    scale = builder.bitcast(builder.shl(power, ir.Constant(WIDE, [52] * LANES)), PACKED)
+    return Lanes(builder.fmul(total, scale))
 
-    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        low = builder.select(builder.fcmp_unordered("<", args[0], _number(709.0)), args[0], _number(709.0))
-        clipped = builder.select(builder.fcmp_unordered(">", low, _number(-708.0)), low, _number(-708.0))
-        k = _call(builder, "llvm.rint", builder.fmul(clipped, _number(1.0 / math.log(2.0))))
-        r = builder.fsub(clipped, builder.fmul(k, _number(0.6931471803691238)))
-        r = builder.fsub(r, builder.fmul(k, _number(1.9082149292705877e-10)))
-        total = _number(EXP_TERMS[-1])
-        for term in reversed(EXP_TERMS[:-1]):
-            total = builder.fadd(builder.fmul(total, r, flags=FLAGS), _number(term), flags=FLAGS)
-        power = builder.add(builder.fptosi(k, WIDE), ir.Constant(WIDE, [1023] * LANES))
-        scale = builder.bitcast(builder.shl(power, ir.Constant(WIDE, [52] * LANES)), PACKED)
-        return builder.fmul(total, scale)
 
-    return lanes(lanes), generate
+def lane_tanh(x: Lanes) -> Lanes:
+    """Hyperbolic tangent."""
+    a = exp(-2.0 * abs(x))
+    size = (1.0 - a) / (1.0 + a)
+    return where(x < 0.0, -size, size)
 
 
 def _each(name: str) -> Any:
     """A function of the C library, called lane by lane: right, and slow."""
 
-    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    def call(x: Any) -> Any:
+        if not isinstance(x, Lanes):
+            return getattr(math, name)(x)
+        builder = BUILDER.get()
         function = cgutils.get_or_insert_function(builder.module, ir.FunctionType(DOUBLE, [DOUBLE]), name)
         out = ir.Constant(PACKED, ir.Undefined)
         for i in range(LANES):
-            at = ir.Constant(ir.IntType(32), i)
-            out = builder.insert_element(out, builder.call(function, [builder.extract_element(args[0], at)]), at)
-        return out
+            one = builder.call(function, [builder.extract_element(x.vector, SHORT(i))])
+            out = builder.insert_element(out, one, SHORT(i))
+        return Lanes(out)
 
-    return generate
-
-
-@intrinsic
-def sin(typing: Any, x: Any) -> Any:
-    """Sine."""
-    return lanes(lanes), _each("sin")
+    return call
 
 
-@intrinsic
-def cos(typing: Any, x: Any) -> Any:
-    """Cosine."""
-    return lanes(lanes), _each("cos")
+sin, cos, arctan, log = (_each(name) for name in ("sin", "cos", "atan", "log"))
 
 
-@intrinsic
-def arctan(typing: Any, x: Any) -> Any:
-    """Inverse tangent."""
-    return lanes(lanes), _each("atan")
+def apart(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A formula of one `Lanes` and many coefficients as a function of its own, called: for long tables."""
+
+    def call(x: Lanes, given: Given) -> Lanes:
+        builder = BUILDER.get()
+        data = builder.gep(given.group.data, [INTEGER(given.place)])
+        kind = ir.FunctionType(PACKED, [PACKED, data.type])
+        made = cgutils.get_or_insert_function(builder.module, kind, f"{function.__name__}_{given.count}")
+        if made.is_declaration:
+            made.linkage = "internal"
+            inside = ir.IRBuilder(made.append_basic_block())
+            with writing(inside):
+                value = function(Lanes(made.args[0]), Given(Group(made.args[1]), 0, given.count, given.whole))
+                inside.ret(packed(value))
+        return Lanes(builder.call(made, [x.vector, data]))
+
+    return call
 
 
-@intrinsic
-def log(typing: Any, x: Any) -> Any:
-    """Natural logarithm."""
-    return lanes(lanes), _each("log")
+def traced(function: Callable[..., Any]) -> Any:
+    """The plain function f(group, 0) -> integer for compiled callers, who give it an array and an offset."""
+
+    @intrinsic
+    def compiled(typing: Any, array: Any, offset: Any) -> Any:
+        def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+            data = context.make_array(sig.args[0])(context, builder, args[0]).data
+            with writing(builder):
+                return function(Group(builder.gep(data, [args[1]])), 0)
+
+        return types.int64(array, offset), generate
+
+    return compiled
 
 
 @intrinsic
@@ -356,6 +331,3 @@ def take(typing: Any, counter: Any) -> Any:
         return builder.atomic_rmw("add", data, ir.Constant(INTEGER, 1), "monotonic")
 
     return types.int64(counter), generate
-
-
-FUNCTIONS = ("where", "minimum", "maximum", "sqrt", "exp", "sin", "cos", "arctan", "log")

@@ -91,7 +91,7 @@ class Work:
 
         def work() -> None:
             try:
-                lanes, live = np.zeros(GROUPS * size), np.zeros(GROUPS, dtype=np.int64)
+                lanes, live = _on_a_line(GROUPS * size), np.zeros(GROUPS, dtype=np.int64)
                 lanes[rows.places["alive"] * LANES] = -1.0
                 n = jobs.shape.n
                 scratch = packing.scratch(rule, np.zeros(n), np.zeros(n), self.begin, 0.0)
@@ -123,6 +123,12 @@ class Work:
             if not isinstance(error, KeyboardInterrupt):
                 raise
             self.interrupted = True
+
+
+def _on_a_line(count: int) -> Any:
+    """Zeros that begin with a line of the cache, as the packed loads and stores of `vectors` expect."""
+    room = np.zeros(count + 8)
+    return room[-room.ctypes.data // 8 % 8 :][:count]
 
 
 def _starts(
