@@ -272,6 +272,7 @@ def _each(name: str) -> Any:
     """A function of the C library, called lane by lane: right, and slow."""
 
     def call(x: Any) -> Any:
+        """A function of the C library, lane by lane."""
         if not isinstance(x, Lanes):
             return getattr(math, name)(x)
         builder = BUILDER.get()
