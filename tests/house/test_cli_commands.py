@@ -128,6 +128,7 @@ def test_init_writes_an_example_that_runs(name, said, tmp_path, undrawn):
     assert None not in (found.modes, found.onset, found.map, found.simulate)
     assert said("modes", path)[0] == 0
     assert said("simulate", path, "--out", tmp_path / "out")[0] == 0
+    assert said("run", path, "--out", tmp_path / "study")[0] == 0
 
 
 def test_init_overwrites_nothing(said, brake):

@@ -26,12 +26,24 @@ range = [0, 1]
 
 [map]                           # squealbox map {file}
 x = {{ parameter = "friction.static", range = [0, 1], points = 101 }}
-y = {{ {second}, points = 101 }}
+y = {{ {second_inline}, points = 101 }}
 
 [simulate]                      # squealbox simulate {file} --out run
 duration = "{duration}"
 start = "rest"                  # rest (loads applied suddenly) or sliding
 points = 5001                   # number of instants kept
+
+[study]                         # squealbox run {file} --out study: an analysis at every point of a grid
+analysis = "modes"              # modes, onset, simulate, ensemble or cycle
+
+[[study.axis]]
+parameter = "friction.static"
+range = [0, 1]
+points = 41
+
+[[study.axis]]
+{second}
+points = 31
 """
 
 
@@ -52,10 +64,11 @@ def init(directory: Path, *, brake: str = "drum_brake") -> None:
     if path.exists():
         raise UsageError(f"{path} is there already, and init overwrites nothing")
     directory.mkdir(parents=True, exist_ok=True)
-    write_design(
-        design, path, sections=STUDIES.format(file=path, duration=_duration(design), second=_second_axis(design))
-    )
-    print(f"{path} describes a brake. Next:\n  squealbox modes {path}\n  squealbox simulate {path} --out run")
+    second = _second_axis(design)
+    axes = {"second": "\n".join(second), "second_inline": ", ".join(second)}
+    write_design(design, path, sections=STUDIES.format(file=path, duration=_duration(design), **axes))
+    print(f"{path} describes a brake. Next:\n  squealbox modes {path}\n  squealbox simulate {path} --out run\n"
+          f"  squealbox run {path} --out study")  # fmt: skip
 
 
 def schema() -> None:
@@ -68,11 +81,11 @@ def schema() -> None:
     print(json.dumps(json_schema(), indent=1))
 
 
-def _second_axis(design: "Design") -> str:
+def _second_axis(design: "Design") -> tuple[str, str]:
     """What a first map varies beside friction: the speed, by the name the design has for it."""
     if "sliding_speed" in design.field_names():
-        return 'parameter = "sliding_speed", range = ["0.1 m/s", "2 m/s"]'
-    return 'parameter = "spin", range = ["1 rad/s", "50 rad/s"]'
+        return 'parameter = "sliding_speed"', 'range = ["0.1 m/s", "2 m/s"]'
+    return 'parameter = "spin"', 'range = ["1 rad/s", "50 rad/s"]'
 
 
 def _duration(design: "Design") -> str:
@@ -80,7 +93,7 @@ def _duration(design: "Design") -> str:
     from squealbox.stability import complex_modes
 
     slowest = float(np.min(complex_modes(design).frequency))
-    return f"{100e3 / slowest:.1g} ms"
+    return f"{float(f'{100e3 / slowest:.1g}'):g} ms"
 
 
 def _example(brake: str) -> "Design":
