@@ -16,6 +16,9 @@ import numpy as np
 
 from squealbox.result import COMPLETED, Outcome
 
+KEEP = 1e-3  # scaled correction below which Newton's method keeps its derivative for the next one
+SLOW = 0.1  # share of the one before by which a correction with a kept derivative must shrink
+
 Residual = Callable[[Any, float], Any]
 Jacobian = Callable[[Any, float], tuple[Any, Any]]
 
@@ -168,19 +171,22 @@ class Follower:
 
     def _correct(self, guess: Any, normal: Any, most: int) -> tuple[Any, int, float]:
         """Newton on the plane through `guess` with that normal: the root or None, steps, largest |residual|."""
-        y, size = guess.copy(), np.inf
+        y, size, matrix, last = guess.copy(), np.inf, None, np.inf
         for iteration in range(1, most + 1):
             value = self._value(y)
             size = float(np.max(np.abs(value)))
             if not np.isfinite(size):
                 return None, iteration, size
-            bordered = np.vstack([self._derivative(y), normal])
+            if matrix is None or last > KEEP:
+                matrix = np.vstack([self._derivative(y), normal])
             try:
-                change = np.linalg.solve(bordered, np.append(value, normal @ (y - guess)))
+                change = np.linalg.solve(matrix, np.append(value, normal @ (y - guess)))
             except np.linalg.LinAlgError:
                 return None, iteration, size
-            y = y - change
-            if np.max(np.abs(change)) <= self.control.tolerance:
+            y, before, last = y - change, last, float(np.max(np.abs(change)))
+            if last > SLOW * before:  # the derivative kept is not good enough
+                matrix = None
+            if last <= self.control.tolerance:
                 size = float(np.max(np.abs(self._value(y))))
                 if size <= self.control.residual_tolerance:
                     return y, iteration, size

@@ -97,6 +97,15 @@ class Field:
             a = a + (self.contact_state(x)[0] * opened) @ self.mw
         return np.concatenate([qd, a + self.held(mode, a)])
 
+    def rates(self, states: Any, mode: Any) -> Any:
+        """x' at states (k, 2n) in the modes (m,), shape (k, 2n)."""
+        force, _, _, opened = self.forces(states, mode)
+        q, qd = states[:, : self.size], states[:, self.size :]
+        a = self.mf - q @ self.mk.T - qd @ self.mc.T + force @ self.md
+        if np.any(opened):
+            a = a + (self.contact_state(states)[0] * opened) @ self.mw
+        return np.hstack([qd, a + np.transpose(self.held(mode, a.T))])
+
     def held(self, mode: Any, a: Any) -> Any:
         """What the sticking contacts add to accelerations a (n,) or to the columns of a matrix (n, k)."""
         stuck = self.sticking(mode)

@@ -18,7 +18,7 @@ from squealbox.system import System
 from squealbox.transient import Trajectory
 
 KEPT = 8  # equations, runs and flights kept between calls at the same values
-SHARES = (1e-5, 1e-6, 1e-7)  # of the range of the parameter: steps of its differences
+STEP = 1e-5  # of the range of the parameter: of the differences of the equation, which is smooth in it
 
 
 def _trim(kept: dict[Any, Any]) -> None:
@@ -68,7 +68,8 @@ class ShootingPath:
         key = np.append(x, p).tobytes()
         start = self.start(x)
         if key not in self.flights:
-            self.flights[key] = quick_flight(self.field(p), start, float(x[-1]), self.rtol, motion=self.run(x, p))
+            self.flights[key] = quick_flight(self.field(p), start, float(x[-1]), self.rtol, motion=self.run(x, p),
+                                             beside=self.beside(p))  # fmt: skip
             _trim(self.flights)
         return start, self.flights[key]
 
@@ -107,27 +108,26 @@ class ShootingPath:
         """The frequency by which a velocity is a displacement [rad/s]."""
         return next(iter(self.fields.values())).frequency
 
+    def beside(self, p: float) -> tuple[Field, Field, float]:
+        """The equation on both sides of a parameter value, or on the one side its range allows, and their distance."""
+        step, ends = STEP * self.span, []
+        for value in (p - step, p + step):
+            try:
+                ends.append((value, Field(self.make(value))))
+            except ParameterError:
+                ends.append((p, self.field(p)))
+        (low, first), (high, second) = ends
+        return first, second, high - low
+
     def jacobian(self, x: Any, p: float) -> tuple[Any, Any]:
-        """By the unknowns (exact) and by the parameter (central difference)."""
+        """By the unknowns and by the parameter, saltation matrices included; the equation by p from differences."""
         _, flown = self.fly(x, p)
         size = flown.x.size
+        if flown.by_p is None:  # the motion ended early
+            return np.full((size, size), np.nan), np.full(size, np.nan)
         by_state = np.delete(flown.phi - np.eye(size), self.column, axis=1)
-        by_x = np.column_stack([by_state, flown.rate]) * self._weight()[:, None]
-        return by_x, self._by_parameter(x, p)
-
-    def _by_parameter(self, x: Any, p: float) -> Any:
-        """d residual/dp by differences, over values at which the events come in the same order as at p."""
-        here = self.sequence(x, p)
-        slope = np.full(len(x), np.nan)
-        for share in SHARES:
-            step = share * self.span
-            ends = [s * step for s in (1.0, -1.0) if self.sequence(x, p + s * step) == here]
-            if len(ends) == 2 or (ends and share == SHARES[-1]):
-                low, high = sorted([*ends, 0.0][:2])
-                return (self.residual(x, p + high) - self.residual(x, p + low)) / (high - low)
-            if share == SHARES[0]:  # where no smaller step keeps the order
-                slope = (self.residual(x, p + step) - self.residual(x, p - step)) / (2.0 * step)
-        return slope
+        weight = self._weight()
+        return np.column_stack([by_state, flown.rate]) * weight[:, None], flown.by_p * weight
 
     def describe(self, x: Any, p: float) -> dict[str, Any]:
         """Period, extremes, multipliers, least sliding speed and longest sticking of the cycle at a point."""

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.continuation import PathPoint
+from squealbox.continuation import KEEP, SLOW, PathPoint
 from squealbox.limit_cycles.cycle import Cycle
 from squealbox.result import quantity
 
@@ -99,15 +99,21 @@ class Chord:
         ends = (3.0 - 2.0 * s) * s**2
         y = (1.0 - ends) * self.a + ends * self.b + h0 * self.tangents[0] + h1 * self.tangents[1]
         y = y + self.normal * (self.normal @ (self.a + s * (self.b - self.a) - y))
+        matrix, last = None, np.inf
         for _ in range(NEWTON_STEPS):
             x = y * self.scale
             value = self.path.residual(x[:-1], float(x[-1]))
-            matrix = self.derivative(y) if np.all(np.isfinite(value)) else np.full((1, 1), np.nan)
+            if not np.all(np.isfinite(value)):
+                return None
+            if matrix is None or last > KEEP:
+                matrix = np.vstack([self.derivative(y), self.normal])
             if not np.all(np.isfinite(matrix)):
                 return None
-            change = np.linalg.lstsq(np.vstack([matrix, self.normal]), np.append(value, 0.0), rcond=None)[0]
-            y = y - change
-            if np.max(np.abs(change)) < CLOSE:
+            change = np.linalg.lstsq(matrix, np.append(value, 0.0), rcond=None)[0]
+            y, before, last = y - change, last, float(np.max(np.abs(change)))
+            if last > SLOW * before:
+                matrix = None
+            if last < CLOSE:
                 x = y * self.scale
                 return x[:-1], float(x[-1])
         return None

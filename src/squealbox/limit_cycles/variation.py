@@ -28,6 +28,7 @@ class Flight:
     mismatch: float = 0.0
     transversality: float = 1.0
     together: bool = False
+    by_p: Any = None
 
     @property
     def outcome(self) -> Outcome:
@@ -73,11 +74,14 @@ def flight(
 
 
 def quick_flight(
-    field: Field, x: Any, duration: float, rtol: float = 1e-11, steps: int = 400, motion: Trajectory | None = None
-) -> Flight:
+    field: Field, x: Any, duration: float, rtol: float = 1e-11, steps: int = 400, motion: Trajectory | None = None,
+    beside: tuple[Field, Field, float] | None = None,
+) -> Flight:  # fmt: skip
     """As `flight`, with Phi by fourth-order Magnus steps along the simulated motion: 1e-8 in a tenth of the time.
 
     motion : that of `fly`, where it is known
+    beside : the field at two values of a parameter and their distance, for the derivative `by_p` (2n,) of the end: as
+        a further state p with p' = 0 it is a column of the same matrices
     """
     motion = fly(field, x, duration, rtol) if motion is None else motion
     if not motion.outcome.ok:
@@ -88,14 +92,35 @@ def quick_flight(
     instants = [_gauss(motion.t[i], motion.t[k], n) for i, k, n in zip(rows[:-1], rows[1:], counts, strict=True)]
     inner = fly(field, x, duration, rtol, np.concatenate(instants))
     inside = np.split(np.hstack([inner.q, inner.qd]), np.cumsum([len(t) for t in instants])[:-1])
-    phi, least = np.eye(x.size), 1.0
+    size, least, scale = x.size, 1.0, field.scale
+    along = [field.jacobians(inner_, motion.mode[k]) for inner_, k in zip(inside, rows[1:], strict=True)]
+    if beside is not None:
+        along, weight = _with_parameter(field, along, inside, motion.mode[rows[1:]], beside)
+        scale = np.append(scale, weight)
+    phi = np.eye(len(scale))
     for piece, (i, k) in enumerate(itertools.pairwise(rows)):
         if piece > 0:
-            jump, rate, _ = saltation(field, states[i], motion.mode[i], motion.mode[i + 1])
+            jump, rate, _ = saltation(field, states[i], motion.mode[i], motion.mode[i + 1], beside)
             phi, least = jump @ phi, min(least, abs(rate))
-        along = field.jacobians(inside[piece], motion.mode[k])
-        phi = magnus(along[::2], along[1::2], (motion.t[k] - motion.t[i]) / counts[piece], field.scale) @ phi
-    return Flight(states[-1], field.rate(states[-1], motion.mode[-1]), phi, motion, 0.0, least)
+        a, b = along[piece][::2], along[piece][1::2]
+        phi = magnus(a, b, (motion.t[k] - motion.t[i]) / counts[piece], scale) @ phi
+    by_p = None if beside is None else phi[:size, size]
+    return Flight(states[-1], field.rate(states[-1], motion.mode[-1]), phi[:size, :size], motion, 0.0, least,
+                  by_p=by_p)  # fmt: skip
+
+
+def _with_parameter(
+    field: Field, along: list[Any], inside: list[Any], modes: Any, beside: tuple[Field, Field, float]
+) -> tuple[list[Any], float]:
+    """df/d(x, p) of each piece, (k, 2n + 1, 2n + 1), and what p is multiplied by to weigh as the others do."""
+    low, high, distance = beside
+    full, largest = [], 0.0
+    for by_x, states, mode in zip(along, inside, modes, strict=True):
+        by_p = (high.rates(states, mode) - low.rates(states, mode)) / distance
+        full.append(np.pad(by_x, ((0, 0), (0, 1), (0, 1))))
+        full[-1][:, :-1, -1] = by_p
+        largest = max(largest, float(np.max(np.abs(by_p) * field.scale)))
+    return full, largest / (field.frequency or 1.0) or 1.0
 
 
 def _gauss(begin: float, end: float, steps: int) -> Any:

@@ -22,14 +22,20 @@ STANDING = 1e-12  # [m/s] a belt slower than that gives no scale for a tolerance
 def pack(system: System, method: Method, scheme: int, width: float, every_step: bool) -> Any:
     """The record of one system; raises `InvalidSystem` for a map of systems or a singular mass matrix.
 
-    Systems are frozen, so the records of the last few are kept for the next run from another start.
+    Systems are frozen, so the records of the last few are kept for the next run, with its own tolerances.
     """
-    atol = method.atol if np.ndim(method.atol) == 0 else tuple(float(x) for x in method.atol)
-    return _packed(system, Method(method.tableau, method.rtol, atol), scheme, width, every_step)
+    kept, highest = _packed(system, scheme, width)
+    record = kept.copy()
+    record["rtol"], record["every_step"] = method.rtol, every_step
+    n, room = system.size, len(record["mk"])
+    atol = absolute_tolerances(system, method, highest)
+    record["atol"][:n], record["atol"][room : room + n] = atol[:n], atol[n:]
+    return record
 
 
 @lru_cache(maxsize=64)
-def _packed(system: System, method: Method, scheme: int, width: float, every_step: bool) -> Any:
+def _packed(system: System, scheme: int, width: float) -> tuple[Any, float]:
+    """The record but for tolerances and output, and the highest frequency [rad/s]."""
     if system.shape != ():
         raise InvalidSystem(f"the system has leading axes {system.shape}: simulate takes one system at a time")
     n, contacts = system.size, system.contacts
@@ -66,15 +72,10 @@ def _packed(system: System, method: Method, scheme: int, width: float, every_ste
         "scheme": scheme,
         "smoothing": width,
         "window": 1e-3 * 2.0 * np.pi / highest,
-        "rtol": method.rtol,
-        "every_step": every_step,
     }
     record = _record(_layout(values), values)
-    room = len(record["mk"])
-    atol = absolute_tolerances(system, method, highest)
     record["atol"][:] = 1.0
-    record["atol"][:n], record["atol"][room : room + n] = atol[:n], atol[n:]
-    return record
+    return record, highest
 
 
 def _layout(values: dict[str, Any]) -> np.dtype[Any]:
