@@ -44,8 +44,9 @@ def surface(field: Field, x: Any, before: Any, contact: int) -> tuple[float, flo
 def saltation(
     field: Field, x: Any, before: Any, after: Any, beside: tuple[Field, Field, float] | None = None
 ) -> tuple[Any, float, int]:
-    """S (2n, 2n), or (2n + 1, 2n + 1) with a parameter, `beside` as in `variation.quick_flight`, at state x between two sets of modes, the event's rate h_x.f- scaled by |h_x||f-|, and its contact.
+    """S (2n, 2n) at state x between two sets of modes, the event's rate h_x.f- scaled by |h_x||f-|, and its contact.
 
+    With `beside`, the fields at two values of a parameter and their distance, S is (2n + 1, 2n + 1), p its last state.
     When contacts change together, the one whose own event function is nearest to zero is taken for the cause. A rate
     near zero means grazing: S then grows without bound.
     """
