@@ -9,7 +9,7 @@ from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, 
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.tables import write_csv, written
-from squealbox.limit_cycles import Branch, HopfPoint, averaged_curve, hopf_point, isolated_branches
+from squealbox.limit_cycles import Branch, EstimateCurve, HopfPoint, estimate_curves, hopf_point, isolated_branches
 from squealbox.limit_cycles import branch as followed
 from squealbox.result import Outcome
 from squealbox.stability import complex_modes
@@ -30,6 +30,7 @@ def branch(
     runs: int = 8,
     at: int = 3,
     points: int | None = None,
+    estimates: bool = True,
     changes: Changes = (),
     allow_code: AllowCode = False,
     out: Path | None = None,
@@ -52,6 +53,8 @@ def branch(
         number of values, evenly inside the range, at which runs are made
     points
         most cycles of one branch each way
+    estimates
+        quick estimates beside the branches: describing function, and averaging for a block on a belt
     changes
         other values for this run: --set load="2 kN" reading=eq3
     allow_code
@@ -77,8 +80,11 @@ def branch(
     for i, one in enumerate(several, 1):
         print(_said(f"Branch {i}", one, found.design, varied))
     print(_coexistence(several, found.design, varied))
+    curves = estimate_curves(found.design, varied.name, (varied.low, varied.high), several) if estimates else ()
+    for curve in curves:
+        print(f"Estimate beside them: {curve}")
     if out is not None:
-        print(written(*_files(several, born, found.design, varied, found.path.name, out)))
+        print(written(*_files(several, born, curves, found.design, varied, found.path.name, out)))
 
 
 def all_branches(
@@ -135,7 +141,13 @@ def _coexistence(several: tuple[Branch, ...], design: "Design", varied: "Axis") 
 
 
 def _files(
-    several: tuple[Branch, ...], born: HopfPoint, design: "Design", varied: "Axis", title: str, out: Path
+    several: tuple[Branch, ...],
+    born: HopfPoint,
+    curves: tuple[EstimateCurve, ...],
+    design: "Design",
+    varied: "Axis",
+    title: str,
+    out: Path,
 ) -> list[Path]:
     """Figure, tables, and the data of each branch."""
     from squealbox import plots
@@ -144,11 +156,9 @@ def _files(
     name = f"{varied.name} [{unit or '-'}]"
     dof = int(np.argmax(np.max(np.concatenate([one.amplitude for one in several]), axis=0)))
     labels = [f"branch {i}" for i in range(1, len(several) + 1)] if len(several) > 1 else []
-    curves = averaged_curve(design, varied.name, varied.values)
-    estimates = [("averaging, slip only", *curves)] if len(curves[0]) else []
     title = f"{title}, {several[0].inputs['system'].names[dof]}"
     figure = plots.branch_diagram(several, dof=dof, hopf=born, labels=labels, name=name, scale=1.0 / scale,
-                                  estimates=estimates, title=title)  # fmt: skip
+                                  estimates=curves, title=title)  # fmt: skip
     paths = [*plots.save(figure, out / "branch"), write_csv(out / "branch.csv", _columns(several, name, scale))]
     special: dict[str, list[Any]] = {"branch": [], "kind": [], name: [], "uncertainty": []}
     for i, one in enumerate(several, 1):

@@ -10,6 +10,7 @@ from squealbox.limit_cycles.coexistence import Coexistence, coexistence, cycle_e
 from squealbox.limit_cycles.curves import PointCurve, hopf_curve
 from squealbox.limit_cycles.cycle import Cycle
 from squealbox.limit_cycles.diagrams import BifurcationDiagram, bifurcation_diagram
+from squealbox.limit_cycles.estimate_curves import EstimateCurve, estimate_curves
 from squealbox.limit_cycles.estimates import averaged_curve, averaged_limit, averaged_swings, describing_function
 from squealbox.limit_cycles.exponents import lyapunov_exponents
 from squealbox.limit_cycles.harmonic_balance import harmonic_balance
@@ -32,6 +33,7 @@ __all__ = [
     "Coexistence",
     "Cycle",
     "DangerousPush",
+    "EstimateCurve",
     "HopfPoint",
     "PointCurve",
     "Section",
@@ -45,6 +47,7 @@ __all__ = [
     "cycle_ends",
     "dangerous_push",
     "describing_function",
+    "estimate_curves",
     "harmonic_balance",
     "hopf_curve",
     "hopf_point",

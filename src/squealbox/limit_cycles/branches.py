@@ -34,13 +34,17 @@ RISE = 6  # points by harmonic balance from a Hopf point to the cycle where shoo
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Branch(Result):
-    """Cycles along a branch, in the order walked, as :func:`branch` returns it."""
+    """Cycles along a branch, in the order walked, as :func:`branch` returns it.
+
+    `points` (the cycle at each special point) and `family` (the design or function followed) are not saved.
+    """
 
     value: Any = quantity("point", "", "value of the parameter, in its own unit")
     period: Any = quantity("point", "s", "period")
     lowest: Any = quantity("point dof", "m", "least displacement")
     highest: Any = quantity("point dof", "m", "largest displacement")
     multipliers: Any = quantity("point multiplier", "1", "Floquet multipliers, the trivial one first")
+    start: Any = quantity("point state", "m", "state (q, q') at the beginning of the period, q' in m/s")
     least_slip: Any = quantity(
         "point", "m/s", "least sliding speed in the sense of V; negative where a contact reverses"
     )
@@ -53,6 +57,7 @@ class Branch(Result):
     special_test: Any = quantity("special", "", "what is left of the test function")
     parameter: str = ""
     points: tuple[BranchPoint, ...] = field(default=(), metadata={"transient": True})
+    family: Any = field(default=None, metadata={"transient": True})
 
     @property
     def amplitude(self) -> Any:
@@ -147,7 +152,7 @@ def branch(
     else:
         path, unknowns, p, outcome = _harmonic_start(make, start, middle, CONTACTS[contact], width, harmonics, span)
     if not outcome.ok:
-        return _collect([], [], [], outcome, parameter, settings, make(middle))
+        return _collect([], [], [], outcome, parameter, settings, make(middle), design)
     if method != "shooting" and isinstance(start, HopfPoint):
         tangent = path.rise(unknowns)
     if isinstance(start, BranchPoint) and start.kind == "period_doubling":
@@ -161,7 +166,7 @@ def branch(
     if ends_at_grazing and done.outcome == "grazing" and len(done.visited) > 1:
         done.drop_last()
         done.outcome = _grazing_outcome(specials, done.visited[-1].p)
-    return _collect(done.visited, done.seen, specials, done.outcome, parameter, settings, make(middle))
+    return _collect(done.visited, done.seen, specials, done.outcome, parameter, settings, make(middle), design)
 
 
 def _grazing_outcome(specials: list[Special], last: float) -> Outcome:
@@ -248,7 +253,7 @@ def _shooting_start(make: Any, start: Any, value: float, rtol: float, span: floa
 
 def _collect(
     visited: list[PathPoint], seen: list[dict[str, Any]], specials: list[Special], outcome: Outcome, parameter: str,
-    settings: dict[str, Any], system: Any,
+    settings: dict[str, Any], system: Any, family_: Any,
 ) -> Branch:  # fmt: skip
     n = system.size
 
@@ -258,8 +263,9 @@ def _collect(
     return Branch(
         inputs={"system": system}, settings=settings, outcome=outcome, parameter=parameter,
         value=np.array([point.p for point in visited]), period=column("period"), lowest=column("lowest", (n,)),
-        highest=column("highest", (n,)), multipliers=column("multipliers", (2 * n,)).astype(complex),
-        least_slip=column("least_slip"), sticking=column("sticking"),
+        highest=column("highest", (n,)), start=column("begin", (2 * n,)), family=family_,
+        multipliers=column("multipliers", (2 * n,)).astype(complex), least_slip=column("least_slip"),
+        sticking=column("sticking"),
         unknowns=np.array([point.x for point in visited]).reshape(len(visited), -1 if visited else 0),
         special_kind=np.array([kind for kind, _, _, _ in specials], dtype=str),
         special_value=np.array([value for _, value, _, _ in specials], dtype=float),

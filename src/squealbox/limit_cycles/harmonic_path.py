@@ -87,7 +87,7 @@ class HarmonicPath:
         t = np.append(self.grid.tau, 2.0 * np.pi) / omega
         low, high = extremes(t, closed[:, :n], closed[:, n:])
         return {"period": 2.0 * np.pi / omega, "lowest": low, "highest": high, "multipliers": self.multipliers(x, p),
-                "least_slip": self.least_slip(x, p), "sticking": 0.0, "begin": states[0, :n]}  # fmt: skip
+                "least_slip": self.least_slip(x, p), "sticking": 0.0, "begin": states[0]}  # fmt: skip
 
     def multipliers(self, x: Any, p: float) -> Any:
         """Floquet multipliers of the cycle at a point."""

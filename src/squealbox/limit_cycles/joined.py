@@ -8,7 +8,7 @@ import numpy as np
 from squealbox.limit_cycles.branches import Branch
 from squealbox.result import Outcome
 
-ALONG = ("value", "period", "lowest", "highest", "multipliers", "least_slip", "sticking", "unknowns")
+ALONG = ("value", "period", "lowest", "highest", "multipliers", "start", "least_slip", "sticking", "unknowns")
 
 
 def joined(back: Branch, forth: Branch) -> Branch:

@@ -139,7 +139,8 @@ class ShootingPath:
         return {"period": float(x[-1]), "lowest": low, "highest": high,
                 "multipliers": self.multipliers(x, p),
                 "least_slip": float(np.min(slip, initial=np.inf)),
-                "sticking": float(np.max(sticking, initial=0.0)), "begin": motion.q[0]}  # fmt: skip
+                "sticking": float(np.max(sticking, initial=0.0)),
+                "begin": np.concatenate([motion.q[0], motion.qd[0]])}  # fmt: skip
 
     def multipliers(self, x: Any, p: float) -> Any:
         """Floquet multipliers of the cycle at a point."""

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.limit_cycles import Branch, Cycle, HopfPoint
+from squealbox.limit_cycles import Branch, Cycle, EstimateCurve, HopfPoint, estimate_curves
+from squealbox.limit_cycles.estimate_curves import AVERAGED, DESCRIBING
 from squealbox.plots.dispatch import plot
 from squealbox.plots.style import WIDTH, drawing, figure_of, line, note, number, panels, quantity_label, scaled
 
@@ -22,6 +23,8 @@ MARKS = {
     "neimark_sacker": ("D", "Neimark-Sacker"),
     "event_order": ("|", "two events change places"),
 }
+
+ESTIMATES = {DESCRIBING: ("#0072B2", ":"), AVERAGED: ("#009E73", "-.")}
 
 
 @plot.register(Cycle)
@@ -65,7 +68,7 @@ def branch_diagram(
     dof: int = 0,
     hopf: HopfPoint | None = None,
     runs: tuple[Any, Any] | None = None,
-    estimates: Sequence[tuple[str, Any, Any]] = (),
+    estimates: bool | Sequence[EstimateCurve] = True,
     labels: Sequence[str] = (),
     name: str | None = None,
     scale: float = 1.0,
@@ -80,7 +83,8 @@ def branch_diagram(
     dof : index of the degree of freedom
     hopf : marks where the branch is born
     runs : (values, amplitudes [m]) of long runs, drawn as crosses
-    estimates : (label, values, amplitudes [m]) of quick estimates, drawn as thin dotted curves
+    estimates : quick estimates, drawn as dotted curves with how far they are off; True computes those of
+        :func:`limit_cycles.estimate_curves` where the branches know what they were followed in, False draws none
     labels, name : of the branches (each then has a colour of its own) and of the parameter, with its unit
     scale : what the parameter is divided by
     axes : draw here instead of in a new figure
@@ -96,9 +100,9 @@ def branch_diagram(
             _marks(panel, one, one.amplitude[:, dof] / factor, scale, shown)
         if hopf is not None and hopf.outcome.ok:
             panel.plot(hopf.value / scale, 0.0, "o", color="#000000", label="onset of instability", zorder=4)
-        for label, values, sizes in estimates:
-            panel.plot(np.asarray(values) / scale, np.asarray(sizes) / factor, ":", color="#0072B2", linewidth=1.0,
-                       label=label, zorder=1)  # fmt: skip
+        ends = panel.get_ylim()
+        _estimates(panel, _known(several) if estimates is True else estimates or (), dof, factor, scale)
+        panel.set_ylim(top=max(ends[1], 0.0))  # an estimate far above the cycles leaves the panel
         if runs is not None:
             values, sizes = (np.asarray(x) for x in runs)
             panel.plot(values / scale, sizes / factor, "+", color="#555555", markersize=4.5, label="long run")
@@ -107,6 +111,31 @@ def branch_diagram(
         panel.margins(x=0.05)
         _legend(panel, alone=axes is None)
         return figure_of(panel)
+
+
+def _known(several: Sequence[Branch]) -> tuple[EstimateCurve, ...]:
+    """The quick estimates beside branches that were followed together."""
+    together = [one for one in several if len(one.value) and one.family is not None]
+    if not together or len({one.parameter for one in together}) > 1:
+        return ()
+    ends = np.array([one.settings["bounds"] for one in together])
+    bounds = float(np.min(ends)), float(np.max(ends))
+    return estimate_curves(together[0].family, together[0].parameter, bounds, together)
+
+
+def _estimates(panel: Any, curves: Sequence[EstimateCurve], dof: int, factor: float, scale: float) -> None:
+    """Each kind in a look of its own; the legend says how far it is off the cycles."""
+    for label in dict.fromkeys(curve.label for curve in curves):
+        alike = [curve for curve in curves if curve.label == label]
+        off = [100.0 * curve.off for curve in alike if np.isfinite(curve.off)]
+        text = label.replace(" (", "\n(")
+        if off:
+            least, most = number(min(off), 2), number(max(off), 2)
+            text += f"\n{least} % off in the median" if least == most else f"\n{least} to {most} % off in the median"
+        colour, dash = ESTIMATES.get(label, ("#0072B2", ":"))
+        for i, curve in enumerate(alike):
+            panel.plot(curve.value / scale, curve.amplitude[:, dof] / factor, dash, color=colour, linewidth=1.2,
+                       label=None if i else text, zorder=1)  # fmt: skip
 
 
 def _legend(panel: Any, alone: bool) -> None:
