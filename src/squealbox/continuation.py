@@ -18,6 +18,7 @@ from squealbox.result import COMPLETED, Outcome
 
 KEEP = 1e-3  # scaled correction below which Newton's method keeps its derivative for the next one
 SLOW = 0.1  # share of the one before by which a correction with a kept derivative must shrink
+STEEP = 1e4  # 1/cos of the angle to the last tangent above which the null vector is taken from singular values
 
 Residual = Callable[[Any, float], Any]
 Jacobian = Callable[[Any, float], tuple[Any, Any]]
@@ -170,15 +171,18 @@ class Follower:
         yield self._point(y, tangent, previous.arclength + step, step, iterations, size, sign=sign)
 
     def _correct(self, guess: Any, normal: Any, most: int) -> tuple[Any, int, float]:
-        """Newton on the plane through `guess` with that normal: the root or None, steps, largest |residual|."""
-        y, size, matrix, last = guess.copy(), np.inf, None, np.inf
+        """Newton on the plane through `guess` with that normal: the root or None, steps, largest |residual|.
+
+        Corrections with a kept derivative are cheap, so they count as steps only up to those that are wanted.
+        """
+        y, size, matrix, last, fresh = guess.copy(), np.inf, None, np.inf, 0
         for iteration in range(1, most + 1):
             value = self._value(y)
             size = float(np.max(np.abs(value)))
             if not np.isfinite(size):
                 return None, iteration, size
             if matrix is None or last > KEEP:
-                matrix = np.vstack([self._derivative(y), normal])
+                matrix, fresh = np.vstack([self._derivative(y), normal]), fresh + 1
             try:
                 change = np.linalg.solve(matrix, np.append(value, normal @ (y - guess)))
             except np.linalg.LinAlgError:
@@ -189,7 +193,7 @@ class Follower:
             if last <= self.control.tolerance:
                 size = float(np.max(np.abs(self._value(y))))
                 if size <= self.control.residual_tolerance:
-                    return y, iteration, size
+                    return y, min(iteration, max(fresh + 1, self.control.wanted_steps)), size
         return None, most, size
 
     def _tangent(self, y: Any, along: Any) -> tuple[Any, float]:
@@ -197,8 +201,7 @@ class Follower:
         derivative = self._derivative(y)
         if not np.all(np.isfinite(derivative)):
             return np.full(y.size, np.nan), 0.0
-        _, _, rows = np.linalg.svd(derivative)
-        tangent = rows[-1] if rows[-1] @ along >= 0.0 else -rows[-1]
+        tangent = _null_vector(derivative, along)
         return tangent, float(np.linalg.slogdet(np.vstack([derivative, tangent]))[0])
 
     def _sign(self, y: Any, tangent: Any) -> float:
@@ -237,6 +240,19 @@ class Follower:
         off = np.linalg.norm(start - a - along * span)
         same_way = origin.tangent @ point.tangent > 0.0
         return bool(0.0 < along <= 1.0 and off < 0.3 * np.linalg.norm(span) and same_way)
+
+
+def _null_vector(matrix: Any, along: Any) -> Any:
+    """Unit vector t with matrix t = 0, shape (n, n + 1), on the side of `along`, where it is not normal to that."""
+    try:
+        tangent = np.linalg.solve(np.vstack([matrix, along]), np.append(np.zeros(len(matrix)), 1.0))
+    except np.linalg.LinAlgError:
+        tangent = np.full(len(along), np.inf)
+    size = float(np.linalg.norm(tangent))
+    if size < STEEP:
+        return tangent / size
+    last = np.linalg.svd(matrix)[2][-1]
+    return last if last @ along >= 0.0 else -last
 
 
 def follow(residual: Residual, x: Any, p: float, **options: Any) -> Follower:

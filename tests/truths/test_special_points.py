@@ -91,7 +91,9 @@ def test_from_a_period_doubling_onto_the_doubled_branch():
     assert point.kind == "period_doubling"
     assert np.min(np.abs(point.multipliers + 1.0)) < 1e-9
     np.testing.assert_array_equal(single.stable, single.value > float(point.value))  # the single cycle hands over
-    double = branch(blocks, "speed", (0.045, 0.06), point, points=5, **walk)
+    double = branch(
+        blocks, "speed", (0.045, 0.06), point, points=5, largest_step=5e-3, **walk
+    )  # the law is for small ones
     assert np.all(double.stable)
     np.testing.assert_allclose(double.period, 2.0 * float(point.period), rtol=1e-4)  # T itself moves with the parameter
     rise, moved = double.amplitude[:, 0] - point.amplitude[0], float(point.value) - double.value

@@ -84,7 +84,7 @@ def belt(speed, damping):
 
 def fold_of(damping):
     """Fold of the smoothed stick-slip cycle, from a branch in the speed alone."""
-    walk = {"contact": "tanh", "width": 0.05, "harmonics": 9, "value": 0.25, "points": 60}
+    walk = {"contact": "tanh", "width": 0.05, "harmonics": 9, "value": 0.25, "points": 100}
     found = branch(lambda v: belt(v, damping), "speed", (0.1, 0.6), **walk)
     return next(point for point in found.points if point.kind == "fold")
 
