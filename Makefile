@@ -2,7 +2,7 @@
 # make test   lint, import floors, types and tests
 # make docs   the documentation, into docs/_build/html
 # make bench  the benchmarks
-# make format, make picture, make clean: tidy the code, draw the README's picture, remove what was made
+# make format, make picture, make clean: tidy the code, draw the README's pictures, remove what was made
 #
 # Python 3.11 or newer and make are all that is assumed; uv is used when it is there, because it installs faster.
 # Another interpreter: make demo PYTHON=python3.12
@@ -54,8 +54,9 @@ docs: $(VENV)/.installed-docs
 	$(BIN)/python -m sphinx --fail-on-warning -b html docs docs/_build/html
 	@echo "The documentation is at $(abspath docs/_build/html)/index.html"
 
-picture: $(VENV)/.installed
+picture: $(VENV)/.installed-dev
 	$(BIN)/python docs/images/draw.py
+	$(BIN)/python docs/images/workbench.py
 
 bench: $(VENV)/.installed-bench
 	@for each in benchmarks/*.py; do echo "== $$each"; $(BIN)/python $$each || exit 1; done

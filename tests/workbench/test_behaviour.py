@@ -3,7 +3,9 @@
 import re
 import tomllib
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from squealbox import DrumBrake, LinearSlope, Stribeck, read_design, write_design
 from workbench.browsing import Page
@@ -22,6 +24,8 @@ DRAWN_WHEN = """() => import('/static/app.js').then(({ app }) => {
         };
     }
 })"""
+PIXELS = """() => { const c = document.querySelector('section[data-panel=map] canvas');
+    return Array.from(c.getContext('2d').getImageData(0, 0, 40, 40).data).join(); }"""
 SMALL = """() => [...document.querySelectorAll('body *')].filter(e => [...e.childNodes].some(
     n => n.nodeType === 3 && n.textContent.trim()) && e.getClientRects().length
     && parseFloat(getComputedStyle(e).fontSize) < 12).map(e => e.tagName + ': ' + e.textContent.slice(0, 40))"""
@@ -151,6 +155,42 @@ def test_every_figure_is_saved(page, tmp_path):
     lines = files["CSV"].read_text().splitlines()
     assert lines[0].startswith('"friction.static [-]","load [N]","growth rate [1/s]"')
     assert len(lines) == 1 + 101 * 101
+
+
+def test_figures_are_saved_for_paper_also_from_a_dark_page(browser, server, tmp_path):
+    with Page(browser, server, scheme="dark") as page:
+        page.goto()
+        page.drawn("map")
+        background = "getComputedStyle(document.body).backgroundColor"
+        dark, pixels = page.page.evaluate(background), page.page.evaluate(PIXELS)
+        for kind in ("PNG", "SVG"):
+            with page.page.expect_download() as saved:
+                page.page.locator("section[data-panel=map] .files button", has_text=kind).click()
+            saved.value.save_as(tmp_path / f"map.{kind}")
+        assert page.page.evaluate(background) == dark
+        assert page.page.evaluate(PIXELS) == pixels, "the page keeps its colours"
+    picture = np.asarray(Image.open(tmp_path / "map.PNG").convert("L"), dtype=float)
+    assert picture.shape[1] > 1000  # three pixels for one of the page
+    assert np.all(picture[:5, :5] == 255.0)
+    border = np.concatenate([picture[:, :60].ravel(), picture[-70:, :].ravel()])
+    assert np.mean(border > 200.0) > 0.9, "dark letters on white paper"
+    assert np.min(border) < 100.0, "the letters are drawn"
+    svg = (tmp_path / "map.SVG").read_text()
+    assert '<rect width="100%" height="100%" fill="#ffffff"/>' in svg
+    assert "1/s</text>" in svg, "what the colours mean goes with the picture"
+
+
+def test_names_of_bars_and_curves_of_the_boundary_are_in_the_tables(page, tmp_path):
+    heads = {}
+    for panel in ("energy", "map"):
+        page.drawn(panel)
+        with page.page.expect_download() as saved:
+            page.page.locator(f"section[data-panel={panel}] .files button", has_text="CSV").click()
+        saved.value.save_as(tmp_path / panel)
+        heads[panel] = (tmp_path / panel).read_text().splitlines()
+    assert heads["energy"][0] == '"name","share of the growth rate [1/s]"'
+    assert {line.split(",")[0] for line in heads["energy"][1:]} >= {'"shoe 1"', '"damping of x"'}
+    assert '"boundary: friction.static [-]","boundary: load [N]"' in heads["map"][0]
 
 
 def test_no_text_is_smaller_than_twelve_pixels(page):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squealbox import DrumBrake, LinearSlope, complex_modes, mode_energy, sensitivity, verdict
+from squealbox import DrumBrake, LinearSlope, complex_modes, mode_energy, sensitivity, sound_level, verdict
 from squealbox.designs import DESIGNS
 from squealbox.system import equilibrium
 from squealbox.transient import simulate
@@ -50,7 +50,18 @@ def test_the_motion_is_that_of_the_library(squealing):
     assert max(orbit["x"]) - min(orbit["x"]) == pytest.approx(np.ptp(x) * 1e6, rel=1e-4)  # drawn in um
     assert squealing.numbers("motion", "phase")["x"]["label"] == "x [µm]"
     assert f"{judged.frequency:.5g} Hz" in squealing.says("motion")
-    assert "In time: Settles on a cycle" in squealing.page.locator("#verdict").inner_text()
+    strip = squealing.page.locator("#verdict").inner_text()
+    assert "In time: Settles on a cycle" in strip
+    level = float(sound_level(motion, dof=0, begin=0.75 * duration).weighted)
+    assert f"about {level:.2g} dB(A) at 1 m, an estimate" in strip
+    assert "may be 10 dB louder or quieter" in strip
+
+
+def test_a_motion_that_dies_away_has_no_level_and_the_verdict_knows_the_motion_unseen(page):
+    heard = page.page.locator("#verdict .heard")
+    heard.wait_for()  # asked at rest, though the panel of the motion has not been looked at
+    assert "Decays" in heard.inner_text()
+    assert "dB" not in heard.inner_text()
 
 
 def test_the_spectrum_has_its_line_and_the_pictures_have_colours(squealing):

@@ -45,6 +45,7 @@ class DesignFile:
     simulate: analyses.Simulate | None = None
     scatter: Scattered | None = None
     optimise: Optimise | None = None
+    study: bool = False  # does it hold a [study], which `study.read_study` reads?
 
 
 def read_design(path: str | os.PathLike[str], *, allow_code: bool = False) -> Design:
@@ -81,13 +82,13 @@ def read_text(text: str, name: str = "design.toml") -> DesignFile:
 
 def _file(document: Document) -> DesignFile:
     tables = dict(document.tables)
-    tables.pop(STUDY, None)
+    study = tables.pop(STUDY, None) is not None
     asked = {name: tables.pop(name) for name in SECTIONS if name in tables}
     design = design_of(document, tables)
     sections = {name: section_of(document, name, table, design) for name, table in asked.items()}
     if design is None or document.problems:
         raise document.error()
-    return DesignFile(document.path, design, **sections)
+    return DesignFile(document.path, design, study=study, **sections)
 
 
 def design_of(document: Document, tables: Mapping[str, Any], beside: tuple[str, ...] = ()) -> Design | None:

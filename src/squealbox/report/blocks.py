@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+HALF_A_PAGE = 3.6  # inches
+FEW_ROWS = 12
+
 
 class ReportError(ValueError):
     """A page cannot be made of what was given; the message names the piece."""
@@ -60,6 +63,11 @@ class Table:
             if len(row) != len(self.head):
                 raise ReportError(f"table {self.caption!r}: row {i} has {len(row)} cells, expected {len(self.head)}")
 
+    @property
+    def short(self) -> bool:
+        """True where it is better not torn apart on paper."""
+        return len(self.rows) <= FEW_ROWS
+
     def cells(self) -> tuple[tuple[Cell, ...], ...]:
         """The rows with every entry as a cell."""
         return tuple(tuple(x if isinstance(x, Cell) else Cell(x) for x in row) for row in self.rows)
@@ -73,6 +81,7 @@ class Picture:
     caption: str
     alt: str = ""
     inches = 0.0
+    narrow = False
     kind = "picture"
 
     @property
@@ -90,6 +99,11 @@ class Drawing:
     alt: str = ""
     inches: float = 0.0  # width of the figure it was; 0 shows the picture at its own size
     kind = "picture"
+
+    @property
+    def narrow(self) -> bool:
+        """True where two of them find room beside each other on paper."""
+        return 0.0 < self.inches <= HALF_A_PAGE
 
     @property
     def uri(self) -> str:

@@ -18,12 +18,15 @@ from squealbox.result import provenance
 from squealbox.system import equilibrium
 
 
-def design_page(found: Examination, *, title: str = "", command: str = "") -> Page:
-    """The page of an examination; `title` and `command` say which file it came from and how to make it again."""
+def design_page(found: Examination, *, title: str = "", command: str = "", note: str = "") -> Page:
+    """The page of an examination; `title` and `command` say which file it came from and how to make it again.
+
+    `note` is a sentence that belongs to the caveats.
+    """
     design = found.design
     parts = [
         Section("Verdict", (_tiles(found), Points(tuple(words.verdict(found))))),
-        Section("Caveats", (Points(tuple(words.caveats(found))),)),
+        Section("Caveats", (Points((*words.caveats(found), *filter(None, [note]))),)),
         Section("The brake", tuple(_brake(found))),
         Section("Stability", tuple(stability_sections.stability(found))),
         Section("Two parameters", tuple(stability_sections.map_of_two(found))),

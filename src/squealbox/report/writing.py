@@ -83,7 +83,12 @@ def _file_page(found: DesignFile, progress: Progress) -> Page:
         found.design, onset=found.onset, plane=found.map, simulate=found.simulate, time=time, progress=progress
     )
     title = f"{found.design.title}: {found.path.name}"
-    return design_page(about, title=title, command=f"squealbox report {found.path.name}")
+    name = found.path.name
+    note = (
+        f"The study in this file is not run for this page: squealbox run {name} --out DIR runs it, and squealbox "
+        "report DIR shows what came out. This page is about the design as the file gives it."
+    )
+    return design_page(about, title=title, command=f"squealbox report {name}", note=note if found.study else "")
 
 
 def _name(what: Any) -> str:

@@ -62,7 +62,7 @@ export class Bars {
   }
 
   columns() {
-    return [["name", []], [this.spec.label, this.spec.bars.map((bar) => bar.sum)]].map(([name, values], i) => (i ? [name, values] : [`${name}: ${this.spec.bars.map((bar) => bar.name).join("; ")}`, values]));
+    return [["name", this.spec.bars.map((bar) => bar.name)], [this.spec.label, this.spec.bars.map((bar) => bar.sum)]];
   }
 }
 

@@ -122,11 +122,12 @@ export class Chart {
     Object.assign(canvas.style, { left: `${left}px`, top: `${top}px`, width: `${this.inner.width}px`, height: `${this.inner.height}px` });
     canvas.width = heat.columns;
     canvas.height = heat.rows;
+    const { pixel } = heat.scale(); // made anew at each drawing: the colours are those of the page
     const picture = new ImageData(heat.columns, heat.rows);
     const pixels = new Uint32Array(picture.data.buffer);
     for (let j = 0; j < heat.rows; j++) {
       const from = (heat.rows - 1 - j) * heat.columns; // rows come from below
-      for (let i = 0; i < heat.columns; i++) pixels[j * heat.columns + i] = heat.colour(heat.values[from + i]);
+      for (let i = 0; i < heat.columns; i++) pixels[j * heat.columns + i] = pixel(heat.values[from + i]);
     }
     canvas.getContext("2d").putImageData(picture, 0, 0);
     canvas.classList.toggle("smooth", Boolean(heat.smooth));

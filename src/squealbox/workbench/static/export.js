@@ -1,6 +1,13 @@
-// Figures as files: PNG, SVG with its look written into it, and CSV of the numbers drawn.
+// Figures as files for paper, light also where the page is dark: PNG, SVG with its look written into it, and CSV of the
+// numbers drawn.
 
-const KEPT = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-opacity", "opacity", "font-family", "font-size", "font-weight"];
+import { onPaper } from "./theme.js";
+
+const FINER = 3; // pixels of a PNG for one of the page: 300 dots per inch at the size of the page
+
+const KEPT = ["paint-order", "fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-opacity", "opacity", "font-family", "font-size", "font-weight"];
+
+const KEYS = 24; // px below a figure for the meaning of its colours
 
 /** The SVG of a chart as text with its look as attributes; `ground` are the elements beneath it, as text. */
 function serialised(chart, ground) {
@@ -15,40 +22,82 @@ function serialised(chart, ground) {
   });
   copy.querySelectorAll('[display="none"]').forEach((element) => element.remove());
   copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
+  const keys = chart.spec.heat?.keys() ?? [];
+  if (keys.length) keyed(copy, keys, chart.margin.left);
   const text = new XMLSerializer().serializeToString(copy);
   const inside = text.indexOf(">") + 1;
   return text.slice(0, inside) + ground + text.slice(inside);
 }
 
+/** What the colours of the picture mean, in a row below the figure. */
+function keyed(copy, keys, left) {
+  const [, , width, height] = copy.getAttribute("viewBox").split(" ").map(Number);
+  copy.setAttribute("height", height + KEYS);
+  copy.setAttribute("viewBox", `0 0 ${width} ${height + KEYS}`);
+  const each = (width - left) / keys.length;
+  keys.forEach(([css, words], i) => {
+    const x = left + i * each;
+    copy.append(element("rect", { x, y: height + 4, width: 12, height: 12, fill: css, stroke: "#888888" }));
+    const text = element("text", { x: x + 17, y: height + 14, "font-size": "12px", "font-family": "system-ui, DejaVu Sans, sans-serif", fill: "#14181d" });
+    text.textContent = words;
+    copy.append(text);
+  });
+}
+
+function element(tag, about) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(about)) made.setAttribute(name, value);
+  return made;
+}
+
 const box = (chart) => ({ x: chart.margin.left, y: chart.margin.top, width: chart.inner.width, height: chart.inner.height });
-const paper = () => getComputedStyle(document.body).backgroundColor;
+const PAPER = "#ffffff";
+
+/** A figure as it goes to paper, whatever the colours of the page: its SVG as text, and the picture beneath it. */
+function printed(chart, ground) {
+  const taken = onPaper(() => {
+    chart.draw(chart.spec);
+    return { text: serialised(chart, ground(chart)), picture: chart.canvas.hidden ? null : copied(chart.canvas) };
+  });
+  chart.draw(chart.spec); // in the page's own colours again
+  return taken;
+}
+
+function copied(canvas) {
+  const copy = document.createElement("canvas");
+  Object.assign(copy, { width: canvas.width, height: canvas.height });
+  copy.getContext("2d").drawImage(canvas, 0, 0);
+  return copy;
+}
 
 /** The chart as an SVG file; a picture of values goes in as an image, written as text so that this page loads nothing. */
 export function svgText(chart) {
-  let ground = `<rect width="100%" height="100%" fill="${paper()}"/>`;
-  if (!chart.canvas.hidden) {
+  return printed(chart, () => {
+    const paper = `<rect width="100%" height="100%" fill="${PAPER}"/>`;
+    if (chart.canvas.hidden) return paper;
     const place = Object.entries(box(chart)).map(([name, value]) => `${name}="${value}"`).join(" ");
-    ground += `<image ${place} preserveAspectRatio="none" href="${chart.canvas.toDataURL()}"/>`;
-  }
-  return serialised(chart, ground);
+    const look = chart.spec.heat.smooth ? "" : ' style="image-rendering:pixelated"';
+    return `${paper}<image ${place} preserveAspectRatio="none"${look} href="${chart.canvas.toDataURL()}"/>`;
+  }).text;
 }
 
-/** The chart as a PNG of twice its size on the page: paper, picture, and the drawing over them. */
+/** The chart as a PNG of three times its size on the page: paper, picture, and the drawing over them. */
 export async function pngBlob(chart) {
-  const address = URL.createObjectURL(new Blob([serialised(chart, "")], { type: "image/svg+xml" }));
+  const { text, picture } = printed(chart, () => "");
+  const address = URL.createObjectURL(new Blob([text], { type: "image/svg+xml" }));
   try {
     const image = new Image();
     image.src = address;
     await image.decode();
     const canvas = document.createElement("canvas");
-    canvas.width = 2 * image.width;
-    canvas.height = 2 * image.height;
+    canvas.width = FINER * image.width;
+    canvas.height = FINER * image.height;
     const pen = canvas.getContext("2d");
-    pen.fillStyle = paper();
+    pen.fillStyle = PAPER;
     pen.fillRect(0, 0, canvas.width, canvas.height);
     pen.imageSmoothingEnabled = false;
     const { x, y, width, height } = box(chart);
-    if (!chart.canvas.hidden) pen.drawImage(chart.canvas, 2 * x, 2 * y, 2 * width, 2 * height);
+    if (picture) pen.drawImage(picture, FINER * x, FINER * y, FINER * width, FINER * height);
     pen.imageSmoothingEnabled = true;
     pen.drawImage(image, 0, 0, canvas.width, canvas.height);
     return await new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
@@ -63,8 +112,14 @@ export function csvText(chart) {
   const quoted = (name) => `"${name.replaceAll('"', '""')}"`;
   const lines = [columns.map(([name]) => quoted(name)).join(",")];
   const rows = Math.max(0, ...columns.map(([, values]) => values.length));
-  for (let i = 0; i < rows; i++) lines.push(columns.map(([, values]) => (i < values.length && Number.isFinite(values[i]) ? Number(values[i].toPrecision(8)) : "")).join(","));
+  for (let i = 0; i < rows; i++) lines.push(columns.map(([, values]) => cell(values[i])).join(","));
   return lines.join("\n") + "\n";
+}
+
+/** A number with eight digits, a word in quotes, nothing where nothing is known. */
+function cell(value) {
+  if (typeof value === "string") return `"${value.replaceAll('"', '""')}"`;
+  return Number.isFinite(value) ? Number(value.toPrecision(8)) : "";
 }
 
 /** Hand a file to the user. */

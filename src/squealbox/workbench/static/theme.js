@@ -10,6 +10,19 @@ export function chooseTheme(choice = localStorage.getItem(KEY) ?? CHOICES[0]) {
   return choice;
 }
 
+/** Do something while the page has the colours of paper; nothing of it is seen, since the page is painted only afterwards. */
+export function onPaper(act) {
+  const { dataset } = document.documentElement;
+  const before = dataset.theme;
+  dataset.theme = "light";
+  try {
+    return act();
+  } finally {
+    if (before === undefined) delete dataset.theme;
+    else dataset.theme = before;
+  }
+}
+
 export function nextTheme() {
   const now = CHOICES.indexOf(localStorage.getItem(KEY) ?? CHOICES[0]);
   return chooseTheme(CHOICES[(now + 1) % CHOICES.length]);

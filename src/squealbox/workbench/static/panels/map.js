@@ -33,7 +33,8 @@ export default {
     panel.frame = { data, arrays };
     const [chart] = panel.charts;
     const [rows, columns] = arrays.growth.shape;
-    const heat = { rows, columns, ...coloured(panel, data, arrays) };
+    const heat = { rows, columns, ...coloured(data, arrays) };
+    panel.legend.replaceChildren(...legend(heat));
     const domain = (axis, span) => ({ label: label(axis.parameter, axis.unit), domain: span, axis });
     panel.spec = { x: domain(data.x, data.xspan), y: domain(data.y, data.yspan), heat, edges: boundary(arrays) };
     const share = data.unstable === null ? "no steady sliding anywhere" : `${shown(100 * data.unstable, 3)} % of the plane is unstable`;
@@ -107,24 +108,26 @@ function boundary({ edge, curve }) {
   return curves;
 }
 
-function coloured(panel, data, arrays) {
+/** The values to be coloured, how, and what the colours mean; the scale is made for the colours the page has then. */
+function coloured(data, arrays) {
+  const key = (made, words) => () => made().steps.map(([css, value]) => [css, words(value)]);
   if (data.show === "mechanism") {
-    const colours = mechanismColours();
-    panel.legend.replaceChildren(...data.mechanisms.flatMap((name, code) => key(colours.css(code), name.replaceAll("_", " "))));
-    return { values: arrays.mechanism, colour: colours.pixel, name: "mechanism" };
+    const keys = () => data.mechanisms.map((name, code) => [mechanismColours().css(code), name.replaceAll("_", " ")]);
+    return { values: arrays.mechanism, scale: mechanismColours, keys, name: "mechanism" };
   }
   if (data.show === "frequency") {
-    const scale = sequential(arrays.frequency);
-    panel.legend.replaceChildren(...scale.steps.flatMap(([css, value]) => key(css, `${shown(value, 3)} Hz`)));
-    return { values: arrays.frequency, colour: scale.pixel, name: "frequency [Hz]" };
+    const scale = () => sequential(arrays.frequency);
+    return { values: arrays.frequency, scale, keys: key(scale, (value) => `${shown(value, 3)} Hz`), name: "frequency [Hz]" };
   }
-  const scale = diverging(arrays.growth);
-  panel.legend.replaceChildren(...scale.steps.flatMap(([css, value]) => key(css, value === 0 ? "0" : `${shown(value, 2)}`)), "growth rate [1/s]: orange squeals, blue is quiet");
-  return { values: arrays.growth, colour: scale.pixel, name: "growth rate [1/s]" };
+  const scale = () => diverging(arrays.growth);
+  return { values: arrays.growth, scale, keys: key(scale, (value) => `${shown(value, 2)} 1/s`), name: "growth rate [1/s]", words: "growth rate: orange squeals, blue is quiet" };
 }
 
-function key(css, words) {
-  const swatch = make("i", { class: "swatch" });
-  swatch.style.backgroundColor = css;
-  return [swatch, `${words} `];
+function legend(heat) {
+  const swatch = (css) => {
+    const made = make("i", { class: "swatch" });
+    made.style.backgroundColor = css;
+    return made;
+  };
+  return [...heat.keys().flatMap(([css, words]) => [swatch(css), `${words} `]), heat.words ?? ""];
 }

@@ -57,11 +57,12 @@ export default {
       layers: [line(f, arrays.amplitude), across(0), ...data.peaks.slice(0, 3).map(([at, size]) => text(at / factor, size, shown(at / factor)))],
     });
     const [rows, columns] = arrays.grid.shape;
-    const scale = sequential(arrays.grid, { log: true });
+    const scale = () => sequential(arrays.grid, { log: true });
+    const keys = () => scale().steps.map(([css, value]) => [css, `${shown(value, 2)} ${data.unit}`]);
     spectrogram.draw({
       x: { label: label("time", data.clock), domain: data.gridTime },
       y: { label: label("frequency", hertz), domain: [0, data.gridTop / factor] },
-      heat: { rows, columns, values: arrays.grid, colour: scale.pixel, name: `amplitude [${data.unit}]`, smooth: true },
+      heat: { rows, columns, values: arrays.grid, scale, keys, name: `amplitude [${data.unit}]`, smooth: true },
       layers: [],
     });
   },
