@@ -11,6 +11,8 @@ from squealbox.plots.style import number
 from squealbox.report.examination import Examination
 from squealbox.system import equilibrium
 
+UNDAMPED = 1e-9  # damping ratio below which what is left is round-off
+
 
 def in_reading_unit(found: Examination, name: str) -> tuple[float, str]:
     """What SI values of a parameter are multiplied by to be read, and the unit then: angles in degrees."""
@@ -52,7 +54,9 @@ def _stability(found: Examination) -> Iterator[str]:
     if not found.modes.exists:
         return
     worst = found.modes.most_unstable
-    if found.stable:
+    if found.stable and abs(worst.damping_ratio) < UNDAMPED:
+        yield f"A mode at {quantity(worst.frequency, 'Hz')} neither grows nor decays: nothing in the model damps it."
+    elif found.stable:
         yield (
             f"The least damped mode, at {quantity(worst.frequency, 'Hz')}, decays at "
             f"{number(abs(worst.growth_rate))} 1/s (damping ratio {number(100.0 * worst.damping_ratio, 3)} %)."

@@ -45,7 +45,9 @@ class Processes:
                 return None
         process = None
         try:
-            process = self._taken()
+            process, fresh = self._taken()
+            if fresh and report is not None:
+                report(0.0, "starting a process for it")
             found = process.answer(question, report, stopped, usual)
         except BaseException:
             if process is not None:
@@ -66,13 +68,14 @@ class Processes:
                 process.end()
             self._idle.clear()
 
-    def _taken(self) -> "_Process":
+    def _taken(self) -> tuple["_Process", bool]:
+        """A process that waits, or a new one, and whether it is new."""
         with self._lock:
             while self._idle:
                 process = self._idle.pop()
                 if process.alive:
-                    return process
-        return _Process()
+                    return process, False
+        return _Process(), True
 
 
 class _Process:
@@ -103,7 +106,7 @@ class _Process:
                 continue
             try:
                 kind, *said = self.line.recv()
-            except EOFError:
+            except (EOFError, ConnectionError):
                 raise Died("the computation ended without an answer") from None
             if kind == "answer":
                 return bytes(said[0])

@@ -39,4 +39,7 @@ export const typographic = (text) => text.replaceAll("+-", "±").replaceAll(" -"
 export const plain = (value) => (value === null || value === undefined ? "" : String(Number(value.toPrecision(7))));
 
 /** "friction.static [-]": the label of an axis. */
-export const label = (name, unit) => `${name} [${unit || "-"}]`;
+export const label = (name, unit) => `${name} [${raised(unit || "-")}]`;
+
+/** "kg m^2" with its power raised. */
+export const raised = (unit) => unit.replaceAll("^2", "²").replaceAll("^3", "³");

@@ -1,7 +1,7 @@
 // The side of the page: every field of the design as a slider and a number, a choice or a friction law.
 
 import { make } from "./elements.js";
-import { plain } from "./numbers.js";
+import { plain, raised } from "./numbers.js";
 
 export class Parameters {
   constructor(app, place) {
@@ -67,7 +67,7 @@ export class Parameters {
     const step = field.whole ? 1 : field.step / factor;
     const slider = make("input", { type: "range", "aria-label": `${field.path}, slider`, data: { slider: field.path }, min: low / factor, max: high / factor, step: field.whole ? 1 : "any" });
     const number = make("input", { ...common, type: "text", inputmode: "decimal", size: 9, placeholder: field.optional ? "left out" : "" });
-    const unit = make("span", { class: "unit" }, field.unit || "-");
+    const unit = make("span", { class: "unit" }, raised(field.unit || "-"));
     slider.addEventListener("input", () => store.propose({ [field.path]: nearest(slider.valueAsNumber * factor, field) }));
     slider.addEventListener("change", () => store.commit());
     slider.addEventListener("keydown", (event) => {

@@ -6,6 +6,9 @@ import { View } from "./view.js";
 
 const MECHANISMS = { flutter: "mode coupling (flutter)", negative_slope: "falling friction (negative slope)", divergence: "divergence", mixed: "mode coupling and falling friction together", unknown: "not known" };
 
+const AUDIBLE = [20, 20e3]; // Hz
+const UNDAMPED = 1e-9; // damping ratio below which what is left is round-off
+
 export class Verdict {
   constructor(app, place) {
     Object.assign(this, { app, place, motion: null });
@@ -53,7 +56,8 @@ function loud({ fate, loud: found, of }) {
 function headline(data) {
   if (data.state === "unknown") return "No steady sliding";
   if (data.state === "stable") return "Steady sliding is stable";
-  return `Unstable: it will squeal at about ${withUnit(data.frequency, "Hz")}`;
+  const heard = data.frequency >= AUDIBLE[0] && data.frequency <= AUDIBLE[1];
+  return `Unstable: it will ${heard ? "squeal" : "vibrate"} at about ${withUnit(data.frequency, "Hz")}`;
 }
 
 function why(data) {
@@ -62,7 +66,8 @@ function why(data) {
   if (data.state === "unstable") {
     const several = data.modes > 1 ? `${data.modes} modes grow, the fastest` : "One mode grows,";
     words.push(`${several} at ${shown(data.growth)} 1/s by ${MECHANISMS[data.mechanism] ?? data.mechanism}${shares(data)}. `);
-  } else words.push(`The least damped mode decays at ${shown(-data.growth)} 1/s, at ${withUnit(data.frequency, "Hz")} (damping ratio ${shown(data.damping, 3)}). `);
+  } else if (Math.abs(data.damping) < UNDAMPED) words.push(`A mode at ${withUnit(data.frequency, "Hz")} neither grows nor decays: nothing in the model damps it. `);
+  else words.push(`The least damped mode decays at ${shown(-data.growth)} 1/s, at ${withUnit(data.frequency, "Hz")} (damping ratio ${shown(data.damping, 3)}). `);
   return [...words, ...margin(data)];
 }
 
@@ -84,7 +89,7 @@ function margin(data) {
   return [
     "Stability changes at ",
     make("b", {}, `${axis.parameter} = ${read(near.value)}`),
-    `, ${read(Math.abs(near.value - value))} ${way} the present ${read(value)}${away}, by ${MECHANISMS[near.mechanism] ?? near.mechanism} at ${withUnit(near.frequency, "Hz")}.`,
+    `, ${read(Math.abs(near.value - value))} ${way} the present ${read(value)}${away}, by ${MECHANISMS[near.mechanism] ?? near.mechanism}${near.mechanism === "divergence" ? "" : ` at ${withUnit(near.frequency, "Hz")}`}.`,
     changes.length > 1 ? ` It changes ${changes.length} times in this range.` : "",
   ];
 }
