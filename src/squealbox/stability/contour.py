@@ -3,7 +3,8 @@
 The grid says which of its edges the boundary crosses and how the crossings follow each other (marching squares, by
 contourpy). Each crossing is then a root of the largest growth rate on its edge, and all of them are solved together by
 Chandrupatla's method (SciPy), a dozen evaluations of some hundred points. So the points lie on the boundary as those of
-`boundary.stability_boundary` do, in about a tenth of its time on the drum; between them the curve is drawn straight across a cell.
+`boundary.stability_boundary` do, in about a tenth of its time on the drum; between them the curve is drawn straight
+across a cell.
 """
 
 from typing import Any
