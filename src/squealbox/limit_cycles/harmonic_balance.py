@@ -162,6 +162,14 @@ class Grid:
         self.d = np.zeros((2 * harmonics + 1,) * 2)
         self.d[2 * h - 1, 2 * h], self.d[2 * h, 2 * h - 1] = h, -h
         self.slopes = self.values @ self.d
+        self._kept: dict[tuple[int, float], tuple[Any, Any]] = {}
+
+    def even(self, count: int, offset: float = 0.0) -> tuple[Any, Any]:
+        """E and E D at `count` equal instants from `offset` of a step on; kept, as a walk asks for them often."""
+        if (count, offset) not in self._kept:
+            values = self.at(2.0 * np.pi * (np.arange(count) + offset) / count)
+            self._kept[count, offset] = values, values @ self.d
+        return self._kept[count, offset]
 
     def at(self, tau: Any) -> Any:
         """E at the phases tau: columns 1, cos tau, sin tau, cos 2 tau, ..."""
@@ -192,10 +200,9 @@ class Balance:
     field: Field
     grid: Grid
 
-    def motion(self, coefficients: Any, omega: float, grid: Any = None) -> Any:
-        """States x (N, 2n) at the instants of the grid."""
-        values = self.grid.values if grid is None else self.grid.at(grid)
-        slopes = values @ self.grid.d if grid is not None else self.grid.slopes
+    def motion(self, coefficients: Any, omega: float, at: tuple[Any, Any] | None = None) -> Any:
+        """States x (N, 2n) at the instants of the grid, or where E and E D are given."""
+        values, slopes = (self.grid.values, self.grid.slopes) if at is None else at
         return np.hstack([values @ coefficients, omega * (slopes @ coefficients)])
 
     def modes(self, states: Any) -> Any:
@@ -294,9 +301,8 @@ class Balance:
     def monodromy(self, coefficients: Any, omega: float, steps: int | None = None) -> Any:
         """Phi over one period by fourth-order Magnus exponentials at two Gauss points of each step, shape (2n, 2n)."""
         steps = steps or max(256, self.grid.samples)
-        h = 2.0 * np.pi / steps
-        middle, beside = (np.arange(steps) + 0.5) * h, np.sqrt(3.0) / 6.0 * h
-        early, late = (self.motion(coefficients, omega, middle + s * beside) for s in (-1.0, 1.0))
+        h, beside = 2.0 * np.pi / steps, float(np.sqrt(3.0) / 6.0)
+        early, late = (self.motion(coefficients, omega, self.grid.even(steps, 0.5 + s * beside)) for s in (-1.0, 1.0))
         a, b = (self.field.jacobians(x, self.modes(x)) for x in (early, late))
         return magnus(a, b, h / omega, self.field.scale)
 
@@ -307,7 +313,8 @@ def cycle_of(
     """The cycle behind a series, on a fine grid."""
     field, grid = balance.field, balance.grid
     tau = np.linspace(0.0, 2.0 * np.pi, max(513, 2 * grid.samples + 1))
-    states = balance.motion(coefficients, omega, tau)
+    values = grid.at(tau)
+    states = balance.motion(coefficients, omega, (values, values @ grid.d))
     t, n = tau / omega, field.size
     low, high = extremes(t, states[:, :n], states[:, n:])
     multipliers = np.full(2 * n, np.nan)

@@ -105,8 +105,8 @@ class HarmonicPath:
     def least_slip(self, x: Any, p: float) -> float:
         """Least sliding speed in the sense of V [m/s], by a parabola through the least of many samples."""
         field = self.balance(p).field
-        tau = np.linspace(0.0, 2.0 * np.pi, 16 * self.grid.samples, endpoint=False)
-        slip = field.contact_state(self.balance(p).motion(*self.series(x), tau))[1] * np.sign(field.V)
+        fine = self.grid.even(16 * self.grid.samples)
+        slip = field.contact_state(self.balance(p).motion(*self.series(x), fine))[1] * np.sign(field.V)
         least = np.inf
         for v in slip.T:
             i = int(np.argmin(v))
