@@ -78,6 +78,20 @@ def test_no_cycles_no_curve():
     assert estimate_curves(DrumBrake(), "friction.static", (0.1, 0.2), []) == ()
 
 
+@pytest.mark.parametrize("method", ["harmonic_balance", "shooting"])
+def test_beside_a_rise_from_the_hopf_point_a_curve_is_whole_or_absent(method):
+    """The drum's branch is almost vertical there: a walk that does not get off its first point is no curve."""
+    design = DrumBrake(friction=LinearSlope(0.3, -0.05), reading="consistent")
+    born = hopf_point(design, "friction.static", (0.1, 0.6))
+    rise = branch(design, "friction.static", (0.1, 0.6), born, points=12, method=method)
+    curves = estimate_curves(design, "friction.static", (0.1, 0.6), [rise, rise])
+    assert all(len(curve.value) >= 2 and curve.amplitude.shape == (len(curve.value), 2) for curve in curves)
+    if method == "harmonic_balance":  # one harmonic is right for small swings: the curve begins at the Hopf point
+        assert len(curves) == 1
+        least = np.argmin(curves[0].amplitude[:, 1])
+        assert curves[0].value[least] == pytest.approx(float(born.value), abs=1e-6)
+
+
 def test_the_command_says_how_far_off(tmp_path, capsys):
     brake = write_design(DrumBrake(friction=LinearSlope(0.3, -0.05), reading="consistent"), tmp_path / "brake.toml")
     words = ["branch", str(brake), "--parameter", "friction.static", "--range", "0.29", "0.31", "--points", "20",

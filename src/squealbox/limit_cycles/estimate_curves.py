@@ -28,7 +28,7 @@ DESCRIBING = "describing function (one harmonic)"
 AVERAGED = "averaging (Thomsen-Fidlin), slip only"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class EstimateCurve:
     """A quick estimate over a parameter: its name, values (k,), amplitudes (k, dof) [m], and where it may be trusted.
 
@@ -42,7 +42,7 @@ class EstimateCurve:
     validity: str
     off: float = float("nan")
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         beside = f"; {100.0 * self.off:.2g} % off the cycles followed, in the median" if np.isfinite(self.off) else ""
         return f"{self.label}: {self.validity}{beside}"
 
@@ -103,6 +103,8 @@ def _through(
             return None
         back, forth = (_followed(path, x, value, bounds, way) for way in (-1.0, 1.0))
         points = back[:0:-1] + forth
+        if len(points) < 2:  # the first step of the walk did not converge
+            continue
         validity = "holds while higher harmonics are small"
         return EstimateCurve(DESCRIBING, np.array([p for p, _ in points]), np.array([a for _, a in points]), validity)
     return None
