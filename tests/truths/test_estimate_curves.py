@@ -83,7 +83,7 @@ def test_beside_a_rise_from_the_hopf_point_a_curve_is_whole_or_absent(method):
     """The drum's branch is almost vertical there: a walk that does not get off its first point is no curve."""
     design = DrumBrake(friction=LinearSlope(0.3, -0.05), reading="consistent")
     born = hopf_point(design, "friction.static", (0.1, 0.6))
-    rise = branch(design, "friction.static", (0.1, 0.6), born, points=12, method=method)
+    rise = branch(design, "friction.static", (0.1, 0.6), born, points=30, method=method)
     curves = estimate_curves(design, "friction.static", (0.1, 0.6), [rise, rise])
     assert all(len(curve.value) >= 2 and curve.amplitude.shape == (len(curve.value), 2) for curve in curves)
     if method == "harmonic_balance":  # one harmonic is right for small swings: the curve begins at the Hopf point
