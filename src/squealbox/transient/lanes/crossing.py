@@ -41,6 +41,7 @@ def locate(A, b, lane):
         refine(A, b, lane, target, h)
     elif suspicious and h > 1e-3 * A[b + ROW_RESUME * WIDTH + lane]:
         A[b + ROW_H * WIDTH + lane] = 0.5 * h
+        A[b + ROW_TARGET * WIDTH + lane] = -1.0
     else:
         A[b + ROW_TRUST * WIDTH + lane] = 1.0
     return -1
@@ -80,15 +81,29 @@ def first_crossing(A, b, lane, j, h):
         return 0.0, False
     if not fresh and not f0 > 0.0:
         return 0.0, False
-    if f0 >= 0.0 and b1 > 0.0 and b2 > 0.0 and f1 > 0.0:
-        return 2.0, False
+    unsure = False
+    doubt = doubt_of(A, b, lane, f0, b1, b2, f1, h)
     before = 0.0
     for k in range(1, 17):
         x = k / 16.0
-        if not cubic(f0, b1, b2, f1, x) > 0.0:
+        f = cubic(f0, b1, b2, f1, x)
+        if not f > 0.0:
             return cubic_root(f0, b1, b2, f1, before, x), False
+        unsure = unsure or f <= doubt * (x * (1.0 - x)) ** 2
         before = x
-    return 2.0, False
+    return 2.0, unsure
+
+
+def doubt_of(A, b, lane, b0, b1, b2, b3, h):
+    """By how much the function may lie below its cubic at x: this number times (x (1 - x))^2.
+
+    The cubic errs by h^4 f x^2 (1 - x)^2 / 24. With f = w^2 f'', w the highest frequency, and the larger f'' of
+    both ends, 6 D / h^2, that is (w h)^2 D / 4; twice that is taken. Steps below 1e-3 / w are not in doubt.
+    """
+    angle = 2e-3 * np.pi * h / A[b + ROW_WINDOW * WIDTH + lane]
+    if angle < 1e-3:
+        return 0.0
+    return 0.5 * angle * angle * max(abs(b0 - 2.0 * b1 + b2), abs(b1 - 2.0 * b2 + b3))
 
 
 def cubic(b0, b1, b2, b3, x):
