@@ -57,6 +57,27 @@ def test_an_event_takes_few_trials():
     assert np.sum(many.tried - many.steps) < 6 * np.sum(many.events)
 
 
+def test_short_reversals_between_the_ends_of_a_step_are_found():
+    """Pressure centres where a contact stops for a hundredth of a step: none of these pairs of events is missed."""
+    places = np.array([(0, 18), (1, 34), (5, 19), (7, 3), (18, 39), (43, 42), (55, 48)])
+    theta1 = np.deg2rad(np.linspace(95.0, 175.0, 64))[places[:, 1]]
+    theta2 = np.deg2rad(np.linspace(10.0, 50.0, 64))[places[:, 0]]
+    many = simulate_ensemble(drum(static=0.44), {"theta1": theta1, "theta2": theta2}, 0.05, observe=OBSERVE)
+    shortest = []
+    for k in range(len(places)):
+        one = simulate(drum(static=0.44).replace({"theta1": theta1[k], "theta2": theta2[k]}), 0.05, rtol=1e-11)
+        shortest.append(np.min(np.diff(one.event_time)))
+        assert many.events[k] == len(one.event_time)
+        assert distance(many.q[k], one.q[-1], np.max(np.abs(one.q))) < 1e-5  # a missed pair costs ten times that
+    assert np.min(shortest) < 1e-6 < 1e-2 * 2.0 * np.pi / np.sqrt(np.max(np.linalg.eigvals(_stiffness())))
+
+
+def _stiffness():
+    """M^-1 K of the drum, whose highest frequency bounds a step to a sixth of its period."""
+    system = drum().system()
+    return np.real(np.linalg.inv(system.M) @ system.K)
+
+
 def test_another_friction_is_not_the_same_answer():
     many = simulate_ensemble(drum(), {"friction.static": [0.37, 0.38]}, 0.02, observe=OBSERVE, rtol=1e-9)
     assert distance(many.q[0], many.q[1], np.max(np.abs(many.q))) > 1e-3

@@ -63,6 +63,7 @@ def first_crossing(A, b, lane, j, h):
     """(share of the step at which function j first turns negative, or 2; whether a shorter step must tell).
 
     The function is the cubic of its values and slopes; a margin of sticking is a parabola through its value in a stage.
+    A shorter step must tell where the cubic has a minimum nearer to zero than it may err: so a short reversal is found.
     """
     f0 = A[b + (ROW_PHI + j) * WIDTH + lane]
     f1 = A[b + (ROW_END + j) * WIDTH + lane]
@@ -81,29 +82,47 @@ def first_crossing(A, b, lane, j, h):
         return 0.0, False
     if not fresh and not f0 > 0.0:
         return 0.0, False
-    unsure = False
-    doubt = doubt_of(A, b, lane, f0, b1, b2, f1, h)
+    dip = lowest(b1 - f0, b2 - b1, f1 - b2, 0.0625 if fresh else 0.0)
+    least = cubic(f0, b1, b2, f1, dip)
+    doubt = doubt_of(A, b, lane, f0, b1, b2, f1, h) * (dip * (1.0 - dip)) ** 2
     before = 0.0
     for k in range(1, 17):
         x = k / 16.0
-        f = cubic(f0, b1, b2, f1, x)
-        if not f > 0.0:
+        if x > dip and abs(least) <= doubt:
+            return 2.0, True
+        if x > dip > before and least < 0.0:
+            return cubic_root(f0, b1, b2, f1, before, dip), False
+        if not cubic(f0, b1, b2, f1, x) > 0.0:
             return cubic_root(f0, b1, b2, f1, before, x), False
-        unsure = unsure or f <= doubt * (x * (1.0 - x)) ** 2
         before = x
-    return 2.0, unsure
+    return 2.0, False
+
+
+def lowest(d0, d1, d2, first):
+    """Where the cubic with these differences of its Bernstein coefficients has its minimum; 1 when there is none behind `first`.
+
+    A contact that has just been released leaves with v' = 0, so round-off makes a minimum at its very start.
+    """
+    bend = d1 - d0
+    square = bend * bend - d0 * (d0 - 2.0 * d1 + d2)
+    if not square >= 0.0:
+        return 1.0
+    x = -d0 / (bend + np.sqrt(square))
+    return x if first < x < 1.0 else 1.0
 
 
 def doubt_of(A, b, lane, b0, b1, b2, b3, h):
-    """By how much the function may lie below its cubic at x: this number times (x (1 - x))^2.
+    """By how much the function may differ from its cubic at x: this number times (x (1 - x))^2.
 
-    The cubic errs by h^4 f x^2 (1 - x)^2 / 24. With f = w^2 f'', w the highest frequency, and the larger f'' of
-    both ends, 6 D / h^2, that is (w h)^2 D / 4; twice that is taken. Steps below 1e-3 / w are not in doubt.
+    The cubic errs by h^4 f'''' x^2 (1 - x)^2 / 24. With f'''' = w^2 f'', w the highest frequency, that is (w h)^2 D / 4, where f'' = 6 D / h^2
+    is the larger one of both ends, or w times the larger slope should they be at a point of inflection. Four times that
+    is taken. Steps below 1e-3 / w are not in doubt.
     """
     angle = 2e-3 * np.pi * h / A[b + ROW_WINDOW * WIDTH + lane]
     if angle < 1e-3:
         return 0.0
-    return 0.5 * angle * angle * max(abs(b0 - 2.0 * b1 + b2), abs(b1 - 2.0 * b2 + b3))
+    bend = max(abs(b0 - 2.0 * b1 + b2), abs(b1 - 2.0 * b2 + b3))
+    return angle * angle * max(bend, 0.5 * angle * max(abs(b1 - b0), abs(b3 - b2)))
 
 
 def cubic(b0, b1, b2, b3, x):

@@ -253,7 +253,7 @@ class Step(EventText):
     def control(self) -> None:
         """`h_new`: an integral controller within [0.1, growth], without growth after a rejected step."""
         power = -0.5 / (self.rule.error_order + 1.0)
-        self.put(f"factor = 0.9 * rough_power(square, {power!r})")
+        self.put(f"factor = {self.rule.safety!r} * rough_power(square, {power!r})")
         self.put("factor = where(square < 1e300, factor, 0.1)")
         self.put(f"factor = minimum(maximum(factor, 0.1), {float(self.rule.growth)!r})")
         self.put(f"factor = where({self.row('cautious')} > 0.5, minimum(factor, 1.0), factor)")
