@@ -5,13 +5,14 @@ A the largest of them and c_i its middle beside steady sliding; of one that does
 Motions are of one attractor when a chain of neighbours within `SAME_SIGNATURE` joins them (single linkage).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from squealbox.limit_cycles.cycle import Cycle
-from squealbox.limit_cycles.settling import FAILED, MOVING, REPEATS, RESTS, Settled
+from squealbox.limit_cycles.settling import FAILED, MOVING, REPEATS, RESTS, Known, Settled
 from squealbox.limit_cycles.shooting import shooting
 from squealbox.system import System
 
@@ -60,10 +61,12 @@ class Attractor:
         return f"{self.kind}, amplitude {sizes} m, maxima at {self.frequency:.5g} Hz"
 
 
-def attractors(system: System, ends: Settled, refine: bool) -> tuple[list[Attractor], Any]:
+def attractors(
+    system: System, ends: Settled, refine: bool, known: Sequence[Attractor] = ()
+) -> tuple[list[Attractor], Any]:
     """The attractors of one system, steady sliding first, then by size; and the index of each motion's own.
 
-    The index is `NOT_SETTLED` or `NO_END` for motions without one.
+    The index is `NOT_SETTLED` or `NO_END` for motions without one. What is known need not be confirmed again.
     """
     label = np.full(len(ends.kind), NOT_SETTLED)
     label[ends.kind == FAILED] = NO_END
@@ -79,7 +82,7 @@ def attractors(system: System, ends: Settled, refine: bool) -> tuple[list[Attrac
         largest = np.max(half, axis=-1)[:, None]
         signature = np.concatenate([np.log(largest), half / largest, beside / largest], axis=-1)
     groups += _confirmed(system, _grouped(ends, np.flatnonzero(ends.kind == REPEATS), signature, SAME_SIGNATURE,
-                                          VIBRATION), refine)  # fmt: skip
+                                          VIBRATION), refine, known)  # fmt: skip
     groups += _grouped(ends, np.flatnonzero(ends.kind == MOVING), signature, SAME_IRREGULAR, IRREGULAR)
     for i, (_, members) in enumerate(groups):
         label[members] = i
@@ -106,7 +109,7 @@ def _grouped(ends: Settled, which: Any, signature: Any, reach: float, kind: str)
     found = []
     for group in range(int(np.max(number)) + 1):
         members = which[number == group]
-        best = members[np.argmax(ends.time[members])]  # the one that had most time to settle
+        best = members[np.argmax(np.where(ends.arrived, -1.0, ends.time)[members])]  # that had most time to settle
         found.append((_attractor(ends, int(best), kind), members))
     return sorted(found, key=lambda pair: float(np.max(pair[0].amplitude)))
 
@@ -116,13 +119,16 @@ def _attractor(ends: Settled, i: int, kind: str) -> Attractor:
     return Attractor(kind, ends.low[i], ends.high[i], ends.maxima[i], float(tone), (ends.q[i], ends.qd[i]))
 
 
-def _confirmed(system: System, groups: list[tuple[Attractor, Any]], refine: bool) -> list[tuple[Attractor, Any]]:
+def _confirmed(
+    system: System, groups: list[tuple[Attractor, Any]], refine: bool, known: Sequence[Attractor]
+) -> list[tuple[Attractor, Any]]:
     """Each as a cycle where shooting from its end finds one of its size; groups of the same cycle as one."""
     if not refine:
         return groups
     found: list[tuple[Attractor, Any]] = []
     for attractor, members in groups:
-        cycle = shooting(system, attractor.start, settle=0.0)
+        cycle = next((one.cycle for one in known if one.cycle and _alike(one.cycle, attractor, SAME_SIGNATURE)), None)
+        cycle = cycle or shooting(system, attractor.start, settle=0.0)
         if not (cycle.outcome.ok and _alike(cycle, attractor, SAME_SIGNATURE)):
             found.append((_with(attractor, VIBRATION, cycle), members))
             continue
@@ -133,6 +139,12 @@ def _confirmed(system: System, groups: list[tuple[Attractor, Any]], refine: bool
         else:
             found[twin] = (found[twin][0], np.concatenate([found[twin][1], members]))
     return found
+
+
+def stable_cycles(found: Sequence[Attractor]) -> list[Known]:
+    """Those of the attractors that motions may arrive at."""
+    cycles = [each.cycle for each in found if each.kind == CYCLE and each.cycle is not None]
+    return [Known(c.lowest, c.highest, float(c.period), float(np.abs(c.multipliers[1]))) for c in cycles]
 
 
 def _with(attractor: Attractor, kind: str, cycle: Cycle) -> Attractor:

@@ -12,14 +12,23 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.attractors import IRREGULAR, NO_END, UNSTABLE, VIBRATION, Attractor, attractors
+from squealbox.limit_cycles.attractors import (
+    IRREGULAR,
+    NO_END,
+    UNSTABLE,
+    VIBRATION,
+    Attractor,
+    attractors,
+    stable_cycles,
+)
 from squealbox.limit_cycles.sections import state_names
-from squealbox.limit_cycles.settling import LOOSE, RESTS, TIGHT, Batch, Scales, settle, settle_on
+from squealbox.limit_cycles.settling import LOOSE, RESTS, TIGHT, Batch, Scales, Settled, settle, settle_on, together
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome, Result, quantity
 from squealbox.system import System, as_system
 
 CONFIDENCE = 0.95
+PILOT = 512  # starts that run until they have settled; those after them until they arrive at what these found
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -126,13 +135,7 @@ def basin(
         raise ParameterError("basin", "plane", plane, "two different states")
     if np.all(np.isfinite(rest)):
         points = centre + half * unit_starts(2 * n, starts, seed, places)
-    ends = settle(batch, points[:, :n], points[:, n:], duration=duration, same=LOOSE if refine else TIGHT,
-                  threads=threads)  # fmt: skip
-    found, label = attractors(system, ends, refine)
-    doubtful = np.flatnonzero(np.isin(label, [i for i, each in enumerate(found) if each.kind in (VIBRATION, UNSTABLE)]))
-    if refine and doubtful.size:
-        ends = settle_on(ends, batch, doubtful, threads)
-        found, label = attractors(system, ends, refine)
+    ends, found, label = _ended(system, batch, points, duration, refine, threads)
     counts = np.array([int(np.sum(label == i)) for i in range(len(found))], dtype=np.int64)
     total = len(label)
     spans = [interval(int(k), total) for k in counts]
@@ -147,6 +150,32 @@ def basin(
         highest=np.array([each.high for each in found]).reshape(-1, n), share=np.asarray(share), interval=span,
         rest=rest, through=centre, plane=tuple(names[i] for i in places or ()), attractors=tuple(found),
     )  # fmt: skip
+
+
+def _ended(
+    system: System, batch: Batch, points: Any, duration: float | None, refine: bool, threads: int | None
+) -> tuple[Settled, list[Attractor], Any]:
+    """How all ended, the attractors and the index of each motion's own. The first starts find what the others reach."""
+
+    def run(part: Any, known: list[Attractor]) -> Settled:
+        q, qd = np.split(part, 2, axis=1)
+        return settle(batch, q, qd, duration=duration, same=LOOSE if refine else TIGHT, threads=threads,
+                      known=stable_cycles(known))  # fmt: skip
+
+    pilot = PILOT if refine and len(points) > 2 * PILOT else len(points)
+    first = np.arange(len(points)) * pilot // max(len(points), 1)
+    first = np.flatnonzero(np.diff(first, prepend=-1))  # evenly among them
+    ends = run(points[first], [])
+    found, label = attractors(system, ends, refine)
+    if pilot < len(points):
+        others = np.setdiff1d(np.arange(len(points)), first)
+        ends = together([ends, run(points[others], found)]).take(np.argsort(np.r_[first, others]))
+        found, label = attractors(system, ends, refine, found)
+    doubtful = np.flatnonzero(np.isin(label, [i for i, each in enumerate(found) if each.kind in (VIBRATION, UNSTABLE)]))
+    if refine and doubtful.size:
+        ends = settle_on(ends, batch, doubtful, threads)
+        found, label = attractors(system, ends, refine, found)
+    return ends, found, label
 
 
 def interval(count: int, total: int) -> tuple[float, Any]:

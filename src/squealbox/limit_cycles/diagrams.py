@@ -228,7 +228,7 @@ def _swept(batch: Batch, ways: list[str], begin: Any, scales: Scales, duration: 
         state[lost] = begin
     for k, order in enumerate(orders):
         rank = np.argsort(order)
-        names = ("kind", "low", "high", "maxima", "frequency", "q", "qd", "time")
+        names = ("kind", "low", "high", "maxima", "frequency", "q", "qd", "time", "arrived")
         ended = {name: np.array([getattr(steps[i], name)[k] for i in rank]) for name in names}
         yield Settled(**ended, scales=scales)
 

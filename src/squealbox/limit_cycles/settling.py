@@ -1,16 +1,19 @@
 """What many motions settle to: an ensemble run on until each of them rests, repeats itself, or has had its time.
 
-A motion is looked at through two windows of equal length w, one after the other, at the end of a stretch of time. With
+A motion is looked at through windows of equal length w, one after the other, five to a stretch of time. With
 A the half range of a degree of freedom in a window and V the fastest belt, its level is max A w1 / V, w1 the slowest
 frequency of the system [rad/s]. A motion
 
     rests    when its level is below 0.05 and falls at no less than a quarter of the rate -s of the linear theory,
              A2/A1 <= 1 - min(1, -s w)/4, or is below 1e-9 of V
-    repeats  when its extremes in both windows agree to a tolerance times their range
+    repeats  when its extremes in two windows, one after the other, agree to a tolerance times their range
+    arrives  at a stable cycle that is known when they lie within 5 % of the cycle's and come nearer, twice in a row, by
+             at least half of what its slowest multiplier m and its period T foretell, d2/d1 <= (1 + m^(w/T))/2
 
-and what does neither is run on, for stretches of twice the length.
+and what does none of these is run on, for stretches of twice the length with windows of twice the length.
 """
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
@@ -27,8 +30,10 @@ from squealbox.transient.lanes.batch import first_of, stacked
 from squealbox.transient.observers import amplitude_update, frequency, poincare
 
 STRETCH = 60.0  # periods of the slowest mode, of the first stretch
-WINDOW = 0.2  # of a stretch
+WINDOWS = 5  # in a stretch
+UNSEEN = 2  # windows of the first stretch that belong to the transient
 STRETCHES = 6  # at most: 63 times the first
+ARRIVED, TWICE = 0.05, 2  # of the range of a known cycle, and how often in a row
 RAN, STILL = 0.05, 1e-9
 LOOSE, TIGHT = 1e-3, 3e-5  # of the range: two windows that may be alike, and that are
 METHOD = Method("dormand-prince-8", rtol=1e-7, most_steps=1_000_000)
@@ -126,8 +131,31 @@ class Scales:
 
 
 @dataclass(frozen=True, eq=False)
+class Known:
+    """A stable cycle: its extremes (n,), period [s] and the size of its slowest multiplier."""
+
+    low: Any
+    high: Any
+    period: float
+    slowest: float
+
+    def reached(self, earlier: Any, later: Any, apart: float) -> Any:
+        """True (k,) for motions that arrive, from (low, high) in two windows whose middles lie `apart` [s]."""
+        size = float(np.max(self.high - self.low))
+        before, now = (
+            np.max(np.maximum(np.abs(low - self.low), np.abs(high - self.high)), axis=-1) / size
+            for low, high in (earlier, later)
+        )
+        falls = 0.5 * (1.0 + self.slowest ** (apart / self.period))
+        return (now < ARRIVED) & (now <= falls * before)
+
+
+@dataclass(frozen=True, eq=False)
 class Settled:
-    """How each of k motions ended: kind (k,), extremes (k, n), last maxima (k, n, 8), frequency, end state, time."""
+    """How each of k motions ended: kind (k,), extremes (k, n), last maxima (k, n, 8), frequency, end state, time.
+
+    arrived (k,) marks those that count as on a known cycle, whose extremes they are given.
+    """
 
     kind: Any
     low: Any
@@ -137,6 +165,7 @@ class Settled:
     q: Any
     qd: Any
     time: Any
+    arrived: Any
     scales: Scales
 
     def take(self, which: Any) -> "Settled":
@@ -157,35 +186,55 @@ class Settled:
 
 def settle(
     batch: Batch, q: Any, qd: Any, *, duration: float | None = None, stretches: int = STRETCHES,
-    same: float = TIGHT, threads: int | None = None,
+    same: float = TIGHT, threads: int | None = None, known: Sequence[Known] = (),
 ) -> Settled:  # fmt: skip
-    """Run all from (q, qd), each (k, n), until they rest or repeat to `same`, for at most 2^stretches - 1 durations."""
+    """Run all from (q, qd), each (k, n), until they rest or repeat to `same`, for at most 2^stretches - 1 durations.
+
+    known : stable cycles of the one system that a motion may arrive at
+    """
     q, qd = (np.array(x, dtype=float) for x in (q, qd))
     count, n = q.shape
     scales = Scales.of(batch, count)
     length = STRETCH * 2.0 * np.pi / float(np.min(scales.slowest)) if duration is None else float(duration)
     if not (np.isfinite(length) and length > 0.0):
         raise ParameterError("limit_cycles", "duration", duration, "a time above 0 s")
-    kind, time = np.full(count, MOVING), np.zeros(count)
-    low, high, tone = (np.full((count, n), np.nan) for _ in range(3))
-    tops = np.full((count, n, 8), np.nan)
+    kind, time, width = np.full(count, MOVING), np.zeros(count), length / WINDOWS
+    seen = np.full((2, 2, count, n), np.nan)  # (low, high) of the last window and the one before
+    tone, tops, arrived = np.full((count, n), np.nan), np.full((count, n, 8), np.nan), np.zeros(count, dtype=bool)
+    nearer = np.zeros((len(known), count), dtype=int)
     todo = np.flatnonzero(np.all(np.isfinite(q) & np.isfinite(qd), axis=-1))
     kind[np.setdiff1d(np.arange(count), todo)] = FAILED
-    for _ in range(stretches):
+    for stretch, window in itertools.product(range(stretches), range(WINDOWS)):
         if todo.size == 0:
             break
-        part, early = batch.take(todo), (1.0 - WINDOW) * length
-        first = part.run(q[todo], qd[todo], early, _observers(WINDOW * length / early), threads)
-        second = part.run(_finite(first.q), _finite(first.qd), WINDOW * length, _observers(1.0), threads)
-        windows = [np.moveaxis(run["extent"], -1, 0) for run in (first, second)]
-        kind[todo] = _judge(windows, WINDOW * length, scales.take(todo), same)
-        kind[todo[(first.ended != "completed") | (second.ended != "completed")]] = FAILED
-        low[todo], high[todo] = windows[1]
-        tone[todo], tops[todo] = second["frequency"], second["poincare"]
-        q[todo], qd[todo] = second.q, second.qd
-        time[todo] += length
-        todo, length = todo[kind[todo] == MOVING], 2.0 * length
-    return Settled(kind, low, high, tops, tone, q, qd, time, scales)
+        if stretch and not window:  # the last two windows are one of the new width
+            width, pair = 2.0 * width, seen[:, :, todo]
+            seen[0, 0, todo], seen[0, 1, todo] = np.min(pair[:, 0], axis=0), np.max(pair[:, 1], axis=0)
+        run = batch.take(todo).run(q[todo], qd[todo], width, OBSERVERS, threads)
+        seen[1, :, todo] = seen[0, :, todo]
+        seen[0, :, todo] = np.moveaxis(run["extent"], -1, 1)
+        if stretch or window >= UNSEEN:
+            kind[todo] = _judge(seen[1][:, todo], seen[0][:, todo], width, scales.take(todo), same)
+        for i, cycle in enumerate(known):
+            nearer[i, todo] = np.where(cycle.reached(seen[1][:, todo], seen[0][:, todo], width), nearer[i, todo] + 1, 0)
+            here = todo[(nearer[i, todo] == TWICE) & (kind[todo] == MOVING)]
+            kind[here], arrived[here] = REPEATS, True
+            seen[0][0, here], seen[0][1, here] = cycle.low, cycle.high
+        kind[todo[run.ended != "completed"]] = FAILED
+        tone[todo], tops[todo] = run["frequency"], run["poincare"]
+        q[todo], qd[todo] = run.q, run.qd
+        time[todo] += width
+        todo = todo[kind[todo] == MOVING]
+    low, high = seen[0]
+    return Settled(kind, low, high, tops, tone, q, qd, time, arrived, scales)
+
+
+def together(ends: Sequence[Settled]) -> Settled:
+    """Motions of one system as one."""
+    names = [each.name for each in fields(Settled) if each.name != "scales"]
+    scales = [np.concatenate([getattr(one.scales, each.name) for one in ends]) for each in fields(Scales)]
+    return Settled(**{name: np.concatenate([getattr(one, name) for one in ends]) for name in names},
+                   scales=Scales(*scales))  # fmt: skip
 
 
 def settle_on(ends: Settled, batch: Batch, which: Any, threads: int | None = None) -> Settled:
@@ -198,13 +247,7 @@ def settle_on(ends: Settled, batch: Batch, which: Any, threads: int | None = Non
     return Settled(**merged, scales=ends.scales)
 
 
-def _observers(last: float) -> tuple[Observer, ...]:
-    return extent(last), frequency(last), poincare(last)
-
-
-def _finite(x: Any) -> Any:
-    """What failed goes on from zero; it is marked as failed afterwards."""
-    return np.nan_to_num(x, nan=0.0, posinf=0.0, neginf=0.0)
+OBSERVERS = (extent(1.0), frequency(1.0), poincare(1.0))
 
 
 def _level(low: Any, high: Any, scales: Scales) -> Any:
@@ -212,10 +255,10 @@ def _level(low: Any, high: Any, scales: Scales) -> Any:
     return np.where(scales.speed > 0.0, half / np.where(scales.speed > 0.0, scales.speed, 1.0), half)
 
 
-def _judge(windows: Sequence[Any], apart: float, scales: Scales, same: float) -> Any:
+def _judge(earlier: Any, later: Any, apart: float, scales: Scales, same: float) -> Any:
     """MOVING, RESTS or REPEATS of each, from (low, high) in two windows whose middles lie `apart` [s]."""
-    (low1, high1), (low2, high2) = windows
-    before, now = (_level(low, high, scales) for low, high in windows)
+    (low1, high1), (low2, high2) = earlier, later
+    before, now = _level(low1, high1, scales), _level(low2, high2, scales)
     least = 1.0 - 0.25 * np.clip(-scales.growth * apart, 0.0, 1.0)
     with np.errstate(invalid="ignore"):
         decays = (now < RAN) & (now <= least * before) & (scales.growth < 0.0)
