@@ -3,8 +3,8 @@
     python benchmarks/basins.py            all of it, about two minutes on two cores
     python benchmarks/basins.py --quick    2,000 starts instead of 10,000, coarse planes, no pushes
 
-"To the end" is the same basin with every start run until it repeats itself (PILOT as large as the starts); the labels of
-both are compared start by start. Times are wall and processor time after compilation.
+"To the end" is the same basin with every start run until it repeats itself (PILOT as large as the starts); the labels
+of both are compared start by start. Times are wall and processor time after compilation.
 """
 
 import argparse
@@ -42,7 +42,7 @@ def shares(starts):
         basins.PILOT = usual
         same = len(found.kind) == len(ended.kind) and int(np.sum(found.attractor != ended.attractor))
         print(f"\n{reading}, friction {static}: {found}")
-        print(f"  {wall:.2f} s wall, {processor:.2f} s processor; to the end {wall_ended:.2f} and {processor_ended:.2f} s "
+        print(f"  {wall:.2f} s wall, {processor:.2f} s processor; to the end {wall_ended:.2f}, {processor_ended:.2f} s "
               f"({processor_ended / processor:.1f}); motion per start {1e3 * np.mean(found.time):.1f} and "
               f"{1e3 * np.mean(ended.time):.1f} ms; {same} labels differ")  # fmt: skip
 
@@ -50,7 +50,8 @@ def shares(starts):
 def pushes():
     """The smallest push from steady sliding that ends in a vibration."""
     for reading, static in CASES[:2]:
-        found, wall, _ = timed(lambda brake=drum(reading, static): dangerous_push(brake))
+        brake = drum(reading, static)
+        found, wall, _ = timed(lambda brake=brake: dangerous_push(brake))
         print(f"\n{reading}, friction {static}: {found}\n  {wall:.1f} s wall")
 
 

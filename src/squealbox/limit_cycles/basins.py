@@ -160,7 +160,7 @@ def _ended(
     def run(part: Any, known: list[Attractor]) -> Settled:
         q, qd = np.split(part, 2, axis=1)
         return settle(batch, q, qd, duration=duration, same=LOOSE if refine else TIGHT, threads=threads,
-                      known=stable_cycles(known))  # fmt: skip
+                      often=refine, known=stable_cycles(known))  # fmt: skip
 
     pilot = PILOT if refine and len(points) > 2 * PILOT else len(points)
     first = np.arange(len(points)) * pilot // max(len(points), 1)

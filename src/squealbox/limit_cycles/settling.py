@@ -186,10 +186,12 @@ class Settled:
 
 def settle(
     batch: Batch, q: Any, qd: Any, *, duration: float | None = None, stretches: int = STRETCHES,
-    same: float = TIGHT, threads: int | None = None, known: Sequence[Known] = (),
+    same: float = TIGHT, threads: int | None = None, often: bool = False, known: Sequence[Known] = (),
 ) -> Settled:  # fmt: skip
     """Run all from (q, qd), each (k, n), until they rest or repeat to `same`, for at most 2^stretches - 1 durations.
 
+    often : judge at every window, not only at the end of each stretch: quicker, but a motion that lingers beside an
+        unstable cycle passes more easily for one that repeats itself
     known : stable cycles of the one system that a motion may arrive at
     """
     q, qd = (np.array(x, dtype=float) for x in (q, qd))
@@ -213,7 +215,7 @@ def settle(
         run = batch.take(todo).run(q[todo], qd[todo], width, OBSERVERS, threads)
         seen[1, :, todo] = seen[0, :, todo]
         seen[0, :, todo] = np.moveaxis(run["extent"], -1, 1)
-        if stretch or window >= UNSEEN:
+        if window == WINDOWS - 1 or (often and (stretch or window >= UNSEEN)):
             kind[todo] = _judge(seen[1][:, todo], seen[0][:, todo], width, scales.take(todo), same)
         for i, cycle in enumerate(known):
             nearer[i, todo] = np.where(cycle.reached(seen[1][:, todo], seen[0][:, todo], width), nearer[i, todo] + 1, 0)
