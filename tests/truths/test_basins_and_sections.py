@@ -7,6 +7,7 @@ from small_systems import block_on_belt, drum, two_masses
 from squealbox import Contact, Coulomb, Stribeck, System, branch, harmonic_balance, hopf_point, shooting, simulate
 from squealbox.limit_cycles import basin, dangerous_push, lyapunov_exponents, maxima, poincare_section, push_along
 from squealbox.limit_cycles.basins import interval
+from squealbox.limit_cycles.settling import Known
 from squealbox.parameters import ParameterError
 from squealbox.system import equilibrium
 
@@ -161,3 +162,25 @@ def test_exponents_of_a_cycle_are_those_of_its_multipliers():
     assert found[1] == pytest.approx(expected[1], rel=0.1)
     assert found[-1] == -np.inf  # sticking forgets a direction
     assert found[1] < -100.0
+
+
+def test_starts_that_arrive_at_a_known_cycle_end_on_it(monkeypatch):
+    """Each start of the later ones ends where it does when it is run until it repeats itself, and runs for less."""
+    quick = basin(subcritical(0.30), 1.2, 400)
+    monkeypatch.setattr("squealbox.limit_cycles.basins.PILOT", 64)
+    piloted = basin(subcritical(0.30), 1.2, 400)
+    assert np.array_equal(piloted.attractor, quick.attractor)
+    assert np.sum(piloted.time) <= np.sum(quick.time)
+
+
+def test_a_motion_arrives_only_where_it_comes_nearer():
+    """Windows of 1 s on a cycle of 0.5 s with a multiplier of 0.7: the distance must fall to (1 + 0.49)/2 at most."""
+    cycle = Known(np.array([-1.0]), np.array([1.0]), 0.5, 0.7)
+
+    def window(away):
+        return np.array([[-1.0 - 2.0 * away]]), np.array([[1.0 + 2.0 * away]])
+
+    assert cycle.reached(window(0.04), window(0.02), 1.0)[0]
+    assert not cycle.reached(window(0.04), window(0.031), 1.0)[0]
+    assert not cycle.reached(window(0.2), window(0.06), 1.0)[0]
+    assert not cycle.reached(window(0.02), window(0.04), 1.0)[0]
