@@ -17,9 +17,9 @@ class Tableau:
     With S stages a step is y1 = y + h sum_i b_i k_i. The stage after them, k_S = f(t + h, y1), serves the error, the
     dense output and the next step. a (R, R), c (R,) cover R >= S + 1 stages; those after S serve the dense output only.
     e and e3 (S + 1,) weigh the stages for the error of order `error_order`; p (R, degree) gives the dense output
-    y(t + theta h) = y + h sum_i k_i sum_j p_ij theta^(j + 1). growth limits how much longer the next step may be; safety
-    is what lanes, who look at one error at a time, take of the step that would just be accepted: of high order the error
-    swings by decades within a vibration, and at 0.9 a third of the steps would be tried in vain.
+    y(t + theta h) = y + h sum_i k_i sum_j p_ij theta^(j + 1). growth limits how much longer the next step may be.
+    safety is the share lanes take of the step that would just be accepted: they look at one error at a time, and that
+    of a high order swings by decades within a vibration, so at 0.9 a third of the steps would be tried in vain.
     """
 
     name: str

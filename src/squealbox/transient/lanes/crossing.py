@@ -99,7 +99,7 @@ def first_crossing(A, b, lane, j, h):
 
 
 def lowest(d0, d1, d2, first):
-    """Where the cubic with these differences of its Bernstein coefficients has its minimum; 1 when there is none behind `first`.
+    """Where the cubic with these differences of its Bernstein coefficients is least; 1 if not inside, behind `first`.
 
     A contact that has just been released leaves with v' = 0, so round-off makes a minimum at its very start.
     """
@@ -114,9 +114,9 @@ def lowest(d0, d1, d2, first):
 def doubt_of(A, b, lane, b0, b1, b2, b3, h):
     """By how much the function may differ from its cubic at x: this number times (x (1 - x))^2.
 
-    The cubic errs by h^4 f'''' x^2 (1 - x)^2 / 24. With f'''' = w^2 f'', w the highest frequency, that is (w h)^2 D / 4, where f'' = 6 D / h^2
-    is the larger one of both ends, or w times the larger slope should they be at a point of inflection. Four times that
-    is taken. Steps below 1e-3 / w are not in doubt.
+    The cubic errs by h^4 f'''' x^2 (1 - x)^2 / 24. With f'''' = w^2 f'', w the highest frequency, it is (w h)^2 D / 4,
+    where f'' = 6 D / h^2 is the larger one of both ends, or w times the larger slope should they be at a point of
+    inflection. Four times that is taken. Steps below 1e-3 / w are not in doubt.
     """
     angle = 2e-3 * np.pi * h / A[b + ROW_WINDOW * WIDTH + lane]
     if angle < 1e-3:
