@@ -28,7 +28,7 @@ import warnings
 import numpy as np
 
 from squealbox import DrumBrake, LinearSlope, branch, shooting, simulate
-from squealbox.limit_cycles.field import Field
+from squealbox.limit_cycles.cycles.field import Field
 
 DRUM = DrumBrake(friction=LinearSlope(0.3, -0.05), reading="consistent")
 START = ([3e-5, 1e-5], [0.3, -0.3])

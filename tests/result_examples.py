@@ -11,7 +11,7 @@ from squealbox.designs import DampingParadox, DrumBrake, MassOnBelt
 from squealbox.fit import fit_friction
 from squealbox.friction import Coulomb
 from squealbox.limit_cycles import basin, bifurcation_diagram, branch, coexistence, dangerous_push, hopf_point, shooting
-from squealbox.limit_cycles.curves import hopf_curve
+from squealbox.limit_cycles.branches.curves import hopf_curve
 from squealbox.result import Result
 from squealbox.studies import sweep
 from squealbox.transient import compare_contact, simulate, simulate_ensemble, verdict

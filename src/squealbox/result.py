@@ -165,7 +165,7 @@ class Result:
         name = str(dataset.attrs.get("kind", "no result"))
         if name not in Result.kinds:
             load_kind(name)
-        kind = Result.kinds.get(name)
+        kind = Result.kinds.get(name) or _moved(name)
         if kind is None or not issubclass(kind, cls):
             raise ResultFileError(f"holds {name!r}, not a {cls.__name__}")
         if kind is not cls:
@@ -201,6 +201,15 @@ class Result:
         kept = [f.name for f in dataclasses.fields(self) if not f.metadata.get("transient")]
         others = {name: getattr(self, name) for name in kept if name not in arrays}
         return {**others, "outcome": self.outcome.to_plain()}
+
+
+def _moved(name: str) -> "type[Result] | None":
+    """The one class of that name in its room, for files from before its module moved; None where there is none."""
+    room, _, last = name.partition(".")
+    load_kind(f"{room}.{last.rpartition('.')[2]}")
+    within = [kind for at, kind in Result.kinds.items() if at.startswith(f"{room}.")]
+    alike = [kind for kind in within if kind.__name__ == last.rpartition(".")[2]]
+    return alike[0] if len(alike) == 1 else None
 
 
 def _about(field: dataclasses.Field[Any]) -> tuple[str, str]:

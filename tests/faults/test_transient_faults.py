@@ -257,6 +257,17 @@ def test_damaged_file_is_named(motion, tmp_path):
         Trajectory.load(path)
 
 
+def test_a_file_from_before_its_module_moved(motion):
+    """A class is known by its place in the package; the one of that name in the same room takes its place."""
+    data = motion.to_dataset()
+    data.attrs["kind"] = "transient.elsewhere.Trajectory"
+    assert Result.from_dataset(data).system == motion.system
+    for wrong in ("stability.elsewhere.Trajectory", "transient.elsewhere.Nothing", "nowhere.Trajectory"):
+        data.attrs["kind"] = wrong
+        with pytest.raises(ResultFileError, match=wrong):
+            Result.from_dataset(data)
+
+
 def test_labels_of_the_dataset(motion):
     data = motion.to_dataset()
     assert data["q"].dims == ("time", "dof")

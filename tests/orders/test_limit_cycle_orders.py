@@ -5,8 +5,8 @@ import pytest
 
 from small_systems import block_on_belt, drum, two_blocks_on_belt
 from squealbox import Hyperbolic, harmonic_balance, shooting
-from squealbox.limit_cycles.field import Field
-from squealbox.limit_cycles.variation import flight, quick_flight
+from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.variation import flight, quick_flight
 
 
 @pytest.fixture(scope="module")

@@ -6,8 +6,8 @@ import pytest
 from small_systems import block_on_belt, drum, two_masses
 from squealbox import Contact, Coulomb, Stribeck, System, branch, harmonic_balance, hopf_point, shooting, simulate
 from squealbox.limit_cycles import basin, dangerous_push, lyapunov_exponents, maxima, poincare_section, push_along
-from squealbox.limit_cycles.basins import interval
-from squealbox.limit_cycles.settling import Known
+from squealbox.limit_cycles.attractors.basins import interval
+from squealbox.limit_cycles.attractors.settling import Known
 from squealbox.parameters import ParameterError
 from squealbox.system import equilibrium
 
@@ -167,7 +167,7 @@ def test_exponents_of_a_cycle_are_those_of_its_multipliers():
 def test_starts_that_arrive_at_a_known_cycle_end_on_it(monkeypatch):
     """Each start of the later ones ends where it does when it is run until it repeats itself, and runs for less."""
     quick = basin(subcritical(0.30), 1.2, 400)
-    monkeypatch.setattr("squealbox.limit_cycles.basins.PILOT", 64)
+    monkeypatch.setattr("squealbox.limit_cycles.attractors.basins.PILOT", 64)
     piloted = basin(subcritical(0.30), 1.2, 400)
     assert np.array_equal(piloted.attractor, quick.attractor)
     assert np.sum(piloted.time) <= np.sum(quick.time)

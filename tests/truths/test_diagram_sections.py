@@ -15,7 +15,7 @@ from squealbox import Coulomb, DrumBrake, LinearSlope, Stribeck
 from squealbox.cli import BAD_INPUT, DONE, main
 from squealbox.files import write_design
 from squealbox.limit_cycles import Section, bifurcation_diagram, lyapunov_exponents
-from squealbox.limit_cycles.sections import passages
+from squealbox.limit_cycles.attractors.sections import passages
 from squealbox.parameters import ParameterError
 from squealbox.stability import complex_modes
 

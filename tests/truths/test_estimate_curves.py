@@ -8,7 +8,7 @@ from squealbox import DrumBrake, LinearSlope, Stribeck, branch, hopf_point, shoo
 from squealbox.cli import DONE, main
 from squealbox.files import write_design
 from squealbox.limit_cycles import averaged_swings, estimate_curves
-from squealbox.limit_cycles.estimate_curves import AVERAGED, DESCRIBING, WIDTH
+from squealbox.limit_cycles.estimates.curves import AVERAGED, DESCRIBING, WIDTH
 from squealbox.plots import branch_diagram
 
 LAW = Stribeck(0.4, 0.25, 0.3)

@@ -20,9 +20,9 @@ from squealbox import (
     shooting,
 )
 from squealbox.limit_cycles import averaged_limit, averaged_swings
-from squealbox.limit_cycles.field import Field
-from squealbox.limit_cycles.saltation import saltation
-from squealbox.limit_cycles.variation import flight, quick_flight
+from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.saltation import saltation
+from squealbox.limit_cycles.cycles.variation import flight, quick_flight
 
 DIGITS = 1e-9  # the digits given, and what the issue asks for
 
@@ -193,7 +193,7 @@ def test_end_of_the_stick_slip_cycle():
 
 def test_averaged_cubic():
     """The closed form of the cubic law and the quadrature for any law give one swing."""
-    from squealbox.limit_cycles.estimates import averaged_excess
+    from squealbox.limit_cycles.estimates.averaging import averaged_excess
 
     law = Cubic(0.4, 0.25, 0.5)
     swing = averaged_swings(law, 0.48, 1.0, 0.01)[0]

@@ -5,8 +5,8 @@ import pytest
 
 from small_systems import two_blocks_on_belt
 from squealbox import shooting
-from squealbox.limit_cycles.field import Field
-from squealbox.limit_cycles.rounds import rounds
+from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.rounds import rounds
 
 
 @pytest.mark.parametrize("speed", [0.049138, 0.04911, 0.0490])

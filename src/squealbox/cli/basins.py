@@ -11,7 +11,7 @@ from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.limit_cycles import Basin, basin, dangerous_push
-from squealbox.limit_cycles.sections import state_names
+from squealbox.limit_cycles.attractors.sections import state_names
 
 Two = Annotated[tuple[str, str] | None, Parameter(negative="")]
 Push = Annotated[bool, Parameter(negative="")]

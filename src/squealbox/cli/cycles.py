@@ -9,7 +9,7 @@ from squealbox.cli.inputs import Changes, folder, read
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import written
 from squealbox.limit_cycles import Cycle, lyapunov_exponents, shooting
-from squealbox.limit_cycles.exponents import LOST
+from squealbox.limit_cycles.attractors.exponents import LOST
 from squealbox.stability import complex_modes
 from squealbox.transient import simulate
 

@@ -24,7 +24,7 @@ from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.limit_cycles import BifurcationDiagram, Branch, Section, bifurcation_diagram
-from squealbox.limit_cycles.settling import KINDS
+from squealbox.limit_cycles.attractors.settling import KINDS
 from squealbox.parameters import known_names
 
 if TYPE_CHECKING:

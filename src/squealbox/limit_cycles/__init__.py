@@ -3,26 +3,31 @@
 Depends on: transient, stability, continuation, system, friction, schedules, result, parameters.
 """
 
-from squealbox.limit_cycles.attractors import Attractor
-from squealbox.limit_cycles.basins import Basin, basin
-from squealbox.limit_cycles.branches import Branch, branch
-from squealbox.limit_cycles.coexistence import Coexistence, coexistence, cycle_ends
-from squealbox.limit_cycles.curves import PointCurve, hopf_curve
-from squealbox.limit_cycles.cycle import Cycle
-from squealbox.limit_cycles.diagrams import BifurcationDiagram, bifurcation_diagram
-from squealbox.limit_cycles.estimate_curves import EstimateCurve, estimate_curves
-from squealbox.limit_cycles.estimates import averaged_curve, averaged_limit, averaged_swings, describing_function
-from squealbox.limit_cycles.exponents import lyapunov_exponents
-from squealbox.limit_cycles.harmonic_balance import harmonic_balance
-from squealbox.limit_cycles.hopf import HopfPoint, hopf_point
-from squealbox.limit_cycles.isolated import isolated_branches, settled_cycles
-from squealbox.limit_cycles.joined import joined
-from squealbox.limit_cycles.point_curves import point_curve
-from squealbox.limit_cycles.pushes import DangerousPush, dangerous_push, push_along
-from squealbox.limit_cycles.sections import Section, maxima, poincare_section
-from squealbox.limit_cycles.shooting import shooting
-from squealbox.limit_cycles.special_points import BranchPoint
-from squealbox.limit_cycles.stick_slip_limit import return_gap, stick_slip_limit
+from squealbox.limit_cycles.attractors.attractor import Attractor
+from squealbox.limit_cycles.attractors.basins import Basin, basin
+from squealbox.limit_cycles.attractors.coexistence import Coexistence, coexistence, cycle_ends
+from squealbox.limit_cycles.attractors.diagrams import BifurcationDiagram, bifurcation_diagram
+from squealbox.limit_cycles.attractors.exponents import lyapunov_exponents
+from squealbox.limit_cycles.attractors.pushes import DangerousPush, dangerous_push, push_along
+from squealbox.limit_cycles.attractors.sections import Section, maxima, poincare_section
+from squealbox.limit_cycles.branches.branch import Branch, branch
+from squealbox.limit_cycles.branches.curves import PointCurve, hopf_curve
+from squealbox.limit_cycles.branches.hopf import HopfPoint, hopf_point
+from squealbox.limit_cycles.branches.isolated import isolated_branches, settled_cycles
+from squealbox.limit_cycles.branches.joined import joined
+from squealbox.limit_cycles.branches.point_curves import point_curve
+from squealbox.limit_cycles.branches.special_points import BranchPoint
+from squealbox.limit_cycles.cycles.cycle import Cycle
+from squealbox.limit_cycles.cycles.harmonic_balance import harmonic_balance
+from squealbox.limit_cycles.cycles.shooting import shooting
+from squealbox.limit_cycles.estimates.averaging import (
+    averaged_curve,
+    averaged_limit,
+    averaged_swings,
+    describing_function,
+)
+from squealbox.limit_cycles.estimates.curves import EstimateCurve, estimate_curves
+from squealbox.limit_cycles.estimates.stick_slip_limit import return_gap, stick_slip_limit
 
 __all__ = [
     "Attractor",

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.limit_cycles import Basin, DangerousPush
-from squealbox.limit_cycles.attractors import CYCLE, REST, SLIDING
-from squealbox.limit_cycles.basins import place
-from squealbox.limit_cycles.sections import state_names
+from squealbox.limit_cycles.attractors.attractor import CYCLE, REST, SLIDING
+from squealbox.limit_cycles.attractors.basins import place
+from squealbox.limit_cycles.attractors.sections import state_names
 from squealbox.plots.dispatch import plot
 from squealbox.plots.style import drawing, figure_of, number, quantity_label, scaled
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.limit_cycles import Branch, PointCurve
-from squealbox.limit_cycles.basins import Basin
+from squealbox.limit_cycles.attractors.basins import Basin
 from squealbox.parameters import DataSheet
 from squealbox.plots.dispatch import plot
 from squealbox.plots.facts import facts, plain_unit

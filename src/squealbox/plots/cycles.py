@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.limit_cycles import Branch, Cycle, EstimateCurve, HopfPoint, estimate_curves
-from squealbox.limit_cycles.estimate_curves import AVERAGED, DESCRIBING
+from squealbox.limit_cycles.estimates.curves import AVERAGED, DESCRIBING
 from squealbox.plots.dispatch import plot
 from squealbox.plots.style import WIDTH, drawing, figure_of, line, note, number, panels, quantity_label, scaled
 

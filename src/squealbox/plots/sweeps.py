@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.limit_cycles.pushes import DangerousPush
+from squealbox.limit_cycles.attractors.pushes import DangerousPush
 from squealbox.plots.dispatch import plot
 from squealbox.plots.style import COLUMN, LINES, PREFIXES, ROW, drawing, figure_of, line, note, quantity_label, scaled
 from squealbox.studies import Sweep

@@ -1,0 +1,239 @@
+"""Where stable sliding and a vibration coexist: the part of a plane of two parameters no eigenvalue sees.
+
+In the first parameter the region ends above where steady sliding loses its stability, and below where the last
+vibration ends. Both edges are found on two roads:
+
+    ensembles   many starts far from sliding at each point of a grid; then the vibrations found just below the onset
+                are followed down, in steps that are halved where one dies (all rows side by side)
+    curves      `hopf_curve` for the upper edge; branches of exact cycles by shooting, walked down to their ends, for
+                the lower one (`cycle_ends`)
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.limit_cycles.attractors.attractor import linked
+from squealbox.limit_cycles.attractors.basins import unit_starts
+from squealbox.limit_cycles.attractors.settling import FAILED, LOOSE, REPEATS, RESTS, TIGHT, Batch, Scales, settle
+from squealbox.limit_cycles.branches.branch import branch
+from squealbox.limit_cycles.branches.curves import PointCurve, hopf_curve
+from squealbox.parameters import ParameterError
+from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.stability import critical_value
+
+STRETCHES = 5
+FOLLOWED = 6  # vibrations of different size followed down in each row
+STEPS = 40  # of the range in the first parameter, before they are halved
+HALVINGS = 8
+ABOVE = 0.01  # of the range: how far above the edge a branch of exact cycles begins
+TURNS = ("fold", "neimark_sacker", "period_doubling")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Coexistence(Result):
+    """Region over two parameters, as :func:`coexistence` returns it."""
+
+    x: Any = quantity("column", "", "first parameter of the grid, in its own unit")
+    y: Any = quantity("row", "", "second parameter of the grid and of the edges, in its own unit")
+    vibrates: Any = quantity("column row", "1", "share of the far starts that end in a vibration; NaN = all failed")
+    stable: Any = quantity("column row", "1", "True where steady sliding is stable")
+    onset: Any = quantity("row", "", "upper edge: sliding loses its stability; inf = beyond the range, NaN = below")
+    end: Any = quantity(
+        "row", "", "lower edge: the vibration followed down has ended; -inf = below the range, NaN = none"
+    )
+    resolution: Any = quantity("row", "", "of the lower edge: it lies at most this much below")
+    amplitude: Any = quantity("row dof", "m", "amplitude of the last vibration, just above the lower edge")
+    state: Any = quantity("row state", "m", "a state (q, q') on it")
+    parameters: tuple[str, ...] = ()
+    starts: int = 0
+    hopf: PointCurve | None = None
+
+    @property
+    def share(self) -> float:
+        """Share of the grid's points at which sliding is stable and a vibration was found as well."""
+        return float(np.mean(self.stable & (self.vibrates > 0.0)))
+
+    def summary(self) -> str:
+        """The share of the plane, and the edges of each row."""
+        if not self.outcome.ok:
+            return f"{self.outcome}: {self.outcome.message}"
+        x, y = self.parameters
+        lines = [f"stable sliding and vibration coexist at {100 * self.share:.1f} % of {self.stable.size} points"]
+        lines += [f"  {y} {b:.5g}: {x} {low:.5g} to {high:.5g}"
+                  for b, low, high in zip(self.y, self.end, self.onset, strict=True)]  # fmt: skip
+        return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        return self.summary()
+
+
+def coexistence(
+    design: Any,
+    bounds: dict[str, tuple[float, float]],
+    *,
+    columns: int = 24,
+    rows: int = 12,
+    starts: int = 16,
+    spread: float = 3.0,
+    seed: int = 1,
+    threads: int | None = None,
+) -> Coexistence:
+    """The region where stable sliding and a vibration coexist, over two parameters, by ensembles, and its Hopf curve.
+
+    Parameters
+    ----------
+    design : a design
+    bounds : dotted name to (low, high) for two parameters; the region is looked for along the first, in which more is
+        less stable
+    columns, rows : of the grid
+    starts : far from sliding at each point, a Sobol sequence with `seed` in a box of `spread` times V/w1 and V
+    threads : as in :func:`basin`
+
+    Outcome "completed". What is guaranteed: at each point that counts a vibration was run, and each lower edge is the
+    end of one that was followed. That there is none beyond is not: a vibration no start has reached is not seen.
+    Accuracy of the lower edge: `resolution`, the range over 40 x 256, at a fold; a cycle that loses its stability
+    otherwise is left later, by up to some 1e-3 of the range, since what grows slowly is seen late. Source: as this
+    module.
+
+    >>> from squealbox import DrumBrake, LinearSlope
+    >>> drum = DrumBrake(friction=LinearSlope(0.3, -0.05))
+    >>> area = {"friction.static": (0.1, 0.4), "load": (900.0, 1100.0)}
+    >>> coexistence(drum, area, columns=4, rows=2, starts=4).outcome.ok
+    True
+    """
+    if len(bounds) != 2 or not all(low < high for low, high in bounds.values()) or not hasattr(design, "replace"):
+        raise ParameterError("coexistence", "bounds", bounds, "a design and two parameters, each with low < high")
+    names = tuple(bounds)
+    x, y = (np.linspace(*ends, count) for ends, count in zip(bounds.values(), (columns, rows), strict=True))
+    grid = _far(design, names, x, y, starts, spread, seed, threads)
+    onset = np.array([_onset(design, names, bounds[names[0]], value) for value in y])
+    onset = np.where(np.all(grid["stable"], axis=0), np.inf, onset)
+    top = np.minimum(np.where(np.isfinite(onset) | grid["stable"][0], onset, x[0]), x[-1])
+    followed = _followed(design, names, bounds[names[0]], top, y, starts, spread, seed, threads)
+    return Coexistence(
+        inputs={"system": design}, settings={"spread": spread, "seed": seed}, outcome=Outcome(COMPLETED), x=x, y=y,
+        onset=onset, parameters=names, starts=starts, hopf=hopf_curve(design, bounds), **grid, **followed,
+    )  # fmt: skip
+
+
+def cycle_ends(design: Any, region: Coexistence, rows: Sequence[int] | None = None) -> tuple[Any, Any]:
+    """The lower edge on the other road: where the exact cycle of each row loses its stability, and how.
+
+    From the last vibration followed, somewhat above the edge, a branch of exact cycles is walked down by shooting. The
+    edge is the first fold, Neimark-Sacker or period doubling point on it, which is solved for.
+
+    Returns
+    -------
+    value (rows,), in the unit of the first parameter, NaN where there is no vibration or the branch ends before such a
+    point (at a corner); kind (rows,), the name of the point or how the branch ended
+    """
+    x, y = region.parameters
+    reach = float(region.x[-1] - region.x[0])
+    value, kind = np.full(len(region.y), np.nan), np.full(len(region.y), "", dtype=object)
+    for i in range(len(region.y)) if rows is None else rows:
+        if not np.isfinite(region.end[i]):
+            continue
+        own = design.replace({y: float(region.y[i])})
+        edge, half = float(region.end[i] + region.resolution[i]), len(region.state[i]) // 2
+        above = edge + ABOVE * reach
+        ends = settle(Batch.over(own, {x: np.array([above])}), region.state[i][None, :half],
+                      region.state[i][None, half:])  # fmt: skip
+        walk = branch(own, x, (edge - 0.5 * ABOVE * reach, 1.01 * above), (ends.q[0], ends.qd[0]), value=above,
+                      method="shooting", direction=-1.0, points=80)  # fmt: skip
+        turns = [j for j, name in enumerate(walk.special_kind) if name in TURNS]
+        kind[i] = str(walk.special_kind[turns[0]]) if turns else str(walk.outcome)
+        value[i] = walk.special_value[turns[0]] if turns else np.nan
+    return value, kind.astype(str)
+
+
+def _starts(batch: Batch, count: int, starts: int, spread: float, seed: int) -> tuple[Any, Any]:
+    """Far starts (count, starts, n) about the steady sliding of each system."""
+    scales = Scales.of(batch, count)
+    n = scales.rest.shape[-1]
+    cube = spread * unit_starts(2 * n, starts, seed, None)
+    speed = scales.speed[:, None, None]
+    q = scales.rest[:, None] + cube[None, :, :n] * speed / scales.slowest[:, None, None]
+    return q, cube[None, :, n:] * speed
+
+
+def _far(design: Any, names: Any, x: Any, y: Any, starts: int, spread: float, seed: int, threads: Any) -> Any:
+    """Share of far starts that vibrate, and whether sliding is stable, over the grid."""
+    plane = dict(zip(names, (v.ravel() for v in np.meshgrid(x, y, indexing="ij")), strict=True))
+    batch, count = Batch.over(design, plane), len(x) * len(y)
+    q, qd = _starts(batch, count, starts, spread, seed)
+    each = batch.take(np.repeat(np.arange(count), starts))
+    n = q.shape[-1]
+    ends = settle(each, q.reshape(-1, n), qd.reshape(-1, n), stretches=STRETCHES, same=LOOSE, threads=threads)
+    kind = ends.kind.reshape(len(x), len(y), starts)
+    ran = np.sum(kind != FAILED, axis=-1)
+    share = np.sum((kind != FAILED) & (kind != RESTS), axis=-1) / np.where(ran > 0, ran, np.nan)
+    growth = ends.scales.growth.reshape(len(x), len(y), starts)[..., 0]
+    return {"vibrates": share, "stable": growth < 0.0}
+
+
+def _onset(design: Any, names: Any, ends: tuple[float, float], value: float) -> float:
+    found = critical_value(design.replace({names[1]: float(value)}), names[0], ends)
+    return float(found.value) if found.outcome.ok else float("nan")
+
+
+def _followed(
+    design: Any, names: Any, ends: tuple[float, float], top: Any, y: Any, starts: int, spread: float, seed: int,
+    threads: Any,
+) -> Any:  # fmt: skip
+    """Vibrations of each row just below its onset, followed down in the first parameter until they end."""
+    low, high = ends
+    step = (high - low) / STEPS
+    rows = np.flatnonzero(top > low + step)  # elsewhere sliding is not stable
+    begin = np.maximum(top - 0.5 * step, low)
+    batch = Batch.over(design, {names[0]: begin, names[1]: y})
+    q, qd = _starts(batch, len(y), 4 * starts, spread, seed)
+    n = q.shape[-1]
+    row = np.repeat(rows, 4 * starts)
+    found = settle(batch.take(row), q[rows].reshape(-1, n), qd[rows].reshape(-1, n), stretches=STRETCHES, same=LOOSE,
+                   threads=threads)  # fmt: skip
+    chosen = _different(found, row, len(y))
+    at, row = begin[row[chosen]], row[chosen]
+    state, amplitude = np.hstack([found.q[chosen], found.qd[chosen]]), 0.5 * (found.high - found.low)[chosen]
+    size = np.full(len(chosen), step)
+    while chosen.size and np.any(live := (size > step / 2.0**HALVINGS * 1.5) & (at > low)):
+        which = np.flatnonzero(live)
+        trial = np.maximum(at[which] - size[which], low)
+        part = Batch.over(design, {names[0]: trial, names[1]: y[row[which]]})
+        now = settle(part, state[which, :n], state[which, n:], stretches=STRETCHES, same=TIGHT, threads=threads)
+        lives = now.kind == REPEATS
+        kept, lost = which[lives], which[~lives]
+        at[kept], state[kept] = trial[lives], np.hstack([now.q, now.qd])[lives]
+        amplitude[kept] = 0.5 * (now.high - now.low)[lives]
+        size[lost] *= 0.5
+    return _lowest(len(y), n, low, row, at, size, state, amplitude)
+
+
+def _different(found: Any, row: Any, rows: int) -> Any:
+    """Up to `FOLLOWED` vibrations of different size in each row."""
+    chosen: list[int] = []
+    for i in range(rows):
+        here = np.flatnonzero((row == i) & (found.kind == REPEATS))
+        if here.size == 0:
+            continue
+        size = np.log(0.5 * np.max(found.high[here] - found.low[here], axis=-1))[:, None]
+        group = linked(size, 0.02)
+        first = [here[np.flatnonzero(group == g)[0]] for g in range(int(np.max(group)) + 1)]
+        first.sort(key=lambda j: -float(np.max(found.high[j] - found.low[j])))
+        chosen += [int(j) for j in first[:FOLLOWED]]
+    return np.array(chosen, dtype=int)
+
+
+def _lowest(rows: int, n: int, low: float, row: Any, at: Any, size: Any, state: Any, amplitude: Any) -> Any:
+    """Of each row the vibration that reached lowest."""
+    end, resolution = np.full(rows, np.nan), np.full(rows, np.nan)
+    last, large = np.full((rows, 2 * n), np.nan), np.full((rows, n), np.nan)
+    for i in range(rows):
+        here = np.flatnonzero(row == i)
+        if here.size:
+            j = here[np.argmin(at[here])]
+            end[i] = at[j] - size[j] if at[j] > low else -np.inf
+            resolution[i], last[i], large[i] = size[j], state[j], amplitude[j]
+    return {"end": end, "resolution": resolution, "state": last, "amplitude": large}

@@ -1,0 +1,276 @@
+"""Branches of cycles over a parameter: stable and unstable parts, folds and the other places where stability changes.
+
+Continuation walks the path (`squealbox.continuation`); this module starts it, reads each point and finds
+
+fold, period_doubling, neimark_sacker, grazing, sticking and, at a corner (`corners`), event_order. They are solved for,
+not interpolated (`special_points`): `Branch.points` holds the cycle at each with what is left of its test function.
+Where a path could not be corrected between two points, the value is their middle, its uncertainty NaN, and there is no
+such cycle.
+"""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from squealbox.continuation import PathPoint, StepControl, follow
+from squealbox.limit_cycles.branches.doubling import doubled
+from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
+from squealbox.limit_cycles.branches.hopf import HopfPoint, family
+from squealbox.limit_cycles.branches.phases import begun, heading
+from squealbox.limit_cycles.branches.shooting_path import ShootingPath
+from squealbox.limit_cycles.branches.special_points import BranchPoint
+from squealbox.limit_cycles.branches.walks import Special, special_points, walked
+from squealbox.limit_cycles.cycles.cycle import Cycle
+from squealbox.limit_cycles.cycles.harmonic_balance import Grid, harmonic_balance
+from squealbox.limit_cycles.cycles.shooting import CONTACTS, shooting
+from squealbox.parameters import ParameterError, known_names
+from squealbox.result import COMPLETED, Outcome, Result, quantity
+
+METHODS = ("harmonic_balance", "shooting")
+METHODS_FROM_HOPF = (("harmonic_balance", "exact"), ("shooting", "exact"))
+RISE = 6  # points by harmonic balance from a Hopf point to the cycle where shooting takes over
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Branch(Result):
+    """Cycles along a branch, in the order walked, as :func:`branch` returns it.
+
+    `points` (the cycle at each special point) and `family` (the design or function followed) are not saved.
+    """
+
+    value: Any = quantity("point", "", "value of the parameter, in its own unit")
+    period: Any = quantity("point", "s", "period")
+    lowest: Any = quantity("point dof", "m", "least displacement")
+    highest: Any = quantity("point dof", "m", "largest displacement")
+    multipliers: Any = quantity("point multiplier", "1", "Floquet multipliers, the trivial one first")
+    start: Any = quantity("point state", "m", "state (q, q') at the beginning of the period, q' in m/s")
+    least_slip: Any = quantity(
+        "point", "m/s", "least sliding speed in the sense of V; negative where a contact reverses"
+    )
+    sticking: Any = quantity("point", "s", "longest sticking time of a contact in a period")
+    unknowns: Any = quantity("point unknown", "", "what was followed")
+    special_kind: Any = quantity("special", "", "fold, period_doubling, neimark_sacker, grazing or sticking")
+    special_value: Any = quantity("special", "", "value of the parameter there")
+    special_point: Any = quantity("special", "1", "index of the point before it")
+    special_uncertainty: Any = quantity("special", "", "of the value; NaN where it lies midway between two points")
+    special_test: Any = quantity("special", "", "what is left of the test function")
+    parameter: str = ""
+    points: tuple[BranchPoint, ...] = field(default=(), metadata={"transient": True})
+    family: Any = field(default=None, metadata={"transient": True})
+
+    @property
+    def amplitude(self) -> Any:
+        """Half peak to peak [m], shape (point, dof)."""
+        return 0.5 * (self.highest - self.lowest)
+
+    @property
+    def stable(self) -> Any:
+        """True where all multipliers but the trivial one lie inside the unit circle, shape (point,)."""
+        return np.all(np.abs(self.multipliers[:, 1:]) < 1.0, axis=1)
+
+    def special(self, kind: str) -> Any:
+        """Parameter values of one kind of special point."""
+        return self.special_value[self.special_kind == kind]
+
+    def summary(self) -> str:
+        """What the branch holds, in a few lines."""
+        if len(self.value) == 0:
+            return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
+        low, high = np.min(self.value), np.max(self.value)
+        walked = f"{len(self.value)} cycles, {self.parameter} from {low:.6g} to {high:.6g}"
+        ended = f"{self.outcome} {self.outcome.message}".rstrip()
+        lines = [f"{walked}, {int(np.sum(self.stable))} stable; ended: {ended}"]
+        lines += [f"{kind} at {value:.8g}" for kind, value in zip(self.special_kind, self.special_value, strict=True)]
+        return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        return self.summary()
+
+
+def branch(
+    design: Any,
+    parameter: str,
+    bounds: tuple[float, float],
+    start: Any = None,
+    *,
+    value: float | None = None,
+    method: str = "harmonic_balance",
+    contact: str = "exact",
+    width: float = 1e-3,
+    harmonics: int = 9,
+    direction: float = 1.0,
+    points: int = 200,
+    largest_step: float = 0.05,
+    rtol: float = 1e-11,
+) -> Branch:
+    """Follow cycles in one parameter through folds.
+
+    Parameters
+    ----------
+    design : a design, or a function of one value that returns a design or system
+    parameter, bounds : dotted name and the range walked
+    start : a `HopfPoint` (the branch born there; with method "shooting" on past the first contact at rest), a
+        period doubling out of `Branch.points` (the branch of doubled
+        period, with method "shooting"), or what :func:`shooting` takes, at `value` of the parameter
+    value : where to start from; None takes the middle of the bounds
+    method : "harmonic_balance" (smooth or smoothed cycles, fast) or "shooting" (exact stick and slip)
+    contact, width, harmonics : for harmonic balance
+    direction : +1 walks to larger values first, -1 to smaller
+    points : most points; largest_step : longest step, in shares of the range and of the size of the motion
+    rtol : for shooting
+
+    Outcome "completed" at a bound or where the cycle shrinks to steady sliding, "most_points", "grazing" (harmonic
+    balance with exact contact at the first contact that reverses), "jump" (shooting: no cycle lies beside the last),
+    "step_underflow" or why there was no start. Shooting goes on past corners, where a contact begins to touch v = 0 or
+    two events change places. Accuracy: that of the method with these harmonics. Source: Keller 1977.
+
+    >>> from squealbox import DrumBrake, LinearSlope
+    >>> from squealbox.limit_cycles import hopf_point
+    >>> brake = DrumBrake(friction=LinearSlope(0.3, -0.05))
+    >>> onset = hopf_point(brake, "friction.static", (0.1, 0.6))
+    >>> str(branch(brake, "friction.static", (0.1, 0.6), onset, points=150).outcome)
+    'grazing'
+    """
+    if method not in METHODS:
+        raise ParameterError("branch", "method", method, known_names(str(method), list(METHODS)))
+    span = float(bounds[1] - bounds[0])
+    make = family(design, parameter)
+    middle = 0.5 * (bounds[0] + bounds[1]) if value is None else value
+    settings = {"bounds": list(bounds), "method": method, "contact": contact, "width": width, "harmonics": harmonics}
+    if isinstance(start, HopfPoint) and (method, contact) not in METHODS_FROM_HOPF:
+        raise ParameterError("branch", "start", "a HopfPoint", "shooting or exact contact from a Hopf point")
+    if isinstance(start, BranchPoint):
+        middle = float(start.value) if value is None else middle
+        if start.kind == "period_doubling" and method != "shooting":
+            raise ParameterError("branch", "method", method, '"shooting" from a period doubling')
+    tangent = None
+    if method == "shooting" and isinstance(start, HopfPoint):
+        path, unknowns, p, tangent, outcome = _risen(make, start, bounds, harmonics, rtol)
+    elif method == "shooting":
+        path, unknowns, p, outcome = _shooting_start(make, start, middle, rtol, span)
+    else:
+        path, unknowns, p, outcome = _harmonic_start(make, start, middle, CONTACTS[contact], width, harmonics, span)
+    if not outcome.ok:
+        return _collect([], [], [], outcome, parameter, settings, make(middle), design)
+    if method != "shooting" and isinstance(start, HopfPoint):
+        tangent = path.rise(unknowns)
+    if isinstance(start, BranchPoint) and start.kind == "period_doubling":
+        unknowns, tangent = doubled(path, unknowns, p)
+    control = StepControl(first=min(1e-2, largest_step), largest=largest_step, most_points=points, tolerance=1e-9)
+    walk = follow(path.residual, unknowns, p, jacobian=path.jacobian, control=control, direction=direction,
+                  bounds=bounds, x_scale=path.scale, p_scale=span, tangent=tangent)  # fmt: skip
+    ends_at_grazing = method == "harmonic_balance" and contact == "exact"
+    done = walked(path, walk, control, bounds, ends_at_grazing)
+    specials = special_points(done, parameter)
+    if ends_at_grazing and done.outcome == "grazing" and len(done.visited) > 1:
+        done.drop_last()
+        done.outcome = _grazing_outcome(specials, done.visited[-1].p)
+    return _collect(done.visited, done.seen, specials, done.outcome, parameter, settings, make(middle), design)
+
+
+def _grazing_outcome(specials: list[Special], last: float) -> Outcome:
+    """How a branch with exact contact ends: where the least sliding speed is zero."""
+    at = next((value for kind, value, _, _ in reversed(specials) if kind == "grazing"), last)
+    message = f"a contact comes to rest on the cycle at {at:.10g}: go on with smoothing, or by shooting"
+    return Outcome("grazing", message, p=at)
+
+
+def _harmonic_start(
+    make: Any, start: Any, value: float, contact: str, width: float, harmonics: int, span: float
+) -> Any:
+    path = HarmonicPath(make, contact, width, Grid(harmonics), span)
+    if isinstance(start, HopfPoint):
+        if not start.outcome.ok:
+            return path, None, value, start.outcome
+        size = _visible_size(start)
+        coefficients = path.grid.padded(_small_series(start, 0.05 * size))
+        p = start.beside(0.05 * size)
+        shift = start.frequency_slope * (p - start.value)
+        unknowns = path.begin(coefficients, start.angular_frequency + float(shift), p, size)
+        return path, unknowns, p, Outcome(COMPLETED)
+    found = harmonic_balance(make(value), start, contact=contact, width=width, harmonics=harmonics)
+    if not found.outcome.ok:
+        return path, None, value, found.outcome
+    series = path.grid.series(_resampled(found, path.grid))
+    return path, path.begin(series, 2.0 * np.pi / float(found.period), value, float(np.max(found.amplitude))), value, \
+        found.outcome  # fmt: skip
+
+
+def _risen(make: Any, hopf: HopfPoint, bounds: tuple[float, float], harmonics: int, rtol: float) -> tuple[Any, ...]:
+    """(path, unknowns, p, tangent, outcome) by shooting, a few points by harmonic balance up from a Hopf point."""
+    span = bounds[1] - bounds[0]
+    path, x, p, outcome = _harmonic_start(make, hopf, float(hopf.value), "exact", 1e-3, harmonics, span)
+    if not outcome.ok:
+        return path, None, p, None, outcome
+    control = StepControl(largest=0.1, most_points=RISE, tolerance=1e-9)
+    walk = follow(path.residual, x, p, jacobian=path.jacobian, control=control, bounds=bounds, x_scale=path.scale,
+                  p_scale=span, tangent=path.rise(x))  # fmt: skip
+    points = [point for point in walk if path.least_slip(point.x, point.p) > 0.0][-2:]
+    if len(points) < 2:
+        return (
+            path,
+            None,
+            p,
+            None,
+            Outcome("no_start", f"no slipping cycles were reached from the Hopf point: {walk.outcome}"),
+        )
+    cycles = tuple(path.cycle(point.x, point.p) for point in points)
+    exact, p = ShootingPath(make, rtol, span), points[1].p
+    x = begun(exact, cycles[1], p)
+    return exact, x, p, heading(exact, x, p, cycles[::-1], points[0].p), outcome
+
+
+def _resampled(cycle: Cycle, grid: Grid) -> Any:
+    """Displacements at the instants of the grid; the samples of harmonic balance are equidistant."""
+    fine = Grid(grid.harmonics, len(cycle.t) - 1)
+    return grid.values @ fine.series(cycle.q[:-1])
+
+
+def _visible_size(hopf: HopfPoint) -> float:
+    """Amplitude [m] of the critical mode at which a contact would come to rest."""
+    system = hopf.inputs["system"]
+    half = len(hopf.shape) // 2
+    shape = hopf.shape / np.max(np.abs(hopf.shape[:half]))
+    swings = [abs(float(c.V)) / max(abs(c.t @ shape[half:]), 1e-300) for c in system.contacts]
+    return float(min(swings))
+
+
+def _small_series(hopf: HopfPoint, size: float) -> Any:
+    """Coefficients of steady sliding with the critical mode of the given largest amplitude [m]."""
+    half = len(hopf.shape) // 2
+    shape = size * hopf.shape[:half] / np.max(np.abs(hopf.shape[:half]))
+    return np.array([hopf.steady[:half], shape.real, -shape.imag])
+
+
+def _shooting_start(make: Any, start: Any, value: float, rtol: float, span: float) -> Any:
+    path = ShootingPath(make, rtol, span)
+    found = start if isinstance(start, Cycle) else shooting(make(value), start)
+    if not found.outcome.ok:
+        return path, None, value, found.outcome
+    return path, begun(path, found, value), value, found.outcome
+
+
+def _collect(
+    visited: list[PathPoint], seen: list[dict[str, Any]], specials: list[Special], outcome: Outcome, parameter: str,
+    settings: dict[str, Any], system: Any, family_: Any,
+) -> Branch:  # fmt: skip
+    n = system.size
+
+    def column(name: str, shape: tuple[int, ...] = ()) -> Any:
+        return np.array([about[name] for about in seen]).reshape(len(seen), *shape)
+
+    return Branch(
+        inputs={"system": system}, settings=settings, outcome=outcome, parameter=parameter,
+        value=np.array([point.p for point in visited]), period=column("period"), lowest=column("lowest", (n,)),
+        highest=column("highest", (n,)), start=column("begin", (2 * n,)), family=family_,
+        multipliers=column("multipliers", (2 * n,)).astype(complex), least_slip=column("least_slip"),
+        sticking=column("sticking"),
+        unknowns=np.array([point.x for point in visited]).reshape(len(visited), -1 if visited else 0),
+        special_kind=np.array([kind for kind, _, _, _ in specials], dtype=str),
+        special_value=np.array([value for _, value, _, _ in specials], dtype=float),
+        special_point=np.array([index for _, _, index, _ in specials], dtype=np.int64),
+        special_uncertainty=np.array([np.nan if at is None else float(at.uncertainty) for *_, at in specials]),
+        special_test=np.array([np.nan if at is None else float(at.test) for *_, at in specials]),
+        points=tuple(at for *_, at in specials if at is not None),
+    )  # fmt: skip

@@ -1,0 +1,143 @@
+"""Past a corner of a branch: where a contact begins to touch v = 0, or two events change places.
+
+The return map of stick and slip is continuous there but its derivative jumps, so pseudo-arclength, which wants a
+tangent that turns little, stops. With A- and A+ the derivatives of the residual by y = (x, p) on both sides of the
+surface h(y) = 0 at which the order of events changes,
+
+    A+ - A- = a h'      (both agree along the surface: rank one)
+
+The branch comes along t- with h.t- > 0 (h so signed) and goes on along the null vector t+ of A+ with h.t+ > 0. Where p
+turns back, t-_p t+_p < 0, that is a fold with a corner: two cycles meet and both end. Where the residual itself jumps
+(a contact with static above kinetic friction that just stops, one in tension that reaches v = 0), no cycle lies beside
+the last one, and the branch ends there.
+
+Source: di Bernardo, Budd, Champneys and Kowalczyk 2008, Piecewise-smooth Dynamical Systems, Springer, Sec. 3.1 and
+Ch. 8 (border collision; of the boundary events of sliding only grazing-sliding has a linear corner); the rank-one rule
+is derived here.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.continuation import Follower, PathPoint
+from squealbox.limit_cycles.branches.shooting_path import ShootingPath
+from squealbox.result import Outcome
+
+PROBES = (1e-6, 1e-5, 1e-4, 1e-3)  # distances beyond the last point at which the new order of events is looked for
+RESIDUAL = 30.0  # residual beside a corner over the distance, times the size of the derivative: more is a jump
+NEWTON_STEPS = 8
+CLOSE = 1e-9
+MOST = 20  # corners of one branch
+
+
+@dataclass(frozen=True, eq=False)
+class Corner:
+    """Where a walk stopped and where it goes on: points in scaled variables, and the corner between them."""
+
+    last: PathPoint
+    y: Any
+    tangent: Any
+    kind: str
+    p: float
+    uncertainty: float
+
+
+def kind_of(before: Any, after: Any) -> str:
+    """What happens where the order of events changes: sticking, grazing, or event_order."""
+    sticks = [sum(mode == 0 for _, mode in events) for events in (before, after)]
+    if sticks[0] != sticks[1]:
+        return "sticking"
+    return "grazing" if len(before) != len(after) else "event_order"
+
+
+def beyond(path: ShootingPath, walk: Follower, last: PathPoint) -> Corner | Outcome:
+    """How a branch goes on after its last point, or why it does not."""
+    scale = walk.scale
+    y, before = np.append(last.x, last.p) / scale, path.sequence(last.x, last.p)
+    inside = _derivative(path, y, scale)
+    seen = None
+    for way in _ways(y, last.tangent):
+        for distance in PROBES:
+            probe = y + distance * way
+            x = probe * scale
+            after = path.sequence(x[:-1], float(x[-1]))
+            if after is None or after == before:
+                continue
+            seen = seen or after
+            value = path.residual(x[:-1], float(x[-1]))
+            outside = _derivative(path, probe, scale)
+            if not np.all(np.isfinite(outside)):
+                continue
+            size = distance * max(float(np.max(np.abs(outside))), float(np.max(np.abs(inside))))
+            if np.max(np.abs(value)) > RESIDUAL * size:
+                break  # it jumps
+            found = _start_of(path, walk, y, last.tangent, inside, outside, distance, before)
+            if found is not None:
+                return _corner(path, walk, last, found)
+    if seen is None:
+        return walk.outcome
+    message = f"the motion jumps at {last.p:.10g}: no cycle lies beside this one, whose next event is another"
+    return Outcome("jump", message, p=last.p, events_before=str(before), events_after=str(seen))
+
+
+def _ways(y: Any, tangent: Any) -> Iterator[Any]:
+    """Directions in which the surface is looked for: ahead, then along the parameter."""
+    along = np.append(np.zeros(y.size - 1), 1.0)
+    yield from (tangent, along, -along)
+
+
+def _derivative(path: ShootingPath, y: Any, scale: Any) -> Any:
+    x = y * scale
+    if not np.all(np.isfinite(path.residual(x[:-1], float(x[-1])))):
+        return np.full((1, 1), np.nan)
+    return np.column_stack(path.jacobian(x[:-1], float(x[-1]))) * scale
+
+
+def _start_of(
+    path: ShootingPath, walk: Follower, y: Any, tangent: Any, inside: Any, outside: Any, distance: float, before: Any
+) -> tuple[Any, Any] | None:
+    """(point, tangent) on the branch beyond the corner, with another order of events than before it."""
+    normal = np.linalg.svd(outside - inside)[2][0]
+    normal = normal if normal @ tangent > 0.0 else -normal
+    forward = np.linalg.svd(outside)[2][-1]
+    forward = forward if forward @ normal > 0.0 else -forward
+    for length in (3.0 * distance, 30.0 * distance):
+        found = _corrected(path, y + length * forward, forward, walk.scale)
+        if found is None:
+            continue
+        x = found * walk.scale
+        new = path.sequence(x[:-1], float(x[-1])) not in (None, before)
+        if new and 0.2 * length < np.linalg.norm(found - y) < 5.0 * length:
+            here = np.linalg.svd(_derivative(path, found, walk.scale))[2][-1]
+            return found, here if here @ forward > 0.0 else -here
+    return None
+
+
+def _corrected(path: ShootingPath, guess: Any, normal: Any, scale: Any) -> Any:
+    y = guess.copy()
+    for _ in range(NEWTON_STEPS):
+        x = y * scale
+        value, matrix = path.residual(x[:-1], float(x[-1])), _derivative(path, y, scale)
+        if not np.all(np.isfinite(matrix)):
+            return None
+        change = np.linalg.lstsq(np.vstack([matrix, normal]), np.append(value, normal @ (y - guess)), rcond=None)[0]
+        y = y - change
+        if np.max(np.abs(change)) < CLOSE:
+            return y
+    return None
+
+
+def _corner(path: ShootingPath, walk: Follower, last: PathPoint, found: tuple[Any, Any]) -> Corner:
+    """The corner itself: where the tangents of both sides come nearest to each other."""
+    beyond_it, tangent = found
+    y = np.append(last.x, last.p) / walk.scale
+    ways = np.column_stack([last.tangent, tangent])
+    ahead, back = np.linalg.lstsq(ways, beyond_it - y, rcond=None)[0]
+    ends = y[-1] + ahead * last.tangent[-1], beyond_it[-1] - back * tangent[-1]
+    x = beyond_it * walk.scale
+    kind = kind_of(path.sequence(last.x, last.p), path.sequence(x[:-1], float(x[-1])))
+    uncertainty = abs(ends[0] - ends[1]) + abs(ends[0] - y[-1])
+    return Corner(last, beyond_it, tangent, kind, 0.5 * sum(ends) * walk.scale[-1], uncertainty * walk.scale[-1])

@@ -1,0 +1,116 @@
+"""A branch by harmonic balance, as continuation sees it: coefficients of the series and omega over the parameter."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from squealbox.limit_cycles.cycles.cycle import Cycle, extremes, ordered
+from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.harmonic_balance import Balance, Grid, cycle_of
+from squealbox.parameters import ParameterError
+from squealbox.result import COMPLETED, Outcome
+from squealbox.system import System
+
+KEPT = 8  # equations kept between calls at the same values
+
+
+class HarmonicPath:
+    """Residual of harmonic balance over (coefficients but one, omega) and the parameter."""
+
+    def __init__(self, make: Callable[[float], System], contact: str, width: float, grid: Grid, span: float) -> None:
+        self.make, self.contact, self.width, self.grid, self.span = make, contact, width, grid, span
+        self.balances: dict[float, Balance] = {}
+        self.column, self.size, self.omega = 0, 1.0, 1.0
+
+    def begin(self, coefficients: Any, omega: float, p: float, size: float) -> Any:
+        """Unknowns of a start; sets the phase and the scales: `size` [m] and omega."""
+        turned, self.column = self.balance(p).turned(self.grid.padded(coefficients))
+        self.size, self.omega = size, omega
+        return np.append(np.delete(turned.ravel(), self.column), omega)
+
+    @property
+    def scale(self) -> Any:
+        """Typical sizes of the unknowns."""
+        return np.append(np.full(len(self.grid.d) * self.dofs - 1, self.size), self.omega)
+
+    def rise(self, x: Any) -> Any:
+        """Direction of growing amplitude at x, for the start beside a Hopf point, in scaled variables with p."""
+        coefficients, _ = self.series(x)
+        direction = coefficients / self.size
+        direction[0] = 0.0
+        flat = np.append(np.delete(direction.ravel(), self.column), [0.0, 0.0])
+        return flat / np.linalg.norm(flat)
+
+    @property
+    def dofs(self) -> int:
+        """Number of degrees of freedom."""
+        return next(iter(self.balances.values())).field.size
+
+    def balance(self, p: float) -> Balance:
+        """The equation at a parameter value."""
+        if p not in self.balances:
+            self.balances[p] = Balance(Field(self.make(p), self.contact, self.width), self.grid)
+            if len(self.balances) > KEPT:
+                self.balances.pop(next(iter(self.balances)))
+        return self.balances[p]
+
+    def series(self, x: Any) -> tuple[Any, float]:
+        """Coefficients (2H + 1, n) and omega of a point."""
+        return np.insert(x[:-1], self.column, 0.0).reshape(len(self.grid.d), -1), float(x[-1])
+
+    def residual(self, x: Any, p: float) -> Any:
+        """R over omega^2 size; NaN, which continuation refuses, where the parameter leaves its range."""
+        try:
+            self.balance(p)
+        except ParameterError:
+            return np.full(len(x), np.nan)
+        return self.balance(p).residual(*self.series(x))[0].ravel() / (self.omega**2 * self.size)
+
+    def jacobian(self, x: Any, p: float) -> tuple[Any, Any]:
+        """By the unknowns (analytic) and by the parameter (central difference)."""
+        coefficients, omega = self.series(x)
+        balance = self.balance(p)
+        by_q, by_omega = balance.jacobian(coefficients, omega, balance.motion(coefficients, omega))
+        by_x = np.column_stack([np.delete(by_q, self.column, axis=1), by_omega]) / (self.omega**2 * self.size)
+        step = 1e-6 * self.span
+        by_p = (self.residual(x, p + step) - self.residual(x, p - step)) / (2.0 * step)
+        return by_x, by_p
+
+    def describe(self, x: Any, p: float) -> dict[str, Any]:
+        """Period, extremes, multipliers and least sliding speed of the cycle at a point."""
+        coefficients, omega = self.series(x)
+        balance = self.balance(p)
+        states = balance.motion(coefficients, omega)
+        n = balance.field.size
+        closed = np.vstack([states, states[:1]])
+        t = np.append(self.grid.tau, 2.0 * np.pi) / omega
+        low, high = extremes(t, closed[:, :n], closed[:, n:])
+        return {"period": 2.0 * np.pi / omega, "lowest": low, "highest": high, "multipliers": self.multipliers(x, p),
+                "least_slip": self.least_slip(x, p), "sticking": 0.0, "begin": states[0]}  # fmt: skip
+
+    def multipliers(self, x: Any, p: float) -> Any:
+        """Floquet multipliers of the cycle at a point."""
+        steps = max(128, self.grid.samples)
+        return ordered(np.linalg.eigvals(self.balance(p).monodromy(*self.series(x), steps)))
+
+    def cycle(self, x: Any, p: float) -> Cycle:
+        """The cycle at a point, on a fine grid; its error is the share of the last quarter of harmonics."""
+        coefficients, omega = self.series(x)
+        balance = self.balance(p)
+        settings = {"contact": self.contact, "width": self.width}
+        error = balance.tail(coefficients)
+        return cycle_of(balance, coefficients, omega, Outcome(COMPLETED), settings, error)
+
+    def least_slip(self, x: Any, p: float) -> float:
+        """Least sliding speed in the sense of V [m/s], by a parabola through the least of many samples."""
+        field = self.balance(p).field
+        fine = self.grid.even(16 * self.grid.samples)
+        slip = field.contact_state(self.balance(p).motion(*self.series(x), fine))[1] * np.sign(field.V)
+        least = np.inf
+        for v in slip.T:
+            i = int(np.argmin(v))
+            a, b, c = v[i - 1], v[i], v[(i + 1) % len(v)]
+            bend = a - 2.0 * b + c
+            least = min(least, float(b - (c - a) ** 2 / (8.0 * bend) if bend > 0.0 else b))
+        return least

@@ -1,0 +1,74 @@
+"""Where on a cycle its period begins: at a turning point of a displacement, far from every event.
+
+There the velocity of that degree of freedom is zero, which fixes the phase. An event that wanders over the beginning
+changes which motion the start belongs to, so before that happens the path is taken up again at another turning point.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from squealbox.limit_cycles.branches.shooting_path import ShootingPath
+from squealbox.limit_cycles.cycles.cycle import Cycle
+
+CLEAR = 0.02  # of the period: an event farther from the beginning is no matter
+TOUCHING = 1e-3  # and one nearer than this may be why a path does not go on
+
+
+def turns(cycle: Cycle) -> list[tuple[int, int]]:
+    """(row, degree of freedom) of the turning points, that of the largest displacement of the cycle first."""
+    rising = cycle.qd[:-1] > 0.0
+    found = [(int(i), dof) for dof in range(cycle.q.shape[1])
+             for i in np.flatnonzero(rising[:, dof] != np.roll(rising[:, dof], 1))]  # fmt: skip
+    dof = int(np.argmax(cycle.amplitude))
+    return [(int(np.argmax(cycle.q[:-1, dof])), dof), *found]
+
+
+def away(cycle: Cycle, row: int) -> float:
+    """Time from a row of the cycle to the nearest event, over the period."""
+    if len(cycle.event_time) == 0:
+        return 1.0
+    gap = np.abs(cycle.event_time - cycle.t[row]) / float(cycle.period)
+    return float(np.min(np.minimum(gap, 1.0 - gap)))
+
+
+def beginning(cycle: Cycle) -> tuple[Any, int]:
+    """State (2n,) and degree of freedom of the turning point to begin at: the largest displacement if it is clear."""
+    row, dof = max(turns(cycle), key=lambda turn: min(away(cycle, turn[0]), CLEAR))
+    return np.concatenate([cycle.q[row], cycle.qd[row]]), dof
+
+
+def begun(path: ShootingPath, cycle: Cycle, p: float) -> Any:
+    """Unknowns of a path through a cycle."""
+    state, dof = beginning(cycle)
+    return path.begin(state, float(cycle.period), p, dof, float(np.max(cycle.amplitude)))
+
+
+def touches_event(path: ShootingPath, x: Any, p: float) -> bool:
+    """True when an event lies next to the beginning of the period."""
+    times = path.run(x, p).event_time / float(x[-1])
+    return bool(np.any(np.minimum(times, 1.0 - times) < TOUCHING))
+
+
+def taken_up(path: ShootingPath, last: tuple[Any, float], earlier: tuple[Any, float]) -> tuple[Any, ...] | None:
+    """(path, x, p, tangent) through the same cycle from another turning point; the tangent leads on from `earlier`."""
+    cycle, before = path.cycle(*last), path.cycle(*earlier)
+    other = ShootingPath(path.make, path.rtol, path.span)
+    x, p = begun(other, cycle, last[1]), last[1]
+    if touches_event(other, x, p):
+        return None
+    return other, x, p, heading(other, x, p, (cycle, before), earlier[1])
+
+
+def heading(path: ShootingPath, x: Any, p: float, cycles: tuple[Cycle, Cycle], before: float) -> Any:
+    """Direction in scaled variables from an earlier cycle at `before` to the one at p that begins at x."""
+    cycle, earlier = cycles
+    state = path.start(x)
+    row = int(np.argmin(np.max(np.abs(np.hstack([cycle.q, cycle.qd]) - state) * path.field(p).scale, axis=1)))
+    share = cycle.t[row] / float(cycle.period)
+    dof = path.column - cycle.q.shape[1]
+    beside = [(abs(earlier.t[i] / float(earlier.period) - share), i) for i, turned in turns(earlier) if turned == dof]
+    row = min(beside)[1]
+    old = np.append(np.delete(np.concatenate([earlier.q[row], earlier.qd[row]]), path.column), earlier.period)
+    ahead = np.append((x - old) / path.scale, (p - before) / path.span)
+    return ahead / np.linalg.norm(ahead)

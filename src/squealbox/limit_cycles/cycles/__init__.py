@@ -1,0 +1,5 @@
+"""One cycle: the motion with its derivative across events, and the two roads to a periodic one.
+
+`field` is the equation with each contact in a mode, `saltation` and `variation` its derivative over a time, `starting`
+a first guess; `shooting` and `harmonic_balance` return a `cycle`. Depends on: transient, stability, system.
+"""

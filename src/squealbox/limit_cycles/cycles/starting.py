@@ -1,0 +1,129 @@
+"""A first guess of a cycle: a state on it and its period, from a long run or from what the caller knows."""
+
+from typing import Any
+
+import numpy as np
+
+from squealbox.limit_cycles.cycles.cycle import Cycle
+from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.variation import fly
+from squealbox.parameters import ParameterError
+from squealbox.result import COMPLETED, Outcome
+from squealbox.stability import Mode, complex_modes
+from squealbox.system import equilibrium
+from squealbox.transient import Trajectory
+
+PERIODS = 300.0  # of the lowest mode, of a run that is to settle
+GUESS_RTOL = 1e-9
+UNBOUNDED = 1e100  # [m, m/s]; squares of what is below it are still numbers
+STILL = 1e-5  # share of the sliding speed; a run that swings less has settled on steady sliding
+
+
+def first_guess(field: Field, start: Any, settle: float | None) -> tuple[Any, float, Outcome]:
+    """State x (2n,), period [s] and outcome, from `start`.
+
+    start : None (the most unstable mode, or rest), a `Mode`, (q, qd), a `Trajectory` whose end is taken, (q, qd,
+        period) or a `Cycle`, which are taken as they are.
+    settle : [s] of the run before a return is looked for; None takes 300 periods of the slowest mode
+    """
+    if isinstance(start, Cycle):
+        return np.concatenate(start.start), float(start.period), Outcome(COMPLETED)
+    if isinstance(start, (tuple, list)) and len(start) == 3:
+        return np.concatenate([_vector(field, x) for x in start[:2]]), float(start[2]), Outcome(COMPLETED)
+    x = _state(field, start)
+    slowest = _slowest_period(field)
+    duration = PERIODS * slowest if settle is None else settle
+    if duration > 0.0:
+        run = fly(field, x, duration, GUESS_RTOL)
+        if not run.outcome.ok:
+            return x, slowest, Outcome("no_cycle", f"the first run ended early: {run.outcome.message}")
+        x = np.concatenate([run.q[-1], run.qd[-1]])
+    return first_return(field, x, slowest)
+
+
+def first_return(field: Field, x: Any, period: float) -> tuple[Any, float, Outcome]:
+    """A state in fast slip on the motion from x, and the time after which the motion comes back to it."""
+    run = fly(field, x, 12.0 * period, GUESS_RTOL)
+    if not run.outcome.ok:
+        return x, period, Outcome("no_cycle", f"the search for a return ended early: {run.outcome.message}")
+    states = np.hstack([run.q, run.qd])
+    if np.max(np.abs(states)) > UNBOUNDED:
+        return x, period, Outcome("no_cycle", "the motion grows without bound: no cycle in sight")
+    size = np.ptp(states, axis=0)
+    size = np.where(size > 0.0, size, 1.0)
+    if np.max(np.ptp(run.qd, axis=0)) <= STILL * max(float(np.max(np.abs(field.V), initial=0.0)), 1e-300):
+        return x, period, Outcome("steady_sliding", "the run settles on steady sliding, not on a cycle")
+    begin = _fast_slip(run)
+    section = np.concatenate([run.qd[begin], np.diff(run.qd[begin : begin + 2], axis=0)[0]]) / size**2
+    beside = (states - states[begin]) @ section
+    crossing = [i for i in range(begin + 1, len(beside) - 1) if beside[i] < 0.0 <= beside[i + 1]]
+    best, found = np.inf, period
+    for i in crossing:
+        share = -beside[i] / (beside[i + 1] - beside[i])
+        away = float(np.max(np.abs(((1.0 - share) * states[i] + share * states[i + 1] - states[begin]) / size)))
+        if away < 0.5 * best:
+            best, found = away, float(run.t[i] + share * (run.t[i + 1] - run.t[i]) - run.t[begin])
+        if best < 0.02:
+            break
+    if not crossing:
+        return x, period, Outcome("no_cycle", "the motion does not return: a longer `settle` may help")
+    return states[begin], found, Outcome(COMPLETED)
+
+
+def _fast_slip(run: Trajectory) -> int:
+    """The row, in the first half, at which the slowest contact slips fastest."""
+    half = max(2, len(run.t) // 2)
+    if run.sliding_velocity.shape[1] == 0:
+        return 0
+    return int(np.argmax(np.min(np.abs(run.sliding_velocity[:half]), axis=1)))
+
+
+def _state(field: Field, start: Any) -> Any:
+    if isinstance(start, Trajectory):
+        return np.concatenate([start.q[-1], start.qd[-1]])
+    if start is None:
+        modes = complex_modes(field.system)
+        start = modes.most_unstable if np.any(modes.exists) else "rest"
+        if isinstance(start, Mode) and start.growth_rate <= 0.0:
+            start = "rest"
+    if isinstance(start, Mode):
+        start = start.start(visible_amplitude(field, start))
+    if isinstance(start, str):
+        if start == "rest":
+            return np.zeros(2 * field.size)
+        raise ParameterError("limit_cycles", "start", start, '"rest", a mode, (q, qd), a trajectory or a cycle')
+    try:
+        q, qd = start
+    except (TypeError, ValueError) as error:
+        expected = '"rest", a mode, (q, qd), (q, qd, period), a trajectory or a cycle'
+        raise ParameterError("limit_cycles", "start", start, expected) from error
+    return np.concatenate([_vector(field, q), _vector(field, qd)])
+
+
+def _vector(field: Field, value: Any) -> Any:
+    array = np.asarray(value, dtype=float)
+    if array.shape != (field.size,) or not np.all(np.isfinite(array)):
+        raise ParameterError("limit_cycles", "start", value, f"{field.size} finite numbers")
+    return array
+
+
+def visible_amplitude(field: Field, mode: Mode, share: float = 0.5) -> float:
+    """Amplitude [m] of a mode at which some contact's speed swings by `share` of its sliding speed."""
+    swing = np.abs(field.t @ (mode.eigenvalue * mode.shape))
+    speed = np.abs(field.V)
+    ratios = speed[swing > 0.0] / swing[swing > 0.0]
+    return share * float(np.min(ratios)) if ratios.size and np.min(ratios) > 0.0 else 1e-6
+
+
+def _slowest_period(field: Field) -> float:
+    modes = complex_modes(field.system)
+    rates = np.abs(np.imag(modes.eigenvalues)) if np.any(modes.exists) else np.sqrt(np.abs(np.linalg.eigvals(field.mk)))
+    moving = rates[rates > 1e-9 * field.frequency]
+    return 2.0 * np.pi / float(np.min(moving)) if moving.size else 2.0 * np.pi / (field.frequency or 1.0)
+
+
+def steady_state(field: Field) -> Any:
+    """Steady sliding x (2n,), or NaN where there is none."""
+    state = equilibrium(field.system)
+    q = state.q if np.all(state.exists) else np.full(field.size, np.nan)
+    return np.concatenate([q, np.zeros(field.size)])

@@ -1,0 +1,190 @@
+"""The motion over a given time and its derivative by the start, exact across events.
+
+Between events Phi' = A(t) Phi along the motion; at an event Phi is multiplied by the saltation matrix. The motion and
+its events come from `simulate`; each smooth piece is integrated again together with Phi, by another implementation
+(`scipy.integrate.DOP853`), and how well the two meet is kept as `mismatch`.
+"""
+
+import itertools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.saltation import saltation
+from squealbox.result import Outcome
+from squealbox.transient import Method, Trajectory, simulate
+
+
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """End x (2n,) and its rate; phi (2n, 2n) = dx(T)/dx(0); the motion; mismatch [-]; least |event rate| [-]."""
+
+    x: Any
+    rate: Any
+    phi: Any
+    motion: Trajectory
+    mismatch: float = 0.0
+    transversality: float = 1.0
+    together: bool = False
+    by_p: Any = None
+
+    @property
+    def outcome(self) -> Outcome:
+        """How the simulation ended."""
+        return self.motion.outcome
+
+
+def fly(field: Field, x: Any, duration: float, rtol: float = 1e-13, times: Any = None) -> Trajectory:
+    """The motion from x over `duration` [s], with tolerances relative to the speeds in it."""
+    n = field.size
+    speed = max(float(np.max(np.abs(x[n:]), initial=0.0)), float(np.max(np.abs(field.V), initial=0.0)))
+    method = Method("dormand-prince-8", rtol=rtol, atol=1e-2 * rtol * (speed or 1.0))
+    start = (x[:n], x[n:])
+    return simulate(field.system, duration, start, times, method, field.contact, width=field.width)
+
+
+def flight(
+    field: Field, x: Any, duration: float, rtol: float = 1e-13, *, motion: Trajectory | None = None
+) -> Flight:  # fmt: skip
+    """The motion from x over `duration` [s] and its derivative by x.
+
+    motion : that of `fly`, where it is known
+    """
+    motion = fly(field, x, duration, rtol) if motion is None else motion
+    size = 2 * field.size
+    if not motion.outcome.ok:
+        return Flight(np.full(size, np.nan), np.full(size, np.nan), np.full((size, size), np.nan), motion)
+    states = np.hstack([motion.q, motion.qd])
+    phi, mismatch, least, together = np.eye(size), 0.0, 1.0, False
+    cuts = _cuts(motion) if field.contact == "exact" else []
+    rows = [0, *cuts, len(motion.t) - 1]
+    for piece, (i, k) in enumerate(itertools.pairwise(rows)):
+        if piece > 0:
+            before, after = motion.mode[i], motion.mode[i + 1]
+            jump, rate, _ = saltation(field, states[i], before, after)
+            phi, least = jump @ phi, min(least, abs(rate))
+            together = together or int(np.sum(before != after)) > 1
+        if k > i:
+            end, part = _piece(field, states[i], motion.mode[k], motion.t[k] - motion.t[i], rtol)
+            mismatch = max(mismatch, _relative(field, end - states[k], states))
+            phi = part @ phi
+    return Flight(states[-1], field.rate(states[-1], motion.mode[-1]), phi, motion, mismatch, least, together)
+
+
+def quick_flight(
+    field: Field, x: Any, duration: float, rtol: float = 1e-11, steps: int = 400, motion: Trajectory | None = None,
+    beside: tuple[Field, Field, float] | None = None,
+) -> Flight:  # fmt: skip
+    """As `flight`, with Phi by fourth-order Magnus steps along the simulated motion: 1e-8 in a tenth of the time.
+
+    motion : that of `fly`, where it is known
+    beside : the field at two values of a parameter and their distance, for the derivative `by_p` (2n,) of the end: as
+        a further state p with p' = 0 it is a column of the same matrices
+    """
+    motion = fly(field, x, duration, rtol) if motion is None else motion
+    if not motion.outcome.ok:
+        return flight(field, x, duration, rtol, motion=motion)
+    states = np.hstack([motion.q, motion.qd])
+    rows = [0, *(_cuts(motion) if field.contact == "exact" else []), len(motion.t) - 1]
+    counts = [max(8, int(np.ceil(steps * (motion.t[k] - motion.t[i]) / duration))) for i, k in itertools.pairwise(rows)]
+    instants = [_gauss(motion.t[i], motion.t[k], n) for i, k, n in zip(rows[:-1], rows[1:], counts, strict=True)]
+    inner = fly(field, x, duration, rtol, np.concatenate(instants))
+    inside = np.split(np.hstack([inner.q, inner.qd]), np.cumsum([len(t) for t in instants])[:-1])
+    size, least, scale = x.size, 1.0, field.scale
+    along = [field.jacobians(inner_, motion.mode[k]) for inner_, k in zip(inside, rows[1:], strict=True)]
+    if beside is not None:
+        along, weight = _with_parameter(field, along, inside, motion.mode[rows[1:]], beside)
+        scale = np.append(scale, weight)
+    phi = np.eye(len(scale))
+    for piece, (i, k) in enumerate(itertools.pairwise(rows)):
+        if piece > 0:
+            jump, rate, _ = saltation(field, states[i], motion.mode[i], motion.mode[i + 1], beside)
+            phi, least = jump @ phi, min(least, abs(rate))
+        a, b = along[piece][::2], along[piece][1::2]
+        phi = magnus(a, b, (motion.t[k] - motion.t[i]) / counts[piece], scale) @ phi
+    by_p = None if beside is None else phi[:size, size]
+    return Flight(states[-1], field.rate(states[-1], motion.mode[-1]), phi[:size, :size], motion, 0.0, least,
+                  by_p=by_p)  # fmt: skip
+
+
+def _with_parameter(
+    field: Field, along: list[Any], inside: list[Any], modes: Any, beside: tuple[Field, Field, float]
+) -> tuple[list[Any], float]:
+    """df/d(x, p) of each piece, (k, 2n + 1, 2n + 1), and what p is multiplied by to weigh as the others do."""
+    low, high, distance = beside
+    full, largest = [], 0.0
+    for by_x, states, mode in zip(along, inside, modes, strict=True):
+        by_p = (high.rates(states, mode) - low.rates(states, mode)) / distance
+        full.append(np.pad(by_x, ((0, 0), (0, 1), (0, 1))))
+        full[-1][:, :-1, -1] = by_p
+        largest = max(largest, float(np.max(np.abs(by_p) * field.scale)))
+    return full, largest / (field.frequency or 1.0) or 1.0
+
+
+def _gauss(begin: float, end: float, steps: int) -> Any:
+    """The two Gauss points of each of `steps` equal steps, in rising order."""
+    h = (end - begin) / steps
+    middle = begin + (np.arange(steps) + 0.5) * h
+    return (middle[:, None] + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0 * h).ravel()
+
+
+def magnus(a: Any, b: Any, dt: float, scale: Any) -> Any:
+    """Phi over equal steps dt from df/dx at the two Gauss points of each, a and b (k, m, m): order 4 in dt.
+
+    exp(dt (a + b)/2 + sqrt(3) dt^2 [b, a]/12), Iserles and Norsett 1999, Phil. Trans. R. Soc. A 357, 983-1019.
+    """
+    ratio = scale[:, None] / scale
+    a, b = a * ratio, b * ratio
+    factors = _exponential(0.5 * dt * (a + b) + np.sqrt(3.0) / 12.0 * dt**2 * (b @ a - a @ b))
+    while len(factors) > 1:
+        if len(factors) % 2:
+            factors = np.concatenate([factors, np.eye(factors.shape[-1])[None]])
+        factors = factors[1::2] @ factors[::2]
+    return factors[0] / ratio
+
+
+def _exponential(matrices: Any) -> Any:
+    """exp of small matrices (k, m, m): Taylor to order 12 after halving to a norm below 1/4, and squaring back."""
+    norm = float(np.max(np.sum(np.abs(matrices), axis=-1), initial=0.0))
+    halvings = max(0, int(np.ceil(np.log2(max(norm, 1e-300) / 0.25))))
+    small = matrices / 2.0**halvings
+    eye = np.eye(matrices.shape[-1])
+    total = np.broadcast_to(eye, matrices.shape)
+    for order in range(12, 0, -1):
+        total = eye + small @ total / order
+    for _ in range(halvings):
+        total = total @ total
+    return total
+
+
+def _relative(field: Field, difference: Any, states: Any) -> float:
+    scaled = field.scale * difference
+    return float(np.max(np.abs(scaled)) / (np.max(np.abs(field.scale * states)) + 1e-300))
+
+
+def _cuts(motion: Trajectory) -> list[int]:
+    """Rows of the events: a row holds the mode in which it was reached, so the next row differs."""
+    changed = np.any(motion.mode[1:] != motion.mode[:-1], axis=1)
+    return [int(i) for i in np.flatnonzero(changed) if i > 0]
+
+
+def _piece(field: Field, x: Any, mode: Any, duration: float, rtol: float) -> tuple[Any, Any]:
+    """End state and fundamental matrix of one smooth piece, integrated in states scaled to one unit."""
+    from scipy.integrate import solve_ivp
+
+    size, scale = x.size, field.scale
+    ratio = scale[:, None] / scale
+
+    def rates(_: float, y: Any) -> Any:
+        state = y[:size] / scale
+        a = field.jacobian(state, mode) * ratio
+        return np.concatenate([field.rate(state, mode) * scale, (a @ y[size:].reshape(size, size)).ravel()])
+
+    start = np.concatenate([x * scale, np.eye(size).ravel()])
+    largest = max(float(np.max(np.abs(start[:size]))), float(np.max(np.abs(field.V), initial=0.0)))
+    atol = np.concatenate([np.full(size, 0.1 * rtol * largest), np.full(size * size, 0.1 * rtol)])
+    done = solve_ivp(rates, (0.0, duration), start, "DOP853", rtol=max(rtol, 3e-14), atol=atol)
+    end = done.y[:, -1] if done.success else np.full(start.size, np.nan)
+    return end[:size] / scale, end[size:].reshape(size, size) / ratio
