@@ -1,6 +1,6 @@
 """How fast the workbench answers: the page from its command, a slider to a painted figure, many pages, a long day.
 
-    python benchmarks/workbench.py [page | figures | clients | soak]
+    python benchmarks/workbench.py [page | figures | stops | clients | soak]
 
 Needs the extras `workbench` and `dev` and Debian's chromium. Figures are painted in headless Chromium by software, and
 browser and server share the machine's cores: what is measured is what a user of a small laptop would wait.
@@ -123,6 +123,49 @@ def figures(folder: Path) -> None:
     stop(server)
 
 
+# Presses Stop and waits for the word.
+STOPS = """panel => new Promise(done => {
+    const section = document.querySelector(`section[data-panel=${panel}]`);
+    const begin = performance.now();
+    new MutationObserver(() => section.dataset.state === 'stopped' && done(performance.now() - begin))
+        .observe(section, { attributes: true });
+    section.querySelector('button.stop').click();
+})"""
+HOURS = """() => import('/static/app.js').then(({ app }) => {
+    const view = app.panels.get('motion').view;
+    const options = { start: 'rest', duration: 1e5 };
+    view.request = () => ({ state: app.store.design, options });
+    view.again = () => { options.duration += 1; view.update(); };
+})"""
+
+
+def stops(folder: Path) -> None:
+    """From a press of Stop to the word "stopped": a motion of hours, and a walk along limit cycles."""
+    server, address, _ = started(folder)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+        opened = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
+        opened.goto(address)
+        opened.locator("section[data-panel=motion]").scroll_into_view_if_needed()
+        opened.wait_for_selector("section[data-panel=motion][data-state=drawn]", timeout=120_000)
+        opened.evaluate(HOURS)
+        begins = {
+            "motion": "import('/static/app.js').then(({ app }) => app.panels.get('motion').view.again())",
+            "branch": "document.querySelector('section[data-panel=branch] .body button').click()",
+        }
+        for panel, begin in begins.items():
+            opened.locator(f"section[data-panel={panel}]").scroll_into_view_if_needed()
+            times = []
+            for _ in range(5):
+                opened.evaluate(begin)
+                opened.wait_for_selector(f"section[data-panel={panel}] button.stop:visible", timeout=60_000)
+                opened.wait_for_timeout(700)
+                times.append(opened.evaluate(STOPS, panel))
+            shown(f"{panel} stopped", times, "1000 ms")
+        browser.close()
+    stop(server)
+
+
 async def _client(address: str, number: int, end: float, times: list[float]) -> int:
     """One page's slider: ask, wait, ask again; each answer must be its own."""
     crossed = 0
@@ -194,7 +237,7 @@ def stop(server: "subprocess.Popen[str]") -> None:
         server.stdout.close()
 
 
-PARTS = {"page": page, "figures": figures, "clients": clients, "soak": soak}
+PARTS = {"page": page, "figures": figures, "stops": stops, "clients": clients, "soak": soak}
 
 if __name__ == "__main__":
     for part in sys.argv[1:] or PARTS:

@@ -84,6 +84,9 @@ def test_a_wrong_value_is_said_beside_its_field_and_the_rest_stays(page):
     problem.filter(has_text="expected a finite number in (0, inf) kg").wait_for()
     page.settled("locus")
     assert page.page.locator("section[data-panel=locus]").get_attribute("data-state") == "wrong"
+    page.enter("theta1", 400)
+    page.page.locator("[data-field=theta1] .problem").filter(has_text="in [-180, 180] deg").wait_for()
+    page.enter("theta1", 35)
     page.enter("m", 1.5)
     page.page.wait_for_selector("section[data-panel=locus][data-state=drawn]")
     assert problem.inner_text() == ""

@@ -146,7 +146,7 @@ def test_a_cold_machine_says_what_it_does_and_the_page_lives(browser, tmp_path):
             page.page.locator("section[data-panel=motion]").scroll_into_view_if_needed()
             says = page.page.locator("section[data-panel=motion] .says")
             says.filter(has_text="compiling the kernel for this design, which happens once").wait_for(timeout=60_000)
-            says.filter(has_text="s of about 15 s").wait_for(timeout=20_000)
+            says.filter(has_text="s of about 20 s").wait_for(timeout=20_000)
             page.page.select_option("section[data-panel=locus] select", "theta1")  # the rest of the page goes on
             page.drawn("locus")
             stop(page, "motion")

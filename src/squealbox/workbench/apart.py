@@ -101,8 +101,7 @@ class _Process:
         while not stopped():
             if not self.line.poll(LOOK):
                 if usual is not None and report is not None:
-                    gone = time.monotonic() - began
-                    report(min(gone / usual[1], 0.9), f"{usual[0]}: {gone:.0f} s of about {usual[1]:.0f} s")
+                    report(*_said(usual, time.monotonic() - began))
                 continue
             try:
                 kind, *said = self.line.recv()
@@ -120,6 +119,13 @@ class _Process:
         self.process.kill()
         self.process.join()
         self.line.close()
+
+
+def _said(usual: Usual, gone: float) -> tuple[float, str]:
+    """How far something is that cannot say so itself, from the seconds that are gone."""
+    text, seconds = usual
+    late = f" of about {seconds:.0f} s" if gone < seconds else f"; on an idle machine it takes about {seconds:.0f} s"
+    return min(gone / seconds, 0.9), f"{text}: {gone:.0f} s{late}"
 
 
 def serve(line: Connection) -> None:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -103,6 +104,7 @@ def _parameter(owner: DataSheet, name: str, value: Any, path: str, about: Parame
     return {
         **field,
         "kind": "number",
+        "range": replace(about, unit=unit, low=about.low / factor, high=about.high / factor).range,
         "value": value,
         "unit": unit,
         "factor": factor,

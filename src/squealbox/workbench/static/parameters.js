@@ -31,7 +31,7 @@ export class Parameters {
     const others = [];
     for (const each of wrong) {
       const row = this.rows.get(each.field);
-      if (row) this.#mark(row, each.message);
+      if (row) this.#mark(row, inReadUnit(each.message, this.app.store.field(each.field)));
       else others.push(each);
     }
     return others;
@@ -131,6 +131,9 @@ export class Parameters {
   }
 }
 
+/** "expected a finite number in ..." with the range in the unit of the field, not in SI. */
+const inReadUnit = (message, field) => (field?.kind === "number" ? message.replace(/(a finite number in ).*$/, `$1${raised(field.range)}`) : message);
+
 /** The value rounded so that the field shows all of it. */
 function nearest(value, field) {
   if (field.whole) return Math.round(value);
@@ -142,7 +145,7 @@ function nearest(value, field) {
 function about(field) {
   const parts = [];
   if (field.meaning) parts.push(make("b", {}, field.meaning));
-  if (field.range) parts.push(make("span", {}, `range ${field.range}`));
+  if (field.range) parts.push(make("span", {}, `range ${raised(field.range)}`));
   if (field.source) parts.push(make("span", {}, `source: ${field.source}`));
   if (field.titles) parts.push(...Object.entries(field.titles).map(([name, text]) => make("span", {}, `${name.replaceAll("_", " ")}: ${text}`)));
   return parts;
