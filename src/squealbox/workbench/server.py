@@ -2,6 +2,7 @@
 
 import asyncio
 import importlib.util
+import threading
 from collections.abc import AsyncIterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
@@ -24,6 +25,8 @@ from squealbox.workbench.guard import Headers, SameOrigin, Token
 STATIC = Path(__file__).parent / "static"
 HOSTS = ["127.0.0.1", "localhost"]
 LARGEST_MESSAGE = 2_000_000  # bytes; a longer one closes the connection
+LEADING = "locus"  # the figure a page shows first
+PATIENCE = 10.0  # s after which the rest is loaded, page or no page
 NO_TOKEN = """<!doctype html><html lang="en"><meta charset="utf-8"><title>squealbox</title>
 <h1>This address needs its token</h1>
 <p>Open the workbench with the address that <code>squealbox lab</code> printed when it started.</p></html>"""
@@ -36,6 +39,7 @@ class Workbench:
         self.token, self.text, self.design = token, text, design
         self.pools = {"quick": ThreadPoolExecutor(2, "quick"), "warming": ThreadPoolExecutor(1, "warming")}
         self.processes = Processes()
+        self.first = threading.Event()  # a page has its first figure
         self.pages = 0
 
     def app(self) -> Starlette:
@@ -61,6 +65,7 @@ class Workbench:
             yield
         finally:
             warming.cancel()
+            self.first.set()
             self.processes.close()
             for pool in self.pools.values():
                 pool.shutdown(wait=False, cancel_futures=True)
@@ -93,7 +98,7 @@ class Workbench:
                 except (WebSocketDisconnect, RuntimeError):  # the page left while its answer was computed
                     session.close()
 
-        session = Session(send, self.pools, self.processes)
+        session = Session(send, self.pools, self.processes, answered=self._answered)
         if self.design is not None:
             session.bases[name_of_text(self.text)] = self.design
         self.pages += 1
@@ -108,6 +113,10 @@ class Workbench:
             self.pages -= 1
             session.close()
 
+    def _answered(self, view: str) -> None:
+        if view == LEADING:
+            self.first.set()
+
     def _slow_pools(self) -> None:
         """Threads for each slow panel, so that none holds up another; made with the first page."""
         from squealbox.workbench.panels import PANELS
@@ -117,15 +126,17 @@ class Workbench:
                 self.pools[name] = ThreadPoolExecutor(2, name)
 
     def _warm(self) -> None:
-        """Load what the first questions need, while the browser is still opening."""
+        """Load what the first questions need, while the browser is still opening; kernels after the first figure."""
         from squealbox.designs import DrumBrake
         from squealbox.workbench.panels import PANELS, Options, Work, function_of
         from squealbox.workbench.sheet import sheet
 
         sheet(DrumBrake())
-        for name in sorted(PANELS, key=lambda name: name not in ("locus", "verdict")):
-            if name == "map" or not PANELS[name].slow:
-                function_of(name)(DrumBrake(), Options({}), Work())
+        order = (LEADING, "verdict", *(name for name in PANELS if not PANELS[name].slow), "map")
+        for name in dict.fromkeys(order):
+            if name == "map":
+                self.first.wait(PATIENCE)
+            function_of(name)(DrumBrake(), Options({}), Work())
 
 
 def chart_library() -> Path:

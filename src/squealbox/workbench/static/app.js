@@ -15,6 +15,7 @@ import { Verdict } from "./verdict.js";
 const LEADING = "locus"; // the view whose pace a moving slider keeps
 const QUIET = 40; // ms without a change after which the other views are asked
 const PATIENCE = 250; // ms they wait at most while a slider moves
+const AT_FIRST = 5000; // and before it has been drawn at all: one figure early is more than seven late
 const TOLD = "motion"; // the view whose answer is part of the verdict, also while it is out of sight
 const REST = 600; // ms without a change after which it is asked then
 
@@ -63,7 +64,8 @@ class App extends EventTarget {
     this.changedAt ??= now;
     clearTimeout(this.later);
     const others = () => {
-      if (leading?.busy && performance.now() - this.changedAt < PATIENCE) this.later = setTimeout(others, 10);
+      const patience = leading?.drawn ? PATIENCE : AT_FIRST;
+      if (leading?.busy && performance.now() - this.changedAt < patience) this.later = setTimeout(others, 10);
       else this.#others();
     };
     for (const view of this.views) view.stale();
