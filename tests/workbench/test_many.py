@@ -54,6 +54,15 @@ def test_memory_does_not_grow_with_messages(tmp_path):
     server = Server(tmp_path)
     process = psutil.Process(server.process.pid)
 
+    async def kernels():
+        """Every panel's code is loaded, as for any page that is open for a while."""
+        async with connect(address(server), max_size=None) as socket:
+            await socket.recv()
+            for view in ("locus", "map", "verdict", "sensitivity"):
+                await socket.send(json.dumps({"id": 0, "view": view, "state": STATE, "options": {}}))
+                while unframed(await socket.recv())[0]["kind"] != "answer":
+                    pass
+
     async def messages(count):
         async with connect(address(server), max_size=None) as socket:
             await socket.recv()
@@ -64,6 +73,7 @@ def test_memory_does_not_grow_with_messages(tmp_path):
                 await socket.recv()
 
     try:
+        run(kernels())
         run(messages(1500))
         before = process.memory_info().rss
         for _ in range(4):
