@@ -98,7 +98,7 @@ class Workbench:
                 except (WebSocketDisconnect, RuntimeError):  # the page left while its answer was computed
                     session.close()
 
-        session = Session(send, self.pools, self.processes, answered=self._answered)
+        session = Session(send, self.pools, self.processes, told=self._answered)
         if self.design is not None:
             session.bases[name_of_text(self.text)] = self.design
         self.pages += 1

@@ -59,7 +59,7 @@ class Session:
     send: Callable[[bytes], Awaitable[None]]
     pools: Mapping[str, Executor]
     processes: Processes
-    answered: Callable[[str], None] = lambda view: None  # told of each view that was answered
+    told: Callable[[str], None] | None = None  # of each view that was answered
     bases: dict[str, Design] = field(default_factory=dict)
     slots: dict[str, Slot] = field(default_factory=dict)
     tasks: set[asyncio.Task[None]] = field(default_factory=set)
@@ -134,7 +134,8 @@ class Session:
             self.pools.get(name, self.pools["quick"]), self._computed, name, message, dict(self.bases), work
         )
         await self.send(data)
-        self.answered(name)
+        if self.told is not None:
+            self.told(name)
 
     def _computed(self, name: str, message: dict[str, Any], bases: dict[str, Design], work: Work) -> bytes:
         """The answer of a panel, in this thread or in a process of its own."""
