@@ -11,17 +11,19 @@ import numpy as np
 import pytest
 
 from small_systems import block_on_belt
-from squealbox import Coulomb, DrumBrake, LinearSlope, Stribeck
+from squealbox import Coulomb, DrumBrake, LinearSlope, Stribeck, branch, shooting
 from squealbox.cli import BAD_INPUT, DONE, main
 from squealbox.files import write_design
 from squealbox.limit_cycles import Section, bifurcation_diagram, lyapunov_exponents
 from squealbox.limit_cycles.attractors.sections import passages
 from squealbox.parameters import ParameterError
+from squealbox.plots import amplitude_and_section
 from squealbox.stability import complex_modes
 
 STATIC, KINETIC = 0.4, 0.25
 DROP = STATIC - KINETIC
 SPEEDS = np.linspace(0.05, 0.2, 6)
+AROUND = np.linspace(0.27, 0.3, 3)
 
 
 def dry(speed):
@@ -82,6 +84,30 @@ def test_a_motion_that_stays_on_a_plane_passes_it_once():
 def test_what_makes_no_sense_is_named(options, named):
     with pytest.raises(ParameterError, match=named):
         bifurcation_diagram(dry, "V", SPEEDS, **options)
+
+
+def test_branches_lie_beneath_the_marks():
+    """The followed stick-slip cycles pass through what the sweep down reads, amplitude above and maxima below."""
+    drum = DrumBrake(friction=LinearSlope(0.3, -0.05), reading="consistent")
+    large = shooting(drum, ([3e-5, 1e-5], [0.3, -0.3]))
+    walk = branch(drum, "friction.static", (0.25, 0.35), large, value=0.3, direction=-1, method="shooting", points=40,
+                  largest_step=0.02)  # fmt: skip
+    diagram = bifurcation_diagram(drum, "friction.static", AROUND, sweeps=("down",), section=Section.maxima("y"),
+                                  returns=3, start=large.start)  # fmt: skip
+    figure = amplitude_and_section(diagram, branches=walk, dof=1)
+    for panel in figure.axes:
+        curve = next(line for line in panel.lines if line.get_label() == "stable cycles, followed")
+        marks = next(line for line in panel.lines if line.get_label() == "swept down")
+        x, y = (np.asarray(part, dtype=float) for part in curve.get_data())
+        order = np.argsort(x)
+        at, height = (np.asarray(part, dtype=float) for part in marks.get_data())
+        seen = np.isfinite(height)
+        assert np.sum(seen) >= 2
+        np.testing.assert_allclose(height[seen], np.interp(at[seen], x[order], y[order]), rtol=2e-3)
+    by_velocity = bifurcation_diagram(drum, "friction.static", AROUND, sweeps=("down",), returns=3,
+                                      section=Section.returns("y"), start=large.start)  # fmt: skip
+    below = amplitude_and_section(by_velocity, branches=walk, dof=1).axes[1]
+    assert "stable cycles, followed" not in [line.get_label() for line in below.lines]  # a branch does not say it
 
 
 @pytest.fixture
