@@ -13,7 +13,8 @@ import time
 import numpy as np
 
 from squealbox import DrumBrake, LinearSlope
-from squealbox.limit_cycles import basin, basins, coexistence, cycle_ends, dangerous_push
+from squealbox.limit_cycles import basin, coexistence, cycle_ends, dangerous_push
+from squealbox.limit_cycles.attractors import basins
 
 CASES = (("consistent", 0.30), ("eq3", 0.40), ("eq3", 0.43))
 PLANES = {"consistent": (0.05, 0.40), "eq3": (0.10, 0.50)}

@@ -5,6 +5,9 @@ import pytest
 
 from small_systems import block_on_belt, drum
 from squealbox import Coulomb, ParameterError, Ramp, Stribeck, System, branch, harmonic_balance, hopf_point, shooting
+from squealbox.limit_cycles import basin
+from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.shots import Newton
 from squealbox.system import InvalidSystem
 
 QUIET = block_on_belt(Coulomb(0.3), 0.2, damping=0.5)
@@ -92,3 +95,26 @@ def test_a_singular_mass_is_refused():
     massless = System(np.diag([1.0, 0.0]), 0.1 * np.eye(2), np.eye(2), np.zeros(2))
     with pytest.raises(InvalidSystem, match="singular"):
         shooting(massless)
+
+
+def test_basin_of_a_belt_at_rest_has_no_sliding():
+    found = basin(HOSTILE["no speed"], 1.0, 16)
+    assert found.outcome == "no_sliding"
+    assert len(found.attractor) == 0
+
+
+def test_a_motion_too_stiff_to_follow_ends_in_a_named_outcome():
+    """A damper of 1e8 N s/m on 1 kg: 1e8 1/s beside 1 rad/s; the run ends at its largest number of steps."""
+    found = harmonic_balance(block_on_belt(Coulomb(0.4, 0.25), 0.1, damping=1e8), contact="tanh", width=0.02)
+    assert found.outcome == "no_cycle"
+    assert "steps" in found.outcome.message
+
+
+def test_newton_differentiates_only_where_it_steps_from():
+    """Rejected trials cost a motion each, no derivative: one derivative an accepted step, one more to 1e-13."""
+    field = Field(drum(0.45))
+    x = np.concatenate([[1e-5, -2e-5], [0.25, 0.1]])
+    newton = Newton(field, x[None], 5e-4, 1e-11)
+    newton.solve(1e-10, 12)
+    assert newton.flown > newton.derived  # some trials were rejected
+    assert newton.derived <= len(newton.history) + 2

@@ -197,8 +197,10 @@ def settle(
     q, qd = (np.array(x, dtype=float) for x in (q, qd))
     count, n = q.shape
     scales = Scales.of(batch, count)
-    length = STRETCH * 2.0 * np.pi / float(np.min(scales.slowest)) if duration is None else float(duration)
-    if not (np.isfinite(length) and length > 0.0):
+    length = (
+        STRETCH * 2.0 * np.pi / float(np.min(scales.slowest, initial=np.inf)) if duration is None else float(duration)
+    )
+    if not (np.isfinite(length) and length > 0.0) and not (count == 0 and duration is None):
         raise ParameterError("limit_cycles", "duration", duration, "a time above 0 s")
     kind, time, width = np.full(count, MOVING), np.zeros(count), length / WINDOWS
     seen = np.full((2, 2, count, n), np.nan)  # (low, high) of the last window and the one before
