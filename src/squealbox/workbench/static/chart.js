@@ -4,6 +4,7 @@
 //   chart.draw({ x: { label, domain }, y: { label, domain }, layers: [line(x, y, { name })] });
 
 import { shown } from "./numbers.js";
+import { shade } from "./theme.js";
 
 const d3 = window.d3;
 const MARGIN = { top: 8, right: 14, bottom: 42, left: 58 };
@@ -120,6 +121,9 @@ export class Chart {
     if (!heat) return;
     const { left, top } = this.margin;
     Object.assign(canvas.style, { left: `${left}px`, top: `${top}px`, width: `${this.inner.width}px`, height: `${this.inner.height}px` });
+    const colours = shade();
+    if (this.coloured?.values === heat.values && this.coloured.colours === colours) return; // only the mark has moved
+    this.coloured = { values: heat.values, colours };
     canvas.width = heat.columns;
     canvas.height = heat.rows;
     const { pixel } = heat.scale(); // made anew at each drawing: the colours are those of the page

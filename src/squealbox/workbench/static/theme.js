@@ -10,6 +10,11 @@ export function chooseTheme(choice = localStorage.getItem(KEY) ?? CHOICES[0]) {
   return choice;
 }
 
+const night = matchMedia("(prefers-color-scheme: dark)");
+
+/** A word for the colours the page has now, found without laying it out. */
+export const shade = () => document.documentElement.dataset.theme ?? (night.matches ? "dark" : "light");
+
 /** Do something while the page has the colours of paper; nothing of it is seen, since the page is painted only afterwards. */
 export function onPaper(act) {
   const { dataset } = document.documentElement;
