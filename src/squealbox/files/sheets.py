@@ -5,6 +5,7 @@ declared unit and range, a schedule where the declaration allows one, a friction
 """
 
 import dataclasses
+import functools
 import re
 import types
 import typing
@@ -102,9 +103,16 @@ def read_field(document: Document, sheet: type[DataSheet], name: str, value: Any
     raise TypeError(f"{sheet.__name__}.{name}: a file cannot hold a {declared}")
 
 
+@functools.cache
+def _hints(sheet: Any) -> dict[str, Any]:
+    """Kept: reading them evaluates text, and every slider's move asks."""
+    return typing.get_type_hints(sheet, include_extras=True)
+
+
 def field_type(sheet: type[DataSheet], name: str) -> Any:
     """The type a field is annotated with, without a None that stands beside it."""
-    declared = typing.get_type_hints(sheet, include_extras=True)[name]
+    kind: Any = sheet  # hashed as a class, by identity; its instances by value
+    declared = _hints(kind)[name]
     if isinstance(declared, types.UnionType):
         parts = [part for part in typing.get_args(declared) if part is not types.NoneType]
         return parts[0] if len(parts) == 1 else Any

@@ -105,6 +105,8 @@ def track(design: Any, parameter: str, values: Any, *, time: float = 0.0) -> Ite
     family = Family(design, [parameter], time)
     steady = family.at(array)
     modes = modes_of(steady)
+    # Of all neighbours at once: most steps are clear, and no more is asked of them.
+    neighbours = _likeness(_Place.of(array, steady, modes, slice(-1)), _Place.of(array, steady, modes, slice(1, None)))
     last: _Place | None = None
     for i, value in enumerate(array):
         here = _Place.of(float(value), steady, modes, i)
@@ -115,7 +117,10 @@ def track(design: Any, parameter: str, values: Any, *, time: float = 0.0) -> Ite
             last = here
             yield here.point(np.ones(here.eigenvalues.size), True)
             continue
-        last, criterion, clear = _followed(family, last, here, HALVINGS)
+        known = None
+        if modes.exists[i - 1]:
+            known = (neighbours[0][i - 1][last.order], neighbours[1][i - 1][last.order])
+        last, criterion, clear = _followed(family, last, here, HALVINGS, known)
         yield last.point(criterion, clear)
 
 
@@ -131,31 +136,36 @@ def tracked_modes(design: Any, parameter: str, values: Any, *, time: float = 0.0
 
 @dataclass(frozen=True)
 class _Place:
-    """Matrices and ordered modes at one value."""
+    """Matrices and ordered modes at one value, or at each of several (a slice); `order` is that of the tracks."""
 
-    value: float
+    value: Any
     mass: Any
     damping: Any
     eigenvalues: Any
     right: Any
     left: Any
+    order: Any
 
     @staticmethod
-    def of(value: float, steady: Steady, modes: ComplexModes, i: int) -> "_Place":
-        return _Place(value, steady.M[i], steady.C[i], modes.eigenvalues[i], modes.right[i], modes.left[i])
+    def of(value: Any, steady: Steady, modes: ComplexModes, i: int | slice) -> "_Place":
+        order = np.arange(modes.eigenvalues.shape[-1])
+        return _Place(value, steady.M[i], steady.C[i], modes.eigenvalues[i], modes.right[i], modes.left[i], order)
 
     def ordered(self, order: Any) -> "_Place":
         return _Place(
-            self.value, self.mass, self.damping, self.eigenvalues[order], self.right[:, order], self.left[:, order]
-        )
+            self.value, self.mass, self.damping, self.eigenvalues[order], self.right[:, order], self.left[:, order],
+            self.order[order],
+        )  # fmt: skip
 
     def point(self, criterion: Any, clear: bool) -> TrackedPoint:
         return TrackedPoint(self.value, self.eigenvalues, self.right, self.left, criterion, clear)
 
 
-def _followed(family: Family, last: _Place, here: _Place, halvings: int) -> tuple[_Place, Any, bool]:
+def _followed(
+    family: Family, last: _Place, here: _Place, halvings: int, known: tuple[Any, Any] | None = None
+) -> tuple[_Place, Any, bool]:
     """`here` in the order of `last`, with the criterion of each pairing; unclear steps are halved."""
-    order, criterion = _paired(last, here)
+    order, criterion = _paired(*(_likeness(last, here) if known is None else known))
     if np.min(criterion) >= CLEAR or halvings == 0 or last.value == here.value:
         return here.ordered(order), criterion, bool(np.min(criterion) >= CLEAR)
     middle = 0.5 * (last.value + here.value)
@@ -168,28 +178,30 @@ def _followed(family: Family, last: _Place, here: _Place, halvings: int) -> tupl
     return after, np.minimum(first, second), clear and clear_too
 
 
-def _paired(last: _Place, here: _Place) -> tuple[Any, Any]:
-    """Order of `here` that continues `last`, by the criterion, with the distance of eigenvalues to break ties."""
+def _likeness(last: _Place, here: _Place) -> tuple[Any, Any]:
+    """Criterion of each mode of `last` with each of `here`, and the distance of their eigenvalues over the largest."""
+    with np.errstate(all="ignore"):
+        product = np.abs(_products(last, here) * np.swapaxes(_products(here, last), -1, -2))
+        gaps = np.abs(last.eigenvalues[..., :, None] - here.eigenvalues[..., None, :])
+        largest = np.max(np.abs(last.eigenvalues), axis=-1)[..., None, None]
+        return np.where(np.isfinite(product), np.minimum(product, 1.0), 0.0), gaps / np.maximum(largest, 1e-300)
+
+
+def _paired(criterion: Any, gaps: Any) -> tuple[Any, Any]:
+    """Order that continues the last one, by the criterion, with the distance of eigenvalues to break ties."""
     from scipy.optimize import linear_sum_assignment
 
-    forward = _products(last, here)
-    backward = _products(here, last).T
-    with np.errstate(all="ignore"):
-        criterion = np.clip(np.nan_to_num(np.abs(forward * backward)), 0.0, 1.0)
-    gaps = np.abs(last.eigenvalues[:, None] - here.eigenvalues[None, :])
-    scale = max(float(np.max(np.abs(last.eigenvalues))), 1e-300)
-    _, order = linear_sum_assignment(1.0 - criterion + gaps / scale)
-    chosen = criterion[np.arange(len(order)), order]
-    _, nearest = linear_sum_assignment(gaps)
-    if np.min(chosen) < CLEAR and not np.array_equal(order, nearest):
-        by_gap = gaps[np.arange(len(order)), nearest]
-        if np.max(by_gap) < 0.1 * np.max(gaps[np.arange(len(order)), order]):
-            order, chosen = nearest, criterion[np.arange(len(nearest)), nearest]
+    rows, order = linear_sum_assignment(1.0 - criterion + gaps)
+    chosen = criterion[rows, order]
+    if np.min(chosen) < CLEAR:
+        _, nearest = linear_sum_assignment(gaps)
+        if np.max(gaps[rows, nearest]) < 0.1 * np.max(gaps[rows, order]):
+            return nearest, criterion[rows, nearest]
     return order, chosen
 
 
 def _products(a: _Place, b: _Place) -> Any:
     """w_i^H (lambda_i M + C + lambda_j M) u_j with w, lambda_i of a and u, lambda_j of b."""
-    left, right = np.conj(a.left).T, b.right
+    left, right = np.conj(np.swapaxes(a.left, -1, -2)), b.right
     mass, damping = left @ a.mass @ right, left @ a.damping @ right
-    return (a.eigenvalues[:, None] + b.eigenvalues[None, :]) * mass + damping
+    return (a.eigenvalues[..., :, None] + b.eigenvalues[..., None, :]) * mass + damping
