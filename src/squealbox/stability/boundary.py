@@ -199,6 +199,7 @@ class _Rectangle:
             gradient = self.gradient(best)
         with np.errstate(all="ignore"):
             normal = gradient / np.linalg.norm(gradient, axis=-1)[:, None]
+        normal = np.where(np.isfinite(normal), normal, 0.0)  # flat or unknown there: no way to go
         for reach in (1e-12, 1e-9, 1e-6):
             ends = [np.clip(best + side * reach * normal, 0.0, 1.0) for side in (-1.0, 1.0)]
             crossing = (self.level(ends[0]) <= 0.0) & (self.level(ends[1]) > 0.0)

@@ -11,16 +11,32 @@ from squealbox.system import Equilibrium, Linearised, System, as_system, lineari
 
 @dataclass(frozen=True)
 class Steady(Linearised):
-    """The linearised matrices and, beside C_eff, the damping C of the structure alone, all (..., n, n)."""
+    """The linearised matrices with two of the structure without friction, all (..., n, n).
+
+    structural is its damping C; elastic the symmetric part of its K, without the contacts that are open.
+    """
 
     structural: Any
+    elastic: Any
 
 
 def steady_sliding(design_or_system: Any, time: float = 0.0) -> Steady:
     """M, C_eff, K_eff and the structure's own C about steady sliding at `time` [s]."""
     system: System = as_system(design_or_system)
     about = linearise(system, time)
-    return Steady(about.M, about.C, about.K, about.equilibrium, np.broadcast_to(system.C, about.C.shape))
+    structural = np.broadcast_to(system.C, about.C.shape)
+    return Steady(about.M, about.C, about.K, about.equilibrium, structural, _elastic(system, about))
+
+
+def _elastic(system: System, about: Linearised) -> Any:
+    """K_eff with the coupling mu sgn(V) d n' of each closed contact taken out, made symmetric."""
+    state, stiffness = about.equilibrium, np.array(about.K)
+    for i, contact in enumerate(system.contacts):
+        normal, speed, mu = (a[..., i] for a in (state.normal_force, state.sliding_speed, state.friction))
+        closed = (normal > 0.0) if contact.unilateral else True
+        force = np.where(closed, mu * np.sign(speed), 0.0)[..., None] * contact.d
+        stiffness = stiffness + force[..., None] * np.asarray(contact.n)[..., None, :]
+    return 0.5 * (stiffness + np.swapaxes(stiffness, -1, -2))
 
 
 class Family:
@@ -70,7 +86,7 @@ def entry(steady: Steady, index: Any) -> Steady:
 
 
 _STATE = {"q": 1, "normal_force": 1, "sliding_speed": 1, "friction": 1, "exists": 0}
-_MATRICES = {"M": 2, "C": 2, "K": 2, "structural": 2}
+_MATRICES = {"M": 2, "C": 2, "K": 2, "structural": 2, "elastic": 2}
 
 
 def _tail(array: Any, rank: int) -> tuple[int, ...]:

@@ -1,19 +1,22 @@
 """Why steady sliding is lost: how much of the growth rate the circulatory and the damping part of friction each bring.
 
-Split the linearised system into a passive base and the two parts that can feed a vibration,
+Split the linearised system into the structure without friction and the two parts that can feed a vibration,
 
-    K_eff = K_sym + K_skew         K_skew: circulatory, lets two modes merge: flutter
-    C_eff = C_plus + C_rest        C_rest: friction that changes with speed, and negative dampers: negative slope
+    K_eff = K_0 + K_friction       K_friction = -mu sgn(V) d n', and the skew part of K: lets two modes merge: flutter
+    C_eff = C_0 + C_rest           C_rest: friction that changes with speed, and negative dampers: negative slope
 
-with K_sym the symmetric part and C_plus the positive semidefinite part of the structure's own damping. Growth is not a
-sum over parts, because each changes the modes on which the other acts. So both are switched on together,
-K_sym + s K_skew and C_plus + s C_rest for s = 0 ... 1, and each step of the growth rate is credited to the two parts by
-the mean over the two orders of taking it. That gives
+with K_0 the symmetric part of the structure's own stiffness and C_0 its own damping less negative dampers; gyroscopic
+terms, which do no work, stay in C_0. K_friction is switched on whole: its symmetric part alone can make a stiffness
+indefinite that the skew part holds, and then K_0 plus that part would be no passive base. Growth is not a sum over
+parts, because each changes the modes on which the other acts. So both are switched on together, K_0 + s K_friction and
+C_0 + s C_rest for s = 0 ... 1, and each step of the growth rate is credited to the two parts by the mean over the two
+orders of taking it. That gives
 
     growth rate = base + circulation + slope
 
 exactly, without order or label (the Aumann-Shapley value of cost sharing). An unstable state is called by the share of
-what feeds it: flutter or negative slope from 60 % on, mixed between, divergence where the growing eigenvalue is real.
+what feeds it: flutter or negative slope from 60 % on, mixed between or where no part alone feeds it, divergence only
+where the growing eigenvalue is real. Friction that does not change with speed leaves C_rest = 0: never negative slope.
 """
 
 from dataclasses import dataclass
@@ -30,6 +33,7 @@ NAMES = ("stable", "flutter", "negative_slope", "divergence", "mixed")
 STABLE, FLUTTER, NEGATIVE_SLOPE, DIVERGENCE, MIXED, UNKNOWN = 0, 1, 2, 3, 4, -1
 DOMINANT = 0.6  # share from which one part gives the name: three to two
 STATIC = 1e-9  # |Im lambda| below this share of the largest |lambda| is no oscillation
+ROUND_OFF = 1e-13  # negative eigenvalues of C below this share of the largest are no negative damper
 STEPS = 8  # of s; shares change by about 1 % from 8 to 256
 
 
@@ -53,7 +57,7 @@ class Mechanism:
         return 1.0 - self.flutter_share
 
     def __str__(self) -> str:
-        if self.name in ("stable", "divergence", "unknown"):
+        if self.name in ("stable", "divergence", "unknown") or not np.isfinite(self.flutter_share):
             return self.name
         shares = f"{self.flutter_share:.0%} circulation, {self.negative_slope_share:.0%} negative slope"
         return f"{self.name.replace('_', ' ')} ({shares})"
@@ -70,13 +74,12 @@ def contributions(
     steady: Steady, *, rank: int = 0, steps: int = STEPS, engine: Engine = "auto"
 ) -> tuple[Any, Any, Any]:
     """Base, circulation and slope [1/s], (...) each: the terms of the `rank`-th largest growth rate."""
-    symmetric = 0.5 * (steady.K + np.swapaxes(steady.K, -1, -2))
-    skew = steady.K - symmetric
-    passive = positive_part(0.5 * (steady.structural + np.swapaxes(steady.structural, -1, -2)))
+    base_stiffness, coupling = steady.elastic, steady.K - steady.elastic
+    passive = steady.structural - negative_part(0.5 * (steady.structural + np.swapaxes(steady.structural, -1, -2)))
     rest = steady.C - passive
 
     def plain(x: float, y: float) -> Any:
-        part = Linearised(steady.M, passive + y * rest, symmetric + x * skew, steady.equilibrium)
+        part = Linearised(steady.M, passive + y * rest, base_stiffness + x * coupling, steady.equilibrium)
         return ranked_growth(part, rank, engine)
 
     fast = rank == 0 and steady.K.shape[-1] == 2 and compiled(steady, engine)
@@ -106,7 +109,7 @@ def mechanism_codes(growth: Any, angular_frequency: Any, circulation: Any, slope
     conditions = [
         ~np.isfinite(growth),
         growth <= MARGINAL * scale,
-        (angular_frequency <= STATIC * scale) | np.isnan(flutter),
+        angular_frequency <= STATIC * scale,
         flutter >= DOMINANT,
         flutter <= 1.0 - DOMINANT,
     ]
@@ -140,10 +143,11 @@ def mechanism(design_or_system: Any, time: float = 0.0) -> Mechanism:
     return found if growth > MARGINAL * scale else Mechanism("stable", found.base, found.circulation, found.slope)
 
 
-def positive_part(symmetric: Any) -> Any:
-    """The positive semidefinite part of symmetric matrices (..., n, n)."""
+def negative_part(symmetric: Any) -> Any:
+    """The negative semidefinite part of symmetric matrices (..., n, n); exactly zero where round-off alone is left."""
     diagonal = np.diagonal(symmetric, axis1=-2, axis2=-1)
     if np.all(symmetric == diagonal[..., None] * np.eye(symmetric.shape[-1])):
-        return np.maximum(symmetric, 0.0)
+        return np.minimum(symmetric, 0.0)
     values, vectors = np.linalg.eigh(symmetric)
-    return (vectors * np.maximum(values, 0.0)[..., None, :]) @ np.swapaxes(vectors, -1, -2)
+    values = np.where(values < -ROUND_OFF * np.max(np.abs(values), axis=-1, keepdims=True), values, 0.0)
+    return (vectors * values[..., None, :]) @ np.swapaxes(vectors, -1, -2)
