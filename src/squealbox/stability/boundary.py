@@ -19,6 +19,7 @@ from squealbox.stability.cells import Crossing, Samples, crossings
 from squealbox.stability.eigenvalues import spectrum
 from squealbox.stability.family import Family, Steady
 from squealbox.stability.scan import coalescence, is_neutral, on_divergence
+from squealbox.stability.sides import lying_on_a_side
 
 STEPS = tuple(  # ever shorter towards a corner
     StepControl(first=longest / 10.0, smallest=2e-6, largest=longest, tolerance=1e-8, largest_turn=0.2, most_points=60)
@@ -89,6 +90,7 @@ def stability_boundary(
     """
     rectangle = _Rectangle(design, bounds, time)
     edges = crossings(rectangle.sample, cells)
+    along, edges = lying_on_a_side(edges, rectangle.level)
     curves: list[Any] = []
     tangents: list[Any] = []
     for start, gradient in rectangle.starts(edges):
@@ -96,7 +98,7 @@ def stability_boundary(
             points, directions = _traced(rectangle, start, gradient)
             curves.append(points)
             tangents.append(directions)
-    return rectangle.result(curves, {"cells": cells})
+    return rectangle.result(curves + along, {"cells": cells})
 
 
 class _Rectangle:

@@ -190,8 +190,8 @@ def growth_and_frequency(m: Any, c: Any, k: Any, stride: int, growth: Any, omega
 
 
 @njit(forceinline=True, error_model="numpy", fastmath=FAST)
-def polynomial_of_part(m: Any, p: Any, c: Any, k: Any, j: int, i: int, x: float, y: float) -> Any:
-    """`polynomial` with K = K_sym + x K_skew and C = P + y (C - P)."""
+def polynomial_of_part(m: Any, p: Any, c: Any, e: Any, k: Any, j: int, i: int, x: float, y: float) -> Any:
+    """`polynomial` with K = E + x (K - E) and C = P + y (C - P)."""
     mass = (m[j], m[j + 1], m[j + 2], m[j + 3])
     damping = (
         p[i] + y * (c[i] - p[i]),
@@ -199,20 +199,25 @@ def polynomial_of_part(m: Any, p: Any, c: Any, k: Any, j: int, i: int, x: float,
         p[i + 2] + y * (c[i + 2] - p[i + 2]),
         p[i + 3] + y * (c[i + 3] - p[i + 3]),
     )
-    mean, skew = 0.5 * (k[i + 1] + k[i + 2]), 0.5 * (k[i + 1] - k[i + 2])
-    return polynomial(mass, damping, (k[i], mean + x * skew, mean - x * skew, k[i + 3]), 0, 0)
+    stiffness = (
+        e[i] + x * (k[i] - e[i]),
+        e[i + 1] + x * (k[i + 1] - e[i + 1]),
+        e[i + 2] + x * (k[i + 2] - e[i + 2]),
+        e[i + 3] + x * (k[i + 3] - e[i + 3]),
+    )
+    return polynomial(mass, damping, stiffness, 0, 0)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def growth_of_parts(m: Any, p: Any, c: Any, k: Any, stride: int, x: float, y: float, growth: Any) -> None:
-    """Largest real part of each system with K = K_sym + x K_skew and C = P + y (C - P)."""
+def growth_of_parts(m: Any, p: Any, c: Any, e: Any, k: Any, stride: int, x: float, y: float, growth: Any) -> None:
+    """Largest real part of each system with K = E + x (K - E) and C = P + y (C - P)."""
     a = np.empty((5, BLOCK))
     out = np.empty((3, BLOCK))
     number = len(growth)
     for start in range(0, number, BLOCK):
         for b in range(BLOCK):
             i = min(start + b, number - 1)
-            a[0, b], a[1, b], a[2, b], a[3, b], a[4, b] = polynomial_of_part(m, p, c, k, stride * i, 4 * i, x, y)
+            a[0, b], a[1, b], a[2, b], a[3, b], a[4, b] = polynomial_of_part(m, p, c, e, k, stride * i, 4 * i, x, y)
         solve_block(a, out)
         for b in range(min(BLOCK, number - start)):
             growth[start + b] = out[0, b]

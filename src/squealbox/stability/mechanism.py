@@ -2,13 +2,14 @@
 
 Split the linearised system into the structure without friction and the two parts that can feed a vibration,
 
-    K_eff = K_0 + K_friction       K_friction = -mu sgn(V) d n', and the skew part of K: lets two modes merge: flutter
+    K_eff = K_0 + K_feed           K_feed: circulatory, lets two modes merge: flutter
     C_eff = C_0 + C_rest           C_rest: friction that changes with speed, and negative dampers: negative slope
 
-with K_0 the symmetric part of the structure's own stiffness and C_0 its own damping less negative dampers; gyroscopic
-terms, which do no work, stay in C_0. K_friction is switched on whole: its symmetric part alone can make a stiffness
-indefinite that the skew part holds, and then K_0 plus that part would be no passive base. Growth is not a sum over
-parts, because each changes the modes on which the other acts. So both are switched on together, K_0 + s K_friction and
+with K_0 the symmetric part of K_eff, so that K_feed is its skew part, and C_0 the structure's own damping less negative
+dampers; gyroscopic terms, which do no work, stay in C_0. Where friction makes the symmetric part of K_eff indefinite,
+it would diverge without the skew part that holds it and is no passive base; K_0 is then the symmetric part of the
+structure's own K, and friction's stiffness -mu sgn(V) d n' is switched on whole. Growth is not a sum over
+parts, because each changes the modes on which the other acts. So both are switched on together, K_0 + s K_feed and
 C_0 + s C_rest for s = 0 ... 1, and each step of the growth rate is credited to the two parts by the mean over the two
 orders of taking it. That gives
 
@@ -74,7 +75,8 @@ def contributions(
     steady: Steady, *, rank: int = 0, steps: int = STEPS, engine: Engine = "auto"
 ) -> tuple[Any, Any, Any]:
     """Base, circulation and slope [1/s], (...) each: the terms of the `rank`-th largest growth rate."""
-    base_stiffness, coupling = steady.elastic, steady.K - steady.elastic
+    base_stiffness = passive_stiffness(steady)
+    coupling = steady.K - base_stiffness
     passive = steady.structural - negative_part(0.5 * (steady.structural + np.swapaxes(steady.structural, -1, -2)))
     rest = steady.C - passive
 
@@ -83,7 +85,7 @@ def contributions(
         return ranked_growth(part, rank, engine)
 
     fast = rank == 0 and steady.K.shape[-1] == 2 and compiled(steady, engine)
-    growth = growth_of_parts(steady, passive) if fast else plain
+    growth = growth_of_parts(steady, passive, base_stiffness) if fast else plain
     base = before = growth(0.0, 0.0)
     circulation, slope = np.zeros(base.shape), np.zeros(base.shape)
     for i in range(steps):
@@ -141,6 +143,19 @@ def mechanism(design_or_system: Any, time: float = 0.0) -> Mechanism:
     found = mechanism_at(steady, omega)
     scale = float(np.max(np.abs(spectrum(steady))))
     return found if growth > MARGINAL * scale else Mechanism("stable", found.base, found.circulation, found.slope)
+
+
+def passive_stiffness(steady: Steady) -> Any:
+    """K_0 of the module's head, (..., n, n): the symmetric part of K_eff where positive definite, else of K alone."""
+    symmetric = 0.5 * (steady.K + np.swapaxes(steady.K, -1, -2))
+    if steady.K.shape[-1] == 2:
+        a, b, d = symmetric[..., 0, 0], symmetric[..., 0, 1], symmetric[..., 1, 1]
+        definite = (a > 0.0) & (a * d > b * b)
+    else:
+        known = np.all(np.isfinite(symmetric), axis=(-2, -1))
+        least = np.linalg.eigvalsh(np.where(known[..., None, None], symmetric, 0.0))[..., 0]
+        definite = known & (least > 0.0)
+    return np.where(definite[..., None, None], symmetric, steady.elastic)
 
 
 def negative_part(symmetric: Any) -> Any:

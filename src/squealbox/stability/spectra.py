@@ -117,19 +117,21 @@ def compiled(about: Linearised, engine: Engine) -> bool:
     return engine == "compiled" or (engine == "auto" and about.K.size >= WORTH_IT * about.K.shape[-1] ** 2)
 
 
-def growth_of_parts(about: Linearised, passive: Any) -> Callable[[float, float], Any]:
-    """The largest growth rate of K_sym + x K_skew and P + y (C - P), P = `passive`, as a compiled function of x and y.
+def growth_of_parts(about: Linearised, passive: Any, elastic: Any) -> Callable[[float, float], Any]:
+    """The largest growth rate of E + x (K - E) and P + y (C - P), as a compiled function of x and y.
 
-    For two degrees of freedom; the matrices are read once, whatever the number of calls.
+    P is `passive`, E `elastic`. For two degrees of freedom; the matrices are read once, whatever the number of calls.
     """
     from squealbox.stability import kernels_two_dof as kernels
 
     mass, damping, stiffness, shape, _ = _flat(about)
-    flat = np.require(np.broadcast_to(passive, about.C.shape), float, ["C", "W"]).reshape(-1)
+    base, springs = (
+        np.require(np.broadcast_to(part, about.C.shape), float, ["C", "W"]).reshape(-1) for part in (passive, elastic)
+    )
 
     def growth(x: float, y: float) -> Any:
         out = np.empty(damping.size // 4)
-        kernels.growth_of_parts(mass, flat, damping, stiffness, 0 if mass.size == 4 else 4, x, y, out)
+        kernels.growth_of_parts(mass, base, damping, springs, stiffness, 0 if mass.size == 4 else 4, x, y, out)
         return out.reshape(shape)
 
     return growth
