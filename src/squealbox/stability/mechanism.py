@@ -1,6 +1,6 @@
 """Why steady sliding is lost: how much of the growth rate the circulatory and the damping part of friction each bring.
 
-Split the linearised system into the structure without friction and the two parts that can feed a vibration,
+Split the linearised system into a passive base and the two parts that can feed a vibration,
 
     K_eff = K_0 + K_feed           K_feed: circulatory, lets two modes merge: flutter
     C_eff = C_0 + C_rest           C_rest: friction that changes with speed, and negative dampers: negative slope
