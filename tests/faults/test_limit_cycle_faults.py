@@ -6,6 +6,7 @@ import pytest
 from small_systems import block_on_belt, drum
 from squealbox import Coulomb, ParameterError, Ramp, Stribeck, System, branch, harmonic_balance, hopf_point, shooting
 from squealbox.limit_cycles import basin
+from squealbox.limit_cycles.attractors.attractor import MOST_SEARCHES
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.shots import Newton
 from squealbox.system import InvalidSystem
@@ -101,6 +102,15 @@ def test_basin_of_a_belt_at_rest_has_no_sliding():
     found = basin(HOSTILE["no speed"], 1.0, 16)
     assert found.outcome == "no_sliding"
     assert len(found.attractor) == 0
+
+
+def test_a_continuum_of_motions_is_searched_a_dozen_times_only():
+    """Without damping, slip slower than the belt keeps its size: of 64 starts nearly each is a motion of its own."""
+    found = basin(block_on_belt(Coulomb(0.25), 0.1), 0.9, 64)
+    searched = [each for each in found.attractors if each.cycle is not None]
+    assert len(found.attractors) > 20
+    assert len(searched) == MOST_SEARCHES
+    assert np.all(found.attractor >= 0)  # the others keep their names and starts
 
 
 def test_a_motion_too_stiff_to_follow_ends_in_a_named_outcome():

@@ -20,6 +20,7 @@ SLIDING, REST, CYCLE, VIBRATION, IRREGULAR = "steady sliding", "rest elsewhere",
 UNSTABLE = "unstable cycle"
 SAME_SIGNATURE, SAME_IRREGULAR = 0.01, 0.2
 SAME_CYCLE = 1e-6  # in period and extremes: cycles found twice
+MOST_SEARCHES = 12  # without damping every start is a motion of its own: the groups with most members are searched
 NOT_SETTLED, NO_END = -1, -2
 
 
@@ -28,8 +29,8 @@ class Attractor:
     """What motions settle to.
 
     kind : "steady sliding", "rest elsewhere", "cycle" (confirmed by shooting), "vibration" (repeats itself; not
-        confirmed), "unstable cycle" (a motion that lingers beside one) or "irregular" (does not repeat itself:
-        quasi-periodic, chaotic or very slow)
+        confirmed, or not of the dozen with most starts that are searched for), "unstable cycle" (a motion that lingers
+        beside one) or "irregular" (does not repeat itself: quasi-periodic, chaotic or very slow)
     low, high : extremes of each degree of freedom [m], of the motion that came closest to it
     maxima : its last eight maxima [m], shape (n, 8), newest first
     frequency : of the maxima [Hz]
@@ -126,7 +127,13 @@ def _confirmed(
     if not refine:
         return groups
     found: list[tuple[Attractor, Any]] = []
+    least = sorted((len(members) for _, members in groups), reverse=True)[MOST_SEARCHES - 1 : MOST_SEARCHES] or [0]
+    searches = 0
     for attractor, members in groups:
+        if len(members) < least[0] or searches == MOST_SEARCHES:
+            found.append((attractor, members))
+            continue
+        searches += 1
         cycle = next((one.cycle for one in known if one.cycle and _alike(one.cycle, attractor, SAME_SIGNATURE)), None)
         cycle = cycle or shooting(system, attractor.start, settle=0.0)
         if not (cycle.outcome.ok and _alike(cycle, attractor, SAME_SIGNATURE)):
