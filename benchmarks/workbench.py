@@ -101,12 +101,13 @@ def page(folder: Path) -> None:
 
 
 def figures(folder: Path) -> None:
-    """From a slider's move to a painted figure."""
+    """From a slider's move to a painted figure, once all that a page shows at first has been drawn."""
     server, address, _ = started(folder)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
         opened = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
         opened.goto(address)
+        opened.wait_for_selector("section[data-panel=map][data-state=drawn]", timeout=120_000)
         for name, path, low, high, count, asked in (
             ("locus", "k3", 120.0, 260.0, 60, "80 / 150 ms"),
             ("map", "k3", 120.0, 260.0, 20, "300 ms"),

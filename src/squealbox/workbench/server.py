@@ -2,6 +2,7 @@
 
 import asyncio
 import importlib.util
+import sys
 import threading
 from collections.abc import AsyncIterator
 from concurrent.futures import ThreadPoolExecutor
@@ -26,6 +27,7 @@ STATIC = Path(__file__).parent / "static"
 HOSTS = ["127.0.0.1", "localhost"]
 LARGEST_MESSAGE = 2_000_000  # bytes; a longer one closes the connection
 LEADING = "locus"  # the figure a page shows first
+SWITCH = 5e-4  # s after which a computing thread lets another in: messages pass four threads on their way
 PATIENCE = 10.0  # s after which the rest is loaded, page or no page
 NO_TOKEN = """<!doctype html><html lang="en"><meta charset="utf-8"><title>squealbox</title>
 <h1>This address needs its token</h1>
@@ -37,6 +39,7 @@ class Workbench:
 
     def __init__(self, token: Token, text: str = "", design: Any = None) -> None:
         self.token, self.text, self.design = token, text, design
+        sys.setswitchinterval(SWITCH)
         self.pools = {"quick": ThreadPoolExecutor(2, "quick"), "warming": ThreadPoolExecutor(1, "warming")}
         self.processes = Processes()
         self.first = threading.Event()  # a page has its first figure

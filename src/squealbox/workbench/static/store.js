@@ -112,8 +112,13 @@ export class Store extends EventTarget {
     }
   }
 
+  /** At once while the leading view is free; else when it has answered, looked at once a frame. */
   #later() {
     if (this.frame) return;
+    if (!this.busy()) {
+      this.#flush();
+      return;
+    }
     this.frame = requestAnimationFrame(() => {
       this.frame = 0;
       if (!this.gathered) return;
