@@ -62,18 +62,22 @@ class Drum:
         h[np.ix_(rest, rest)] = np.linalg.inv(self.g[np.ix_(rest, rest)])
         return h
 
-    def needed(self, y, s):
-        """Friction forces that keep the sticking contacts from sliding, and all normal forces."""
+    def sliding(self, y, s):
+        """Accelerations by all but the sticking contacts' friction, and all normal forces."""
         speed, normal = self.V - self.t @ y[2:], self.N0 + self.n @ y[:2]
         slip = s * (self.static + self.slope * s * speed) * normal
-        rates = self.f - self.k @ y[:2] - self.c @ y[2:] + self.p.T @ slip
-        return -self.hold_by(s) @ (self.t @ rates), normal
+        return self.f - self.k @ y[:2] - self.c @ y[2:] + self.p.T @ slip, normal
+
+    def needed(self, y, s, hold_by):
+        """Friction forces that keep the sticking contacts from sliding, and all normal forces."""
+        rates, normal = self.sliding(y, s)
+        return -hold_by @ (self.t @ rates), normal
 
     def after_stop(self, y, s, c):
         """Modes after contact c came to rest: it sticks if friction holds it, else it slides to where it is pulled."""
         s = s.copy()
         s[c] = 0.0
-        hold, normal = self.needed(y, s)
+        hold, normal = self.needed(y, s, self.hold_by(s))
         if abs(hold[c]) > self.static * normal[c]:
             s[c] = np.sign(hold[c])
         return s

@@ -161,11 +161,8 @@ class CyRKEvents:
 
     def rates(self, t, y):
         """y' in the present modes."""
-        d, s = self.drum, self.s
-        speed, normal = d.V - d.t @ y[2:], d.N0 + d.n @ y[:2]
-        slip = s * (d.static + d.slope * s * speed) * normal
-        free = d.f - d.k @ y[:2] - d.c @ y[2:] + d.p.T @ slip
-        return np.concatenate([y[2:], free - d.p.T @ (self.hold @ (d.t @ free))])
+        rates, _ = self.drum.sliding(y, self.s)
+        return np.concatenate([y[2:], rates - self.drum.p.T @ (self.hold @ (self.drum.t @ rates))])
 
     def event(self, c, kind):
         """As in `jax_events`."""
@@ -175,7 +172,7 @@ class CyRKEvents:
                 return 1.0
             if kind == 0:
                 return self.s[c] * (self.drum.V[c] - self.drum.t[c] @ y[2:]) + AWAY
-            hold, normal = self.drum.needed(y, self.s)
+            hold, normal = self.drum.needed(y, self.s, self.hold)
             return self.drum.static * normal[c] + (hold[c] if kind == 2 else -hold[c])
 
         value.terminal, value.direction = True, -1
