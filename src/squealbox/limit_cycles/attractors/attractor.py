@@ -127,13 +127,11 @@ def _confirmed(
     if not refine:
         return groups
     found: list[tuple[Attractor, Any]] = []
-    least = sorted((len(members) for _, members in groups), reverse=True)[MOST_SEARCHES - 1 : MOST_SEARCHES] or [0]
-    searches = 0
-    for attractor, members in groups:
-        if len(members) < least[0] or searches == MOST_SEARCHES:
+    searched = sorted(range(len(groups)), key=lambda i: -len(groups[i][1]))[:MOST_SEARCHES]
+    for i, (attractor, members) in enumerate(groups):
+        if i not in searched:
             found.append((attractor, members))
             continue
-        searches += 1
         cycle = next((one.cycle for one in known if one.cycle and _alike(one.cycle, attractor, SAME_SIGNATURE)), None)
         cycle = cycle or shooting(system, attractor.start, settle=0.0)
         if not (cycle.outcome.ok and _alike(cycle, attractor, SAME_SIGNATURE)):
