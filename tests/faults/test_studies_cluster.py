@@ -6,6 +6,7 @@ import socket
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import psutil
@@ -108,6 +109,30 @@ def test_errors_come_back_as_they_are(address):
     assert table.outcomes.tolist() == ["failed"] * 2 + ["completed"] * 4
     with pytest.raises(StudyError, match="returns a dict for a"):
         sweep(DrumBrake(), {"load": np.arange(4.0)}, lambda design: {"a": {}}, scheduler=address)
+
+
+def test_patience_counts_from_the_first_look_without_a_worker(monkeypatch):
+    from squealbox.studies import cluster
+
+    clock, threads = [0.0], [1]
+    monkeypatch.setattr(cluster.time, "monotonic", lambda: clock[0])
+    monkeypatch.setattr(cluster, "packed", lambda task: b"")
+    client = SimpleNamespace(status="running", nthreads=lambda: {"worker": threads[0]})
+    watched = cluster._Cluster(SimpleNamespace(task=None, slots=0), client, "somewhere", None)
+
+    def look(now, workers):
+        clock[0], threads[0] = now, workers
+        watched._look()
+
+    look(1.0, 2)
+    assert watched.work.slots == 2
+    look(100.0, 0)  # nothing was seen for 99 s, but nothing was looked at either
+    look(129.0, 0)
+    look(130.0, 1)
+    look(131.0, 0)  # begins anew
+    look(160.0, 0)
+    with pytest.raises(StudyError, match="no worker for 30 s"):
+        look(161.5, 0)
 
 
 def test_other_versions_on_the_workers_are_refused(address, monkeypatch):

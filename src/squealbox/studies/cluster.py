@@ -47,7 +47,7 @@ class _Cluster:
         self.payload, self.versions = packed(work.task), provenance()
         self.back: queue.Queue[Future] = queue.Queue()
         self.out: dict[Any, tuple[Future, Piece, float]] = {}
-        self.alone = time.monotonic()
+        self.alone: float | None = None  # since when looks at the cluster find no worker
 
     def run(self) -> None:
         self._wait_for_workers()
@@ -86,6 +86,7 @@ class _Cluster:
         except queue.Empty:
             self._look()
             return
+        self.alone = None
         if future.key in self.out:
             _, piece, _ = self.out.pop(future.key)
             self._take(future, piece)
@@ -118,9 +119,10 @@ class _Cluster:
         """Is the cluster still there, and is a piece late?"""
         if self.client.status == "closed":
             raise StudyError(f"scheduler {self.address}: was lost; run the study again when it is back")
-        if self.client.status == "running" and self._threads() > 0:
-            self.alone = time.monotonic()
-            self.work.slots = self._threads()
+        if (threads := self._threads()) > 0:
+            self.alone, self.work.slots = None, threads
+        elif self.alone is None:
+            self.alone = time.monotonic()  # not earlier: fetching a dead worker's result may have kept us from looking
         elif time.monotonic() - self.alone > PATIENCE:
             raise StudyError(f"scheduler {self.address}: no worker for {PATIENCE:g} s; run the study again")
         if self.limit is not None:
