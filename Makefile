@@ -22,7 +22,7 @@ CREATE  = $(PYTHON) -m venv $(VENV)
 INSTALL = $(BIN)/python -m pip install --quiet --disable-pip-version-check
 endif
 
-.PHONY: help demo test lint floors types tests format docs picture bench clean
+.PHONY: help demo test lint floors types tests format docs picture bench fortran clean
 .DEFAULT_GOAL := help
 
 help:
@@ -58,8 +58,11 @@ picture: $(VENV)/.installed-dev
 	$(BIN)/python docs/images/draw.py
 	$(BIN)/python docs/images/workbench.py
 
-bench: $(VENV)/.installed-bench
+bench: fortran $(VENV)/.installed-bench
 	@for each in benchmarks/*.py; do echo "== $$each"; $(BIN)/python $$each || exit 1; done
+
+fortran:
+	@command -v gfortran >/dev/null || { echo "one of the rivals, numbalsoda, is built here with a Fortran compiler: apt install gfortran"; exit 1; }
 
 # One stamp for each set of extras; pip and uv run again only after pyproject.toml changed.
 $(BIN)/python:
