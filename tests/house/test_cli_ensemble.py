@@ -1,8 +1,11 @@
 """`squealbox ensemble`: transients over two parameters from the command line."""
 
 import csv
+from dataclasses import replace
 
-from squealbox.cli import main
+from squealbox import simulate_ensemble
+from squealbox.cli import ensembles, main
+from squealbox.result import Outcome
 
 
 def test_ensemble_says_what_transients_end_in(capsys, tmp_path):
@@ -32,3 +35,21 @@ def test_ensemble_refuses_one_parameter_twice(capsys, tmp_path):
     out, err = capsys.readouterr()
     assert (code, out) == (2, "")
     assert "expected two different parameters" in err
+
+
+def test_ctrl_c_leaves_the_figure_of_what_is_done(capsys, tmp_path, monkeypatch):
+    def stopped(design, space, duration, **settings):
+        many = simulate_ensemble(design, space, duration, **settings)
+        many.ended[-1] = "not_run"
+        return replace(many, outcome=Outcome("interrupted", "stopped by the user"))
+
+    monkeypatch.setattr(ensembles, "simulate_ensemble", stopped)
+    path = tmp_path / "brake.toml"
+    path.write_text('brake = "drum_brake"\n')
+    plane = ("--x", "friction.static", "0.1", "0.3", "--y", "load", "900", "1100", "--points", "2")
+    code = main(["ensemble", str(path), *plane, "--duration", "2 ms", "--out", str(tmp_path / "out")])
+    out, err = capsys.readouterr()
+    assert (code, "interrupted" in err) == (130, True)
+    assert "2 completed, 2 not_run" in out
+    with open(tmp_path / "out" / "ensemble.csv", newline="") as file:
+        assert [row["ended"] for row in csv.DictReader(file)] == ["completed"] * 2 + ["not_run"] * 2

@@ -28,7 +28,8 @@ def ensemble(
 ) -> None:
     """Transients over two parameters, with exact contact: how large each vibration is in the end, and how fast.
 
-    Where `map` says whether steady sliding is stable, this says what the brake does from rest.
+    Where `map` says whether steady sliding is stable, this says what the brake does from rest. Ctrl-C ends it with the
+    figure and the numbers of what is done.
 
     Parameters
     ----------
@@ -62,12 +63,12 @@ def ensemble(
             found.design, space, seconds, observe=("amplitude", "frequency"), grid=True,
             progress=lambda done, total, spent: progress(_pace(done, total, spent)),
         )  # fmt: skip
-    if many.outcome == "interrupted":
-        raise ComputationFailed(many.outcome)
     plane = Plane(found.design, across, up)
     print(f"{found.design.title}, {file}\n{_summary(many, plane)}")
-    if out is not None:
+    if out is not None and np.any(many.ended != "not_run"):
         print(written(*_files(many, plane, found.path.name, out)))
+    if many.outcome == "interrupted":  # what was done by then is shown and written all the same
+        raise ComputationFailed(many.outcome)
 
 
 def _pace(done: int, total: int, seconds: float) -> str:
