@@ -21,6 +21,8 @@ Processor time, one process, rounds in turn; ratios are rival over ours, median 
 """
 
 import argparse
+import contextlib
+import io
 import signal
 import time
 import warnings
@@ -247,7 +249,7 @@ def attempt(words, task):
     signal.alarm(PATIENCE)
     begin = time.process_time()
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):  # its solver prints each step
             warnings.simplefilter("ignore")  # the rival divides by zero on its way
             ended = task()
     except OutOfTime:
