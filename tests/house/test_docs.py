@@ -6,6 +6,8 @@ import subprocess
 import sys
 
 import pytest
+from docutils.utils.math import MathError
+from docutils.utils.math.latex2mathml import tex2mathml
 
 from house.rooms import PACKAGE, PROJECT
 
@@ -37,6 +39,30 @@ def test_cells_run(path, tmp_path):
 def test_links_lead_somewhere(path):
     targets = re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", path.read_text())
     assert [target for target in targets if not (path.parent / target).exists()] == []
+
+
+def formulas(text: str) -> list[str]:
+    """What stands between dollar signs outside of code."""
+    prose = re.sub(r"^(`{3,}).*?^\1", "", text, flags=re.DOTALL | re.MULTILINE)
+    prose = re.sub(r"`[^`\n]*`", "", prose)
+    return [
+        each
+        for pair in re.findall(r"\$\$(.+?)\$\$|(?<!\\)\$([^$]+)\$", prose, flags=re.DOTALL)
+        for each in pair
+        if each
+    ]
+
+
+@pytest.mark.parametrize("path", [p for p in PAGES if formulas(p.read_text())], ids=lambda path: path.stem)
+def test_formulas_can_be_drawn(path):
+    for formula in formulas(path.read_text()):
+        assert tex2mathml(formula).startswith("<math"), formula
+
+
+def test_a_formula_beyond_the_converter_is_noticed():
+    (formula,) = formulas("Of `$HOME` and $0\\dots n$.")
+    with pytest.raises(MathError):
+        tex2mathml(formula)
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
