@@ -32,14 +32,14 @@ def map_boundary(
     close : share of a cell within which a crossing is located
     engine : as of :func:`stability_map`
 
-    Returns a `Boundary`, with the unstable side on the left of its curves. The outcome is "no_boundary" where all
-    points of the map are alike. Raises `ValueError` for a map over another number of parameters, or without its design.
+    Returns
+    -------
+    Boundary. The unstable side is on the left of its curves. The outcome is "no_boundary" where all points of the map
+    are alike. Raises `ValueError` for a map over another number of parameters, or without its design.
 
-    Accuracy
-    --------
-    A point lies within `close` of a cell's side on the boundary, or as near as the round-off of the growth rate lets
-    it. What is narrower than a cell and touches no node of the grid is not seen; :func:`stability_boundary` looks for
-    it. Two curves that pass the same cell may be joined the other way.
+    Accuracy: a point lies within `close` of a cell's side on the boundary, or as near as the round-off of the growth
+    rate lets it. What is narrower than a cell and touches no node of the grid is not seen; `stability_boundary` looks
+    for it. Two curves that pass the same cell may be joined the other way.
 
     >>> from squealbox import DrumBrake
     >>> from squealbox.stability import stability_map

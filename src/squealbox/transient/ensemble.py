@@ -135,7 +135,7 @@ def simulate_ensemble(
         each array is an axis of its own
     duration : [s]
     method : name of a tableau or a `Method`; "bogacki-shampine", "dormand-prince", "tsitouras" or "dormand-prince-8"
-    observe : names out of `OBSERVERS`, or `Observer`s; no trajectory is stored
+    observe : names out of `OBSERVERS`, or an `Observer` of your own; no trajectory is stored
     contact : "exact", "raw", "smooth" = "arctan", or "tanh", as in `simulate`
     start : "rest", "sliding", or (q, qd) whose arrays end with n and broadcast with the parameters; without parameters
         their leading axes are those of the ensemble

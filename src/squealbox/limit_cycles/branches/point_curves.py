@@ -37,9 +37,11 @@ def point_curve(design: Any, bounds: Bounds, point: BranchPoint, value: float, *
     value : of the second parameter, at which `point` was found
     points : most points in each direction
 
-    Outcome as for :func:`hopf_curve`; "no_start" where `point` does not satisfy the extended system. A sticking point
-    has no smooth test function and is refused with a `ParameterError`. Accuracy: 1e-9 of the ranges, with the
-    harmonics of the branch. Source: as this module.
+    Returns
+    -------
+    PointCurve. Its outcome is as for `hopf_curve`; "no_start" where `point` does not satisfy the extended system. A
+    sticking point has no smooth test function and is refused with a `ParameterError`. Accuracy: 1e-9 of the ranges,
+    with the harmonics of the branch. Source: as this module.
 
     >>> from squealbox import Contact, Stribeck, System
     >>> from squealbox.limit_cycles import branch, hopf_point
