@@ -30,6 +30,7 @@ nb_execution_raise_on_error = True
 nb_execution_timeout = 120
 nb_execution_in_temp = True  # what a cell writes does not stay among the pages
 nb_merge_streams = True
+nb_render_markdown_format = "gfm"  # tables
 nb_mime_priority_overrides = [("html", "image/svg+xml", 0)]
 
 default_role = "code"

@@ -4,6 +4,8 @@ import dataclasses
 import importlib
 import pkgutil
 import re
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -60,6 +62,17 @@ def test_key_numbers_carry_their_units(name):
     frequency = next(value for fact, value in found.items() if "frequency" in fact)
     assert frequency[1] in ("Hz", "kHz")
     assert float(frequency[0]) > 0.0
+
+
+def test_a_notebook_shows_a_figure_without_pyplot():
+    """As a notebook does it, in a process where nothing has prepared IPython for matplotlib's figures."""
+    code = (
+        "import sys; from IPython.core.formatters import DisplayFormatter; from squealbox import BlockChain, plot\n"
+        "data, _ = DisplayFormatter().format(plot(BlockChain()))\n"
+        "sys.stdout.buffer.write(data['image/png'][:8]); assert 'matplotlib.pyplot' not in sys.modules"
+    )
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, timeout=60)
+    assert shown.stdout == b"\x89PNG\r\n\x1a\n"
 
 
 def test_a_failed_result_says_so_and_draws_nothing():

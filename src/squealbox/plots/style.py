@@ -119,11 +119,11 @@ def panels(
 
     Returns the figure and its axes: one, or an array. Hand each to a function of this room as ``axes=``.
     """
-    from matplotlib.figure import Figure
+    from squealbox.plots.figure import Drawing
 
     size = (width or (COLUMN if columns == 1 else WIDTH), height or ROW * rows + 0.3)
     with styled():
-        figure = Figure(figsize=size, layout="constrained")
+        figure = Drawing(figsize=size, layout="constrained")
         axes = figure.subplots(rows, columns, **keywords)
     return figure, axes
 
@@ -216,11 +216,12 @@ def save(
     return written
 
 
-def drawn(figure: "Figure", kind: str = "png", dots: float | None = None) -> bytes:
-    """The figure as the content of a PNG, SVG or PDF file, `dots` an inch."""
+def drawn(figure: "Figure", kind: str = "png", dots: float | None = None, *, trimmed: bool = False) -> bytes:
+    """The figure as the content of a PNG, SVG or PDF file, `dots` an inch, `trimmed` of an empty margin."""
     stream = io.BytesIO()
     with styled(), _laid_out(figure):
-        figure.savefig(stream, format=kind, metadata=NAMELESS.get(kind), dpi=dots)
+        box = "tight" if trimmed else None
+        figure.savefig(stream, format=kind, metadata=NAMELESS.get(kind), dpi=dots, bbox_inches=box)
     return stream.getvalue()
 
 
