@@ -13,7 +13,7 @@ from squealbox.result import COMPLETED, Column, Outcome, Result, batched, quanti
 from squealbox.system import System, as_system
 from squealbox.transient import _march
 from squealbox.transient.lanes.work import HEAD, Progress, Work
-from squealbox.transient.methods import Method
+from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.observers import as_observers
 from squealbox.transient.simulate import MESSAGES, SCHEMES, chosen_method, instants_within
 
@@ -134,7 +134,8 @@ def simulate_ensemble(
     parameters : dotted names, such as "friction.static", with arrays that are broadcast together; with ``grid=True``
         each array is an axis of its own
     duration : [s]
-    method : name of a tableau or a `Method`; "bogacki-shampine", "dormand-prince", "tsitouras" or "dormand-prince-8"
+    method : name of a tableau or a `Method`; "bogacki-shampine", "dormand-prince", "tsitouras", "dormand-prince-8", or
+        "taylor", which takes less than half the time; with exact contact, and laws and schedules without tables
     observe : names out of `OBSERVERS`, or an `Observer` of your own; no trajectory is stored
     contact : "exact", "raw", "smooth" = "arctan", or "tanh", as in `simulate`
     start : "rest", "sliding", or (q, qd) whose arrays end with n and broadcast with the parameters; without parameters
@@ -168,8 +169,13 @@ def simulate_ensemble(
     instants = np.zeros(0)
     if times is not None:
         instants = instants_within("simulate_ensemble", np.atleast_1d(times), start_time, duration)
+    chosen = _method(method, rtol, atol)
+    if chosen.tableau == TAYLOR and contact != "exact":
+        raise ParameterError(
+            "simulate_ensemble", "contact", contact, "exact: a Taylor series does not see a jump of sgn"
+        )
     job = Work(
-        _method(method, rtol, atol), SCHEMES[contact], width, start, duration, start_time, as_observers(observe),
+        chosen, SCHEMES[contact], width, start, duration, start_time, as_observers(observe),
         instants, _threads(threads), progress,
     )  # fmt: skip
     names, arrays, shape = _space(design_or_system, parameters, grid, start)

@@ -9,6 +9,8 @@ import numpy as np
 from squealbox.parameters import ParameterError, known_names
 from squealbox.transient import _dop853
 
+TAYLOR = "taylor"  # the solution's own series, in ensembles
+
 
 @dataclass(frozen=True, eq=False)
 class Tableau:
@@ -63,8 +65,9 @@ class Method:
     most_steps: int = 2_000_000
 
     def __post_init__(self) -> None:
-        if self.tableau not in TABLEAUX:
-            raise ParameterError("Method", "tableau", self.tableau, known_names(str(self.tableau), list(TABLEAUX)))
+        if self.tableau not in (*TABLEAUX, TAYLOR):
+            names = [*TABLEAUX, TAYLOR]
+            raise ParameterError("Method", "tableau", self.tableau, known_names(str(self.tableau), names))
         if not 1e-15 <= self.rtol < 1.0:
             raise ParameterError("Method", "rtol", self.rtol, "a number in [1e-15, 1)")
         for name in ("first_step", "largest_step"):

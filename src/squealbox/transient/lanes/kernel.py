@@ -1,26 +1,39 @@
 """The kernel of an ensemble as a generated file: lane step, service and the scalar march's decisions in one text."""
 
+import hashlib
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid
-from squealbox.transient.lanes import alone, crossing, service
+from squealbox.transient.lanes import alone, crossing, series_samples, service
 from squealbox.transient.lanes.formulas import formulas
-from squealbox.transient.lanes.shape import LANES, Shape, layout, parameter_rows
+from squealbox.transient.lanes.shape import LANES, ORDER, UNIT_OF_WINDOW, Shape, layout, parameter_rows
 from squealbox.transient.lanes.step_text import Step
+from squealbox.transient.lanes.taylor_text import TaylorStep
 
 HEAD = """
 from collections import namedtuple
 
 from squealbox.transient.lanes.vectors import (
     Given, apart, arctan, bits, cos, exp, forget, lane_tanh, load, log, maximum, minimum, rough_power, sin, sqrt, store,
-    take, traced, where,
+    take, traced, traced_as_written, where,
 )
+{more}
 
 Motion = namedtuple("Motion", "t, q, qd, qdd")
 Sliding = namedtuple("Sliding", "t, velocity, normal, mode, work")
 State = namedtuple("State", "t, q, qd, qdd")
+"""
+SERIES = """
+from squealbox.transient.lanes.series import (
+    Series, arctan, at, constant, cos, deciding, exp, from_zero, integral, lane_tanh, log, maximum, minimum, sin, sqrt,
+    time_series, value, where,
+)
+from squealbox.transient.lanes.taylor import grow, reach, ready, surely_slips
+from squealbox.transient.lanes.taylor_events import step_end
+# of their texts {digest}, so that a change of theirs makes another file
 """
 PLACES = {
     "ROW_JOB": "job", "ROW_ALIVE": "alive", "ROW_T": "t", "ROW_H": "h", "ROW_T_END": "t_end", "ROW_TRIES": "tries",
@@ -33,7 +46,7 @@ PLACES = {
     "ROW_SLIPS": "s0", "ROW_OPENED": "open0", "ROW_HOLD": "h0_0", "ROW_PHI": "phi0", "ROW_FRESH": "fresh0",
     "ROW_END": "end0", "ROW_RATE": "rate0", "ROW_RATE_END": "rate_end0", "ROW_INNER": "inner0", "ROW_FORCE":
     "force0", "ROW_ZERO": "zero0", "ROW_OWN_G": "own_g0", "ROW_NEXT_SAMPLE": "next", "ROW_SAMPLE": "sample",
-    "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0",
+    "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0", "ROW_TERM": "term0_0",
 }  # fmt: skip
 
 
@@ -46,19 +59,20 @@ def lane_kernel(shape: Shape) -> Callable[..., Any]:
 
 def source(shape: Shape) -> str:
     """The text of the generated file."""
-    rows, step = layout(shape), Step(shape)
+    rows, step = layout(shape), TaylorStep(shape) if shape.taylor else Step(shape)
     fixed: dict[str, float] = {"WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples}
+    fixed |= {"SERIES": shape.taylor, "TRIES": shape.exact and not shape.taylor}
     fixed |= {"SIMPLE": shape.simple, "p.rigid[]": 0, "p.rigid_count": 0}
     fixed |= {} if shape.varying else {"p.varying": 0}
     laws, schedules = {kind for kind, _ in shape.laws}, {kind for terms in shape.signals for kind, _ in terms}
     parts = [
         *_engine.head(inline=False, own=shape.own, laws=laws, schedules=schedules),
-        HEAD,
+        HEAD.format(more=SERIES.format(digest=_digest()) if shape.taylor else ""),
         *formulas(shape),
         step.text(),
     ]
     fixed |= {name: rows.places.get(row, 0) for name, row in PLACES.items()} | {"WIDTH": LANES}
-    fixed["MIDDLE"] = step.middle
+    fixed |= {"TERMS": ORDER + 2, "UNIT_OF_WINDOW": UNIT_OF_WINDOW} if shape.taylor else {"MIDDLE": step.middle}
     first = rows.places["o0_0_0"] if shape.observers else 0
     fixed |= {
         "DOFS": shape.n, "CONTACTS": shape.m, "FUNCTIONS": shape.functions, "GIVEN": len(parameter_rows(shape)),
@@ -70,9 +84,17 @@ def source(shape: Shape) -> str:
     for module in (_motion, *((_rigid, _impacts, _modes, _events) if shape.exact else ())):
         parts += _engine.definitions(module, fixed)
     parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith("COMPLETED")]
-    for module in (*((crossing,) if shape.exact else ()), *((alone,) if shape.simple else ()), service):
+    needed = {crossing: fixed["TRIES"], alone: shape.simple, series_samples: shape.taylor and shape.samples}
+    for module in (*(each for each, used in needed.items() if used), service):
         parts += _engine.definitions(module, fixed, entries=("run",))
     return "\n\n".join(parts) + "\n"
+
+
+def _digest() -> str:
+    """Of the modules that write the instructions of a Taylor step, whose texts are not in the generated file."""
+    folder = Path(__file__).parent
+    texts = [(folder / name).read_bytes() for name in ("vectors.py", "series.py", "taylor.py", "taylor_events.py")]
+    return hashlib.sha256(b"".join(texts)).hexdigest()[:20]
 
 
 def _gather(shape: Shape, places: dict[str, int]) -> str:

@@ -4,7 +4,7 @@ These are scalar passes over one lane of a group. Modes are decided by the very 
 record filled from the lane, so stick, slip and lift-off mean the same in both.
 """
 
-# ruff: noqa: F821  (the places of the rows, FUNCTIONS, EXACT_CONTACT, SIMPLE, SAMPLES, gather, step and take are generated)
+# ruff: noqa: F821  (the places of the rows, FUNCTIONS, EXACT_CONTACT, TRIES, SERIES, SIMPLE, SAMPLES, gather, step and take are generated)
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
 import numpy as np
@@ -16,6 +16,7 @@ from squealbox.transient._motion import INSIDE, OPEN, contact_matrix, derivative
 from squealbox.transient._rigid import solve
 from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
+from squealbox.transient.lanes.series_samples import write_series
 
 DONE, LOST, OVER, EVENT, LANDED, DUE = 1, 2, 4, 8, 16, 32
 
@@ -55,7 +56,10 @@ def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out
             continue
         code = int(A[b + ROW_CODE * WIDTH + lane])
         if SAMPLES and code & DUE:
-            write_samples(A, b, lane, times, samples)
+            if SERIES:
+                write_series(A, b, lane, times, samples)
+            else:
+                write_samples(A, b, lane, times, samples)
         ended = RUNNING
         if code & LOST:
             ended = UNDERFLOW if is_finite(A, b, lane) else NOT_FINITE
@@ -63,7 +67,7 @@ def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out
             ended = STEP_LIMIT
         elif EXACT_CONTACT and code & LANDED:
             ended = change_modes(A, b, lane, int(A[b + ROW_TARGET * WIDTH + lane]), p, s)
-        elif EXACT_CONTACT and code & EVENT:
+        elif TRIES and code & EVENT:
             which = locate(A, b, lane)
             if which >= 0:
                 ended = change_modes(A, b, lane, which, p, s)

@@ -157,12 +157,16 @@ class Step(EventText):
         for c in range(m):
             self.put(f"hold{c}_{k} = " + " + ".join(f"{self.row(f'h{c}_{x}')} * r{x}_{k}" for x in range(m)))
             self.put(f"{forces[c]} = {forces[c]} + hold{c}_{k}")
-            self.put(f"g{c}_{k} = {self.row(f'law{c}_0')} * {normals[c]} - abs(hold{c}_{k})")
-            margins.append(f"g{c}_{k}")
+            margins.append(self.margin(c, k, normals[c]))
         for i in range(shape.n):
             parts = [f"{push} * hold{c}_{k}" for c in range(m) if (push := self.entry(f"md{c}_{i}"))]
             self.put(f"{a[i]} = {a[i]} + " + " + ".join(parts) if parts else "pass")
         return margins
+
+    def margin(self, c: int, k: int, normal: str) -> str:
+        """How far the force of a sticking contact is below its limit."""
+        self.put(f"g{c}_{k} = {self.row(f'law{c}_0')} * {normal} - abs(hold{c}_{k})")
+        return f"g{c}_{k}"
 
     def text(self) -> str:
         """The function `step(A, b)`: advance one group by one trial; returns the lanes that need service as bits."""

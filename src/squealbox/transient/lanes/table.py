@@ -10,8 +10,8 @@ from squealbox.system import InvalidSystem, System
 from squealbox.transient import packing
 from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.batch import first_of
-from squealbox.transient.lanes.shape import Shape, entries, parameter_rows
-from squealbox.transient.methods import Method
+from squealbox.transient.lanes.shape import PARTS, Shape, entries, parameter_rows
+from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.own_laws import law_kinds, own_texts
 
 
@@ -66,6 +66,7 @@ def tabulate(
         samples,
         len(breaks),
         own_texts(system.contacts),
+        _endless(values, laws) if method.tableau == TAYLOR else (),
     )
     names = parameter_rows(shape)
     fixed = np.zeros(3 + len(names) + len(coefficients))
@@ -145,10 +146,22 @@ def _tolerances(system: System, method: Method, values: dict[str, Any], exact: b
         out |= {f"atol{k}": velocity / highest if k < n else np.asarray(velocity) for k in range(2 * n)}
     period = 2.0 * np.pi / highest
     largest = np.minimum(duration, period / 6.0) if exact else np.full(np.shape(period), duration)
+    if method.tableau == TAYLOR:
+        largest = np.minimum(duration, PARTS * period / 6.0)
     out["largest"] = largest if method.largest_step is None else np.minimum(largest, method.largest_step)
     out["least"], out["window"] = 1e-14 * period, 1e-3 * period
-    out["first"] = 1e-3 * period if method.first_step is None else np.full(np.shape(period), method.first_step)
+    first = out["largest"] if method.tableau == TAYLOR else 1e-3 * period
+    out["first"] = first if method.first_step is None else np.full(np.shape(period), method.first_step)
     return out
+
+
+def _endless(values: dict[str, Any], laws: tuple[tuple[int, int], ...]) -> tuple[tuple[str, str], ...]:
+    """Coefficients of laws that are infinite in the whole ensemble, as text: a bound that is not there."""
+    names = [f"law{c}_{i}" for c, (_, count) in enumerate(laws) for i in range(count)]
+    found = [
+        (name, f"{sign}np.inf") for name in names for sign in ("", "-") if np.all(values[name] == float(f"{sign}inf"))
+    ]
+    return tuple(found)
 
 
 def _highest_frequency(values: dict[str, Any], n: int) -> Any:

@@ -14,6 +14,7 @@ import operator
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from functools import wraps
 from typing import Any
 
 from llvmlite import ir
@@ -42,6 +43,7 @@ ARITHMETIC = {
 }  # fmt: skip
 intrinsic: Any = extending.intrinsic  # untyped, and its calls leave out the typing context
 BUILDER: ContextVar[Any] = ContextVar("builder of the function being written")
+ALLOWED: ContextVar[tuple[str, ...]] = ContextVar("what the optimiser may do to the rounding", default=FLAGS)
 
 
 @contextmanager
@@ -70,18 +72,26 @@ def _call(name: str, *values: Any) -> Any:
     return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"{name}.v{LANES}f64"), values)
 
 
+class Wider:
+    """A kind of number that knows what to do with lanes beside it, such as a series of them."""
+
+    __slots__ = ()
+
+
 def _operation(method: str, turned: bool = False) -> Callable[[Any, Any], Any]:
     def operate(self: Any, other: Any) -> Any:
-        if isinstance(other, Truth):
+        if isinstance(other, (Truth, Wider)):
             return NotImplemented
         a, b = (packed(other), self.vector) if turned else (self.vector, packed(other))
-        return Lanes(getattr(BUILDER.get(), method)(a, b, flags=FLAGS))
+        return Lanes(getattr(BUILDER.get(), method)(a, b, flags=ALLOWED.get()))
 
     return operate
 
 
 def _comparison(sign: str) -> Callable[[Any, Any], Any]:
     def compare(self: Any, other: Any) -> Any:
+        if isinstance(other, Wider):
+            return NotImplemented
         builder = BUILDER.get()
         order = builder.fcmp_unordered if sign == "!=" else builder.fcmp_ordered
         return Truth(order(sign, self.vector, packed(other)))
@@ -117,7 +127,7 @@ class Lanes:
         return known(*(x if isinstance(x, Lanes) else float(x) for x in given))
 
     def __neg__(self) -> "Lanes":
-        return Lanes(BUILDER.get().fneg(self.vector, flags=FLAGS))
+        return Lanes(BUILDER.get().fneg(self.vector, flags=ALLOWED.get()))
 
     def __abs__(self) -> "Lanes":
         return Lanes(_call("llvm.fabs", self.vector))
@@ -227,8 +237,30 @@ def bits(truth: Truth) -> Any:
     return builder.zext(builder.bitcast(truth.vector, ir.IntType(LANES)), INTEGER)
 
 
-def sqrt(x: Lanes) -> Lanes:
+def fused(a: Lanes, b: Lanes, c: Lanes) -> Lanes:
+    """a b + c, rounded once."""
+    return Lanes(_call("llvm.fma", packed(a), packed(b), packed(c)))
+
+
+def if_any(truth: Truth, compute: Callable[[], tuple[Lanes, ...]], otherwise: tuple[Lanes, ...]) -> tuple[Lanes, ...]:
+    """What `compute` gives, skipped where the truth holds in no lane; it must give `otherwise` to a lane without it."""
+    builder = BUILDER.get()
+    before, values = builder.block, [packed(x) for x in otherwise]
+    with builder.if_then(builder.icmp_unsigned("!=", bits(truth), INTEGER(0))):
+        found = [packed(x) for x in compute()]
+        inside = builder.block
+    out = []
+    for yes, no in zip(found, values, strict=True):
+        out.append(builder.phi(PACKED))
+        out[-1].add_incoming(yes, inside)
+        out[-1].add_incoming(no, before)
+    return tuple(Lanes(x) for x in out)
+
+
+def sqrt(x: Any) -> Any:
     """Square root."""
+    if not isinstance(x, Lanes):
+        return math.sqrt(x)
     return Lanes(_call("llvm.sqrt", x.vector))
 
 
@@ -261,8 +293,10 @@ def exp(x: Any) -> Any:
     return Lanes(builder.fmul(total, scale))
 
 
-def lane_tanh(x: Lanes) -> Lanes:
+def lane_tanh(x: Any) -> Any:
     """Hyperbolic tangent."""
+    if not isinstance(x, Lanes):
+        return math.tanh(x)
     a = exp(-2.0 * abs(x))
     size = (1.0 - a) / (1.0 + a)
     return where(x < 0.0, -size, size)
@@ -306,6 +340,20 @@ def apart(function: Callable[..., Any]) -> Callable[..., Any]:
         return Lanes(builder.call(made, [x.vector, data]))
 
     return call
+
+
+def traced_as_written(function: Callable[..., Any]) -> Any:
+    """As `traced`, with every operation rounded as it stands: two such functions agree to the last bit."""
+
+    @wraps(function)
+    def strictly(*given: Any) -> Any:
+        token = ALLOWED.set(())
+        try:
+            return function(*given)
+        finally:
+            ALLOWED.reset(token)
+
+    return traced(strictly)
 
 
 def traced(function: Callable[..., Any]) -> Any:

@@ -1,0 +1,52 @@
+"""What a Taylor step does with its series in all lanes: their growth, and how far they reach."""
+
+from typing import Any
+
+from squealbox.transient.lanes.series import at, plus_product, times
+from squealbox.transient.lanes.vectors import Lanes, Truth, minimum, rough_power
+
+FINITE = 1e300
+SHARE = 0.1  # of the tolerance that each of the last two terms may take
+
+
+def grow(q: tuple[Any, ...], v: tuple[Any, ...], a: tuple[Any, ...], unit: Lanes, order: int) -> None:
+    """Coefficients of q to order + 1 and of v to `order` from q' = v, v' = a, which asks for those before."""
+    for k in range(order + 1):
+        share = unit * (1.0 / (k + 1))
+        for i, displacement in enumerate(q):
+            displacement.known.append(times(at(v[i], k), share))
+        for i, velocity in enumerate(v) if k < order else ():
+            velocity.known.append(times(at(a[i], k), share))
+
+
+def reach(v: tuple[Any, ...], sizes: tuple[Any, ...], unit: Lanes, order: int) -> tuple[Lanes, Truth]:
+    """(the longest step at which each of the last two terms of v is small enough, whether all is finite).
+
+    `sizes` are the tolerances of displacements [m]; unit times a velocity is one.
+    """
+    reaches, fine = [], None
+    for k in (order - 1, order):
+        total: Any = None
+        for velocity, size in zip(v, sizes, strict=True):
+            term = times(at(velocity, k), unit / size)
+            total = plus_product(total, term, term)
+        total = 0.0 * unit if total is None else total * (1.0 / (SHARE * SHARE * len(v)))
+        reaches.append(rough_power(total + 1e-300, -0.5 / k))
+        fine = total < FINITE if fine is None else fine & (total < FINITE)
+    assert fine is not None
+    return minimum(*reaches), fine
+
+
+def surely_slips(s: Lanes, speed: Any, x: Lanes, order: int) -> Truth:
+    """Whether a contact slips and the terms of its speed, all taken against it, do not bring it to zero."""
+    left: Any = None
+    for k in range(order, 0, -1):
+        term = at(speed, k)
+        left = plus_product(None if term is None else abs(term), left, x)
+    return (s * s > 0.5) & (s * at(speed, 0) > (0.0 if left is None else left * x))
+
+
+def ready(order: int, *series: Any) -> None:
+    """Let all coefficients be computed here: inside a branch they would be lost to what follows it."""
+    for each in series:
+        at(each, order)

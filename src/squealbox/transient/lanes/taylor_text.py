@@ -1,0 +1,253 @@
+"""One Taylor step of a lane engine as text: the solution's own series, a step as long as its last terms allow.
+
+The equation of motion is that of `step_text`, run once on series instead of numbers. The series does not depend on the
+step, so no step is tried in vain: its length follows from the last two coefficients (Jorba and Zou, Experimental
+Mathematics 14(1), 99-117, 2005) and ends at the first event, which is a root of the series.
+"""
+
+from collections.abc import Iterator
+
+from squealbox.friction import LAWS
+from squealbox.schedules import SCHEDULES
+from squealbox.system import InvalidSystem
+from squealbox.transient.lanes.formulas import is_table
+from squealbox.transient.lanes.shape import ORDER, PARTS, UNIT_OF_WINDOW, Shape, layout
+from squealbox.transient.lanes.step_text import CALLED, Step
+
+CALLED_BY_MODE = """
+
+@inner
+def step(A, b):
+    if sticking(A, b) != 0:
+        return trial(A, b)
+    return glide(A, b)
+"""
+
+
+def states(q: list[str], v: list[str], a: list[str]) -> Iterator[tuple[str, str, int]]:
+    """Name of a row, its series and the order to which that is known."""
+    for name, series, order in (("q", q, ORDER + 1), ("v", v, ORDER), ("a", a, ORDER - 1)):
+        yield from ((f"{name}{i}", each, order) for i, each in enumerate(series))
+
+
+class TaylorStep(Step):
+    """Writes the text of the step."""
+
+    def __init__(self, shape: Shape) -> None:
+        self.shape, self.rows = shape, layout(shape)
+        self.lines: list[str] = []
+        self.loaded: set[str] = set()
+        self.tag = 0
+        self.gliding = False
+
+    def text(self) -> str:
+        """The function `step(A, b)`, as of `Step`: another trial where no lane of the group sticks."""
+        if not self.shape.exact:
+            return self.trial("trial") + CALLED
+        parts = [self.trial("trial")]
+        self.gliding, self.lines, self.tag = True, [], 0
+        self.loaded.clear()
+        parts.append(self.trial("glide"))
+        self.lines = []
+        self.loaded.clear()
+        truths = " | ".join(f"({self.sticking(c)} > 0.5)" for c in range(self.shape.m))
+        self.put(f"return bits(({truths}) & ({self.row('alive')} > 0.5))")
+        parts.append("\n".join(["@traced_as_written", "def sticking(A, b):", *self.lines]))
+        return "\n".join(parts) + CALLED_BY_MODE
+
+    def trial(self, name: str) -> str:
+        """The text of one trial."""
+        n = self.shape.n
+        for given in ("t", "h", "t_end", "rtol", "alive", "window"):
+            self.row(given)
+        self.put(f"unit = window_ * {UNIT_OF_WINDOW!r}")
+        self.put("inside_ = np.inf")
+        self.put("rest = (t_end_ - t_) / unit")
+        for state in (*(f"q{i}" for i in range(n)), *(f"v{i}" for i in range(n))):
+            self.put(f"{state}s = Series(None, ({self.row(state)},))")
+        q, v = [f"q{i}s" for i in range(n)], [f"v{i}s" for i in range(n)]
+        self.put("time = time_series(t_, unit)")
+        self.put("with deciding() as kinks:")
+        self.lines, before = [], self.lines
+        found = self.accelerations(q, v, "time")
+        a = found["a"]
+        self.put(f"grow(({', '.join(q)},), ({', '.join(v)},), ({', '.join(a)},), unit, {ORDER})")
+        self.lines = before + ["    " + line for line in self.lines]
+        self.length(v)
+        self.ending(found)
+        self.observe_parts(found, q, v)
+        self.finish(found, q, v)
+        return "\n".join(["@traced_as_written", f"def {name}(A, b):", *self.lines, "    return flags\n"])
+
+    def hold(self, k: int, a: list[str], forces: list[str], normals: list[str], time: str) -> list[str]:
+        """As of `Step`; nothing where no contact sticks."""
+        return [] if self.gliding else super().hold(k, a, forces, normals, time)
+
+    def signal(self, index: int, name: str, time: str, rate: bool = False) -> list[str]:
+        """As of `Step`; a table is no formula to take a series of."""
+        kinds = self.shape.signals[index] if self.shape.varying else ()
+        if any(is_table(SCHEDULES, kind) for kind, _ in kinds):
+            raise InvalidSystem("a schedule of measured points has no Taylor series: take another method")
+        return super().signal(index, name, time, rate)
+
+    def given(self, name: str, count: int, table: bool, at: int) -> str:
+        """As of `Step`; a bound that is infinite in the whole ensemble stays a plain number, which chooses nothing."""
+        local = [f"{name}{i}" for i in range(count)]
+        endless = dict(self.shape.endless)
+        return "(" + "".join(f"{endless.get(x) or self.row(x)}, " for x in local) + ")"
+
+    def friction(self, c: int, k: int, speed: str, normal: str) -> str:
+        """As of `Step` in the exact scheme; no step goes beyond a reversal, so the law needs no continuation there."""
+        kind, count = self.shape.laws[c]
+        if is_table(LAWS, kind):
+            raise InvalidSystem("a friction law of measured points has no Taylor series: take another method")
+        s, force = self.row(f"s{c}"), f"f{c}_{k}"
+        self.put(f"mu{c}_{k} = lane_mu_{kind}(from_zero({s} * {speed}), {self.given(f'law{c}_', count, False, 1)})")
+        self.put(f"{force} = {s} * mu{c}_{k} * {normal}")
+        return force
+
+    def margin(self, c: int, k: int, normal: str) -> str:
+        """How far a sticking contact is below its limit on either side: two series without a corner."""
+        self.put(f"limit{c} = {self.row(f'law{c}_0')} * {normal}")
+        self.put(f"below{c}, above{c} = limit{c} - hold{c}_{k}, limit{c} + hold{c}_{k}")
+        return f"below{c}"
+
+    def length(self, v: list[str]) -> None:
+        """`x`: how long the step may be, in units of the series."""
+        n = self.shape.n
+        for i in range(n):
+            here = f"(abs({self.row(f'q{i}')}) + unit * abs({self.row(f'v{i}')}))"
+            self.put(f"size{i} = {self.row(f'atol{i}')} + rtol_ * {here}")
+        sizes = ", ".join(f"size{i}" for i in range(n))
+        self.put(f"reached, fine = reach(({', '.join(v)},), ({sizes},), unit, {ORDER})")
+        self.put("x = minimum(reached, h_ / unit)")
+        self.put("last = x >= rest * 0.999999999999")
+        self.put("x = where(last, rest, x)")
+
+    def ending(self, found: dict[str, list[str]]) -> None:
+        """`end`: where the step ends, at the first event; `event` and the number of its function."""
+        m = self.shape.m
+        first, second = zip(*(self.functions_of(c, found) for c in range(m)), strict=True) if m else ((), ())
+        watched = "".join(f"{name}, " for name in (*first, *second))
+        largest = f"{self.row('largest')} / unit"
+        self.ready(found)
+        safe = [f"surely_slips({self.row(f's{c}')}, {found['speed'][c]}, x, {ORDER})" for c in range(m)]
+        safe += ["(x < 0.0)"] * any(self.shape.unilateral)
+        self.put(f"safe = {' & '.join(safe) or 'x > 0.0'}")
+        self.put(f"found = step_end(({watched}), kinks, safe, x, {largest}, {ORDER})")
+        self.put("end, event, target = found.end, (found.event > 0.5) & fine, found.target")
+        for c in range(0 if self.gliding else m):
+            two = f"(target > {m + c - 0.5}) & (target < {m + c + 0.5})"
+            self.put(f"target = where({two} & ({self.sticking(c)} > 0.5), {float(c)}, target)")
+        self.put("moved = fine & (end > 0.0)")
+        self.put("t1 = where((found.whole > 0.5) & last, t_end_, minimum(t_ + end * unit, t_end_))")
+
+    def ready(self, found: dict[str, list[str]]) -> None:
+        """All that both the branch of the events and the rest read."""
+        names = [*found["speed"], *found["normal"]]
+        names += [] if self.gliding else [f"hold{c}_{self.tag}" for c in range(self.shape.m)]
+        self.put(f"ready({ORDER}, {', '.join(names)})" if names else "pass")
+
+    def sticking(self, c: int) -> str:
+        """1 while the contact sticks, else 0."""
+        s = self.row(f"s{c}")
+        return f"(1.0 - {s} * {s}" + (f" - {self.row(f'open{c}')})" if self.shape.unilateral[c] else ")")
+
+    def functions_of(self, c: int, found: dict[str, list[str]]) -> tuple[str, str]:
+        """Names of both event functions of a contact, which stay positive as long as its mode holds."""
+        s, stick, normal = self.row(f"s{c}"), self.sticking(c), found["normal"][c]
+        wide = f" - {self.row(f'open{c}')} * {normal}" if self.shape.unilateral[c] else ""
+        held = "" if self.gliding else f" + {stick} * below{c}"
+        self.put(f"phi{c} = {s} * {found['speed'][c]}{held}{wide}")
+        slips = f"where({s} * {s} > 0.5, {normal}, 1.0)" if wide else "1.0"
+        self.put(f"psi{c} = {slips if self.gliding else f'where({stick} > 0.5, above{c}, {slips})'}")
+        return f"phi{c}", f"psi{c}"
+
+    def observe_parts(self, found: dict[str, list[str]], q: list[str], v: list[str]) -> None:
+        """Hand the parts of the step to the observers one after the other: they follow no longer ones."""
+        shape, n = self.shape, self.shape.n
+        kinds = {observer.of for observer in shape.observers}
+        if not kinds:
+            return
+        if "contact" in kinds:
+            for c in range(shape.m):
+                along = " + ".join(self.product(f"d{c}", v)) or "0.0 * t_"
+                self.put(f"power{c} = integral({found['force'][c]} * ({along}))")
+        memory = {f"o{k}_{i}_{j}": self.row(f"o{k}_{i}_{j}") for k, each in enumerate(shape.observers)
+                  for i in range(each.copies(n, shape.m)) for j in range(len(each.start))}  # fmt: skip
+        self.point(0, kinds, found, q, v)
+        for part in range(1, PARTS + 1):
+            self.point(part, kinds, found, q, v)
+            for k, observer in enumerate(shape.observers):
+                for i in range(observer.copies(n, shape.m)):
+                    names = [f"o{k}_{i}_{j}" for j in range(len(observer.start))]
+                    given = "".join(f"{self.row(f'c{k}_{i}_{j}')}, " for j in range(observer.coefficients))
+                    before, after = (self.view(observer.of, i, p) for p in (part - 1, part))
+                    held = "".join(f"{memory[name]}, " for name in names)
+                    self.put(
+                        f"seen{k}_{i}p{part} = observe_{k}(({held}), ({given or '0.0 * t_, '}), {before}, {after})"
+                    )
+                    for j, name in enumerate(names):
+                        memory[name] = f"seen{k}_{i}p{part}[{j}]"
+        for name, value in memory.items():
+            self.keep(name, f"where(moved, {value}, {self.row(name)})")
+        if "contact" in kinds:
+            for c in range(shape.m):
+                self.keep(f"work{c}", f"where(moved, work{c}p{PARTS}, {self.row(f'work{c}')})")
+
+    def point(self, part: int, kinds: set[str], found: dict[str, list[str]], q: list[str], v: list[str]) -> None:
+        """What is seen at the end of a part of the step."""
+        self.put(f"at{part} = end * {part / PARTS!r}")
+        self.put(f"t{part}p = t1" if part == PARTS else f"t{part}p = t_ + at{part} * unit")
+        for name, series, order in states(q, v, found["a"]):
+            self.put(f"{name}p{part} = value({series}, at{part}, {order})")
+        if "contact" in kinds:
+            for c in range(self.shape.m):
+                self.put(f"speed{c}p{part} = value({found['speed'][c]}, at{part}, {ORDER})")
+                self.put(f"normal{c}p{part} = value({found['normal'][c]}, at{part}, {ORDER})")
+                self.put(f"work{c}p{part} = {self.row(f'work{c}')} + unit * value(power{c}, at{part}, {ORDER})")
+
+    def view(self, of: str, i: int, part: int) -> str:
+        """What an observer of a degree of freedom, of a contact or of the whole sees there."""
+        n, time = self.shape.n, f"t{part}p"
+        if of == "dof":
+            return f"Motion({time}, q{i}p{part}, v{i}p{part}, a{i}p{part})"
+        if of == "contact":
+            mode = self.row(f"s{i}")
+            if self.shape.unilateral[i]:
+                mode = f"({mode} + 2.0 * {self.row(f'open{i}')})"
+            return f"Sliding({time}, speed{i}p{part}, normal{i}p{part}, {mode}, work{i}p{part})"
+        tuples = ", ".join("(" + "".join(f"{x}{k}p{part}, " for k in range(n)) + ")" for x in "qva")
+        return f"State({time}, {tuples})"
+
+    def finish(self, found: dict[str, list[str]], q: list[str], v: list[str]) -> None:
+        """Take the step, count, and say which lanes need service."""
+        n, shape = self.shape.n, self.shape
+        if shape.samples:
+            self.keep("t_old", "t_")
+            for i in range(n):
+                for k in range(ORDER + 2):
+                    self.keep(f"term{i}_{k}", f"constant(at({q[i]}, {k}), unit)")
+        for name, series, order in states(q, v, found["a"]):
+            self.keep(name, f"where(fine, value({series}, end, {order}), {self.row(name)})")
+        self.put("t_now = where(fine, t1, t_)")
+        self.keep("t", "t_now")
+        self.keep("taken", f"{self.row('taken')} + 1.0 * moved")
+        self.put(f"tried = {self.row('tries')} + 1.0")
+        self.keep("tries", "tried")
+        self.keep("h", "found.next_limit * unit")
+        self.put("done = t_now >= t_end_")
+        self.put(f"lost = ~fine | (reached * unit <= {self.row('least')} + 4e-16 * t_)")
+        self.put(f"over = tried >= {self.row('most')}")
+        code, any_of = "1.0 * done + 2.0 * lost + 4.0 * over", "done | lost | over"
+        if shape.exact:
+            for c in range(shape.m):
+                self.keep(f"force{c}", f"value({found['force'][c]}, end, {ORDER - 1})")
+            self.keep("target", "target")
+            self.keep("resume", self.row("largest"))
+            code, any_of = code + " + 16.0 * event", any_of + " | event"
+        if shape.samples:
+            self.put(f"due = moved & (t_now >= {self.row('next')})")
+            code, any_of = code + " + 32.0 * due", any_of + " | due"
+        self.keep("code", code)
+        self.put(f"flags = bits(({any_of}) & (alive_ > 0.5))")

@@ -1,0 +1,141 @@
+"""The Taylor steps of lanes and the scalar march solve the same equation: one answer, and every event of it."""
+
+import numpy as np
+import pytest
+
+from squealbox import (
+    Contact,
+    DrumBrake,
+    LinearSlope,
+    Method,
+    ParameterError,
+    Sinusoid,
+    Stribeck,
+    System,
+    simulate,
+    simulate_ensemble,
+)
+from squealbox.friction import Table
+from squealbox.system import InvalidSystem
+
+OBSERVE = ("amplitude", "peak", "frequency", "energy", "sticking")
+INSTANTS = np.linspace(0.0, 0.02, 41)
+
+
+def drum(static=0.3, **others):
+    """The drum in reading `consistent`."""
+    return DrumBrake(friction=LinearSlope(static, -0.05), **others)
+
+
+def distance(one, other):
+    """Largest difference in parts of the largest number of the other."""
+    return np.max(np.abs(one - other)) / np.max(np.abs(other))
+
+
+def many_drums(varied, duration=0.02, rtol=1e-9, **options):
+    """One kernel serves all tests of the drum."""
+    method = Method("taylor", rtol=rtol)
+    return simulate_ensemble(drum(0.44), varied, duration, method, OBSERVE, times=INSTANTS, **options)
+
+
+def test_events_observers_and_samples_agree_with_single_runs():
+    frictions = np.array([0.1, 0.2, 0.37, 0.44])
+    many = many_drums({"friction.static": frictions})
+    for k, friction in enumerate(frictions):
+        one, fine = (simulate(drum(friction), 0.02, times=t, rtol=1e-10) for t in (INSTANTS, 20_001))
+        assert many.ended[k] == "completed"
+        assert many.events[k] == len(one.event_time)
+        assert distance(many.sample_q[k], one.q) < 1e-8  # rtol 1e-9 over up to 190 reversals
+        assert distance(many.sample_qd[k], one.qd) < 1e-8
+        assert np.array_equal(many.sample_q[k, -1], many.q[k])
+        assert distance(many["peak"][k], np.max(np.abs(fine.q), axis=0)) < 1e-4  # the quintic between parts of a step
+        assert many["energy"][k] == pytest.approx(one.work_friction[-1], rel=1e-7)
+        held = np.mean(fine.mode == 0, axis=0)
+        assert many["sticking"][k] == pytest.approx(held, abs=5e-3)  # 20,001 instants see 190 intervals to half of one
+    assert np.max(many.events) > 100
+    assert distance(many.q[2], many.q[3]) > 1e-3
+
+
+def test_no_step_is_tried_in_vain():
+    """One trial for a step or an event; a few more where two events or a graze lie in one part of a step."""
+    many = many_drums({"friction.static": [0.43, 0.44]})
+    assert np.all(many.events > 100)
+    assert np.all(many.tried - many.steps < 0.05 * many.tried)
+
+
+def test_short_reversals_between_the_ends_of_a_step_are_found():
+    """Pressure centres where a contact stops for a hundredth of a step: none of these pairs of events is missed."""
+    places = np.array([(0, 18), (1, 34), (5, 19), (7, 3), (18, 39), (43, 42), (55, 48)])
+    theta1 = np.deg2rad(np.linspace(95.0, 175.0, 64))[places[:, 1]]
+    theta2 = np.deg2rad(np.linspace(10.0, 50.0, 64))[places[:, 0]]
+    many = many_drums({"theta1": theta1, "theta2": theta2}, 0.05, rtol=1e-7)
+    for k in range(len(places)):
+        one = simulate(drum(0.44, theta1=theta1[k], theta2=theta2[k]), 0.05, rtol=1e-11)
+        assert many.events[k] == len(one.event_time)
+        assert np.max(np.abs(many.q[k] - one.q[-1])) < 1e-5 * np.max(np.abs(one.q))
+
+
+def test_a_trajectory_does_not_know_its_neighbours():
+    """Bit for bit, though a group in which nothing sticks takes another way than one in which something does."""
+    frictions = np.linspace(0.1, 0.45, 70)
+    base = many_drums({"friction.static": frictions}, threads=1)
+    back = many_drums({"friction.static": frictions[::-1]}, threads=2)
+    few = many_drums({"friction.static": frictions[[5, 50, 66]]}, threads=1)
+    stuck = np.max(base["sticking"], axis=-1) > 0.0
+    assert 0 < np.sum(stuck) < len(frictions)
+    for name in ("q", "qd", "time", "steps", "tried", "events", "sample_q"):
+        assert np.array_equal(getattr(base, name), getattr(back, name)[::-1])
+        assert np.array_equal(getattr(base, name)[[5, 50, 66]], getattr(few, name))
+    for name in OBSERVE:
+        assert np.array_equal(base[name], back[name][::-1], equal_nan=True)
+
+
+def shaken():
+    """A mass that lifts off, lands, slides and sticks under a swinging load."""
+    law, row = Stribeck(0.3, 0.2, 0.2), [1.0, 0.0]
+    contact = Contact([0.0, -100.0], row, row, 0.0, 0.3, law, unilateral=True, normal=[0.0, 1.0])
+    swing = Sinusoid(-1.5, 0.3, 0.7) * [0.0, 1.0]
+    return System(np.eye(2), 0.02 * np.eye(2), [[40.0, 0.0], [0.0, 100.0]], swing, (contact,))
+
+
+def test_lift_off_and_a_swinging_load_agree_with_single_runs():
+    heights = np.array([[0.0, 0.05], [0.0, 0.08]])
+    many = simulate_ensemble(shaken(), None, 4.0, "taylor", (), start=(heights, np.zeros(2)), rtol=1e-10)
+    for k, height in enumerate(heights):
+        one = simulate(shaken(), 4.0, start=(height, np.zeros(2)), rtol=1e-10)
+        assert {0, 1, 2} <= set(one.event_mode)
+        assert many.events[k] == len(one.event_time) > 10
+        assert distance(many.q[k], one.q[-1]) < 1e-8
+
+
+FLOOR = 0.3
+
+
+def chain(speed):
+    """Two blocks on a belt, joined by springs: stick and slip, alone and together, and a law with a floor."""
+    law, eye = LinearSlope(0.6, -1.0, FLOOR), np.eye(2)
+    contacts = tuple(Contact(np.zeros(2), row, row, 10.0, speed, law) for row in eye)
+    return System(eye, 0.05 * eye, [[30.0, -10.0], [-10.0, 22.0]], 0.0, contacts)
+
+
+def test_stick_slip_past_the_kink_of_a_law_agrees_with_single_runs():
+    """Slipping contacts pass the kink within what would be one step."""
+    speeds = np.array([0.2, 0.5, 0.9])
+    many = simulate_ensemble([chain(v) for v in speeds], None, 20.0, "taylor", (), rtol=1e-9)
+    for k, speed in enumerate(speeds):
+        one = simulate(chain(speed), 20.0, times=20_001, rtol=1e-11)
+        above = 0.6 - np.abs(one.sliding_velocity) < FLOOR
+        assert 0.1 < np.mean(above) < 0.9
+        assert many.events[k] == len(one.event_time) > 5
+        assert distance(many.q[k], one.q[-1]) < 1e-7  # a kink taken unawares costs 1e-5
+
+
+def test_what_has_no_series_is_refused_in_one_sentence():
+    varied = {"friction.static": [0.1, 0.2]}
+    with pytest.raises(ParameterError, match="jump of sgn"):
+        simulate_ensemble(drum(), varied, 1e-3, "taylor", contact="raw")
+    with pytest.raises(ParameterError, match="taylor"):
+        simulate(drum(), 1e-3, method="taylor")
+    points = DrumBrake(friction=Table([0.0, 0.5, 1.0], [0.3, 0.25, 0.2]))
+    with pytest.raises(InvalidSystem, match="measured points"):
+        simulate_ensemble(points, {"theta1": [0.6, 0.65]}, 1e-3, "taylor")
