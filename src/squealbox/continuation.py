@@ -18,6 +18,7 @@ from squealbox.result import COMPLETED, Outcome
 
 KEEP = 1e-3  # scaled correction below which Newton's method keeps its derivative for the next one
 SLOW = 0.1  # share of the one before by which a correction with a kept derivative must shrink
+FAR = 10.0  # step lengths from the prediction beyond which Newton's method has lost the path
 STEEP = 1e4  # 1/cos of the angle to the last tangent above which the null vector is taken from singular values
 
 Residual = Callable[[Any, float], Any]
@@ -133,7 +134,8 @@ class Follower:
         control = self.control
         y = np.append(point.x, point.p) / self.scale
         while step >= control.smallest:
-            found, iterations, size = self._correct(y + step * point.tangent, point.tangent, control.newton_steps)
+            guess = y + step * point.tangent
+            found, iterations, size = self._correct(guess, point.tangent, control.newton_steps, FAR * step)
             if found is not None and np.linalg.norm(found - y) < 2.0 * step:
                 tangent, sign = self._tangent(found, point.tangent)
                 turn = np.arccos(np.clip(tangent @ point.tangent, -1.0, 1.0))
@@ -170,10 +172,11 @@ class Follower:
         step = share * beyond.step
         yield self._point(y, tangent, previous.arclength + step, step, iterations, size, sign=sign)
 
-    def _correct(self, guess: Any, normal: Any, most: int) -> tuple[Any, int, float]:
+    def _correct(self, guess: Any, normal: Any, most: int, reach: float = np.inf) -> tuple[Any, int, float]:
         """Newton on the plane through `guess` with that normal: the root or None, steps, largest |residual|.
 
-        Corrections with a kept derivative are cheap, so they count as steps only up to those that are wanted.
+        Corrections with a kept derivative are cheap, so they count as steps only up to those that are wanted. One that
+        leads farther than `reach` from the guess ends the search: values there mean nothing and may be costly.
         """
         y, size, matrix, last, fresh = guess.copy(), np.inf, None, np.inf, 0
         for iteration in range(1, most + 1):
@@ -188,6 +191,8 @@ class Follower:
             except np.linalg.LinAlgError:
                 return None, iteration, size
             y, before, last = y - change, last, float(np.max(np.abs(change)))
+            if not np.linalg.norm(y - guess) <= reach:
+                return None, iteration, size
             if last > SLOW * before:  # the derivative kept is not good enough
                 matrix = None
             if last <= self.control.tolerance:

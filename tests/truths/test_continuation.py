@@ -69,3 +69,27 @@ def test_a_path_that_ends_is_a_named_outcome() -> None:
         points = list(path)
     assert path.outcome == "step_underflow"
     assert points[-1].p == pytest.approx(1.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("far", [10.0, np.inf])
+def test_newton_is_stopped_beside_a_path_that_jumps(far, monkeypatch) -> None:
+    """Beyond the jump Newton's method on an arctangent overshoots ever farther; without the limit that is asked for."""
+    monkeypatch.setattr("squealbox.continuation.FAR", far)
+    asked = []
+
+    def off(x, p):
+        return 500.0 * (x - (0.0 if p < 0.5 else 3.0))
+
+    def residual(x, p):
+        asked.append(abs(float(x[0])))
+        return np.arctan(off(x, p))
+
+    def jacobian(x, p):
+        return (500.0 / (1.0 + off(x, p) ** 2))[:, None], np.zeros(1)
+
+    path = follow(residual, 0.0, 0.0, bounds=(-0.1, 1.0), jacobian=jacobian, control=StepControl(first=0.2))
+    with np.errstate(over="ignore"):
+        points = list(path)
+    assert path.outcome == "step_underflow"
+    assert points[-1].p == pytest.approx(0.5, abs=1e-6)
+    assert (max(asked) < 100.0) == (far < np.inf)

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from squealbox import Contact, DrumBrake, LinearSlope, Stribeck, System, branch, hopf_point, shooting
+from squealbox import Contact, DrumBrake, LinearSlope, Stribeck, System, branch, hopf_point, shooting, simulate
 from squealbox.limit_cycles import stick_slip_limit
+from squealbox.limit_cycles.cycles.variation import fly
 
 LAW = Stribeck(0.4, 0.25, 0.3)
 SPEEDS = (0.05, 1.0)
@@ -77,3 +78,34 @@ def _start(up, i, half):
     """(q, qd, period) of a point of the branch, whose unknowns leave out the velocity of y, zero at its top."""
     x = up.unknowns[i]
     return x[:half], np.array([x[half], 0.0]), x[-1]
+
+
+def test_a_motion_that_jumps_is_said_soon_and_why(monkeypatch):
+    """A contact that cannot open is released in the instant in which its normal force, and with it friction, is zero.
+
+    On either side it slips away in another sense. Beyond that instant no cycle lies beside the last; no run of
+    the search for one comes near the limit of steps.
+    """
+    drum = DrumBrake(friction=LinearSlope(0.3, -0.05), reading="eq3")
+    begin = ([9.32675611e-05, -5.38643993e-05], [0.220983092, 0.0], 0.0016886172)
+    steps = []
+
+    def counted(*given):
+        run = fly(*given)
+        steps.append(run.steps)
+        return run
+
+    monkeypatch.setattr("squealbox.limit_cycles.branches.shooting_path.fly", counted)
+    up = branch(drum, "sliding_speed", (0.05, 0.8), begin, value=0.32814, method="shooting", points=60)
+    assert up.outcome == "jump"
+    assert max(steps) < 1000  # a period takes 130
+    found = up.outcome.evidence
+    assert found["p"] == pytest.approx(0.33340535, abs=1e-8)  # of this program; what follows is the check
+    assert (found["contact"], found["mode_before"], found["mode_after"]) == (0, -1, 1)
+    assert abs(found["normal_force"]) < 1e-8 * found["largest_force"]
+    last = up.start[-1]
+    for beyond, same in ((-1e-6, True), (1e-6, False)):  # the last cycle, run at speeds beside it, comes back or not
+        beside = drum.replace({"sliding_speed": float(up.value[-1]) + beyond})
+        run = simulate(beside, float(up.period[-1]), (last[:2], last[2:]), rtol=1e-12)
+        off = np.max(np.abs(run.q[-1] - last[:2])) / np.max(up.amplitude[-1])
+        assert (off < 1e-3) == same

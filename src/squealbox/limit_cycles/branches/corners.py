@@ -66,7 +66,7 @@ def beyond(path: ShootingPath, walk: Follower, last: PathPoint) -> Corner | Outc
             after = path.sequence(x[:-1], float(x[-1]))
             if after is None or after == before:
                 continue
-            seen = seen or after
+            seen = seen or (after, first_other(path, last, x))
             value = path.residual(x[:-1], float(x[-1]))
             outside = _derivative(path, probe, scale)
             if not np.all(np.isfinite(outside)):
@@ -79,8 +79,30 @@ def beyond(path: ShootingPath, walk: Follower, last: PathPoint) -> Corner | Outc
                 return _corner(path, walk, last, found)
     if seen is None:
         return walk.outcome
+    after, other = seen
     message = f"the motion jumps at {last.p:.10g}: no cycle lies beside this one, whose next event is another"
-    return Outcome("jump", message, p=last.p, events_before=str(before), events_after=str(seen))
+    if other:
+        message += ": contact {contact} goes over to mode {mode_after} in place of {mode_before}".format(**other)
+        message += ", its normal force {normal_force:.3g} N there (largest {largest_force:.3g} N)".format(**other)
+    return Outcome("jump", message, p=last.p, events_before=str(before), events_after=str(after), **other)
+
+
+def first_other(path: ShootingPath, last: PathPoint, x: Any) -> dict[str, Any]:
+    """The first event of a period that is another at scaled-back unknowns x than at the last point, and N there [N].
+
+    Empty where one list of events begins like the other and only ends sooner.
+    """
+    runs = path.run(last.x, last.p), path.run(x[:-1], float(x[-1]))
+    events = [list(zip(run.event_contact.tolist(), run.event_mode.tolist(), strict=True)) for run in runs]
+    i = next((i for i, (one, other) in enumerate(zip(*events, strict=False)) if one != other), None)
+    if i is None:
+        return {}
+    contact, row = events[0][i][0], int(np.argmin(np.abs(runs[0].t - runs[0].event_time[i])))
+    forces = path.field(last.p).contact_state(np.hstack([runs[0].q, runs[0].qd]))[0][:, contact]
+    after = next((mode for at, mode in events[1][i:] if at == contact), None)
+    return {"contact": contact, "mode_before": events[0][i][1], "mode_after": after,
+            "share_of_period": float(runs[0].event_time[i] / last.x[-1]), "normal_force": float(forces[row]),
+            "largest_force": float(np.max(np.abs(forces)))}  # fmt: skip
 
 
 def _ways(y: Any, tangent: Any) -> Iterator[Any]:
@@ -105,7 +127,7 @@ def _start_of(
     forward = np.linalg.svd(outside)[2][-1]
     forward = forward if forward @ normal > 0.0 else -forward
     for length in (3.0 * distance, 30.0 * distance):
-        found = _corrected(path, y + length * forward, forward, walk.scale)
+        found = corrected(path, y + length * forward, forward, walk.scale)
         if found is None:
             continue
         x = found * walk.scale
@@ -116,7 +138,8 @@ def _start_of(
     return None
 
 
-def _corrected(path: ShootingPath, guess: Any, normal: Any, scale: Any) -> Any:
+def corrected(path: ShootingPath, guess: Any, normal: Any, scale: Any) -> Any:
+    """The point of the path on the plane through a guess, all in scaled variables; None where none is reached."""
     y = guess.copy()
     for _ in range(NEWTON_STEPS):
         x = y * scale

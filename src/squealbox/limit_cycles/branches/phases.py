@@ -10,8 +10,10 @@ import numpy as np
 
 from squealbox.limit_cycles.branches.shooting_path import ShootingPath
 from squealbox.limit_cycles.cycles.cycle import Cycle
+from squealbox.limit_cycles.cycles.variation import fly
 
 CLEAR = 0.02  # of the period: an event farther from the beginning is no matter
+TURNING = 4  # steps of Newton's method to a turning point
 TOUCHING = 1e-3  # and one nearer than this may be why a path does not go on
 
 
@@ -32,16 +34,34 @@ def away(cycle: Cycle, row: int) -> float:
     return float(np.min(np.minimum(gap, 1.0 - gap)))
 
 
-def beginning(cycle: Cycle) -> tuple[Any, int]:
-    """State (2n,) and degree of freedom of the turning point to begin at: the largest displacement if it is clear."""
-    row, dof = max(turns(cycle), key=lambda turn: min(away(cycle, turn[0]), CLEAR))
-    return np.concatenate([cycle.q[row], cycle.qd[row]]), dof
+def beginning(cycle: Cycle) -> tuple[int, int]:
+    """(row, degree of freedom) of the turning point to begin at: the largest displacement if it is clear."""
+    return max(turns(cycle), key=lambda turn: min(away(cycle, turn[0]), CLEAR))
 
 
 def begun(path: ShootingPath, cycle: Cycle, p: float) -> Any:
     """Unknowns of a path through a cycle."""
-    state, dof = beginning(cycle)
-    return path.begin(state, float(cycle.period), p, dof, float(np.max(cycle.amplitude)))
+    row, dof = beginning(cycle)
+    return path.begin(turned(path, cycle, p, row, dof), float(cycle.period), p, dof, float(np.max(cycle.amplitude)))
+
+
+def turned(path: ShootingPath, cycle: Cycle, p: float, row: int, dof: int) -> Any:
+    """State (2n,) at the turning point itself, which lies between a row and the one before.
+
+    A start off by a part of a sample may lead Newton's method from an unstable cycle, or one near a jump, to another.
+    """
+    field, before = path.field(p), row - 1 if row > 0 else len(cycle.t) - 2
+    start = np.concatenate([cycle.q[before], cycle.qd[before]])
+    gap = float(cycle.t[before + 1] - cycle.t[before])
+    after = gap * cycle.qd[before, dof] / (cycle.qd[before, dof] - cycle.qd[row, dof])
+    state = start
+    for _ in range(TURNING):
+        if not 0.0 < after <= gap:
+            break
+        run = fly(field, start, after, path.rtol)
+        state = np.concatenate([run.q[-1], run.qd[-1]])
+        after -= float(run.qd[-1, dof] / field.rate(state, run.mode[-1])[field.size + dof])
+    return state
 
 
 def touches_event(path: ShootingPath, x: Any, p: float) -> bool:
