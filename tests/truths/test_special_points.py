@@ -14,6 +14,7 @@ from squealbox import (
     branch,
     critical_value,
     hopf_point,
+    simulate,
 )
 from squealbox.limit_cycles import hopf_curve, point_curve, stick_slip_limit
 
@@ -100,3 +101,31 @@ def test_from_a_period_doubling_onto_the_doubled_branch():
     assert np.polyfit(np.log(rise), np.log(moved), 1)[0] == pytest.approx(2.0, abs=0.1)
     with pytest.raises(ParameterError, match="shooting"):
         branch(blocks, "speed", (0.045, 0.06), point)
+
+
+def test_a_doubled_branch_doubles_again():
+    """Two turns become four; a long run beside it, which knows no branch, settles on the very same cycle."""
+
+    def blocks(speed):
+        return two_blocks_on_belt(speed=speed)
+
+    walk = {"direction": -1, "method": "shooting"}
+    double = branch(blocks, "speed", (0.0474, 0.048), value=0.04782, points=4, **walk)
+    (point,) = double.points
+    assert point.kind == "period_doubling"
+    assert np.min(np.abs(point.multipliers + 1.0)) < 1e-8
+    np.testing.assert_array_equal(double.stable, double.value > float(point.value))
+    four = branch(blocks, "speed", (0.04778, 0.048), point, points=15, **walk)
+    assert four.outcome.ok  # the bound
+    assert np.all(four.stable)
+    assert np.all(four.value < float(point.value))
+    np.testing.assert_allclose(four.period, 2.0 * float(point.period), rtol=2e-3)
+    last, period = blocks(float(four.value[-1])), float(four.period[-1])
+    turns, begin = 60, np.split(1.001 * four.start[-1], 2)
+    times = np.array([turns - 1.0, turns - 0.5, turns]) * period
+    run = simulate(last, turns * period, begin, times, rtol=1e-12)
+    before, half, now = np.hstack([run.q, run.qd])
+    assert np.max(np.abs(now - before)) < 1e-8
+    assert np.max(np.abs(now - half)) > 1e-4  # after two turns it is elsewhere
+    lowest = simulate(last, period, (run.q[-1], run.qd[-1]), 4001).q.min(axis=0)
+    np.testing.assert_allclose(lowest, four.lowest[-1], atol=1e-4)  # extremes of the walk: few samples

@@ -10,10 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.limit_cycles.branches.corners import corrected
 from squealbox.limit_cycles.branches.shooting_path import ShootingPath
+from squealbox.limit_cycles.cycles.variation import fly
 
 NEWTON_STEPS, CLOSE = 8, 1e-11
-SHIFT = 1e-2  # first distance from the old cycle, in its size
+SHIFTS = (1e-2, 1e-3, 1e-4)  # first distances from the old cycle, in its size, until the new one is met
+APART = 0.5  # of twice the shift: what half a new cycle is from its start at least; the old one, run twice, is back
 
 
 def settled(path: ShootingPath, x: Any, p: float) -> Any:
@@ -36,4 +39,18 @@ def doubled(path: ShootingPath, x: Any, p: float) -> tuple[Any, Any]:
     e = np.delete(e - rate * (e[path.column] / rate[path.column]), path.column) / path.scale[:-1]
     direction = np.append(e, [0.0, 0.0]) / np.linalg.norm(e)
     twice = np.append(x[:-1], 2.0 * x[-1])
-    return twice + SHIFT * direction[:-1] * path.scale, direction
+    scale = np.append(path.scale, path.span)
+    for shift in SHIFTS:
+        guess = np.append(twice, p) / scale + shift * direction
+        y = corrected(path, guess, direction, scale)
+        if y is not None and half_apart(path, y * scale) > APART * 2.0 * shift:
+            break
+    return twice + shift * direction[:-1] * path.scale, direction
+
+
+def half_apart(path: ShootingPath, unknowns: Any) -> float:
+    """Distance, in the size of the cycle, of the motion after half the period from its start; unknowns end with p."""
+    start, period, p = path.start(unknowns[:-1]), float(unknowns[-2]), float(unknowns[-1])
+    run = fly(path.field(p), start, 0.5 * period, path.rtol)
+    off = np.delete(np.concatenate([run.q[-1], run.qd[-1]]) - start, path.column) / path.scale[:-1]
+    return float(np.linalg.norm(off))
