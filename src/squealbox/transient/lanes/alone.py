@@ -5,7 +5,7 @@ there if |F| <= static N; else it slips in the sense of F. A contact released fr
 force that held it. `_modes.decide` comes to the same for one contact; compiled by `kernel`.
 """
 
-# ruff: noqa: F821  (the places of the rows and the functions of one contact, contact_normal and so on, are generated)
+# ruff: noqa: F821  (the places of the rows, TRIES and the functions of one contact, contact_normal and so on, are generated)
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
 
@@ -22,6 +22,9 @@ def change_alone(A, b, lane, j):
     sliding = A[b + (ROW_ZERO + j) * WIDTH + lane] * normal
     if mode == 0.0:
         held = A[b + (ROW_FORCE + j) * WIDTH + lane]
+        if TRIES:  # that of the last trial, which need not have ended here: what the margin leaves of the limit
+            size = limit - A[b + (ROW_PHI + j) * WIDTH + lane]
+            held = size if held > 0.0 else -size
         A[b + (ROW_HOLD + j * CONTACTS + j) * WIDTH + lane] = 0.0
         slip_on(A, b, lane, j, 1.0 if held > 0.0 else -1.0, held, sliding)
         return True

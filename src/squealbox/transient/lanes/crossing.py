@@ -1,14 +1,24 @@
 """Where in a rejected trial the first event lies, and how long the next trial must be; compiled by `kernel`.
 
-A slip speed or a normal force is the cubic of its values and slopes at both ends of the trial, the margin of a sticking
-contact a straight line. What the interpolation proposes is tried as a step of the method itself and then refined, so an
-event inherits the method's order.
+A slip speed or a normal force is the cubic of its values and slopes at both ends of a trial, or the quintic with those
+of a stage; the margin of a sticking contact is the polynomial of values in stages. What the interpolation proposes is
+tried as a step of the method itself and then refined, so an event inherits the method's order. A trial that ends beside
+its event is moved onto it by Taylor's series: `event_text` tells how far that may be.
 """
 
 # ruff: noqa: F821  (the places of the rows, FUNCTIONS and CONTACTS are generated)
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
 import numpy as np
+
+from squealbox.transient.lanes.roots import (
+    cubic,
+    cubic_root,
+    inverse_parabola,
+    lowest,
+    quartic_root,
+    quintic_root,
+)
 
 CLOSEST, WIDEST = 1e-11, 1e-10  # shares of the step to which an event is located, for the finest and coarsest rtol
 
@@ -37,7 +47,7 @@ def locate(A, b, lane):
         return which
     if which >= 0:
         aim(A, b, lane, which, best, h)
-    elif target >= 0 and A[b + (ROW_END + target) * WIDTH + lane] != 0.0 and not close(A, b, lane, target):
+    elif target >= 0 and A[b + ROW_CLOSE * WIDTH + lane] == 0.0:
         refine(A, b, lane, target, h)
     elif suspicious and h > 1e-3 * A[b + ROW_RESUME * WIDTH + lane]:
         A[b + ROW_H * WIDTH + lane] = 0.5 * h
@@ -45,11 +55,6 @@ def locate(A, b, lane):
     else:
         A[b + ROW_TRUST * WIDTH + lane] = 1.0
     return -1
-
-
-def close(A, b, lane, j):
-    """Whether the trial ended on its event."""
-    return abs(A[b + (ROW_END + j) * WIDTH + lane]) <= A[b + ROW_TOLERANCE * WIDTH + lane]
 
 
 def smooth(A, b, lane, j):
@@ -62,7 +67,7 @@ def smooth(A, b, lane, j):
 def first_crossing(A, b, lane, j, h):
     """(share of the step at which function j first turns negative, or 2; whether a shorter step must tell).
 
-    The function is the cubic of its values and slopes; a margin of sticking is a parabola through its value in a stage.
+    The function is the cubic of its values and slopes; a margin of sticking is the polynomial of its values in stages.
     A shorter step must tell where the cubic has a minimum nearer to zero than it may err: so a short reversal is found.
     """
     f0 = A[b + (ROW_PHI + j) * WIDTH + lane]
@@ -72,8 +77,7 @@ def first_crossing(A, b, lane, j, h):
         if not f0 > 0.0:
             return (0.0 if f1 <= 0.0 else 2.0), False
         if f1 <= 0.0:
-            middle = A[b + (ROW_MIDDLE + j) * WIDTH + lane]
-            return inverse_parabola(0.0, f0, 1.0, f1, MIDDLE, middle), False
+            return margin_root(A, b, lane, j, f0, f1), False
         return 2.0, A[b + (ROW_INNER + j) * WIDTH + lane] <= 0.0
     b1 = f0 + h * A[b + (ROW_RATE + j) * WIDTH + lane] / 3.0
     b2 = f1 - h * A[b + (ROW_RATE_END + j) * WIDTH + lane] / 3.0
@@ -82,33 +86,29 @@ def first_crossing(A, b, lane, j, h):
         return 0.0, False
     if not fresh and not f0 > 0.0:
         return 0.0, False
+    doubt = doubt_of(A, b, lane, f0, b1, b2, f1, h)
+    if min(f0 + 3.0 * b1, 3.0 * b2 + f1, f1) > 0.0 and b1 + b2 > doubt / 3.0:
+        return 2.0, False
     dip = lowest(b1 - f0, b2 - b1, f1 - b2, 0.0625 if fresh else 0.0)
     least = cubic(f0, b1, b2, f1, dip)
-    doubt = doubt_of(A, b, lane, f0, b1, b2, f1, h) * (dip * (1.0 - dip)) ** 2
-    before = 0.0
-    for k in range(1, 17):
-        x = k / 16.0
-        if x > dip and abs(least) <= doubt:
+    if dip < 1.0:
+        if abs(least) <= doubt * (dip * (1.0 - dip)) ** 2:
             return 2.0, True
-        if x > dip > before and least < 0.0:
-            return cubic_root(f0, b1, b2, f1, before, dip), False
-        if not cubic(f0, b1, b2, f1, x) > 0.0:
-            return cubic_root(f0, b1, b2, f1, before, x), False
-        before = x
-    return 2.0, False
+        if least < 0.0:
+            return cubic_root(f0, b1, b2, f1, 0.0, dip), False
+    if f1 > 0.0:
+        return 2.0, False
+    return cubic_root(f0, b1, b2, f1, dip if dip < 1.0 else 0.0, 1.0), False
 
 
-def lowest(d0, d1, d2, first):
-    """Where the cubic with these differences of its Bernstein coefficients is least; 1 if not inside, behind `first`.
-
-    A contact that has just been released leaves with v' = 0, so round-off makes a minimum at its very start.
-    """
-    bend = d1 - d0
-    square = bend * bend - d0 * (d0 - 2.0 * d1 + d2)
-    if not square >= 0.0:
-        return 1.0
-    x = -d0 / (bend + np.sqrt(square))
-    return x if first < x < 1.0 else 1.0
+def margin_root(A, b, lane, j, f0, f1):
+    """Where the margin of a sticking contact turns negative, as a share of the step, by its values in stages."""
+    y1 = A[b + (ROW_PROBE + j) * WIDTH + lane]
+    if PROBES == 1:
+        return inverse_parabola(0.0, f0, 1.0, f1, PROBE_0, y1)
+    y2 = A[b + (ROW_PROBE + CONTACTS + j) * WIDTH + lane]
+    y3 = A[b + (ROW_PROBE + 2 * CONTACTS + j) * WIDTH + lane]
+    return quartic_root((0.0, PROBE_0, PROBE_1, PROBE_2, 1.0), (f0, y1, y2, y3, f1))
 
 
 def doubt_of(A, b, lane, b0, b1, b2, b3, h):
@@ -118,42 +118,11 @@ def doubt_of(A, b, lane, b0, b1, b2, b3, h):
     where f'' = 6 D / h^2 is the larger one of both ends, or w times the larger slope should they be at a point of
     inflection. Four times that is taken. Steps below 1e-3 / w are not in doubt.
     """
-    angle = 2e-3 * np.pi * h / A[b + ROW_WINDOW * WIDTH + lane]
+    angle = A[b + ROW_HIGHEST * WIDTH + lane] * h
     if angle < 1e-3:
         return 0.0
     bend = max(abs(b0 - 2.0 * b1 + b2), abs(b1 - 2.0 * b2 + b3))
     return angle * angle * max(bend, 0.5 * angle * max(abs(b1 - b0), abs(b3 - b2)))
-
-
-def cubic(b0, b1, b2, b3, x):
-    """The cubic of four Bernstein coefficients."""
-    y = 1.0 - x
-    return y * y * (y * b0 + 3.0 * x * b1) + x * x * (3.0 * y * b2 + x * b3)
-
-
-def cubic_root(b0, b1, b2, b3, low, high):
-    """Where it turns negative between low and high, by the Illinois rule."""
-    f_low = cubic(b0, b1, b2, b3, low)
-    f_high = cubic(b0, b1, b2, b3, high)
-    if not f_low > 0.0:  # a contact that has just begun to slip starts from zero
-        low += 1e-3 * (high - low)
-        f_low = cubic(b0, b1, b2, b3, low)
-        if not f_low > 0.0:
-            return low
-    for _ in range(12):
-        x = (low * f_high - high * f_low) / (f_high - f_low)
-        f = cubic(b0, b1, b2, b3, x)
-        if f > 0.0:
-            low = x
-            f_low = f
-            f_high *= 0.5
-        else:
-            high = x
-            f_high = f
-            f_low *= 0.5
-        if high - low < 1e-7 or f == 0.0:
-            break
-    return x
 
 
 def aim(A, b, lane, j, theta, h):
@@ -174,7 +143,14 @@ def aim(A, b, lane, j, theta, h):
     A[b + ROW_HIGH_PHI * WIDTH + lane] = f1
     A[b + ROW_HIGH_RATE * WIDTH + lane] = A[b + (ROW_RATE_END + j) * WIDTH + lane]
     A[b + ROW_TURNS * WIDTH + lane] = 0.0
-    A[b + ROW_H * WIDTH + lane] = theta * h
+    x = theta * h
+    if PROBES > 1 and j < CONTACTS and smooth(A, b, lane, j):
+        ends = (f0, A[b + (ROW_RATE + j) * WIDTH + lane], h, f1, A[b + (ROW_RATE_END + j) * WIDTH + lane])
+        early = A[b + (ROW_EARLY + j) * WIDTH + lane]
+        better = quintic_root(ends, PROBE_0 * h, early, A[b + (ROW_EARLY_RATE + j) * WIDTH + lane], x)
+        if 0.0 < better < h:
+            x = better
+    A[b + ROW_H * WIDTH + lane] = x
 
 
 def refine(A, b, lane, j, h):
@@ -201,14 +177,14 @@ def refine(A, b, lane, j, h):
     turns = A[b + ROW_TURNS * WIDTH + lane] + 1.0
     A[b + ROW_TURNS * WIDTH + lane] = turns
     x = 0.5 * (low + high)
-    slope = A[b + (ROW_RATE_END + j) * WIDTH + lane]
-    if smooth(A, b, lane, j) and slope < 0.0:
-        step = h - f / slope
-        if turns < 2.0:
-            step = quintic_root(points, h, f, slope, step)
-        if low < step < high:
-            x = step
-    elif turns < 10.0 or int(turns) % 3 != 0:
+    slope = A[b + ROW_PACE * WIDTH + lane] / h
+    known = smooth(A, b, lane, j)
+    step = h - f / slope if slope < 0.0 else low
+    if known and slope < 0.0 and turns < 2.0:
+        step = quintic_root(points, h, f, slope, step)
+    if low < step < high and (known or (PROBES > 1 and turns < 4.0)):
+        x = step
+    elif not known and (turns < 10.0 or int(turns) % 3 != 0):
         x = inverse_parabola(
             low, A[b + ROW_LOW_PHI * WIDTH + lane], high, A[b + ROW_HIGH_PHI * WIDTH + lane], third, f_third
         )
@@ -216,47 +192,3 @@ def refine(A, b, lane, j, h):
         A[b + ROW_TOLERANCE * WIDTH + lane] = np.inf
         x = h
     A[b + ROW_H * WIDTH + lane] = x
-
-
-def inverse_parabola(low, f_low, high, f_high, third, f_third):
-    """Where the parabola x(f) through three points has f = 0; the chord's root if that lies outside the bracket."""
-    x = 0.5 * (low + high)
-    if not f_low > f_high:
-        return x
-    chord = (low * f_high - high * f_low) / (f_high - f_low)
-    if low < chord < high:
-        x = chord
-    if f_third != f_low and f_third != f_high:
-        bend = ((third - low) / (f_third - f_low) - (high - low) / (f_high - f_low)) / (f_third - f_high)
-        curved = chord + bend * f_low * f_high
-        if low < curved < high:
-            x = curved
-    return x
-
-
-def quintic_root(points, h, f, slope, guess):
-    """Root near h of the quintic with given values and slopes at 0, at h and at an end: Newton's form over h, h, 0, 0.
-
-    `points` holds (f, slope) at 0, then the end and its (f, slope).
-    """
-    f0, rate0, end, f1, rate1 = points
-    back = (f - f0) / h
-    on = (f1 - f0) / end
-    bend = (back - rate0) / h
-    twist = (on - rate0) / end
-    two = (slope - back) / h
-    three = (two - bend) / h
-    across = (twist - bend) / (end - h)
-    four = (across - three) / (end - h)
-    five = ((((rate1 - on) / end - twist) / end - across) / (end - h) - four) / (end - h)
-    x = guess
-    for _ in range(3):
-        d = x - h
-        outer = four + (x - end) * five
-        third = three + x * outer
-        second = two + x * third
-        rate = slope + d * (2.0 * second + d * (third + x * (outer + x * five)))
-        if not rate < 0.0:
-            return guess
-        x -= (f + d * (slope + d * second)) / rate
-    return x

@@ -1,6 +1,9 @@
 """The text that tells whether a step is free of events, for the writer of the step in `step_text`."""
 
+from collections.abc import Sequence
 from typing import Any
+
+import numpy as np
 
 from squealbox.transient.lanes.shape import Shape
 
@@ -10,12 +13,25 @@ def minus(terms: list[str]) -> list[str]:
     return ["-" + term for term in terms]
 
 
+def probes(rule: Any) -> list[int]:
+    """Stages inside a step whose states tell most of it: the last, or three of a method with many."""
+    inside = [k for k in range(1, rule.stages) if 0.2 < rule.c[k] < 0.9]
+    return [inside[-4], inside[-2], inside[-1]] if len(inside) > 6 else inside[-1:]
+
+
+def slope_weights(places: Sequence[float]) -> list[float]:
+    """Weights of the values at these places for the slope at the last, 1, of the polynomial through them."""
+    powers = np.vander(np.array(places), increasing=True).T
+    return [float(x) for x in np.linalg.solve(powers, np.arange(float(len(places))))]
+
+
 class EventText:
     """Writes the event functions; the rest of a `Step` gives it lines, rows and signals."""
 
     shape: Shape
     rule: Any
-    middle_stage: int
+    probes: list[int]
+    weights: list[float]
     put: Any
     row: Any
     keep: Any
@@ -27,14 +43,15 @@ class EventText:
 
         Each function that varies smoothly is a cubic between its values and slopes at both ends; it has no root when
         the cubic's Bernstein coefficients stay positive with a margin. The margin of a sticking contact is looked at
-        in every stage.
+        in every stage. A trial that aims at an event lands when it ends beside it; `share` of the step is missing.
         """
         shape, end = self.shape, contact[-1]
         m = shape.m
         target, trust = self.row("target"), self.row("trust")
         self.put(f"landing = {target} >= 0.0")
         self.put("clear = fine")
-        self.put("landed_at = 0.0 * t_")
+        self.put(f"angle = {self.row('highest')} * hh")
+        self.put("gap = pace = held = 0.0 * t_")
         for j in range(shape.functions):
             c = j % m
             if j < m:
@@ -48,29 +65,89 @@ class EventText:
             phi, fresh = self.row(f"phi{j}"), self.row(f"fresh{j}") if j < m else "0.0 * t_"
             self.put(f"left{j} = {phi} + hh * rate0{j} * {1 / 3!r}")
             self.put(f"right{j} = value{j} - hh * rate1{j} * {1 / 3!r}")
-            self.put(f"room{j} = 0.2 * (abs(value{j} - {phi}) + abs(left{j} - {phi}) + abs(right{j} - value{j}))")
-            self.put(f"room{j} = room{j} * (1.0 * (abs(rate0{j}) + abs(rate1{j}) > 0.0))")
+            self.doubt(j, phi, self.sticks(j) if j < m else None)
             self.put(f"inner{j} = {inner}")
-            self.put(f"inside{j} = (left{j} > room{j} * (1.0 - {fresh})) & (right{j} > room{j}) & (inner{j} > 0.0)")
+            self.put(f"slack = 1e-9 * {fresh} * (abs(right{j}) + abs(value{j}))")
+            self.put(f"inside{j} = ({phi} + 3.0 * left{j} > -1.0 * slack) & (left{j} + right{j} > doubt{j})")
+            self.put(f"inside{j} = inside{j} & (3.0 * right{j} + value{j} > 0.0) & (inner{j} > 0.0)")
             self.put(f"inside{j} = inside{j} | ({trust} > 0.5)")
             self.put(f"here{j} = {target} == {float(j)}")
-            self.put(f"sure{j} = here{j} | ((value{j} > room{j} * (1.0 - {trust})) & inside{j})")
+            self.put(f"sure{j} = here{j} | ((value{j} > 0.0) & inside{j})")
             self.put(f"clear = clear & sure{j}")
-            self.put(f"landed_at = landed_at + 1.0 * here{j} * abs(value{j})")
-        self.put(f"close = landed_at <= {self.row('tolerance')}")
+            self.put(f"steep{j} = hh * rate1{j}")
+            if j < m:
+                fall = self.fall(phi, [part["margin"][j] for part in contact])
+                self.put(f"steep{j} = steep{j} + {self.sticks(j)} * {fall}")
+                self.put(f"held = held + 1.0 * here{j} * {self.sticks(j)}")
+            self.put(f"gap = gap + 1.0 * here{j} * value{j}")
+            self.put(f"pace = pace + 1.0 * here{j} * steep{j}")
+        self.put(f"reach = minimum({self.reach!r} * rtol_, 1e-3) * (1.0 - 0.9 * held)")
+        self.put("mended = (abs(gap) <= -1.0 * reach * pace) & (t_ + 1.01 * hh < t_end_)")
+        self.put(f"close = mended | (abs(gap) <= {self.row('tolerance')})")
         self.put("accepted = clear & (close | ~landing)")
+        self.put("share = where(landing & accepted & mended, -1.0 * gap / minimum(pace, -1e-300), 0.0)")
+        self.put("shift = share * hh")
         self.put("event = fine & ((landing & accepted) | ~accepted)")
         for j in range(shape.functions):
             for name, value in (("end", "value"), ("rate", "rate0"), ("rate_end", "rate1"), ("inner", "inner")):
                 self.keep(f"{name}{j}", f"{value}{j}")
+        self.keep("close", "1.0 * close")
+        self.keep("pace", "pace")
         for c in range(m):
-            self.keep(f"middle{c}", contact[self.middle_stage - 1]["margin"][c])
+            for k, stage in enumerate(self.probes):
+                self.keep(f"probe{k}_{c}", contact[stage - 1]["margin"][c])
+            if len(self.probes) > 1:
+                self.early(c, contact[self.probes[0] - 1])
+
+    def doubt(self, j: int, first: str, sticks: str | None) -> None:
+        """`doubt{j}`: a third of the number D by which the function may differ from its cubic, D (x (1 - x))^2.
+
+        See `crossing.doubt_of`. As a quartic in Bernstein's form the sum differs from the cubic in the middle alone.
+        """
+        self.put(f"down, across, up = left{j} - {first}, right{j} - left{j}, value{j} - right{j}")
+        self.put("bend = maximum(abs(across - down), abs(up - across))")
+        self.put("bend = maximum(bend, 0.5 * angle * maximum(abs(down), abs(up)))")
+        self.put(f"doubt{j} = {1 / 3!r} * angle * angle * bend" + (f" * (1.0 - {sticks})" if sticks else ""))
+
+    def early(self, c: int, part: Any) -> None:
+        """Value and slope at the first probe of the function of a contact that does not stick."""
+        stage = self.probes[0]
+        velocity = [f"v{i}s{stage}" for i in range(self.shape.n)]
+        time = f"t_ + {float(self.rule.c[stage])!r} * hh"
+        s, wide = self.row(f"s{c}"), self.row(f"open{c}") if self.shape.unilateral[c] else None
+        parts = self.signal(c, f"V{c}", time, rate=True) + minus(self.product(f"t{c}", part["a"]))
+        value, rate = f"{s} * {part['speed'][c]}", f"{s} * ({' + '.join(parts) if parts else '0.0 * t_'})"
+        if wide:
+            value += f" - {wide} * {part['normal'][c]}"
+            rate += f" - {wide} * {self.normal_rate(c, velocity, time)}"
+        self.keep(f"early{c}", value)
+        self.keep(f"early_rate{c}", rate.replace("+ -", "- "))
+
+    def fall(self, first: str, stages: list[str]) -> str:
+        """Slope at the end, times the step, of what has these values at the start and in each stage."""
+        values = [first, *(stages[k - 1] for k in self.probes), stages[-1]]
+        return "(" + " + ".join(f"{w!r} * {x}" for w, x in zip(self.weights, values, strict=True)) + ")"
+
+    def mended(self, contact: Any, a: Any, q1: Any, v1: Any, a1: Any) -> tuple[list[str], list[str], list[str]]:
+        """The state at the event beside which a trial has landed: Taylor's series over `shift`; the same elsewhere."""
+        for i in range(self.shape.n):
+            self.put(f"jerk{i} = share * {self.fall(a[i], [x['a'][i] for x in contact])}")
+            self.put(f"q_at{i} = {q1[i]} + shift * ({v1[i]} + 0.5 * shift * {a1[i]})")
+            self.put(f"v_at{i} = {v1[i]} + shift * ({a1[i]} + 0.5 * jerk{i})")
+            self.put(f"a_at{i} = {a1[i]} + jerk{i}")
+        q2, v2, a2 = ([f"{x}_at{i}" for i in range(self.shape.n)] for x in "qva")
+        return q2, v2, a2
+
+    def sticks(self, c: int) -> str:
+        """1 while a contact sticks, else 0."""
+        s = self.row(f"s{c}")
+        return f"(1.0 - {s} * {s}" + (f" - {self.row(f'open{c}')})" if self.shape.unilateral[c] else ")")
 
     def first_function(self, c: int, contact: Any, v: Any, a: Any, v1: Any, a1: Any) -> tuple[str, str, str, str]:
         """(value at the end, slopes at both ends, least value inside) of the function of a contact's mode."""
         shape, end = self.shape, contact[-1]
         s, wide = self.row(f"s{c}"), self.row(f"open{c}") if shape.unilateral[c] else None
-        stick = f"(1.0 - {s} * {s}" + (f" - {wide})" if wide else ")")
+        stick = self.sticks(c)
         rates = []
         for vector, time in ((a, "t_"), (a1, "t_ + hh")):
             parts = self.signal(c, f"V{c}", time, rate=True) + minus(self.product(f"t{c}", vector))
@@ -99,6 +176,14 @@ class EventText:
         """N0' + n . q'."""
         parts = self.signal(self.shape.m + c, f"N0{c}", time, rate=True) + self.product(f"n{c}", v)
         return f"({' + '.join(parts) if parts else '0.0 * t_'})"
+
+    @property
+    def reach(self) -> float:
+        """How far beside its event a trial may end, in steps and parts of rtol; a tenth of it for a sticking contact.
+
+        Taylor's series takes the third derivative, and for a sticking contact the slope of its margin, from the stages.
+        """
+        return 1000.0 if len(self.probes) > 1 else 100.0
 
     @property
     def velocity(self) -> list[str]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid
-from squealbox.transient.lanes import alone, crossing, series_samples, service
+from squealbox.transient.lanes import alone, crossing, roots, series_samples, service
 from squealbox.transient.lanes.formulas import formulas
 from squealbox.transient.lanes.shape import LANES, ORDER, UNIT_OF_WINDOW, Shape, layout, parameter_rows
 from squealbox.transient.lanes.step_text import Step
@@ -42,11 +42,12 @@ PLACES = {
     "ROW_WINDOW": "window", "ROW_BREAK": "break0", "ROW_TARGET": "target", "ROW_TOLERANCE": "tolerance",
     "ROW_TRUST": "trust", "ROW_RESUME": "resume", "ROW_EVENTS": "events", "ROW_WINDOW_START": "window_start",
     "ROW_WINDOW_EVENTS": "window_events", "ROW_TURNS": "turns", "ROW_LOW": "low", "ROW_LOW_PHI": "low_phi",
-    "ROW_HIGH": "high", "ROW_HIGH_PHI": "high_phi", "ROW_HIGH_RATE": "high_rate", "ROW_MIDDLE": "middle0",
+    "ROW_HIGH": "high", "ROW_HIGH_PHI": "high_phi", "ROW_HIGH_RATE": "high_rate", "ROW_PROBE": "probe0_0",
     "ROW_SLIPS": "s0", "ROW_OPENED": "open0", "ROW_HOLD": "h0_0", "ROW_PHI": "phi0", "ROW_FRESH": "fresh0",
     "ROW_END": "end0", "ROW_RATE": "rate0", "ROW_RATE_END": "rate_end0", "ROW_INNER": "inner0", "ROW_FORCE":
     "force0", "ROW_ZERO": "zero0", "ROW_OWN_G": "own_g0", "ROW_NEXT_SAMPLE": "next", "ROW_SAMPLE": "sample",
-    "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0", "ROW_TERM": "term0_0",
+    "ROW_HIGHEST": "highest", "ROW_CLOSE": "close", "ROW_PACE": "pace", "ROW_EARLY": "early0",
+    "ROW_EARLY_RATE": "early_rate0", "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0", "ROW_TERM": "term0_0",
 }  # fmt: skip
 
 
@@ -72,7 +73,11 @@ def source(shape: Shape) -> str:
         step.text(),
     ]
     fixed |= {name: rows.places.get(row, 0) for name, row in PLACES.items()} | {"WIDTH": LANES}
-    fixed |= {"TERMS": ORDER + 2, "UNIT_OF_WINDOW": UNIT_OF_WINDOW} if shape.taylor else {"MIDDLE": step.middle}
+    if shape.taylor:
+        fixed |= {"TERMS": ORDER + 2, "UNIT_OF_WINDOW": UNIT_OF_WINDOW}
+    else:
+        at = [float(step.rule.c[k]) for k in step.probes]
+        fixed |= {"PROBES": len(at)} | {f"PROBE_{k}": place for k, place in enumerate((at * 3)[:3])}
     first = rows.places["o0_0_0"] if shape.observers else 0
     fixed |= {
         "DOFS": shape.n, "CONTACTS": shape.m, "FUNCTIONS": shape.functions, "GIVEN": len(parameter_rows(shape)),
@@ -84,7 +89,8 @@ def source(shape: Shape) -> str:
     for module in (_motion, *((_rigid, _impacts, _modes, _events) if shape.exact else ())):
         parts += _engine.definitions(module, fixed)
     parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith("COMPLETED")]
-    needed = {crossing: fixed["TRIES"], alone: shape.simple, series_samples: shape.taylor and shape.samples}
+    needed = {roots: fixed["TRIES"], crossing: fixed["TRIES"], alone: shape.simple}
+    needed |= {series_samples: shape.taylor and shape.samples}
     for module in (*(each for each, used in needed.items() if used), service):
         parts += _engine.definitions(module, fixed, entries=("run",))
     return "\n\n".join(parts) + "\n"

@@ -90,7 +90,7 @@ def parameter_rows(shape: Shape) -> list[str]:
         names += [f"zero{c}" for c in range(m)] + [f"own_g{c}" for c in range(m)]
     names += [f"start{k}" for k in range(2 * n)] + [f"atol{k}" for k in range(2 * n)]
     names += [f"break{k}" for k in range(shape.breaks)]
-    return [*names, "rtol", "width", "window", "largest", "least", "first"]
+    return [*names, "rtol", "width", "window", "highest", "largest", "least", "first"]
 
 
 def entries(n: int, m: int) -> list[str]:
@@ -109,7 +109,9 @@ def layout(shape: Shape) -> Rows:
     rows.add(*(f"q{i}" for i in range(n)), *(f"v{i}" for i in range(n)), *(f"a{i}" for i in range(n)))
     if shape.exact:
         rows.add("target", "tolerance", "trust", "resume", "events", "window_start", "window_events", "turns")
-        rows.add("low", "low_phi", "high", "high_phi", "high_rate", *(f"middle{c}" for c in range(m)))
+        rows.add("low", "low_phi", "high", "high_phi", "high_rate", "close", "pace")
+        rows.add(*(f"probe{k}_{c}" for k in range(3) for c in range(m)))
+        rows.add(*(f"{name}{c}" for name in ("early", "early_rate") for c in range(m)))
         rows.add(*(f"s{c}" for c in range(m)), *(f"open{c}" for c in range(m)))
         rows.add(*(f"force{c}" for c in range(m)))
         rows.add(*(f"h{c}_{b}" for c in range(m) for b in range(m)))

@@ -13,7 +13,7 @@ from typing import Any
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
 from squealbox.transient._motion import ARCTAN, RAW
-from squealbox.transient.lanes.event_text import EventText, minus
+from squealbox.transient.lanes.event_text import EventText, minus, probes, slope_weights
 from squealbox.transient.lanes.formulas import is_table
 from squealbox.transient.lanes.shape import LANES, Shape, layout
 from squealbox.transient.methods import tableau
@@ -37,9 +37,8 @@ class Step(EventText):
         self.scales: dict[float, str] = {}
         self.starting: dict[str, list[str]] | None = None
         self.rule = tableau(shape.tableau)
-        inside = [k for k in range(1, self.rule.stages) if 0.2 < self.rule.c[k] < 0.9]
-        self.middle_stage = inside[-1]  # the last stage inside the step, whose state is a good one
-        self.middle = float(self.rule.c[self.middle_stage])
+        self.probes = probes(self.rule)
+        self.weights = slope_weights([0.0, *self.rule.c[self.probes], 1.0])
 
     def put(self, line: str) -> None:
         """One more line."""
@@ -196,11 +195,12 @@ class Step(EventText):
         self.put("fine = square <= 1.0")
         if shape.exact:
             self.events(contact, v, a, q1, v1, a1)
+            q1, v1, a1 = self.mended(contact, a, q1, v1, a1)
         else:
             self.put("accepted = fine")
         self.forget()
         self.control()
-        self.put("t1 = where(last, t_end_, t_ + hh)")
+        self.put("t1 = where(last, t_end_, t_ + hh" + (" + shift)" if shape.exact else ")"))
         self.observe(contact, (q, v, a), (q1, v1, a1))
         self.advance((q, v, a), (q1, v1, a1))
         head, tail = ["@traced", "def trial(A, b):"], ["    return flags", CALLED]
@@ -290,10 +290,10 @@ class Step(EventText):
         if shape.exact:
             self.keep("h", "where(event, hh, h_new)")
             for j in range(shape.m):
-                self.keep(f"phi{j}", f"where(accepted, value{j}, {self.row(f'phi{j}')})")
+                self.keep(f"phi{j}", f"where(accepted, value{j} + share * steep{j}, {self.row(f'phi{j}')})")
                 self.keep(f"fresh{j}", f"where(accepted, 0.0, {self.row(f'fresh{j}')})")
             for j in range(shape.m, shape.functions):
-                self.keep(f"phi{j}", f"where(accepted, value{j}, {self.row(f'phi{j}')})")
+                self.keep(f"phi{j}", f"where(accepted, value{j} + share * steep{j}, {self.row(f'phi{j}')})")
             for c, force in enumerate(self.end["force"]):
                 self.keep(f"force{c}", force)
             self.keep("trust", f"where(accepted, 0.0, {self.row('trust')})")
@@ -336,16 +336,25 @@ class Step(EventText):
                 f"Motion({t}, {', '.join(x[i] for x in state)})" for t, state in (("t_", old), ("t1", new))
             )
         if of == "contact":
-            speed = " + ".join(self.signal(i, f"V{i}", "t_") + minus(self.product(f"t{i}", old[1]))) or "0.0 * t_"
-            normal = " + ".join(self.signal(self.shape.m + i, f"N0{i}", "t_") + self.product(f"n{i}", old[0]))
+            before, after = self.sliding(i, old, "t_"), (end["speed"][i], end["normal"][i])
+            if self.shape.exact:  # the state may have been moved onto an event
+                after = self.sliding(i, new, "t1")
             mode = self.row(f"s{i}") if self.shape.exact else f"(1.0 * ({end['speed'][i]} > 0.0) - 0.5) * 2.0"
             if self.shape.exact and self.shape.unilateral[i]:  # s is 0 in both; only a contact that sticks counts as 0
                 mode = f"({mode} + 2.0 * {self.row(f'open{i}')})"
             work = self.row(f"work{i}")
-            first = f"Sliding(t_, {speed}, {normal or '0.0 * t_'}, {mode}, {work})".replace("+ -", "- ")
-            return first, f"Sliding(t1, {end['speed'][i]}, {end['normal'][i]}, {mode}, worked{i})"
+            return (
+                f"Sliding(t_, {', '.join(before)}, {mode}, {work})",
+                f"Sliding(t1, {', '.join(after)}, {mode}, worked{i})",
+            )
         tuples = [", ".join(f"({', '.join(x[:n])},)" for x in state) for state in (old, new)]
         return f"State(t_, {tuples[0]})", f"State(t1, {tuples[1]})"
+
+    def sliding(self, c: int, state: Any, time: str) -> tuple[str, str]:
+        """Sliding velocity and normal force of a contact."""
+        speed = self.signal(c, f"V{c}", time) + minus(self.product(f"t{c}", state[1]))
+        normal = self.signal(self.shape.m + c, f"N0{c}", time) + self.product(f"n{c}", state[0])
+        return tuple(" + ".join(x).replace("+ -", "- ") or "0.0 * t_" for x in (speed, normal))  # type: ignore[return-value]
 
     def work(self, c: int, contact: Any, old: Any, new: Any) -> None:
         """Work of a contact's friction in the step by the weights of the method, added to its row."""
@@ -358,7 +367,11 @@ class Step(EventText):
             speed = old[1] if j == 0 else [f"v{i}s{j}" for i in range(n)]
             along = self.product(f"d{c}", speed)
             parts.append(f"{float(weight)!r} * {force} * ({' + '.join(along) if along else '0.0 * t_'})")
-        self.put(f"worked{c} = {self.row(f'work{c}')} + hh * ({' + '.join(parts)})")
+        worked = f"{self.row(f'work{c}')} + hh * ({' + '.join(parts)})"
+        if self.shape.exact:
+            along = self.product(f"d{c}", [f"v{i}s{rule.stages}" for i in range(n)])
+            worked += f" + shift * {self.end['force'][c]} * ({' + '.join(along) if along else '0.0 * t_'})"
+        self.put(f"worked{c} = {worked}")
         self.keep(f"work{c}", f"where(accepted, worked{c}, work{c}_)")
 
     def starting_force(self, c: int, old: Any) -> str:

@@ -149,7 +149,7 @@ def _tolerances(system: System, method: Method, values: dict[str, Any], exact: b
     if method.tableau == TAYLOR:
         largest = np.minimum(duration, PARTS * period / 6.0)
     out["largest"] = largest if method.largest_step is None else np.minimum(largest, method.largest_step)
-    out["least"], out["window"] = 1e-14 * period, 1e-3 * period
+    out["least"], out["window"], out["highest"] = 1e-14 * period, 1e-3 * period, highest
     first = out["largest"] if method.tableau == TAYLOR else 1e-3 * period
     out["first"] = first if method.first_step is None else np.full(np.shape(period), method.first_step)
     return out
