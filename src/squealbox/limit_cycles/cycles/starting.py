@@ -6,7 +6,7 @@ import numpy as np
 
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.limit_cycles.cycles.field import Field
-from squealbox.limit_cycles.cycles.variation import fly
+from squealbox.limit_cycles.cycles.variation import PERIOD_STEPS, fly
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Outcome
 from squealbox.stability import Mode, complex_modes
@@ -16,6 +16,8 @@ from squealbox.transient import Trajectory
 PERIODS = 300.0  # of the lowest mode, of a run that is to settle
 GUESS_RTOL = 1e-9
 UNBOUNDED = 1e100  # [m, m/s]; squares of what is below it are still numbers
+LONG_STEPS = 2_000_000  # of the run that is to settle
+STIFF = "one period of the slowest mode takes too many steps: damping, or what is held, is far faster than it"
 STILL = 1e-5  # share of the sliding speed; a run that swings less has settled on steady sliding
 
 
@@ -33,8 +35,12 @@ def first_guess(field: Field, start: Any, settle: float | None) -> tuple[Any, fl
     x = _state(field, start)
     slowest = _slowest_period(field)
     duration = PERIODS * slowest if settle is None else settle
+    if duration > slowest:  # where the first of its periods is out of reach, all are
+        run = fly(field, x, slowest, GUESS_RTOL, np.array([slowest]))
+        if run.outcome == "step_limit":
+            return x, slowest, Outcome("no_cycle", f"{STIFF}: {run.outcome.message}", **run.outcome.evidence)
     if duration > 0.0:
-        run = fly(field, x, duration, GUESS_RTOL)
+        run = fly(field, x, duration, GUESS_RTOL, most=LONG_STEPS)
         if not run.outcome.ok:
             return x, slowest, Outcome("no_cycle", f"the first run ended early: {run.outcome.message}")
         x = np.concatenate([run.q[-1], run.qd[-1]])
@@ -43,7 +49,7 @@ def first_guess(field: Field, start: Any, settle: float | None) -> tuple[Any, fl
 
 def first_return(field: Field, x: Any, period: float) -> tuple[Any, float, Outcome]:
     """A state in fast slip on the motion from x, and the time after which the motion comes back to it."""
-    run = fly(field, x, 12.0 * period, GUESS_RTOL)
+    run = fly(field, x, 12.0 * period, GUESS_RTOL, most=12 * PERIOD_STEPS)
     if not run.outcome.ok:
         return x, period, Outcome("no_cycle", f"the search for a return ended early: {run.outcome.message}")
     states = np.hstack([run.q, run.qd])

@@ -16,6 +16,8 @@ from squealbox.limit_cycles.cycles.saltation import saltation
 from squealbox.result import Outcome
 from squealbox.transient import Method, Trajectory, simulate
 
+PERIOD_STEPS = 100_000  # a stick-slip period takes some hundred: where one takes more, no cycle is in reach
+
 
 @dataclass(frozen=True, eq=False)
 class Flight:
@@ -36,11 +38,13 @@ class Flight:
         return self.motion.outcome
 
 
-def fly(field: Field, x: Any, duration: float, rtol: float = 1e-13, times: Any = None) -> Trajectory:
-    """The motion from x over `duration` [s], with tolerances relative to the speeds in it."""
+def fly(
+    field: Field, x: Any, duration: float, rtol: float = 1e-13, times: Any = None, most: int = PERIOD_STEPS
+) -> Trajectory:
+    """The motion from x over `duration` [s], with tolerances relative to the speeds in it, in at most `most` steps."""
     n = field.size
     speed = max(float(np.max(np.abs(x[n:]), initial=0.0)), float(np.max(np.abs(field.V), initial=0.0)))
-    method = Method("dormand-prince-8", rtol=rtol, atol=1e-2 * rtol * (speed or 1.0))
+    method = Method("dormand-prince-8", rtol=rtol, atol=1e-2 * rtol * (speed or 1.0), most_steps=most)
     start = (x[:n], x[n:])
     return simulate(field.system, duration, start, times, method, field.contact, width=field.width)
 
