@@ -214,3 +214,10 @@ def test_the_step_is_packed(tmp_path, monkeypatch):
     step = re.search(r"^_ZN\w+?step\w*:\n(.*?)\n\.Lfunc_end", text, re.MULTILINE | re.DOTALL).group(1)
     packed, scalar = (re.findall(rf"\tv?(?:add|sub|mul|div|fn?m\w+){kind}\t", step) for kind in ("pd", "sd"))
     assert len(packed) > 200 > len(scalar) == 0
+
+
+def test_a_kernel_is_another_file_when_what_writes_it_changes():
+    """The modules a kernel imports write instructions that its text does not show; their digest is in the text."""
+    imported = re.findall(r"^from squealbox\.transient\.lanes\.(\w+) import", kernel.HEAD + kernel.SERIES, re.MULTILINE)
+    assert {f"{name}.py" for name in imported} == set(kernel.WRITERS)
+    assert kernel.digest(kernel.WRITERS) != kernel.digest(kernel.WRITERS[:1])

@@ -20,6 +20,7 @@ from squealbox.transient.lanes.vectors import (
     Given, apart, arctan, bits, cos, exp, forget, lane_tanh, load, log, maximum, minimum, rough_power, sin, sqrt, store,
     take, traced, traced_as_written, where,
 )
+# written by modules whose texts have the digest {digest}: a change of theirs makes another file
 {more}
 
 Motion = namedtuple("Motion", "t, q, qd, qdd")
@@ -33,8 +34,8 @@ from squealbox.transient.lanes.series import (
 )
 from squealbox.transient.lanes.taylor import grow, reach, ready, surely_slips
 from squealbox.transient.lanes.taylor_events import step_end
-# of their texts {digest}, so that a change of theirs makes another file
 """
+WRITERS = ("vectors.py", "series.py", "taylor.py", "taylor_events.py")  # the first of every kernel
 PLACES = {
     "ROW_JOB": "job", "ROW_ALIVE": "alive", "ROW_T": "t", "ROW_H": "h", "ROW_T_END": "t_end", "ROW_TRIES": "tries",
     "ROW_TAKEN": "taken", "ROW_CAUTIOUS": "cautious", "ROW_CODE": "code", "ROW_MOST": "most", "ROW_Q": "q0",
@@ -68,7 +69,7 @@ def source(shape: Shape) -> str:
     laws, schedules = {kind for kind, _ in shape.laws}, {kind for terms in shape.signals for kind, _ in terms}
     parts = [
         *_engine.head(inline=False, own=shape.own, laws=laws, schedules=schedules),
-        HEAD.format(more=SERIES.format(digest=_digest()) if shape.taylor else ""),
+        HEAD.format(digest=digest(WRITERS[: None if shape.taylor else 1]), more=SERIES if shape.taylor else ""),
         *formulas(shape),
         step.text(),
     ]
@@ -96,10 +97,9 @@ def source(shape: Shape) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _digest() -> str:
-    """Of the modules that write the instructions of a Taylor step, whose texts are not in the generated file."""
-    folder = Path(__file__).parent
-    texts = [(folder / name).read_bytes() for name in ("vectors.py", "series.py", "taylor.py", "taylor_events.py")]
+def digest(names: tuple[str, ...]) -> str:
+    """Of the modules that write a kernel's instructions and whose texts are not in the generated file."""
+    texts = [(Path(__file__).parent / name).read_bytes() for name in names]
     return hashlib.sha256(b"".join(texts)).hexdigest()[:20]
 
 
