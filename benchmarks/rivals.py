@@ -15,6 +15,7 @@ the fastest setting exact enough is compared with our fastest such; where none i
 `PATIENCE` a trajectory is timed once, without a repetition. Needs the extra `bench`; words name the rivals to be run.
 """
 
+import itertools
 import sys
 import time
 
@@ -27,6 +28,7 @@ from squealbox import simulate_ensemble
 SIDE = 32
 WANTED = (1e-3, 1e-5, 1e-6)
 PATIENCE = 1.0  # seconds of the processor for each trajectory
+METHODS = ("taylor", "dormand-prince-8")
 OURS = (1e-3, 1e-5, 1e-7, 1e-8)
 
 
@@ -56,15 +58,15 @@ def error_of(ends, truth, largest):
 def ours(system, truth, largest):
     """(error, time) of our ensembles over the whole map."""
     rows = []
-    for rtol in OURS:
+    for method, rtol in itertools.product(METHODS, OURS):
 
-        def run(rtol=rtol):
-            return simulate_ensemble(system, None, ensembles.DURATION, rtol=rtol, observe=(), threads=1)
+        def run(method=method, rtol=rtol):
+            return simulate_ensemble(system, None, ensembles.DURATION, method, (), rtol=rtol, threads=1)
 
         found = run()
         spent = np.median([timed(run)[1] for _ in range(3)]) / len(truth)
         rows.append((error_of(found.q.reshape(-1, 2), truth, largest), spent))
-        report("ours", f"{rtol:.0e}", *rows[-1])
+        report("ours", f"{method} {rtol:.0e}", *rows[-1])
     return rows
 
 
