@@ -214,6 +214,8 @@ def test_the_step_is_packed(tmp_path, monkeypatch):
     step = re.search(r"^_ZN\w+?step\w*:\n(.*?)\n\.Lfunc_end", text, re.MULTILINE | re.DOTALL).group(1)
     packed, scalar = (re.findall(rf"\tv?(?:add|sub|mul|div|fn?m\w+){kind}\t", step) for kind in ("pd", "sd"))
     assert len(packed) > 200 > len(scalar) == 0
+    put_by = re.findall(r"\tvmov([au])p[ds]\t(?=[^\n]*[yz]mm)[^\n]*\(%rsp\)", step)
+    assert set(put_by) == {"a"}  # aligned: no register is put by across two lines of the cache
 
 
 def test_a_kernel_is_another_file_when_what_writes_it_changes():
