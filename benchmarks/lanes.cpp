@@ -46,7 +46,8 @@ struct Pair { D x, y; };
 INLINE D friction(D v, D n, D mu, D slope, D floor) {
     D value = larger(mu + slope * size(v), floor) * n;
     D zero = spread(0.0);
-    return where(zero < v, value, where(v < zero, zero - value, zero));
+    auto turned = [](Vec x, Vec by) { return (Vec)((Int)x ^ ((Int)by & (Int{} + INT64_MIN))); };  // by the bit of the sign
+    return where(M{v.a == zero.a, v.b == zero.b}, zero, D{turned(value.a, v.a), turned(value.b, v.b)});
 }
 
 INLINE Pair rates(const double* g, D q0, D q1, D v0, D v1) {

@@ -132,13 +132,14 @@ class Step(EventText):
             self.put(f"{force} = {s} * {mu} * {normal}")
             return force
         mu = f"lane_mu_{kind}(abs({speed}), {p})"
+        shut = f" * (1.0 - {self.openness(c, normal)})" if shape.unilateral[c] else ""
         if shape.scheme == RAW:
-            sign = f"where({speed} > 0.0, 1.0, where({speed} < 0.0, -1.0, 0.0))"
-        elif shape.scheme == ARCTAN:
+            self.put(f"{force} = with_sign({mu} * {normal}, {speed}){shut}")
+            return force
+        if shape.scheme == ARCTAN:
             sign = f"({2.0 / 3.141592653589793!r} * arctan({speed} / {self.row('width')}))"
         else:
             sign = f"lane_tanh({speed} / {self.row('width')})"
-        shut = f" * (1.0 - {self.openness(c, normal)})" if shape.unilateral[c] else ""
         self.put(f"{force} = {mu} * {sign} * {normal}{shut}")
         return force
 

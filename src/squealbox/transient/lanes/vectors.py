@@ -217,6 +217,14 @@ def where(truth: Any, yes: Any, no: Any) -> Lanes:
     return Lanes(BUILDER.get().select(truth.vector, packed(yes), packed(no)))
 
 
+def with_sign(x: Lanes, other: Lanes) -> Lanes:
+    """x times the sign of `other`: x, -x, or 0 where `other` is 0; by the bit of the sign."""
+    builder = BUILDER.get()
+    sign = builder.and_(builder.bitcast(other.vector, WIDE), ir.Constant(WIDE, [-(1 << 63)] * LANES))
+    turned = builder.bitcast(builder.xor(builder.bitcast(x.vector, WIDE), sign), PACKED)
+    return where(other == 0.0, 0.0, Lanes(turned))
+
+
 def minimum(a: Any, b: Any) -> Any:
     """The smaller of two; b when either is not a number."""
     if not isinstance(a, Lanes) and not isinstance(b, Lanes):
