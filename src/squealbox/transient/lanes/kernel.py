@@ -17,8 +17,8 @@ HEAD = """
 from collections import namedtuple
 
 from squealbox.transient.lanes.vectors import (
-    Given, apart, arctan, bits, cos, exp, forget, lane_tanh, load, log, maximum, minimum, rough_power, sin, sqrt, store,
-    take, traced, traced_as_written, where, with_sign,
+    Given, apart, arctan, bits, cos, exp, forget, if_flagged, lane_tanh, load, log, maximum, minimum, rough_power, sin,
+    sqrt, store, take, traced, traced_as_written, where, with_sign,
 )
 # written by modules whose texts have the digest {digest}: a change of theirs makes another file
 {more}

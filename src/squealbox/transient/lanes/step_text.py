@@ -309,8 +309,8 @@ class Step(EventText):
             code += " + 32.0 * due"
             any_of += " | due"
         self.keep("cautious", "where(fine, 0.0, 1.0)")
-        self.keep("code", code)
         self.put(f"flags = bits(({any_of}) & (alive_ > 0.5))")
+        self.put(f"if_flagged(flags, lambda: store(A, b + {self.rows.places['code'] * LANES}, {code}))")
 
     def observe(self, contact: Any, old: Any, new: Any) -> None:
         """Hand every accepted step to the observers."""

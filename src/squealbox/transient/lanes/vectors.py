@@ -265,6 +265,13 @@ def if_any(truth: Truth, compute: Callable[[], tuple[Lanes, ...]], otherwise: tu
     return tuple(Lanes(x) for x in out)
 
 
+def if_flagged(flags: Any, act: Callable[[], None]) -> None:
+    """Act, when a bit of `bits` is set: seldom."""
+    builder = BUILDER.get()
+    with builder.if_then(builder.icmp_unsigned("!=", flags, INTEGER(0)), likely=False):
+        act()
+
+
 def sqrt(x: Any) -> Any:
     """Square root."""
     if not isinstance(x, Lanes):
