@@ -16,9 +16,10 @@ from squealbox.transient.lanes.taylor_text import TaylorStep
 HEAD = """
 from collections import namedtuple
 
+from squealbox.transient.lanes.tracing import apart, take, traced, traced_as_written
 from squealbox.transient.lanes.vectors import (
-    Given, apart, arctan, bits, cos, exp, forget, if_flagged, lane_tanh, load, log, maximum, minimum, rough_power, sin,
-    sqrt, store, take, traced, traced_as_written, where, with_sign,
+    Given, arctan, bits, cos, exp, forget, if_flagged, lane_tanh, load, log, maximum, minimum, rough_power, sin, sqrt,
+    store, where, with_sign,
 )
 # written by modules whose texts have the digest {digest}: a change of theirs makes another file
 {more}
@@ -35,7 +36,7 @@ from squealbox.transient.lanes.series import (
 from squealbox.transient.lanes.taylor import grow, reach, ready, surely_slips
 from squealbox.transient.lanes.taylor_events import step_end
 """
-WRITERS = ("vectors.py", "series.py", "taylor.py", "taylor_events.py")  # the first of every kernel
+WRITERS = ("vectors.py", "tracing.py", "series.py", "taylor.py", "taylor_events.py")  # the first two of every kernel
 PLACES = {
     "ROW_JOB": "job", "ROW_ALIVE": "alive", "ROW_T": "t", "ROW_H": "h", "ROW_T_END": "t_end", "ROW_TRIES": "tries",
     "ROW_TAKEN": "taken", "ROW_CAUTIOUS": "cautious", "ROW_CODE": "code", "ROW_MOST": "most", "ROW_Q": "q0",
@@ -69,7 +70,7 @@ def source(shape: Shape) -> str:
     laws, schedules = {kind for kind, _ in shape.laws}, {kind for terms in shape.signals for kind, _ in terms}
     parts = [
         *_engine.head(inline=False, own=shape.own, laws=laws, schedules=schedules),
-        HEAD.format(digest=digest(WRITERS[: None if shape.taylor else 1]), more=SERIES if shape.taylor else ""),
+        HEAD.format(digest=digest(WRITERS[: None if shape.taylor else 2]), more=SERIES if shape.taylor else ""),
         *formulas(shape),
         step.text(),
     ]
