@@ -5,12 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.transient.lanes.shape import Shape
-
-
-def minus(terms: list[str]) -> list[str]:
-    """Each term with its sign turned."""
-    return ["-" + term for term in terms]
+from squealbox.transient.lanes.equation_text import EquationText, minus
 
 
 def probes(rule: Any) -> list[int]:
@@ -25,18 +20,12 @@ def slope_weights(places: Sequence[float]) -> list[float]:
     return [float(x) for x in np.linalg.solve(powers, np.arange(float(len(places))))]
 
 
-class EventText:
-    """Writes the event functions; the rest of a `Step` gives it lines, rows and signals."""
+class EventText(EquationText):
+    """Writes the event functions of a Runge-Kutta step, which sets what stands here."""
 
-    shape: Shape
     rule: Any
     probes: list[int]
     weights: list[float]
-    put: Any
-    row: Any
-    keep: Any
-    signal: Any
-    product: Any
 
     def events(self, contact: Any, v: Any, a: Any, q1: Any, v1: Any, a1: Any) -> None:
         """`accepted` and `event`: whether every event function surely stays positive over the step.
@@ -114,14 +103,11 @@ class EventText:
         stage = self.probes[0]
         velocity = [f"v{i}s{stage}" for i in range(self.shape.n)]
         time = f"t_ + {float(self.rule.c[stage])!r} * hh"
-        s, wide = self.row(f"s{c}"), self.row(f"open{c}") if self.shape.unilateral[c] else None
-        parts = self.signal(c, f"V{c}", time, rate=True) + minus(self.product(f"t{c}", part["a"]))
-        value, rate = f"{s} * {part['speed'][c]}", f"{s} * ({' + '.join(parts) if parts else '0.0 * t_'})"
-        if wide:
-            value += f" - {wide} * {part['normal'][c]}"
-            rate += f" - {wide} * {self.normal_rate(c, velocity, time)}"
+        value = f"{self.row(f's{c}')} * {part['speed'][c]}"
+        if self.shape.unilateral[c]:
+            value += f" - {self.row(f'open{c}')} * {part['normal'][c]}"
         self.keep(f"early{c}", value)
-        self.keep(f"early_rate{c}", rate.replace("+ -", "- "))
+        self.keep(f"early_rate{c}", self.first_rate(c, velocity, part["a"], time))
 
     def fall(self, first: str, stages: list[str]) -> str:
         """Slope at the end, times the step, of what has these values at the start and in each stage."""
@@ -138,30 +124,26 @@ class EventText:
         q2, v2, a2 = ([f"{x}_at{i}" for i in range(self.shape.n)] for x in "qva")
         return q2, v2, a2
 
-    def sticks(self, c: int) -> str:
-        """1 while a contact sticks, else 0."""
-        s = self.row(f"s{c}")
-        return f"(1.0 - {s} * {s}" + (f" - {self.row(f'open{c}')})" if self.shape.unilateral[c] else ")")
-
     def first_function(self, c: int, contact: Any, v: Any, a: Any, v1: Any, a1: Any) -> tuple[str, str, str, str]:
         """(value at the end, slopes at both ends, least value inside) of the function of a contact's mode."""
-        shape, end = self.shape, contact[-1]
-        s, wide = self.row(f"s{c}"), self.row(f"open{c}") if shape.unilateral[c] else None
-        stick = self.sticks(c)
-        rates = []
-        for vector, time in ((a, "t_"), (a1, "t_ + hh")):
-            parts = self.signal(c, f"V{c}", time, rate=True) + minus(self.product(f"t{c}", vector))
-            rates.append(f"{s} * ({' + '.join(parts) if parts else '0.0 * t_'})".replace("+ -", "- "))
-        value = f"{s} * {end['speed'][c]} + {stick} * {end['margin'][c]}"
+        end, stick = contact[-1], self.sticks(c)
+        rates = self.first_rate(c, v, a, "t_"), self.first_rate(c, self.velocity, a1, "t_ + hh")
+        value = f"{self.row(f's{c}')} * {end['speed'][c]} + {stick} * {end['margin'][c]}"
         inner = end["margin"][c]
         for part in contact[:-1]:
             inner = f"minimum({inner}, {part['margin'][c]})"
         inner = f"where({stick} > 0.5, {inner}, 1.0)"
-        if wide:
-            value += f" - {wide} * {end['normal'][c]}"
-            for i, vector in enumerate((v, self.velocity)):
-                rates[i] += f" - {wide} * {self.normal_rate(c, vector, ('t_', 't_ + hh')[i])}"
-        return value, rates[0], rates[1], inner
+        if self.shape.unilateral[c]:
+            value += f" - {self.row(f'open{c}')} * {end['normal'][c]}"
+        return value, *rates, inner
+
+    def first_rate(self, c: int, v: Any, a: Any, time: str) -> str:
+        """Slope of the function of a contact's mode; that of a margin is not at hand."""
+        parts = self.signal(c, f"V{c}", time, rate=True) + minus(self.product(f"t{c}", a))
+        rate = f"{self.row(f's{c}')} * ({' + '.join(parts) if parts else '0.0 * t_'})".replace("+ -", "- ")
+        if not self.shape.unilateral[c]:
+            return rate
+        return f"{rate} - {self.row(f'open{c}')} * {self.normal_rate(c, v, time)}"
 
     def second_function(self, c: int, end: Any, v: Any, v1: Any) -> tuple[str, str, str]:
         """The normal force of a unilateral contact that slips; 1 otherwise."""

@@ -9,7 +9,7 @@ from typing import Any
 from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid
 from squealbox.transient.lanes import alone, crossing, roots, series_samples, service
 from squealbox.transient.lanes.formulas import formulas
-from squealbox.transient.lanes.shape import LANES, ORDER, UNIT_OF_WINDOW, Shape, layout, parameter_rows
+from squealbox.transient.lanes.shape import LANES, Shape, layout, parameter_rows
 from squealbox.transient.lanes.step_text import Step
 from squealbox.transient.lanes.taylor_text import TaylorStep
 
@@ -74,12 +74,7 @@ def source(shape: Shape) -> str:
         *formulas(shape),
         step.text(),
     ]
-    fixed |= {name: rows.places.get(row, 0) for name, row in PLACES.items()} | {"WIDTH": LANES}
-    if shape.taylor:
-        fixed |= {"TERMS": ORDER + 2, "UNIT_OF_WINDOW": UNIT_OF_WINDOW}
-    else:
-        at = [float(step.rule.c[k]) for k in step.probes]
-        fixed |= {"PROBES": len(at)} | {f"PROBE_{k}": place for k, place in enumerate((at * 3)[:3])}
+    fixed |= {name: rows.places.get(row, 0) for name, row in PLACES.items()} | {"WIDTH": LANES} | step.constants()
     first = rows.places["o0_0_0"] if shape.observers else 0
     fixed |= {
         "DOFS": shape.n, "CONTACTS": shape.m, "FUNCTIONS": shape.functions, "GIVEN": len(parameter_rows(shape)),

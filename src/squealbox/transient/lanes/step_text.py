@@ -1,124 +1,35 @@
 """The step of a lane engine as text: one trial step of sixteen trajectories, without a branch on any of them.
 
-The equation is that of `_motion.derivative`, unrolled: every entry of a matrix that is not zero in the whole ensemble
-becomes one term. Rows of sixteen doubles hold the parameters and the state of a group; `Rows` gives each its place.
-
 Friction in the exact scheme. s is +1 or -1 while a contact slips and 0 otherwise, so ``s mu(s v) N`` vanishes when it
-does not. While contacts stick, t . q'' = V' gives their forces F = G_ss^-1 (V' - t . a), a the accelerations without
-them; the rows H hold G_ss^-1, zero for the others, and change only at events.
+does not; `equation_text` tells how contacts stick.
 """
 
 from typing import Any
 
 from squealbox.friction import LAWS
-from squealbox.schedules import SCHEDULES
 from squealbox.transient._motion import ARCTAN, RAW
-from squealbox.transient.lanes.event_text import EventText, minus, probes, slope_weights
+from squealbox.transient.lanes.equation_text import CALLED, minus
+from squealbox.transient.lanes.event_text import EventText, probes, slope_weights
 from squealbox.transient.lanes.formulas import is_table
-from squealbox.transient.lanes.shape import LANES, Shape, layout
+from squealbox.transient.lanes.shape import LANES, Shape
 from squealbox.transient.methods import tableau
-
-CALLED = """
-
-@inner
-def step(A, b):
-    return trial(A, b)
-"""
 
 
 class Step(EventText):
     """Writes the text of the step."""
 
     def __init__(self, shape: Shape) -> None:
-        self.shape, self.rows = shape, layout(shape)
-        self.lines: list[str] = []
-        self.loaded: set[str] = set()
-        self.tag = 0
+        super().__init__(shape)
         self.scales: dict[float, str] = {}
         self.starting: dict[str, list[str]] | None = None
         self.rule = tableau(shape.tableau)
         self.probes = probes(self.rule)
         self.weights = slope_weights([0.0, *self.rule.c[self.probes], 1.0])
 
-    def put(self, line: str) -> None:
-        """One more line."""
-        self.lines.append("    " + line)
-
-    def row(self, name: str) -> str:
-        """A local with the row's values, loaded at its first use."""
-        local = f"{name}_"
-        if name not in self.loaded:
-            self.loaded.add(name)
-            self.put(f"{local} = load(A, b + {self.rows.places[name] * LANES})")
-        return local
-
     def forget(self) -> None:
         """Rows are read again after this point."""
         self.put("forget()")
         self.loaded.clear()
-
-    def keep(self, name: str, value: str) -> None:
-        """Write a row."""
-        self.put(f"store(A, b + {self.rows.places[name] * LANES}, {value})")
-
-    def entry(self, name: str) -> str | None:
-        """The local of an entry of the equation, None when it is zero throughout."""
-        return self.row(name) if name in self.shape.present else None
-
-    def total(self, target: str, parts: list[str]) -> str:
-        """target = sum of the parts."""
-        self.put(f"{target} = {' + '.join(parts) if parts else '0.0 * t_'}".replace("+ -", "- "))
-        return target
-
-    def product(self, name: str, vector: list[str]) -> list[str]:
-        """Terms name{i} * vector[i] that are present."""
-        found = [(self.entry(f"{name}_{i}"), x) for i, x in enumerate(vector)]
-        return [f"{a} * {x}" for a, x in found if a is not None]
-
-    def signal(self, index: int, name: str, time: str, rate: bool = False) -> list[str]:
-        """Terms of V_c, N0_c or M^-1 f_i at an instant."""
-        if not self.shape.varying:
-            value = None if rate else self.entry(name)
-            return [] if value is None else [value]
-        parts = []
-        for k, (kind, count) in enumerate(self.shape.signals[index]):
-            p = self.given(f"given{index}_{k}_", count, is_table(SCHEDULES, kind), 0)
-            parts.append(f"{self.row(f'weight{index}_{k}')} * lane_{'rate' if rate else 'value'}_{kind}({time}, {p})")
-        return parts
-
-    def given(self, name: str, count: int, table: bool, at: int) -> str:
-        """The coefficients name0, name1, ... of a formula; of a table they stay in memory, their number p[at] known."""
-        if not table:
-            return "(" + ", ".join(self.row(f"{name}{i}") for i in range(count)) + ",)"
-        columns = 3 - (at == 0)  # speeds, coefficients and slopes of a law; instants and values of a schedule
-        known = {at: (count - 1) // columns}
-        return f"Given(A, b + {self.rows.places[f'{name}0'] * LANES}, {count}, {known})"
-
-    def accelerations(self, q: list[str], v: list[str], time: str) -> dict[str, list[str]]:
-        """q'' in locals, with the speed, normal force, friction force and stick margin of each contact."""
-        n, m, shape = self.shape.n, self.shape.m, self.shape
-        self.tag += 1
-        k = self.tag
-        if shape.varying:
-            self.put(f"at{k} = minimum({time}, inside_)")
-            time = f"at{k}"
-        speeds = [self.total(f"v{c}_{k}", self.signal(c, f"V{c}", time) + minus(self.product(f"t{c}", v)))
-                  for c in range(m)]  # fmt: skip
-        normals = [self.total(f"n{c}_{k}", self.signal(m + c, f"N0{c}", time) + self.product(f"n{c}", q))
-                   for c in range(m)]  # fmt: skip
-        forces = [self.friction(c, k, speeds[c], normals[c]) for c in range(m)]
-        out = []
-        for i in range(n):
-            parts = self.signal(2 * m + i, f"f{i}", time)
-            parts += minus(self.product(f"mk{i}", q)) + minus(self.product(f"mc{i}", v))
-            for c in range(m):
-                push, lift = self.entry(f"md{c}_{i}"), self.entry(f"mw{c}_{i}")
-                parts += [f"{push} * {forces[c]}"] if push else []
-                if shape.unilateral[c] and lift:
-                    parts.append(f"{lift} * ({self.openness(c, normals[c])} * {normals[c]})")
-            out.append(self.total(f"a{i}_{k}", parts))
-        margins = self.hold(k, out, forces, normals, time) if shape.exact else []
-        return {"a": out, "speed": speeds, "normal": normals, "force": forces, "margin": margins}
 
     def friction(self, c: int, k: int, speed: str, normal: str) -> str:
         """Friction force of a sliding contact; 0 while it sticks or is open."""
@@ -143,30 +54,15 @@ class Step(EventText):
         self.put(f"{force} = {mu} * {sign} * {normal}{shut}")
         return force
 
-    def openness(self, c: int, normal: str) -> str:
-        """1 where a unilateral contact is open, else 0."""
-        return self.row(f"open{c}") if self.shape.exact else f"(1.0 * ({normal} <= 0.0))"
-
-    def hold(self, k: int, a: list[str], forces: list[str], normals: list[str], time: str) -> list[str]:
-        """Add the forces of sticking contacts; returns how far each is below its limit."""
-        m, shape = self.shape.m, self.shape
-        for c in range(m):
-            parts = self.signal(c, f"V{c}", time, rate=True) + minus(self.product(f"t{c}", a))
-            self.total(f"r{c}_{k}", parts)
-        margins = []
-        for c in range(m):
-            self.put(f"hold{c}_{k} = " + " + ".join(f"{self.row(f'h{c}_{x}')} * r{x}_{k}" for x in range(m)))
-            self.put(f"{forces[c]} = {forces[c]} + hold{c}_{k}")
-            margins.append(self.margin(c, k, normals[c]))
-        for i in range(shape.n):
-            parts = [f"{push} * hold{c}_{k}" for c in range(m) if (push := self.entry(f"md{c}_{i}"))]
-            self.put(f"{a[i]} = {a[i]} + " + " + ".join(parts) if parts else "pass")
-        return margins
-
     def margin(self, c: int, k: int, normal: str) -> str:
         """How far the force of a sticking contact is below its limit."""
         self.put(f"g{c}_{k} = {self.row(f'law{c}_0')} * {normal} - abs(hold{c}_{k})")
         return f"g{c}_{k}"
+
+    def constants(self) -> dict[str, float]:
+        """Numbers that stand in the texts of the passes over one lane."""
+        at = [float(self.rule.c[k]) for k in self.probes]
+        return {"PROBES": len(at)} | {f"PROBE_{k}": place for k, place in enumerate((at * 3)[:3])}
 
     def text(self) -> str:
         """The function `step(A, b)`: advance one group by one trial; returns the lanes that need service as bits."""

@@ -1,7 +1,7 @@
 """One Taylor step of a lane engine as text: the solution's own series, a step as long as its last terms allow.
 
-The equation of motion is that of `step_text`, run once on series instead of numbers. The series does not depend on the
-step, so no step is tried in vain: its length follows from the last two coefficients (Jorba and Zou, Experimental
+The equation of motion is that of `equation_text`, run once on series instead of numbers. The series does not depend on
+the step, so no step is tried in vain: its length follows from the last two coefficients (Jorba and Zou, Experimental
 Mathematics 14(1), 99-117, 2005) and ends at the first event, which is a root of the series.
 """
 
@@ -10,9 +10,9 @@ from collections.abc import Iterator
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
 from squealbox.system import InvalidSystem
+from squealbox.transient.lanes.equation_text import CALLED, EquationText
 from squealbox.transient.lanes.formulas import is_table
-from squealbox.transient.lanes.shape import ORDER, PARTS, UNIT_OF_WINDOW, Shape, layout
-from squealbox.transient.lanes.step_text import CALLED, Step
+from squealbox.transient.lanes.shape import ORDER, PARTS, UNIT_OF_WINDOW, Shape
 
 CALLED_BY_MODE = """
 
@@ -30,18 +30,19 @@ def states(q: list[str], v: list[str], a: list[str]) -> Iterator[tuple[str, str,
         yield from ((f"{name}{i}", each, order) for i, each in enumerate(series))
 
 
-class TaylorStep(Step):
+class TaylorStep(EquationText):
     """Writes the text of the step."""
 
     def __init__(self, shape: Shape) -> None:
-        self.shape, self.rows = shape, layout(shape)
-        self.lines: list[str] = []
-        self.loaded: set[str] = set()
-        self.tag = 0
+        super().__init__(shape)
         self.gliding = False
 
+    def constants(self) -> dict[str, float]:
+        """Numbers that stand in the texts of the passes over one lane."""
+        return {"TERMS": ORDER + 2, "UNIT_OF_WINDOW": UNIT_OF_WINDOW}
+
     def text(self) -> str:
-        """The function `step(A, b)`, as of `Step`: another trial where no lane of the group sticks."""
+        """The function `step(A, b)`, as of `step_text`: another trial where no lane of the group sticks."""
         if not self.shape.exact:
             return self.trial("trial") + CALLED
         parts = [self.trial("trial")]
@@ -50,7 +51,7 @@ class TaylorStep(Step):
         parts.append(self.trial("glide"))
         self.lines = []
         self.loaded.clear()
-        truths = " | ".join(f"({self.sticking(c)} > 0.5)" for c in range(self.shape.m))
+        truths = " | ".join(f"({self.sticks(c)} > 0.5)" for c in range(self.shape.m))
         self.put(f"return bits(({truths}) & ({self.row('alive')} > 0.5))")
         parts.append("\n".join(["@traced_as_written", "def sticking(A, b):", *self.lines]))
         return "\n".join(parts) + CALLED_BY_MODE
@@ -80,24 +81,24 @@ class TaylorStep(Step):
         return "\n".join(["@traced_as_written", f"def {name}(A, b):", *self.lines, "    return flags\n"])
 
     def hold(self, k: int, a: list[str], forces: list[str], normals: list[str], time: str) -> list[str]:
-        """As of `Step`; nothing where no contact sticks."""
+        """As usual; nothing where no contact sticks."""
         return [] if self.gliding else super().hold(k, a, forces, normals, time)
 
     def signal(self, index: int, name: str, time: str, rate: bool = False) -> list[str]:
-        """As of `Step`; a table is no formula to take a series of."""
+        """As usual; a table is no formula to take a series of."""
         kinds = self.shape.signals[index] if self.shape.varying else ()
         if any(is_table(SCHEDULES, kind) for kind, _ in kinds):
             raise InvalidSystem("a schedule of measured points has no Taylor series: take another method")
         return super().signal(index, name, time, rate)
 
     def given(self, name: str, count: int, table: bool, at: int) -> str:
-        """As of `Step`; a bound that is infinite in the whole ensemble stays a plain number, which chooses nothing."""
+        """A bound that is infinite in the whole ensemble stays a plain number, which chooses nothing."""
         local = [f"{name}{i}" for i in range(count)]
         endless = dict(self.shape.endless)
         return "(" + "".join(f"{endless.get(x) or self.row(x)}, " for x in local) + ")"
 
     def friction(self, c: int, k: int, speed: str, normal: str) -> str:
-        """As of `Step` in the exact scheme; no step goes beyond a reversal, so the law needs no continuation there."""
+        """Of a sliding contact; no step goes beyond a reversal, so the law needs no continuation there."""
         kind, count = self.shape.laws[c]
         if is_table(LAWS, kind):
             raise InvalidSystem("a friction law of measured points has no Taylor series: take another method")
@@ -138,7 +139,7 @@ class TaylorStep(Step):
         self.put("end, event, target = found.end, (found.event > 0.5) & fine, found.target")
         for c in range(0 if self.gliding else m):
             two = f"(target > {m + c - 0.5}) & (target < {m + c + 0.5})"
-            self.put(f"target = where({two} & ({self.sticking(c)} > 0.5), {float(c)}, target)")
+            self.put(f"target = where({two} & ({self.sticks(c)} > 0.5), {float(c)}, target)")
         self.put("moved = fine & (end > 0.0)")
         self.put("t1 = where((found.whole > 0.5) & last, t_end_, minimum(t_ + end * unit, t_end_))")
 
@@ -148,14 +149,9 @@ class TaylorStep(Step):
         names += [] if self.gliding else [f"hold{c}_{self.tag}" for c in range(self.shape.m)]
         self.put(f"ready({ORDER}, {', '.join(names)})" if names else "pass")
 
-    def sticking(self, c: int) -> str:
-        """1 while the contact sticks, else 0."""
-        s = self.row(f"s{c}")
-        return f"(1.0 - {s} * {s}" + (f" - {self.row(f'open{c}')})" if self.shape.unilateral[c] else ")")
-
     def functions_of(self, c: int, found: dict[str, list[str]]) -> tuple[str, str]:
         """Names of both event functions of a contact, which stay positive as long as its mode holds."""
-        s, stick, normal = self.row(f"s{c}"), self.sticking(c), found["normal"][c]
+        s, stick, normal = self.row(f"s{c}"), self.sticks(c), found["normal"][c]
         wide = f" - {self.row(f'open{c}')} * {normal}" if self.shape.unilateral[c] else ""
         held = "" if self.gliding else f" + {stick} * below{c}"
         self.put(f"phi{c} = {s} * {found['speed'][c]}{held}{wide}")

@@ -1,0 +1,142 @@
+"""The equation of motion of a lane engine as text, whatever kind of step is taken along it.
+
+It is that of `_motion.derivative`, unrolled: every entry of a matrix that is not zero in the whole ensemble becomes one
+term. Rows of sixteen doubles hold the parameters and the state of a group; `Rows` gives each its place.
+
+While contacts stick, t . q'' = V' gives their forces F = G_ss^-1 (V' - t . a), a the accelerations without them; the
+rows H hold G_ss^-1, zero for the others, and change only at events.
+"""
+
+from squealbox.schedules import SCHEDULES
+from squealbox.transient.lanes.formulas import is_table
+from squealbox.transient.lanes.shape import LANES, Shape, layout
+
+CALLED = """
+
+@inner
+def step(A, b):
+    return trial(A, b)
+"""
+
+
+def minus(terms: list[str]) -> list[str]:
+    """Each term with its sign turned."""
+    return ["-" + term for term in terms]
+
+
+class EquationText:
+    """Writes the accelerations; a kind of step adds `friction`, `margin` and its own lines."""
+
+    def __init__(self, shape: Shape) -> None:
+        self.shape, self.rows = shape, layout(shape)
+        self.lines: list[str] = []
+        self.loaded: set[str] = set()
+        self.tag = 0
+
+    def friction(self, c: int, k: int, speed: str, normal: str) -> str:
+        """Friction force of a sliding contact; 0 while it sticks or is open."""
+        raise NotImplementedError
+
+    def margin(self, c: int, k: int, normal: str) -> str:
+        """How far the force of a sticking contact is below its limit."""
+        raise NotImplementedError
+
+    def put(self, line: str) -> None:
+        """One more line."""
+        self.lines.append("    " + line)
+
+    def row(self, name: str) -> str:
+        """A local with the row's values, loaded at its first use."""
+        local = f"{name}_"
+        if name not in self.loaded:
+            self.loaded.add(name)
+            self.put(f"{local} = load(A, b + {self.rows.places[name] * LANES})")
+        return local
+
+    def keep(self, name: str, value: str) -> None:
+        """Write a row."""
+        self.put(f"store(A, b + {self.rows.places[name] * LANES}, {value})")
+
+    def entry(self, name: str) -> str | None:
+        """The local of an entry of the equation, None when it is zero throughout."""
+        return self.row(name) if name in self.shape.present else None
+
+    def total(self, target: str, parts: list[str]) -> str:
+        """target = sum of the parts."""
+        self.put(f"{target} = {' + '.join(parts) if parts else '0.0 * t_'}".replace("+ -", "- "))
+        return target
+
+    def product(self, name: str, vector: list[str]) -> list[str]:
+        """Terms name{i} * vector[i] that are present."""
+        found = [(self.entry(f"{name}_{i}"), x) for i, x in enumerate(vector)]
+        return [f"{a} * {x}" for a, x in found if a is not None]
+
+    def signal(self, index: int, name: str, time: str, rate: bool = False) -> list[str]:
+        """Terms of V_c, N0_c or M^-1 f_i at an instant."""
+        if not self.shape.varying:
+            value = None if rate else self.entry(name)
+            return [] if value is None else [value]
+        parts = []
+        for k, (kind, count) in enumerate(self.shape.signals[index]):
+            p = self.given(f"given{index}_{k}_", count, is_table(SCHEDULES, kind), 0)
+            parts.append(f"{self.row(f'weight{index}_{k}')} * lane_{'rate' if rate else 'value'}_{kind}({time}, {p})")
+        return parts
+
+    def given(self, name: str, count: int, table: bool, at: int) -> str:
+        """The coefficients name0, name1, ... of a formula; of a table they stay in memory, their number p[at] known."""
+        if not table:
+            return "(" + ", ".join(self.row(f"{name}{i}") for i in range(count)) + ",)"
+        columns = 3 - (at == 0)  # speeds, coefficients and slopes of a law; instants and values of a schedule
+        known = {at: (count - 1) // columns}
+        return f"Given(A, b + {self.rows.places[f'{name}0'] * LANES}, {count}, {known})"
+
+    def accelerations(self, q: list[str], v: list[str], time: str) -> dict[str, list[str]]:
+        """q'' in locals, with the speed, normal force, friction force and stick margin of each contact."""
+        n, m, shape = self.shape.n, self.shape.m, self.shape
+        self.tag += 1
+        k = self.tag
+        if shape.varying:
+            self.put(f"at{k} = minimum({time}, inside_)")
+            time = f"at{k}"
+        speeds = [self.total(f"v{c}_{k}", self.signal(c, f"V{c}", time) + minus(self.product(f"t{c}", v)))
+                  for c in range(m)]  # fmt: skip
+        normals = [self.total(f"n{c}_{k}", self.signal(m + c, f"N0{c}", time) + self.product(f"n{c}", q))
+                   for c in range(m)]  # fmt: skip
+        forces = [self.friction(c, k, speeds[c], normals[c]) for c in range(m)]
+        out = []
+        for i in range(n):
+            parts = self.signal(2 * m + i, f"f{i}", time)
+            parts += minus(self.product(f"mk{i}", q)) + minus(self.product(f"mc{i}", v))
+            for c in range(m):
+                push, lift = self.entry(f"md{c}_{i}"), self.entry(f"mw{c}_{i}")
+                parts += [f"{push} * {forces[c]}"] if push else []
+                if shape.unilateral[c] and lift:
+                    parts.append(f"{lift} * ({self.openness(c, normals[c])} * {normals[c]})")
+            out.append(self.total(f"a{i}_{k}", parts))
+        margins = self.hold(k, out, forces, normals, time) if shape.exact else []
+        return {"a": out, "speed": speeds, "normal": normals, "force": forces, "margin": margins}
+
+    def openness(self, c: int, normal: str) -> str:
+        """1 where a unilateral contact is open, else 0."""
+        return self.row(f"open{c}") if self.shape.exact else f"(1.0 * ({normal} <= 0.0))"
+
+    def hold(self, k: int, a: list[str], forces: list[str], normals: list[str], time: str) -> list[str]:
+        """Add the forces of sticking contacts; returns how far each is below its limit."""
+        m, shape = self.shape.m, self.shape
+        for c in range(m):
+            parts = self.signal(c, f"V{c}", time, rate=True) + minus(self.product(f"t{c}", a))
+            self.total(f"r{c}_{k}", parts)
+        margins = []
+        for c in range(m):
+            self.put(f"hold{c}_{k} = " + " + ".join(f"{self.row(f'h{c}_{x}')} * r{x}_{k}" for x in range(m)))
+            self.put(f"{forces[c]} = {forces[c]} + hold{c}_{k}")
+            margins.append(self.margin(c, k, normals[c]))
+        for i in range(shape.n):
+            parts = [f"{push} * hold{c}_{k}" for c in range(m) if (push := self.entry(f"md{c}_{i}"))]
+            self.put(f"{a[i]} = {a[i]} + " + " + ".join(parts) if parts else "pass")
+        return margins
+
+    def sticks(self, c: int) -> str:
+        """1 while a contact sticks, else 0."""
+        s = self.row(f"s{c}")
+        return f"(1.0 - {s} * {s}" + (f" - {self.row(f'open{c}')})" if self.shape.unilateral[c] else ")")
