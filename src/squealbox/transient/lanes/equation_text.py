@@ -136,6 +136,11 @@ class EquationText:
             self.put(f"{a[i]} = {a[i]} + " + " + ".join(parts) if parts else "pass")
         return margins
 
+    def flag(self, code: str, any_of: str) -> None:
+        """`flags`: the lanes that need service; what each needs is written down only when one does."""
+        self.put(f"flags = bits(({any_of}) & (alive_ > 0.5))")
+        self.put(f"if_flagged(flags, lambda: store(A, b + {self.rows.places['code'] * LANES}, {code}))")
+
     def sticks(self, c: int) -> str:
         """1 while a contact sticks, else 0."""
         s = self.row(f"s{c}")

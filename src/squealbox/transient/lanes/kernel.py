@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid
-from squealbox.transient.lanes import alone, crossing, roots, series_samples, service
+from squealbox.transient.lanes import alone, crossing, roots, samples, service
 from squealbox.transient.lanes.formulas import formulas
 from squealbox.transient.lanes.shape import LANES, Shape, layout, parameter_rows
 from squealbox.transient.lanes.step_text import Step
@@ -87,7 +87,7 @@ def source(shape: Shape) -> str:
         parts += _engine.definitions(module, fixed)
     parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith("COMPLETED")]
     needed = {roots: fixed["TRIES"], crossing: fixed["TRIES"], alone: shape.simple}
-    needed |= {series_samples: shape.taylor and shape.samples}
+    needed |= {samples: shape.samples}
     for module in (*(each for each, used in needed.items() if used), service):
         parts += _engine.definitions(module, fixed, entries=("run",))
     return "\n\n".join(parts) + "\n"

@@ -16,7 +16,7 @@ from squealbox.transient._motion import INSIDE, OPEN, contact_matrix, derivative
 from squealbox.transient._rigid import solve
 from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
-from squealbox.transient.lanes.series_samples import write_series
+from squealbox.transient.lanes.samples import on_quintic, on_series
 
 DONE, LOST, OVER, EVENT, LANDED, DUE = 1, 2, 4, 8, 16, 32
 
@@ -56,10 +56,7 @@ def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out
             continue
         code = int(A[b + ROW_CODE * WIDTH + lane])
         if SAMPLES and code & DUE:
-            if SERIES:
-                write_series(A, b, lane, times, samples)
-            else:
-                write_samples(A, b, lane, times, samples)
+            write_samples(A, b, lane, times, samples)
         ended = RUNNING
         if code & LOST:
             ended = UNDERFLOW if is_finite(A, b, lane) else NOT_FINITE
@@ -259,27 +256,14 @@ def finish(A, b, lane, ended, out):
 
 
 def write_samples(A, b, lane, times, samples):
-    """State at the instants that lie in the step just taken, by the quintic of q, q' and q'' at both ends."""
+    """State at the instants that lie in the step just taken."""
     job = int(A[b + ROW_JOB * WIDTH + lane])
     k = int(A[b + ROW_SAMPLE * WIDTH + lane])
-    t0 = A[b + ROW_T_OLD * WIDTH + lane]
-    t1 = A[b + ROW_T * WIDTH + lane]
-    h = t1 - t0
-    while k < times.shape[0] and times[k] <= t1:
-        x = min(max((times[k] - t0) / h, 0.0), 1.0) if h > 0.0 else 1.0
-        for i in range(DOFS):
-            q0 = A[b + (ROW_Q_OLD + i) * WIDTH + lane]
-            v0 = A[b + (ROW_Q_OLD + DOFS + i) * WIDTH + lane] * h
-            a0 = A[b + (ROW_Q_OLD + 2 * DOFS + i) * WIDTH + lane] * h * h
-            rise = A[b + (ROW_Q + i) * WIDTH + lane] - q0 - v0 - 0.5 * a0
-            turn = A[b + (ROW_V + i) * WIDTH + lane] * h - v0 - a0
-            bend = A[b + (ROW_ACCELERATION + i) * WIDTH + lane] * h * h - a0
-            c3 = 10.0 * rise - 4.0 * turn + 0.5 * bend
-            c4 = -15.0 * rise + 7.0 * turn - bend
-            c5 = 6.0 * rise - 3.0 * turn + 0.5 * bend
-            samples[job, k, i] = q0 + x * (v0 + x * (0.5 * a0 + x * (c3 + x * (c4 + x * c5))))
-            speed = v0 + x * (a0 + x * (3.0 * c3 + x * (4.0 * c4 + x * 5.0 * c5)))
-            samples[job, k, DOFS + i] = speed / h if h > 0.0 else A[b + (ROW_V + i) * WIDTH + lane]
+    while k < times.shape[0] and times[k] <= A[b + ROW_T * WIDTH + lane]:
+        if SERIES:
+            on_series(A, b, lane, times[k], samples[job, k])
+        else:
+            on_quintic(A, b, lane, times[k], samples[job, k])
         k += 1
     A[b + ROW_SAMPLE * WIDTH + lane] = k
     A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = times[k] if k < times.shape[0] else np.inf

@@ -11,7 +11,7 @@ from squealbox.transient._motion import ARCTAN, RAW
 from squealbox.transient.lanes.equation_text import CALLED, minus
 from squealbox.transient.lanes.event_text import EventText, probes, slope_weights
 from squealbox.transient.lanes.formulas import is_table
-from squealbox.transient.lanes.shape import LANES, Shape
+from squealbox.transient.lanes.shape import Shape
 from squealbox.transient.methods import tableau
 
 
@@ -186,11 +186,10 @@ class Step(EventText):
         any_of = "done | lost | over"
         if shape.exact:
             self.keep("h", "where(event, hh, h_new)")
-            for j in range(shape.m):
+            for j in range(shape.functions):
                 self.keep(f"phi{j}", f"where(accepted, value{j} + share * steep{j}, {self.row(f'phi{j}')})")
-                self.keep(f"fresh{j}", f"where(accepted, 0.0, {self.row(f'fresh{j}')})")
-            for j in range(shape.m, shape.functions):
-                self.keep(f"phi{j}", f"where(accepted, value{j} + share * steep{j}, {self.row(f'phi{j}')})")
+            for c in range(shape.m):
+                self.keep(f"fresh{c}", f"where(accepted, 0.0, {self.row(f'fresh{c}')})")
             for c, force in enumerate(self.end["force"]):
                 self.keep(f"force{c}", force)
             self.keep("trust", f"where(accepted, 0.0, {self.row('trust')})")
@@ -205,8 +204,7 @@ class Step(EventText):
             code += " + 32.0 * due"
             any_of += " | due"
         self.keep("cautious", "where(fine, 0.0, 1.0)")
-        self.put(f"flags = bits(({any_of}) & (alive_ > 0.5))")
-        self.put(f"if_flagged(flags, lambda: store(A, b + {self.rows.places['code'] * LANES}, {code}))")
+        self.flag(code, any_of)
 
     def observe(self, contact: Any, old: Any, new: Any) -> None:
         """Hand every accepted step to the observers."""

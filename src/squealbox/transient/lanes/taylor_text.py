@@ -245,5 +245,4 @@ class TaylorStep(EquationText):
         if shape.samples:
             self.put(f"due = moved & (t_now >= {self.row('next')})")
             code, any_of = code + " + 32.0 * due", any_of + " | due"
-        self.keep("code", code)
-        self.put(f"flags = bits(({any_of}) & (alive_ > 0.5))")
+        self.flag(code, any_of)
