@@ -19,6 +19,7 @@ from squealbox import (
 from squealbox.limit_cycles import hopf_curve, point_curve, stick_slip_limit
 
 LAW = Stribeck(0.4, 0.25, 0.3)
+DOWN = {"direction": -1, "method": "shooting"}
 SPEEDS = (0.05, 1.0)
 
 
@@ -80,20 +81,19 @@ def test_what_point_curve_refuses(end):
         point_curve(block, {"speed": SPEEDS}, end, 0.2)
 
 
+def blocks(speed):
+    return two_blocks_on_belt(speed=speed)
+
+
 def test_from_a_period_doubling_onto_the_doubled_branch():
     """Two turns of the old cycle become one; the parameter moves with the square of the distance (a pitchfork)."""
-
-    def blocks(speed):
-        return two_blocks_on_belt(speed=speed)
-
-    walk = {"direction": -1, "method": "shooting"}
-    single = branch(blocks, "speed", (0.045, 0.06), value=0.0493, points=6, **walk)
+    single = branch(blocks, "speed", (0.045, 0.06), value=0.0493, points=6, **DOWN)
     (point,) = single.points
     assert point.kind == "period_doubling"
     assert np.min(np.abs(point.multipliers + 1.0)) < 1e-9
     np.testing.assert_array_equal(single.stable, single.value > float(point.value))  # the single cycle hands over
     double = branch(
-        blocks, "speed", (0.045, 0.06), point, points=5, largest_step=5e-3, **walk
+        blocks, "speed", (0.045, 0.06), point, points=5, largest_step=5e-3, **DOWN
     )  # the law is for small ones
     assert np.all(double.stable)
     np.testing.assert_allclose(double.period, 2.0 * float(point.period), rtol=1e-4)  # T itself moves with the parameter
@@ -105,17 +105,12 @@ def test_from_a_period_doubling_onto_the_doubled_branch():
 
 def test_a_doubled_branch_doubles_again():
     """Two turns become four; a long run beside it, which knows no branch, settles on the very same cycle."""
-
-    def blocks(speed):
-        return two_blocks_on_belt(speed=speed)
-
-    walk = {"direction": -1, "method": "shooting"}
-    double = branch(blocks, "speed", (0.0474, 0.048), value=0.04782, points=4, **walk)
+    double = branch(blocks, "speed", (0.0474, 0.048), value=0.04782, points=4, **DOWN)
     (point,) = double.points
     assert point.kind == "period_doubling"
     assert np.min(np.abs(point.multipliers + 1.0)) < 1e-8
     np.testing.assert_array_equal(double.stable, double.value > float(point.value))
-    four = branch(blocks, "speed", (0.04778, 0.048), point, points=15, **walk)
+    four = branch(blocks, "speed", (0.04778, 0.048), point, points=15, **DOWN)
     assert four.outcome.ok  # the bound
     assert np.all(four.stable)
     assert np.all(four.value < float(point.value))
