@@ -135,7 +135,7 @@ def simulate_ensemble(
         each array is an axis of its own
     duration : [s]
     method : name of a tableau or a `Method`; "bogacki-shampine", "dormand-prince", "tsitouras", "dormand-prince-8", or
-        "taylor", which takes less than half the time; with exact contact, and laws and schedules without tables
+        "taylor", which takes about two thirds of the time; with exact contact, and laws and schedules without tables
     observe : names out of `OBSERVERS`, or an `Observer` of your own; no trajectory is stored
     contact : "exact", "raw", "smooth" = "arctan", or "tanh", as in `simulate`
     start : "rest", "sliding", or (q, qd) whose arrays end with n and broadcast with the parameters; without parameters
