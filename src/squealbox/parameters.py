@@ -15,6 +15,8 @@ from typing import Any, ClassVar, Self, dataclass_transform
 
 import numpy as np
 
+MOST_ENTRIES = 16  # of an array that is printed in full
+
 
 @dataclasses.dataclass(frozen=True)
 class Parameter:
@@ -110,6 +112,8 @@ class DataSheet:
 
     def __init_subclass__(cls, **keywords: Any) -> None:
         super().__init_subclass__(**keywords)
+        if "__repr__" not in cls.__dict__:
+            cls.__repr__ = DataSheet.__repr__  # type: ignore[method-assign]  # a dataclass would print every array
         dataclasses.dataclass(frozen=True, eq=False)(cls)
         _SHEETS[cls.kind()] = cls
 
@@ -122,6 +126,10 @@ class DataSheet:
             value = getattr(self, name)
             if value not in words.options:
                 raise ParameterError(type(self).__name__, name, value, known_names(str(value), list(words.options)))
+
+    def __repr__(self) -> str:
+        fields = ", ".join(f"{name}={_brief(getattr(self, name))}" for name in self.field_names())
+        return f"{type(self).__name__}({fields})"
 
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):
@@ -298,6 +306,15 @@ def _hashable(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.shape, value.tobytes()
     return tuple(_hashable(item) for item in value) if isinstance(value, tuple) else value
+
+
+def _brief(value: object) -> str:
+    """As `repr`, but what is long is told by its size: a print of a system of a thousand contacts is a line."""
+    if isinstance(value, np.ndarray) and value.size > MOST_ENTRIES:
+        return f"<{' x '.join(map(str, value.shape))} numbers>"
+    if isinstance(value, tuple) and len(value) > MOST_ENTRIES // 2:
+        return f"<{len(value)} of {type(value[0]).__name__}>"
+    return repr(value)
 
 
 def _shown(value: object) -> str:

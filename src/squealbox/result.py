@@ -22,9 +22,12 @@ import numpy as np
 from squealbox.parameters import from_plain, load_kind, to_plain
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray
 
 COMPLETED = "completed"
+MOST_LINES = 20  # of a summary
+MOST_COLUMNS = 100  # that one array gives to a table
 DRAWN_BY = "squealbox.plots"  # by name, when asked: a result may know that it can be drawn, but not by whom
 Analysis = TypeVar("Analysis", bound=Callable[..., Any])
 
@@ -109,12 +112,31 @@ class Result:
     provenance: Mapping[str, str] = dataclasses.field(default_factory=provenance)
 
     kinds: ClassVar[dict[str, type["Result"]]] = {}
+    coordinates: ClassVar[Mapping[str, str]] = {}
+    """Dimension to the array that holds its coordinate; those called dof and contact are named by the system."""
     swept: ClassVar[Mapping[str, tuple[str, str, str]]] = {}
     """Attributes a study keeps of each point, with dimensions, unit and meaning; empty means every declared array."""
 
     def __init_subclass__(cls, **keywords: Any) -> None:
         super().__init_subclass__(**keywords)
+        if "__repr__" not in cls.__dict__:
+            cls.__repr__ = Result.__repr__  # type: ignore[method-assign]  # a dataclass would print every array
         Result.kinds[cls.kind_name()] = cls
+
+    def __repr__(self) -> str:
+        said = type(self).__str__ is not object.__str__  # a kind that says itself in one sentence
+        return str(self) if said else self.summary()
+
+    def summary(self) -> str:
+        """At most a screenful: how it ended, each number with its unit, each array by its shape and range."""
+        name, ended = type(self).__name__, self.outcome
+        said = f"{name} ended as {ended}: {ended.message}" if ended.message and not ended.ok else f"{name}: {ended}"
+        fields = _quantities(type(self))
+        lines = [f"  {field.name:<20s} {_told(field, getattr(self, field.name))}" for field in fields[:MOST_LINES]]
+        if len(fields) > MOST_LINES:
+            lines.append(f"  and {len(fields) - MOST_LINES} more arrays, listed by .to_dataset()")
+        caution = str(getattr(self, "caution", ""))
+        return "\n".join([said, *lines, *([f"  Caution: {caution}"] if caution else [])])
 
     @classmethod
     def kind_name(cls) -> str:
@@ -135,7 +157,12 @@ class Result:
         }
 
     def to_dataset(self) -> "xarray.Dataset":
-        """The arrays as a labelled `xarray.Dataset`; units, inputs, settings, outcome and versions are attributes."""
+        """The arrays as a labelled `xarray.Dataset`; units, inputs, settings, outcome and versions are attributes.
+
+        Degrees of freedom and contacts are coordinates with the names the system gives them, and so is what an array
+        runs over: ``motion.to_dataset()["q"].sel(time=0.01, dof="x", method="nearest")`` works but for the method,
+        which xarray applies to numbers alone, so names are chosen in a ``sel`` of their own.
+        """
         import xarray
 
         variables = {}
@@ -144,7 +171,30 @@ class Result:
             about = {"units": field.metadata["unit"], "long_name": field.metadata["meaning"]}
             variables[field.name] = (_dims(field.metadata["dims"], array.ndim), array, about)
         attributes = {name: json.dumps(to_plain(value)) for name, value in self._plain().items()}
-        return xarray.Dataset(variables, attrs={"kind": self.kind_name(), **attributes})
+        dataset = xarray.Dataset(variables, attrs={"kind": self.kind_name(), **attributes})
+        return dataset.assign_coords(self._labels(dataset))
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """One row for each entry of what the result runs over (instants, points, trajectories), as a `pandas` table.
+
+        Columns are the arrays over it; what runs over more gives a column each: ``q[x]``, ``q[y]``. An array that
+        would give more than 100 is left out, and so are those over something else: `to_dataset` has all.
+        """
+        dataset = self.to_dataset()
+        first = next(iter(dataset[field.name].dims for field in _quantities(type(self))), ())
+        table = dataset.drop_vars([name for name in dataset.coords if name not in first])
+        columns: dict[str, Any] = {}
+        for name, variable in table.data_vars.items():
+            more = [dim for dim in variable.dims if dim not in first]
+            if tuple(variable.dims[: len(first)]) != first or np.prod([variable.sizes[d] for d in more]) > MOST_COLUMNS:
+                continue
+            for at in np.ndindex(*(variable.sizes[dim] for dim in more)):
+                labels = [str(dataset[d].values[i]) if d in dataset.coords else str(i)
+                          for d, i in zip(more, at, strict=True)]  # fmt: skip
+                own = f"{name}[{','.join(labels)}]" if labels else str(name)
+                columns[own] = variable.isel(dict(zip(more, at, strict=True)))
+        frame = table.drop_vars(list(table.data_vars)).assign(columns)
+        return frame.to_dataframe() if first else frame.expand_dims("row").to_dataframe()
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the result to a NetCDF file, whole or not at all; returns the path."""
@@ -171,10 +221,11 @@ class Result:
         if kind is not cls:
             return kind.from_dataset(dataset)  # a kind may read more than its arrays
         plain = {name: json.loads(value) for name, value in dataset.attrs.items() if name != "kind"}
+        plain = {name: _unfolded(value) for name, value in plain.items()}
         plain["outcome"] = Outcome.from_plain(plain["outcome"])
         plain["inputs"] = from_plain(plain["inputs"])
         arrays: dict[str, Any] = {field.name: dataset[field.name].values for field in _quantities(kind)}
-        return kind(**arrays, **plain)
+        return kind(**arrays, **_tuples(kind, plain))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
@@ -199,8 +250,25 @@ class Result:
     def _plain(self) -> dict[str, Any]:
         arrays = {field.name for field in _quantities(type(self))}
         kept = [f.name for f in dataclasses.fields(self) if not f.metadata.get("transient")]
-        others = {name: getattr(self, name) for name in kept if name not in arrays}
+        others = {name: _folded(getattr(self, name)) for name in kept if name not in arrays}
         return {**others, "outcome": self.outcome.to_plain()}
+
+    def _labels(self, dataset: "xarray.Dataset") -> dict[str, Any]:
+        """Coordinates of a dataset: names of freedoms and contacts, and the arrays that `coordinates` names."""
+        found: dict[str, Any] = {}
+        for dim, name in self.coordinates.items():
+            if dim in dataset.sizes and np.shape(getattr(self, name)) == (dataset.sizes[dim],):
+                found[dim] = (dim, np.asarray(getattr(self, name)), dataset[name].attrs)
+        system: Any = self.inputs.get("system") if isinstance(self.inputs, Mapping) else None
+        if {"dof", "contact"} & set(dataset.sizes):
+            system = system.system() if hasattr(system, "system") else system
+            contacts = getattr(system, "contacts", ())
+            names = {"dof": tuple(getattr(system, "names", ())),
+                     "contact": tuple(c.name or f"contact {i}" for i, c in enumerate(contacts))}  # fmt: skip
+            for dim, known in names.items():
+                if dim in dataset.sizes and len(set(known)) == dataset.sizes[dim]:
+                    found[dim] = (dim, np.array(known))
+        return found
 
 
 def _moved(name: str) -> "type[Result] | None":
@@ -210,6 +278,50 @@ def _moved(name: str) -> "type[Result] | None":
     within = [kind for at, kind in Result.kinds.items() if at.startswith(f"{room}.")]
     alike = [kind for kind in within if kind.__name__ == last.rpartition(".")[2]]
     return alike[0] if len(alike) == 1 else None
+
+
+def _told(field: dataclasses.Field[Any], value: Any) -> str:
+    """One array in a line: a number with its unit, or shape, range and unit."""
+    unit, array = field.metadata["unit"], np.asarray(value)
+    behind = "" if unit in ("", "1", "-") else f" {unit}"
+    if array.ndim == 0:
+        return f"{array.item():.6g}{behind}" if array.dtype.kind in "fc" else f"{array.item()}{behind}"
+    if array.dtype.kind in "OUSb" or array.size == 0:
+        names, counts = np.unique(array.astype(str), return_counts=True)
+        listed = ", ".join(f"{count} {name}" for name, count in list(zip(names, counts, strict=True))[:4])
+        return f"{array.shape} {listed}{', ...' if len(names) > 4 else ''}" if array.size else f"{array.shape} empty"
+    numbers = np.abs(array) if array.dtype.kind == "c" else array
+    known = numbers[np.isfinite(numbers)]
+    span = f"{known.min():.4g} to {known.max():.4g}{behind}" if known.size else "nothing finite"
+    unknown = f", {numbers.size - known.size} not finite" if 0 < known.size < numbers.size else ""
+    return f"{array.shape} {'magnitudes ' if array.dtype.kind == 'c' else ''}{span}{unknown}"
+
+
+def _folded(value: Any) -> Any:
+    """A result within a result as plain data, so that it goes into an attribute of the file."""
+    if not isinstance(value, Result):
+        return value
+    arrays = {field.name: np.asarray(getattr(value, field.name)).tolist() for field in _quantities(type(value))}
+    return {"result": value.kind_name(), "arrays": arrays, **{name: to_plain(v) for name, v in value._plain().items()}}
+
+
+def _unfolded(value: Any) -> Any:
+    """The inverse of `_folded`."""
+    if not (isinstance(value, Mapping) and {"result", "arrays", "outcome"} <= set(value)):
+        return value
+    load_kind(value["result"])
+    kind = Result.kinds[value["result"]]
+    plain = {name: _unfolded(item) for name, item in value.items() if name not in ("result", "arrays")}
+    plain |= {"outcome": Outcome.from_plain(plain["outcome"]), "inputs": from_plain(plain["inputs"])}
+    arrays: dict[str, Any] = {name: np.asarray(item) for name, item in value["arrays"].items()}
+    return kind(**arrays, **_tuples(kind, plain))
+
+
+def _tuples(kind: type[Result], plain: dict[str, Any]) -> dict[str, Any]:
+    """JSON knows lists alone; what a kind declares as a tuple is one again."""
+    declared = {f.name for f in dataclasses.fields(kind) if str(f.type).startswith("tuple")}
+    return {name: tuple(value) if name in declared and isinstance(value, list) else value
+            for name, value in plain.items()}  # fmt: skip
 
 
 def _about(field: dataclasses.Field[Any]) -> tuple[str, str]:

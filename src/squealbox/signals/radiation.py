@@ -65,9 +65,6 @@ class SoundLevel(Result):
         loudest = f"loudest at {float(self.frequency[0]):.5g} Hz"
         return f"{float(self.level):.0f} dB, {float(self.weighted):.0f} dB(A), {loudest}. {self.assumption}"
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def sound_level(
     velocity: Any,

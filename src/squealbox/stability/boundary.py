@@ -69,9 +69,6 @@ class Boundary(Result):
             lines.append(f"curve {i + 1} ({'closed' if self.closed(i) else 'open'}, {len(points)} points): {spans}")
         return "\n".join(lines)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def stability_boundary(
     design: Any, bounds: dict[str, tuple[float, float]], *, cells: int = 32, time: float = 0.0

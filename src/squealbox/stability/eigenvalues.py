@@ -162,9 +162,6 @@ class ComplexModes(Result):
 
         return summary(self)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 @batched
 def complex_modes(design_or_system: Any, time: float = 0.0) -> ComplexModes:

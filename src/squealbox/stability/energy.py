@@ -116,9 +116,6 @@ class ModeEnergy(Result):
         ]
         return "\n".join(rows)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def mode_energy(design_or_system: Any, mode: Mode | int | None = None, time: float = 0.0) -> ModeEnergy:
     """Energies and powers of one mode of one system.

@@ -33,9 +33,6 @@ class ExceptionalPoints(Result):
         rows = zip(self.x, self.y, self.eigenvalue, strict=True)
         return "\n".join(f"{a} = {x:.10g}, {b} = {y:.10g}: lambda = {v:.8g} 1/s" for x, y, v in rows)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def exceptional_points(
     design: Any, bounds: dict[str, tuple[float, float]], *, points: int = 41, time: float = 0.0
@@ -144,9 +141,6 @@ class DampingSplit(Result):
         if worst < float(self.undamped):
             lines.append(f"damping destabilises: the worst split lowers it to {worst:.8g}")
         return "\n".join(lines)
-
-    def __repr__(self) -> str:
-        return self.summary()
 
 
 def damping_split(

@@ -66,9 +66,6 @@ class StabilityMap(Result):
             lines.append(f"{total - known} points without steady sliding")
         return "\n".join(lines)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
     def to_dataset(self) -> "xarray.Dataset":
         """The arrays with the parameters as named coordinates."""
         dataset = super().to_dataset()

@@ -50,9 +50,6 @@ class FiniteSpectrum(Result):
         lines = [f"{value.real:+.6g} 1/s at {value.imag / (2.0 * np.pi):.6g} Hz" for value in shown]
         return "\n".join([*lines, f"{self.infinite} eigenvalues at infinity"])
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def finite_spectrum(design_or_system: Any, time: float = 0.0) -> FiniteSpectrum:
     """The finite eigenvalues of (lambda^2 M + lambda C_eff + K_eff) u = 0 about steady sliding, M singular or not.

@@ -40,9 +40,6 @@ class TransientGrowth(Result):
             f"of the eigenvalues {float(self.spectral_abscissa):+.6g} 1/s"
         )
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def transient_growth(
     design_or_system: Any, duration: float | None = None, *, points: int = 400, at: float = 0.0

@@ -61,9 +61,6 @@ class CriticalValue(OneEigenvalue, Result):
         why = Mechanism(self.mechanism, self.base, self.circulation, self.slope)
         return f"{self.parameter} = {float(self.value):.10g} ({self.direction}), {self.frequency:.6g} Hz, {why}"
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CriticalValues(Result):
@@ -97,9 +94,6 @@ class CriticalValues(Result):
         if len(self) == 0:
             return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
         return "\n".join(crossing.summary() for crossing in self)
-
-    def __repr__(self) -> str:
-        return self.summary()
 
 
 def critical_value(

@@ -73,9 +73,6 @@ class Sensitivity(Result):
         rows += ["two modes nearly merge here: derivatives mean little"] * self.near_defective
         return "\n".join(rows)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def sensitivity(
     design: Any, parameters: Sequence[str] | None = None, mode: int | Mode | None = None, *, time: float = 0.0

@@ -84,9 +84,6 @@ class TrackedModes(Result):
             rows + [f"  modes merge, pairing decided by the nearest eigenvalue: at {unclear}"] * bool(unclear)
         )
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def track(design: Any, parameter: str, values: Any, *, time: float = 0.0) -> Iterator[TrackedPoint]:
     """Walk along the values of a parameter with the modes always in the order of the first value.

@@ -117,9 +117,6 @@ class Sweep(Result):
                 columns[_headed(label, values)] = column
         return columns
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 class Memory:
     """The blocks of a sweep that has no folder."""

@@ -4,7 +4,7 @@ import os
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -50,6 +50,8 @@ class Ensemble(Result):
     observed: Mapping[str, Any] = field(default_factory=dict, metadata={"transient": True})
     seconds: float = 0.0
 
+    coordinates: ClassVar = {"instant": "sample_time"}
+
     def __getitem__(self, name: str) -> Any:
         """The values of an observer."""
         if name not in self.observed:
@@ -89,8 +91,25 @@ class Ensemble(Result):
         for name, values in self.parameters.items():
             dataset[f"parameter_{name}"] = ([f"axis_{i}" for i in range(batch)], np.broadcast_to(values, self.shape))
         for name, values in self.observed.items():
-            own = [f"{name}_{i}" for i in range(np.ndim(values) - batch)]
+            of = self.settings["observed"][name][0]
+            first = [of] if of in dataset.sizes else []
+            own = [*first, *(f"{name}_{i}" for i in range(np.ndim(values) - batch - len(first)))]
             dataset[f"observed_{name}"] = ([*(f"axis_{i}" for i in range(batch)), *own], values)
+        return self._along(dataset)
+
+    def _along(self, dataset: "xarray.Dataset") -> "xarray.Dataset":
+        """An axis along which one parameter alone varies bears its name and its values."""
+        varied: dict[str, list[str]] = {f"axis_{i}": [] for i in range(len(self.shape))}
+        for name, values in self.parameters.items():
+            array = np.broadcast_to(values, self.shape)
+            for i, axis in enumerate(varied):
+                if self.shape[i] > 1 and np.any(array != np.take(array, [0], axis=i)):
+                    varied[axis].append(name)
+        for axis, names in varied.items():
+            if len(names) == 1 and sum(names[0] in others for others in varied.values()) == 1:
+                values = np.moveaxis(np.broadcast_to(self.parameters[names[0]], self.shape), int(axis[5:]), 0)
+                labels = values.reshape(len(values), -1)[:, 0]
+                dataset = dataset.rename({axis: names[0]}).assign_coords({names[0]: labels})
         return dataset
 
     @classmethod

@@ -75,6 +75,7 @@ class Trajectory(Result):
     rejected: int = 0
     evaluations: int = 0
 
+    coordinates: ClassVar = {"time": "t", "event": "event_time"}
     swept: ClassVar = {
         "t": ("time", "s", "time"),
         "q": ("time dof", "m", "displacement"),

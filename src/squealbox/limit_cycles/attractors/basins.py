@@ -90,9 +90,6 @@ class Basin(Result):
             lines.append(f"  {self.outcome}: {self.outcome.message}")
         return "\n".join(lines)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def basin(
     design_or_system: Any,

@@ -66,9 +66,6 @@ class Coexistence(Result):
                   for b, low, high in zip(self.y, self.end, self.onset, strict=True)]  # fmt: skip
         return "\n".join(lines)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def coexistence(
     design: Any,

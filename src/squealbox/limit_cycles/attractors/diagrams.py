@@ -80,9 +80,6 @@ class BifurcationDiagram(Result):
             lines.append(f"rest and vibration coexist at {here.size} values, {here.min():.5g} to {here.max():.5g}")
         return "\n".join(lines)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def bifurcation_diagram(
     design: Any,

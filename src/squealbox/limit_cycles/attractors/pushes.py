@@ -65,9 +65,6 @@ class DangerousPush(Result):
             f"{int(self.dangerous)} of {int(self.drawn)} drawn); {int(self.runs)} runs"
         )
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def dangerous_push(
     design_or_system: Any,

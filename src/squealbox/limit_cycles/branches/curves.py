@@ -52,9 +52,6 @@ class PointCurve(Result):
                  for name, v in zip(self.parameters, (self.x, self.y), strict=True)]  # fmt: skip
         return f"{self.kind} curve, {len(self.x)} points: {', '.join(spans)}; ended: {self.outcome.message}"
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def two_parameters(design: Any, bounds: Bounds) -> tuple[Callable[[float, float], System], tuple[str, str]]:
     """A function of two values that returns a system, and the two names."""

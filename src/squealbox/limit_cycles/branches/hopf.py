@@ -71,9 +71,6 @@ class HopfPoint(OneEigenvalue, Result):
             return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
         return f"{self.kind} Hopf point at {self.parameter} = {float(self.value):.10g}, {self.frequency:.6g} Hz"
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def family(design: Any, parameter: str) -> Callable[[float], Any]:
     """A function of one value that returns a system, from a design and a dotted name or from a function."""

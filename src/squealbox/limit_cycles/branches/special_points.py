@@ -48,9 +48,6 @@ class BranchPoint(Cycle):
         where = f"{self.kind} at {self.parameter} = {float(self.value):.10g} (to {float(self.uncertainty):.1e})"
         return f"{where}, test function {float(self.test):.1e}, period {float(self.period):.8g} s"
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def doubling(about: dict[str, Any]) -> float:
     """prod (mu_i + 1): zero where a multiplier is -1."""

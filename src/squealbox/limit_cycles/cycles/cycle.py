@@ -95,9 +95,6 @@ class Cycle(Result):
         kind = "stable" if self.stable else "unstable"
         return f"{kind} cycle, period {float(self.period):.10g} s ({self.frequency:.6g} Hz), amplitude {sizes}"
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def ordered(multipliers: Any) -> Any:
     """Multipliers with the one nearest to 1 first, the others by falling size."""

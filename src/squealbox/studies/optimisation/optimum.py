@@ -95,9 +95,6 @@ class Optimum(Result):
         lines.append(f"{self.settings['evaluations']} evaluations")
         return "\n".join(lines)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def optimise(
     design: Any,

@@ -132,9 +132,6 @@ class Surrogate(Result):
             lines.append(f"Sobol' indices, first / total: {', '.join(parts)}")
         return "\n".join(lines + [f"Caution: {self.caution}"] * bool(self.caution))
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def polynomial_chaos(
     design: Any,

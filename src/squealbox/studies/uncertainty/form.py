@@ -79,9 +79,6 @@ class DesignPoint(Result):
             lines.append(f"{self.names[i]:{width}}  {numbers}  {100.0 * self.importance[i]:6.1f} %  {unit}".rstrip())
         return "\n".join(lines)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def form(
     design: Any,

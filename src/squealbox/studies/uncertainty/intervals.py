@@ -66,9 +66,6 @@ class IntervalBounds(Result):
         )
         return "\n".join(lines)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def interval_bounds(
     design: Any, box: Mapping[str, tuple[float, float]], quantity: Any, *, seed: int = 0, runs: int = 3

@@ -54,9 +54,6 @@ class MorrisEffects(Result):
             lines.append(f"{self.names[i]:{width}}  {numbers}  {self.spread[i]:10.4g}")
         return "\n".join(lines)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def morris_effects(
     design: Any, scatter: Scatter, quantity: Any, *, trajectories: int = 50, seed: int = 0, level: float = 0.95

@@ -66,9 +66,6 @@ class SquealProbability(Result):
             lines.append(f"{self.unknown} points have no answer; the interval holds whatever they would have been")
         return "\n".join(lines)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def squeal_probability(
     design: Any,

@@ -60,9 +60,6 @@ class SobolIndices(Result):
             lines.append(f"{self.names[i]:{width}}  {first}  {total}")
         return "\n".join(lines)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def sobol_indices(
     design: Any,

@@ -58,9 +58,6 @@ class SubsetProbability(Result):
             lines.append(f"{settings['unknown']} evaluations have no answer and were taken for quiet")
         return "\n".join(lines)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def subset_simulation(
     design: Any,

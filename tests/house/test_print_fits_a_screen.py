@@ -1,0 +1,94 @@
+"""What a session prints of a result or a design: key numbers on a screen, never thousands of lines of arrays."""
+
+import numpy as np
+import pytest
+
+from result_examples import EXAMPLES
+from squealbox import Contact, Coulomb, DrumBrake, System, simulate_ensemble
+from squealbox.designs import DESIGNS
+from squealbox.limit_cycles import coexistence
+from squealbox.result import Result
+
+LINES, WIDTH = 40, 240  # of a terminal on a laptop; a sentence may wrap once
+
+
+@pytest.mark.parametrize("name", list(EXAMPLES))
+def test_every_result_prints_on_a_screen(name):
+    result = EXAMPLES[name]()
+    for text in (repr(result), str(result)):
+        lines = text.splitlines()
+        assert 0 < len(lines) <= LINES, f"print({name}) takes {len(lines)} lines: expected at most {LINES}"
+        assert max(map(len, lines)) <= WIDTH, f"print({name}) is {max(map(len, lines))} wide: expected at most {WIDTH}"
+        assert "array(" not in text, f"print({name}) shows raw arrays"
+
+
+def test_an_ensemble_of_many_prints_on_a_screen():
+    brake = DrumBrake().replace({"friction.static": np.linspace(0.1, 0.4, 450)})
+    text = repr(simulate_ensemble(brake, duration=1e-4))
+    assert len(text.splitlines()) <= LINES
+    assert "450 completed" in text
+
+
+@pytest.mark.parametrize("name", list(DESIGNS))
+def test_every_design_prints_on_a_screen(name):
+    assert len(repr(DESIGNS[name]())) < 2000
+    assert len(repr(DESIGNS[name]().system())) < 5000
+
+
+def test_a_system_of_many_freedoms_prints_its_size():
+    row = np.eye(50)[0]
+    contacts = [Contact(n=row, d=row, t=row, N0=1.0, V=1.0, law=Coulomb(0.3)) for _ in range(40)]
+    text = repr(System(M=np.eye(50), C=np.zeros((50, 50)), K=np.eye(50), load=0.0, contacts=contacts))
+    assert "50 x 50 numbers" in text
+    assert "40 of Contact" in text
+    assert len(text) < 2000
+
+
+def test_small_arrays_are_printed_in_full():
+    assert "0.3" in repr(Coulomb(np.array([0.3, 0.4])))
+
+
+def test_freedoms_contacts_and_instants_are_coordinates():
+    motion = EXAMPLES["Trajectory"]()
+    labelled = motion.to_dataset()
+    assert list(labelled["dof"].values) == ["x", "y"]
+    assert labelled.sizes["contact"] == len(set(labelled["contact"].values))
+    at = labelled["q"].sel(dof="y").sel(time=2e-3, method="nearest")
+    assert float(at) == motion.q[200, 1]
+    with pytest.raises(KeyError):
+        labelled["q"].sel(dof="z")
+
+
+def test_an_axis_of_one_parameter_bears_its_name():
+    brake = DrumBrake()
+    found = simulate_ensemble(brake, {"friction.static": np.array([0.1, 0.2, 0.3]), "load": np.array([900.0, 1e3])},
+                              1e-3, grid=True)  # fmt: skip
+    labelled = found.to_dataset()
+    assert float(labelled["q"].sel({"friction.static": 0.2, "load": 1e3, "dof": "y"})) == found.q[1, 1, 1]
+    together = simulate_ensemble(brake, {"friction.static": np.array([0.1, 0.2]), "load": np.array([900.0, 1e3])}, 1e-3)
+    assert "axis_0" in together.to_dataset().dims  # both vary along it, so it bears neither's name
+
+
+@pytest.mark.parametrize("name", [name for name in EXAMPLES if name not in ("Sweep",)])
+def test_every_result_is_a_table(name):
+    table = EXAMPLES[name]().to_dataframe()
+    assert len(table) > 0
+    assert table.shape[1] < 500
+
+
+def test_a_table_has_a_row_an_instant_and_a_column_a_freedom():
+    motion = EXAMPLES["Trajectory"]()
+    table = motion.to_dataframe()
+    assert len(table) == len(motion.t)
+    assert np.array_equal(table["q[y]"].to_numpy(), motion.q[:, 1])
+
+
+def test_a_result_within_a_result_is_saved(tmp_path):
+    brake, area = DrumBrake(), {"friction.static": (0.1, 0.4), "load": (900.0, 1100.0)}
+    region = coexistence(brake, area, columns=4, rows=2, starts=4)
+    again = Result.load(region.save(tmp_path / "region.nc"))
+    assert type(again) is type(region)
+    assert type(again.hopf) is type(region.hopf)
+    for field in ("x", "y", "lyapunov"):
+        assert np.array_equal(getattr(again.hopf, field), getattr(region.hopf, field))
+    assert again.hopf.parameters == tuple(region.hopf.parameters)
