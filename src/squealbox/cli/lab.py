@@ -5,6 +5,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from squealbox.cli.inputs import AllowCode
 from squealbox.cli.running import UsageError
 
 LINK = "#d="  # what a link to a design carries behind its address
@@ -15,6 +16,7 @@ def lab(
     *,
     port: int | None = None,
     browser: Annotated[bool, Parameter(negative="--no-browser")] = True,
+    allow_code: AllowCode = False,
 ) -> None:
     """A page on this machine where a brake is explored live: parameters as sliders, stability, motion, what to change.
 
@@ -28,6 +30,8 @@ def lab(
         where the page is served; left out, 8642 or the next free one
     browser
         open the page in the browser
+    allow_code
+        run the friction law in the file that is Python code
     """
     if port is not None and not 0 <= port <= 65535:
         raise UsageError(f"--port {port}: expected 0 to 65535")
@@ -37,7 +41,9 @@ def lab(
     elif file is not None:
         from squealbox.files import read_file
 
-        design = read_file(Path(file)).design  # says all that is wrong with it before anything is served
+        design = read_file(
+            Path(file), allow_code=allow_code
+        ).design  # says all that is wrong with it before anything is served
         text = Path(file).read_text(encoding="utf-8")
     try:
         from squealbox.workbench.lab import serve

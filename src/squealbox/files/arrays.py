@@ -78,6 +78,12 @@ def _beside(document: Document, value: Any, about: Parameter, key: Key, ndim: in
         document.problem(key, f"{shown(value)}: expected {{ file = 'K.npy', unit = '{about.unit}' }}")
         return WRONG
     unit = named.get("unit", about.unit)
+    if not document.beside:
+        document.problem(
+            key,
+            f"{shown(named['file'])} is a file, which a pasted text or a link cannot name: use squealbox lab FILE",
+        )
+        return WRONG
     try:
         if not isinstance(unit, str):
             raise UnitError(f"unit {shown(unit)}: expected a unit in quotes, such as '{about.unit}'")

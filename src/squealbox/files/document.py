@@ -50,6 +50,7 @@ class Document:
     faulty: set[str | int] = field(default_factory=set)  # first parts of the keys with problems
     unsaid: int = 0
     allow_code: bool = False  # may a friction law be run that is Python code?
+    beside: bool = True  # may files be opened that it names? not those of a text from elsewhere
 
     @cached_property
     def lines(self) -> dict[Key, int]:

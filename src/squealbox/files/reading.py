@@ -69,15 +69,20 @@ def read_file(path: str | os.PathLike[str], *, allow_code: bool = False) -> Desi
     return _file(document)
 
 
-def read_text(text: str, name: str = "design.toml") -> DesignFile:
+def read_text(text: str, name: str = "design.toml", *, beside: bool = True) -> DesignFile:
     """What :func:`read_file` reads from a file, from its text; `name` is what problems call it. No code is run.
+
+    Files that the text names are looked for in the folder of `name`; without `beside` they are refused, since a text
+    from elsewhere must not read the files of this machine.
 
     Raises `DesignFileError`, whose `problems` are all that is wrong with the text.
 
     >>> read_text('brake = "pad_on_disc"').design.m1
     1.0
     """
-    return _file(document_of(Path(name), text.replace("\r\n", "\n")))
+    document = document_of(Path(name), text.replace("\r\n", "\n"))
+    document.beside = beside
+    return _file(document)
 
 
 def _file(document: Document) -> DesignFile:
@@ -122,7 +127,9 @@ def _design(document: Document, tables: Mapping[str, Any], beside: tuple[str, ..
 def _without_problems(document: Document, tables: Mapping[str, Any]) -> Design | None:
     """The design of a faulty file with the faulty keys left out, to check its sections against in the same go."""
     good = {name: value for name, value in tables.items() if name not in document.faulty}
-    return _design(Document(document.path, document.text, good, allow_code=document.allow_code), good)
+    return _design(
+        Document(document.path, document.text, good, allow_code=document.allow_code, beside=document.beside), good
+    )
 
 
 def section_of(document: Document, name: str, table: Any, design: Design | None) -> Any:

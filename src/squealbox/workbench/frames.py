@@ -6,6 +6,7 @@ The header names each array with its shape, so the page reads the numbers where 
 """
 
 import json
+import math
 import struct
 from collections.abc import Mapping
 from typing import Any
@@ -21,7 +22,9 @@ def frame(header: Mapping[str, Any], arrays: Mapping[str, Any] | None = None) ->
     """
     blocks = {name: np.ascontiguousarray(array, dtype="<f4") for name, array in (arrays or {}).items()}
     named = [[name, list(block.shape)] for name, block in blocks.items()]
-    text = json.dumps({**header, "arrays": named}, allow_nan=False, default=_number, separators=(",", ":")).encode()
+    text = json.dumps(
+        {**_known(header), "arrays": named}, allow_nan=False, default=_number, separators=(",", ":")
+    ).encode()
     text += b" " * (-len(text) % 4)
     return b"".join([struct.pack("<I", len(text)), text, *(block.tobytes() for block in blocks.values())])
 
@@ -38,10 +41,19 @@ def unframed(data: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
     return header, arrays
 
 
+def _known(value: Any) -> Any:
+    """Plain data without NaN and infinity, which JSON does not know: they become null, as in `finite`."""
+    if isinstance(value, Mapping):
+        return {name: _known(item) for name, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_known(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
 def _number(value: Any) -> Any:
     """A number of NumPy as JSON knows it."""
     if isinstance(value, np.generic):
-        return value.item()
+        return _known(value.item())
     raise TypeError(f"a header cannot hold a {type(value).__name__}")
 
 

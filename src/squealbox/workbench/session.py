@@ -173,7 +173,10 @@ class Session:
             design = design_of(message.get("state"), self.bases)
         except StateError as error:
             return frame({**about, **_wrong(error)})
-        return frame({**about, "kind": "sheet", "sheet": sheet(design), **_toml(design)})
+        try:
+            return frame({**about, "kind": "sheet", "sheet": sheet(design), **_toml(design)})
+        except (ArithmeticError, ValueError) as error:  # a value at the end of what numbers reach
+            return _failed(about, error)
 
     def _open(self, message: dict[str, Any]) -> bytes:
         about = {"id": message["id"], "ask": "open"}
@@ -185,7 +188,7 @@ class Session:
             base = name_of_text(text)
             return frame({**about, "kind": "opened", "base": base, "brake": _name(self.bases[base])})
         try:
-            design = read_text(text, "the file").design
+            design = read_text(text, "the file", beside=False).design
         except DesignFileError as error:
             wrong = [{"line": each.line, "field": each.key, "message": each.message} for each in error.problems]
             return frame({**about, "kind": "wrong", "wrong": wrong})
@@ -212,6 +215,7 @@ def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design],
             raise Stopped
         design = design_of(message.get("state"), bases)
         answer: Answer = function_of(name)(design, Options(message.get("options") or {}), work)
+        framed = frame({**about, "kind": "answer", "data": answer.data}, answer.arrays)
     except StateError as error:
         return frame({**about, **_wrong(error)})
     except OptionError as error:
@@ -221,9 +225,14 @@ def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design],
     except Elsewhere:
         raise
     except Exception as error:  # a panel that fails says so in its own place; the others go on
-        text = " ".join(str(error).split())[:500]
-        return frame({**about, "kind": "failed", "message": f"{type(error).__name__}: {text}"})
-    return frame({**about, "kind": "answer", "data": answer.data}, answer.arrays)
+        return _failed(about, error)
+    return framed
+
+
+def _failed(about: Mapping[str, Any], error: Exception) -> bytes:
+    """What could not be computed, as an answer: the page says it in the panel's own place."""
+    text = " ".join(str(error).split())[:500]
+    return frame({**about, "kind": "failed", "message": f"{type(error).__name__}: {text}"})
 
 
 def _wrong(error: StateError) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from squealbox.designs import Design
 from squealbox.limit_cycles import Branch, Cycle, HopfPoint, branch, hopf_point, shooting
 from squealbox.parameters import ParameterError
 from squealbox.plots.style import scaled
-from squealbox.stability import complex_modes
+from squealbox.stability import complex_modes, critical_values
 from squealbox.system import System
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, axis_of
@@ -24,6 +24,8 @@ STEP = 0.1  # longest, in shares of the range and of the motion
 EDGE = (
     0.01  # share of the range left out at its lower end, where friction or load may be zero and derivatives are taken
 )
+ROOM = 0.005  # share of the range about an onset in which it is solved for
+NEUTRAL = 1e-6  # of a multiplier from the unit circle within which a cycle neither attracts nor repels
 GRID = 201  # values at which steady sliding is looked at
 PUSHES = (0.5, 1.0, 3.0)  # of the contacts' velocity over the sliding speed, from which a cycle is looked for
 Make = Callable[[float], System]
@@ -41,7 +43,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     dof = options.dof(design)
     watched = _Watched(design, parameter, span, at, work)
     try:
-        born = hopf_point(watched.at_part(0.02, "looking for the onset"), parameter, span)
+        born = _nearest_onset(watched, parameter, span, at)
         cycle, start = _cycle(watched, design.replace({parameter: at}))
         walks = list(_walks(watched, parameter, span, at, born, cycle))
     except ParameterError as error:
@@ -66,6 +68,17 @@ class _Watched:
         way = abs(value - self.at) / (self.span[1] - self.span[0])
         self.work.progress(min(self.share + self.room * min(way, 1.0), 0.99), self.text)
         return self.design.replace({self.parameter: value}).system()
+
+
+def _nearest_onset(watched: _Watched, parameter: str, span: tuple[float, float], at: float) -> HopfPoint:
+    """The onset of flutter nearest to the present value, the one the verdict speaks of."""
+    make = watched.at_part(0.02, "looking for the onset")
+    found = critical_values(watched.design, parameter, span)
+    places = [float(each.value) for each in found if each.changes_stability and each.mechanism != "divergence"]
+    if not places:
+        return hopf_point(make, parameter, span)
+    near, room = min(places, key=lambda value: abs(value - at)), ROOM * (span[1] - span[0])
+    return hopf_point(make, parameter, (max(near - room, span[0]), min(near + room, span[1])))
 
 
 def _cycle(watched: _Watched, here: Design) -> tuple[Cycle | None, str]:
@@ -151,10 +164,16 @@ def _together(walks: list[Branch], grid: Any, quiet: Any) -> list[tuple[float, f
     """Stretches in which a stable cycle and stable sliding exist at the same value."""
     cycles = np.zeros(grid.size, dtype=bool)
     for walk in walks:
-        for i in np.nonzero(walk.stable[:-1] & walk.stable[1:])[0]:
+        attracts = _attracting(walk)
+        for i in np.nonzero(attracts[:-1] & attracts[1:])[0]:
             low, high = sorted((walk.value[i], walk.value[i + 1]))
             cycles |= (grid >= low) & (grid <= high)
     return _stretches(grid, cycles & quiet)
+
+
+def _attracting(walk: Branch) -> Any:
+    """Which cycles draw neighbours in: about the neutral centre of an undamped design there is one everywhere."""
+    return np.all(np.abs(walk.multipliers[:, 1:]) < 1.0 - NEUTRAL, axis=1)
 
 
 def _stretches(grid: Any, inside: Any) -> list[tuple[float, float]]:

@@ -64,4 +64,4 @@ def _margin(
     if not changes or value is None:
         return {"critical": changes[0] / factor if changes else None, "margin": None}
     nearest = min(changes, key=lambda each: abs(each - value))
-    return {"critical": nearest / factor, "margin": (nearest - value) / nearest if nearest else None}
+    return {"critical": nearest / factor, "margin": (nearest - value) / abs(value) if value else None}

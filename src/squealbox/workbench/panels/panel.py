@@ -98,12 +98,14 @@ class Options:
         return float(value)
 
     def dof(self, design: Design) -> int:
-        """The index of a degree of freedom; the first where nothing is given."""
-        last = design.system().size - 1
+        """The index of a degree of freedom; the first where nothing is given, or a design chosen later has fewer.
+
+        The answer names the one that was taken.
+        """
         value = self.number("dof", 0, 0, 1e9)
-        if value > last or value != int(value):
-            raise OptionError(f"dof: expected a whole number from 0 to {last}")
-        return int(value)
+        if value != int(value):
+            raise OptionError("dof: expected a whole number")
+        return int(value) if value < design.system().size else 0
 
     def parameter(self, name: str, design: Design, *usual: str) -> str:
         """The name of a parameter a study can vary; left out, the first of `usual` that the design has."""

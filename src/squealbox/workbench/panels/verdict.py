@@ -32,7 +32,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
             "state": "unstable",
             "mechanism": why.name,
             "flutterShare": finite(why.flutter_share),
-            "modes": int(modes.unstable_modes),
+            "modes": min(int(modes.unstable_modes), modes.eigenvalues.shape[-1] // 2),
         }
     found = critical_values(design, parameter, (low, high), points=POINTS)
     data["crossings"] = [

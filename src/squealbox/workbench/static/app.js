@@ -104,8 +104,9 @@ class App extends EventTarget {
   }
 
   /** Read a design file's text; resolves to what is wrong with it, or nothing. */
-  async open(text) {
+  async open(text, wanted = () => true) {
     const frame = await this.connection.ask({ ask: "open", text });
+    if (!wanted()) return [];
     if (frame.kind === "opened") {
       this.store.replace({ base: frame.base, brake: frame.brake, laws: {}, values: {} }, text);
       return [];
@@ -117,7 +118,13 @@ class App extends EventTarget {
   async follow(address) {
     const carried = Store.carried(address);
     if (!carried) return false;
-    const { brake, laws = {}, values = {}, settings = {}, text = null } = carried;
+    const [laws, values, settings] = [carried.laws, carried.values, carried.settings].map((each) => (isObject(each) ? each : {}));
+    const brake = String(carried.brake ?? "");
+    const text = typeof carried.text === "string" ? carried.text : null;
+    if (!text && !this.hello.brakes.some((each) => each.name === brake)) {
+      note(`The link names a brake that is not known here: “${brake.slice(0, 40)}”.`);
+      return false;
+    }
     this.store.settings = settings;
     let base = null;
     if (text) {
@@ -201,8 +208,9 @@ class App extends EventTarget {
   }
 
   async #save() {
-    const frame = await this.connection.ask({ ask: "sheet", state: this.store.design });
-    if (frame.toml) download(frame.toml, `${this.stem()}.toml`, "application/toml");
+    const frame = await this.connection.ask({ ask: "sheet", state: this.store.design }).catch(() => null);
+    if (!frame) note("Not saved: the server does not answer. Save again when it does.");
+    else if (frame.toml) download(frame.toml, `${this.stem()}.toml`, "application/toml");
     else note(frame.notWritable ?? "This design cannot be written: see what is marked.");
   }
 
@@ -245,6 +253,8 @@ class App extends EventTarget {
     this.#update();
   }
 }
+
+const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 
 const byId = (id) => document.getElementById(id);
 

@@ -32,6 +32,32 @@ export function prefix(unit, largest) {
   return choices.find(([factor]) => largest >= 0.999 * factor) ?? choices[choices.length - 1];
 }
 
+const UNITS = [
+  { m: 1, mm: 1e-3, cm: 1e-2, "µm": 1e-6, um: 1e-6, nm: 1e-9 },
+  { s: 1, ms: 1e-3, "µs": 1e-6, us: 1e-6 },
+  { Hz: 1, kHz: 1e3 },
+  { N: 1, kN: 1e3, MN: 1e6, mN: 1e-3 },
+  { "m/s": 1, "mm/s": 1e-3, "km/h": 1 / 3.6 },
+  { "N/m": 1, "kN/m": 1e3, "N/mm": 1e3, "MN/m": 1e6, "kN/mm": 1e6 },
+  { kg: 1, g: 1e-3, t: 1e3 },
+  { rad: 1, deg: Math.PI / 180, "°": Math.PI / 180 },
+];
+
+/** What somebody typed into a field, in the unit the field is read in: a number, alone or with a unit of its kind. */
+export function typed(text, field) {
+  const found = /^([+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:e[+-]?\d+)?)\s*(\S*)$/i.exec(text.trim().replace("−", "-"));
+  if (!found) return { wrong: `“${text}” is no number` };
+  if (/^[+-]?[1-9]\d{0,2},\d{3}$/.test(found[1])) {
+    return { wrong: `“${found[1]}” may mean ${found[1].replace(",", "")} or ${found[1].replace(",", ".")}, write one of these` };
+  }
+  const value = Number(found[1].replace(",", "."));
+  if (!Number.isFinite(value)) return { wrong: `“${text}” is larger than any number here` };
+  const unit = found[2];
+  if (!unit || unit === field.unit || unit === raised(field.unit)) return { value };
+  const kind = UNITS.find((each) => field.unit in each && unit in each);
+  return kind ? { value: (value * kind[unit]) / kind[field.unit] } : { wrong: `“${unit}” is no unit of ${field.path}` };
+}
+
 /** Signs of plain text as they are printed. */
 export const typographic = (text) => text.replaceAll("+-", "±").replaceAll(" -", " −").replaceAll(" um ", " µm ");
 

@@ -42,7 +42,9 @@ export class Opener {
       await this.app.follow(text);
       return;
     }
-    const wrong = await this.app.open(text).catch((error) => [{ message: error.message }]);
+    this.#say([{ message: "reading …" }]);
+    const wrong = await this.app.open(text, () => this.dialog.open).catch((error) => [{ message: error.message }]);
+    if (!this.dialog.open) return; // cancelled meanwhile
     if (wrong.length) return this.#say(wrong);
     this.dialog.close();
     note("Opened.");

@@ -1,7 +1,7 @@
 // The side of the page: every field of the design as a slider and a number, a choice or a friction law.
 
 import { make } from "./elements.js";
-import { plain, raised } from "./numbers.js";
+import { plain, raised, typed } from "./numbers.js";
 
 export class Parameters {
   constructor(app, place) {
@@ -78,12 +78,11 @@ export class Parameters {
       store.commit({ [field.path]: nearest(Math.min(Math.max(value * factor, low), high), field) });
     });
     const take = () => {
-      const text = number.value.trim().replace("−", "-").replace(",", ".");
-      if (text === "" && field.optional) return store.commit({ [field.path]: null });
-      const value = text === "" ? NaN : Number(text);
-      if (Number.isNaN(value)) return this.#mark(row, `“${number.value}” is no number: expected one in ${field.range}`);
+      if (number.value.trim() === "" && field.optional) return store.commit({ [field.path]: null });
+      const { value, wrong } = typed(number.value, field);
+      if (wrong) return this.#mark(row, `${wrong}: expected a number in ${raised(field.range)}`);
       if (value === Number(plain((store.value(field.path) ?? NaN) / factor))) return this.#mark(row, "");
-      store.commit({ [field.path]: Number.isFinite(value) ? value * factor : 1e308 });
+      store.commit({ [field.path]: value * factor });
     };
     number.addEventListener("change", take);
     number.addEventListener("keydown", (event) => {

@@ -11,7 +11,7 @@ export class Store extends EventTarget {
   constructor() {
     super();
     this.design = { base: null, brake: "drum_brake", laws: {}, values: {} };
-    this.text = null; // of the opened file
+    this.texts = new Map(); // of the opened files, by base: undo and links find the text of their own design
     this.sheet = null;
     this.settings = {}; // options of the panels, by panel
     this.past = [];
@@ -19,6 +19,11 @@ export class Store extends EventTarget {
     this.gathered = null;
     this.before = null; // the design before the gesture that is going on
     this.busy = () => false; // is the leading view still answering?
+  }
+
+  /** The text of the file the present design came from, null where it came from none. */
+  get text() {
+    return this.design.base ? (this.texts.get(this.design.base) ?? null) : null;
   }
 
   get fields() {
@@ -69,12 +74,12 @@ export class Store extends EventTarget {
   }
 
   /** Another brake, file or law: the fields change too. */
-  replace(design, text = this.text) {
+  replace(design, text = null) {
+    if (design.base && text !== null) this.texts.set(design.base, text);
     this.gathered = null;
     this.past.push(this.before ?? this.design);
     this.before = null;
     this.future = [];
-    this.text = text;
     this.#set(design, true);
   }
 

@@ -56,6 +56,7 @@ function loud({ fate, loud: found, of }) {
 function headline(data) {
   if (data.state === "unknown") return "No steady sliding";
   if (data.state === "stable") return "Steady sliding is stable";
+  if (data.mechanism === "divergence") return "Unstable: it moves away without vibrating";
   const heard = data.frequency >= AUDIBLE[0] && data.frequency <= AUDIBLE[1];
   return `Unstable: it will ${heard ? "squeal" : "vibrate"} at about ${withUnit(data.frequency, "Hz")}`;
 }

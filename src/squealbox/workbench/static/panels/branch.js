@@ -79,6 +79,8 @@ function words(data) {
   const said = [];
   if (data.hopf !== null) said.push(`Sliding loses its stability at ${shown(data.hopf, 5)}${unit}, ${data.kind}.`);
   for (const [from, to] of data.together) said.push(`From ${shown(from, 4)} to ${shown(to, 4)}${unit} (green) a stable cycle exists beside stable sliding: a push decides.`);
+  const ended = [...new Set(data.walks.map((walk) => walk.ended).filter((text) => text && !text.startsWith("completed")))];
+  if (ended.length) said.push(`Followed until: ${ended.join("; ")}. Beyond that nothing is said.`);
   if (!data.walks.length) said.push("No limit cycle was found from the starts tried; that does not prove there is none.");
   const specials = data.walks.flatMap((walk) => walk.specials.map(([kind, value]) => `${kind} at ${shown(value, 5)}`));
   if (specials.length) said.push(`Circles: ${[...new Set(specials)].slice(0, 6).join(", ")}.`);

@@ -39,6 +39,8 @@ export default {
   },
 };
 
+const WHY = { unknown_base: "it came from a file that is not open any more" };
+
 const key = (panel, design) => JSON.stringify([design, panel.request().options.parameter, panel.b.data.span]);
 
 function keep(panel) {
@@ -62,8 +64,7 @@ function other(panel, design) {
   const { options } = panel.request();
   panel.app.connection.ask({ view: "compare", state: design, options: { ...options, span: panel.b.data.span.map((end) => end * panel.b.data.axis.factor) } }).then(
     (frame) => {
-      if (frame.kind === "answer") panel.a = { key: asked, frame };
-      else if (frame.kind === "unknown_base") panel.says.textContent = "A came from a file that is not open any more.";
+      panel.a = { key: asked, frame: frame.kind === "answer" ? frame : null, why: WHY[frame.kind] ?? frame.wrong?.map((each) => each.message).join("; ") ?? frame.message };
       picture(panel);
     },
     () => {}, // the connection was lost: asked again when the page draws again
@@ -90,7 +91,11 @@ function picture(panel) {
   growth.draw({ x, y: { label: label("growth rate", "1/s"), domain: span(rates.map((each) => each.y), { room: 0.2 }) }, layers: [across(0), ...rates, ...here], legend: "top left" });
   panel.table.replaceChildren(table(a?.data ?? null, b.data));
   panel.element.dataset.compared = a ? "yes" : "no";
-  panel.remark = a ? "" : "Keep this design as A, then change it: A stays beside it.";
+  const kept = Boolean(panel.chosen.a);
+  if (a) panel.remark = "";
+  else if (kept && panel.a?.why) panel.remark = `A cannot be drawn over ${b.data.axis.parameter}: ${panel.a.why}.`;
+  else panel.remark = "Keep this design as A, then change it: A stays beside it.";
+  panel.says.textContent = panel.remark;
 }
 
 function table(a, b) {

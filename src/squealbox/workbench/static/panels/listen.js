@@ -74,10 +74,11 @@ const loudness = (data) => (data.level === null || data.level < 0 ? "and dies aw
 
 const size = (heard) => heard.largest; // in m
 
-/** What full scale stands for [m]: of the louder of both, or each its own. */
+/** What full scale stands for [m]: each its own, or quieter by the difference of the estimated levels. */
 function loudest(panel, heard) {
-  const both = Object.values(panel.heard).filter(Boolean);
-  return panel.ratio.checked ? Math.max(...both.map(size)) : size(heard);
+  const levels = Object.values(panel.heard).filter(Boolean).map((each) => each.weighted ?? -Infinity);
+  const below = panel.ratio.checked && heard.weighted !== null ? Math.max(...levels) - heard.weighted : 0;
+  return size(heard) * 10 ** (below / 20);
 }
 
 function sounding(panel, heard) {
