@@ -14,8 +14,8 @@ K = "K.npy"
 n = [0.0, 0.0]
 d = [1.0, 0.0]
 t = [1.0, 0.0]
-N0 = "1 N"
-V = "1 m/s"
+normal_force = "1 N"
+sliding_speed = "1 m/s"
 friction = { law = "coulomb", static = 0.3 }
 """
 
