@@ -51,7 +51,7 @@ def test_version(said):
     [
         (["mods"], "squealbox: unknown command 'mods': did you mean 'modes'?"),
         (["--vresion"], "squealbox: unknown option '--vresion'"),
-        (["modes"], "squealbox modes: Parameter --file requires an argument."),
+        (["modes"], "squealbox modes: FILE is missing: squealbox modes FILE"),
         (["modes", "a", "b", "c"], "squealbox modes: unexpected words: b c"),
         (["onset", "a", "--rnge", "0", "1"], "Unknown option: --rnge. Did you mean --range?"),
         (["onset", "a", "--range", "0"], "--range requires 2"),
@@ -104,6 +104,26 @@ def test_bad_options_get_one_sentence_and_nothing_is_written(words, sentence, sa
     assert sentence in err
     assert err.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+def test_changes_may_stand_before_the_file_and_ranges_may_be_negative(said, brake):
+    _, after, _ = said("modes", brake, "--set", "load=2 kN", "theta1=20 deg")
+    code, before, _ = said("modes", "--set", "load=2 kN", "theta1=20 deg", brake)
+    assert (code, before) == (0, after)
+    code, out, _ = said("onset", brake, "--parameter", "theta1", "--range", "-20deg", "20deg")
+    assert code == 0
+    assert "theta1" in out
+
+
+def test_what_is_missing_is_called_as_the_usage_line_calls_it(said):
+    code, _, err = said("modes")
+    assert code == 2
+    assert "FILE is missing: squealbox modes FILE" in err
+
+
+def test_a_byte_order_mark_is_no_part_of_the_text(said, brake):
+    brake.write_bytes(b"\xef\xbb\xbf" + brake.read_bytes())
+    assert said("modes", brake)[0] == 0
 
 
 def test_a_bad_file_says_all_its_problems(said, tmp_path):

@@ -6,6 +6,7 @@ input, 130 stopped by the user.
 """
 
 import difflib
+import io
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -61,6 +62,9 @@ examples:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code. Errors go to stderr, one sentence each, without a traceback."""
     words = list(sys.argv[1:] if arguments is None else arguments)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal that knows no squared sign shows a question mark
     if not words or words[0] in ("--help", "-h", "help"):
         print(overview())
         return DONE

@@ -13,7 +13,7 @@ from squealbox.cli.tables import write_csv, written
 from squealbox.limit_cycles import Basin, basin, dangerous_push
 from squealbox.limit_cycles.attractors.sections import state_names
 
-Two = Annotated[tuple[str, str] | None, Parameter(negative="")]
+Two = Annotated[tuple[str, str] | None, Parameter(negative="", allow_leading_hyphen=True)]
 Push = Annotated[bool, Parameter(negative="")]
 
 

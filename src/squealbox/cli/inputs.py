@@ -15,11 +15,9 @@ from squealbox.files.analyses import Axis, quantity_of
 from squealbox.files.units import UnitError, in_si
 from squealbox.parameters import Parameter, ParameterError
 
-Changes = Annotated[
-    tuple[str, ...], cyclopts.Parameter(name="--set", negative="", consume_multiple=True, show_default=False)
-]
+Changes = Annotated[tuple[str, ...], cyclopts.Parameter(name="--set", negative="", show_default=False)]
 AllowCode = Annotated[bool, cyclopts.Parameter(name="--allow-code", negative="")]
-Ends = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
+Ends = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="", allow_leading_hyphen=True)]
 
 
 def read(file: Path, changes: Sequence[str] = (), allow_code: bool = False) -> DesignFile:

@@ -1,9 +1,11 @@
 """One command from its words to its exit code."""
 
 import importlib
+import inspect
 import os
+import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from squealbox.cli import BAD_INPUT, DONE, FAILED, STOPPED, Command
 from squealbox.result import Outcome
@@ -58,12 +60,44 @@ def _call(name: str, command: Command, words: Sequence[str]) -> int:
     app.default(function)
     app["--help"].group = "Parameters"
     try:
-        code = app(words, exit_on_error=False, print_error=False)
+        code = app(ordered(words), exit_on_error=False, print_error=False)
     except cyclopts.UnusedCliTokensError as error:
         raise UsageError(f"unexpected words: {' '.join(error.unused_tokens or ())[:60]}") from error
+    except cyclopts.MissingArgumentError as error:
+        raise UsageError(_missing(name, str(error), function)) from error
     except cyclopts.CycloptsError as error:
         raise UsageError(_one_sentence(str(error))) from error
     return code if isinstance(code, int) else DONE
+
+
+def _missing(name: str, text: str, function: Callable[..., object]) -> str:
+    """What is missing, called as the usage line calls it: a word that was to come first is no option."""
+    found = re.search(r"--([a-z-]+)", text)
+    asked = inspect.signature(function).parameters.get(found[1].replace("-", "_")) if found else None
+    if found and asked is not None and asked.kind is not inspect.Parameter.KEYWORD_ONLY:
+        return f"{found[1].upper()} is missing: squealbox {name} {found[1].upper()}; --help tells more"
+    return _one_sentence(text)
+
+
+def ordered(words: Sequence[str]) -> list[str]:
+    """The words of a command with the changes behind ``--set`` each tied to it, so that a file may follow them.
+
+    >>> ordered(["--set", "load=2 kN", "theta1=-20 deg", "brake.toml"])
+    ['--set=load=2 kN', '--set=theta1=-20 deg', 'brake.toml']
+    """
+    found: list[str] = []
+    setting = False
+    for word in words:
+        if setting and "=" in word and not word.startswith("--"):
+            found[-1:] = [f"--set={word}", "--set"]
+            continue
+        if setting and len(found) > 1 and found[-2].startswith("--set="):
+            found.pop()
+        setting = word == "--set"
+        found.append(word)
+    if setting and len(found) > 1 and found[-2].startswith("--set="):
+        found.pop()
+    return found
 
 
 def _explain(name: str, error: Exception) -> int:

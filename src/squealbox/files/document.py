@@ -109,7 +109,7 @@ def _text(path: Path) -> str:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
         raise _error(path, f"cannot be read: {reason}") from error
     try:
-        return raw.decode("utf-8").replace("\r\n", "\n")
+        return raw.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
         raise _error(path, f"byte 0x{raw[error.start]:02x} is not UTF-8 text: expected a TOML file", line) from error

@@ -132,7 +132,8 @@ def serve(line: Connection) -> None:
     """The life of such a process: one question after the other, until nobody asks for long or the server is gone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the server's to hear
     with contextlib.suppress(OSError):
-        os.nice(5)  # sliders come first
+        if hasattr(os, "nice"):  # not everywhere
+            os.nice(5)  # sliders come first
     from squealbox.workbench.panels import Work
     from squealbox.workbench.session import answered
 
