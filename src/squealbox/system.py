@@ -13,19 +13,19 @@ because v = V - t.q' gives d(mu sgn(v))/dq' = -mu' t' at fixed sgn(v). Every arr
 system can be a whole map of systems: M is (..., n, n), n, d and t are (..., n), N0, V and the law's parameters (...).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from squealbox.friction import FrictionLaw
+from squealbox.matrices import InvalidSystem, array, check_mass, check_width, checked_names, coupled, felt, form
 from squealbox.parameters import DataSheet
 from squealbox.result import COMPLETED, Outcome
 from squealbox.schedules import Schedule, value_at
-
-
-class InvalidSystem(ValueError):
-    """Matrices, vectors or contacts do not make a system; the message names array, shape and what was expected."""
+from squealbox.static_deflection import modulo_rigid_motion, solve
 
 
 class Contact(DataSheet):
@@ -65,10 +65,10 @@ class Contact(DataSheet):
     def __post_init__(self) -> None:
         for field in ("n", "d", "t", "normal"):
             if getattr(self, field) is not None:
-                object.__setattr__(self, field, _array(f"contact {self.name}.{field}", getattr(self, field), 1))
+                object.__setattr__(self, field, array(f"contact {self.name}.{field}", getattr(self, field), 1))
         for field in ("N0", "V"):
             if not isinstance(getattr(self, field), Schedule):
-                object.__setattr__(self, field, _array(f"contact {self.name}.{field}", getattr(self, field), 0))
+                object.__setattr__(self, field, array(f"contact {self.name}.{field}", getattr(self, field), 0))
         if not isinstance(self.law, FrictionLaw):
             raise InvalidSystem(f"contact {self.name}.law = {self.law!r}: expected a friction law")
         if self.unilateral and self.normal is None:
@@ -124,32 +124,31 @@ class System(DataSheet):
     def __post_init__(self) -> None:
         set_ = object.__setattr__
         for field in ("M", "C", "K"):
-            set_(self, field, _array(field, getattr(self, field), 2))
+            set_(self, field, array(field, getattr(self, field), 2))
         size = self.M.shape[-1]
         for field in ("M", "C", "K"):
             if getattr(self, field).shape[-2:] != (size, size):
                 raise InvalidSystem(f"{field} has shape {getattr(self, field).shape}: expected (..., {size}, {size})")
-        if not np.allclose(self.M, np.swapaxes(self.M, -1, -2)):
-            raise InvalidSystem("M is not symmetric: expected a symmetric mass matrix")
+        check_mass(self.M)
         if not isinstance(self.load, Schedule):
             load = np.asarray(self.load, dtype=float)
-            set_(self, "load", _array("load", np.broadcast_to(load, (size,)) if load.ndim == 0 else load, 1))
-        _check_width("load", np.asarray(value_at(self.load, 0.0)), size)
+            set_(self, "load", array("load", np.broadcast_to(load, (size,)) if load.ndim == 0 else load, 1))
+        check_width("load", np.asarray(value_at(self.load, 0.0)), size)
         set_(self, "contacts", tuple(self.contacts))
-        set_(self, "names", tuple(self.names) or tuple(f"q{i + 1}" for i in range(size)))
+        set_(self, "names", checked_names(self.names, size))
         for i, contact in enumerate(self.contacts):
             if not isinstance(contact, Contact):
                 raise InvalidSystem(f"contacts[{i}] = {contact!r}: expected a Contact")
             for field in ("n", "d", "t", "normal"):
                 if getattr(contact, field) is not None:
-                    _check_width(f"contacts[{i}].{field}", getattr(contact, field), size)
+                    check_width(f"contacts[{i}].{field}", getattr(contact, field), size)
 
     @property
     def size(self) -> int:
         """Number n of degrees of freedom."""
         return int(self.M.shape[-1])
 
-    @property
+    @cached_property
     def shape(self) -> tuple[int, ...]:
         """Leading axes: () for one system, the shape of the map for many."""
         shapes = [self.M.shape[:-2], self.C.shape[:-2], self.K.shape[:-2], np.shape(value_at(self.load, 0.0))[:-1]]
@@ -157,7 +156,26 @@ class System(DataSheet):
             shapes += [np.shape(getattr(contact, field))[:-1] for field in ("n", "d", "t")]
             shapes += [np.shape(value_at(value, 0.0)) for value in (contact.N0, contact.V)]
             shapes += [np.shape(value) for value in contact.law.coefficients()]
-        return np.broadcast_shapes(*shapes)
+        return np.broadcast_shapes(*set(shapes))
+
+    @cached_property
+    def rows(self) -> tuple[Any, Any, Any, Any]:
+        """n, d, t and normal of all contacts, each (..., contacts, n), for sums that are one matrix product."""
+        empty = np.zeros((0, self.size))
+        stacked = []
+        for field in ("n", "d", "t", "normal"):
+            values = [getattr(contact, field) for contact in self.contacts]
+            values = [np.zeros(self.size) if value is None else value for value in values]
+            stacked.append(np.stack(np.broadcast_arrays(*values), axis=-2) if values else empty)
+        return stacked[0], stacked[1], stacked[2], stacked[3]
+
+    @cached_property
+    def alike(self) -> tuple[tuple[Any, tuple[int, ...]], ...]:
+        """Each friction law with the contacts that have it: (law, contacts), so that a law is asked once."""
+        found: dict[FrictionLaw, list[int]] = {}
+        for i, contact in enumerate(self.contacts):
+            found.setdefault(contact.law, []).append(i)
+        return tuple((law, tuple(contacts)) for law, contacts in found.items())
 
 
 @dataclass(frozen=True)
@@ -167,6 +185,9 @@ class Equilibrium:
     q (..., n) [m]; normal_force, sliding_speed and friction (..., contacts) in N, m/s and -; exists (...) bool;
     outcome "completed", "singular" (K_eff cannot be solved), "no_sliding" (a contact has V = 0, so any force up to the
     static limit balances) or "no_convergence"; with leading axes the outcome names the worst entry.
+
+    floating (...) is the number of rigid-body freedoms: motions that no spring and no contact feels. Where the forces
+    do not push along them, steady sliding is known but for such a motion, and q is the one of least length.
     """
 
     q: Any
@@ -175,6 +196,7 @@ class Equilibrium:
     friction: Any
     exists: Any
     outcome: Outcome
+    floating: Any = 0
 
 
 @dataclass(frozen=True)
@@ -205,13 +227,17 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
     q = np.zeros((*shape, size))
     base = np.broadcast_to(system.K, (*shape, size, size))
     singular = np.zeros(shape, dtype=bool)
+    floating = np.zeros(shape, dtype=int)
+    pushed = np.zeros(shape, dtype=bool)
     converged = np.zeros(shape, dtype=bool)
     scale = np.max(np.abs(base), axis=(-1, -2))
     forces = np.max(np.abs(value_at(system.load, time)), axis=-1) + np.max(np.abs(force), axis=-1, initial=0.0)
     linear = not any(contact.unilateral for contact in system.contacts)
     for _ in range(2 + 2 * len(system.contacts) ** 2):
         residual, jacobian = _residual(system, time, q, force, speed, mu, base)
-        step, bad = _solve(jacobian, residual)
+        step, bad = solve(jacobian, residual)
+        if np.any(bad):
+            step, bad, floating, pushed = modulo_rigid_motion(jacobian, residual, system.rows[0], forces, step, bad)
         singular |= bad
         q = q - step
         if linear:  # one step is exact
@@ -224,7 +250,8 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
     sliding = np.all(speed != 0.0, axis=-1)
     exists = converged & ~singular & sliding
     normal = _normal_forces(system, time, q)
-    return Equilibrium(q, normal, speed, mu, exists, _equilibrium_outcome(singular, sliding, converged, speed))
+    outcome = _equilibrium_outcome(singular, sliding, converged, speed, pushed)
+    return Equilibrium(q, normal, speed, mu, exists, outcome, np.where(exists, floating, 0))
 
 
 def linearise(system: System, time: float = 0.0) -> Linearised:
@@ -233,14 +260,15 @@ def linearise(system: System, time: float = 0.0) -> Linearised:
     shape, size = system.shape, system.size
     damping = np.array(np.broadcast_to(system.C, (*shape, size, size)))
     stiffness = np.array(np.broadcast_to(system.K, (*shape, size, size)))
-    for i, contact in enumerate(system.contacts):
-        normal, speed, mu = (a[..., i, None, None] for a in (state.normal_force, state.sliding_speed, state.friction))
-        closed = (normal > 0.0) if contact.unilateral else True
-        slope = np.asarray(contact.law.slope_at(speed[..., 0, 0]))[..., None, None]
-        damping += np.where(closed, normal * slope, 0.0) * _outer(contact.d, contact.t)
-        stiffness -= np.where(closed, mu * np.sign(speed), 0.0) * _outer(contact.d, contact.n)
-        if contact.unilateral:
-            stiffness -= np.where(closed, 0.0, 1.0) * _outer(contact.normal, contact.n)
+    if system.contacts:
+        n, d, t, reaction = system.rows
+        lifts = np.array([contact.unilateral for contact in system.contacts])
+        closed = ~lifts | (state.normal_force > 0.0)
+        slope = _by_law(system, lambda law, speed: law.slope_at(speed), state.sliding_speed)
+        damping += coupled(d, np.where(closed, state.normal_force * slope, 0.0), t)
+        stiffness -= coupled(d, np.where(closed, state.friction * np.sign(state.sliding_speed), 0.0), n)
+        if np.any(lifts):
+            stiffness -= coupled(reaction, np.where(closed, 0.0, 1.0), n)
     missing = ~state.exists[..., None, None]
     mass = np.broadcast_to(system.M, stiffness.shape)
     return Linearised(mass, np.where(missing, np.nan, damping), np.where(missing, np.nan, stiffness), state)
@@ -277,7 +305,7 @@ def contact_state(system: System, time: Any, q: Any, qd: Any) -> tuple[Any, Any,
 def mechanical_energy(system: System, q: Any, qd: Any) -> Any:
     """Kinetic plus strain energy [J], 1/2 q'.M q' + 1/2 q.Ks q with Ks the symmetric part of K; shape (...)."""
     symmetric = 0.5 * (system.K + np.swapaxes(system.K, -1, -2))
-    return 0.5 * _form(qd, system.M, qd) + 0.5 * _form(q, symmetric, q)
+    return 0.5 * form(qd, system.M, qd) + 0.5 * form(q, symmetric, q)
 
 
 def power_of_friction(system: System, time: Any, q: Any, qd: Any) -> Any:
@@ -289,13 +317,13 @@ def power_of_friction(system: System, time: Any, q: Any, qd: Any) -> Any:
 
 def power_dissipated(system: System, qd: Any) -> Any:
     """Power [W] the damping takes out, q'.C q', shape (...)."""
-    return _form(qd, system.C, qd)
+    return form(qd, system.C, qd)
 
 
 def power_of_circulation(system: System, q: Any, qd: Any) -> Any:
     """Power [W] fed in by the skew part Ka of the stiffness itself, -q'.Ka q, shape (...); 0 for a symmetric K."""
     skew = 0.5 * (system.K - np.swapaxes(system.K, -1, -2))
-    return -_form(qd, skew, q)
+    return -form(qd, skew, q)
 
 
 def power_of_load(system: System, time: Any, qd: Any) -> Any:
@@ -309,59 +337,56 @@ def power_of_load(system: System, time: Any, qd: Any) -> Any:
 
 
 def _sliding(system: System, time: float) -> tuple[Any, Any, Any]:
-    shape = system.shape
-    force = [np.broadcast_to(value_at(c.N0, time), shape) for c in system.contacts]
-    speed = [np.broadcast_to(value_at(c.V, time), shape) for c in system.contacts]
-    mu = [np.broadcast_to(c.law.mu(v), shape) for c, v in zip(system.contacts, speed, strict=True)]
-    empty = np.zeros((*shape, 0))
-    return tuple(np.stack(x, axis=-1) if x else empty for x in (force, speed, mu))  # type: ignore[return-value]
+    shape, count = system.shape, len(system.contacts)
+    force, speed = np.zeros((*shape, count)), np.zeros((*shape, count))
+    for i, contact in enumerate(system.contacts):
+        force[..., i] = value_at(contact.N0, time)
+        speed[..., i] = value_at(contact.V, time)
+    return force, speed, _by_law(system, lambda law, speed: law.mu(speed), speed)
+
+
+def _by_law(system: System, ask: Callable[[Any, Any], Any], speed: Any) -> Any:
+    """What `ask`(law, speeds) says of each contact, (..., contacts): contacts of one law together."""
+    found = np.zeros(np.shape(speed))
+    for law, contacts in system.alike:
+        single = len(contacts) == 1 or any(np.ndim(value) for value in law.coefficients())
+        for some in [[i] for i in contacts] if single else [list(contacts)]:
+            at = speed[..., some[0]] if single else speed[..., some]
+            found[..., some[0] if single else some] = ask(law, at)
+    return found
 
 
 def _residual(system: System, time: float, q: Any, force: Any, speed: Any, mu: Any, base: Any) -> tuple[Any, Any]:
     residual = np.einsum("...ij,...j->...i", base, q) - value_at(system.load, time)
-    jacobian = np.array(base)
-    for i, contact in enumerate(system.contacts):
-        normal = force[..., i] + np.sum(contact.n * q, axis=-1)
-        closed = (normal > 0.0) if contact.unilateral else np.ones(normal.shape, dtype=bool)
-        factor = np.where(closed, mu[..., i] * np.sign(speed[..., i]), 0.0)
-        residual = residual - (factor * normal)[..., None] * contact.d
-        jacobian = jacobian - factor[..., None, None] * _outer(contact.d, contact.n)
-        if contact.unilateral:
-            residual = residual - np.where(closed, 0.0, normal)[..., None] * contact.normal
-            jacobian = jacobian - np.where(closed, 0.0, 1.0)[..., None, None] * _outer(contact.normal, contact.n)
+    if not system.contacts:
+        return residual, np.array(base)
+    n, d, _, reaction = system.rows
+    lifts = np.array([contact.unilateral for contact in system.contacts])
+    normal = force + felt(n, q)
+    closed = ~lifts | (normal > 0.0)
+    factor = np.where(closed, mu * np.sign(speed), 0.0)
+    residual = residual - np.sum((factor * normal)[..., None] * d, axis=-2)
+    jacobian = base - coupled(d, factor, n)
+    if np.any(lifts):
+        residual = residual - np.sum(np.where(closed, 0.0, normal)[..., None] * reaction, axis=-2)
+        jacobian = jacobian - coupled(reaction, np.where(closed, 0.0, 1.0), n)
     return residual, jacobian
 
 
-def _solve(jacobian: Any, residual: Any) -> tuple[Any, Any]:
-    """Solve, with the entries whose matrix is singular to working precision set to a zero step and marked."""
-    with np.errstate(all="ignore"):
-        singular = ~(_condition(jacobian) < 1.0 / np.finfo(float).eps)
-    safe = np.where(singular[..., None, None], np.eye(jacobian.shape[-1]), jacobian)
-    step = np.linalg.solve(safe, residual[..., None])[..., 0]
-    return np.where(singular[..., None], 0.0, step), singular
-
-
-def _condition(matrix: Any) -> Any:
-    """Condition number by the inverse (1-norm); of 2 x 2 in closed form (Frobenius), many times faster on a map."""
-    if matrix.shape[-1] != 2:
-        return np.linalg.cond(matrix, 1)
-    a = matrix / np.max(np.abs(matrix), axis=(-1, -2), keepdims=True)
-    return np.sum(a**2, axis=(-1, -2)) / np.abs(a[..., 0, 0] * a[..., 1, 1] - a[..., 0, 1] * a[..., 1, 0])
-
-
 def _normal_forces(system: System, time: float, q: Any) -> Any:
-    columns = [
-        np.maximum(normal, 0.0) if contact.unilateral else normal
-        for contact in system.contacts
-        for normal in [value_at(contact.N0, time) + np.sum(contact.n * q, axis=-1)]
-    ]
-    columns = [np.broadcast_to(column, system.shape) for column in columns]
-    return np.stack(columns, axis=-1) if columns else np.zeros((*system.shape, 0))
+    if not system.contacts:
+        return np.zeros((*system.shape, 0))
+    force, _, _ = _sliding(system, time)
+    normal = force + felt(system.rows[0], q)
+    lifts = np.array([contact.unilateral for contact in system.contacts])
+    return np.where(lifts, np.maximum(normal, 0.0), normal)
 
 
-def _equilibrium_outcome(singular: Any, sliding: Any, converged: Any, speed: Any) -> Outcome:
+def _equilibrium_outcome(singular: Any, sliding: Any, converged: Any, speed: Any, pushed: Any) -> Outcome:
     if np.any(singular):
         message = "K_eff is singular: the friction-coupled stiffness has no unique static deflection"
+        if np.any(pushed):
+            message = "K_eff is singular: nothing holds a rigid-body motion that the forces drive, so it runs away"
         return Outcome("singular", message, entries=int(np.sum(singular)))
     if not np.all(sliding):
         contacts = sorted({int(i) for i in np.nonzero(speed == 0.0)[-1]})
@@ -370,31 +395,3 @@ def _equilibrium_outcome(singular: Any, sliding: Any, converged: Any, speed: Any
     if not np.all(converged):
         return Outcome("no_convergence", "the set of open contacts did not settle", entries=int(np.sum(~converged)))
     return Outcome(COMPLETED)
-
-
-def _array(name: str, value: Any, ndim: int) -> np.ndarray:
-    try:
-        array = np.array(value).astype(float, casting="same_kind")  # refuses complex numbers and texts
-    except (TypeError, ValueError) as error:
-        raise InvalidSystem(f"{name}: expected an array of real numbers") from error
-    if array.ndim < ndim:
-        raise InvalidSystem(f"{name} has shape {array.shape}: expected at least {ndim} axes")
-    if not np.all(np.isfinite(array)):
-        raise InvalidSystem(f"{name} holds a value that is not finite")
-    array.flags.writeable = False
-    return array
-
-
-def _check_width(name: str, array: np.ndarray, size: int) -> None:
-    if array.shape[-1:] != (size,):
-        raise InvalidSystem(f"{name} has shape {array.shape}: expected (..., {size})")
-
-
-def _outer(a: Any, b: Any) -> Any:
-    return np.asarray(a)[..., :, None] * np.asarray(b)[..., None, :]
-
-
-def _form(a: Any, matrix: Any, b: Any) -> Any:
-    """a . matrix b over leading axes; one matrix for all rows goes through one matrix product."""
-    product = np.asarray(b) @ matrix.T if np.ndim(matrix) == 2 else np.einsum("...ij,...j->...i", matrix, b)
-    return np.sum(np.asarray(a) * product, axis=-1)

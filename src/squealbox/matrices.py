@@ -1,0 +1,87 @@
+"""The arrays of a system: what is wrong with one, and sums over its contacts as products of matrices."""
+
+from typing import Any
+
+import numpy as np
+
+SYMMETRIC = 1e-8  # of the largest entry: differences beyond it are no round-off of a written file
+
+
+class InvalidSystem(ValueError):
+    """Matrices, vectors or contacts do not make a system; the message names array, shape and what was expected."""
+
+
+def coupled(left: Any, factor: Any, right: Any) -> Any:
+    """sum_c left_c factor_c right_c' of rows (..., contacts, n), shape (..., n, n); factor is (..., contacts)."""
+    if np.ndim(factor) == 1 and np.ndim(left) == 2 and np.ndim(right) == 2:
+        return (left * factor[:, None]).T @ right
+    total: Any = 0.0
+    for i in range(np.shape(factor)[-1]):  # on a map, sums of outer products are quicker than tiny products
+        total = total + factor[..., i, None, None] * outer(left[..., i, :], right[..., i, :])
+    return total
+
+
+def felt(rows: Any, q: Any) -> Any:
+    """rows . q, (..., contacts)."""
+    return rows @ q if np.ndim(q) == 1 and np.ndim(rows) == 2 else np.sum(rows * q[..., None, :], axis=-1)
+
+
+def check_mass(mass: Any) -> None:
+    """Symmetric to its own size, and no motion of negative kinetic energy."""
+    largest = np.max(np.abs(mass), axis=(-1, -2), keepdims=True, initial=0.0)
+    if np.any(np.abs(mass - np.swapaxes(mass, -1, -2)) > SYMMETRIC * largest):
+        raise InvalidSystem("M is not symmetric: expected a symmetric mass matrix")
+    diagonal = np.diagonal(mass, axis1=-2, axis2=-1)
+    if np.any(diagonal < 0.0):
+        *_, i = (int(k[0]) for k in np.nonzero(diagonal < 0.0))
+        raise InvalidSystem(f"M[{i}, {i}] = {float(np.min(diagonal[..., i])):g} is negative: expected masses >= 0")
+    if np.all(mass == diagonal[..., None] * np.eye(mass.shape[-1])):
+        return
+    root = np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))  # one unit for all freedoms: kg and kg m2 side by side
+    least = np.linalg.eigvalsh(mass / (root[..., :, None] * root[..., None, :]))[..., 0]
+    if np.any(least < -SYMMETRIC * mass.shape[-1]):
+        raise InvalidSystem(
+            "M is indefinite: some motion has negative kinetic energy; expected a positive (semi)definite mass matrix"
+        )
+
+
+def checked_names(names: Any, size: int) -> tuple[str, ...]:
+    """Names of the degrees of freedom, by default q1, q2, ...; `InvalidSystem` for a wrong number or one twice."""
+    names = tuple(names) or tuple(f"q{i + 1}" for i in range(size))
+    if len(names) != size:
+        raise InvalidSystem(f"names = {names}: {len(names)} names, expected {size}, one for each degree of freedom")
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise InvalidSystem(f"names = {names}: {twice[0]!r} stands more than once, expected names of their own")
+    return names
+
+
+def array(name: str, value: Any, ndim: int) -> np.ndarray:
+    """A read-only array of finite real numbers with at least `ndim` axes; `InvalidSystem` with its name else."""
+    try:
+        array = np.array(value).astype(float, casting="same_kind")  # refuses complex numbers and texts
+    except (TypeError, ValueError) as error:
+        raise InvalidSystem(f"{name}: expected an array of real numbers") from error
+    if array.ndim < ndim:
+        raise InvalidSystem(f"{name} has shape {array.shape}: expected at least {ndim} axes")
+    if not np.all(np.isfinite(array)):
+        raise InvalidSystem(f"{name} holds a value that is not finite")
+    array.flags.writeable = False
+    return array
+
+
+def check_width(name: str, array: np.ndarray, size: int) -> None:
+    """Raise `InvalidSystem` unless the last axis has the size."""
+    if array.shape[-1:] != (size,):
+        raise InvalidSystem(f"{name} has shape {array.shape}: expected (..., {size})")
+
+
+def outer(a: Any, b: Any) -> Any:
+    """a b' over leading axes."""
+    return np.asarray(a)[..., :, None] * np.asarray(b)[..., None, :]
+
+
+def form(a: Any, matrix: Any, b: Any) -> Any:
+    """a . matrix b over leading axes; one matrix for all rows goes through one matrix product."""
+    product = np.asarray(b) @ matrix.T if np.ndim(matrix) == 2 else np.einsum("...ij,...j->...i", matrix, b)
+    return np.sum(np.asarray(a) * product, axis=-1)
