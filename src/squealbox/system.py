@@ -8,6 +8,7 @@ A contact senses along n (normal force, N/m) and t (sliding), and acts along d. 
 
     K_eff = K - sum mu sgn(V) d n'            non-symmetric: can flutter
     C_eff = C + sum N_c(q0) mu'(|V|) d t'     indefinite where friction weakens with speed
+              + sum mu N_c(q0) / |V| a a'     where sliding is in a plane: a is the row across it
 
 because v = V - t.q' gives d(mu sgn(v))/dq' = -mu' t' at fixed sgn(v). Every array may carry leading axes, so that one
 system can be a whole map of systems: M is (..., n, n), n, d and t are (..., n), N0, V and the law's parameters (...).
@@ -17,85 +18,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy import sparse
 
-from squealbox.friction import FrictionLaw
+from squealbox import sparse_sliding
+from squealbox.contacts import ROWS, Contact, Contacts, InvalidSystem, _array, _check_width, dense_rows, sparse_matrix
+from squealbox.factorisation import is_symmetric
 from squealbox.parameters import DataSheet
 from squealbox.result import COMPLETED, Outcome
 from squealbox.schedules import Schedule, value_at
-
-
-class InvalidSystem(ValueError):
-    """Matrices, vectors or contacts do not make a system; the message names array, shape and what was expected."""
-
-
-class Contact(DataSheet):
-    """One frictional contact: a row of the table above.
-
-    Parameters
-    ----------
-    n : shape (..., n), [N/m] normal force per displacement
-    d : shape (..., n), [-] direction in which friction acts on the degrees of freedom
-    t : shape (..., n), [-] sliding velocity per velocity: v = V - t . q'
-    N0 : [N] normal force at q = 0; number, shape (...), or schedule
-    V : [m/s] sliding speed at rest; number, shape (...), or schedule
-    law : friction law
-    name : what tables and plots call it
-    unilateral : True when the contact opens instead of pulling: N = max(N0 + n.q, 0). K and load then hold the
-        closed contact's normal reaction ``-normal * N``, which is taken out while the contact is open.
-    normal : shape (..., n), [-] direction of that reaction; needed for a unilateral contact
-    rigid : True for a unilateral contact without a spring: its gap ``gap - normal . q`` never turns negative, and its
-        normal force, the reaction ``-normal * N``, is what keeps it so. n and N0 are 0 then.
-    gap : [m] gap of a rigid contact at q = 0
-    restitution : [-] Newton's coefficient e in [0, 1] of a rigid contact that lands: it leaves at e times the speed
-    """
-
-    n: Any
-    d: Any
-    t: Any
-    N0: Any
-    V: Any
-    law: FrictionLaw
-    name: str = ""
-    unilateral: bool = False
-    normal: Any = None
-    rigid: bool = False
-    gap: float = 0.0
-    restitution: float = 0.0
-
-    def __post_init__(self) -> None:
-        for field in ("n", "d", "t", "normal"):
-            if getattr(self, field) is not None:
-                object.__setattr__(self, field, _array(f"contact {self.name}.{field}", getattr(self, field), 1))
-        for field in ("N0", "V"):
-            if not isinstance(getattr(self, field), Schedule):
-                object.__setattr__(self, field, _array(f"contact {self.name}.{field}", getattr(self, field), 0))
-        if not isinstance(self.law, FrictionLaw):
-            raise InvalidSystem(f"contact {self.name}.law = {self.law!r}: expected a friction law")
-        if self.unilateral and self.normal is None:
-            raise InvalidSystem(f"contact {self.name}.normal is missing: a unilateral contact needs its direction")
-        self._check_rigid()
-
-    def _check_rigid(self) -> None:
-        name = f"contact {self.name}"
-        for field, low, high in (("gap", -np.inf, np.inf), ("restitution", 0.0, 1.0)):
-            value = getattr(self, field)
-            if np.ndim(value) != 0 or not np.isfinite(value) or not low <= value <= high:
-                expected = "a number in [0, 1]" if field == "restitution" else "a finite number of metres"
-                raise InvalidSystem(f"{name}.{field} = {value!r}: expected {expected}")
-            if value != 0.0 and not self.rigid:
-                raise InvalidSystem(f"{name}.{field} = {value!r}: only a rigid contact has one; give it rigid=True")
-        if not self.rigid:
-            return
-        if self.normal is None or self.normal.ndim != 1 or not np.any(self.normal):
-            raise InvalidSystem(f"{name}.normal = {self.normal!r}: a rigid contact needs its direction, shape (n,)")
-        if not self.unilateral:
-            raise InvalidSystem(
-                f"{name}.unilateral = {self.unilateral!r}: a rigid contact can only press; expected True"
-            )
-        if np.any(self.n) or isinstance(self.N0, Schedule) or np.any(self.N0):
-            raise InvalidSystem(
-                f"{name}: a rigid contact's normal force follows from the motion; expected n = 0, N0 = 0"
-            )
 
 
 class System(DataSheet):
@@ -105,8 +35,11 @@ class System(DataSheet):
     ----------
     M, C, K : shape (..., n, n), mass [kg], damping [N s/m], stiffness [N/m]; C and K may be non-symmetric
     load : f, shape (..., n) [N], or a schedule whose value has that shape
-    contacts : the contacts
+    contacts : the contacts, one by one or as a table :class:`Contacts`
     names : names of the degrees of freedom
+
+    M, C and K may be SciPy sparse arrays, of one system: steady sliding, linearisation, complex modes and their energy
+    then stay sparse, and every other analysis says in one sentence that it wants a reduced system.
 
     Raises `InvalidSystem` when shapes disagree, a number is not finite or M is not symmetric.
 
@@ -118,31 +51,42 @@ class System(DataSheet):
     C: Any
     K: Any
     load: Any = 0.0
-    contacts: tuple[Contact, ...] = ()
+    contacts: Any = ()
     names: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
+        any_sparse = any(sparse.issparse(getattr(self, field)) for field in ("M", "C", "K"))
         for field in ("M", "C", "K"):
-            set_(self, field, _array(field, getattr(self, field), 2))
+            set_(self, field, (sparse_matrix if any_sparse else _array)(field, getattr(self, field), 2))
         size = self.M.shape[-1]
         for field in ("M", "C", "K"):
             if getattr(self, field).shape[-2:] != (size, size):
                 raise InvalidSystem(f"{field} has shape {getattr(self, field).shape}: expected (..., {size}, {size})")
-        if not np.allclose(self.M, np.swapaxes(self.M, -1, -2)):
+        if not (is_symmetric(self.M) if any_sparse else np.allclose(self.M, np.swapaxes(self.M, -1, -2))):
             raise InvalidSystem("M is not symmetric: expected a symmetric mass matrix")
         if not isinstance(self.load, Schedule):
             load = np.asarray(self.load, dtype=float)
             set_(self, "load", _array("load", np.broadcast_to(load, (size,)) if load.ndim == 0 else load, 1))
         _check_width("load", np.asarray(value_at(self.load, 0.0)), size)
-        set_(self, "contacts", tuple(self.contacts))
+        set_(self, "contacts", self._sparse_contacts() if any_sparse else self._dense_contacts())
         set_(self, "names", tuple(self.names) or tuple(f"q{i + 1}" for i in range(size)))
-        for i, contact in enumerate(self.contacts):
-            if not isinstance(contact, Contact):
-                raise InvalidSystem(f"contacts[{i}] = {contact!r}: expected a Contact")
-            for field in ("n", "d", "t", "normal"):
-                if getattr(contact, field) is not None:
-                    _check_width(f"contacts[{i}].{field}", getattr(contact, field), size)
+
+    def _dense_contacts(self) -> tuple[Contact, ...]:
+        contacts = self.contacts.dense() if isinstance(self.contacts, Contacts) else tuple(self.contacts)
+        return tuple(dense_rows(_checked_contact(contact, i, self.size)) for i, contact in enumerate(contacts))
+
+    def _sparse_contacts(self) -> Contacts:
+        if isinstance(self.contacts, Contacts):
+            _check_width("contacts.n", self.contacts.n, self.size)
+            return self.contacts
+        singles = [_checked_contact(contact, i, self.size) for i, contact in enumerate(self.contacts)]
+        return Contacts.of(singles, self.size)
+
+    @property
+    def is_sparse(self) -> bool:
+        """True where M, C and K are sparse and the contacts a table."""
+        return isinstance(self.contacts, Contacts)
 
     @property
     def size(self) -> int:
@@ -152,6 +96,8 @@ class System(DataSheet):
     @property
     def shape(self) -> tuple[int, ...]:
         """Leading axes: () for one system, the shape of the map for many."""
+        if self.is_sparse:
+            return ()
         shapes = [self.M.shape[:-2], self.C.shape[:-2], self.K.shape[:-2], np.shape(value_at(self.load, 0.0))[:-1]]
         for contact in self.contacts:
             shapes += [np.shape(getattr(contact, field))[:-1] for field in ("n", "d", "t")]
@@ -187,9 +133,24 @@ class Linearised:
     equilibrium: Equilibrium
 
 
-def as_system(design_or_system: Any) -> System:
-    """The system itself, or what a design's ``system()`` makes."""
-    return design_or_system if isinstance(design_or_system, System) else design_or_system.system()
+def as_system(design_or_system: Any, *, sparse_too: bool = False) -> System:
+    """The system itself, or what a design's ``system()`` makes; `InvalidSystem` where sparse matrices are of no use."""
+    system: System = design_or_system if isinstance(design_or_system, System) else design_or_system.system()
+    if system.is_sparse and not sparse_too:
+        raise InvalidSystem(
+            f"the system is sparse, with {system.size} degrees of freedom: this analysis needs dense matrices; "
+            "reduce(brake, band=(f1, f2)) makes a small brake that keeps the contacts"
+        )
+    return system
+
+
+def _checked_contact(contact: Any, i: int, size: int) -> Contact:
+    if not isinstance(contact, Contact):
+        raise InvalidSystem(f"contacts[{i}] = {contact!r}: expected a Contact")
+    for field in ROWS:
+        if getattr(contact, field) is not None:
+            _check_width(f"contacts[{i}].{field}", getattr(contact, field), size)
+    return contact
 
 
 def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
@@ -199,6 +160,8 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
     contacts r is linear in q, because mu depends on V alone, and one step is exact; with them r is piecewise linear and
     each step changes the set of open contacts, so the number of steps is bounded by that of the contacts' states.
     """
+    if system.is_sparse:
+        return _sparse_equilibrium(system, time)
     no_rigid_contact(system, "steady sliding")
     shape, size = system.shape, system.size
     force, speed, mu = _sliding(system, time)
@@ -230,6 +193,8 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
 def linearise(system: System, time: float = 0.0) -> Linearised:
     """K_eff and C_eff about steady sliding at `time` [s]; an open contact only takes its stiffness out."""
     state = equilibrium(system, time)
+    if system.is_sparse:
+        return Linearised(system.M, *_sparse_linearised(system, state), state)
     shape, size = system.shape, system.size
     damping = np.array(np.broadcast_to(system.C, (*shape, size, size)))
     stiffness = np.array(np.broadcast_to(system.K, (*shape, size, size)))
@@ -239,6 +204,9 @@ def linearise(system: System, time: float = 0.0) -> Linearised:
         slope = np.asarray(contact.law.slope_at(speed[..., 0, 0]))[..., None, None]
         damping += np.where(closed, normal * slope, 0.0) * _outer(contact.d, contact.t)
         stiffness -= np.where(closed, mu * np.sign(speed), 0.0) * _outer(contact.d, contact.n)
+        if contact.across is not None:
+            with np.errstate(divide="ignore", invalid="ignore"):  # V = 0: there is no steady sliding
+                damping += np.where(closed, mu * normal / np.abs(speed), 0.0) * _outer(contact.across, contact.across)
         if contact.unilateral:
             stiffness -= np.where(closed, 0.0, 1.0) * _outer(contact.normal, contact.n)
     missing = ~state.exists[..., None, None]
@@ -308,6 +276,29 @@ def power_of_load(system: System, time: Any, qd: Any) -> Any:
     return np.sum(load * qd, axis=-1)
 
 
+def _sparse_equilibrium(system: System, time: float) -> Equilibrium:
+    found = sparse_sliding.sliding_state(system.K, value_at(system.load, time), system.contacts, time)
+    sliding, singular, settled = np.all(found.speed != 0.0), np.array(found.singular), np.array(found.settled)
+    exists = settled & ~singular & sliding
+    outcome = _equilibrium_outcome(singular, sliding, settled, found.speed)
+    return Equilibrium(found.q, found.normal, found.speed, found.mu, exists, outcome)
+
+
+def _sparse_linearised(system: System, state: Equilibrium) -> tuple[Any, Any]:
+    """C_eff and K_eff; both NaN on the diagonal where there is no steady sliding."""
+    table: Contacts = system.contacts
+    if not state.exists:
+        nothing = sparse.diags_array(np.full(system.size, np.nan), format="csr")
+        return nothing, nothing
+    closed = (state.normal_force > 0.0) | ~table.unilateral
+    _, slope = table.friction(state.sliding_speed)
+    pressing = np.where(closed, state.normal_force, 0.0)
+    damping = system.C + sparse_sliding.damping_along(table, pressing * slope)
+    damping = damping + sparse_sliding.damping_across(table, pressing * state.friction / np.abs(state.sliding_speed))
+    coupling = state.friction * np.sign(state.sliding_speed)
+    return sparse.csr_array(damping), sparse_sliding.stiffness_of(system.K, table, coupling, closed)
+
+
 def _sliding(system: System, time: float) -> tuple[Any, Any, Any]:
     shape = system.shape
     force = [np.broadcast_to(value_at(c.N0, time), shape) for c in system.contacts]
@@ -370,24 +361,6 @@ def _equilibrium_outcome(singular: Any, sliding: Any, converged: Any, speed: Any
     if not np.all(converged):
         return Outcome("no_convergence", "the set of open contacts did not settle", entries=int(np.sum(~converged)))
     return Outcome(COMPLETED)
-
-
-def _array(name: str, value: Any, ndim: int) -> np.ndarray:
-    try:
-        array = np.array(value).astype(float, casting="same_kind")  # refuses complex numbers and texts
-    except (TypeError, ValueError) as error:
-        raise InvalidSystem(f"{name}: expected an array of real numbers") from error
-    if array.ndim < ndim:
-        raise InvalidSystem(f"{name} has shape {array.shape}: expected at least {ndim} axes")
-    if not np.all(np.isfinite(array)):
-        raise InvalidSystem(f"{name} holds a value that is not finite")
-    array.flags.writeable = False
-    return array
-
-
-def _check_width(name: str, array: np.ndarray, size: int) -> None:
-    if array.shape[-1:] != (size,):
-        raise InvalidSystem(f"{name} has shape {array.shape}: expected (..., {size})")
 
 
 def _outer(a: Any, b: Any) -> Any:
