@@ -216,10 +216,12 @@ class Contacts(DataSheet):
         return tuple(self._contact(i, rows) for i in range(len(self)))
 
     def _contact(self, i: int, rows: dict[str, Any]) -> Contact:
-        row = {f: None if r is None else r[[i]] if sparse.issparse(r) else r[i] for f, r in rows.items()}
+        row: dict[str, Any] = {
+            f: None if r is None else r[[i]] if sparse.issparse(r) else r[i] for f, r in rows.items()
+        }
         if not self.unilateral[i]:
             row["normal"] = None
-        about = {"name": self.names[i], "unilateral": bool(self.unilateral[i]), "law": self.law_of(i)}
+        about: dict[str, Any] = {"name": self.names[i], "unilateral": bool(self.unilateral[i]), "law": self.law_of(i)}
         return Contact(N0=self.N0[i], V=self.V[i], **row, **about)
 
     def law_of(self, index: int) -> FrictionLaw:

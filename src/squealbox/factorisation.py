@@ -1,8 +1,8 @@
 """One sparse factorisation behind one small interface: solve, many right-hand sides, inertia, determinant.
 
 `factor` is SciPy's SuperLU, which is always there, or rslab (extra `fe`), which is quicker on large matrices and
-factors symmetric ones as L D L'. It knows no physics. The inertia of a symmetric matrix is the number of positive, negative and
-zero eigenvalues; that of K - w^2 M counts the modes below w (Sturm).
+factors symmetric ones as L D L'. It knows no physics. The inertia of a symmetric matrix is the number of positive,
+negative and zero eigenvalues; that of K - w^2 M counts the modes below w (Sturm).
 """
 
 import importlib.util
@@ -86,9 +86,7 @@ class Factor:
             lu = splu(self._matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
             _check(lu.solve, self._matrix)
         if not np.array_equal(lu.perm_r, lu.perm_c):
-            raise SingularMatrix(
-                "inertia: a pivot on the diagonal is zero; shift the matrix, or install rslab"
-            )
+            raise SingularMatrix("inertia: a pivot on the diagonal is zero; shift the matrix, or install rslab")
         pivots = lu.U.diagonal()
         return int(np.sum(pivots > 0.0)), int(np.sum(pivots < 0.0)), int(np.sum(pivots == 0.0))
 
@@ -113,8 +111,8 @@ class Rslab(Factor):
         import rslab
 
         try:
-            make = rslab.ldlt if symmetric else rslab.lu
-            self._factors = make(matrix, threads=threads)
+            make: Any = rslab.ldlt if symmetric else rslab.lu
+            self._factors: Any = make(matrix, threads=threads)
         except RuntimeError as error:
             raise SingularMatrix(f"the matrix of {self.size} rows is singular: {error}") from error
         _check(self._factors.solve, matrix)

@@ -133,14 +133,26 @@ class Linearised:
     equilibrium: Equilibrium
 
 
-def as_system(design_or_system: Any, *, sparse_too: bool = False) -> System:
-    """The system itself, or what a design's ``system()`` makes; `InvalidSystem` where sparse matrices are of no use."""
+def as_system(design_or_system: Any, *, linear: bool = False) -> System:
+    """The system itself, or what a design's ``system()`` makes.
+
+    A `linear` analysis, about steady sliding, takes sparse matrices and contacts that slide in a plane; any other gets
+    an `InvalidSystem` that says why it does not.
+    """
     system: System = design_or_system if isinstance(design_or_system, System) else design_or_system.system()
-    if system.is_sparse and not sparse_too:
+    if linear:
+        return system
+    if system.is_sparse:
         raise InvalidSystem(
             f"the system is sparse, with {system.size} degrees of freedom: this analysis needs dense matrices; "
             "reduce(brake, band=(f1, f2)) makes a small brake that keeps the contacts"
         )
+    for i, contact in enumerate(system.contacts):
+        if contact.across is not None:
+            raise InvalidSystem(
+                f"contacts[{i}].across is given: friction in a plane is only known linearised about steady sliding; "
+                "across=None leaves the cross direction out of a motion"
+            )
     return system
 
 

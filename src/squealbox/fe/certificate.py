@@ -10,6 +10,8 @@ agree with that; else it is halved. A turn that is left over is an eigenvalue th
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -110,8 +112,8 @@ class _Winding:
         """By how much the phase turns from `start` to `end` [rad]."""
         marks = [start + (end - start) * i / parts for i in range(parts + 1)]
         along = (end - start) / abs(end - start)
-        look: Callable[[complex], tuple[float, float]] = lambda point: self.phase(point, along)  # noqa: E731
-        return sum(self._between(a, b, look) for a, b in zip(marks[:-1], marks[1:], strict=True))
+        look = partial(self.phase, along=along)
+        return sum(self._between(a, b, look) for a, b in pairwise(marks))
 
     def _between(self, a: complex, b: complex, look: Callable[[complex], tuple[float, float]]) -> float:
         middle = 0.5 * (a + b)
@@ -149,7 +151,7 @@ def _wrapped(angle: float) -> float:
 
 
 def _left_side(known: Any, low: float, high: float) -> float:
-    """A growth rate a little below 0 that keeps clear of all known modes of the band: in the widest gap between them."""
+    """A growth rate a little below 0 in the widest gap between the known modes of the band."""
     deepest = -0.05 * low
     rates = known.real[(known.imag > 0.9 * low) & (known.imag < 1.1 * high)]
     marks = np.sort(np.concatenate([[deepest, 0.0], rates[(rates > deepest) & (rates < 0.0)]]))

@@ -1,4 +1,4 @@
-"""Modes of a large brake on a small basis, each with an estimate of its own error, and the basis grown until that is small.
+"""Modes of a large brake on a small basis, each with an estimate of its error; the basis grows until that is small.
 
 On V the problem is V'Q(lambda)V x = 0, small and dense. With right and left shapes u = V x, w = V y the residuals
 r = Q u and s = Q^H w say what the basis misses, and to second order the true eigenvalue is lambda + delta,
@@ -28,6 +28,7 @@ ROUNDS = 4  # of growing a basis
 class Projected:
     """Modes on a basis: eigenvalues (k,) with Im > 0, right and left (n, k), error (k,): the complex estimate delta.
 
+    condition (k,) is the condition number of each eigenvalue on the basis;
     every holds all eigenvalues of the small problem, also those outside the band.
     """
 
@@ -35,6 +36,7 @@ class Projected:
     right: Any
     left: Any
     error: Any
+    condition: Any
     every: Any
 
 
@@ -46,15 +48,17 @@ class Small:
     C: Any
     K: Any
 
-    def eigen(self) -> tuple[Any, Any, Any]:
-        """Eigenvalues (2m,), right x and left y (m, 2m) of the quadratic problem."""
+    def eigen(self) -> tuple[Any, Any, Any, Any]:
+        """Eigenvalues (2m,), right x and left y (m, 2m) of the quadratic problem, and the condition numbers (2m,)."""
         size = len(self.M)
         inverse = np.linalg.inv(self.M)
         stiffness, damping = inverse @ self.K, inverse @ self.C
         rate = np.sqrt(np.max(np.abs(stiffness))) or 1.0
         state = np.block([[np.zeros((size, size)), np.eye(size)], [-stiffness / rate**2, -damping / rate]])
         values, left, right = eig(state, left=True, right=True)
-        return values * rate, right[:size], inverse.T @ left[size:]
+        with np.errstate(divide="ignore"):
+            condition = 1.0 / np.abs(np.sum(left.conj() * right, axis=0))
+        return values * rate, right[:size], inverse.T @ left[size:], condition
 
 
 def projected(pencil: Pencil, basis: Any) -> Small:
@@ -74,7 +78,7 @@ def basis_for(pencil: Pencil, band: tuple[float, float]) -> tuple[RealModes, Any
 
 def modes_on(pencil: Pencil, base: Factor, basis: Any, band: tuple[float, float]) -> Projected:
     """The modes in the band (f1, f2) [Hz] on a basis, with their estimates."""
-    values, x, y = projected(pencil, basis).eigen()
+    values, x, y, condition = projected(pencil, basis).eigen()
     low, high = (2.0 * np.pi * f for f in band)
     inside = np.flatnonzero((values.imag >= low) & (values.imag <= high) & vibrating(values))
     inside = inside[np.argsort(values[inside].imag, kind="stable")]
@@ -83,7 +87,8 @@ def modes_on(pencil: Pencil, base: Factor, basis: Any, band: tuple[float, float]
     right = right / np.linalg.norm(right, axis=0)
     slope = 2.0 * chosen * (pencil.M @ right) + pencil.C @ right
     left = left / np.conj(np.sum(np.conj(left) * slope, axis=0))
-    return Projected(chosen, right, left, estimates(pencil, base, chosen, right, left), values)
+    error = estimates(pencil, base, chosen, right, left)
+    return Projected(chosen, right, left, error, condition[inside], values)
 
 
 def estimates(pencil: Pencil, base: Factor, values: Any, right: Any, left: Any) -> Any:
@@ -106,7 +111,7 @@ def residual_vectors(pencil: Pencil, base: Factor, found: Projected, worst: Any)
 def refined_modes(
     pencil: Pencil, modes: RealModes, basis: Any, band: tuple[float, float], tolerance: float
 ) -> tuple[Projected, Any]:
-    """The modes in the band and the basis, grown by residual vectors until every estimate is below `tolerance` [1/s]."""
+    """The modes in the band and the basis, grown by residual vectors until every estimate is below `tolerance`."""
     found = modes_on(pencil, modes.base, basis, band)
     for _ in range(ROUNDS):
         worst = np.abs(found.error) > tolerance

@@ -4,8 +4,8 @@ With time in units of 1/|s| and the residual as second unknown the companion for
 
     (lambda - s)^-1 is an eigenvalue of [u, v] -> [p, u + s p],   Q(s) p = -(C + s M) u - M v,   v = lambda u
 
-so one factor of Q(s) serves all eigenvalues about s. Unscaled, the two halves of [u, v] differ by |lambda| and digits are
-lost; here v is lambda u / |s|. A band is covered by disks about points on the imaginary axis, each as large as the
+so one factor of Q(s) serves all eigenvalues about s. Unscaled, the two halves of [u, v] differ by |lambda| and digits
+are lost; here v is lambda u / |s|. A band is covered by disks about points on the imaginary axis, each as large as the
 farthest eigenvalue that was found about its centre; they overlap so far that they hold every damping ratio below 0.1.
 """
 

@@ -1,4 +1,4 @@
-"""Undamped modes of K0 u = w^2 M u below a frequency, none missed: their number is known beforehand by Sturm's count."""
+"""Undamped modes of K0 u = w^2 M u below a frequency, none missed: Sturm's count says beforehand how many there are."""
 
 from dataclasses import dataclass
 from typing import Any
