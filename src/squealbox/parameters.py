@@ -295,6 +295,8 @@ def _values(sheet: DataSheet) -> list[Any]:
 
 
 def _same(a: Any, b: Any) -> bool:
+    if hasattr(a, "tocoo") or hasattr(b, "tocoo"):  # sparse matrices
+        return a is b or (type(a) is type(b) and a.shape == b.shape and (a != b).nnz == 0)
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         return np.array_equal(a, b)
     if isinstance(a, tuple) and isinstance(b, tuple):
@@ -303,6 +305,9 @@ def _same(a: Any, b: Any) -> bool:
 
 
 def _hashable(value: Any) -> Any:
+    if hasattr(value, "tocoo"):
+        entries = value.tocoo()
+        return value.shape, float(np.sum(entries.data)), float(np.sum(entries.data * (entries.coords[0] + 1.0)))
     if isinstance(value, np.ndarray):
         return value.shape, value.tobytes()
     return tuple(_hashable(item) for item in value) if isinstance(value, tuple) else value

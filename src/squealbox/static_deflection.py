@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.result import COMPLETED, Outcome
+
 RIGID = 1e-14  # singular values below this share of the largest (rows and columns levelled) are rigid-body motions
 FELT = 1e-9  # share of the forces, and of a contact's sensitivity, below which it is round-off that feels a motion
 
@@ -80,6 +82,22 @@ def modulo_rigid_motion(
         basis = np.linalg.qr(motion)[0]
         found[at], floating[at], left[at] = moved - basis @ (basis.T @ moved), basis.shape[1], False
     return found, left, floating, pushed
+
+
+def ended(singular: Any, sliding: Any, converged: Any, speed: Any, pushed: Any = False) -> Outcome:
+    """How the search for steady sliding ended, from truth values (...); with leading axes the worst entry is named."""
+    if np.any(singular):
+        message = "K_eff is singular: the friction-coupled stiffness has no unique static deflection"
+        if np.any(pushed):
+            message = "K_eff is singular: nothing holds a rigid-body motion that the forces drive, so it runs away"
+        return Outcome("singular", message, entries=int(np.sum(singular)))
+    if not np.all(sliding):
+        contacts = sorted({int(i) for i in np.nonzero(speed == 0.0)[-1]})
+        message = f"contact {contacts} has V = 0: it may stick, and any force up to its static limit balances"
+        return Outcome("no_sliding", message, contacts=contacts, entries=int(np.sum(~sliding)))
+    if not np.all(converged):
+        return Outcome("no_convergence", "the set of open contacts did not settle", entries=int(np.sum(~converged)))
+    return Outcome(COMPLETED)
 
 
 def _condition(matrix: Any) -> Any:

@@ -8,94 +8,29 @@ A contact senses along n (normal force, N/m) and t (sliding), and acts along d. 
 
     K_eff = K - sum mu sgn(V) d n'            non-symmetric: can flutter
     C_eff = C + sum N_c(q0) mu'(|V|) d t'     indefinite where friction weakens with speed
+              + sum mu N_c(q0) / |V| a a'     where sliding is in a plane: a is the row across it
 
 because v = V - t.q' gives d(mu sgn(v))/dq' = -mu' t' at fixed sgn(v). Every array may carry leading axes, so that one
 system can be a whole map of systems: M is (..., n, n), n, d and t are (..., n), N0, V and the law's parameters (...).
 """
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy import sparse
 
-from squealbox.friction import FrictionLaw
+from squealbox import sparse_sliding
+from squealbox.contacts import ROWS, Contact, Contacts, dense_rows, sparse_matrix
+from squealbox.factorisation import is_symmetric
 from squealbox.matrices import InvalidSystem, array, check_mass, check_width, checked_names, coupled, felt, form
 from squealbox.parameters import DataSheet
-from squealbox.result import COMPLETED, Outcome
+from squealbox.result import Outcome
 from squealbox.schedules import Schedule, value_at
-from squealbox.static_deflection import modulo_rigid_motion, solve
-
-
-class Contact(DataSheet):
-    """One frictional contact: a row of the table above.
-
-    Parameters
-    ----------
-    n : shape (..., n), [N/m] normal force per displacement
-    d : shape (..., n), [-] direction in which friction acts on the degrees of freedom
-    t : shape (..., n), [-] sliding velocity per velocity: v = V - t . q'
-    N0 : [N] normal force at q = 0; number, shape (...), or schedule
-    V : [m/s] sliding speed at rest; number, shape (...), or schedule
-    law : friction law
-    name : what tables and plots call it
-    unilateral : True when the contact opens instead of pulling: N = max(N0 + n.q, 0). K and load then hold the
-        closed contact's normal reaction ``-normal * N``, which is taken out while the contact is open.
-    normal : shape (..., n), [-] direction of that reaction; needed for a unilateral contact
-    rigid : True for a unilateral contact without a spring: its gap ``gap - normal . q`` never turns negative, and its
-        normal force, the reaction ``-normal * N``, is what keeps it so. n and N0 are 0 then.
-    gap : [m] gap of a rigid contact at q = 0
-    restitution : [-] Newton's coefficient e in [0, 1] of a rigid contact that lands: it leaves at e times the speed
-    """
-
-    n: Any
-    d: Any
-    t: Any
-    N0: Any
-    V: Any
-    law: FrictionLaw
-    name: str = ""
-    unilateral: bool = False
-    normal: Any = None
-    rigid: bool = False
-    gap: float = 0.0
-    restitution: float = 0.0
-
-    def __post_init__(self) -> None:
-        for field in ("n", "d", "t", "normal"):
-            if getattr(self, field) is not None:
-                object.__setattr__(self, field, array(f"contact {self.name}.{field}", getattr(self, field), 1))
-        for field in ("N0", "V"):
-            if not isinstance(getattr(self, field), Schedule):
-                object.__setattr__(self, field, array(f"contact {self.name}.{field}", getattr(self, field), 0))
-        if not isinstance(self.law, FrictionLaw):
-            raise InvalidSystem(f"contact {self.name}.law = {self.law!r}: expected a friction law")
-        if self.unilateral and self.normal is None:
-            raise InvalidSystem(f"contact {self.name}.normal is missing: a unilateral contact needs its direction")
-        self._check_rigid()
-
-    def _check_rigid(self) -> None:
-        name = f"contact {self.name}"
-        for field, low, high in (("gap", -np.inf, np.inf), ("restitution", 0.0, 1.0)):
-            value = getattr(self, field)
-            if np.ndim(value) != 0 or not np.isfinite(value) or not low <= value <= high:
-                expected = "a number in [0, 1]" if field == "restitution" else "a finite number of metres"
-                raise InvalidSystem(f"{name}.{field} = {value!r}: expected {expected}")
-            if value != 0.0 and not self.rigid:
-                raise InvalidSystem(f"{name}.{field} = {value!r}: only a rigid contact has one; give it rigid=True")
-        if not self.rigid:
-            return
-        if self.normal is None or self.normal.ndim != 1 or not np.any(self.normal):
-            raise InvalidSystem(f"{name}.normal = {self.normal!r}: a rigid contact needs its direction, shape (n,)")
-        if not self.unilateral:
-            raise InvalidSystem(
-                f"{name}.unilateral = {self.unilateral!r}: a rigid contact can only press; expected True"
-            )
-        if np.any(self.n) or isinstance(self.N0, Schedule) or np.any(self.N0):
-            raise InvalidSystem(
-                f"{name}: a rigid contact's normal force follows from the motion; expected n = 0, N0 = 0"
-            )
+from squealbox.static_deflection import ended, modulo_rigid_motion, solve
 
 
 class System(DataSheet):
@@ -105,8 +40,11 @@ class System(DataSheet):
     ----------
     M, C, K : shape (..., n, n), mass [kg], damping [N s/m], stiffness [N/m]; C and K may be non-symmetric
     load : f, shape (..., n) [N], or a schedule whose value has that shape
-    contacts : the contacts
+    contacts : the contacts, one by one or as a table :class:`Contacts`
     names : names of the degrees of freedom
+
+    M, C and K may be SciPy sparse arrays, of one system: steady sliding, linearisation, complex modes and their energy
+    then stay sparse, and every other analysis says in one sentence that it wants a reduced system.
 
     Raises `InvalidSystem` when shapes disagree, a number is not finite or M is not symmetric.
 
@@ -118,30 +56,44 @@ class System(DataSheet):
     C: Any
     K: Any
     load: Any = 0.0
-    contacts: tuple[Contact, ...] = ()
+    contacts: Any = ()
     names: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
+        any_sparse = any(sparse.issparse(getattr(self, field)) for field in ("M", "C", "K"))
         for field in ("M", "C", "K"):
-            set_(self, field, array(field, getattr(self, field), 2))
+            set_(self, field, (sparse_matrix if any_sparse else array)(field, getattr(self, field), 2))
         size = self.M.shape[-1]
         for field in ("M", "C", "K"):
             if getattr(self, field).shape[-2:] != (size, size):
                 raise InvalidSystem(f"{field} has shape {getattr(self, field).shape}: expected (..., {size}, {size})")
-        check_mass(self.M)
+        if not any_sparse:
+            check_mass(self.M)
+        elif not is_symmetric(self.M):
+            raise InvalidSystem("M is not symmetric: expected a symmetric mass matrix")
         if not isinstance(self.load, Schedule):
             load = np.asarray(self.load, dtype=float)
             set_(self, "load", array("load", np.broadcast_to(load, (size,)) if load.ndim == 0 else load, 1))
         check_width("load", np.asarray(value_at(self.load, 0.0)), size)
-        set_(self, "contacts", tuple(self.contacts))
+        set_(self, "contacts", self._sparse_contacts() if any_sparse else self._dense_contacts())
         set_(self, "names", checked_names(self.names, size))
-        for i, contact in enumerate(self.contacts):
-            if not isinstance(contact, Contact):
-                raise InvalidSystem(f"contacts[{i}] = {contact!r}: expected a Contact")
-            for field in ("n", "d", "t", "normal"):
-                if getattr(contact, field) is not None:
-                    check_width(f"contacts[{i}].{field}", getattr(contact, field), size)
+
+    def _dense_contacts(self) -> tuple[Contact, ...]:
+        contacts = self.contacts.dense() if isinstance(self.contacts, Contacts) else tuple(self.contacts)
+        return tuple(dense_rows(_checked_contact(contact, i, self.size)) for i, contact in enumerate(contacts))
+
+    def _sparse_contacts(self) -> Contacts:
+        if isinstance(self.contacts, Contacts):
+            check_width("contacts.n", self.contacts.n, self.size)
+            return self.contacts
+        singles = [_checked_contact(contact, i, self.size) for i, contact in enumerate(self.contacts)]
+        return Contacts.of(singles, self.size)
+
+    @property
+    def is_sparse(self) -> bool:
+        """True where M, C and K are sparse and the contacts a table."""
+        return isinstance(self.contacts, Contacts)
 
     @property
     def size(self) -> int:
@@ -151,6 +103,8 @@ class System(DataSheet):
     @cached_property
     def shape(self) -> tuple[int, ...]:
         """Leading axes: () for one system, the shape of the map for many."""
+        if self.is_sparse:
+            return ()
         shapes = [self.M.shape[:-2], self.C.shape[:-2], self.K.shape[:-2], np.shape(value_at(self.load, 0.0))[:-1]]
         for contact in self.contacts:
             shapes += [np.shape(getattr(contact, field))[:-1] for field in ("n", "d", "t")]
@@ -161,18 +115,23 @@ class System(DataSheet):
     @cached_property
     def rows(self) -> tuple[Any, Any, Any, Any]:
         """n, d, t and normal of all contacts, each (..., contacts, n), for sums that are one matrix product."""
-        empty = np.zeros((0, self.size))
-        stacked = []
-        for field in ("n", "d", "t", "normal"):
-            values = [getattr(contact, field) for contact in self.contacts]
-            values = [np.zeros(self.size) if value is None else value for value in values]
-            stacked.append(np.stack(np.broadcast_arrays(*values), axis=-2) if values else empty)
-        return stacked[0], stacked[1], stacked[2], stacked[3]
+        return self._stacked("n"), self._stacked("d"), self._stacked("t"), self._stacked("normal")
+
+    @cached_property
+    def across(self) -> Any:
+        """The rows across the sliding direction (..., contacts, n), None where no contact has one."""
+        given = any(contact.across is not None for contact in self.contacts)
+        return self._stacked("across") if given else None
+
+    def _stacked(self, field: str) -> Any:
+        values = [getattr(contact, field) for contact in self.contacts]
+        values = [np.zeros(self.size) if value is None else value for value in values]
+        return np.stack(np.broadcast_arrays(*values), axis=-2) if values else np.zeros((0, self.size))
 
     @cached_property
     def alike(self) -> tuple[tuple[Any, tuple[int, ...]], ...]:
         """Each friction law with the contacts that have it: (law, contacts), so that a law is asked once."""
-        found: dict[FrictionLaw, list[int]] = {}
+        found: dict[Any, list[int]] = {}
         for i, contact in enumerate(self.contacts):
             found.setdefault(contact.law, []).append(i)
         return tuple((law, tuple(contacts)) for law, contacts in found.items())
@@ -209,9 +168,49 @@ class Linearised:
     equilibrium: Equilibrium
 
 
-def as_system(design_or_system: Any) -> System:
-    """The system itself, or what a design's ``system()`` makes."""
-    return design_or_system if isinstance(design_or_system, System) else design_or_system.system()
+def as_system(design_or_system: Any, *, linear: bool = False) -> System:
+    """The system itself, or what a design's ``system()`` makes.
+
+    A `linear` analysis, about steady sliding, takes sparse matrices and contacts that slide in a plane; any other gets
+    an `InvalidSystem` that says why it does not.
+    """
+    system = _system_of(design_or_system)
+    if linear:
+        return system
+    if system.is_sparse:
+        raise InvalidSystem(
+            f"the system is sparse, with {system.size} degrees of freedom: this analysis needs dense matrices; "
+            "reduce(brake, band=(f1, f2)) makes a small brake that keeps the contacts"
+        )
+    for i, contact in enumerate(system.contacts):
+        if contact.across is not None:
+            raise InvalidSystem(
+                f"contacts[{i}].across is given: friction in a plane is only known linearised about steady sliding; "
+                "across=None leaves the cross direction out of a motion"
+            )
+    return system
+
+
+def _system_of(given: Any) -> System:
+    if isinstance(given, System):
+        return given
+    if isinstance(given, type):
+        raise InvalidSystem(f"{given.__name__} is a class: expected a design made from it, {given.__name__}(...)")
+    if isinstance(given, (str, os.PathLike)):
+        raise InvalidSystem(f"{os.fspath(given)[:60]!r} is a text: expected a design; read_design(path) reads a file")
+    if not callable(getattr(given, "system", None)):
+        raise InvalidSystem(f"a {type(given).__name__} has no system(): expected a System or a design")
+    system: System = given.system()
+    return system
+
+
+def _checked_contact(contact: Any, i: int, size: int) -> Contact:
+    if not isinstance(contact, Contact):
+        raise InvalidSystem(f"contacts[{i}] = {contact!r}: expected a Contact")
+    for field in ROWS:
+        if getattr(contact, field) is not None:
+            check_width(f"contacts[{i}].{field}", getattr(contact, field), size)
+    return contact
 
 
 def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
@@ -221,6 +220,8 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
     contacts r is linear in q, because mu depends on V alone, and one step is exact; with them r is piecewise linear and
     each step changes the set of open contacts, so the number of steps is bounded by that of the contacts' states.
     """
+    if system.is_sparse:
+        return _sparse_equilibrium(system, time)
     no_rigid_contact(system, "steady sliding")
     shape, size = system.shape, system.size
     force, speed, mu = _sliding(system, time)
@@ -250,13 +251,15 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
     sliding = np.all(speed != 0.0, axis=-1)
     exists = converged & ~singular & sliding
     normal = _normal_forces(system, time, q)
-    outcome = _equilibrium_outcome(singular, sliding, converged, speed, pushed)
+    outcome = ended(singular, sliding, converged, speed, pushed)
     return Equilibrium(q, normal, speed, mu, exists, outcome, np.where(exists, floating, 0))
 
 
 def linearise(system: System, time: float = 0.0) -> Linearised:
     """K_eff and C_eff about steady sliding at `time` [s]; an open contact only takes its stiffness out."""
     state = equilibrium(system, time)
+    if system.is_sparse:
+        return Linearised(system.M, *_sparse_linearised(system, state), state)
     shape, size = system.shape, system.size
     damping = np.array(np.broadcast_to(system.C, (*shape, size, size)))
     stiffness = np.array(np.broadcast_to(system.K, (*shape, size, size)))
@@ -267,6 +270,11 @@ def linearise(system: System, time: float = 0.0) -> Linearised:
         slope = _by_law(system, lambda law, speed: law.slope_at(speed), state.sliding_speed)
         damping += coupled(d, np.where(closed, state.normal_force * slope, 0.0), t)
         stiffness -= coupled(d, np.where(closed, state.friction * np.sign(state.sliding_speed), 0.0), n)
+        across = system.across
+        if across is not None:
+            with np.errstate(divide="ignore", invalid="ignore"):  # V = 0: there is no steady sliding
+                turning = state.friction * state.normal_force / np.abs(state.sliding_speed)
+            damping += coupled(across, np.where(closed, turning, 0.0), across)
         if np.any(lifts):
             stiffness -= coupled(reaction, np.where(closed, 0.0, 1.0), n)
     missing = ~state.exists[..., None, None]
@@ -336,6 +344,29 @@ def power_of_load(system: System, time: Any, qd: Any) -> Any:
     return np.sum(load * qd, axis=-1)
 
 
+def _sparse_equilibrium(system: System, time: float) -> Equilibrium:
+    found = sparse_sliding.sliding_state(system.K, value_at(system.load, time), system.contacts, time)
+    sliding, singular, settled = np.all(found.speed != 0.0), np.array(found.singular), np.array(found.settled)
+    exists = settled & ~singular & sliding
+    outcome = ended(singular, sliding, settled, found.speed)
+    return Equilibrium(found.q, found.normal, found.speed, found.mu, exists, outcome)
+
+
+def _sparse_linearised(system: System, state: Equilibrium) -> tuple[Any, Any]:
+    """C_eff and K_eff; both NaN on the diagonal where there is no steady sliding."""
+    table: Contacts = system.contacts
+    if not state.exists:
+        nothing = sparse.diags_array(np.full(system.size, np.nan), format="csr")
+        return nothing, nothing
+    closed = (state.normal_force > 0.0) | ~table.unilateral
+    _, slope = table.friction(state.sliding_speed)
+    pressing = np.where(closed, state.normal_force, 0.0)
+    damping = system.C + sparse_sliding.damping_along(table, pressing * slope)
+    damping = damping + sparse_sliding.damping_across(table, pressing * state.friction / np.abs(state.sliding_speed))
+    coupling = state.friction * np.sign(state.sliding_speed)
+    return sparse.csr_array(damping), sparse_sliding.stiffness_of(system.K, table, coupling, closed)
+
+
 def _sliding(system: System, time: float) -> tuple[Any, Any, Any]:
     shape, count = system.shape, len(system.contacts)
     force, speed = np.zeros((*shape, count)), np.zeros((*shape, count))
@@ -380,18 +411,3 @@ def _normal_forces(system: System, time: float, q: Any) -> Any:
     normal = force + felt(system.rows[0], q)
     lifts = np.array([contact.unilateral for contact in system.contacts])
     return np.where(lifts, np.maximum(normal, 0.0), normal)
-
-
-def _equilibrium_outcome(singular: Any, sliding: Any, converged: Any, speed: Any, pushed: Any) -> Outcome:
-    if np.any(singular):
-        message = "K_eff is singular: the friction-coupled stiffness has no unique static deflection"
-        if np.any(pushed):
-            message = "K_eff is singular: nothing holds a rigid-body motion that the forces drive, so it runs away"
-        return Outcome("singular", message, entries=int(np.sum(singular)))
-    if not np.all(sliding):
-        contacts = sorted({int(i) for i in np.nonzero(speed == 0.0)[-1]})
-        message = f"contact {contacts} has V = 0: it may stick, and any force up to its static limit balances"
-        return Outcome("no_sliding", message, contacts=contacts, entries=int(np.sum(~sliding)))
-    if not np.all(converged):
-        return Outcome("no_convergence", "the set of open contacts did not settle", entries=int(np.sum(~converged)))
-    return Outcome(COMPLETED)

@@ -1,5 +1,6 @@
 """Is steady sliding stable? Depends on: system, continuation, result; numba only when a kernel is needed."""
 
+from squealbox.stability.band_modes import BandModes, band_modes, certified
 from squealbox.stability.boundary import Boundary, stability_boundary
 from squealbox.stability.contour import map_boundary
 from squealbox.stability.conventions import as_printed_by, eigenvalues_printed_by
@@ -19,6 +20,7 @@ from squealbox.stability.spectra import compiled_eigenvalues
 from squealbox.stability.tracking import TrackedModes, TrackedPoint, track, tracked_modes
 
 __all__ = [
+    "BandModes",
     "Boundary",
     "ComplexModes",
     "CriticalValue",
@@ -35,6 +37,8 @@ __all__ = [
     "TrackedPoint",
     "TransientGrowth",
     "as_printed_by",
+    "band_modes",
+    "certified",
     "compiled_eigenvalues",
     "complex_modes",
     "critical_value",

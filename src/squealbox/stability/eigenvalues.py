@@ -164,8 +164,16 @@ class ComplexModes(Result):
 
 
 @batched
-def complex_modes(design_or_system: Any, time: float = 0.0) -> ComplexModes:
+def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None, **how: Any) -> ComplexModes:
     """Eigenvalues and modes of (lambda^2 M + lambda C_eff + K_eff) u = 0 about steady sliding at `time` [s].
+
+    Parameters
+    ----------
+    design_or_system : leading axes are kept
+    time : instant of schedules [s]
+    band : (f1, f2) [Hz], needed where the matrices are sparse: the modes in it, each with an error bar
+    how : of a sparse system: method "projection" or "full", tolerance [1/s] and certify, as
+        :func:`squealbox.stability.band_modes` takes them
 
     Leading axes of the system are kept. Where there is no steady sliding (a contact with V = 0, a singular K_eff) or M
     is singular the arrays hold NaN, `exists` is False and `outcome` names the worst case; nothing is raised.
@@ -177,7 +185,14 @@ def complex_modes(design_or_system: Any, time: float = 0.0) -> ComplexModes:
     >>> [complex(round(x.real, 9), round(x.imag, 9)) for x in modes.eigenvalues]
     [(-0.1+1j), (-0.1-1j)]
     """
-    system = as_system(design_or_system)
+    system = as_system(design_or_system, linear=True)
+    if system.is_sparse:
+        from squealbox.stability.band_modes import band_modes  # only a large brake needs it
+
+        return band_modes(design_or_system, band, time=time, **how)
+    if band is not None or how:
+        given = ", ".join(["band"] * (band is not None) + sorted(how))
+        raise ValueError(f"{given}: for sparse matrices; of dense ones complex_modes gives all modes")
     about = linearise(system, time)
     inputs = {"system": design_or_system, "time": time}
     names = tuple(contact.name or f"contact {i + 1}" for i, contact in enumerate(system.contacts))

@@ -5,6 +5,7 @@ changes at 2 Re(lambda) E, and that is exactly the sum of the mean powers
 
     contact c, normal force:  1/2 Re(conj(lambda) u^H d (mu sgn(V) n' u)), its skew part: circulation
     contact c, slope:        -1/2 |lambda|^2 N mu'(V) Re(u^H d t' u)
+    contact c, across:       -1/2 |lambda|^2 mu N / |V| |a' u|^2, where sliding is in a plane
     structure:               -1/2 |lambda|^2 Re(u^H C u), by degree of freedom; and the skew part of K itself
 
 The symmetric part of mu d n' stores energy like a spring and is counted as strain. Work in a cycle is power times
@@ -20,8 +21,8 @@ import numpy as np
 
 from squealbox.result import Result, quantity
 from squealbox.stability.eigenvalues import Mode, modes_of
-from squealbox.stability.family import steady_sliding
-from squealbox.system import System, as_system
+from squealbox.stability.family import across_dampers, steady_sliding
+from squealbox.system import System, as_system, linearise
 
 MOST_DAMPERS = 12  # named one by one; the damping of a larger structure is given by degree of freedom
 
@@ -36,6 +37,7 @@ class ModeEnergy(Result):
 
     circulation: Any = quantity("contact", "W", "mean power fed in by normal force varying, skew part")
     slope: Any = quantity("contact", "W", "mean power fed in by friction varying with speed")
+    across: Any = quantity("contact", "W", "mean power taken out by friction turning with the velocity across sliding")
     dissipated: Any = quantity("dof", "W", "mean power taken out by the damping C, by degree of freedom")
     dampers: Any = quantity("damper", "W", "mean power taken out by each damper that C is made of")
     structure: Any = quantity("", "W", "mean power fed in by the skew part of the structure's own K")
@@ -61,7 +63,7 @@ class ModeEnergy(Result):
     def power(self) -> float:
         """Sum of the mean powers [W]."""
         fed = np.sum(self.circulation) + np.sum(self.slope) + float(self.structure)
-        return float(fed - np.sum(self.dissipated))
+        return float(fed - np.sum(self.across) - np.sum(self.dissipated))
 
     @property
     def growth_rate(self) -> float:
@@ -81,10 +83,12 @@ class ModeEnergy(Result):
         per = 1.0 if self.balanced else 1.0 / (2.0 * self.total)
         rows = list(zip((f"{name}: normal force" for name in self.contacts), self.circulation * per, strict=True))
         rows += zip((f"{name}: slope" for name in self.contacts), self.slope * per, strict=True)
+        rows += [(f"{name}: across", -w * per) for name, w in zip(self.contacts, self.across, strict=True) if w != 0.0]
         few = len(self.damper_names) <= MOST_DAMPERS
         names = self.damper_names if few else tuple(f"damping of {name}" for name in self.dofs)
         rows += zip(names, (self.dampers if few else self.dissipated) * -per, strict=True)
         rows += [("skew stiffness of the structure", float(self.structure) * per)] * bool(self.structure)
+        rows += [("damping of the structure", -float(np.sum(self.dissipated)) * per)] * (not self.damper_names)
         return [(name, float(value) + 0.0) for name, value in rows]
 
     @property
@@ -123,12 +127,14 @@ def mode_energy(design_or_system: Any, mode: Mode | int | None = None, time: flo
     Parameters
     ----------
     design_or_system : without leading axes
-    mode : a `Mode`, or its index in the spectrum; by default the most unstable
+    mode : a `Mode`, or its index in the spectrum; by default the most unstable. A sparse system needs a `Mode`
     time : instant of schedules [s]
 
     The sum of the powers is the growth rate to round-off (`residual`). Raises `ValueError` without steady sliding.
     """
-    system: System = as_system(design_or_system)
+    system: System = as_system(design_or_system, linear=True)
+    if system.is_sparse:
+        return sparse_energy(system, mode, time)
     steady = steady_sliding(system, time)
     if steady.K.ndim > 2:
         raise ValueError(f"leading axes {steady.K.shape[:-2]}: mode_energy() is for one system")
@@ -152,11 +158,13 @@ def mode_energy(design_or_system: Any, mode: Mode | int | None = None, time: flo
     own_skew = 0.5 * (structure - structure.T)
     own_skew = np.where(np.max(np.abs(own_skew)) <= 1e-13 * np.max(np.abs(structure)), 0.0, own_skew)  # round-off
     symmetric = 0.5 * (steady.K + steady.K.T)
-    damper_names, dampers = _dampers(steady.structural, velocity, system.names)
+    damper_names, dampers = _dampers(system.C, velocity, system.names)
+    across = [0.5 * float(x) * np.real(np.conj(velocity) @ a @ velocity) for x, a in across_dampers(system, steady)]
     return ModeEnergy(
         circulation=np.array(circulation),
         slope=np.array(slope),
-        dissipated=0.5 * np.real(np.conj(velocity) * (steady.structural @ velocity)),
+        across=np.array(across),
+        dissipated=0.5 * np.real(np.conj(velocity) * (system.C @ velocity)),
         dampers=dampers,
         structure=float(-0.5 * np.real(np.conj(velocity) @ own_skew @ u)),
         kinetic=0.25 * np.real(np.conj(velocity) * (steady.M @ velocity)),
@@ -167,6 +175,50 @@ def mode_energy(design_or_system: Any, mode: Mode | int | None = None, time: flo
         dofs=system.names,
         damper_names=damper_names,
         inputs={"system": design_or_system, "time": time},
+    )
+
+
+def sparse_energy(system: System, mode: Mode | int | None, time: float) -> ModeEnergy:
+    """The same of a sparse system, contact by contact without a loop; damping by degree of freedom."""
+    if not isinstance(mode, Mode):
+        raise ValueError(f"mode = {mode!r}: a sparse system needs a Mode, as complex_modes(system, band=...) gives it")
+    about = linearise(system, time)
+    state, table = about.equilibrium, system.contacts
+    value, u = mode.eigenvalue, mode.shape
+    velocity = value * u
+    closed = (state.normal_force > 0.0) | ~table.unilateral
+    pressing = np.where(closed, state.normal_force, 0.0)
+    coupling = np.where(closed, state.friction * np.sign(state.sliding_speed), 0.0)
+    sensed, along, moved, sideways = (
+        np.zeros(len(table)) if rows is None else rows @ u for rows in (table.n, table.d, table.t, table.across)
+    )
+    _, slope = table.friction(state.sliding_speed)
+    # 1/2 Re(conj(lambda) u^H A u) with A the skew part of mu d n'
+    skew = 0.5 * coupling * (np.conj(along) * sensed - np.conj(sensed) * along)
+    own = system.K - 0.5 * (system.K + system.K.T)
+    symmetric = 0.5 * (about.K + about.K.T)
+    if table.normal is not None:
+        open_rows = table.normal.T @ (np.where(closed, 0.0, 1.0) * sensed)
+        own_work = np.conj(velocity) @ (own @ u) - 0.5 * (np.conj(velocity) @ open_rows)
+        own_work = own_work + 0.5 * np.conj(velocity) @ (table.n.T @ (np.where(closed, 0.0, 1.0) * (table.normal @ u)))
+    else:
+        own_work = np.conj(velocity) @ (own @ u)
+    size = abs(value) * float(np.linalg.norm(symmetric @ u))
+    structure = float(-0.5 * np.real(own_work))
+    return ModeEnergy(
+        circulation=0.5 * np.real(np.conj(value) * skew),
+        slope=-0.5 * abs(value) ** 2 * pressing * slope * np.real(np.conj(along) * moved),
+        across=0.5 * abs(value) ** 2 * pressing * state.friction / np.abs(state.sliding_speed) * np.abs(sideways) ** 2,
+        dissipated=0.5 * np.real(np.conj(velocity) * (system.C @ velocity)),
+        dampers=np.zeros(0),
+        structure=0.0 if abs(structure) <= 1e-13 * size else structure,
+        kinetic=0.25 * np.real(np.conj(velocity) * (system.M @ velocity)),
+        strain=0.25 * np.real(np.conj(u) * (symmetric @ u)),
+        phase=np.angle(sensed * np.conj(moved * value)),
+        eigenvalue=complex(value),
+        contacts=table.names,
+        dofs=system.names,
+        inputs={"system": None, "time": time},
     )
 
 

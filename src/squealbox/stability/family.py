@@ -13,7 +13,8 @@ from squealbox.system import Equilibrium, Linearised, System, as_system, lineari
 class Steady(Linearised):
     """The linearised matrices with two of the structure without friction, all (..., n, n).
 
-    structural is its damping C; elastic the symmetric part of its K, without the contacts that are open.
+    structural is its damping C, with that of friction across the sliding direction; elastic the symmetric part of its
+    K, without the contacts that are open.
     """
 
     structural: Any
@@ -22,10 +23,28 @@ class Steady(Linearised):
 
 def steady_sliding(design_or_system: Any, time: float = 0.0) -> Steady:
     """M, C_eff, K_eff and the structure's own C about steady sliding at `time` [s]."""
-    system: System = as_system(design_or_system)
+    system: System = as_system(design_or_system, linear=True)
+    if system.is_sparse:
+        as_system(system)  # says what to do instead
     about = linearise(system, time)
     structural = np.broadcast_to(system.C, about.C.shape)
+    if any(contact.across is not None for contact in system.contacts):
+        structural = structural + np.sum([x[..., None, None] * a for x, a in across_dampers(system, about)], axis=0)
     return Steady(about.M, about.C, about.K, about.equilibrium, structural, _elastic(system, about))
+
+
+def across_dampers(system: System, about: Linearised) -> list[tuple[Any, Any]]:
+    """Of each contact mu N / |V| (...) [N s/m] and a a' (..., n, n); zeros where it has no cross direction."""
+    found, state = [], about.equilibrium
+    for i, contact in enumerate(system.contacts):
+        normal, speed, mu = (a[..., i] for a in (state.normal_force, state.sliding_speed, state.friction))
+        if contact.across is None:
+            found.append((np.zeros(np.shape(normal)), np.zeros((system.size, system.size))))
+            continue
+        with np.errstate(divide="ignore", invalid="ignore"):  # V = 0: there is no steady sliding
+            weight = np.where((normal > 0.0) | (not contact.unilateral), mu * normal / np.abs(speed), 0.0)
+        found.append((weight, contact.across[..., :, None] * contact.across[..., None, :]))
+    return found
 
 
 def _elastic(system: System, about: Linearised) -> Any:

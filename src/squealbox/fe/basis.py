@@ -1,0 +1,54 @@
+"""A basis on which a brake's modes are small: real modes, enriched by what friction and damping do to them.
+
+Real modes Phi of the elastic brake K0 alone are a poor basis: the friction part Kf = K - K0 pushes shapes towards
+K0^-1 Kf Phi, left shapes towards K0^-1 Kf' Phi and damping towards K0^-1 C Phi. An eigenvalue's error is the product of
+what right and left shapes miss, so all three are added; of their span the directions with most strain energy are kept.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from squealbox.fe.pencil import Pencil
+from squealbox.fe.real_modes import RealModes
+
+NEGLIGIBLE = 1e-13  # share of the largest length below which a direction is round-off
+
+
+def enriched_basis(pencil: Pencil, modes: RealModes, extra: int | None = None) -> Any:
+    """Columns V (n, m) with V' M V = I: the real modes and the `extra` strongest vectors (default: as many)."""
+    shapes = modes.shapes
+    extra = shapes.shape[1] if extra is None else extra
+    rates = 2.0 * np.pi * np.maximum(modes.frequency, 1e-3 * modes.top)
+    friction = pencil.K - pencil.elastic
+    parts = [friction @ shapes / rates, friction.T @ shapes / rates, pencil.C @ shapes]
+    right = np.concatenate([part for part in parts if np.any(part)] or [np.zeros((pencil.size, 0))], axis=1)
+    return joined(pencil, shapes, strongest(pencil, modes, modes.base.solve_many(right), extra))
+
+
+def strongest(pencil: Pencil, modes: RealModes, vectors: Any, count: int) -> Any:
+    """The `count` directions of most strain energy in the span of `vectors`, without the real modes."""
+    shapes = modes.shapes
+    vectors = vectors - shapes @ (shapes.T @ (pencil.M @ vectors))
+    energy = vectors.T @ (pencil.elastic @ vectors)
+    values, turns = np.linalg.eigh(0.5 * (energy + energy.T))
+    keep = np.argsort(-values)[:count]
+    keep = keep[values[keep] > NEGLIGIBLE * np.max(values, initial=0.0)]
+    return vectors @ (turns[:, keep] / np.sqrt(values[keep]))
+
+
+def joined(pencil: Pencil, basis: Any, vectors: Any) -> Any:
+    """`basis` with the part of `vectors` that is new, V' M V = I; what is not new to round-off is left out."""
+    lengths = np.sqrt(np.maximum(np.einsum("ij,ij->j", vectors, pencil.M @ vectors), 0.0))
+    vectors = vectors[:, lengths > 0.0] / lengths[lengths > 0.0]
+    for _ in range(2):
+        vectors = vectors - basis @ (basis.T @ (pencil.M @ vectors))
+    gram = vectors.T @ (pencil.M @ vectors)
+    values, turns = np.linalg.eigh(0.5 * (gram + gram.T))
+    keep = values > NEGLIGIBLE
+    fresh = vectors @ (turns[:, keep] / np.sqrt(values[keep]))
+    for _ in range(2):  # what the small directions lost of their right angle
+        fresh = fresh - basis @ (basis.T @ (pencil.M @ fresh))
+        gram = fresh.T @ (pencil.M @ fresh)
+        fresh = np.linalg.solve(np.linalg.cholesky(gram), fresh.T).T
+    return np.concatenate([basis, fresh], axis=1)

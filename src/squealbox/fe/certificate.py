@@ -1,0 +1,174 @@
+"""Is a mode missing? The winding number of det Q(lambda) around a rectangle, with the known eigenvalues divided out.
+
+The number of eigenvalues inside a contour is 1/(2 pi) times the turn of the phase of det Q along it. Along a brake's
+contour that phase turns fast: by lightly damped modes beside the contour, and by a smooth drift of many turns that the
+damping of all the modes far away brings. So what is followed is det Q(lambda) / prod (lambda - lambda_k), lambda_k the
+eigenvalues already known, and at every point its rate along the contour is measured, by a second determinant close by.
+An interval is taken when the rates at its ends and its middle agree on how far the phase turns, and the measured phases
+agree with that; else it is halved. A turn that is left over is an eigenvalue that nobody knew.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from squealbox.factorisation import SingularMatrix, factor
+from squealbox.fe.pencil import Pencil
+
+MOST = 150  # factorisations
+RATES_AGREE = 0.8  # rad by which two formulas for the turn of an interval may differ
+PHASES_AGREE = 0.4  # rad by which measured phases may differ from the turn the rates give
+PROBE = 1e-5  # distance of the second determinant, as a share of the largest |lambda|
+GROWTH = 1000.0  # growth rate [1/s] up to which a rectangle reaches at least
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What the winding number says of a list of modes.
+
+    missing is the number of eigenvalues inside that are not in the list (negative: the list holds one too many), None
+    where the phase could not be followed; known how many of the list are inside; growth (low, high) [1/s] and band
+    (low, high) [Hz] are the rectangle; factorisations what it cost; reason what stands in the way, or "".
+    """
+
+    missing: int | None
+    known: int
+    growth: tuple[float, float]
+    band: tuple[float, float]
+    factorisations: int
+    reason: str
+
+    @property
+    def certified(self) -> bool:
+        """True where no eigenvalue is missing and none is one too many."""
+        return self.missing == 0
+
+    def __str__(self) -> str:
+        where = f"growth {self.growth[0]:.4g} to {self.growth[1]:.4g} 1/s, {self.band[0]:.5g} to {self.band[1]:.5g} Hz"
+        if self.certified:
+            return f"none missed: {self.known} modes in the rectangle {where} ({self.factorisations} factorisations)"
+        return f"not certified: {self.reason} ({where}, {self.factorisations} factorisations)"
+
+
+def certificate(
+    pencil: Pencil,
+    eigenvalues: Any,
+    band: tuple[float, float],
+    *,
+    largest_growth: float | None = None,
+    most: int = MOST,
+) -> Certificate:
+    """Whether `eigenvalues` holds every mode that grows, or hardly decays, in the band (f1, f2) [Hz].
+
+    Parameters
+    ----------
+    pencil : the brake's matrices
+    eigenvalues : all known eigenvalues [1/s] with Im > 0, also those outside the band: shape (k,)
+    band : (f1, f2) [Hz]; widened a little to where no known mode is close to its ends
+    largest_growth : [1/s] right side of the rectangle; by default 1000, or four times the largest known
+    most : factorisations after which the search gives up
+    """
+    known = np.asarray(eigenvalues, dtype=complex)
+    known = known[known.imag > 0.0]
+    low, high = _band_gaps(known, band)
+    left = _left_side(known, low, high)
+    right = largest_growth or max(GROWTH, 4.0 * float(np.max(known.real, initial=0.0)))
+    inside = (known.real > left) & (known.real < right) & (known.imag > low) & (known.imag < high)
+    search = _Winding(pencil, known, PROBE * abs(complex(right, high)), most)
+    corners = [complex(left, low), complex(right, low), complex(right, high), complex(left, high)]
+    pieces = (2, 8, 2, 8)
+    turn, reason = 0.0, ""
+    try:
+        for start, end, parts in zip(corners, [*corners[1:], corners[0]], pieces, strict=True):
+            turn += search.turn(start, end, parts)
+        missing: int | None = round(turn / (2.0 * np.pi))
+    except _TooMany as error:
+        missing, reason = None, str(error)
+    except SingularMatrix as error:
+        missing, reason = None, f"an eigenvalue lies on the contour: {error}"
+    if missing is not None and missing != 0:
+        what = "missing" if missing > 0 else "too many"
+        reason = f"{abs(missing)} mode{'s' * (abs(missing) > 1)} {what} in the list of {int(np.sum(inside))}"
+    hertz = low / (2.0 * np.pi), high / (2.0 * np.pi)
+    return Certificate(missing, int(np.sum(inside)), (left, right), hertz, search.made, reason)
+
+
+class _TooMany(Exception):
+    """The phase could not be followed with the factorisations allowed."""
+
+
+class _Winding:
+    """Phases of det Q(lambda) / prod (lambda - lambda_k) and their rates along a contour."""
+
+    def __init__(self, pencil: Pencil, known: Any, probe: float, most: int) -> None:
+        self.pencil, self.known, self.probe, self.most, self.made = pencil, known, probe, most, 0
+        self.seen: dict[tuple[complex, complex], tuple[float, float]] = {}
+
+    def turn(self, start: complex, end: complex, parts: int) -> float:
+        """By how much the phase turns from `start` to `end` [rad]."""
+        marks = [start + (end - start) * i / parts for i in range(parts + 1)]
+        along = (end - start) / abs(end - start)
+        look = partial(self.phase, along=along)
+        return sum(self._between(a, b, look) for a, b in pairwise(marks))
+
+    def _between(self, a: complex, b: complex, look: Callable[[complex], tuple[float, float]]) -> float:
+        middle = 0.5 * (a + b)
+        length = abs(b - a)
+        (first, rate_a), (half, rate), (last, rate_b) = look(a), look(middle), look(b)
+        plain = 0.5 * length * (rate_a + rate_b)
+        better = length * (rate_a + 4.0 * rate + rate_b) / 6.0
+        first_half, second_half = (
+            length * (5.0 * rate_a + 8.0 * rate - rate_b) / 24.0,
+            length * (5.0 * rate_b + 8.0 * rate - rate_a) / 24.0,
+        )
+        misses = [_wrapped(half - first - first_half), _wrapped(last - half - second_half)]
+        if abs(plain - better) < RATES_AGREE and max(map(abs, misses)) < PHASES_AGREE:
+            return better + sum(misses)
+        return self._between(a, middle, look) + self._between(middle, b, look)
+
+    def phase(self, point: complex, along: complex) -> tuple[float, float]:
+        """Phase [rad] at a point and its rate along the contour [rad s]."""
+        key = (point, along)
+        if key not in self.seen:
+            here, ahead = self._at(point), self._at(point + self.probe * along)
+            self.seen[key] = here, _wrapped(ahead - here) / self.probe
+        return self.seen[key]
+
+    def _at(self, point: complex) -> float:
+        if self.made >= self.most:
+            raise _TooMany(f"the phase of det Q could not be followed with {self.most} factorisations")
+        self.made += 1
+        whole = factor(self.pencil.at(point), symmetric=False, library="superlu").log_determinant.imag
+        return whole - float(np.sum(np.angle(point - self.known)))
+
+
+def _wrapped(angle: float) -> float:
+    return float((angle + np.pi) % (2.0 * np.pi) - np.pi)
+
+
+def _left_side(known: Any, low: float, high: float) -> float:
+    """A growth rate a little below 0 in the widest gap between the known modes of the band."""
+    deepest = -0.05 * low
+    rates = known.real[(known.imag > 0.9 * low) & (known.imag < 1.1 * high)]
+    marks = np.sort(np.concatenate([[deepest, 0.0], rates[(rates > deepest) & (rates < 0.0)]]))
+    return float(_widest(marks))
+
+
+def _band_gaps(known: Any, band: tuple[float, float]) -> tuple[float, float]:
+    """The band [rad/s] with its ends moved outwards, by up to a tenth, into the widest gap between known modes."""
+    near = known[known.real > -0.1 * known.imag].imag
+    ends = []
+    for inner, outer in ((band[0], 0.9 * band[0]), (band[1], 1.05 * band[1])):
+        first, last = sorted((2.0 * np.pi * inner, 2.0 * np.pi * outer))
+        marks = np.sort(np.concatenate([[first, last], near[(near > first) & (near < last)]]))
+        ends.append(_widest(marks))
+    return ends[0], ends[1]
+
+
+def _widest(marks: Any) -> float:
+    place = int(np.argmax(np.diff(marks)))
+    return float(0.5 * (marks[place] + marks[place + 1]))

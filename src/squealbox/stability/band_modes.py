@@ -1,0 +1,232 @@
+"""Complex modes of a finite-element brake in a band of frequency, each with an error bar.
+
+The brake's real modes up to f2 / 0.7 (counted beforehand by Sturm, so none is missed) are enriched by what friction and
+damping do to them; on that basis the quadratic problem is small. Every eigenvalue carries the estimate of what the
+basis misses, the basis grows until no estimate is above `tolerance`, and on request the winding number of det Q says
+that no growing mode is missing. See :mod:`squealbox.fe.projection` and :mod:`squealbox.fe.certificate`.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from squealbox.fe.certificate import Certificate, certificate
+from squealbox.fe.pencil import Pencil, pencil_of
+from squealbox.fe.projection import Projected, basis_for, refined_modes
+from squealbox.fe.quadratic import full_modes
+from squealbox.result import Outcome, quantity
+from squealbox.stability.eigenvalues import ComplexModes
+from squealbox.system import InvalidSystem, System, as_system, linearise
+
+Way = Literal["projection", "full"]
+TOLERANCE = 0.05  # [1/s]
+NOT_ASKED = "not certified: not asked for; complex_modes(..., certify=True) counts the modes by the winding number"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BandModes(ComplexModes):
+    """The modes of a large brake in a band, as :func:`complex_modes` returns them of sparse matrices.
+
+    The first half of the eigenvalues has Im > 0 and rises in frequency, the second half are the conjugates. error is
+    the size of the estimated difference to the exact eigenvalue, `corrected` the eigenvalue with that estimate added. A
+    mode counts as unstable when its growth rate is above its error bar.
+    """
+
+    error: Any = quantity("... mode", "1/s", "error bar of the eigenvalue")
+    estimate: Any = quantity("... mode", "1/s", "estimate of exact less computed eigenvalue, complex")
+    real_frequency: Any = quantity("real_mode", "Hz", "frequencies of the undamped modes without friction")
+    band: tuple[float, float] = (0.0, 0.0)
+    method: str = "projection"
+    size: int = 0
+    missing: int | None = None
+    certified: bool = False
+    certificate: str = NOT_ASKED
+    real_modes_complete: bool = True
+
+    @property
+    def corrected(self) -> Any:
+        """Eigenvalues with the estimate of their error added [1/s]: some ten times closer."""
+        return self.eigenvalues + self.estimate
+
+    @property
+    def unstable_modes(self) -> Any:
+        """Number of modes that grow by more than their error bar."""
+        half = len(self.eigenvalues) // 2
+        return np.array(np.sum((self.growth_rate > self.error)[:half]))
+
+    @property
+    def doubtful_modes(self) -> Any:
+        """Number of modes whose growth rate is within their error bar of 0: neither stable nor unstable."""
+        half = len(self.eigenvalues) // 2
+        return np.array(np.sum((np.abs(self.growth_rate) <= self.error)[:half]))
+
+    def summary(self) -> str:
+        """The verdict, what is known of completeness, and a table of the modes, unstable ones first."""
+        return band_table(self)
+
+
+def band_modes(
+    design_or_system: Any,
+    band: tuple[float, float] | None,
+    *,
+    time: float = 0.0,
+    method: Way = "projection",
+    tolerance: float = TOLERANCE,
+    certify: bool = False,
+    count: int = 60,
+) -> BandModes:
+    """The modes of a sparse system in a band.
+
+    Parameters
+    ----------
+    design_or_system : a design or system with sparse matrices
+    band : (f1, f2) [Hz], 0 < f1 < f2
+    time : instant of schedules [s]
+    method : "projection", or "full": the whole problem by shift-invert, with no left modes and the backward error for
+        an error bar; many times slower
+    tolerance : [1/s] the basis grows until every error bar is below it, or four times
+    certify : count the growing modes by the winding number too; some 100 factorisations
+    count : eigenvalues about each shift of the full problem
+
+    Modes whose damping ratio is above 0.1 are no candidates for squeal and are left out.
+    """
+    low, high = _checked_band(band)
+    if method not in ("projection", "full"):
+        raise ValueError(f"method = {method!r}: expected 'projection' or 'full'")
+    system = as_system(design_or_system, linear=True)
+    about = linearise(system, time)
+    if not about.equilibrium.exists:
+        return _nothing(design_or_system, system, about.equilibrium, (low, high), time)
+    pencil = pencil_of(system, time)
+    common: dict[str, Any] = {"band": (low, high), "method": method, "size": system.size}
+    common |= {"steady": about.equilibrium.q, "exists": np.array(True), "contacts": system.contacts.names}
+    common |= {"normal_force": about.equilibrium.normal_force, "inputs": _inputs(design_or_system, time)}
+    common["settings"] = {"band": [low, high], "method": method, "tolerance": tolerance, "certify": certify}
+    if method == "full":
+        return _full(pencil, (low, high), count, common)
+    modes, basis = basis_for(pencil, (low, high))
+    found, basis = refined_modes(pencil, modes, basis, (low, high), tolerance)
+    common |= {"real_frequency": modes.frequency, "real_modes_complete": modes.complete}
+    if certify:
+        proof = certificate(pencil, known_eigenvalues(found), (low, high))
+        common |= {"missing": proof.missing, "certified": proof.certified, "certificate": str(proof)}
+    return BandModes(
+        eigenvalues=_both(found.eigenvalues),
+        right=np.concatenate([found.right, found.right.conj()], axis=1),
+        left=np.concatenate([found.left, found.left.conj()], axis=1),
+        condition=np.tile(found.condition, 2),
+        error=np.tile(np.abs(found.error), 2),
+        estimate=_both(found.error),
+        outcome=_outcome(modes.complete, modes.count, len(modes.frequency), modes.top),
+        **common,
+    )
+
+
+def certified(
+    design_or_system: Any, eigenvalues: Any, band: tuple[float, float], *, time: float = 0.0, most: int = 150
+) -> Certificate:
+    """Whether a list of eigenvalues [1/s] holds every mode of a sparse system that grows in the band (f1, f2) [Hz].
+
+    eigenvalues, shape (k,), should hold the modes somewhat outside the band too, so that the phase stays smooth; `most`
+    is the number of factorisations after which the search gives up. The answer names how many modes are missing.
+    """
+    system = as_system(design_or_system, linear=True)
+    if not system.is_sparse:
+        raise InvalidSystem("a dense system has its whole spectrum in complex_modes: there is nothing to certify")
+    return certificate(pencil_of(system, time), eigenvalues, _checked_band(band), most=most)
+
+
+def known_eigenvalues(found: Projected) -> Any:
+    """The modes of the band, corrected, and all others of the basis as they are."""
+    others = found.every[found.every.imag > 0.0]
+    shown = np.array([np.any(np.abs(found.eigenvalues - v) <= 1e-9 * abs(v)) for v in others], dtype=bool)
+    return np.concatenate([found.eigenvalues + found.error, others[~shown]])
+
+
+def band_table(modes: BandModes) -> str:
+    """Verdict, completeness and the table."""
+    if not bool(modes.exists):
+        return f"No complex modes: {modes.outcome} ({modes.outcome.message})"
+    half = len(modes.eigenvalues) // 2
+    state = "STABLE" if bool(modes.stable) else "UNSTABLE"
+    lines = [
+        f"Steady sliding is {state} between {modes.band[0]:g} and {modes.band[1]:g} Hz: "
+        f"{int(modes.unstable_modes)} of {half} modes grow ({modes.size} degrees of freedom)"
+    ]
+    if int(modes.doubtful_modes):
+        lines.append(f"Of {int(modes.doubtful_modes)} modes the growth rate is within its error bar of 0.")
+    lines.append(modes.certificate[:1].upper() + modes.certificate[1:] + ".")
+    lines.append(f"{'mode':>5} {'frequency [Hz]':>15} {'growth [1/s]':>14} {'error [1/s]':>12} {'damping [%]':>12}")
+    order = sorted(range(half), key=lambda i: (modes.growth_rate[i] <= modes.error[i], modes.frequency[i]))
+    for i in order:
+        mark = "  unstable" if modes.growth_rate[i] > modes.error[i] else ""
+        cells = (modes.frequency[i], modes.growth_rate[i], modes.error[i], 100.0 * modes.damping_ratio[i])
+        lines.append("{:>5} {:>15.6g} {:>+14.6g} {:>12.2g} {:>+12.4f}".format(i + 1, *cells) + mark)
+    return "\n".join(lines)
+
+
+def _checked_band(band: Any) -> tuple[float, float]:
+    if band is None:
+        raise ValueError("band is missing: a sparse system needs the band of frequency looked at, band=(f1, f2) in Hz")
+    if np.shape(band) != (2,) or not (np.all(np.isfinite(band)) and 0.0 < band[0] < band[1]):
+        raise ValueError(f"band = {band!r}: expected (f1, f2) in Hz with 0 < f1 < f2")
+    return float(band[0]), float(band[1])
+
+
+def _full(pencil: Pencil, band: tuple[float, float], count: int, common: dict[str, Any]) -> BandModes:
+    found = full_modes(pencil, band, count)
+    order = np.argsort(found.eigenvalues.imag, kind="stable")
+    values, shapes = found.eigenvalues[order], found.shapes[:, order]
+    scale = np.tile(found.backward_error[order] * np.abs(values), 2)
+    outcome = Outcome()
+    if not found.covered:
+        outcome = Outcome("band_not_covered", f"{found.factorisations} disks left gaps in the band; ask for more modes")
+    return BandModes(
+        eigenvalues=_both(values),
+        right=np.concatenate([shapes, shapes.conj()], axis=1),
+        left=np.full((pencil.size, 2 * len(values)), np.nan + 0j),
+        condition=np.full(2 * len(values), np.nan),
+        error=scale,
+        estimate=np.zeros(2 * len(values), dtype=complex),
+        real_frequency=np.zeros(0),
+        outcome=outcome,
+        **common,
+    )
+
+
+def _nothing(design: Any, system: System, state: Any, band: tuple[float, float], time: float) -> BandModes:
+    none, flat = np.zeros((system.size, 0), dtype=complex), np.zeros(0, dtype=complex)
+    return BandModes(
+        eigenvalues=flat,
+        right=none,
+        left=none,
+        condition=np.zeros(0),
+        steady=np.full(system.size, np.nan),
+        exists=np.array(False),
+        normal_force=state.normal_force,
+        error=np.zeros(0),
+        estimate=flat,
+        real_frequency=np.zeros(0),
+        band=band,
+        size=system.size,
+        contacts=system.contacts.names,
+        inputs=_inputs(design, time),
+        outcome=state.outcome,
+    )
+
+
+def _outcome(complete: bool, count: int, found: int, top: float) -> Outcome:
+    if complete:
+        return Outcome()
+    message = f"{found} of {count} real modes below {top:.6g} Hz were found: the basis misses some"
+    return Outcome("real_modes_missing", message, found=found, count=count)
+
+
+def _inputs(design: Any, time: float) -> dict[str, Any]:
+    """The design; a bare system of sparse matrices is too large to be kept in every result."""
+    return {"system": None if isinstance(design, System) else design, "time": time}
+
+
+def _both(values: Any) -> Any:
+    return np.concatenate([values, np.conj(values)])

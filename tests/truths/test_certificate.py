@@ -1,0 +1,84 @@
+"""The winding number counts what is inside: nothing missing, one hidden, one too many; and it says when it cannot."""
+
+import numpy as np
+import pytest
+
+from fe_brakes import dense, pad_brake
+from squealbox import Coulomb, complex_modes
+from squealbox.fe import certificate, count_below, pencil_of, real_modes
+from squealbox.stability import certified
+
+BAND = (3000.0, 7000.0)
+
+
+@pytest.fixture(scope="module")
+def brake():
+    system = pad_brake(friction=Coulomb(0.9))
+    values = complex_modes(dense(system)).eigenvalues
+    return pencil_of(system), values[values.imag > 0.0], system
+
+
+def unstable(values):
+    inside = (values.imag > 2 * np.pi * BAND[0]) & (values.imag < 2 * np.pi * BAND[1])
+    return np.flatnonzero(inside & (values.real > 0.0))
+
+
+def test_none_is_missing_from_the_whole_spectrum(brake):
+    pencil, values, _ = brake
+    found = certificate(pencil, values, BAND)
+    assert found.certified
+    assert found.factorisations <= 150
+    assert "none missed" in str(found)
+    assert found.known >= len(unstable(values)) > 0
+
+
+def test_every_hidden_unstable_mode_is_noticed(brake):
+    pencil, values, _ = brake
+    for hidden in unstable(values):
+        found = certificate(pencil, np.delete(values, hidden), BAND)
+        assert found.missing == 1
+        assert not found.certified
+        assert "1 mode missing" in found.reason
+
+
+def test_two_hidden_modes_and_one_invented_are_counted(brake):
+    pencil, values, _ = brake
+    known = certificate(pencil, values, BAND)
+    inside = np.flatnonzero(
+        (values.real > known.growth[0])
+        & (values.imag > 2 * np.pi * known.band[0])
+        & (values.imag < 2 * np.pi * known.band[1])
+    )
+    assert certificate(pencil, np.delete(values, inside[:2]), BAND).missing == 2
+    invented = np.append(values, 200.0 + 2j * np.pi * 5000.0)
+    assert certificate(pencil, invented, BAND).missing == -1
+
+
+def test_too_few_factorisations_certify_nothing(brake):
+    pencil, values, _ = brake
+    found = certificate(pencil, values, BAND, most=10)
+    assert found.missing is None
+    assert not found.certified
+    assert "10 factorisations" in found.reason
+
+
+def test_through_the_analyses(brake):
+    _, values, system = brake
+    modes = complex_modes(system, band=BAND, certify=True)
+    assert modes.certified
+    assert modes.missing == 0
+    assert modes.real_modes_complete
+    assert certified(system, np.delete(values, unstable(values)[0]), BAND).missing == 1
+    assert not complex_modes(system, band=BAND).certified
+
+
+def test_sturm_counts_the_real_modes():
+    pencil = pencil_of(pad_brake())
+    exact = np.sqrt(
+        np.linalg.eigvalsh(pencil.elastic.toarray() / pencil.M.diagonal()[:, None] ** 0.5 / pencil.M.diagonal() ** 0.5)
+    ) / (2 * np.pi)
+    for top in (4000.0, 8000.0, 1e6):
+        found = real_modes(pencil.elastic, pencil.M, top)
+        assert found.complete
+        assert count_below(pencil.elastic, pencil.M, top) == np.sum(exact < top)
+        np.testing.assert_allclose(found.frequency, exact[exact < top], rtol=1e-9)
