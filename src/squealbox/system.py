@@ -26,7 +26,7 @@ from scipy import sparse
 from squealbox import sparse_sliding
 from squealbox.contacts import ROWS, Contact, Contacts, dense_rows, sparse_matrix
 from squealbox.factorisation import is_symmetric
-from squealbox.matrices import InvalidSystem, array, check_mass, check_width, checked_names, coupled, felt, form
+from squealbox.matrices import InvalidSystem, array, check_mass, check_width, checked_names, coupled, felt
 from squealbox.parameters import DataSheet
 from squealbox.result import Outcome
 from squealbox.schedules import Schedule, value_at
@@ -308,40 +308,6 @@ def contact_state(system: System, time: Any, q: Any, qd: Any) -> tuple[Any, Any,
         forces.append(contact.law.mu(speed) * np.sign(speed) * normal)
     empty = np.zeros((*np.shape(q)[:-1], 0))
     return tuple(np.stack(x, axis=-1) if x else empty for x in (normals, speeds, forces))  # type: ignore[return-value]
-
-
-def mechanical_energy(system: System, q: Any, qd: Any) -> Any:
-    """Kinetic plus strain energy [J], 1/2 q'.M q' + 1/2 q.Ks q with Ks the symmetric part of K; shape (...)."""
-    symmetric = 0.5 * (system.K + np.swapaxes(system.K, -1, -2))
-    return 0.5 * form(qd, system.M, qd) + 0.5 * form(q, symmetric, q)
-
-
-def power_of_friction(system: System, time: Any, q: Any, qd: Any) -> Any:
-    """Power [W] each contact feeds into the vibration, (d.q') mu sgn(v) N, shape (..., contacts)."""
-    _, _, forces = contact_state(system, time, q, qd)
-    along = [np.sum(contact.d * qd, axis=-1) for contact in system.contacts]
-    return np.stack(along, axis=-1) * forces if along else forces
-
-
-def power_dissipated(system: System, qd: Any) -> Any:
-    """Power [W] the damping takes out, q'.C q', shape (...)."""
-    return form(qd, system.C, qd)
-
-
-def power_of_circulation(system: System, q: Any, qd: Any) -> Any:
-    """Power [W] fed in by the skew part Ka of the stiffness itself, -q'.Ka q, shape (...); 0 for a symmetric K."""
-    skew = 0.5 * (system.K - np.swapaxes(system.K, -1, -2))
-    return -form(qd, skew, q)
-
-
-def power_of_load(system: System, time: Any, qd: Any) -> Any:
-    """Power [W] of the load, q'.f(t), shape (...)."""
-    if isinstance(system.load, Schedule):
-        load = np.stack([np.asarray(system.load.value(t)) for t in np.ravel(time)])
-        load = load.reshape(*np.shape(time), -1)
-    else:
-        load = system.load
-    return np.sum(load * qd, axis=-1)
 
 
 def _sparse_equilibrium(system: System, time: float) -> Equilibrium:

@@ -5,15 +5,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squealbox.parameters import ParameterError
+from squealbox.power import power_dissipated, power_of_circulation, power_of_load
 from squealbox.result import COMPLETED, Outcome
 from squealbox.schedules import value_at
-from squealbox.system import (
-    InvalidSystem,
-    System,
-    power_dissipated,
-    power_of_circulation,
-    power_of_load,
-)
+from squealbox.system import InvalidSystem, System
 from squealbox.transient import packing
 from squealbox.transient.methods import Method
 from squealbox.transient.own_laws import own_texts

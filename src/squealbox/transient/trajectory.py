@@ -5,8 +5,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from squealbox.power import mechanical_energy
 from squealbox.result import Result, quantity
-from squealbox.system import System, mechanical_energy
+from squealbox.system import System
 
 OPEN = 2  # contact modes: +1 and -1 slip with sgn(v), 0 stick, OPEN lifted off
 
