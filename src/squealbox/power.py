@@ -1,4 +1,4 @@
-"""Energy of a motion and the power of what feeds and damps it: friction, load, damping, a stiffness with a skew part."""
+"""Energy of a motion and the power of what feeds and damps it: friction, load, damping, a skew part of K."""
 
 from typing import Any
 
