@@ -45,7 +45,8 @@ def exact(static: float, masses: tuple[float, float] = (1.0, 2.0), damper: float
 @pytest.mark.parametrize("static", [0.1, 0.2, 0.4, 0.9])
 def test_free_bodies_have_two_zeros_and_the_mode_of_the_closed_form(static: float, masses: tuple[float, float]) -> None:
     modes = complex_modes(couple(static, masses=masses))
-    assert modes.outcome.ok and modes.floating == 1
+    assert modes.outcome.ok
+    assert modes.floating == 1
     assert np.count_nonzero(modes.eigenvalues == 0.0) == 2
     assert modes.most_unstable.eigenvalue == pytest.approx(exact(static, masses), rel=1e-12)
     assert modes.stable == (static <= 0.2)
@@ -55,7 +56,8 @@ def test_free_bodies_have_two_zeros_and_the_mode_of_the_closed_form(static: floa
 
 def test_steady_sliding_is_the_deflection_of_least_length() -> None:
     state = equilibrium(couple(0.4))
-    assert state.exists and state.floating == 1
+    assert state.exists
+    assert state.floating == 1
     assert np.sum(state.q) == pytest.approx(0.0, abs=1e-18)
     assert SPRING * (state.q[0] - state.q[1]) == pytest.approx(FORCE * state.friction[0], rel=1e-12)
 

@@ -79,7 +79,8 @@ def test_scale_of_the_numbers_does_not_matter(size: float) -> None:
     assert modes.outcome.ok
     assert modes.angular_frequency[:2] == pytest.approx(np.sqrt(size) * np.array([1.0, np.sqrt(3.0)]), rel=1e-14)
     free = complex_modes(system.replace(K=size * np.ones((2, 2))))
-    assert free.outcome.ok and free.floating == 1
+    assert free.outcome.ok
+    assert free.floating == 1
     assert np.count_nonzero(free.eigenvalues == 0.0) == 2
     assert complex_modes(system.replace(K=size * np.ones((2, 2)), load=[size, 0.0])).outcome == "singular"
 
