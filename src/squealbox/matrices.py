@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+FEW = 8  # contacts up to which sums are taken one by one, the same for one system as for a map of them
 SYMMETRIC = 1e-8  # of the largest entry: differences beyond it are no round-off of a written file
 
 
@@ -13,7 +14,7 @@ class InvalidSystem(ValueError):
 
 def coupled(left: Any, factor: Any, right: Any) -> Any:
     """sum_c left_c factor_c right_c' of rows (..., contacts, n), shape (..., n, n); factor is (..., contacts)."""
-    if np.ndim(factor) == 1 and np.ndim(left) == 2 and np.ndim(right) == 2:
+    if len(np.shape(factor)) == 1 and len(factor) > FEW and np.ndim(left) == 2 and np.ndim(right) == 2:
         return (left * factor[:, None]).T @ right
     total: Any = 0.0
     for i in range(np.shape(factor)[-1]):  # on a map, sums of outer products are quicker than tiny products
@@ -23,7 +24,8 @@ def coupled(left: Any, factor: Any, right: Any) -> Any:
 
 def felt(rows: Any, q: Any) -> Any:
     """rows . q, (..., contacts)."""
-    return rows @ q if np.ndim(q) == 1 and np.ndim(rows) == 2 else np.sum(rows * q[..., None, :], axis=-1)
+    many = np.ndim(q) == 1 and np.ndim(rows) == 2 and len(rows) > FEW
+    return rows @ q if many else np.sum(rows * q[..., None, :], axis=-1)
 
 
 def check_mass(mass: Any) -> None:

@@ -79,21 +79,25 @@ def _results(motion: "Trajectory", title: str, out: Path) -> tuple[str, list[Pat
     """The verdict on each degree of freedom in words, and the files written."""
     from squealbox import plots
     from squealbox.signals import SignalError
-    from squealbox.transient import verdict
+    from squealbox.transient import resolved, verdict
 
     paths = [motion.save(out / "motion.nc"), write_csv(out / "motion.csv", _columns(motion))]
     if len(motion.t) < 2:
         return "nothing was reached that could be judged or drawn", paths
     try:
         judged = [verdict(motion, dof=i) for i in range(motion.system.size)]
+        drawn = resolved(motion)
     except SignalError as error:
         return f"the motion is too short to be judged or drawn: {error}", paths
     text = "\n".join(f"{name}: {each}" for name, each in zip(motion.system.names, judged, strict=True))
+    if drawn is not motion:
+        text += (f"\nNote: {len(motion.t)} kept instants do not carry these frequencies (give more points for data and "
+                 "sound); the verdict and the figures come from every step of the run")  # fmt: skip
     (out / "verdict.txt").write_text(f"{text}\n", encoding="utf-8")
     liveliest = sorted(range(len(judged)), key=lambda i: -float(judged[i].amplitude))[:MOST_FIGURES]
     for i in sorted(liveliest):
         name = motion.system.names[i]
-        paths += plots.save(plots.plot(motion, dof=i, title=f"{title}: {name}"), out / f"motion_{name}")
+        paths += plots.save(plots.plot(drawn, dof=i, title=f"{title}: {name}"), out / f"motion_{name}")
     paths += plots.save(plots.energy(motion, title=title), out / "energy")
     paths += _sound(motion, liveliest[0], float(judged[liveliest[0]].frequency), out)
     return text, [out / "verdict.txt", *paths]

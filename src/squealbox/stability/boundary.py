@@ -112,6 +112,7 @@ class _Rectangle:
         self.width = np.array([float(high) for _, high in bounds.values()]) - self.low
         middle = self.family.at(*(self.low + 0.5 * self.width)[:, None])
         self.neutral = bool(is_neutral(middle)[0])
+        self.rigid = int(np.asarray(middle.equilibrium.floating).flat[0])
         size = np.nanmax(np.abs(spectrum(middle)), initial=0.0)
         self.reference = float(size) if size > 0.0 else 1.0
         self.scale = 1.0
@@ -123,8 +124,13 @@ class _Rectangle:
 
     def _level(self, about: Steady) -> tuple[Any, Any]:
         eigenvalues = spectrum(about)
-        level = coalescence(eigenvalues) if self.neutral else np.max(eigenvalues.real, axis=-1)
-        return np.where(on_divergence(about), 0.0, level), eigenvalues
+        if self.neutral:
+            return np.where(on_divergence(about), 0.0, coalescence(eigenvalues, self.rigid)), eigenvalues
+        known = np.any(np.isfinite(eigenvalues), axis=-1, keepdims=True)
+        idle = (eigenvalues == 0.0) & (np.asarray(about.equilibrium.floating)[..., None] > 0)
+        idle |= known & ~np.isfinite(eigenvalues)  # rigid-body motion and what has no mass: as if it died at once
+        eigenvalues = np.where(idle, -self.reference, eigenvalues)
+        return np.where(on_divergence(about), 0.0, np.max(eigenvalues.real, axis=-1)), eigenvalues
 
     def sample(self, u: Any, v: Any) -> Samples:
         """Level and detectors at points (u, v) of the unit square."""
@@ -137,7 +143,12 @@ class _Rectangle:
     def _detectors(self, eigenvalues: Any) -> Any:
         """Smooth functions of the parameters (2, points) that vanish on the boundary; see the module `cells`."""
         scaled = eigenvalues / self.reference
-        values = scaled[..., : scaled.shape[-1] // 2] ** 2 if self.neutral else scaled
+        values = scaled
+        if self.neutral:
+            values = scaled[..., : scaled.shape[-1] // 2] ** 2
+            order = np.argsort(np.abs(values), axis=-1, kind="stable")
+            values = np.take_along_axis(values, order, axis=-1)[..., self.rigid :]
+            scaled = values
         product = np.ones(values.shape[:-1], dtype=complex)
         for i in range(values.shape[-1]):
             for j in range(i):

@@ -11,10 +11,17 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.result import COMPLETED, Outcome, Result, batched, quantity
+from squealbox.stability.deflation import special_modes
+from squealbox.static_deflection import levelled
 from squealbox.system import Linearised, as_system, linearise
 
 MARGINAL = 1e-12  # growth below this share of the largest |lambda| is round-off, not growth
+SLOW = 1e-6  # share of the largest |lambda| below which a mode counts as slow: a body that is only just held
 NEAR_DEFECTIVE = 1e6  # condition number of an eigenvalue at which about 6 of 16 digits are lost
+
+SINGULAR_PENCIL = Outcome(
+    "singular_pencil", "every number is an eigenvalue: a motion without inertia, damping and stiffness"
+)
 
 
 class OneEigenvalue:
@@ -71,6 +78,10 @@ class ComplexModes(Result):
 
     The first n eigenvalues have Im >= 0, ascending in |Im|; the last n are their conjugates in the same order (of real
     eigenvalues the larger half stands in the first n). An entry without steady sliding holds NaN and exists = False.
+
+    A rigid-body freedom, a motion that no spring feels, has eigenvalues that are exactly zero; `floating` counts such
+    freedoms. They are no loss of stability: `largest_growth_rate` and `most_unstable` leave them out. A freedom
+    without mass has eigenvalues at infinity, which stand as NaN behind the others.
     """
 
     eigenvalues: Any = quantity("... mode", "1/s", "eigenvalue, growth rate + i angular frequency")
@@ -80,6 +91,7 @@ class ComplexModes(Result):
     steady: Any = quantity("... dof", "m", "steady sliding displacement")
     exists: Any = quantity("...", "1", "True where there is a spectrum")
     normal_force: Any = quantity("... contact", "N", "normal force of each contact in steady sliding, < 0 in tension")
+    floating: Any = quantity("...", "1", "number of rigid-body freedoms, whose eigenvalues are zero")
     contacts: tuple[str, ...] = ()
 
     swept: ClassVar = {
@@ -116,8 +128,9 @@ class ComplexModes(Result):
 
     @property
     def largest_growth_rate(self) -> Any:
-        """The largest growth rate [1/s], shape (...); NaN where there is no spectrum."""
-        return np.max(self.growth_rate, axis=-1)
+        """The largest growth rate [1/s] beside rigid-body motion, shape (...); NaN where there is no spectrum."""
+        growth = vibrating(self.eigenvalues, self.floating)
+        return np.where(self.exists, np.where(np.isneginf(growth), 0.0, growth), np.nan)
 
     @property
     def stable(self) -> Any:
@@ -127,8 +140,9 @@ class ComplexModes(Result):
     @property
     def unstable_modes(self) -> Any:
         """Number of growing modes, a complex pair counted once and real eigenvalues each, shape (...)."""
-        scale = np.max(np.abs(self.eigenvalues), axis=-1, keepdims=True)
-        return np.sum((self.growth_rate > MARGINAL * scale) & (np.imag(self.eigenvalues) >= 0.0), axis=-1)
+        scale = np.max(np.nan_to_num(np.abs(self.eigenvalues)), axis=-1, keepdims=True)
+        surely = self.growth_rate > np.maximum(MARGINAL, uncertain(self.eigenvalues, self.condition, scale)) * scale
+        return np.sum(surely & (np.imag(self.eigenvalues) >= 0.0), axis=-1)
 
     @property
     def near_defective(self) -> Any:
@@ -141,7 +155,9 @@ class ComplexModes(Result):
         if not np.any(self.exists):
             raise ValueError(f"no spectrum, so no most unstable mode: {self.outcome} ({self.outcome.message})")
         half = self.eigenvalues.shape[-1] // 2
-        growth = np.where(np.asarray(self.exists)[..., None], self.growth_rate[..., :half], -np.inf)
+        growth = self.growth_rate[..., :half]
+        rigid = (self.eigenvalues[..., :half] == 0.0) & (np.asarray(self.floating)[..., None] > 0)
+        growth = np.where(np.isnan(growth) | rigid, -np.inf, growth)
         *entry, index = (int(i) for i in np.unravel_index(np.argmax(growth), growth.shape))
         return self.mode(index, tuple(entry))
 
@@ -175,8 +191,9 @@ def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None,
     how : of a sparse system: method "projection" or "full", tolerance [1/s] and certify, as
         :func:`squealbox.stability.band_modes` takes them
 
-    Leading axes of the system are kept. Where there is no steady sliding (a contact with V = 0, a singular K_eff) or M
-    is singular the arrays hold NaN, `exists` is False and `outcome` names the worst case; nothing is raised.
+    Leading axes of the system are kept. Where there is no steady sliding (a contact with V = 0, a K_eff that is
+    singular otherwise than by rigid-body motion) the arrays hold NaN, `exists` is False and `outcome` names the worst
+    case; nothing is raised. Freedoms without mass and rigid-body freedoms are ordinary; see `ComplexModes`.
 
     Accuracy: backward stable (LAPACK geev); an eigenvalue of condition k is good to about k * 1e-16 of the largest.
 
@@ -202,12 +219,21 @@ def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None,
 def modes_of(about: Linearised, inputs: Any = None, contacts: tuple[str, ...] = ()) -> ComplexModes:
     """The modes of linearised matrices; see :func:`complex_modes`."""
     matrix, rate, usable, outcome = state_matrix(about)
+    special = special_entries(about)
     scaled, states = np.linalg.eig(np.where(usable[..., None, None], matrix, _stand_in(matrix)))
     order = spectrum_order(scaled)
     scaled = np.take_along_axis(scaled.astype(complex), order, axis=-1)
     states = np.take_along_axis(states.astype(complex), order[..., None, :], axis=-1)
     eigenvalues = scaled * rate[..., None]
     right, left, condition = _modes(about, eigenvalues, states, usable)
+    eigenvalues, right, left, condition, usable = map(np.array, (eigenvalues, right, left, condition, usable))
+    for at in map(tuple, np.argwhere(special)):
+        found = special_modes(about.M[at], about.C[at], about.K[at])
+        usable[at] = found is not None
+        if found is None:
+            outcome = SINGULAR_PENCIL
+        if found is not None:
+            eigenvalues[at], right[at], left[at], condition[at] = found
     missing = ~usable
     return ComplexModes(
         eigenvalues=np.where(missing[..., None], np.nan, eigenvalues),
@@ -217,6 +243,7 @@ def modes_of(about: Linearised, inputs: Any = None, contacts: tuple[str, ...] = 
         steady=np.where(missing[..., None], np.nan, about.equilibrium.q),
         exists=usable,
         normal_force=about.equilibrium.normal_force,
+        floating=np.broadcast_to(about.equilibrium.floating, usable.shape),
         contacts=contacts,
         inputs=inputs or {},
         outcome=outcome,
@@ -228,7 +255,41 @@ def spectrum(about: Linearised) -> Any:
     matrix, rate, usable, _ = state_matrix(about)
     scaled = np.linalg.eigvals(np.where(usable[..., None, None], matrix, _stand_in(matrix))).astype(complex)
     scaled = np.take_along_axis(scaled, spectrum_order(scaled), axis=-1)
-    return np.where(usable[..., None], scaled * rate[..., None], np.nan)
+    return with_special(about, np.where(usable[..., None], scaled * rate[..., None], np.nan))
+
+
+def special_entries(about: Linearised) -> Any:
+    """True where steady sliding exists and a freedom carries no mass or moves as a rigid body, (...)."""
+    exists = np.asarray(about.equilibrium.exists)
+    known = np.broadcast_to(_regular(_once(about.M)), exists.shape)
+    return exists & (~known | (np.asarray(about.equilibrium.floating) > 0))
+
+
+def with_special(about: Linearised, eigenvalues: Any) -> Any:
+    """Eigenvalues (..., 2n) with those entries solved exactly whose pencil is singular; see `deflation`."""
+    special = special_entries(about)
+    if not np.any(special):
+        return eigenvalues
+    eigenvalues = np.array(eigenvalues)
+    for at in map(tuple, np.argwhere(special)):
+        found = special_modes(about.M[at], about.C[at], about.K[at])
+        eigenvalues[at] = np.nan if found is None else found[0]
+    return eigenvalues
+
+
+def vibrating(eigenvalues: Any, floating: Any) -> Any:
+    """The largest growth rate (...) beside the zeros of rigid-body motion and what is at infinity; -inf without one."""
+    rigid = (eigenvalues == 0.0) & (np.asarray(floating)[..., None] > 0)
+    growth = np.real(eigenvalues)
+    return np.max(np.where(rigid | np.isnan(growth), -np.inf, growth), axis=-1, initial=-np.inf)
+
+
+def uncertain(eigenvalues: Any, condition: Any, scale: Any) -> Any:
+    """Round-off of an eigenvalue over `scale`: of a slow pair beside fast ones it is its condition that counts."""
+    slow = np.abs(eigenvalues) < SLOW * scale
+    with np.errstate(invalid="ignore"):
+        error = 16.0 * np.finfo(float).eps * condition
+    return np.where(slow & np.isfinite(error), error, 0.0)
 
 
 def state_matrix(about: Linearised) -> tuple[Any, Any, Any, Outcome]:
@@ -237,7 +298,7 @@ def state_matrix(about: Linearised) -> tuple[Any, Any, Any, Outcome]:
     exists = np.asarray(about.equilibrium.exists)
     with np.errstate(all="ignore"):
         mass = _once(about.M)
-        regular = np.linalg.cond(mass, 1) < 1.0 / np.finfo(float).eps
+        regular = _regular(mass)
         mass = np.where(regular[..., None, None], mass, np.eye(size))
         stiffness = _divided(mass, np.where(exists[..., None, None], about.K, 0.0))
         damping = _divided(mass, np.where(exists[..., None, None], about.C, 0.0))
@@ -249,7 +310,16 @@ def state_matrix(about: Linearised) -> tuple[Any, Any, Any, Outcome]:
         np.divide(damping, -rate[..., None, None], out=matrix[..., size:, size:])
     regular = np.broadcast_to(regular, exists.shape)
     finite = np.all(np.isfinite(matrix[..., size:, :]), axis=(-1, -2))
-    return matrix, rate, exists & regular & finite, _outcome(about, exists, regular, finite)
+    return matrix, rate, exists & regular & finite, _outcome(about, exists, finite | ~regular)
+
+
+def _regular(mass: Any) -> Any:
+    """Whether M can be inverted, judged after its rows and columns are brought to one size: kg beside kg m2."""
+    with np.errstate(all="ignore"):
+        regular = np.asarray(np.linalg.cond(mass, 1) < 1.0 / np.finfo(float).eps)
+        if not np.all(regular):
+            regular[~regular] = np.linalg.cond(levelled(mass[~regular])[0], 1) < 1.0 / np.finfo(float).eps
+    return regular
 
 
 def _once(mass: Any) -> Any:
@@ -280,7 +350,7 @@ def spectrum_order(eigenvalues: Any) -> Any:
     steps = np.diff(sizes, axis=-1, prepend=sizes[:, :1]) > 1e-10 * scale
     group = np.empty_like(by_size)
     np.put_along_axis(group, by_size, np.cumsum(steps, axis=-1), axis=-1)
-    side = np.where(flat.imag == 0.0, _halves(flat), flat.imag < 0.0)
+    side = np.where(flat.imag == 0.0, halves(flat), flat.imag < 0.0)
     return np.lexsort((-flat.real, group, side), axis=-1).reshape(shape)
 
 
@@ -290,11 +360,11 @@ def damping_ratio(eigenvalues: Any) -> Any:
         return -np.real(eigenvalues) / np.abs(eigenvalues)
 
 
-def _halves(flat: Any) -> Any:
-    """For real eigenvalues: 0 for the larger half of them, 1 for the smaller half."""
+def halves(flat: Any) -> Any:
+    """For real eigenvalues: 0 for the larger half of them (one more of an odd number), 1 for the smaller half."""
     real = flat.imag == 0.0
     rank = np.argsort(np.argsort(np.where(real, -flat.real, np.inf), axis=-1, kind="stable"), axis=-1, kind="stable")
-    return rank >= np.sum(real, axis=-1, keepdims=True) // 2
+    return rank >= (np.sum(real, axis=-1, keepdims=True) + 1) // 2
 
 
 def _modes(about: Linearised, eigenvalues: Any, states: Any, usable: Any) -> tuple[Any, Any, Any]:
@@ -350,14 +420,9 @@ def _stand_in(matrix: Any) -> Any:
     return np.diag(np.arange(1.0, matrix.shape[-1] + 1.0))
 
 
-def _outcome(about: Linearised, exists: Any, regular: Any, finite: Any) -> Outcome:
+def _outcome(about: Linearised, exists: Any, finite: Any) -> Outcome:
     if not np.all(exists):
         return about.equilibrium.outcome
-    if not np.all(regular):
-        message = (
-            "M is singular: a freedom without mass has no mode; finite_spectrum() gives the eigenvalues that remain"
-        )
-        return Outcome("singular_mass", message, entries=int(np.sum(~regular)))
     if not np.all(finite):
         return Outcome("not_finite", "M^-1 K or M^-1 C overflows", entries=int(np.sum(~finite)))
     return Outcome(COMPLETED)

@@ -104,7 +104,7 @@ def entry(steady: Steady, index: Any) -> Steady:
     return _joined([steady], lambda parts, rank: parts[0][index])
 
 
-_STATE = {"q": 1, "normal_force": 1, "sliding_speed": 1, "friction": 1, "exists": 0}
+_STATE = {"q": 1, "normal_force": 1, "sliding_speed": 1, "friction": 1, "exists": 0, "floating": 0}
 _MATRICES = {"M": 2, "C": 2, "K": 2, "structural": 2, "elastic": 2}
 
 

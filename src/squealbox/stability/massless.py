@@ -76,11 +76,11 @@ def finite_spectrum(design_or_system: Any, time: float = 0.0) -> FiniteSpectrum:
         return FiniteSpectrum(eigenvalues=nothing, inputs=inputs, outcome=steady.equilibrium.outcome)
     left, right, rate = _pencil(steady)
     size = len(left)
-    reduced = _reduced(left, right)
-    if reduced is None:
+    found = reduced(left, right)
+    if found is None:
         message = "every number is an eigenvalue: a motion without inertia, damping and stiffness"
         return FiniteSpectrum(eigenvalues=nothing, inputs=inputs, outcome=Outcome("singular_pencil", message))
-    left, right = reduced
+    left, right, _ = found
     values = rate * np.linalg.eigvals(np.linalg.solve(left, right)).astype(complex) if len(left) else nothing
     order = np.lexsort((-values.imag, np.abs(values.imag), -values.real))
     return FiniteSpectrum(
@@ -100,8 +100,12 @@ def _pencil(steady: Any) -> tuple[Any, Any, float]:
     return np.block([[one, zero], [zero, inertia]]), np.block([[zero, one], [-spring, -damper]]), rate
 
 
-def _reduced(left: Any, right: Any) -> tuple[Any, Any] | None:
-    """A pencil with the same finite eigenvalues whose first matrix can be inverted; None if there is none."""
+def reduced(left: Any, right: Any) -> tuple[Any, Any, Any] | None:
+    """A pencil with the same finite eigenvalues whose first matrix can be inverted, and what its states stand for.
+
+    None where every number is an eigenvalue.
+    """
+    columns = np.eye(len(left))
     while len(left):
         u, sizes, _ = np.linalg.svd(left)
         rank = int(np.sum(sizes > ZERO))
@@ -113,4 +117,5 @@ def _reduced(left: Any, right: Any) -> tuple[Any, Any] | None:
             return None
         free = rows[len(strengths) :].T
         left, right = u[:, :rank].T @ left @ free, u[:, :rank].T @ right @ free
-    return left, right
+        columns = columns @ free
+    return left, right, columns

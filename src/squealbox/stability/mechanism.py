@@ -102,7 +102,9 @@ def ranked_growth(about: Linearised, rank: int, engine: Engine = "auto") -> Any:
     if rank == 0:
         return largest_growth(about, engine)[0]
     values = spectrum(about)
-    return -np.sort(-values[..., : values.shape[-1] // 2].real, axis=-1)[..., rank]
+    values = values[..., : values.shape[-1] // 2]
+    rigid = (values == 0.0) & (np.asarray(about.equilibrium.floating)[..., None] > 0)
+    return -np.sort(np.where(rigid, np.inf, -values.real), axis=-1)[..., rank]
 
 
 def mechanism_codes(growth: Any, angular_frequency: Any, circulation: Any, slope: Any, scale: Any) -> Any:
@@ -121,7 +123,7 @@ def mechanism_codes(growth: Any, angular_frequency: Any, circulation: Any, slope
 def mechanism_at(steady: Steady, angular_frequency: float, *, rank: int = 0, steps: int = STEPS) -> Mechanism:
     """The mechanism by which the `rank`-th mode of one system grows, also at the onset where it only just does."""
     base, circulation, slope = (float(x) for x in contributions(steady, rank=rank, steps=steps, engine="numpy"))
-    scale = float(np.max(np.abs(spectrum(steady))))
+    scale = float(np.nanmax(np.abs(spectrum(steady)), initial=0.0))
     code = mechanism_codes(np.float64(scale), np.float64(angular_frequency), circulation, slope, scale)
     return Mechanism(NAMES[int(code)], base, circulation, slope)
 
@@ -141,7 +143,7 @@ def mechanism(design_or_system: Any, time: float = 0.0) -> Mechanism:
     if not np.isfinite(growth):
         return Mechanism("unknown", *(float("nan"),) * 3)
     found = mechanism_at(steady, omega)
-    scale = float(np.max(np.abs(spectrum(steady))))
+    scale = float(np.nanmax(np.abs(spectrum(steady)), initial=0.0))
     return found if growth > MARGINAL * scale else Mechanism("stable", found.base, found.circulation, found.slope)
 
 

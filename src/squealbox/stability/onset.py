@@ -7,12 +7,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.result import Outcome, Result, quantity
-from squealbox.stability.eigenvalues import OneEigenvalue, modes_of, spectrum
+from squealbox.stability.eigenvalues import OneEigenvalue, modes_of, spectrum, vibrating
 from squealbox.stability.family import Family, entry
 from squealbox.stability.mechanism import Mechanism, mechanism_at
 from squealbox.stability.scan import Scan, merging, scan
 
 ASIDE = 1e-13  # share of the range by which a singular point is stepped aside
+POINT = 1e-9  # share of the range up to which a stretch without an answer is a single value
+ROUND_OFF = 1e-14  # share of |lambda| below which a term of the growth rate is none
 BESIDE = 1e-6  # share of the range by which the mechanism of a neutral system is looked at beyond its onset
 
 
@@ -59,7 +61,8 @@ class CriticalValue(OneEigenvalue, Result):
         if not self.outcome.ok:
             return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
         why = Mechanism(self.mechanism, self.base, self.circulation, self.slope)
-        return f"{self.parameter} = {float(self.value):.10g} ({self.direction}), {self.frequency:.6g} Hz, {why}"
+        aside = f"; {self.outcome.message}" if self.outcome.message else ""
+        return f"{self.parameter} = {float(self.value):.10g} ({self.direction}), {self.frequency:.6g} Hz, {why}{aside}"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -86,7 +89,12 @@ class CriticalValues(Result):
         for i in range(len(self)):
             arrays = {name: getattr(self, name)[i] for name in names}
             labels: dict[str, Any] = {name: str(getattr(self, name)[i]) for name in ("direction", "mechanism")}
-            about: dict[str, Any] = {"parameter": self.parameter, "inputs": self.inputs, "settings": self.settings}
+            about: dict[str, Any] = {
+                "parameter": self.parameter,
+                "inputs": self.inputs,
+                "settings": self.settings,
+                "outcome": self.outcome,
+            }
             yield CriticalValue(**arrays, **labels, **about)
 
     def summary(self) -> str:
@@ -111,7 +119,8 @@ def critical_value(
     time : instant of schedules [s]
 
     Returns a `CriticalValue`, good to 1e-12 relative. Without a change the outcome is "no_onset", with the growth rates
-    at both ends as evidence; "no_equilibrium" when steady sliding exists nowhere in the range. Bad bounds are a
+    at both ends as evidence; "hidden_onset" when it lies in a stretch without steady sliding;
+    "no_equilibrium" when steady sliding exists nowhere in the range. Bad bounds are a
     `ValueError`.
     """
     every = _crossings(Family(design, [parameter], time), bounds, points, first=True)
@@ -135,15 +144,31 @@ def critical_values(
 def _crossings(family: Family, bounds: tuple[float, float], points: int, *, first: bool) -> CriticalValues:
     low, high = _checked(bounds, points)
     found = scan(family, low, high, points)
-    rows = []
+    rows, hidden = [], [(i, j) for i, j, k in found.jumps() if k == 0 or not first]
     for i, k in found.brackets():
         if first and k > 0:
             continue
         rows.append(_crossing(found, i, k, high - low))
         if first:
             break
+    wide = []
+    for i, j in hidden:
+        a, b = float(found.values[i]), float(found.values[j])
+        if b - a <= POINT * (high - low):  # a single value without an answer, at which the growth rate jumps
+            if not (first and rows and rows[0]["value"] < a):
+                rows = [_jump(found, i, j)] if first else [*rows, _jump(found, i, j)]
+                if first:
+                    break
+        else:
+            wide.append([a, b])
     rows.sort(key=lambda row: row["value"])
-    outcome = Outcome() if rows else _no_onset(family, found, low, high)
+    evidence = {"without_answer": [list(gap) for gap in found.gaps]} if found.gaps else {}
+    if wide and not (rows and rows[0]["value"] < wide[0][0]):
+        said = f"stability changes between {wide[0][0]:.10g} and {wide[0][1]:.10g}, where there is no steady sliding"
+        outcome = Outcome("hidden_onset", said, **evidence)
+        rows = [] if first else rows
+    else:
+        outcome = Outcome("completed", _gaps(found), **evidence) if rows else _no_onset(family, found, low, high)
     size = rows[0]["shape"].size if rows else 0
     empty = {"value": 0.0, "eigenvalue": 0j, "shape": np.zeros(size), "direction": "", "mechanism": "", "base": 0.0}
     empty |= {"circulation": 0.0, "slope": 0.0, "unstable_below": 0, "unstable_above": 0}
@@ -156,25 +181,55 @@ def _crossings(family: Family, bounds: tuple[float, float], points: int, *, firs
     )
 
 
+def _gaps(found: Scan) -> str:
+    """Where in the range there was no answer, in words."""
+    spans = [f"{a:.6g}" if a == b else f"{a:.6g} to {b:.6g}" for a, b in found.gaps]
+    more = f" and {len(spans) - 3} more stretches" if len(spans) > 3 else ""
+    return f"there is no steady sliding at {', '.join(spans[:3])}{more}" if spans else ""
+
+
+def _jump(found: Scan, i: int, j: int) -> dict[str, Any]:
+    """The crossing of the first function at a single value without an answer, seen from its unstable side."""
+    rising = bool(found.functions[j, 0] > 0.0)
+    value = float(0.5 * (found.values[i] + found.values[j]))
+    return _described(found, value, float(found.values[j if rising else i]), 0, rising, i, 0.0)
+
+
 def _crossing(found: Scan, i: int, k: int, width: float) -> dict[str, Any]:
     value = found.root(i, k)
     rising = bool(found.functions[i + 1, k] > 0.0)
-    steady = found.family.at(np.array([value]))
-    if not steady.equilibrium.exists[0]:  # a divergence exactly: K_eff is singular at the root itself
-        steady = found.family.at(np.array([value + ASIDE * width]))
+    return _described(found, value, value, k, rising, i, width)
+
+
+def _described(found: Scan, value: float, beside: float, k: int, rising: bool, i: int, width: float) -> dict[str, Any]:
+    """What crosses at `value`, from the modes at `beside`."""
+    place_of = beside
+    steady = found.family.at(np.array([place_of]))
+    for share in (ASIDE, -ASIDE, 1e3 * ASIDE, -1e3 * ASIDE):
+        if steady.equilibrium.exists[0]:
+            break
+        steady = found.family.at(np.array([value + share * width]))  # K_eff is singular at the root itself
     modes = modes_of(steady)
     half = modes.eigenvalues.shape[-1] // 2
     if found.neutral:
         eigenvalue = merging(modes.eigenvalues[0])
         place = int(np.argmin(np.abs(modes.eigenvalues[0, :half] - eigenvalue)))
-        beside = value + (BESIDE if rising else -BESIDE) * width
-        why = mechanism_at(entry(found.family.at(np.array([beside])), (0,)), eigenvalue.imag)
+        beyond = value + (BESIDE if rising else -BESIDE) * width
+        why = mechanism_at(entry(found.family.at(np.array([beyond])), (0,)), eigenvalue.imag)
         counts = (int(found.functions[i, 0] > 0.0), int(rising))
     else:
-        place = int(np.argmin(np.abs(modes.growth_rate[0, :half] - found.at(value)[k])))
+        growth = np.where(np.isnan(modes.growth_rate[0, :half]), np.inf, modes.growth_rate[0, :half])
+        rigid = (modes.eigenvalues[0, :half] == 0.0) & (np.cumsum(modes.eigenvalues[0, :half] == 0.0) <= found.undamped)
+        here = found.at(float(place_of))[k]
+        growth = np.where(rigid & (np.sum(~rigid) > 0), np.inf, growth)
+        place = int(np.argmin(np.abs(growth - (0.0 if np.isnan(here) else here))))
         eigenvalue = complex(modes.eigenvalues[0, place])
-        rank = int(np.sum(modes.growth_rate[0, :half] > modes.growth_rate[0, place]))
+        rank = int(np.sum((modes.growth_rate[0, :half] > modes.growth_rate[0, place]) & ~rigid))
         why = mechanism_at(entry(steady, (0,)), eigenvalue.imag, rank=rank)
+        if max(why.circulation, why.slope) <= ROUND_OFF * abs(eigenvalue):  # nothing feeds it here, only beyond
+            beyond = found.family.at(np.array([value + (BESIDE if rising else -BESIDE) * width]))
+            if beyond.equilibrium.exists[0]:
+                why = mechanism_at(entry(beyond, (0,)), eigenvalue.imag, rank=rank)
         counts = (k, k + 1) if rising else (k + 1, k)
     return {
         "value": value,
@@ -204,6 +259,8 @@ def _no_onset(family: Family, found: Scan, low: float, high: float) -> Outcome:
     known = np.isfinite(found.functions)
     if not np.any(known):
         return Outcome("no_equilibrium", f"no steady sliding in the range: {ends.equilibrium.outcome.message}")
-    growth = [float(g) for g in np.max(spectrum(ends).real, axis=-1)]
+    growth = [float(g) for g in vibrating(spectrum(ends), ends.equilibrium.floating)]
     state = "unstable" if np.any(found.functions[known] > 0.0) else "stable"
-    return Outcome("no_onset", f"{state} in the whole range", growth_rate_low=growth[0], growth_rate_high=growth[1])
+    where = f"{state} wherever there is steady sliding; {_gaps(found)}" if found.gaps else f"{state} in the whole range"
+    evidence: dict[str, Any] = {"without_answer": [list(gap) for gap in found.gaps]} if found.gaps else {}
+    return Outcome("no_onset", where, growth_rate_low=growth[0], growth_rate_high=growth[1], **evidence)

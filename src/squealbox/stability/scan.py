@@ -6,6 +6,7 @@ uncoupled) are left out. A system neutral as a whole (no damping, or purely gyro
 sign at its onset; for it the scanned function is `coalescence`, which is analytic through the merging of two modes.
 """
 
+import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -17,6 +18,7 @@ from squealbox.stability.family import Family
 from squealbox.system import Linearised
 
 NEUTRAL = 1e-11  # |Re lambda| below this share of the largest |lambda|, at all values, is a mode without damping
+EDGE = 52  # halvings towards a value without an answer
 DETAIL = 17  # values on which a suspicious stretch is scanned again
 
 
@@ -34,12 +36,33 @@ class Scan:
         """The functions at one value."""
         return _functions(self.family.at(np.array([value])), self.neutral, self.undamped)[0]
 
+    @property
+    def answered(self) -> Any:
+        """True at the values where something is known, shape (points,)."""
+        return np.any(np.isfinite(self.functions), axis=-1)
+
+    @property
+    def gaps(self) -> list[tuple[float, float]]:
+        """Stretches (low, high) without steady sliding; low = high for a single value."""
+        unknown = np.concatenate([[False], ~self.answered, [False]])
+        edges = np.flatnonzero(unknown[1:] != unknown[:-1]).reshape(-1, 2)
+        return [(float(self.values[i]), float(self.values[k - 1])) for i, k in edges]
+
     def brackets(self) -> Iterator[tuple[int, int]]:
         """(i, k): function k changes sign between values i and i + 1, in rising order of the values."""
         growing = self.functions > 0.0
         known = np.isfinite(self.functions)
         changes = (growing[1:] != growing[:-1]) & known[1:] & known[:-1]
         yield from ((int(i), int(k)) for i, k in zip(*np.nonzero(changes), strict=True))
+
+    def jumps(self) -> Iterator[tuple[int, int, int]]:
+        """(i, j, k): function k has another sign on the two sides i and j of a stretch without an answer."""
+        answered = np.flatnonzero(self.answered)
+        for i, j in itertools.pairwise(answered):
+            if j > i + 1:
+                before, after = self.functions[i], self.functions[j]
+                known = np.isfinite(before) & np.isfinite(after)
+                yield from ((int(i), int(j), int(k)) for k in np.flatnonzero(known & ((before > 0.0) != (after > 0.0))))
 
     def root(self, i: int, k: int, relative: float = 1e-12) -> float:
         """The value at which function k vanishes between values i and i + 1, by Brent's method."""
@@ -49,7 +72,14 @@ class Scan:
         if self.functions[i, k] == 0.0:
             return low
         tolerance = relative * max(abs(low), abs(high))
-        root: float = brentq(lambda value: float(self.at(value)[k]), low, high, xtol=tolerance, rtol=relative)
+
+        def function(value: float) -> float:
+            found = float(self.at(value)[k])
+            if np.isnan(found):  # an unknown value met by chance: its neighbour answers
+                found = float(self.at(value + (tolerance if value + tolerance < high else -tolerance))[k])
+            return found
+
+        root: float = brentq(function, low, high, xtol=tolerance, rtol=relative)
         return root
 
 
@@ -58,19 +88,57 @@ def scan(family: Family, low: float, high: float, points: int, refinements: int 
     values = np.linspace(low, high, points)
     about = family.at(values)
     eigenvalues = spectrum(about)
-    known = np.isfinite(eigenvalues[..., 0])
+    known = np.asarray(about.equilibrium.exists) & np.any(np.isfinite(eigenvalues), axis=-1)
     neutral = bool(np.all(is_neutral(about)[known])) if np.any(known) else False
-    undamped = 0 if neutral else _undamped(eigenvalues[known])
+    undamped = _left_out(about, eigenvalues, known, neutral)
     found = Scan(family, values, _functions(about, neutral, undamped), neutral, undamped)
+    found = _with(found, _beside_gaps(found))
     for _ in range(refinements):
         more = _suspicious(found)
         if more.size == 0:
             break
-        values = np.concatenate([found.values, more])
-        functions = np.concatenate([found.functions, _functions(family.at(more), neutral, undamped)])
-        order = np.argsort(values, kind="stable")
-        found = Scan(family, values[order], functions[order], neutral, undamped)
+        found = _with(found, more)
     return found
+
+
+def _with(found: Scan, more: Any) -> Scan:
+    """The scan with more values."""
+    more = np.setdiff1d(more, found.values)
+    if more.size == 0:
+        return found
+    values = np.concatenate([found.values, more])
+    about = found.family.at(more)
+    functions = np.concatenate([found.functions, _functions(about, found.neutral, found.undamped)])
+    order = np.argsort(values, kind="stable")
+    return Scan(found.family, values[order], functions[order], found.neutral, found.undamped)
+
+
+def _beside_gaps(found: Scan) -> Any:
+    """Values ever nearer to where the answers end: what happens beside a gap is no more than a step away from it."""
+    answered, values, more = found.answered, found.values, []
+    ends = np.flatnonzero(answered[1:] != answered[:-1])
+    for i in ends:
+        inside, outside = (values[i], values[i + 1]) if answered[i] else (values[i + 1], values[i])
+        step = inside - outside
+        for _ in range(EDGE):  # the last value with an answer, by halving
+            middle = 0.5 * (inside + outside)
+            if middle in (inside, outside):
+                break
+            if np.any(np.isfinite(found.at(float(middle)))):
+                inside = middle
+            else:
+                outside = middle
+        more.append(np.append(outside + step * 2.0 ** -np.arange(1, EDGE), [inside, outside]))
+    inside_range = np.concatenate(more) if more else np.zeros(0)
+    return inside_range[(inside_range >= values[0]) & (inside_range <= values[-1])]
+
+
+def _left_out(about: Linearised, eigenvalues: Any, known: Any, neutral: bool) -> int:
+    """Number of functions that say nothing: rigid-body motions, and modes that are neutral at every value."""
+    if not np.any(known):
+        return 0
+    rigid = int(np.min(np.broadcast_to(about.equilibrium.floating, known.shape)[known]))
+    return rigid if neutral else _undamped(eigenvalues[known])
 
 
 def first_function(samples: list[Linearised]) -> Callable[[Linearised], Any] | None:
@@ -79,23 +147,28 @@ def first_function(samples: list[Linearised]) -> Callable[[Linearised], Any] | N
     `samples` are the matrices at a few values, with any leading axes.
     """
     eigenvalues = np.stack([spectrum(about) for about in samples])
-    known = np.isfinite(eigenvalues[..., 0])
+    known = np.stack([np.asarray(about.equilibrium.exists) for about in samples])
+    known &= np.any(np.isfinite(eigenvalues), axis=-1)
     neutral = bool(np.all(np.stack([is_neutral(about) for about in samples])[known])) if np.any(known) else False
-    undamped = 0 if neutral else _undamped(eigenvalues[known])
+    undamped = min((_left_out(about, values, where, neutral)
+                    for about, values, where in zip(samples, eigenvalues, known, strict=True) if np.any(where)),
+                   default=0)  # fmt: skip
     return (lambda about: _functions(about, neutral, undamped)[..., 0]) if neutral or undamped else None
 
 
-def coalescence(eigenvalues: Any) -> Any:
+def coalescence(eigenvalues: Any, rigid: int = 0) -> Any:
     """For spectra symmetric in lambda -> -lambda: positive where a mode grows, zero where two merge or one is zero.
 
     With s = lambda^2, Re (s_i - s_j)^2 is negative just where two s are a conjugate pair, and s positive where a root
-    is real; both are analytic in a parameter where the eigenvalues themselves are not.
+    is real; both are analytic in a parameter where the eigenvalues themselves are not. `rigid` zeros are left out.
     """
     squares, half = _squares(eigenvalues)
-    worst = np.max(squares.real, axis=-1)
-    for i in range(half):
+    order = np.argsort(np.abs(squares), axis=-1, kind="stable")  # rigid-body zeros first, infinite ones last
+    squares = np.take_along_axis(squares, order, axis=-1)[..., rigid:]
+    worst = np.fmax.reduce(squares.real, axis=-1, initial=np.nan)
+    for i in range(half - rigid):
         for j in range(i):
-            worst = np.maximum(worst, -np.real((squares[..., i] - squares[..., j]) ** 2))
+            worst = np.fmax(worst, -np.real((squares[..., i] - squares[..., j]) ** 2))
     return worst
 
 
@@ -112,7 +185,7 @@ def merging(eigenvalues: Any) -> complex:
 def _squares(eigenvalues: Any) -> tuple[Any, int]:
     half = eigenvalues.shape[-1] // 2
     squares = eigenvalues[..., :half] ** 2
-    scale = np.max(np.abs(squares), axis=-1, keepdims=True)
+    scale = np.max(np.nan_to_num(np.abs(squares)), axis=-1, keepdims=True)
     return squares / np.where(scale > 0.0, scale, 1.0), half
 
 
@@ -132,7 +205,7 @@ def _functions(about: Linearised, neutral: bool, undamped: int) -> Any:
 def _smooth_functions(about: Linearised, neutral: bool, undamped: int) -> Any:
     eigenvalues = spectrum(about)
     if neutral:
-        return coalescence(eigenvalues)[..., None]
+        return coalescence(eigenvalues, undamped)[..., None]
     growth = eigenvalues[..., : eigenvalues.shape[-1] // 2].real
     if undamped:
         nearest = np.argsort(np.abs(growth), axis=-1, kind="stable")[..., undamped:]
@@ -155,7 +228,7 @@ def _undamped(eigenvalues: Any) -> int:
     if eigenvalues.size == 0:
         return 0
     growth = np.abs(eigenvalues[..., : eigenvalues.shape[-1] // 2].real)
-    scale = np.max(np.abs(eigenvalues), axis=-1, keepdims=True)
+    scale = np.max(np.nan_to_num(np.abs(eigenvalues)), axis=-1, keepdims=True)
     return int(np.min(np.sum(growth <= NEUTRAL * scale, axis=-1)))
 
 

@@ -8,8 +8,15 @@ from typing import Any, Literal
 
 import numpy as np
 
-from squealbox.stability.eigenvalues import MARGINAL, state_matrix
-from squealbox.system import Linearised
+from squealbox.stability.eigenvalues import (
+    MARGINAL,
+    SLOW,
+    modes_of,
+    special_entries,
+    state_matrix,
+    with_special,
+)
+from squealbox.system import Equilibrium, Linearised
 
 Engine = Literal["auto", "numpy", "compiled"]
 WORTH_IT = 5000  # systems in a batch from which loading the compiled kernels (about 1 s) pays
@@ -21,16 +28,32 @@ def largest_growth(about: Linearised, engine: Engine = "auto") -> tuple[Any, Any
 
     NaN, NaN and 0 where there is no spectrum.
     """
-    if about.M.shape[-1] == 2 and compiled(about, engine):
+    special = np.any(special_entries(about))
+    if about.M.shape[-1] == 2 and compiled(about, engine) and not special:
         return _two_dof(about)
     values = eigenvalues(about, engine)
     known = np.isfinite(values.real)
+    if special:  # rigid-body motion is no vibration
+        known &= (values != 0.0) | (np.asarray(about.equilibrium.floating)[..., None] == 0)
     place = np.argmax(np.where(known, values.real, -np.inf), axis=-1)[..., None]
     worst = np.take_along_axis(values, place, axis=-1)[..., 0]
-    scale = np.max(np.abs(values), axis=-1, keepdims=True)
+    scale = np.max(np.nan_to_num(np.abs(values)), axis=-1, keepdims=True)
     growing = known & (values.real > MARGINAL * scale)
+    growing &= ~_round_off(about, values, growing & (np.abs(values) < SLOW * scale))
     pairs = np.sum(growing & (values.imag > 0.0), axis=-1) + np.sum(growing & (values.imag == 0.0), axis=-1)
     return worst.real, np.abs(worst.imag), pairs
+
+
+def _round_off(about: Linearised, values: Any, doubtful: Any) -> Any:
+    """True for slow eigenvalues whose growth is less than their own condition leaves sure, (..., 2n)."""
+    idle = np.zeros(values.shape, dtype=bool)
+    for at in map(tuple, np.argwhere(np.any(doubtful, axis=-1))):
+        state = about.equilibrium
+        parts = (np.asarray(x)[at] for x in (state.q, state.normal_force, state.sliding_speed, state.friction))
+        alone = Equilibrium(*parts, np.asarray(state.exists)[at], state.outcome, 0)
+        one = Linearised(about.M[at], about.C[at], about.K[at], alone)
+        idle[at] = doubtful[at] & (modes_of(one).unstable_modes == 0)
+    return idle
 
 
 def asymptotically_stable(about: Linearised, engine: Engine = "auto") -> Any:
@@ -49,7 +72,7 @@ def asymptotically_stable(about: Linearised, engine: Engine = "auto") -> Any:
 def eigenvalues(about: Linearised, engine: Engine = "auto") -> Any:
     """All eigenvalues (..., 2n) [1/s] in no particular order; NaN without a spectrum."""
     if about.M.shape[-1] == 2 and compiled(about, engine):
-        return _two_dof_spectrum(about)
+        return with_special(about, _two_dof_spectrum(about))
     matrix, rate, usable, _ = state_matrix(about)
     size = matrix.shape[-1]
     matrix[~usable] = np.eye(size)
@@ -59,7 +82,7 @@ def eigenvalues(about: Linearised, engine: Engine = "auto") -> Any:
         values = compiled_eigenvalues(matrix)
     values *= rate[..., None]
     values[~usable] = np.nan
-    return values
+    return with_special(about, values)
 
 
 def compiled_eigenvalues(matrices: Any) -> Any:

@@ -3,6 +3,7 @@ from .ensemble import Ensemble, simulate_ensemble
 from .methods import TABLEAUX, Method, Tableau
 from .observers import OBSERVERS, Observer
 from .readiness import needs_compiling
+from .resolution import carries, resolved
 from .simulate import simulate
 from .trajectory import EnergyAudit, Trajectory
 from .verdict import Verdict, verdict
@@ -18,8 +19,10 @@ __all__ = [
     "Tableau",
     "Trajectory",
     "Verdict",
+    "carries",
     "compare_contact",
     "needs_compiling",
+    "resolved",
     "simulate",
     "simulate_ensemble",
     "verdict",

@@ -12,9 +12,12 @@ import numpy as np
 from squealbox.result import Outcome, Result, quantity
 from squealbox.signals import LEAST, dominant_frequency, slope, with_error
 from squealbox.transient.envelope import Curve, envelope, repetition, smooth_curve
+from squealbox.transient.resolution import resolved
+from squealbox.transient.trajectory import Trajectory
 
 DECAYS, GROWS, SETTLES_ON_CYCLE, NOT_DECIDED = "decays", "grows", "settles_on_cycle", "not_decided"
 MISFIT = 0.1  # a motion that misses itself by more after its period is no cycle; 2 % of change adds 0.02
+STILL = 1e-9  # of the whole swing: what moves less in the last part is at rest
 ONE_RATE = 0.8  # a decay at one rate keeps it from one part to the next; an approach to a cycle slows down
 
 
@@ -51,7 +54,7 @@ def verdict(
     motion: Any,
     t: Any = None,
     *,
-    dof: int | str = 0,
+    dof: int | str | None = None,
     begin: float | None = None,
     end: float | None = None,
     part: float = 0.25,
@@ -65,7 +68,7 @@ def verdict(
     Parameters
     ----------
     motion, t : a trajectory, or an array (k,) with its times [s]; steps need not be equal
-    dof : index or name of the degree of freedom
+    dof : index or name of the degree of freedom; None takes the one that moves most, and the sentence names it
     begin, end : the stretch that is judged [s]
     part : share of the stretch called its last part. A quarter leaves three to see where the motion came from
     steady : relative change of the amplitude over the last part that still counts as constant. 2 % is as good as the
@@ -91,10 +94,13 @@ def verdict(
     'decays'
     """
     outcome = getattr(motion, "outcome", None) or Outcome()
+    if isinstance(motion, Trajectory):
+        motion = resolved(motion)
+    dof, name = _judged_dof(motion, dof)
     if not outcome.ok and np.size(motion.t) < LEAST:
         course = _nothing(motion)
     else:
-        course = _course(smooth_curve(motion, t, dof=dof, begin=begin, end=end), part, gone)
+        course = _course(smooth_curve(motion, t, dof=dof, begin=begin, end=end), part, gone, held=_held(motion))
     if outcome.ok:
         kind, why = _judged(course, part, steady, gone, least_periods)
     else:
@@ -111,10 +117,20 @@ def verdict(
         envelope=course.envelope,
         envelope_centre=course.centre,
         fate=kind,
-        text=_sentence(kind, why, course, settled),
+        text=_sentence(kind, why, course, settled, name),
         outcome=outcome,
         settings={"dof": dof, "part": part, "steady": steady, "band": band, "gone": gone, "periods": least_periods},
     )
+
+
+def _judged_dof(motion: Any, dof: int | str | None) -> tuple[int | str, str]:
+    """The degree of freedom that is judged, and its name where the motion has names."""
+    names = motion.system.names if isinstance(motion, Trajectory) else ()
+    if dof is None:
+        late = motion.q[len(motion.q) // 2 :] if isinstance(motion, Trajectory) else np.zeros((0, 1))
+        dof = int(np.argmax(np.ptp(late, axis=0))) if len(late) else 0
+    known = isinstance(dof, (int, np.integer)) and -len(names) <= dof < len(names)
+    return dof, dof if isinstance(dof, str) else names[dof] if known else ""
 
 
 @dataclass(frozen=True)
@@ -134,6 +150,7 @@ class _Course:
     offset: float
     turns: int
     misfit: float
+    rest: float = float("nan")
 
     def stretch(self, left: float, right: float) -> tuple[float, float]:
         """Rate and error of the logarithm of the envelope between shares `left` and `right` of the run."""
@@ -142,7 +159,13 @@ class _Course:
         return slope(self.time[inside], np.log(self.envelope[inside]))
 
 
-def _course(curve: Curve, part: float, gone: float) -> _Course:
+def _held(motion: Any) -> float:
+    """The instant [s] of the last event of a motion that ends with a contact that sticks; NaN of any other."""
+    sticks = isinstance(motion, Trajectory) and motion.mode.size and np.any(motion.mode[-1] == 0)
+    return (float(motion.event_time[-1]) if len(motion.event_time) else float(motion.t[0])) if sticks else float("nan")
+
+
+def _course(curve: Curve, part: float, gone: float, *, held: float) -> _Course:
     late = curve.end - part * (curve.end - curve.begin)
     half = 0.5 * (curve.begin + curve.end)
     turns = int(np.count_nonzero(curve.turns > late))
@@ -156,6 +179,10 @@ def _course(curve: Curve, part: float, gone: float) -> _Course:
         frequency = _frequency(curve, late, curve.end)
         repeat, misfit = repetition(curve, late, curve.end, frequency)
         time, heights, centre = envelope(curve, min(frequency, overall), repeat)
+    if np.isfinite(held) and float(np.ptp(curve.spline(np.linspace(late, curve.end, 257)))) <= STILL * float(
+        np.ptp(curve.heights)
+    ):
+        return _stopped(curve, late, turns, held, time, heights, centre)
     strong = (time > half) & (heights > gone * np.max(heights))
     rate, error = slope(time[strong], np.log(heights[strong])) if np.count_nonzero(strong) > 2 else (np.nan, np.nan)
     return _Course(
@@ -173,6 +200,13 @@ def _course(curve: Curve, part: float, gone: float) -> _Course:
         turns=turns,
         misfit=misfit,
     )
+
+
+def _stopped(curve: Curve, late: float, turns: int, rest: float, time: Any, heights: Any, centre: Any) -> _Course:
+    """A motion that friction has stopped: it has no frequency any more, and its envelope ends where it came to rest."""
+    none = float("nan")
+    return _Course(curve.begin, curve.end, late, time, heights, centre, 0.0, none, none, none,
+                   curve.mean(late, curve.end), turns, none, rest)  # fmt: skip
 
 
 def _nothing(motion: Any) -> _Course:
@@ -215,6 +249,8 @@ def _judged(course: _Course, part: float, steady: float, gone: float, least_peri
     last = course.envelope[course.time > course.late]
     if top == 0.0:
         return DECAYS, "it stays at rest"
+    if np.isfinite(course.rest):
+        return DECAYS, f"it comes to rest at {_read(course.rest, 's')}" if course.rest > 0.0 else "it stays at rest"
     if np.max(last) <= gone * top:
         return DECAYS, "nothing is left of it"
     if np.isnan(course.frequency):
@@ -271,6 +307,8 @@ def _one_way(course: _Course) -> tuple[str, str]:
 
 
 def _settled_at(course: _Course, kind: str, band: float) -> float:
+    if np.isfinite(course.rest):
+        return course.rest
     if kind == SETTLES_ON_CYCLE:
         outside = np.abs(course.envelope - course.amplitude) > band * course.amplitude
     elif kind == DECAYS:
@@ -283,15 +321,15 @@ def _settled_at(course: _Course, kind: str, band: float) -> float:
     return float(course.time[after]) if after < course.time.size else np.nan
 
 
-def _sentence(kind: str, why: str, course: _Course, settled: float) -> str:
+def _sentence(kind: str, why: str, course: _Course, settled: float, name: str) -> str:
     words = {DECAYS: "Decays", GROWS: "Grows", SETTLES_ON_CYCLE: "Settles on a cycle", NOT_DECIDED: "Not decided"}
     text = words[kind] + (f" ({why})" if why else "")
     if np.isfinite(course.rate) and kind != SETTLES_ON_CYCLE:
         text += f", growth rate {with_error(course.rate, course.rate_error)} 1/s"
-    if np.isnan(course.amplitude):
+    if np.isnan(course.amplitude) or np.isfinite(course.rest):
         return text + "."
     last = _read(course.end - course.late, "s")
-    text += f"; half peak to peak {_read(course.amplitude, 'm')} over the last {last}"
+    text += f"; half peak to peak{f' of {name}' if name else ''} {_read(course.amplitude, 'm')} over the last {last}"
     if np.isfinite(course.frequency):
         text += f" at {course.frequency:.5g} Hz"
     if np.isfinite(settled):
