@@ -37,6 +37,10 @@ class Schedule(DataSheet):
         """Instants [s] at which the formula is not smooth."""
         return ()
 
+    def angular_frequency(self) -> Any:
+        """Highest angular frequency [rad/s] with which it swings between two breaks; 0 when it does not."""
+        return 0.0
+
     def terms(self) -> tuple[tuple[Any, "Schedule"], ...]:
         """The schedule as a sum of factor times simple schedule."""
         return ((1.0, self),)
@@ -73,6 +77,12 @@ class Sum(Schedule):
 
     def breaks(self) -> tuple[float, ...]:
         return tuple(sorted({instant for _, part in self.parts for instant in part.breaks()}))
+
+    def angular_frequency(self) -> Any:
+        fastest = np.zeros(())
+        for _, part in self.parts:
+            fastest = np.maximum(fastest, part.angular_frequency())
+        return fastest
 
     def terms(self) -> tuple[tuple[Any, Schedule], ...]:
         return self.parts
@@ -117,7 +127,8 @@ def ramp_rate(t: Any, p: Any) -> Any:
 class Ramp(Schedule):
     """Braking: from `start` with a constant rate until `stop` (standstill) is reached, then constant.
 
-    ``stop=None`` lets it run on through zero.
+    ``stop=None`` lets it run on through zero; so does a start at `stop` itself. A slope that leads away from `stop` is
+    refused.
 
     >>> [round(float(x), 12) for x in Ramp(start=0.2, slope=-4.0).value([0.0, 0.02, 0.06])]
     [0.2, 0.12, 0.0]
@@ -134,10 +145,16 @@ class Ramp(Schedule):
     def coefficients(self) -> tuple[Any, ...]:
         return (self.start, self.slope, self.begin, self.length)
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.stop is not None and np.any((np.asarray(self.start) - self.stop) * self.slope > 0.0):
+            expected = f"a slope from start = {self.start} towards stop = {self.stop}, where it stays constant, or stop = None"
+            raise ParameterError("Ramp", "slope", self.slope, expected)
+
     @property
     def length(self) -> float:
         """How long the ramp runs [s]; inf when it never reaches `stop`."""
-        if self.stop is None or self.slope == 0.0:
+        if self.stop is None or self.slope == 0.0 or self.start == self.stop:
             return np.inf
         length = (self.stop - self.start) / self.slope
         return float(length) if length >= 0.0 else np.inf
@@ -173,6 +190,9 @@ class Sinusoid(Schedule):
 
     def coefficients(self) -> tuple[Any, ...]:
         return (self.mean, self.amplitude, self.frequency, self.phase)
+
+    def angular_frequency(self) -> Any:
+        return 2.0 * np.pi * np.asarray(self.frequency, dtype=float)
 
 
 def table(t: Any, p: Any) -> Any:

@@ -73,6 +73,8 @@ class System(DataSheet):
         elif not is_symmetric(self.M):
             raise InvalidSystem("M is not symmetric: expected a symmetric mass matrix")
         if not isinstance(self.load, Schedule):
+            if callable(self.load):
+                raise InvalidSystem(f"load = {self.load!r}: expected numbers [N] or a schedule")
             load = np.asarray(self.load, dtype=float)
             set_(self, "load", array("load", np.broadcast_to(load, (size,)) if load.ndim == 0 else load, 1))
         check_width("load", np.asarray(value_at(self.load, 0.0)), size)

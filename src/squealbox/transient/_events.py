@@ -18,11 +18,13 @@ from squealbox.transient._motion import (
     contact_kinematics,
     derivative,
     evaluate_signals,
+    force_noise,
     slip_acceleration,
 )
 from squealbox.transient._runge_kutta import dense_stages, interpolate, take_step
 
 NO_EVENT = 2.0  # any theta above 1
+RETRY = -1.0  # a shorter step must tell
 SHIFT = 1e-8  # share of a step below which an event is reached along the tangent
 
 
@@ -44,11 +46,15 @@ def event_values(p, t, y, mode, s, phi):
             phi[c] = -s.normal[c]
         elif mode[c] == STICK:
             phi[c] = p.static[c] * s.normal[c] - abs(s.force[c])
+            if not phi[c] > 1e-9 * abs(s.force[c]):  # at the limit to round-off it still holds
+                phi[c] += force_noise(p, c, y, s)
             if p.rigid[c]:
-                phi[m + c] = s.normal[c]
+                phi[m + c] = s.normal[c] + 1e-12 * s.size[c] + 1e-300
         else:
             phi[c] = mode[c] * s.speed[c] if p.static[c] > 0.0 else 1.0
-            if p.unilateral[c]:
+            if p.rigid[c]:
+                phi[m + c] = s.normal[c] + 1e-12 * s.size[c] + 1e-300
+            elif p.unilateral[c]:
                 phi[m + c] = s.normal[c]
 
 
@@ -165,29 +171,41 @@ def start_power(p, h, mode, s, stage, c):
     """(power, first value) of a contact that has just begun to slip, whose speed is zero at the start of the step.
 
     Its speed over theta tends to its acceleration times h there. After a release without a drop of friction that is
-    zero too, and the speed over theta squared is searched instead. The gap of a rigid contact that has just opened is
-    treated likewise with its rate.
+    zero too, to round-off of its own terms, and the speed over theta squared is searched instead; its first value is
+    that of the cubic through the others. The gap of a rigid contact that has just opened is treated likewise.
     """
-    if mode[c] == OPEN:
-        rate = h * gap_rate_of_stage(p, c, stage[0])
-    else:
-        rate = mode[c] * h * slip_acceleration(p, c, stage[0], s)
-    size = 0.0
+    rate, noise = start_rate(p, mode, s, stage, c)
+    if abs(rate) > noise:
+        return 1, h * rate
+    value = 0.0
     for i in range(1, 5):
-        size = max(size, abs(s.nodes[i, c]))
-    return (1, rate) if abs(rate) > 1e-8 * size else (2, 0.0)
+        value += (0.0, 4.0, -6.0, 4.0, -1.0)[i] * s.nodes[i, c] * (4.0 / i) ** 2
+    return 2, value
 
 
-def gap_rate_of_stage(p, c, dy):
-    """g' = -w . q' from the derivative of the state."""
+def start_rate(p, mode, s, stage, c):
+    """(rate, round-off of its terms) of the event function of a contact that starts at zero."""
+    n = p.mk.shape[0]
     rate = 0.0
-    for i in range(p.mk.shape[0]):
-        rate -= p.w[c, i] * dy[i]
-    return rate
+    size = 0.0
+    if mode[c] == OPEN:
+        for i in range(n):
+            rate -= p.w[c, i] * stage[0, i]
+            size += abs(p.w[c, i] * stage[0, i])
+    else:
+        rate = mode[c] * slip_acceleration(p, c, stage[0], s)
+        size = abs(s.signal[p.signals + c])
+        for i in range(n):
+            size += abs(p.t[c, i] * stage[0, n + i])
+    return rate, 1e-8 * size
 
 
-def lowest_power(r, s):
+def lowest_power(p, r, mode, s, stage, c):
     """The first coefficient of s.poly that is not round-off, up to the third: a lift-off begins with theta^3."""
+    if p.rigid[c] or mode[c] != OPEN:
+        rate, noise = start_rate(p, mode, s, stage, c)
+        if abs(rate) > noise:
+            return 1
     size = 0.0
     for k in range(r.degree + 1):
         size = max(size, abs(s.poly[k]))
@@ -203,19 +221,23 @@ def first_root(p, r, t, h, y, mode, s, stage, j):
     fresh = j < p.contacts and s.fresh[j] != 0
     if is_linear(p, j, mode):
         event_polynomial(p, r, h, mode, s, stage, j)
-        power = lowest_power(r, s) if fresh else 0
+        power = lowest_power(p, r, mode, s, stage, j) if fresh else 0
         for i in range(5):
             s.nodes[i, j] = polynomial(r, s, 0.25 * i, power)
         if fresh and not s.nodes[0, j] > 0.0:
             return 0.0
     elif fresh:
+        if p.varying:
+            evaluate_signals(p, t, s)
         power, s.nodes[0, j] = start_power(p, h, mode, s, stage, j)
-        if power == 2:
-            s.nodes[0, j] = value_inside(p, r, t, h, y, mode, s, stage, 1e-3, j, 2)
-        if not s.nodes[0, j] > 0.0:
-            return 0.0
         for i in range(1, 5):
             s.nodes[i, j] /= (0.25 * i) ** power
+        if not s.nodes[0, j] > 0.0:
+            if power == 1:
+                return 0.0
+            if h > 1e-4 * p.window:
+                return RETRY
+            s.nodes[0, j] = max(s.nodes[1, j], 1e-300)
     stack = s.stack
     stack[0, 0] = 0.0
     stack[0, 1] = 1.0

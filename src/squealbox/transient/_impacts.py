@@ -67,7 +67,7 @@ def impact(p, y, mode, s):
         s.hit[c] = OPEN
         s.leaving[c] = 0
         if p.rigid[c] and mode[c] != OPEN:
-            s.hit[c] = STICK
+            s.hit[c] = first_hit(p, c)
             s.mu[c] = max(sliding_coefficient(p, c, abs(s.speed[c])), 0.0)
             s.rebound[c] = p.restitution[c] * s.approach[c]
             if s.rebound[c] <= CLOSING * s.clock[FASTEST]:
@@ -121,7 +121,7 @@ def wanted_in_impact(p, c, s):
     n = p.mk.shape[0]
     if s.hit[c] == OPEN:
         rate, tolerance = gap_rate(p, c, s.dy)
-        return STICK if rate < s.rebound[c] - tolerance else OPEN
+        return first_hit(p, c) if rate < s.rebound[c] - tolerance else OPEN
     if s.normal[c] < -TOUCH * s.size[c]:
         return OPEN
     if s.hit[c] == STICK:
@@ -133,7 +133,12 @@ def wanted_in_impact(p, c, s):
     for i in range(n):
         speed -= p.t[c, i] * s.dy[n + i]
         total += abs(p.t[c, i] * s.dy[n + i])
-    return s.hit[c] if s.hit[c] * speed >= -TOUCH * total else STICK
+    return s.hit[c] if s.hit[c] * speed >= -TOUCH * total or p.static[c] == 0.0 else STICK
+
+
+def first_hit(p, c):
+    """What a contact does in an impact until the impulses say otherwise; without static friction it never sticks."""
+    return STICK if p.static[c] > 0.0 else 1
 
 
 def project(p, y, mode, s):

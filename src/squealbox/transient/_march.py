@@ -42,6 +42,7 @@ from squealbox.transient._rigid import paradox
 from squealbox.transient._runge_kutta import dense_stages, error_norm, first_step, interpolate, take_step
 
 SMALLEST = 1e-300  # a positive number that stands for zero
+SOON = 1e-3  # share of a step: what has just begun and ends before it is searched again in a shorter one
 # how a call of `march` ended
 COMPLETED, RUNNING, UNDERFLOW, NOT_FINITE, CHATTERING, ZENO, INCONSISTENT, STEP_LIMIT = 0, 1, 2, 3, 4, 5, 6, 7
 TENSION, PAINLEVE = 8, 9
@@ -136,6 +137,11 @@ def accept(p, r, s, times, rows, events, t, h, t_new, error, last):
     next_step = h * step_factor(r, s, error)
     if WITH_EVENTS:
         theta, which = first_event(p, r, t, h, s.state, s.state_new, s.mode, s, s.stage)
+        soon = 0.0 < theta < SOON and which < p.contacts and s.fresh[which] != 0
+        if theta < 0.0 or soon:
+            s.count[REJECTED] += 1
+            s.clock[STEP] = 4.0 * theta * h if soon else 0.25 * h
+            return RUNNING
         if theta <= 1.0:
             if theta > 0.0:
                 h = step_onto(p, r, t, h, theta, which, s.state, s.state_new, s.mode, s, s.stage)
@@ -144,7 +150,7 @@ def accept(p, r, s, times, rows, events, t, h, t_new, error, last):
             else:
                 t_new = t
             s.clock[STEP] = max(next_step, s.clock[STEP]) if not last else s.clock[STEP]
-            return change_modes(p, s, events, t_new, which)
+            return change_modes(p, s, events, t_new, which, theta > 0.0)
     else:
         count_flips(p, s)
     finish_step(p, r, s, times, rows, t, h, t_new)
@@ -224,7 +230,7 @@ def row_mode(p, s, c):
     return int(np.sign(s.speed[c]))
 
 
-def change_modes(p, s, events, t, which):
+def change_modes(p, s, events, t, which, moved):
     """An event: new modes, a fresh derivative, and the bound on events that ends a Zeno sequence."""
     ok = apply_event(p, t, s.state, s.mode, s, which)
     for c in range(p.contacts):
@@ -244,7 +250,7 @@ def change_modes(p, s, events, t, which):
             return PAINLEVE
         for c in range(p.contacts):
             rebounds = rebounds or s.leaving[c] != 0
-    if not rebounds:  # rebounds are bounded by the speed below which a contact stays closed
+    if not (rebounds and moved):  # rebounds are bounded by the speed below which a contact stays closed
         s.count[IN_WINDOW] += 1
     if t - s.clock[WINDOW] > p.window:
         s.clock[WINDOW] = t

@@ -14,10 +14,16 @@ from squealbox.transient._motion import (
     contact_matrix,
     derivative,
     evaluate_signals,
+    force_noise,
     list_sticking,
+    normal_noise,
+    share_out,
     slip_acceleration,
 )
 from squealbox.transient._rigid import solve
+
+
+SWING = 160.0  # windows of time make one over the highest angular frequency
 
 
 def slip_tolerance(p, c, y, s):
@@ -33,16 +39,33 @@ def slip_tolerance(p, c, y, s):
     return 1e-12 * total
 
 
+def event_tolerance(p, c, y, s, reference):
+    """As `slip_tolerance` at an event, when s.dy holds the accelerations: where all speeds are zero they give a scale.
+
+    `reference` is what is left of the speed that should be zero: another contact on the same motion has no less.
+    """
+    least = slip_tolerance(p, c, y, s)
+    if least < 0.0:
+        return least
+    rates = abs(s.signal[p.signals + c])
+    for i in range(p.mk.shape[0]):
+        rates += abs(p.t[c, i] * s.dy[p.mk.shape[0] + i])
+    least += 1e-12 * SWING * p.window * rates
+    return least + min(10.0 * abs(reference), 1e6 * least)
+
+
 def apply_event(p, t, y, mode, s, j):
     """Change modes at an event of function j; False when no consistent set of modes exists."""
     m = p.contacts
     derivative(p, t, y, mode, s, s.dy)
+    reference = s.speed[j] if j < m and mode[j] != OPEN else 0.0
     for c in range(m):
         s.old[c] = mode[c]
         s.forced[c] = 0
         s.leaving[c] = 0
         s.touch[c] = p.rigid[c] != 0 and mode[c] != OPEN
-        s.at_zero[c] = mode[c] == STICK or (mode[c] != OPEN and abs(s.speed[c]) <= slip_tolerance(p, c, y, s))
+        slow = abs(s.speed[c]) <= event_tolerance(p, c, y, s, reference)
+        s.at_zero[c] = mode[c] == STICK or (mode[c] != OPEN and slow)
     c = j if j < m else j - m
     if p.rigid[c] and j < m and mode[c] == OPEN:
         return land(p, t, y, mode, s, c)
@@ -134,13 +157,12 @@ def remove_drift(p, y, s, sticking):
         return True
     for a in range(sticking):
         s.right[a] = s.speed[s.stuck[a]]
-    contact_matrix(p, s, sticking, 0.0)
+    contact_matrix(p, s, sticking)
     solved = solve(s.matrix, s.right, sticking)
     if not solved:
         for a in range(sticking):
-            s.right[a] = s.speed[s.stuck[a]]
-        contact_matrix(p, s, sticking, 1e-6)
-        solved = solve(s.matrix, s.right, sticking)
+            s.wanted[a] = s.speed[s.stuck[a]]
+        solved = share_out(p, s, sticking)
     for a in range(sticking):
         for i in range(p.mk.shape[0]):
             y[p.mk.shape[0] + i] += p.md[s.stuck[a], i] * s.right[a]
@@ -155,13 +177,13 @@ def decide(p, t, y, mode, s):
     """
     for c in range(p.contacts):
         if s.at_zero[c] or s.touch[c]:
-            mode[c] = first_guess(p, c, mode, s)
+            mode[c] = first_guess(p, c, y, mode, s)
     for _ in range(20 + 10 * p.contacts * p.contacts):
         if not derivative(p, t, y, mode, s, s.dy):
             return p.rigid_count > 0 and enumerate_modes(p, t, y, mode, s)
         changed = False
         for c in range(p.contacts):
-            wanted = wanted_mode(p, c, mode, s)
+            wanted = wanted_mode(p, c, y, mode, s)
             if wanted != mode[c]:
                 mode[c] = wanted
                 changed = True
@@ -171,13 +193,13 @@ def decide(p, t, y, mode, s):
     return enumerate_modes(p, t, y, mode, s)
 
 
-def first_guess(p, c, mode, s):
+def first_guess(p, c, y, mode, s):
     """Sticking, unless a release is forced or the contact is in tension and so can only pass through zero speed."""
     if s.forced[c] != 0:
         return s.forced[c]
     if p.rigid[c]:
         return closed_mode(s, c)
-    if s.normal[c] > 0.0:
+    if s.normal[c] > -normal_noise(p, c, y, s) or s.normal[c] == 0.0:
         return STICK
     return -mode[c] if mode[c] != STICK else (1 if s.force[c] > 0.0 else -1)
 
@@ -189,7 +211,7 @@ def closed_mode(s, c):
     return 1 if s.speed[c] >= 0.0 else -1
 
 
-def wanted_mode(p, c, mode, s):
+def wanted_mode(p, c, y, mode, s):
     """The mode contact c would rather have, given the forces and accelerations just computed."""
     if s.forced[c] != 0:
         return mode[c]
@@ -202,16 +224,12 @@ def wanted_mode(p, c, mode, s):
     if not s.at_zero[c]:
         return mode[c]
     if mode[c] == STICK:
-        if abs(s.force[c]) <= p.static[c] * s.normal[c] * (1.0 + 1e-12):
+        if abs(s.force[c]) <= p.static[c] * s.normal[c] + force_noise(p, c, y, s):
             return STICK
         return 1 if s.force[c] > 0.0 else -1
-    rate = slip_acceleration(p, c, s.dy, s)
-    size = abs(s.signal[p.signals + c])
-    for i in range(p.mk.shape[0]):
-        size += abs(p.t[c, i] * s.dy[p.mk.shape[0] + i])
-    if mode[c] * rate >= -1e-12 * size:
+    if mode[c] * slip_acceleration(p, c, s.dy, s) >= -force_noise(p, c, y, s) * max(abs(p.g[c, c]), 1e-300):
         return mode[c]
-    return STICK if s.normal[c] > 0.0 else -mode[c]
+    return STICK if s.normal[c] >= -normal_noise(p, c, y, s) else -mode[c]
 
 
 def enumerate_modes(p, t, y, mode, s):
@@ -240,7 +258,7 @@ def enumerate_modes(p, t, y, mode, s):
         if allowed and derivative(p, t, y, mode, s, s.dy):
             consistent = True
             for c in range(p.contacts):
-                consistent = consistent and wanted_mode(p, c, mode, s) == mode[c]
+                consistent = consistent and wanted_mode(p, c, y, mode, s) == mode[c]
             if consistent:
                 return True
     return False

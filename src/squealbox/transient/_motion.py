@@ -176,54 +176,136 @@ def release_open(p, y, mode, s, dy):
 def hold(p, s, sticking, dy):
     """Forces of the sticking contacts from t_c . q'' = V_c', added to the accelerations in dy.
 
-    Contacts that hold the same motion (parallel d and t) leave the split of the force open. It is then shared in
-    proportion to their static limits: the matrix is regularised so, and the residual is solved for again.
+    Contacts that hold the same motion leave the split of the force open: `share_out` chooses.
     """
     n = p.mk.shape[0]
     for a in range(sticking):
-        s.force[s.stuck[a]] = 0.0
-    solved = correct_forces(p, s, sticking, dy, 0.0)
+        s.right[a] = slip_acceleration(p, s.stuck[a], dy, s)
+    contact_matrix(p, s, sticking)
+    solved = solve(s.matrix, s.right, sticking)
     if not solved:
         for a in range(sticking):
-            s.force[s.stuck[a]] = 0.0
-        solved = True
-        for _ in range(4):
-            solved = correct_forces(p, s, sticking, dy, 1e-6) and solved
+            s.wanted[a] = slip_acceleration(p, s.stuck[a], dy, s)
+        solved = share_out(p, s, sticking)
     for a in range(sticking):
         c = s.stuck[a]
+        s.force[c] = s.right[a]
         for i in range(n):
             dy[n + i] += p.md[c, i] * s.force[c]
     return solved
 
 
-def correct_forces(p, s, sticking, dy, share):
-    """One solve for what the forces of the sticking contacts still lack; False when the matrix is singular."""
+def contact_matrix(p, s, sticking):
+    """t . M^-1 d of the sticking contacts."""
     for a in range(sticking):
-        c = s.stuck[a]
-        right = slip_acceleration(p, c, dy, s)
         for b in range(sticking):
-            right -= p.g[c, s.stuck[b]] * s.force[s.stuck[b]]
-        s.right[a] = right
-    contact_matrix(p, s, sticking, share)
-    if not solve(s.matrix, s.right, sticking):
-        return False
-    for a in range(sticking):
-        s.force[s.stuck[a]] += s.right[a]
-    return True
+            s.matrix[a, b] = p.g[s.stuck[a], s.stuck[b]]
 
 
-def contact_matrix(p, s, sticking, share):
-    """t . M^-1 d of the sticking contacts, its diagonal raised by `share` over each contact's static limit."""
+def share_out(p, s, sticking):
+    """Forces of sticking contacts, into s.right, that give s.wanted where contacts hold the same motion.
+
+    Of all forces that do, those with the least sum of F^2 over the static limits: parallel contacts share in proportion
+    to their limits, so they reach them together, and one that is not pressed carries nothing. With G_r the independent
+    rows of t . M^-1 d and L the limits, F = L G_r' (G_r L G_r')^-1 a_r. False when the rest then does not hold.
+    """
     largest = 0.0
     for a in range(sticking):
         largest = max(largest, p.static[s.stuck[a]] * s.normal[s.stuck[a]])
+    kept = independent_rows(p, s, sticking, largest)
+    for i in range(kept):
+        for j in range(kept):
+            total = 0.0
+            for e in range(sticking):
+                other = s.stuck[e]
+                total += p.g[s.stuck[s.basis_row[i]], other] * s.share[e] * p.g[s.stuck[s.basis_row[j]], other]
+            s.matrix[i, j] = total
+        s.right[i] = s.wanted[s.basis_row[i]]
+    if not solve(s.matrix, s.right, kept):
+        return False
+    for i in range(kept):
+        s.multiplier[i] = s.right[i]
+    for e in range(sticking):
+        total = 0.0
+        for i in range(kept):
+            total += p.g[s.stuck[s.basis_row[i]], s.stuck[e]] * s.multiplier[i]
+        s.right[e] = s.share[e] * total
     for a in range(sticking):
-        c = s.stuck[a]
-        for b in range(sticking):
-            s.matrix[a, b] = p.g[c, s.stuck[b]]
-        if share > 0.0:
-            limit = max(p.static[c] * s.normal[c], 1e-3 * largest)
-            s.matrix[a, a] += share * p.g[c, c] * (largest / limit if limit > 0.0 else 1.0)
+        rest = s.wanted[a]
+        size = abs(rest)
+        for e in range(sticking):
+            term = p.g[s.stuck[a], s.stuck[e]] * s.right[e]
+            rest -= term
+            size += abs(term)
+        if not abs(rest) <= 1e-6 * size + 1e-300:
+            return False
+    return True
+
+
+def independent_rows(p, s, sticking, largest):
+    """Which sticking contacts hold motions of their own, into s.basis_row, those that are pressed first; how many.
+
+    By Gram and Schmidt's process on the rows of t . M^-1 d. Sets s.share too: the static limit over the largest one; of
+    a contact that is not pressed 1 if it alone holds a motion, else 0.
+    """
+    kept = 0
+    for turn in range(2):
+        for a in range(sticking):
+            limit = p.static[s.stuck[a]] * s.normal[s.stuck[a]]
+            pressed = limit > 1e-13 * largest
+            if pressed:
+                s.share[a] = limit / largest
+            if pressed != (turn == 0):
+                continue
+            if turn == 1:
+                s.share[a] = 0.0
+            before = 0.0
+            for e in range(sticking):
+                s.basis[kept, e] = p.g[s.stuck[a], s.stuck[e]]
+                before += s.basis[kept, e] ** 2
+            for _ in range(2):
+                for k in range(kept):
+                    along = 0.0
+                    for e in range(sticking):
+                        along += s.basis[k, e] * s.basis[kept, e]
+                    for e in range(sticking):
+                        s.basis[kept, e] -= along * s.basis[k, e]
+            after = 0.0
+            for e in range(sticking):
+                after += s.basis[kept, e] ** 2
+            if after > 1e-18 * before:
+                for e in range(sticking):
+                    s.basis[kept, e] /= np.sqrt(after)
+                s.basis_row[kept] = a
+                kept += 1
+                if turn == 1:
+                    s.share[a] = 1.0
+    return kept
+
+
+def normal_noise(p, c, y, s):
+    """Round-off of the terms of a normal force."""
+    total = abs(s.signal[p.contacts + c])
+    for i in range(p.mk.shape[0]):
+        total += abs(p.n[c, i] * y[i])
+    return 1e-12 * total
+
+
+def force_noise(p, c, y, s):
+    """Round-off of the terms that balance in the force of a sticking contact, and of its limit; never zero."""
+    n = p.mk.shape[0]
+    total = abs(s.signal[p.signals + c])
+    for i in range(n):
+        if p.t[c, i] != 0.0:
+            terms = abs(s.signal[2 * p.contacts + i])
+            for j in range(n):
+                terms += abs(p.mk[i, j] * y[j]) + abs(p.mc[i, j] * y[n + j])
+            for e in range(p.contacts):
+                terms += abs(p.md[e, i] * s.force[e])
+            total += abs(p.t[c, i]) * terms
+    mobility = abs(p.g[c, c])
+    size = 1e-12 * total / mobility if mobility > 0.0 else 0.0
+    return size + p.static[c] * normal_noise(p, c, y, s) + 1e-300
 
 
 def energy_rates(p, y, s, opening, dy):

@@ -70,8 +70,9 @@ def time_stepping(
 
     problem = packing.pack(system, Method(), 0, 1.0, True)
     period = 1e3 * float(problem["window"])
-    longest = period / np.pi
-    h = period / 400.0 if step is None else step
+    highest = packing.highest_frequency(problem["mk"])
+    longest = 2.0 / highest if highest > 0.0 else np.inf
+    h = min(period, duration) / 400.0 if step is None else step
     if not 0.0 < h < longest:
         raise ParameterError("simulate", "step", step, f"a step in (0, {longest:.3g}) s, below 2/omega_max")
     steps = int(np.ceil(duration / h * (1.0 - 1e-12)))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.schedules import SCHEDULES, Constant, Schedule
-from squealbox.system import InvalidSystem, System
+from squealbox.system import Contact, InvalidSystem, System
 from squealbox.transient.methods import Method, Tableau, tableau
 from squealbox.transient.own_laws import law_kinds
 
@@ -35,7 +35,7 @@ def pack(system: System, method: Method, scheme: int, width: float, every_step: 
 
 @lru_cache(maxsize=64)
 def _packed(system: System, scheme: int, width: float) -> tuple[Any, float]:
-    """The record but for tolerances and output, and the highest frequency [rad/s]."""
+    """The record but for tolerances and output, and the highest frequency [rad/s] of the system itself."""
     if system.shape != ():
         raise InvalidSystem(f"the system has leading axes {system.shape}: simulate takes one system at a time")
     n, contacts = system.size, system.contacts
@@ -46,6 +46,7 @@ def _packed(system: System, scheme: int, width: float) -> tuple[Any, float]:
     laws = [np.array(c.law.coefficients(), dtype=float) for c in contacts]
     stiffness = inverse @ system.K
     highest = highest_frequency(stiffness)
+    pace = max(highest, float(schedule_frequency(system)))
     values: dict[str, Any] = {
         "size": n,
         "contacts": len(contacts),
@@ -62,7 +63,7 @@ def _packed(system: System, scheme: int, width: float) -> tuple[Any, float]:
         "w": w,
         "g": t @ inverse @ d.T,
         "unilateral": np.array([c.unilateral for c in contacts], dtype=np.int64),
-        "static": np.array([c.law.static_limit for c in contacts], dtype=float),
+        "static": np.array([static_limit(c) for c in contacts], dtype=float),
         "rigid": np.array([c.rigid for c in contacts], dtype=np.int64),
         "rigid_count": sum(c.rigid for c in contacts),
         "restitution": np.array([c.restitution for c in contacts], dtype=float),
@@ -71,7 +72,7 @@ def _packed(system: System, scheme: int, width: float) -> tuple[Any, float]:
         **_signals(system, inverse),
         "scheme": scheme,
         "smoothing": width,
-        "window": 1e-3 * 2.0 * np.pi / highest,
+        "window": 1e-3 * 2.0 * np.pi / pace if pace > 0.0 else np.inf,
     }
     record = _record(_layout(values), values)
     record["atol"][:] = 1.0
@@ -133,13 +134,13 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
     width = 2 * n + m + 5
     floats: dict[str, tuple[int, ...]] = {
         "signal": (2 * (m + n) + m,), "normal": (m,), "speed": (m,), "force": (m,), "right": (2 * m,),
-        "matrix": (2 * m, 2 * m),
+        "matrix": (2 * m, 2 * m), "basis": (m + 1, m), "share": (m,), "wanted": (m,), "multiplier": (m,),
         "state": (width,), "state_new": (width,), "y": (width,), "y_dense": (width,), "dy": (width,),
         "stage": (STAGES, width), "phi": (2 * m,), "phi0": (2 * m,), "phi1": (2 * m,), "nodes": (5, 2 * m),
         "stack": (128, 7), "clock": (7,),
         "mu": (m,), "size": (m,), "rebound": (m,), "approach": (m,), "poly": (DEGREE + 1,),
     }  # fmt: skip
-    names = ("stuck", "mode", "old", "forced", "at_zero", "fresh", "chosen", "touch", "leaving", "hit", "noisy")
+    names = ("stuck", "mode", "old", "forced", "at_zero", "fresh", "chosen", "touch", "leaving", "hit", "noisy", "basis_row")
     integers = dict.fromkeys(names, m) | {"row_contact": 2 * m, "row_kind": 2 * m, "count": 11}
     kinds = tuple((name, "f8", shape) for name, shape in floats.items())
     kinds += tuple((name, "i8", (size,)) for name, size in integers.items())
@@ -154,9 +155,32 @@ def row_width(problem: Any) -> int:
 
 
 def highest_frequency(stiffness: Any) -> float:
-    """Highest angular frequency [rad/s] of M^-1 K, without friction; 1 when it is zero."""
-    highest = float(np.sqrt(np.max(np.abs(np.linalg.eigvals(stiffness)), initial=0.0)))
-    return highest if highest > 0.0 else 1.0
+    """Highest angular frequency [rad/s] of M^-1 K, without friction."""
+    return float(np.sqrt(np.max(np.abs(np.linalg.eigvals(stiffness)), initial=0.0)))
+
+
+def schedule_frequency(system: System) -> Any:
+    """Highest angular frequency [rad/s] of what moves by itself, V(t), N0(t) and f(t); 0 when nothing swings."""
+    fastest = np.zeros(())
+    for value in (system.load, *(each for c in system.contacts for each in (c.V, c.N0))):
+        if isinstance(value, Schedule):
+            fastest = np.maximum(fastest, value.angular_frequency())
+    return fastest
+
+
+def static_limit(contact: Contact) -> Any:
+    """The static limit of a contact's law; 0 of one that has no direction to stick along."""
+    return contact.law.static_limit if np.any(contact.t) and np.any(contact.d) else 0.0
+
+
+def schedule_kind(part: Schedule) -> int:
+    """The number of a schedule in the compiled code."""
+    if type(part) not in SCHEDULES:
+        known = ", ".join(kind.__name__ for kind in SCHEDULES)
+        raise InvalidSystem(
+            f"schedule {type(part).__name__}(...): expected one that can be compiled, sums and products of {known}"
+        )
+    return SCHEDULES.index(type(part))
 
 
 def absolute_tolerances(system: System, method: Method, highest: float) -> Any:
@@ -167,7 +191,7 @@ def absolute_tolerances(system: System, method: Method, highest: float) -> Any:
             raise InvalidSystem(f"atol has shape {np.shape(method.atol)}: expected a number or {2 * n} values")
         return np.array(method.atol, dtype=float)
     velocity = float(1e-3 * method.rtol * fastest_speed(system) if method.atol is None else method.atol)
-    return np.concatenate([np.full(n, velocity / highest), np.full(n, velocity)])
+    return np.concatenate([np.full(n, velocity / (highest or 1.0)), np.full(n, velocity)])
 
 
 def bernstein_matrix() -> Any:
@@ -223,15 +247,16 @@ def _signals(system: System, inverse: Any) -> dict[str, Any]:
     lists += [[((inverse @ weight)[i], part) for weight, part in load] for i in range(n)] + spare
     lists += [[(weight[i], part) for weight, part in load] for i in range(n)] + spare
     terms = [term for group in lists for term in group]
+    kinds = np.array([schedule_kind(part) for _, part in terms], dtype=np.int64)
     coefficients = [np.array(part.coefficients(), dtype=float).ravel() for _, part in terms]
     breaks = sorted({t for _, part in terms for t in part.breaks()})
     return {
         "signals": len(lists),
         "signal_start": _starts(lists),
         "term_weight": np.array([float(weight) for weight, _ in terms]),
-        "term_kind": np.array([SCHEDULES.index(type(part)) for _, part in terms], dtype=np.int64),
+        "term_kind": kinds,
         "term_coefficients": _padded(coefficients),
-        "varying": any(SCHEDULES.index(type(part)) != 0 for _, part in terms),
+        "varying": np.any(kinds != 0),
         "break_count": len(breaks),
         "breaks": np.array(breaks, dtype=float),
     }
@@ -243,6 +268,7 @@ def load_terms(system: System) -> list[tuple[Any, Schedule]]:
         return [(np.asarray(system.load), UNIT)]
     terms = []
     for weight, part in system.load.terms():
+        schedule_kind(part)
         if np.ndim(part.coefficients()[0]) != 0:
             raise InvalidSystem("load: write a vector load as a schedule times a vector, such as Ramp(...) * [1, 0]")
         terms.append((np.broadcast_to(np.asarray(weight, dtype=float), (system.size,)), part))

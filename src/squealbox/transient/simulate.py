@@ -130,7 +130,7 @@ class _Run:
         self.times = np.full(1, np.inf) if times is None else times
         self.rows = np.empty((ROWS if times is None else len(times), packing.row_width(self.problem)))
         self.events = np.zeros((256, 3))
-        self.period = 1e3 * float(self.problem["window"])
+        self.period = 1e3 * float(self.problem["window"])  # the shortest; inf where nothing swings
         room = len(self.problem["mk"])
         self.atol = self.problem["atol"].reshape(2, room)[:, : system.size].ravel()
 
@@ -157,6 +157,9 @@ class _Run:
         """The compiled march of this run, and what it is called with."""
         from squealbox.transient._engine import kernel
 
+        if not np.isfinite(self.period):
+            self.period = 6.0 * span
+            self.problem["window"] = 1e-3 * self.period
         events = bool(self.problem["scheme"] == EXACT and self.problem["contacts"] > 0)
         march = kernel(events, counts=() if events else self._counts(), own=own_texts(self.system.contacts))
         largest = self.method.largest_step or (min(span, self.period / 6.0) if events else span)

@@ -12,7 +12,7 @@ import numpy as np
 from squealbox.transient._events import event_values
 from squealbox.transient._march import COMPLETED, INCONSISTENT, NOT_FINITE, RUNNING, STEP_LIMIT, UNDERFLOW, ZENO
 from squealbox.transient._modes import apply_event, start_modes
-from squealbox.transient._motion import INSIDE, OPEN, contact_matrix, derivative, list_sticking
+from squealbox.transient._motion import INSIDE, OPEN, contact_matrix, derivative, list_sticking, share_out
 from squealbox.transient._rigid import solve
 from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
@@ -195,20 +195,19 @@ def refresh(A, b, lane, t, p, s):
 
 
 def hold_matrix(A, b, lane, p, s):
-    """Rows H: the inverse of t . M^-1 d over the sticking contacts; where it is singular, that of `_motion.hold`."""
+    """Rows H: the inverse of t . M^-1 d over the sticking contacts; where it is singular, `_motion.share_out`."""
     for c in range(CONTACTS):
         for e in range(CONTACTS):
             A[b + (ROW_HOLD + c * CONTACTS + e) * WIDTH + lane] = 0.0
     sticking = list_sticking(p, s.mode, s)
     for e in range(sticking):
-        share = 0.0
-        for _ in range(2):
+        for a in range(sticking):
+            s.right[a] = 1.0 if a == e else 0.0
+        contact_matrix(p, s, sticking)
+        if not solve(s.matrix, s.right, sticking):
             for a in range(sticking):
-                s.right[a] = 1.0 if a == e else 0.0
-            contact_matrix(p, s, sticking, share)
-            if solve(s.matrix, s.right, sticking):
-                break
-            share = 1e-9
+                s.wanted[a] = 1.0 if a == e else 0.0
+            share_out(p, s, sticking)
         for a in range(sticking):
             A[b + (ROW_HOLD + s.stuck[a] * CONTACTS + s.stuck[e]) * WIDTH + lane] = s.right[a]
 
