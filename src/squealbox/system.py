@@ -129,7 +129,7 @@ class System(DataSheet):
         for field in ("M", "C", "K"):
             if getattr(self, field).shape[-2:] != (size, size):
                 raise InvalidSystem(f"{field} has shape {getattr(self, field).shape}: expected (..., {size}, {size})")
-        if not np.allclose(self.M, np.swapaxes(self.M, -1, -2)):
+        if np.any(np.abs(self.M - self.M.swapaxes(-1, -2)) > 1e-8 * np.abs(self.M).max((-2, -1), keepdims=True)):
             raise InvalidSystem("M is not symmetric: expected a symmetric mass matrix")
         if not isinstance(self.load, Schedule):
             load = np.asarray(self.load, dtype=float)

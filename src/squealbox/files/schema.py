@@ -6,6 +6,7 @@ import typing
 from typing import Any
 
 from squealbox.files.analyses import Axis, Modes, Simulate
+from squealbox.files.arrays import TRIANGLES
 from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES, STUDY
 from squealbox.files.sheets import LAW_NAMES, OWN, SCHEDULE_NAMES, field_type, is_required
@@ -115,7 +116,7 @@ def _array(about: Parameter, ndim: int) -> Schema:
     file = {"type": "string", "description": "a .npy, .mtx or .csv file beside this one"}
     table = {
         "type": "object",
-        "properties": {"file": file, "unit": {"type": "string"}},
+        "properties": {"file": file, "unit": {"type": "string"}, "triangle": {"enum": list(TRIANGLES)}},
         "required": ["file"],
         "additionalProperties": False,
     }
