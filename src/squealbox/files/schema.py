@@ -111,7 +111,8 @@ def _several(about: Parameter) -> Schema:
 
 
 def _array(about: Parameter, ndim: int) -> Schema:
-    row = {"type": "array", "items": _number(about)}
+    one = _number(about)
+    row = {"type": "array", "items": {"anyOf": [one, _ref("schedule")]} if about.schedule else one}
     inline = {"type": "array", "items": row} if ndim == 2 else row
     file = {"type": "string", "description": "a .npy, .mtx or .csv file beside this one"}
     table = {
@@ -120,7 +121,10 @@ def _array(about: Parameter, ndim: int) -> Schema:
         "required": ["file"],
         "additionalProperties": False,
     }
-    return {"description": _description(about), "anyOf": [inline, file, table]}
+    return {
+        "description": _description(about),
+        "anyOf": [inline, file, table, *([_ref("schedule")] if about.schedule else [])],
+    }
 
 
 def _own_law() -> Schema:

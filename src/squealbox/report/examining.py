@@ -62,9 +62,9 @@ def examine(
 
     Raises `ParameterError` for a design that stands for a map. Anything else that cannot be computed is in `missing`.
     """
-    if any(np.ndim(value) for _, about, value in design.leaves() if about.unit != "-"):
-        raise ParameterError(type(design).__name__, "design", "arrays", "one brake, not a map of brakes")
     work = _Work(design, time, progress)
+    if work.modes.eigenvalues.ndim > 1:
+        raise ParameterError(type(design).__name__, "design", "arrays", "one brake, not a map of brakes")
     work.stability(onset)
     work.margins(plane)
     work.transient(simulate)
