@@ -17,6 +17,7 @@ from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome, Result, quantity
 
 LEAST_POINTS = 5
+CARRIES = 0.9  # leverage of a point from which it carries a coefficient nearly alone
 
 
 @dataclasses.dataclass(frozen=True)
@@ -112,7 +113,7 @@ def fit_friction(
 
     Parameters
     ----------
-    speeds : shape (n,), [m/s] sliding speeds, n >= 5; the sign does not matter
+    speeds : shape (n,), [m/s] sliding speeds, 0 or more, n >= 5
     values : shape (n,), [-] measured coefficients in [0, 10]
     law : name of a law or several; left out, all of coulomb, linear_slope, stribeck, hyperbolic, cubic
     level : confidence level of the bands, between 0 and 1
@@ -143,12 +144,18 @@ def fit_friction(
 
 def _points(speeds: Any, values: Any) -> tuple[Any, Any]:
     try:
-        v, mu = np.abs(np.asarray(speeds, dtype=float)), np.asarray(values, dtype=float)
+        v, mu = np.asarray(speeds, dtype=float), np.asarray(values, dtype=float)
     except (TypeError, ValueError) as error:
         raise ParameterError("fit_friction", "speeds", speeds, "numbers in m/s") from error
     if v.ndim != 1 or v.shape != mu.shape or v.size < LEAST_POINTS:
         shown = f"shapes {v.shape} and {mu.shape}"
         raise ParameterError("fit_friction", "speeds", shown, f"{LEAST_POINTS} or more speeds with a value each")
+    if np.any(v < 0.0):
+        at = int(np.argmax(v < 0.0))
+        expected = (
+            "speeds of 0 m/s or more: a law is of |v|, and the sign of a coefficient would be lost with that of v"
+        )
+        raise ParameterError("fit_friction", f"speeds[{at}]", float(v[at]), expected)
     if not np.all(np.isfinite(v)) or np.ptp(v) == 0.0:
         raise ParameterError("fit_friction", "speeds", speeds, "finite numbers in m/s, not all the same")
     if not np.all(np.isfinite(mu)) or np.any((mu < 0.0) | (mu > 10.0)):
@@ -177,6 +184,7 @@ def _fitted(candidate: Candidate, v: Any, mu: Any, along: Any, level: float) -> 
     except (RuntimeError, ValueError, OptimizeWarning):  # not converged, or numbers that are no such law
         return failed
     residual = float(np.sum((mu - curve(v, *p)) ** 2))
+    covariance = _robust(lambda at: curve(v, *at), p, mu, covariance)
     steps = 1e-6 * np.maximum(np.abs(p), 1e-3)
     gradient = [
         (curve(along, *(p + h * e)) - curve(along, *(p - h * e))) / (2.0 * h)
@@ -196,6 +204,31 @@ def _fitted(candidate: Candidate, v: Any, mu: Any, along: Any, level: float) -> 
         "aic": v.size * np.log(variance) + 2.0 * (count + 1),
         "rms": np.sqrt(residual / v.size),
     }
+
+
+def _robust(curve: Callable[[Any], Any], p: Any, mu: Any, usual: Any) -> Any:
+    """The covariance of the coefficients, no smaller than what each point says when it is left out.
+
+    The usual one, s^2 (J'J)^-1, takes the scatter of all points for that of the one point that carries a coefficient,
+    and that point fits itself. HC3, (J'J)^-1 sum_i J_i'J_i (r_i/(1 - h_i))^2 (J'J)^-1 with the leverage h, is close to
+    leaving it out (MacKinnon and White 1985, J. Econometrics 29, 305-325); with h = 1 nothing is known of it but what
+    it says itself, and its residual is taken for that of a point with nothing else to go by.
+    """
+    steps = 1e-6 * np.maximum(np.abs(p), 1e-3)
+    jacobian = np.stack(
+        [(curve(p + h * e) - curve(p - h * e)) / (2.0 * h) for h, e in zip(steps, np.eye(len(p)), strict=True)], axis=1
+    )
+    inverse = np.linalg.pinv(jacobian.T @ jacobian)
+    leverage = np.einsum("ni,ij,nj->n", jacobian, inverse, jacobian)
+    left = np.maximum(1.0 - leverage, 1e-3)
+    residual = mu - curve(p)
+    free = max(len(mu) - len(p), 1)
+    scatter = np.sqrt(np.sum(residual**2) / free)
+    weight = np.maximum(np.abs(residual) / left, scatter / np.sqrt(left))
+    sandwich = inverse @ (jacobian.T * weight**2) @ jacobian @ inverse
+    larger = np.sqrt(np.maximum(np.diag(sandwich), 1e-300) / np.maximum(np.diag(usual), 1e-300))
+    scale = np.maximum(larger, 1.0) if np.any(leverage > CARRIES) else np.ones(len(p))
+    return usual * np.outer(scale, scale)
 
 
 def _formula_numbers(candidate: Candidate, p: Sequence[float]) -> tuple[float, ...]:

@@ -44,11 +44,11 @@ def analysis_of(found: "StudyFile") -> Callable[..., Any]:
 
 def judged_motion(design: Any, settings: "Simulate") -> dict[str, Any]:
     """The verdict on a transient, for each degree of freedom."""
-    from squealbox.files.runs import run
+    from squealbox.files.runs import run_closely
     from squealbox.transient import verdict
 
     system = design.system()
-    motion = run(system, settings)
+    motion = run_closely(system, settings)
     each = [verdict(motion, dof=i) for i in range(system.size)]
     names = ("amplitude", "frequency", "growth_rate", "settled_at")
     numbers = {name: np.array([float(getattr(one, name)) for one in each]) for name in names}

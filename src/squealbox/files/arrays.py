@@ -3,12 +3,12 @@
     K = [["130 kN/mm", 0], [0, "18 kN/mm"]]          inline, numbers in SI or with units
     K = "K.mtx"                                      beside the file, in SI
     K = { file = "K.npy", unit = "kN/mm" }           the same in another unit
+    K = { file = "K.mtx", triangle = "mirrored" }    one triangle of a symmetric matrix; "as_given" for a triangular one
 
 `.npy` (NumPy, never with pickled objects), `.mtx` (Matrix Market) and `.csv` are read. What a file says of its own
 size is checked before anything of that size is made, and only files inside the folder of the design are opened.
 """
 
-import csv
 import io
 from collections.abc import Mapping
 from pathlib import Path
@@ -19,6 +19,7 @@ import numpy as np
 
 from squealbox.files.document import Document, read_bytes
 from squealbox.files.lines import Key
+from squealbox.files.matrix_text import ArrayFileError, check_size, mirrored, one_sided, read_csv, read_matrix_market
 from squealbox.files.numbers import WRONG, read_number, shown
 from squealbox.files.units import UnitError, in_si
 from squealbox.parameters import Parameter
@@ -26,12 +27,9 @@ from squealbox.parameters import Parameter
 Vector = Annotated[Any, 1]  # how a data sheet declares a field that a file may hold beside itself
 Matrix = Annotated[Any, 2]
 
+TRIANGLES = ("mirrored", "as_given")
 LARGEST_FILE = 64_000_000  # bytes
 MOST_ROWS = 2_000  # degrees of freedom; a larger finite-element model is reduced before it comes here
-
-
-class ArrayFileError(ValueError):
-    """A file beside the design is not a matrix; the message is one sentence."""
 
 
 def read_array(document: Document, value: Any, about: Parameter, key: Key, ndim: int) -> Any:
@@ -74,8 +72,12 @@ def _numbers(document: Document, row: list[Any], about: Parameter, key: Key) -> 
 
 def _beside(document: Document, value: Any, about: Parameter, key: Key, ndim: int) -> Any:
     named = {"file": value} if isinstance(value, str) else value
-    if not isinstance(named.get("file"), str) or not set(named) <= {"file", "unit"}:
+    if not isinstance(named.get("file"), str) or not set(named) <= {"file", "unit", "triangle"}:
         document.problem(key, f"{shown(value)}: expected {{ file = 'K.npy', unit = '{about.unit}' }}")
+        return WRONG
+    triangle = named.get("triangle", "")
+    if triangle not in ("", *TRIANGLES):
+        document.problem(key, f"triangle = {shown(triangle)}: expected one of {', '.join(TRIANGLES)}")
         return WRONG
     unit = named.get("unit", about.unit)
     if not document.beside:
@@ -97,7 +99,18 @@ def _beside(document: Document, value: Any, about: Parameter, key: Key, ndim: in
     if array.ndim != ndim:
         document.problem(key, f"{named['file']!r} has the shape {array.shape}: expected {ndim} axes")
         return WRONG
-    return array
+    side = one_sided(array) if np.all(np.isfinite(array)) else ""
+    if side and not triangle:
+        document.problem(
+            key,
+            f"{named['file']!r} has numbers in its {side} triangle only: say triangle = 'mirrored' for a symmetric "
+            "matrix of which one half is given, 'as_given' for one that is triangular",
+        )
+        return WRONG
+    if triangle == "mirrored" and not side and np.any(array != np.diag(np.diag(array))):
+        document.problem(key, f"{named['file']!r} has numbers in both triangles: triangle = 'mirrored' expects one")
+        return WRONG
+    return mirrored(array) if triangle == "mirrored" and side else array
 
 
 def path_beside(design: Path, name: str) -> Path:
@@ -114,7 +127,7 @@ def path_beside(design: Path, name: str) -> Path:
 
 def load_array(path: Path) -> np.ndarray:
     """The real numbers of a `.npy`, `.mtx` or `.csv` file; `ArrayFileError` names what is wrong with it."""
-    readers = {".npy": _npy, ".mtx": _mtx, ".csv": _csv}
+    readers = {".npy": _npy, ".mtx": read_matrix_market, ".csv": read_csv}
     if path.suffix not in readers:
         raise ArrayFileError(f"{shown(path.name)} has the ending {shown(path.suffix)}, expected .npy, .mtx or .csv")
     try:
@@ -126,12 +139,12 @@ def load_array(path: Path) -> np.ndarray:
             f"{shown(path.name)} cannot be read: {getattr(error, 'strerror', None) or error}"
         ) from error
     try:
-        return readers[path.suffix](raw)
+        return readers[path.suffix](raw, MOST_ROWS)
     except ArrayFileError as error:
         raise ArrayFileError(f"{shown(path.name)} {error}") from error
 
 
-def _npy(raw: bytes) -> np.ndarray:
+def _npy(raw: bytes, most: int) -> np.ndarray:
     stream = io.BytesIO(raw)
     try:
         version = np.lib.format.read_magic(stream)
@@ -141,50 +154,9 @@ def _npy(raw: bytes) -> np.ndarray:
         raise ArrayFileError("is not a NumPy .npy file") from error
     if dtype.hasobject or dtype.kind not in "fiu":
         raise ArrayFileError(f"holds {dtype}, expected real numbers")
-    _check_size(shape)
+    check_size(shape, most)
     count = int(np.prod(shape, dtype=object))
     if len(raw) - stream.tell() != count * dtype.itemsize:
         raise ArrayFileError(f"says it has the shape {shape}, but is not as long as that")
     stream.seek(0)
     return np.asarray(np.lib.format.read_array(stream, allow_pickle=False), dtype=float)
-
-
-def _mtx(raw: bytes) -> np.ndarray:
-    from scipy.io import mminfo, mmread
-
-    try:
-        rows, columns, entries, form, kind, _ = mminfo(io.BytesIO(raw))
-        if kind == "complex" or form not in ("coordinate", "array"):
-            raise ArrayFileError(f"holds {kind} numbers, expected real ones")
-        _check_size((rows, columns))
-        if entries > len(raw):  # an entry takes more than a byte
-            raise ArrayFileError(f"says it has {entries} entries, but is not as long as that")
-        matrix = mmread(io.BytesIO(raw))
-    except ArrayFileError:
-        raise
-    except (ValueError, TypeError, OverflowError, OSError, MemoryError, IndexError) as error:
-        raise ArrayFileError("is not a Matrix Market .mtx file") from error
-    return np.asarray(matrix.toarray() if hasattr(matrix, "toarray") else matrix, dtype=float)
-
-
-def _csv(raw: bytes) -> np.ndarray:
-    try:
-        rows = [row for row in csv.reader(io.StringIO(raw.decode("utf-8-sig")), strict=True) if row]
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise ArrayFileError("is not a .csv file of numbers") from error
-    _check_size((len(rows), max((len(row) for row in rows), default=0)))
-    if len({len(row) for row in rows}) != 1:
-        raise ArrayFileError("has rows of different lengths")
-    numbers = []
-    for i, row in enumerate(rows):
-        for cell in row:
-            try:
-                numbers.append(in_si(cell, ""))
-            except UnitError as error:
-                raise ArrayFileError(f"row {i + 1}: {shown(cell)} is not a number") from error
-    return np.array(numbers).reshape(len(rows), -1)
-
-
-def _check_size(shape: tuple[int, ...]) -> None:
-    if not shape or len(shape) > 2 or any(not 1 <= int(size) <= MOST_ROWS for size in shape):
-        raise ArrayFileError(f"has the shape {shape}, expected one or two axes of 1 to {MOST_ROWS} numbers")

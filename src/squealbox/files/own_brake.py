@@ -9,7 +9,7 @@ from squealbox.designs import Design
 from squealbox.files.arrays import Matrix, Vector
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, parameter
-from squealbox.schedules import Schedule
+from squealbox.schedules import Schedule, value_at
 from squealbox.system import Contact, System
 
 
@@ -49,7 +49,9 @@ class OwnBrake(Design):
     M: Matrix = parameter("kg", meaning="mass matrix, symmetric")
     K: Matrix = parameter("N/m", meaning="stiffness matrix")
     C: Matrix = parameter("N s/m", default=None, optional=True, meaning="damping matrix; left out, none")
-    load: Vector = parameter("N", default=None, optional=True, meaning="static load on each; left out, none")
+    load: Vector = parameter(
+        "N", default=None, optional=True, schedule=True, meaning="load on each, numbers or schedules; left out, none"
+    )
     friction: FrictionLaw = Coulomb(0.3)
     sliding_speed: Any = parameter("m/s", default=1.0, schedule=True, meaning="sliding speed of the contacts at rest")
     normal_force: Any = parameter("N", default=0.0, schedule=True, meaning="normal force of the contacts at q = 0")
@@ -64,10 +66,13 @@ class OwnBrake(Design):
         for name in ("K", "C"):
             if getattr(self, name) is not None:
                 self._square(name, size)
-        if not np.allclose(self.M, self.M.T):
+        if np.any(np.abs(self.M - self.M.T) > 1e-8 * np.max(np.abs(self.M))):
             raise ParameterError("OwnBrake", "M", "not symmetric", "a symmetric mass matrix")
-        if self.load is not None and np.shape(self.load) != (size,):
-            raise ParameterError("OwnBrake", "load", self.load, f"{size} forces, one for each degree of freedom")
+        if isinstance(self.load, Schedule) and size == 1 and np.ndim(value_at(self.load, 0.0)) == 0:
+            object.__setattr__(self, "load", self.load * np.ones(1))
+        if self.load is not None and np.shape(value_at(self.load, 0.0)) != (size,):
+            each = "one for each degree of freedom, such as [0, { ramp = { start = 0, slope = 10 } }]"
+            raise ParameterError("OwnBrake", "load", self.load, f"{size} forces, {each}")
         if self.names and len(self.names) != size:
             raise ParameterError("OwnBrake", "names", self.names, f"{size} names, one for each degree of freedom")
         for name in self.names:

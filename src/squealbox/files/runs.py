@@ -23,13 +23,42 @@ def start_of(system: System, settings: Simulate) -> tuple[Any, Any]:
     return q + (0.0 if settings.q is None else settings.q), qd + (0.0 if settings.qd is None else settings.qd)
 
 
-def run(system: System, settings: Simulate, *, points: int | None = None) -> Trajectory:
-    """The motion, at `points` equal steps in time, by default as many as the section says."""
+SAMPLES = 12  # kept in a period of the quickest mode, at least, of a run that is judged
+MOST_NUMBERS = 40_000_000  # kept of one run: displacements and velocities together
+
+
+def run_closely(system: System, settings: Simulate) -> Trajectory:
+    """The motion at so many instants that amplitude, frequency and level can be read from them.
+
+    The instants somebody keeps are his, those of a verdict follow from the brake: `SAMPLES` in a period of the quickest
+    mode. Where so many do not fit in memory, the last stretch that fits is kept.
+    """
+    quickest = _quickest(system)
+    needed = int(np.ceil(SAMPLES * quickest * settings.duration)) + 1 if np.isfinite(quickest) else 0
+    most = max(MOST_NUMBERS // (2 * system.size), 1000)
+    if needed <= int(settings.points):
+        return run(system, settings)
+    if needed <= most:
+        return run(system, settings, points=needed)
+    end = settings.begin + settings.duration
+    return run(system, settings, points=np.linspace(end - (most - 1) / (SAMPLES * quickest), end, most))
+
+
+def _quickest(system: System) -> float:
+    """The highest frequency [Hz] among the modes of the brake without friction; NaN when there is none."""
+    from squealbox.stability import finite_spectrum
+
+    found = np.asarray(finite_spectrum(System(system.M, system.C, system.K)).eigenvalues)
+    return float(np.max(np.abs(found.imag))) / (2.0 * np.pi) if found.size else np.nan
+
+
+def run(system: System, settings: Simulate, *, points: Any = None) -> Trajectory:
+    """The motion at `points` instants, a number of equal steps or the instants; by default as many as the section says."""
     return simulate(
         system,
         settings.duration,
         start=start_of(system, settings),
-        times=int(settings.points if points is None else points),
+        times=int(settings.points) if points is None else points,
         method=settings.method,
         contact=settings.contact,
         rtol=settings.rtol,

@@ -6,6 +6,7 @@ import typing
 from typing import Any
 
 from squealbox.files.analyses import Axis, Modes, Simulate
+from squealbox.files.arrays import TRIANGLES
 from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES, STUDY
 from squealbox.files.sheets import LAW_NAMES, OWN, SCHEDULE_NAMES, field_type, is_required
@@ -110,16 +111,20 @@ def _several(about: Parameter) -> Schema:
 
 
 def _array(about: Parameter, ndim: int) -> Schema:
-    row = {"type": "array", "items": _number(about)}
+    one = _number(about)
+    row = {"type": "array", "items": {"anyOf": [one, _ref("schedule")]} if about.schedule else one}
     inline = {"type": "array", "items": row} if ndim == 2 else row
     file = {"type": "string", "description": "a .npy, .mtx or .csv file beside this one"}
     table = {
         "type": "object",
-        "properties": {"file": file, "unit": {"type": "string"}},
+        "properties": {"file": file, "unit": {"type": "string"}, "triangle": {"enum": list(TRIANGLES)}},
         "required": ["file"],
         "additionalProperties": False,
     }
-    return {"description": _description(about), "anyOf": [inline, file, table]}
+    return {
+        "description": _description(about),
+        "anyOf": [inline, file, table, *([_ref("schedule")] if about.schedule else [])],
+    }
 
 
 def _own_law() -> Schema:

@@ -12,6 +12,8 @@ import typing
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
+import numpy as np
+
 from squealbox.files.arrays import ArrayFileError, path_beside, read_array
 from squealbox.files.document import Document, read_bytes
 from squealbox.files.lines import Key
@@ -20,7 +22,7 @@ from squealbox.files.own_law import LARGEST as LARGEST_LAW
 from squealbox.files.own_law import OwnLaw, own_law
 from squealbox.friction import LAWS, FrictionLaw
 from squealbox.parameters import DataSheet, Parameter, ParameterError, known_names
-from squealbox.schedules import SCHEDULES, Schedule
+from squealbox.schedules import SCHEDULES, Schedule, Sum, as_schedule
 from squealbox.studies.uncertainty.distributions import Distribution
 
 Sheet = TypeVar("Sheet", bound=DataSheet)
@@ -81,6 +83,8 @@ def read_field(document: Document, sheet: type[DataSheet], name: str, value: Any
     about = sheet.parameters().get(name)
     declared = field_type(sheet, name)
     if typing.get_origin(declared) is typing.Annotated:
+        if about is not None and about.schedule and (_is_schedule(value) or _holds_schedule(value)):
+            return _scheduled(document, value, about, key)
         return read_array(document, value, about or Parameter("-"), key, declared.__metadata__[0])
     if declared is int and (not isinstance(value, int) or isinstance(value, bool)):
         return wrong(document, key, value, f"a whole number in {about.range}" if about else "a whole number")
@@ -186,6 +190,25 @@ def _schedule(document: Document, value: Mapping[str, Any], about: Parameter, ke
         document.problem((*key, name), f"unknown schedule, {known_names(name[:LONGEST], list(SCHEDULE_NAMES))}")
         return WRONG
     return read_sheet(document, SCHEDULE_NAMES[name], table, (*key, name), unit=about.unit) or WRONG
+
+
+def _is_schedule(value: Any) -> bool:
+    return isinstance(value, Mapping) and len(value) == 1 and isinstance(next(iter(value.values())), Mapping)
+
+
+def _holds_schedule(value: Any) -> bool:
+    return isinstance(value, list) and any(isinstance(item, Mapping) for item in value)
+
+
+def _scheduled(document: Document, value: Any, about: Parameter, key: Key) -> Any:
+    """A list of numbers and schedules as one schedule whose value is the vector of them."""
+    if not isinstance(value, list):
+        return _schedule(document, value, about, key)
+    read = [read_parameter(document, item, about, (*key, i)) for i, item in enumerate(value)]
+    if any(item is WRONG for item in read):
+        return WRONG
+    rows = np.eye(len(read))
+    return Sum(tuple((row, as_schedule(item)) for row, item in zip(rows, read, strict=True)))
 
 
 def unit_in(sheet: type[DataSheet], about: Parameter, unit: str) -> str:

@@ -20,7 +20,7 @@ from squealbox.files.sheets import SCHEDULE_NAMES, field_type, name_of, unit_in
 from squealbox.files.units import in_si
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import Choice, DataSheet, Parameter
-from squealbox.schedules import Schedule
+from squealbox.schedules import Constant, Schedule, Sum
 
 # Units people prefer to the SI unit of the data sheet; one is used where it is shorter and reads back to the same bits.
 FRIENDLY = {
@@ -134,6 +134,8 @@ def _text(value: Any, unit: str, name: str) -> str:
         return str(value)
     if isinstance(value, str):
         return _quoted(value)
+    if isinstance(value, Sum) and np.ndim(value.value(0.0)) == 1:
+        return f"[{', '.join(_text(_row(value, i, name), unit, name) for i in range(len(value.value(0.0))))}]"
     if isinstance(value, Schedule):
         return f"{{ {_schedule_name(value, name)} = {_inline(value, unit)} }}"
     if isinstance(value, OwnLaw):
@@ -143,6 +145,16 @@ def _text(value: Any, unit: str, name: str) -> str:
     if isinstance(value, (tuple, list, np.ndarray)):
         return f"[{', '.join(_text(item, '' if isinstance(value, np.ndarray) else unit, name) for item in value)}]"
     return _number(float(value), unit)
+
+
+def _row(value: Sum, index: int, name: str) -> Any:
+    """One component of a vector of schedules: a number, or the schedule that stands there alone."""
+    terms = [(float(weight[index]), part) for weight, part in value.terms() if weight[index]]
+    if all(isinstance(part, Constant) for _, part in terms):
+        return sum(weight * float(part.value(0.0)) for weight, part in terms)
+    if len(terms) != 1 or terms[0][0] != 1.0:
+        raise NotWritable(f"{name}[{index}] is a sum of schedules: a file holds one of {', '.join(SCHEDULE_NAMES)}")
+    return terms[0][1]
 
 
 def _inline(sheet: DataSheet, unit: str) -> str:

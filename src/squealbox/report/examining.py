@@ -12,7 +12,7 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.files.analyses import Axis, Map, Simulate, quantity_of, scalar_parameters
-from squealbox.files.runs import run
+from squealbox.files.runs import run, run_closely
 from squealbox.limit_cycles import hopf_point, shooting
 from squealbox.parameters import ParameterError
 from squealbox.report.examination import Examination
@@ -62,9 +62,9 @@ def examine(
 
     Raises `ParameterError` for a design that stands for a map. Anything else that cannot be computed is in `missing`.
     """
-    if any(np.ndim(value) for _, about, value in design.leaves() if about.unit != "-"):
-        raise ParameterError(type(design).__name__, "design", "arrays", "one brake, not a map of brakes")
     work = _Work(design, time, progress)
+    if work.modes.eigenvalues.ndim > 1:
+        raise ParameterError(type(design).__name__, "design", "arrays", "one brake, not a map of brakes")
     work.stability(onset)
     work.margins(plane)
     work.transient(simulate)
@@ -130,7 +130,7 @@ class _Work:
     def transient(self, simulate: Simulate | None) -> None:
         with self.part("transient", "transient (the first run compiles the engine)"):
             self.found["settings"] = settings = simulate or Simulate(duration=PERIODS * self._period())
-            self.found["motion"] = motion = run(self.system, settings)
+            self.found["motion"] = motion = run_closely(self.system, settings)
             if not motion.outcome.ok:
                 self.missing["sound"] = f"the transient ended early: {motion.outcome.message}"
                 return

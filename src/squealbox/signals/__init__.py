@@ -4,7 +4,7 @@ Every function takes an array with its times ``t`` [s] or its sampling rate [Hz]
 such as a trajectory, of which ``dof`` names one column. Fourier methods need equal time steps and refuse others.
 """
 
-from squealbox.signals.growth import GrowthRate, dominant_frequency, growth_rate, slope, with_error
+from squealbox.signals.growth import GrowthRate, dominant_frequency, growth_rate, highest_line, slope, with_error
 from squealbox.signals.radiation import SoundLevel, a_weighting, piston_efficiency, sound_level
 from squealbox.signals.samples import LEAST, Samples, SignalError, column, equal_steps, samples, values
 from squealbox.signals.spectra import Peaks, Spectrogram, Spectrum, peaks, spectrogram, spectrum
@@ -25,6 +25,7 @@ __all__ = [
     "dominant_frequency",
     "equal_steps",
     "growth_rate",
+    "highest_line",
     "peaks",
     "piston_efficiency",
     "samples",

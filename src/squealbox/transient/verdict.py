@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.result import Outcome, Result, quantity
-from squealbox.signals import LEAST, dominant_frequency, slope, with_error
+from squealbox.signals import LEAST, highest_line, slope, with_error
 from squealbox.transient.envelope import Curve, envelope, repetition, smooth_curve
 from squealbox.transient.resolution import resolved
 from squealbox.transient.trajectory import Trajectory
@@ -218,7 +218,7 @@ def _nothing(motion: Any) -> _Course:
 
 def _frequency(curve: Curve, left: float, right: float) -> float:
     times, x = curve.even(left, right)
-    return dominant_frequency(x, times)
+    return highest_line(x, times)
 
 
 def _without_oscillation(curve: Curve, late: float, half: float, turns: int) -> _Course:

@@ -31,10 +31,15 @@ def _evolved(candidates: Candidates, goal: Goal, constraints: list[Constraint], 
     from scipy.optimize import NonlinearConstraint, differential_evolution
 
     population, generations, seed = effort
+    raised: list[Exception] = []  # SciPy says something else in its place
 
     def cost(x: Any) -> Any:
         columns = x.T if x.ndim == 2 else x[None]
-        found = _costs(candidates, [goal], columns)[:, 0]
+        try:
+            found = _costs(candidates, [goal], columns)[:, 0]
+        except Exception as error:
+            raised.append(error)
+            raise
         return found if x.ndim == 2 else float(found[0])
 
     def kept(x: Any) -> Any:
@@ -45,10 +50,15 @@ def _evolved(candidates: Candidates, goal: Goal, constraints: list[Constraint], 
     limits: tuple[Any, ...] = ()
     if constraints:
         limits = (NonlinearConstraint(kept, [c.low for c in constraints], [c.high for c in constraints]),)
-    found = differential_evolution(
-        cost, box, constraints=limits, rng=seed, vectorized=True, updating="deferred", polish=False, tol=1e-8,
-        popsize=max(2, -(-population // len(box))), maxiter=generations,
-    )  # fmt: skip
+    try:
+        found = differential_evolution(
+            cost, box, constraints=limits, rng=seed, vectorized=True, updating="deferred", polish=False, tol=1e-8,
+            popsize=max(2, -(-population // len(box))), maxiter=generations,
+        )  # fmt: skip
+    except RuntimeError:
+        if raised:
+            raise raised[0] from None
+        raise
     return np.asarray(found.x)
 
 

@@ -20,6 +20,8 @@ class LimitState:
         self.evaluations = 0
         self.unknown = 0
         self.ties = 0  # points exactly at the limit
+        self.failure: BaseException | None = None  # what the quantity raised within OpenTURNS, which hides it
+        self.broken = ""  # what OpenTURNS itself complained of
 
     @property
     def dimension(self) -> int:
@@ -40,6 +42,13 @@ class LimitState:
         self.ties += int(np.count_nonzero(g == 0.0))
         return np.clip(np.where(np.isnan(g), FAR, g), -FAR, FAR)
 
+    def _kept(self, z: Any) -> Any:
+        try:
+            return self(z)
+        except Exception as error:
+            self.failure = error
+            raise
+
     def event(self) -> Any:
         """The event g < 0 for OpenTURNS."""
         import openturns as ot
@@ -47,8 +56,8 @@ class LimitState:
         function = ot.PythonFunction(
             self.dimension,
             1,
-            func=lambda z: [float(self(np.asarray(z))[0])],
-            func_sample=lambda z: self(np.asarray(z))[:, None],
+            func=lambda z: [float(self._kept(np.asarray(z))[0])],
+            func_sample=lambda z: self._kept(np.asarray(z))[:, None],
         )
         vector = ot.CompositeRandomVector(function, ot.RandomVector(ot.Normal(self.dimension)))
         return ot.ThresholdEvent(vector, ot.Less(), 0.0)

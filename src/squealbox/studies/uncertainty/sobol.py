@@ -152,8 +152,10 @@ def _shares(values: Any) -> tuple[Any, Any]:
 
     rows = []
     for v in values:
-        found = stats.sobol_indices(func={"f_A": v[:1], "f_B": v[1:2], "f_AB": v[2:, None]}, n=v.shape[-1])
-        rows.append(np.var(v[:2]) * np.stack([found.first_order.reshape(-1), found.total_order.reshape(-1)]))
+        mixed = v[2:, None] if len(v) > 3 else np.repeat(v[2:, None], 2, axis=0)  # SciPy expects two parameters
+        found = stats.sobol_indices(func={"f_A": v[:1], "f_B": v[1:2], "f_AB": mixed}, n=v.shape[-1])
+        both = np.stack([found.first_order.reshape(-1), found.total_order.reshape(-1)])
+        rows.append(np.var(v[:2]) * both[:, : len(v) - 2])
     stacked = np.stack(rows)
     return stacked[:, 0], stacked[:, 1]
 

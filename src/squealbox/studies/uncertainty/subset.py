@@ -132,6 +132,8 @@ def _outcome(state: LimitState, lost: int, runs: int, smallest: float) -> Outcom
             "leads to squeal: ask for a quantity that tells how far squeal is, such as the margin"
         )
         return Outcome("flat_quantity", message, share=flat)
+    if state.broken:
+        return Outcome("broke_down", f"{lost} of {runs} runs broke down: {state.broken}", runs=lost)
     message = f"{lost} of {runs} runs found no squeal down to a probability of {smallest:g}"
     return Outcome("too_rare", message, runs=lost)
 
@@ -152,9 +154,11 @@ def _run(state: LimitState, samples: int, seed: int, smallest: float) -> tuple[f
         algorithm.setMaximumCoefficientOfVariation(-1.0)
         try:
             algorithm.run()
-        except RuntimeError as error:
+        except (RuntimeError, TypeError, ValueError) as error:
+            if state.failure is not None:
+                raise state.failure from None
             if "too small" not in str(error):  # how it says that it gave up before squeal was reached
-                raise
+                state.broken = " ".join(str(error).split())[:160]
             return 0.0, np.nan, np.zeros(0), np.zeros(0)
         result = algorithm.getResult()
         levels = np.array(algorithm.getThresholdPerStep()), np.array(algorithm.getProbabilityEstimatePerStep())

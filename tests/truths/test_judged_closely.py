@@ -1,0 +1,21 @@
+"""What a study and a report say of a run belongs to the motion, not to the instants somebody keeps."""
+
+import numpy as np
+import pytest
+
+from squealbox import DrumBrake, LinearSlope
+from squealbox.cli.study_analyses import judged_motion
+from squealbox.files.analyses import Simulate
+from squealbox.files.runs import run, run_closely
+from squealbox.transient import verdict
+
+
+def test_few_instants_do_not_change_the_verdict():
+    brake = DrumBrake(friction=LinearSlope(static=0.45, slope=-0.05))
+    found = judged_motion(brake, Simulate(duration=0.3, points=301))
+    assert found["frequency"][0] == pytest.approx(2034.6, abs=0.1)
+    assert found["amplitude"][0] == pytest.approx(7.68e-6, rel=2e-3)
+    few = verdict(run(brake.system(), Simulate(duration=0.3, points=301)))
+    assert abs(few.frequency - 2034.6) > 100.0  # the twin: 1 kHz of instants cannot carry 2 kHz
+    assert run_closely(brake.system(), Simulate(duration=0.01, points=5001)).t.size == 5001
+    assert np.isclose(run_closely(brake.system(), Simulate(duration=0.3, points=301)).t[-1], 0.3)
