@@ -49,7 +49,7 @@ def study(case: Case, folder: Path, sizes: ensembles.Sizes = ensembles.USUAL) ->
     for name, draw in sorted(drawn.items()):
         save(draw(), folder / name)
     plain = {road: _plain(each) for road, each in found.items()}
-    return {"findings": plain, "runs": runs, "shares": shares, "figures": sorted(drawn)}
+    return {"findings": plain, "amplitude": case.amplitude, "runs": runs, "shares": shares, "figures": sorted(drawn)}
 
 
 def _ensembles(case: Case, sizes: ensembles.Sizes) -> tuple[dict[str, Drawer], list[dict[str, Any]]]:
