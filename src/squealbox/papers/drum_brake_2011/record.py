@@ -130,7 +130,10 @@ def _best(found: list[Record]) -> Record:
 def _share(each: Record) -> float:
     """The share of the parts that count and agree."""
     verdicts = [
-        answer["verdict"] for part in each["parts"] for road, answer in part["roads"].items() if road in each["deciding"]
+        answer["verdict"]
+        for part in each["parts"]
+        for road, answer in part["roads"].items()
+        if road in each["deciding"]
     ]
     return verdicts.count(AGREE) / len(verdicts)
 
