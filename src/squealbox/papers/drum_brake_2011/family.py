@@ -1,10 +1,10 @@
 """The family of equations the search goes through: what Eq. (3) leaves open, every combination of it.
 
-    row i:  F_i = front_i mu(|v_i|) sgn(v_i) (n_i.q + share_i N w_i),   v_i = belt_i V sqrt(w_i) - (x' or y')
+    row i:  F_i = front_i mu(|v_i|) sgn(v_i) (n_i.q + share_i N),   v_i = belt_i V |u_i| - (x' or y')
 
-for shoe 1 and 2 along x, then along y, with w = cos^2 along x and sin^2 along y, and n_i.q = k w_i y along x, k w_i x
-along y. Open are the four signs in front, the four signs of the belts, the loads (four signs of (N1 s1, N1 c1, N2 s2,
-N2 c2)), which share of N enters friction, alpha, and alpha V. Both inferred readings of `DrumBrake` are members.
+for shoe 1 and 2 along x, then along y, with u = cos theta along x and sin theta along y, and n_i.q = k u_i^2 y along
+x, k u_i^2 x along y. Open are the four signs in front, the four signs of the belts, the loads (four signs of (N1 s1,
+N1 c1, N2 s2, N2 c2)), which share of N enters friction, alpha, and alpha V. Both inferred readings are members.
 
 Friction enters the stiffness by front x belt and alpha V alone. The static deflection is proportional to N, so the
 damping is the table's minus N times something; the modes follow from both in closed form, with the damping taken to the
@@ -27,7 +27,12 @@ PRINTED_LOAD, PRINTED_BELTS = (1.0, -1.0, -1.0, 1.0), (1.0, -1.0, 1.0, 1.0)  # c
 # Shares of N in friction, in the signs of `front`: none; the four that give Eq. (3)'s c11 = c1 +- and c22 = c2 +- ...;
 # and all shoes pressed or all pulled by N itself, without the square of a cosine.
 DAMPING = tuple((x, y) for x in (-1.0, 1.0) for y in (-1.0, 1.0))
-SHARES = ("none", *(f"Eq. (3): {'+' if x > 0 else '-'} in x, {'+' if y > 0 else '-'} in y" for x, y in DAMPING), "+N", "-N")
+SHARES = (
+    "none",
+    *(f"Eq. (3): {'+' if x > 0 else '-'} in x, {'+' if y > 0 else '-'} in y" for x, y in DAMPING),
+    "+N",
+    "-N",
+)
 
 
 @dataclass(frozen=True)
@@ -79,7 +84,8 @@ class Variant(Design):
         s1, c1, s2, c2 = brake.directions
         front, belts, loads = (SIGNS[int(each)] for each in (self.front, self.belts, self.loads))
         law = LinearSlope(self.friction.static, self.friction.slope - self.alpha, self.friction.floor)
-        weights = (c1**2, c2**2, s1**2, s2**2)
+        components = (c1, c2, s1, s2)
+        weights = tuple(each**2 for each in components)
         preloads = share_of_load(int(self.share), front, weights)
         zero = 0.0 * (c1 + c2)
         contacts = []
@@ -88,7 +94,7 @@ class Variant(Design):
         ):
             along = np.eye(2)[axis]
             n = front[i] * np.asarray(k * weights[i] + zero)[..., None] * np.eye(2)[1 - axis]
-            speed = self.sliding_speed * (belts[i] * np.sqrt(weights[i]))
+            speed = self.sliding_speed * (belts[i] * PRINTED_BELTS[i] * components[i])
             preload = np.asarray(self.load) * (front[i] * preloads[i])
             contacts.append(Contact(n, along, along, preload, speed, law, name=name))
         x = loads[0] * s1 + loads[2] * s2

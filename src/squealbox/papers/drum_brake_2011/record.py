@@ -44,8 +44,8 @@ def records(studies: Mapping[str, Any]) -> list[Record]:
 def overall(found: list[Record]) -> list[Record]:
     """One record for each claim: the best verdict any reading gives, by which readings and in which measure.
 
-    `verdict` is that of the best reading; `agree` names the readings that meet the claim as they are judged, `otherwise`
-    those that meet it with the other measure of amplitude.
+    `verdict` is that of the best reading; `agree` names the readings that meet the claim as they are judged,
+    `otherwise` those that meet it with the other measure of amplitude.
     """
     by_claim: dict[str, list[Record]] = {}
     for each in found:

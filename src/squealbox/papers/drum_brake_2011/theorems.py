@@ -93,8 +93,8 @@ def which_mode_decays_more(difference: Any, a: float, d: float) -> Any:
         D ((a - d) + S D/4) = E ((q_upper - q_lower) + S E/4)
 
     (put S for p1 + p2 and the second equation into p_lower (q_upper - q_lower) = c11 (d - q_lower) + c22 (a - q_lower)).
-    The terms with S are the square of damping beside stiffness, 1e5 beside 1e6 and more. So E has the sign of
-    (a - d) D: with a > d, the lower mode decays more exactly where c22 > c11.
+    The terms with S are the square of damping beside stiffness, 1e5 beside 1e6 and more. So E has the sign of (a - d)
+    D: with a > d, the lower mode decays more exactly where c22 > c11.
     """
     return -np.sign(difference) * np.sign(a - d)
 
@@ -127,9 +127,9 @@ def damping_difference(at_low: Any, load: Any, c1: float | None = None, c2: floa
         D(15 kN) = 15 D(1 kN) + 14 (c1 - c2) = 15 D(1 kN) + 84 N s/m
 
     mu-5 needs the upper of two modes to decay less at 1 kN (`growing_mode_at_onset`), N-2 the lower one at 15 kN. By the
-    lemma (`which_mode_decays_more`), with k11 > k22, that is D(1 kN) > 0 and D(15 kN) < 0: impossible, because c1 > c2.
-    A brake with c1 and c2 exchanged escapes. So does friction that is not free of a diagonal, or a static compression
-    that varies with mu; of the latter kind the search in this package finds none.
+    lemma (`which_mode_decays_more`), with k11 > k22, that is D(1 kN) > 0 and D(15 kN) < 0: impossible, because c1 >
+    c2. A brake with c1 and c2 exchanged escapes. So does friction that is not free of a diagonal, or a static
+    compression that varies with mu; of the latter kind the search in this package finds none.
     """
     brake = DrumBrake()
     zero = float((brake.c2 if c2 is None else c2) - (brake.c1 if c1 is None else c1))
@@ -140,11 +140,11 @@ def least_decay(at_rest: Any, at_ten: Any, load: float) -> Any:
     """The decay rate [1/s] of a mode at `load` [N] in (0, 10 kN), from those without load and at 10 kN.
 
     Theorem (V-1 and N-1 exclude each other at one speed). In Eq. (3) load enters the damping only, in proportion. To the
-    first order in damping a mode decays with p = (c11 (d - q1) + c22 (a - q1))/(q2 - q1), which is then affine in N: a
-    mode that decays at 10 kN (N-1) decays at 1 kN with at least 9/10 of what it has without load, 0.9 x 107 1/s. V-1
-    asks for no decay there. Speed enters steady sliding through alpha V only; within the studied speeds it shifts these
-    rates by less than 1 1/s, because flutter is far (mu-1). A friction coefficient just below the onset of flutter, with
-    hardly any decay left without load, escapes.
+    first order in damping a mode decays with p = (c11 (d - q1) + c22 (a - q1))/(q2 - q1), which is then affine in N:
+    a mode that decays at 10 kN (N-1) decays at 1 kN with at least 9/10 of what it has without load, 0.9 x 107 1/s.
+    V-1 asks for no decay there. Speed enters steady sliding through alpha V only; within the studied speeds it shifts
+    these rates by less than 1 1/s, because flutter is far (mu-1). A friction coefficient just below the onset of
+    flutter, with hardly any decay left without load, escapes.
     """
     share = load / 10e3
     return (1.0 - share) * np.asarray(at_rest) + share * np.asarray(at_ten)
