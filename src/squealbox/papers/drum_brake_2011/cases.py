@@ -15,6 +15,7 @@ from squealbox.system import System
 
 PRINTED = "published_matrices"
 DEFAULT_READING = "consistent"
+EIGENVALUES_ONLY = "published_matrices is linear: it has eigenvalues, but no motion limited by sgn."
 INFERRED = tuple(name for name, reading in READINGS.items() if reading.inferred)
 ALL_READINGS = (*(name for name in READINGS if name not in INFERRED), PRINTED, *INFERRED)
 RECONSTRUCTED = INFERRED[0]

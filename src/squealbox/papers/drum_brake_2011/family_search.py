@@ -59,7 +59,7 @@ def score(variant: Variant, grid: Grid = USUAL) -> dict[str, Any]:
 
 
 def chance(variant: Variant) -> dict[str, Any]:
-    """The most claims that one member with the signs of `variant` meets, of the published numbers and of scrambled ones."""
+    """The most claims one member with the signs of `variant` meets, of the published numbers and of scrambled ones."""
     found = Found.of(Members(int(variant.front), int(variant.belts), COARSE))
     wanted = [published(), *scrambled(SETS)]
     return {"met": np.array([float(found.score(each).max()) for each in wanted])}

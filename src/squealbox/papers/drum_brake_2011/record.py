@@ -73,8 +73,8 @@ def versions() -> dict[str, str]:
     return {**provenance(), **{name: metadata.version(name) for name in ("numba", "matplotlib")}}
 
 
-def write_json(path: Path, found: list[Record], searched: Mapping[str, Any]) -> Path:
-    """claims.json: the paper, the records, and the search. Values that are not finite are written as null."""
+def write_json(path: Path, found: list[Record], searched: Mapping[str, Any], extras: Any) -> Path:
+    """claims.json: the paper, the records, and the searches. Values that are not finite are written as null."""
     about = {
         "paper": paper(),
         "versions": versions(),
@@ -82,9 +82,24 @@ def write_json(path: Path, found: list[Record], searched: Mapping[str, Any]) -> 
         "overall": overall(found),
         "claims": found,
         "search": searched,
+        "family": _family(extras),
     }
     path.write_text(json.dumps(_finite(about), indent=1, allow_nan=False, ensure_ascii=False) + "\n", encoding="utf-8")
     return path
+
+
+def _family(extras: Any) -> Record:
+    """The search through the family of equations: its counts and the level of chance."""
+    form, found = ("short", extras.short) if extras.whole is None else ("whole", extras.whole.searched)
+    return {
+        "form": form,
+        "members": found.family,
+        "members_by_claims_met": [int(number) for number in found.counts],
+        "most": found.most,
+        "scrambled_sets": found.sets,
+        "chance": found.chance,
+        "best_of_all_claims": None if extras.whole is None else extras.whole.best[2],
+    }
 
 
 def write_markdown(path: Path, found: list[Record]) -> Path:
@@ -208,6 +223,9 @@ def _markdown(found: list[Record]) -> Iterator[str]:
     numbers = count(found)
     yield f"# {paper()['title']}\n\n{paper()['source']}\n"
     yield f"{len(found)} verdicts: {', '.join(f'{number} {verdict}' for verdict, number in numbers.items())}.\n"
+    once = overall(found)
+    met = [each["id"] for each in once if each["verdict"] == AGREE]
+    yield f"Each claim once, by its best reading: {len(met)} of {len(once)} met ({', '.join(met)}).\n"
     yield f"| claim | published | {' | '.join(readings)} |"
     yield "|---" * (2 + len(readings)) + "|"
     by_claim = {claim.id: [each for each in found if each["id"] == claim.id] for claim in claims()}

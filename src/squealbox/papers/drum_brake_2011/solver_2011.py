@@ -90,7 +90,7 @@ def ode23(design: Any, duration: float = DURATION, rtol: float = RELATIVE) -> Pl
     system = as_system(design)
     inverse, size = np.linalg.inv(system.M), system.size
     stiffness, damping, force = inverse @ system.K, inverse @ system.C, inverse @ system.load
-    rows = [(c.n, c.t, inverse @ c.d, float(c.N0), float(c.V), c.law) for c in system.contacts]
+    rows: list[Any] = [(c.n, c.t, inverse @ c.d, float(c.N0), float(c.V), c.law) for c in system.contacts]
 
     def rate(y: Any) -> Any:
         q, qd = y[:size], y[size:]

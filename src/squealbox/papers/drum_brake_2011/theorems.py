@@ -92,7 +92,8 @@ def which_mode_decays_more(difference: Any, a: float, d: float) -> Any:
 
         D ((a - d) + S D/4) = E ((q_upper - q_lower) + S E/4)
 
-    (put S for p1 + p2 and the second equation into p_lower (q_upper - q_lower) = c11 (d - q_lower) + c22 (a - q_lower)).
+    (put S for p1 + p2 and the second equation into p_lower (q_upper - q_lower) = c11 (d - q_lower)
+    + c22 (a - q_lower)).
     The terms with S are the square of damping beside stiffness, 1e5 beside 1e6 and more. So E has the sign of (a - d)
     D: with a > d, the lower mode decays more exactly where c22 > c11.
     """
@@ -126,8 +127,8 @@ def damping_difference(at_low: Any, load: Any, c1: float | None = None, c2: floa
 
         D(15 kN) = 15 D(1 kN) + 14 (c1 - c2) = 15 D(1 kN) + 84 N s/m
 
-    mu-5 needs the upper of two modes to decay less at 1 kN (`growing_mode_at_onset`), N-2 the lower one at 15 kN. By the
-    lemma (`which_mode_decays_more`), with k11 > k22, that is D(1 kN) > 0 and D(15 kN) < 0: impossible, because c1 >
+    mu-5 needs the upper of two modes to decay less at 1 kN (`growing_mode_at_onset`), N-2 the lower one at 15 kN. By
+    the lemma (`which_mode_decays_more`), with k11 > k22, that is D(1 kN) > 0 and D(15 kN) < 0: impossible, because c1 >
     c2. A brake with c1 and c2 exchanged escapes. So does friction that is not free of a diagonal, or a static
     compression that varies with mu; of the latter kind the search in this package finds none.
     """
@@ -139,8 +140,8 @@ def damping_difference(at_low: Any, load: Any, c1: float | None = None, c2: floa
 def least_decay(at_rest: Any, at_ten: Any, load: float) -> Any:
     """The decay rate [1/s] of a mode at `load` [N] in (0, 10 kN), from those without load and at 10 kN.
 
-    Theorem (V-1 and N-1 exclude each other at one speed). In Eq. (3) load enters the damping only, in proportion. To the
-    first order in damping a mode decays with p = (c11 (d - q1) + c22 (a - q1))/(q2 - q1), which is then affine in N:
+    Theorem (V-1 and N-1 exclude each other at one speed). In Eq. (3) load enters the damping only, in proportion. To
+    the first order in damping a mode decays with p = (c11 (d - q1) + c22 (a - q1))/(q2 - q1), which is then affine in N:
     a mode that decays at 10 kN (N-1) decays at 1 kN with at least 9/10 of what it has without load, 0.9 x 107 1/s.
     V-1 asks for no decay there. Speed enters steady sliding through alpha V only; within the studied speeds it shifts
     these rates by less than 1 1/s, because flutter is far (mu-1). A friction coefficient just below the onset of
@@ -190,8 +191,8 @@ def onset_from_frequencies(
 def least_miss(onset: float = PUBLISHED_ONSET) -> float:
     """The least by which a frequency at mu = 0.1 or 0.3 must be off [rad/s] for a parabola that meets at `onset`.
 
-    The mean square is the table's, so at each mu one number is free. The parabola keeps the table at mu = 0, vanishes at
-    `onset`, and has one coefficient left, which is varied over all that keeps the frequencies real.
+    The mean square is the table's, so at each mu one number is free. The parabola keeps the table at mu = 0, vanishes
+    at `onset`, and has one coefficient left, which is varied over all that keeps the frequencies real.
     """
     start, trace = table_split(), table_trace().low
     bend = np.linspace(-2e17, 2e17, 40001)
