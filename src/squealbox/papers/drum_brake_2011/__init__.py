@@ -4,7 +4,7 @@
 
     reproduce("out")
 
-Depends on: designs, stability, transient, signals, plots, report.
+Depends on: designs, stability, transient, signals, studies, plots, report.
 """
 
 import os
@@ -15,22 +15,27 @@ __all__ = ["reproduce"]
 
 
 def reproduce(
-    out: str | os.PathLike[str], progress: Callable[[str, float], None] | None = None, fine: bool = False
+    out: str | os.PathLike[str],
+    progress: Callable[[str, float], None] | None = None,
+    fine: bool = False,
+    search: bool = False,
 ) -> Path:
     """Write the whole study to the folder `out` and return its page, ``out/index.html``.
 
-    `out` then holds index.html (self-contained), claims.json, claims.md, search.csv, and figures/ with Figs. 1 to 9 of
+    `out` then holds index.html (self-contained), claims.json, claims.md and figures/ with Figs. 1 to 9 of
     the default reading, the other readings' in folders of their names, each as PNG and SVG. `progress` is called with
-    what was done and the share that is done. `fine` draws the maps of the
-    centres of pressure by transients at 561 x 561 points in the place of 141 x 141, and those of friction with load and
-    speed for reading eq3 as well. Takes about a minute on 2
-    processors once the kernels are compiled, and several minutes more with `fine`.
+    what was done and the share that is done. `fine` draws the maps of the centres of pressure by transients at
+    561 x 561 points in the place of 141 x 141, and those of friction with load and speed for reading eq3 as well.
+    `search` goes through the whole family of equations in the place of its short form, in the folder ``out/search``,
+    where a search that was stopped goes on; and over alpha, speed and floor in every reading, into search.csv. Takes about a minute on 2 processors from
+    nothing, and several minutes more with `fine` or `search`.
 
     Source: Journal of Vibroengineering 13(2), paper 632, June 2011.
     """
-    from squealbox.papers.drum_brake_2011 import drawings, jobs, page, record, search_results
-    from squealbox.papers.drum_brake_2011.cases import ALL_READINGS, DEFAULT_READING, Case
+    from squealbox.papers.drum_brake_2011 import drawings, jobs, page, record, search_results, theorem_figures
+    from squealbox.papers.drum_brake_2011.cases import ALL_READINGS, DEFAULT_READING, RECONSTRUCTED, Case
     from squealbox.papers.drum_brake_2011.reading import save
+    from squealbox.papers.drum_brake_2011.reconstruction import reconstruct
     from squealbox.report import write_page
 
     folder = Path(out)
@@ -39,10 +44,16 @@ def reproduce(
     case = Case(DEFAULT_READING)
     save(drawings.model(case), figures / "fig1")
     save(drawings.friction(case), figures / "fig2")
-    studies, searched = jobs.everything(ALL_READINGS, figures, progress, fine)
-    save(search_results.draw(searched), figures / "search")
+    whole = reconstruct(folder / "search", jobs.processors(), progress) if search else None
+    studies, searched = jobs.everything(ALL_READINGS, figures, progress, fine, search)
+    for name, draw in theorem_figures.ALL.items():
+        save(draw(), figures / name)
+    extras = page.extras(Case(RECONSTRUCTED), whole)
+    save(theorem_figures.solver(extras.decays), figures / "solver")
     found = record.records(studies)
-    record.write_json(folder / "claims.json", found, searched)
+    record.write_json(folder / "claims.json", found, searched, extras)
     record.write_markdown(folder / "claims.md", found)
-    search_results.write_csv(folder / "search.csv", searched)
-    return write_page(page.page(figures, studies, found, searched), folder / "index.html")
+    if searched:
+        save(search_results.draw(searched), figures / "search")
+        search_results.write_csv(folder / "search.csv", searched)
+    return write_page(page.page(figures, studies, found, searched, extras), folder / "index.html")

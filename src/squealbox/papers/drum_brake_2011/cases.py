@@ -8,17 +8,20 @@ from typing import Any, Self
 import numpy as np
 
 from squealbox.designs import DrumBrake, published_matrices
-from squealbox.designs.drum_brake import READINGS
+from squealbox.designs.drum_brake_readings import ASSUMED_SLOPE, READINGS, TABLE_SPEED
 from squealbox.friction import LinearSlope
 from squealbox.schedules import Ramp
 from squealbox.system import System
 
 PRINTED = "published_matrices"
 DEFAULT_READING = "consistent"
-ALL_READINGS = (*READINGS, PRINTED)
+EIGENVALUES_ONLY = "published_matrices is linear: it has eigenvalues, but no motion limited by sgn."
+INFERRED = tuple(name for name, reading in READINGS.items() if reading.inferred)
+ALL_READINGS = (*(name for name in READINGS if name not in INFERRED), PRINTED, *INFERRED)
+RECONSTRUCTED = INFERRED[0]
 
-ALPHA = 0.05  # s/m, an assumption: the paper takes it from another paper and does not print it
-SPEED = 0.2  # m/s, the paper's table
+ALPHA = -ASSUMED_SLOPE  # s/m, an assumption: the paper takes it from another paper and does not print it
+SPEED = TABLE_SPEED  # m/s, the paper's table
 LOAD = 1000.0  # N, the paper's table
 FRICTION = 0.30  # the paper's table
 
@@ -43,14 +46,42 @@ class PrintedBrake:
         return published_matrices(self.brake)
 
 
-@dataclass(frozen=True)
+HALF, WHOLE = "half peak to peak", "peak to peak"
+AMPLITUDES = {HALF: 1.0, WHOLE: 2.0}  # what an amplitude of the paper may mean, in halves
+
+
+@dataclass(frozen=True, init=False)
 class Case:
-    """One reading with one choice of what the paper leaves open: alpha [s/m], sliding speed [m/s], floor of mu [-]."""
+    """One reading with one choice of what the paper leaves open: alpha [s/m], sliding speed [m/s], floor of mu [-].
+
+    What is not given is the reading's own: 0.05 s/m and 0.2 m/s for a printed one, what the search found for an
+    inferred one. `amplitude` says what the paper's amplitudes are read as, `HALF` or `WHOLE`.
+    """
 
     reading: str
-    alpha: float = ALPHA
-    speed: float = SPEED
-    floor: float | None = None
+    alpha: float
+    speed: float
+    floor: float | None
+    amplitude: str
+
+    def __init__(
+        self,
+        reading: str,
+        alpha: float | None = None,
+        speed: float | None = None,
+        floor: float | None = None,
+        amplitude: str | None = None,
+    ) -> None:
+        own = READINGS["eq3" if reading == PRINTED else reading]
+        values = {
+            "reading": reading,
+            "alpha": -own.slope if alpha is None else alpha,
+            "speed": own.sliding_speed if speed is None else speed,
+            "floor": floor,
+            "amplitude": (WHOLE if own.inferred else HALF) if amplitude is None else amplitude,
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
 
     @property
     def has_contacts(self) -> bool:

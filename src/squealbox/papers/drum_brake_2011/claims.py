@@ -1,5 +1,6 @@
 """The paper's claims as data, and the one rule that judges a computed value against them."""
 
+import dataclasses
 import functools
 import tomllib
 from dataclasses import dataclass
@@ -29,6 +30,11 @@ class Part:
     def key(self) -> str:
         """Claim and part in one word, such as ``mu-3.lower``."""
         return f"{self.claim}.{self.name}"
+
+    @property
+    def is_amplitude(self) -> bool:
+        """True for a length of a motion: it may be read as half of peak to peak, or as all of it."""
+        return self.unit == "mm"
 
     @property
     def tolerance(self) -> str:
@@ -63,6 +69,13 @@ class Finding:
     value: float | bool | None
     note: str = ""
     trusted: bool = True
+
+
+def read_as(part: Part, finding: Finding, halves: float) -> Finding:
+    """A finding in the paper's measure: amplitudes are found as half peak to peak, and `halves` of them are meant."""
+    if not part.is_amplitude or finding.value is None:
+        return finding
+    return dataclasses.replace(finding, value=halves * float(finding.value))
 
 
 def judge(part: Part, finding: Finding) -> str:

@@ -8,7 +8,7 @@ from squealbox import plots
 from squealbox.papers.drum_brake_2011 import steady
 from squealbox.papers.drum_brake_2011.by_eigenvalues import ZONE
 from squealbox.papers.drum_brake_2011.by_transients import STRETCH
-from squealbox.papers.drum_brake_2011.cases import DURATION, Case
+from squealbox.papers.drum_brake_2011.cases import AMPLITUDES, DURATION, Case
 from squealbox.papers.drum_brake_2011.motions import BRAKE, Motion, Run, Studies
 from squealbox.papers.drum_brake_2011.steady import PressureMap
 from squealbox.plots.style import drawing, scaled
@@ -19,6 +19,15 @@ if TYPE_CHECKING:
 
 FRICTION_SHOWN = tuple(Run("friction", mu) for mu in (0.10, 0.39, 0.40, 0.50))
 LOAD_SHOWN = tuple(Run("load", load) for load in (5e3, 10e3, 15e3, 25e3))
+PRINTED_LINES = {  # rad/s, where the paper names frequencies
+    Run("friction", 0.10): (11240.0, 14570.0),
+    Run("friction", 0.40): (13140.0,),
+    Run("friction", 0.50): (12190.0,),
+    Run("load", 15e3): (11790.0, 14060.0),
+    BRAKE: (11790.0,),
+}
+PRINTED_AMPLITUDES = {Run("friction", 0.40): 0.11, Run("friction", 0.50): 0.20, Run("load", 15e3): 0.16,
+                      Run("load", 25e3): 0.16}  # mm  # fmt: skip
 UPTO = 4000.0  # Hz, drawn; the paper looks at 0 to 5 kHz
 PUBLISHED_FREQUENCIES = ((0.10, 11240.0), (0.10, 14570.0), (0.40, 13140.0), (0.50, 12190.0))  # mu, rad/s
 LAST = 0.04  # of the run, drawn dark in phase planes: four cycles
@@ -38,6 +47,7 @@ def time_series(runs: tuple[Run, ...], raw: Studies, exact: Studies) -> "Figure"
     for run, (left, right) in zip(runs, rows, strict=True):
         _history(left, str(run), raw[run], exact[run])
         _spectra(right, raw[run], exact[run])
+        _printed(left, right, run, raw)
         if run != runs[-1]:
             left.set_xlabel("")
             right.set_xlabel("")
@@ -46,8 +56,13 @@ def time_series(runs: tuple[Run, ...], raw: Studies, exact: Studies) -> "Figure"
 
 def phase_planes(runs: tuple[Run, ...], raw: Studies, exact: Studies) -> "Figure":
     """Figs. 4 and 7: phase planes of x, the last raw cycles black, the last exact cycle dashed."""
-    figure, panels = plots.panels(1, len(runs), width=9.0, height=2.5)
-    for panel, run in zip(panels, runs, strict=True):
+    columns = 4 if len(runs) % 4 == 0 or len(runs) > 6 else min(len(runs), 3)
+    rows = -(-len(runs) // columns)
+    figure, panels = plots.panels(rows, columns, width=2.25 * columns, height=2.5 * rows)
+    panels = np.ravel(panels)
+    for panel in panels[len(runs) :]:
+        panel.axis("off")
+    for panel, run in zip(panels, runs, strict=False):
         _phase_plane(panel, str(run), raw[run], exact[run])
     return figure
 
@@ -55,7 +70,7 @@ def phase_planes(runs: tuple[Run, ...], raw: Studies, exact: Studies) -> "Figure
 def coalescence(case: Case) -> "Figure":
     """Fig. 5: frequencies and growth rates over the friction coefficient, with the published frequencies."""
     mu = np.linspace(0.0, 0.6, 301)
-    figure, axes = plots.panels(2, 1, width=4.6, height=4.2, sharex=True)
+    figure, axes = plots.panels(2, 1, width=5.4, height=4.4, sharex=True)
     plots.coalescence(mu, steady.modes(case, mu=mu), frequency_unit="10³ rad/s", axes=axes)
     with drawing(axes[0]) as panel:
         panel.plot(*(np.array(PUBLISHED_FREQUENCIES).T * [[1.0], [1e-3]]), marker="*", label="published", **MARK)
@@ -70,6 +85,7 @@ def braking(raw: Studies, exact: Studies) -> "Figure":
     low, high = (1e3 * t for t in STRETCH)
     left.axvspan(low, high, facecolor="#e6e6e6", edgecolor="none", zorder=0)
     _spectra(middle, raw[BRAKE], exact[BRAKE])
+    _printed(left, middle, BRAKE, raw)
     _phase_plane(right, "", raw[BRAKE], exact[BRAKE])
     return figure
 
@@ -102,6 +118,22 @@ def _history(panel: Any, name: str, raw: Motion, exact: Motion) -> None:
     panel.set_xlim(0.0, 1e3 * DURATION)
     if not raw.completed:
         panel.axvline(1e3 * raw.trajectory.t[-1], **EXACT_LINE)
+
+
+def _printed(series: Any, lines: Any, run: Run, raw: Studies) -> None:
+    """The paper's frequencies as lines in the spectrum, and its amplitude as the edges of the last quarter's motion."""
+    for line in PRINTED_LINES.get(run, ()):
+        lines.axvline(1e-3 * line, color=MARK["color"], linewidth=1.1, zorder=0)
+    amplitude = PRINTED_AMPLITUDES.get(run)
+    motion = raw[run]
+    if amplitude is None or motion.runs_away or not motion.completed:
+        return
+    x = motion.trajectory.q[motion.trajectory.t >= 0.75 * DURATION, 0]
+    factor, _ = scaled("m", motion.trajectory.q[:, 0])
+    half = 1e-3 * amplitude / AMPLITUDES[raw.case.amplitude]
+    middle = 0.5 * (np.min(x) + np.max(x))
+    for edge in (middle - half, middle + half):
+        series.plot([750.0 * DURATION, 1e3 * DURATION], [edge / factor] * 2, color=MARK["color"], linewidth=1.6)
 
 
 def _spectra(panel: Any, raw: Motion, exact: Motion) -> None:

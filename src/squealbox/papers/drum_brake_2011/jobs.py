@@ -38,7 +38,7 @@ def run(jobs: list[Job], progress: Progress | None = None, first: int = 0) -> li
     """
     answers: list[Any] = [None] * len(jobs)
     done = 0
-    count = min(_processors(), MOST_WORKERS, len(jobs))
+    count = min(processors(), MOST_WORKERS, len(jobs))
     with ThreadPoolExecutor(count) as threads, _workers(count) as idle:
         for batch in (range(first), range(first, len(jobs))):
             waiting = {threads.submit(_ask, idle, jobs[i]): i for i in batch}
@@ -56,9 +56,15 @@ def run(jobs: list[Job], progress: Progress | None = None, first: int = 0) -> li
 
 
 def everything(
-    readings: Sequence[str], figures: Path, progress: Progress | None = None, fine: bool = False
+    readings: Sequence[str],
+    figures: Path,
+    progress: Progress | None = None,
+    fine: bool = False,
+    search: bool = False,
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Study and search of every reading, by reading; the default reading's figures go to `figures` itself.
+    """Study of every reading and, where asked, the search over its choices, by reading.
+
+    The default reading's figures go to `figures` itself. Without `search` the second answer is empty.
 
     What the transients need is compiled first, once, beside the one reading that has none: two workers that start on
     transients would each compile the same.
@@ -68,12 +74,14 @@ def everything(
         {"kind": "compile maps", "reading": name, "label": f"compiled for maps of {name}"}
         for name in readings if name in KERNELS
     ]  # fmt: skip
-    tasks = [_task(kind, reading, figures, fine) for kind in ("study", "search") for reading in readings]
+    kinds = ("study", "search") if search else ("study",)
+    tasks = [_task(kind, reading, figures, fine) for kind in kinds for reading in readings]
     alone = [task for task in tasks if task["reading"] == PRINTED]
     others = [task for task in tasks if task["reading"] != PRINTED]
     answers = run(compiling + alone + others, progress, len(compiling + alone))[len(compiling) :]
     found = {(task["kind"], task["reading"]): answer for task, answer in zip(alone + others, answers, strict=True)}
-    return {name: found["study", name] for name in readings}, {name: found["search", name] for name in readings}
+    searched = {name: found["search", name] for name in readings} if search else {}
+    return {name: found["study", name] for name in readings}, searched
 
 
 def do(job: Job) -> Any:
@@ -96,7 +104,8 @@ def _task(kind: str, reading: str, figures: Path, fine: bool) -> Job:
     return {"kind": kind, "reading": reading, "folder": str(folder), "label": label, "fine": fine}
 
 
-def _processors() -> int:
+def processors() -> int:
+    """How many processors this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

@@ -1,15 +1,16 @@
-"""The one page of the study: the claims first, then what is assumed, the figures of every reading, and the search."""
+"""The one page of the study: findings, claims, why they are met or not, the figures, what is assumed, the search."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from squealbox.papers.drum_brake_2011 import record, search_results
-from squealbox.papers.drum_brake_2011.cases import ALPHA, DEFAULT_READING, DURATION, PRINTED, SPEED
-from squealbox.papers.drum_brake_2011.claims import AGREE, DISAGREE, EXACT, RAW, ROADS, UNDECIDED, claims, paper
+from squealbox.papers.drum_brake_2011 import family_search, page_claims, page_why, record, search_results, solver_2011
+from squealbox.papers.drum_brake_2011.cases import ALPHA, DEFAULT_READING, DURATION, PRINTED, RECONSTRUCTED, SPEED, Case
+from squealbox.papers.drum_brake_2011.claims import AGREE, EXACT, RAW, ROADS, paper
 from squealbox.papers.drum_brake_2011.ensembles import LEVEL, LONGER, MEANS
 from squealbox.papers.drum_brake_2011.motions import METHODS
-from squealbox.report import Cell, Code, Page, Picture, Points, Section, Table, Text, Tiles
+from squealbox.report import Cell, Code, Page, Picture, Points, Section, Table, Text
 
 READING_MEANS = {
     "eq1_printed": "Eq. (1) as printed: friction along x proportional to x, along y to y",
@@ -18,19 +19,23 @@ READING_MEANS = {
     "componentwise": "friction proportional to the whole spring compression, its sign by component",
     "consistent": "one contact a shoe, along its tangent, with the load in the contact: what a free-body diagram gives",
     PRINTED: "the matrices of Eq. (3) with their alpha terms, exactly as printed: linear, so eigenvalues only",
+    "reconstructed": "inferred, not printed: signs +, - in both rows, N in friction; alpha and V_B fitted, amplitudes "
+    "read peak to peak",
+    "reconstructed_simple": "inferred, not printed: signs +, - in both rows, loads along the springs; round alpha and "
+    "V_B, amplitudes read peak to peak",
 }
 CAPTIONS = {
     "fig1": "Fig. 1. The model, angles to scale. Eq. (1) has the loads along (sin, -cos), not along the springs.",
     "fig2": "Fig. 2. The friction law for three coefficients at rest. The slope is an assumption.",
     "fig3": "Fig. 3. Time series and spectra over the friction coefficient. Black: raw, as in the paper. Dotted: "
-    "envelope of the exact motion; dashed: its spectrum.",
+    "envelope of the exact motion; dashed: its spectrum. Pink: the published frequencies and amplitudes.",
     "fig4": "Fig. 4. Phase planes over the friction coefficient. Black: last cycles, raw. Dashed: last cycle, exact.",
     "fig5": "Fig. 5. Frequencies and growth rates over the friction coefficient. Stars: the published frequencies.",
-    "fig6": "Fig. 6. Time series and spectra over the load. Black: raw; dotted and dashed: exact.",
+    "fig6": "Fig. 6. Time series and spectra over the load. Black: raw; dotted and dashed: exact; pink: published.",
     "fig7": "Fig. 7. Phase planes over the load. Black: last cycles, raw. Dashed: last cycle, exact.",
     "fig8": "Fig. 8. Braking from 0.2 m/s to rest in 0.05 s. Grey: where the paper sees a constant amplitude. "
     "The kick at the end is the belt coming to rest.",
-    "fig9": "Fig. 9. Growth rate over both centres of pressure in steps of 1 deg. Black: its boundary, traced at 0.30. "
+    "fig9": "Fig. 9. Growth rate over both centres of pressure in steps of 1 deg. Black: its boundary. "
     "Blue: the published unstable zone.",
     "maps_friction": "Friction with load and with speed. Left: growth rate by eigenvalues. Right: 101 x 101 transients "
     "from rest; black line: the boundary by eigenvalues. Specks along it decay by less than 3.6 1/s, too slowly to be "
@@ -42,79 +47,79 @@ CAPTIONS = {
     "that does not repeat; those that rise from zero right after the onset are still growing. Circles: from rest; "
     "dots: from 0.1 % beside steady sliding. Where they part, the start decides.",
 }
-SIGNS = {AGREE: "✓", DISAGREE: "✗", UNDECIDED: "?"}
 
 
-def page(folder: Path, studies: Mapping[str, Any], found: list[record.Record], searched: Mapping[str, Any]) -> Page:
-    """The page of the study whose figures are in `folder`."""
+@dataclass(frozen=True)
+class Extras:
+    """What the page shows beside the readings: the search's short form and, if made, the whole; the solver of 2011."""
+
+    short: Any
+    decays: list[Any]
+    onsets: dict[str, tuple[float, float]]
+    whole: Any = None
+
+
+def extras(case: Case, whole: Any = None) -> Extras:
+    """The short form of the search, and what the solver of 2011 did in this case."""
+    return Extras(family_search.short(), solver_2011.decays(case), solver_2011.onsets(case), whole)
+
+
+def page(
+    folder: Path,
+    studies: Mapping[str, Any],
+    found: list[record.Record],
+    searched: Mapping[str, Any],
+    more: Extras,
+) -> Page:
+    """The page of the study whose figures are in `folder`: findings first, then claims, why, figures, the rest."""
     default = studies[DEFAULT_READING]
+    once = record.overall(found)
     lead = (
-        f"Every claim of the paper beside what this program computes, for {len(studies)} readings of its contradictory "
-        f"equations. {_all_met(found)} Nothing was tuned."
+        f"What the paper shows and whether this program shows it, for {len(studies)} readings of its contradictory "
+        f"equations. {page_claims.tally(found, once)} Nothing was tuned to agree."
     )
-    others = [name for name in studies if name != DEFAULT_READING]
+    others = [name for name in studies if name not in (DEFAULT_READING, RECONSTRUCTED)]
+    redrawn = _pictures(folder / RECONSTRUCTED, studies[RECONSTRUCTED]["figures"])
     return Page(
         title=paper()["title"],
         lead=f"{paper()['source']}. {lead}",
         sections=(
-            Section("Claims", _claims(list(studies), found, searched)),
-            Section("What the raw integration changes", _raw_and_exact(studies, found)),
+            Section("What the paper says", page_claims.blocks(found)),
+            Section("What no reading can meet", page_why.excluded(folder)),
+            Section("The reconstruction", page_why.reconstruction(
+                more.short, more.whole, redrawn
+            )),
+            Section("What the solver of 2011 did", (
+                *page_why.solver(folder, more.decays, more.onsets),
+                Section("Raw and exact runs of this study", _raw_and_exact(studies, found), folded=True),
+            )),
+            Section("The readings", (_readings(list(studies), found),)),
+            Section(f"Reading {DEFAULT_READING} (the default of DrumBrake)",
+                    _reading(DEFAULT_READING, default, found, folder)),
+            Section("The other readings", tuple(
+                Section(page_claims.shown_name(name), _reading(name, studies[name], found, folder / name), folded=True)
+                for name in (*others, RECONSTRUCTED)
+            )),
             Section("Assumptions and contradictions", _assumptions()),
             Section("Model and friction law", (_picture(folder, "fig1"), _picture(folder, "fig2"))),
-            Section(f"Reading {DEFAULT_READING} (the default)", _reading(DEFAULT_READING, default, found, folder)),
-            Section("The other readings", tuple(
-                Section(name, _reading(name, studies[name], found, folder / name), folded=True) for name in others
-            )),
-            Section("Which choices meet which claims", search_results.blocks(folder, searched)),
+            *_choices(folder, searched),
             Section("Run it again", _again()),
         ),
         footer=f"Made by {', '.join(f'{name} {version}' for name, version in record.versions().items())}.",
     )  # fmt: skip
 
 
-def _claims(readings: list[str], found: list[record.Record], searched: Mapping[str, Any]) -> tuple[Any, ...]:
-    numbers = record.count(found)
-    tiles = tuple((str(number), f"of {len(found)} {verdict}", verdict) for verdict, number in numbers.items())
-    by = {(each["id"], each["reading"]): each for each in found}
-    rows = []
-    for claim in claims():
-        cells = [_verdict(by[claim.id, reading]) for reading in readings]
-        rows.append((Cell(claim.id, claim.statement), Cell(claim.published), *cells))
-    return (
-        Tiles(tiles),
-        Text(_most(readings, found, searched)),
-        Table(("claim", "published", *readings), tuple(rows), "A claim agrees when all of its parts that count do."),
-        Table(("reading", "what it is", "agree", "disagree", "not decidable", "parts that agree"), tuple(
-            _reading_row(reading, [each for each in found if each["reading"] == reading]) for reading in readings
-        ), "The readings."),
-    )  # fmt: skip
+def _choices(folder: Path, searched: Mapping[str, Any]) -> tuple[Section, ...]:
+    """The search over alpha, speed and floor in every reading, where it was made."""
+    if not searched:
+        return ()
+    return (Section("Which choices meet which claims", search_results.blocks(folder, searched)),)
 
 
-def _all_met(found: list[record.Record]) -> str:
-    failing = {each["reading"] for each in found if each["verdict"] != AGREE}
-    meeting = {each["reading"] for each in found} - failing
-    return f"All claims are met by {', '.join(sorted(meeting))}." if meeting else "No reading meets all claims."
-
-
-def _most(readings: list[str], found: list[record.Record], searched: Mapping[str, Any]) -> str:
-    agree = {reading: sum(r["reading"] == reading and r["verdict"] == AGREE for r in found) for reading in readings}
-    most = max(agree.values())
-    names = " and ".join(reading for reading, number in agree.items() if number == most)
-    beyond = max(len(search_results.met(row)) for row in search_results.rows_of(searched))
-    return (
-        f"With the choices assumed here the most that one reading meets is {most} of {len(claims())} claims ({names}). "
-        f"Over all choices of alpha, speed and floor that were tried it is {beyond}."
-    )
-
-
-def _verdict(each: record.Record) -> Cell:
-    counted = [
-        (part["part"].replace("_", " "), answer)
-        for part in each["parts"] for road, answer in part["roads"].items() if road in each["deciding"]
-    ]  # fmt: skip
-    names = [f"{name}: " if len(counted) > 1 else "" for name, _ in counted]
-    lines = [f"{SIGNS[a['verdict']]} {name}{a['shown']}" for name, (_, a) in zip(names, counted, strict=True)]
-    return Cell(each["verdict"], "\n".join(lines), each["verdict"])
+def _readings(readings: list[str], found: list[record.Record]) -> Table:
+    rows = (_reading_row(reading, [each for each in found if each["reading"] == reading]) for reading in readings)
+    head = ("reading", "what it is", "agree", "disagree", "not decidable", "parts that agree")
+    return Table(head, tuple(rows), "*: inferred from the paper's numbers, not printed.")
 
 
 def _reading_row(reading: str, found: list[record.Record]) -> tuple[str, ...]:
@@ -124,7 +129,12 @@ def _reading_row(reading: str, found: list[record.Record]) -> tuple[str, ...]:
         for each in found for part in each["parts"] for road in part["roads"] if road in each["deciding"]
     ]  # fmt: skip
     parts = f"{verdicts.count(AGREE)} of {len(verdicts)}"
-    return (reading, READING_MEANS[reading], *(str(number) for number in numbers.values()), parts)
+    return (
+        page_claims.shown_name(reading),
+        READING_MEANS[reading],
+        *(str(number) for number in numbers.values()),
+        parts,
+    )
 
 
 def _raw_and_exact(studies: Mapping[str, Any], found: list[record.Record]) -> tuple[Any, ...]:
@@ -171,7 +181,8 @@ def _answer(answer: Mapping[str, Any] | None) -> Cell:
     if answer is None:
         return Cell("")
     note = answer["note"] if answer["trusted"] else f"not to be trusted: {answer['note']}"
-    return Cell(f"{answer['shown']}: {answer['verdict']}", note, answer["verdict"])
+    mark = AGREE if answer["verdict"] == AGREE else ""
+    return Cell(f"{page_claims.SIGNS[answer['verdict']]} {answer['shown']}", note, mark)
 
 
 def _assumptions() -> tuple[Any, ...]:
@@ -190,7 +201,7 @@ def _reading(name: str, study: Mapping[str, Any], found: list[record.Record], fo
             by_road = [_answer(part["roads"].get(road)) for road in ROADS]
             rows.append((what, Cell(published, _why(part)), *by_road))
     head = ("part of a claim", "published, tolerance", "eigenvalues", "raw (as in 2011)", "exact")
-    pictures = tuple(_picture(folder, figure) for figure in study["figures"])
+    pictures = _pictures(folder, study["figures"]) if name != RECONSTRUCTED else ()  # they stand above
     table = Section("All numbers", (Table(head, tuple(rows)),), folded=True)
     runs = (Section("All runs, raw beside exact", (_runs(study["runs"]),), folded=True),) if study["runs"] else ()
     shares = _shares(study.get("shares", []))
@@ -224,7 +235,7 @@ def _runs(runs: list[dict[str, Any]]) -> Table:
         (
             run["run"],
             *(Cell(f"{run[road]['verdict']}, {run[road]['amplitude']:.3g} mm") for road in (RAW, EXACT)),
-            Cell(f"{run['distance']:.2g}", run["doubt"], DISAGREE if run["doubt"] else ""),
+            Cell(f"{run['distance']:.2g}", run["doubt"]),
             f"{run[RAW]['steps']}",
             f"{run[EXACT]['steps']}",
             f"{run[EXACT]['events']}",
@@ -240,14 +251,18 @@ def _runs(runs: list[dict[str, Any]]) -> Table:
 def _again() -> tuple[Any, ...]:
     methods = [f"{road}: {method.tableau}, relative tolerance {method.rtol:g}" for road, method in METHODS.items()]
     return (
-        Code("squealbox paper drum-brake-2011 --out DIR"),
+        Code("squealbox paper drum-brake-2011 --out DIR\nsquealbox paper drum-brake-2011 --out DIR --search"),
         Code('from squealbox.papers.drum_brake_2011 import reproduce\n\nreproduce("DIR")'),
         Text(
-            "DIR then holds this page, claims.json, claims.md, search.csv, and the figures as PNG and SVG in figures/. "
-            f"Assumed throughout, unless said otherwise: alpha = {ALPHA:g} s/m, V_B = {SPEED:g} m/s. Transients: "
+            "DIR then holds this page, claims.json, claims.md, and the figures as PNG and SVG in figures/; search.csv with --search. "
+            f"Assumed for the printed readings: alpha = {ALPHA:g} s/m, V_B = {SPEED:g} m/s. Transients: "
             f"{'; '.join(methods)}."
         ),
     )
+
+
+def _pictures(folder: Path, names: list[str]) -> tuple[Picture, ...]:
+    return tuple(_picture(folder, name) for name in names)
 
 
 def _picture(folder: Path, name: str) -> Picture:

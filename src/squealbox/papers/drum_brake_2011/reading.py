@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.papers.drum_brake_2011 import by_eigenvalues, by_transients, ensemble_figures, ensembles, figures, steady
-from squealbox.papers.drum_brake_2011.cases import DEFAULT_READING, FRICTION, Case
+from squealbox.papers.drum_brake_2011.cases import DEFAULT_READING, FRICTION, INFERRED, RECONSTRUCTED, Case
 from squealbox.papers.drum_brake_2011.claims import EIGENVALUES, EXACT, RAW, Finding
+from squealbox.papers.drum_brake_2011.motions import FRICTION as FRICTION_RUNS
+from squealbox.papers.drum_brake_2011.motions import LOAD as LOAD_RUNS
 from squealbox.papers.drum_brake_2011.motions import RUNS, Motion, Studies, distance, doubt, studies
 from squealbox.plots import style
 
@@ -18,12 +20,15 @@ if TYPE_CHECKING:
 ALONG_FRICTION = (DEFAULT_READING, "eq3")  # readings with a diagram of the maxima over friction
 DOTS = 160  # per inch
 MAP_FRICTION = (FRICTION, 0.35)  # the paper compares its map with one measured at 0.35
+WHOLE_STUDY = {RECONSTRUCTED: (FRICTION_RUNS, LOAD_RUNS)}  # readings whose figures show every run
 Drawer = Callable[[], "Figure"]
 
 
 def study(case: Case, folder: Path, sizes: ensembles.Sizes = ensembles.USUAL) -> dict[str, Any]:
     """Findings, runs, shares of maps and figure files of one case, as plain data; figures are written to `folder`."""
-    maps = {mu: steady.pressure_map(case, mu=mu, traced=mu == FRICTION) for mu in MAP_FRICTION}
+    friction, load = WHOLE_STUDY.get(case.reading, (figures.FRICTION_SHOWN, figures.LOAD_SHOWN))
+    shown = (FRICTION, 0.40) if case.reading in INFERRED else MAP_FRICTION  # they meet their onset at 0.40
+    maps = {mu: steady.pressure_map(case, mu=mu, traced=mu == FRICTION) for mu in shown}
     found = {EIGENVALUES: by_eigenvalues.findings(case, maps[FRICTION])}
     drawn: dict[str, Drawer] = {
         "fig5": lambda: figures.coalescence(case),
@@ -36,20 +41,21 @@ def study(case: Case, folder: Path, sizes: ensembles.Sizes = ensembles.USUAL) ->
         found |= {RAW: by_transients.findings(raw, exact), EXACT: by_transients.findings(exact)}
         runs = _runs(raw, exact)
         drawn |= {
-            "fig3": lambda: figures.time_series(figures.FRICTION_SHOWN, raw, exact),
-            "fig4": lambda: figures.phase_planes(figures.FRICTION_SHOWN, raw, exact),
-            "fig6": lambda: figures.time_series(figures.LOAD_SHOWN, raw, exact),
-            "fig7": lambda: figures.phase_planes(figures.LOAD_SHOWN, raw, exact),
+            "fig3": lambda: figures.time_series(friction, raw, exact),
+            "fig4": lambda: figures.phase_planes(friction, raw, exact),
+            "fig6": lambda: figures.time_series(load, raw, exact),
+            "fig7": lambda: figures.phase_planes(load, raw, exact),
             "fig8": lambda: figures.braking(raw, exact),
         }
-        more, shares = _ensembles(case, sizes)
-        drawn |= more
+        if case.reading not in INFERRED:  # at 0.30 nothing of their map is unstable
+            more, shares = _ensembles(case, sizes)
+            drawn |= more
     else:
         found |= {RAW: by_transients.without_contacts(), EXACT: by_transients.without_contacts()}
     for name, draw in sorted(drawn.items()):
         save(draw(), folder / name)
     plain = {road: _plain(each) for road, each in found.items()}
-    return {"findings": plain, "runs": runs, "shares": shares, "figures": sorted(drawn)}
+    return {"findings": plain, "amplitude": case.amplitude, "runs": runs, "shares": shares, "figures": sorted(drawn)}
 
 
 def _ensembles(case: Case, sizes: ensembles.Sizes) -> tuple[dict[str, Drawer], list[dict[str, Any]]]:

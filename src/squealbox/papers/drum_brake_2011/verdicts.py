@@ -26,7 +26,8 @@ def verdicts(case: Case, progress: Progress = lambda share, text: None) -> list[
         found[EXACT] = by_transients.findings(exact)
     else:
         found |= {RAW: by_transients.without_contacts(), EXACT: by_transients.without_contacts()}
-    return record.records({case.reading: {"findings": {road: _plain(each) for road, each in found.items()}}})
+    plain = {road: _plain(each) for road, each in found.items()}
+    return record.records({case.reading: {"findings": plain, "amplitude": case.amplitude}})
 
 
 def _plain(found: dict[str, Finding]) -> dict[str, Any]:
