@@ -19,13 +19,21 @@ from squealbox.fe.readers.matrix import (
     OTHER,
     STIFFNESS,
     STRUCTURAL,
+    Entries,
     FileMatrix,
     MatrixFile,
     MatrixFileError,
     complete,
     kind_of,
 )
-from squealbox.fe.readers.numbers import check_index, columns_of, number, significant_digits, text_lines
+from squealbox.fe.readers.numbers import (
+    check_index,
+    check_last_line,
+    columns_of,
+    number,
+    significant_digits,
+    text_lines,
+)
 
 KINDS = {"STIFFNESS": STIFFNESS, "MASS": MASS, "VISCOUS DAMPING": DAMPING, "STRUCTURAL DAMPING": STRUCTURAL}
 
@@ -34,7 +42,7 @@ def read_coordinates(path: Path, stream: BinaryIO, first: str, *, half: bool = F
     """``row column value`` from 1 without a header; `half` when the format stores one half only."""
     rows, columns, values = columns_of(path, stream, 1, 3, comma=False)
     name = path.name if code == "Abaqus" else {".sti": "K", ".mas": "M"}.get(path.suffix.lower(), path.name)
-    rows, columns = check_index(path, rows, None, name), check_index(path, columns, None, name)
+    rows, columns = check_index(path, rows, None, name, 1), check_index(path, columns, None, name, 1)
     kind = kind_of(name) if kind_of(name) != OTHER else kind_of(path.stem)
     size = int(max(rows.max(initial=-1), columns.max(initial=-1))) + 1
     used = np.zeros(size, dtype=bool)
@@ -50,8 +58,17 @@ def read_coordinates(path: Path, stream: BinaryIO, first: str, *, half: bool = F
         )
     notes = (f"{empty.size} of {size} rows have no entry",) if empty.size else ()
     digits = significant_digits(first.split()[-1:])
+    entries = Entries(rows, columns, values, lambda i: i + 1)
+    del rows, columns, values
     matrix = complete(
-        path, name, kind, rows, columns, values, size, "half" if half else "either", digits=digits, notes=notes
+        path,
+        name,
+        kind,
+        entries,
+        size,
+        "half" if half else "either",
+        digits=digits,
+        notes=notes,
     )
     words = f"{code}, coordinate text" if code != "CalculiX" else "CalculiX matrix storage"
     return MatrixFile(path, words, (matrix,))
@@ -64,7 +81,7 @@ def read_matrix_input(path: Path, stream: BinaryIO, first: str) -> MatrixFile:
     del node, direction, other, along
     digits = significant_digits(re.split(r"[,\s]+", first.strip())[-1:])
     kind = kind_of(path.stem)
-    found = between_labels(path, path.name, kind, rows, columns, values, "either", digits=digits)
+    found = between_labels(path, path.name, kind, rows, columns, values, "either", lambda i: i + 1, digits=digits)
     return MatrixFile(path, "Abaqus, matrix input text", (found,))
 
 
@@ -184,4 +201,6 @@ class _Substructure:
             rows, columns = np.tril_indices(size)
         values = np.array(numbers)
         rule = "full" if whole else "half"
-        return complete(self.path, name, KINDS[name], rows, columns, values, size, rule, labels=labels, digits=14)
+        return complete(
+            self.path, name, KINDS[name], Entries(rows, columns, values), size, rule, labels=labels, digits=14
+        )

@@ -14,6 +14,7 @@ import numpy as np
 from squealbox.fe.readers.matrix import (
     MOST_FREEDOMS,
     OTHER,
+    Entries,
     FileMatrix,
     MatrixFile,
     MatrixFileError,
@@ -128,7 +129,7 @@ def _entries(path: Path, name: str, rows: Any, columns: Any, data: Any, shape: A
             path, f"{name} holds one triangle only: expected both, because nothing in the file says it is symmetric"
         )
     size = int(shape[0]) if square else (int(shape[0]), int(shape[1]))
-    return complete(path, name, kind, rows, columns, data, size, "full", digits=16)
+    return complete(path, name, kind, Entries(rows, columns, data), size, "full", digits=16)
 
 
 def _matrix(path: Path, name: str, array: Any) -> FileMatrix:
@@ -161,7 +162,11 @@ def read_mat(path: Path) -> MatrixFile:
         if name.startswith("__"):
             continue
         if issparse(value):
-            whole = value.tocoo()
+            try:
+                value.check_format(full_check=True)
+                whole = value.tocoo()
+            except BROKEN as error:
+                raise MatrixFileError(path, f"{name[:40]} is no sparse matrix: {error}: a damaged file") from error
             if whole.data.dtype.kind not in "fiu":
                 raise MatrixFileError(path, f"{name} holds {whole.data.dtype}: expected real numbers")
             matrices.append(_entries(path, name, whole.row, whole.col, whole.data.astype(float), whole.shape))

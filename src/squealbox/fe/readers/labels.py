@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.fe.readers.matrix import FileMatrix, MatrixFileError, complete
+from squealbox.fe.readers.matrix import Entries, FileMatrix, MatrixFileError, complete
 
 
 def coded(path: Path, nodes: Any, directions: Any) -> Any:
@@ -27,7 +27,7 @@ def decoded_labels(codes: Any) -> Any:
 
 
 def between_labels(
-    path: Path, name: str, kind: str, rows: Any, columns: Any, values: Any, rule: str, **about: Any
+    path: Path, name: str, kind: str, rows: Any, columns: Any, values: Any, rule: str, lines: Any = None, **about: Any
 ) -> FileMatrix:
     """A square matrix from coded row and column labels, on the union of both."""
     codes = np.union1d(rows, columns)
@@ -35,9 +35,7 @@ def between_labels(
         path,
         name,
         kind,
-        np.searchsorted(codes, rows).astype(np.int32),
-        np.searchsorted(codes, columns).astype(np.int32),
-        values,
+        Entries(*(np.searchsorted(codes, part).astype(np.int32) for part in (rows, columns)), values, lines),
         len(codes),
         rule,
         labels=decoded_labels(codes),

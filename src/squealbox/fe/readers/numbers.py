@@ -22,7 +22,10 @@ def number(word: str) -> float:
     if not _NUMBER.fullmatch(word):
         raise ValueError(f"{word[:40]!r} is not a number")
     word = word.replace("D", "E").replace("d", "e")
-    return float(word if "e" in word.lower() else _NO_LETTER.sub(r"E\1", word))
+    value = float(word if "e" in word.lower() else _NO_LETTER.sub(r"E\1", word))
+    if abs(value) == float("inf"):
+        raise ValueError(f"{word[:40]!r} is no finite number")
+    return value
 
 
 def significant_digits(words: Any) -> int | None:
@@ -50,6 +53,25 @@ def decoded(path: Path, raw: bytes, line: int) -> str:
     if "\x00" in text:
         raise MatrixFileError(path, "holds a zero byte: expected text", line)
     return text.rstrip("\r\n")
+
+
+def check_last_line(path: Path, stream: BinaryIO) -> tuple[str, ...]:
+    """A note where the last line has no end; `MatrixFileError` where its number is shorter than those before it too."""
+    stream.seek(0, 2)
+    size = stream.tell()
+    stream.seek(max(size - 4000, 0))
+    tail = stream.read()
+    stream.seek(0)
+    if tail.endswith((b"\n", b"\r")) or not tail.strip():
+        return ()
+    words = [line.replace(b",", b" ").split() for line in tail.splitlines()[-6:]]
+    counts = [significant_digits([line[-1].decode("latin-1")]) or 0 for line in words if line]
+    if len(counts) > 1 and min(counts[1:-1] or counts[:1]) >= 9 and counts[-1] < min(counts[1:-1] or counts[:1]):
+        line = 1
+        while block := stream.read(BLOCK):
+            line += block.count(b"\n")
+        raise MatrixFileError(path, "ends within a number: the file was cut short", line)
+    return ("the last line has no end: the file may have been cut",)
 
 
 def columns_of(path: Path, stream: BinaryIO, line: int, width: int, comma: bool, comment: bytes = b"") -> list[Any]:
@@ -110,16 +132,17 @@ def _slow(path: Path, block: list[bytes], line: int, width: int, comma: bool, co
             row = [number(word) for word in words]
         except ValueError as error:
             raise MatrixFileError(path, f"{error}: expected {width} numbers", at) from error
-        if any(value != round(value) or abs(value) > 2**53 for value in row[:-1] if np.isfinite(value)):
+        if any(value != round(value) or abs(value) > 2**53 for value in row[:-1]):
             raise MatrixFileError(path, f"{text.strip()[:60]!r}: expected whole numbers before the last", at)
         rows.append(row)
     return np.array(rows, dtype=float).reshape(-1, width)
 
 
-def check_index(path: Path, index: Any, size: int | None, name: str) -> Any:
-    """Indices from 1 as indices from 0; `MatrixFileError` for one outside 1 to `size`."""
+def check_index(path: Path, index: Any, size: int | None, name: str, first: int | None = None) -> Any:
+    """Indices from 1 as indices from 0; `MatrixFileError` for one outside 1 to `size`; `first` is the line of the first."""
     most = MOST_FREEDOMS if size is None else size
     bad = np.flatnonzero((index < 1) | (index > most))
     if bad.size:
-        raise MatrixFileError(path, f"{name}: entry {bad[0] + 1} has the index {index[bad[0]]}: expected 1 to {most}")
+        line = None if first is None else first + int(bad[0])
+        raise MatrixFileError(path, f"{name}: the index {index[bad[0]]}: expected 1 to {most}", line)
     return index - 1

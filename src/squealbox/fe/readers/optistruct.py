@@ -19,6 +19,7 @@ from squealbox.fe.readers.matrix import (
     MASS,
     MOST_FREEDOMS,
     STIFFNESS,
+    Entries,
     FileMatrix,
     MatrixFile,
     MatrixFileError,
@@ -118,7 +119,7 @@ def _labels(path: Path, block: _Block) -> Any:
     turned = block.rows == 2 and block.columns != 2
     for row, column, value in block.entries:
         i, j = (column, row) if turned else (row, column)
-        if j > 2 or value != round(value):
+        if j > 2 or value != round(value) or abs(value) > 2**45:
             raise MatrixFileError(
                 path, "DOFS is not a table of node and direction: expected whole numbers in two columns"
             )
@@ -134,7 +135,12 @@ def _matrix(path: Path, block: _Block, labels: Any) -> FileMatrix:
             path, f"{block.name} has {block.rows} rows and {block.columns} columns: expected a square one"
         )
     found = complete(
-        path, block.name, NAMES[block.name], rows[keep] - 1, columns[keep] - 1, values[keep], block.rows, "either"
+        path,
+        block.name,
+        NAMES[block.name],
+        Entries(rows[keep] - 1, columns[keep] - 1, values[keep]),
+        block.rows,
+        "either",
     )
     if labels is None:
         return found
