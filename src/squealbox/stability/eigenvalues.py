@@ -5,7 +5,7 @@ solved as the eigenproblem of the (2n, 2n) state matrix [[0, I], [-M^-1 K, -M^-1
 angular frequency; time enters as exp(lambda t), so a positive real part grows.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -117,7 +117,11 @@ class ComplexModes(Result):
     @property
     def largest_growth_rate(self) -> Any:
         """The largest growth rate [1/s], shape (...); NaN where there is no spectrum."""
-        return np.max(self.growth_rate, axis=-1)
+        return (
+            np.fmax.reduce(self.growth_rate, axis=-1)
+            if self.eigenvalues.shape[-1]
+            else np.full(self.exists.shape, np.nan)
+        )
 
     @property
     def stable(self) -> Any:
@@ -127,7 +131,7 @@ class ComplexModes(Result):
     @property
     def unstable_modes(self) -> Any:
         """Number of growing modes, a complex pair counted once and real eigenvalues each, shape (...)."""
-        scale = np.max(np.abs(self.eigenvalues), axis=-1, keepdims=True)
+        scale = np.fmax.reduce(np.abs(self.eigenvalues), axis=-1, keepdims=True, initial=0.0)
         return np.sum((self.growth_rate > MARGINAL * scale) & (np.imag(self.eigenvalues) >= 0.0), axis=-1)
 
     @property
@@ -141,9 +145,29 @@ class ComplexModes(Result):
         if not np.any(self.exists):
             raise ValueError(f"no spectrum, so no most unstable mode: {self.outcome} ({self.outcome.message})")
         half = self.eigenvalues.shape[-1] // 2
-        growth = np.where(np.asarray(self.exists)[..., None], self.growth_rate[..., :half], -np.inf)
+        known = np.asarray(self.exists)[..., None] & np.isfinite(self.growth_rate[..., :half])
+        if not np.any(known):
+            raise ValueError("no mode in the band, so no most unstable one")
+        growth = np.where(known, self.growth_rate[..., :half], -np.inf)
         *entry, index = (int(i) for i in np.unravel_index(np.argmax(growth), growth.shape))
         return self.mode(index, tuple(entry))
+
+    def within(self, band: tuple[float, float]) -> "ComplexModes":
+        """Only the modes within (f1, f2) [Hz]; an entry with fewer of them than another is filled up by NaN."""
+        low, high = (2.0 * np.pi * float(f) for f in band)
+        half = self.eigenvalues.shape[-1] // 2
+        inside = (self.eigenvalues.imag[..., :half] >= low) & (self.eigenvalues.imag[..., :half] <= high)
+        most = int(np.max(np.sum(inside, axis=-1), initial=0))
+        first = np.argsort(~inside, axis=-1, kind="stable")[..., :most]
+        kept = np.take_along_axis(inside, first, axis=-1)
+        order, kept = np.concatenate([first, first + half], axis=-1), np.concatenate([kept, kept], axis=-1)
+        changes: dict[str, Any] = {}
+        for name in ("eigenvalues", "condition"):
+            changes[name] = np.where(kept, np.take_along_axis(getattr(self, name), order, axis=-1), np.nan)
+        for name in ("right", "left"):
+            columns = np.take_along_axis(getattr(self, name), order[..., None, :], axis=-1)
+            changes[name] = np.where(kept[..., None, :], columns, np.nan)
+        return replace(self, **changes)
 
     def mode(self, index: int, entry: tuple[int, ...] = ()) -> Mode:
         """Mode `index` of the system at `entry` of the leading axes."""
@@ -174,7 +198,8 @@ def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None,
     ----------
     design_or_system : leading axes are kept
     time : instant of schedules [s]
-    band : (f1, f2) [Hz], needed where the matrices are sparse: the modes in it, each with an error bar
+    band : (f1, f2) [Hz], only the modes in it; needed where the matrices are sparse, whose modes carry an error bar.
+        Of a reduced brake, by default the band in which it is to be trusted
     how : of a sparse system: method "projection" or "full", tolerance [1/s] and certify, as
         :func:`squealbox.stability.band_modes` takes them
 
@@ -193,13 +218,14 @@ def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None,
         from squealbox.stability.band_modes import band_modes  # only a large brake needs it
 
         return band_modes(design_or_system, band, time=time, **how)
-    if band is not None or how:
-        given = ", ".join(["band"] * (band is not None) + sorted(how))
-        raise ValueError(f"{given}: for sparse matrices; of dense ones complex_modes gives all modes")
+    if how:
+        raise ValueError(f"{', '.join(sorted(how))}: for sparse matrices; dense ones need no method")
     about = linearise(system, time)
     inputs = {"system": design_or_system, "time": time}
     names = tuple(contact.name or f"contact {i + 1}" for i, contact in enumerate(system.contacts))
-    return modes_of(about, inputs, names)
+    modes = modes_of(about, inputs, names)
+    band = getattr(design_or_system, "band", None) if band is None else band
+    return modes if band is None else modes.within(band)
 
 
 def modes_of(about: Linearised, inputs: Any = None, contacts: tuple[str, ...] = ()) -> ComplexModes:
