@@ -3,6 +3,7 @@
 
 from . import (
     designs,
+    fe,
     files,
     friction,
     limit_cycles,
@@ -14,6 +15,7 @@ from . import (
     studies,
     transient,
 )
+from .contacts import Contacts
 from .continuation import Follower, follow
 from .designs import (
     BlockChain,
@@ -27,6 +29,7 @@ from .designs import (
     SpragSlip,
     WobblingDisc,
 )
+from .fe import PublishedDiscBrake, ReducedBrake, reduce
 from .files import Body, OwnBrake, OwnContact, OwnLaw, OwnMechanism, Spring, Touch, own_law, read_design, write_design
 from .fit import FrictionFit, fit_friction
 from .friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stribeck
@@ -131,6 +134,12 @@ __all__ = [
     "own_law",
     "fit_friction",
     "FrictionFit",
+    # brakes of finite elements: sparse matrices, many contacts, reduced to few coordinates with a known error
+    "fe",
+    "Contacts",
+    "reduce",
+    "ReducedBrake",
+    "PublishedDiscBrake",
     # is steady sliding stable, and from which value is it not?
     "stability",
     "complex_modes",

@@ -223,7 +223,7 @@ def to_plain(value: Any) -> Any:
         return [to_plain(item) for item in value]
     if isinstance(value, (np.ndarray, np.generic)):
         return value.tolist()
-    return value
+    return None if getattr(value, "left_out_of_files", False) else value
 
 
 def from_plain(value: Any) -> Any:

@@ -97,8 +97,10 @@ def test_dense_analyses_say_reduce_first():
         mechanism(pad_brake())
     with pytest.raises(ValueError, match="band"):
         complex_modes(pad_brake())
-    with pytest.raises(ValueError, match="band"):
-        complex_modes(dense(pad_brake()), band=(1.0, 2.0))
+    with pytest.raises(ValueError, match="certify"):
+        complex_modes(dense(pad_brake()), certify=True)
+    some = complex_modes(dense(pad_brake()), band=(3000.0, 6000.0))
+    assert np.all((some.frequency > 3000.0) & (some.frequency < 6000.0))
 
 
 def test_single_contacts_with_sparse_rows_make_the_same_table():

@@ -6,6 +6,8 @@ from squealbox.fe.pencil import Pencil, pencil_of
 from squealbox.fe.published import PublishedDiscBrake
 from squealbox.fe.quadratic import FullModes, full_modes
 from squealbox.fe.real_modes import RealModes, count_below, real_modes
+from squealbox.fe.reduced_brake import ReducedBrake, Reduction
+from squealbox.fe.reduction import reduce
 
 __all__ = [
     "Certificate",
@@ -14,6 +16,8 @@ __all__ = [
     "Pencil",
     "PublishedDiscBrake",
     "RealModes",
+    "ReducedBrake",
+    "Reduction",
     "SingularMatrix",
     "certificate",
     "count_below",
@@ -21,4 +25,5 @@ __all__ = [
     "full_modes",
     "pencil_of",
     "real_modes",
+    "reduce",
 ]

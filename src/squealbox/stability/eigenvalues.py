@@ -5,7 +5,7 @@ solved as the eigenproblem of the (2n, 2n) state matrix [[0, I], [-M^-1 K, -M^-1
 angular frequency; time enters as exp(lambda t), so a positive real part grows.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -140,7 +140,7 @@ class ComplexModes(Result):
     @property
     def unstable_modes(self) -> Any:
         """Number of growing modes, a complex pair counted once and real eigenvalues each, shape (...)."""
-        scale = np.max(np.nan_to_num(np.abs(self.eigenvalues)), axis=-1, keepdims=True)
+        scale = np.max(np.nan_to_num(np.abs(self.eigenvalues)), axis=-1, keepdims=True, initial=0.0)
         surely = self.growth_rate > np.maximum(MARGINAL, uncertain(self.eigenvalues, self.condition, scale)) * scale
         return np.sum(surely & (np.imag(self.eigenvalues) >= 0.0), axis=-1)
 
@@ -158,8 +158,27 @@ class ComplexModes(Result):
         growth = self.growth_rate[..., :half]
         rigid = (self.eigenvalues[..., :half] == 0.0) & (np.asarray(self.floating)[..., None] > 0)
         growth = np.where(np.isnan(growth) | rigid, -np.inf, growth)
+        if not np.any(np.isfinite(growth)):
+            raise ValueError("no mode in the band, so no most unstable one")
         *entry, index = (int(i) for i in np.unravel_index(np.argmax(growth), growth.shape))
         return self.mode(index, tuple(entry))
+
+    def within(self, band: tuple[float, float]) -> "ComplexModes":
+        """Only the modes within (f1, f2) [Hz]; an entry with fewer of them than another is filled up by NaN."""
+        low, high = (2.0 * np.pi * float(f) for f in band)
+        half = self.eigenvalues.shape[-1] // 2
+        inside = (self.eigenvalues.imag[..., :half] >= low) & (self.eigenvalues.imag[..., :half] <= high)
+        most = int(np.max(np.sum(inside, axis=-1), initial=0))
+        first = np.argsort(~inside, axis=-1, kind="stable")[..., :most]
+        kept = np.take_along_axis(inside, first, axis=-1)
+        order, kept = np.concatenate([first, first + half], axis=-1), np.concatenate([kept, kept], axis=-1)
+        changes: dict[str, Any] = {}
+        for name in ("eigenvalues", "condition"):
+            changes[name] = np.where(kept, np.take_along_axis(getattr(self, name), order, axis=-1), np.nan)
+        for name in ("right", "left"):
+            columns = np.take_along_axis(getattr(self, name), order[..., None, :], axis=-1)
+            changes[name] = np.where(kept[..., None, :], columns, np.nan)
+        return replace(self, **changes)
 
     def mode(self, index: int, entry: tuple[int, ...] = ()) -> Mode:
         """Mode `index` of the system at `entry` of the leading axes."""
@@ -187,7 +206,8 @@ def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None,
     ----------
     design_or_system : leading axes are kept
     time : instant of schedules [s]
-    band : (f1, f2) [Hz], needed where the matrices are sparse: the modes in it, each with an error bar
+    band : (f1, f2) [Hz], only the modes in it; needed where the matrices are sparse, whose modes carry an error bar.
+        Of a reduced brake, by default the band in which it is to be trusted
     how : of a sparse system: method "projection" or "full", tolerance [1/s] and certify, as
         :func:`squealbox.stability.band_modes` takes them
 
@@ -207,13 +227,14 @@ def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None,
         from squealbox.stability.band_modes import band_modes  # only a large brake needs it
 
         return band_modes(design_or_system, band, time=time, **how)
-    if band is not None or how:
-        given = ", ".join(["band"] * (band is not None) + sorted(how))
-        raise ValueError(f"{given}: for sparse matrices; of dense ones complex_modes gives all modes")
+    if how:
+        raise ValueError(f"{', '.join(sorted(how))}: for sparse matrices; dense ones need no method")
     about = linearise(system, time)
     inputs = {"system": design_or_system, "time": time}
     names = tuple(contact.name or f"contact {i + 1}" for i, contact in enumerate(system.contacts))
-    return modes_of(about, inputs, names)
+    modes = modes_of(about, inputs, names)
+    band = getattr(design_or_system, "band", None) if band is None else band
+    return modes if band is None else modes.within(band)
 
 
 def modes_of(about: Linearised, inputs: Any = None, contacts: tuple[str, ...] = ()) -> ComplexModes:

@@ -1,0 +1,64 @@
+"""What a reduced brake keeps of the full one: how to make it at other parameters, the basis and a factor."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.factorisation import Factor
+from squealbox.fe.pencil import Pencil, pencil_of
+from squealbox.fe.projection import Projected, modes_on
+from squealbox.system import InvalidSystem, System, as_system
+
+
+@dataclass(frozen=True, eq=False)
+class FullBrake:
+    """The full design or system, its basis V (n, m), steady sliding q0 (n,) at the reference, the factor of K0."""
+
+    design: Any
+    basis: Any
+    steady: Any
+    base: Factor
+    time: float = 0.0
+
+    left_out_of_files = True
+
+    def system(self, values: Mapping[str, Any]) -> System:
+        """The full system at other parameters."""
+        return full_system(self.design, values)
+
+    def pencil(self, values: Mapping[str, Any]) -> Pencil:
+        """The full matrices about steady sliding at other parameters."""
+        return pencil_of(self.system(values), self.time)
+
+    def checked(self, values: Mapping[str, Any], band: tuple[float, float]) -> Projected:
+        """Modes on the basis, with the error against the full brake."""
+        return modes_on(self.pencil(values), self.base, self.basis, band)
+
+    def projected_arrays(self, system: System) -> dict[str, Any]:
+        """Every field of a system on the basis, measured from q0."""
+        basis, table = self.basis, system.contacts
+        load = np.asarray(system.load if not hasattr(system.load, "value") else system.load.value(self.time))
+        rows = {f: getattr(table, f) for f in ("n", "d", "t", "normal", "across")}
+        arrays: dict[str, Any] = {f: None if r is None else np.asarray(r @ basis) for f, r in rows.items()}
+        for field in ("M", "C", "K"):
+            arrays[field] = basis.T @ (getattr(system, field) @ basis)
+        arrays["load"] = basis.T @ (load - system.K @ self.steady)
+        arrays["N0"] = table.at("N0", self.time) + table.n @ self.steady
+        arrays["V"] = np.array(table.at("V", self.time))
+        return arrays
+
+
+def full_system(design: Any, values: Mapping[str, Any]) -> System:
+    """A design's sparse system at other parameters; a bare system takes the coefficients of its one friction law."""
+    if not isinstance(design, System):
+        return as_system(design.replace(values) if values else design, linear=True)
+    if not values:
+        return design
+    law = design.contacts.law
+    inner = {name.removeprefix("friction."): value for name, value in values.items()}
+    if isinstance(law, tuple) or not all(name.startswith("friction.") for name in values):
+        unknown = ", ".join(values)
+        raise InvalidSystem(f"{unknown}: of a bare system only the coefficients of one shared friction law can vary")
+    return design.replace(contacts=design.contacts.replace(law=law.replace(inner)))

@@ -1,0 +1,270 @@
+"""A brake reduced to few coordinates p, q = q0 + V p: a design like any other, whose system is small and dense.
+
+    V'M V p'' + V'C V p' + V'K V p = V'(f - K q0) + sum_c V'd_c mu_c sgn(v_c) N_c
+    N_c = (N0_c + n_c . q0) + V'n_c . p
+
+Contacts stay what they are, with their own normal force, speed, law and the right to lift off; only their rows are
+projected. Where a parameter changes matrices, they are known at Chebyshev points of its range and interpolated.
+"""
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from squealbox.contacts import Contact
+from squealbox.designs.base import Design
+from squealbox.fe.full_brake import FullBrake
+from squealbox.friction import FrictionLaw
+from squealbox.parameters import DataSheet, ParameterError, known_names
+from squealbox.system import InvalidSystem, System
+
+FIELDS = ("M", "C", "K", "load", "n", "d", "t", "normal", "across", "N0", "V")
+
+
+class Axis(DataSheet):
+    """One parameter that changes the matrices: its range, the points where they are known, and their change there.
+
+    change[field] has shape (points, ...): the projected field there, less that at the reference.
+    """
+
+    name: str
+    low: float
+    high: float
+    points: Any
+    change: Any
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        object.__setattr__(self, "change", {name: np.asarray(value) for name, value in self.change.items()})
+
+    def at(self, field: str, value: Any) -> Any:
+        """The change of a field at `value`, which may carry leading axes; 0.0 where the field does not change."""
+        known = self.change.get(field)
+        if known is None:
+            return 0.0
+        return np.tensordot(_lagrange(np.asarray(self.points), np.asarray(value, dtype=float)), known, axes=1)
+
+
+class Reduction(DataSheet):
+    """The projected arrays at the reference, the axes, and how good they are.
+
+    arrays maps the names M, C, K (m, m), load (m,), n, d, t, normal, across (contacts, m), N0, V (contacts,) to values;
+    laws holds one friction law, or one for each contact. errors lists, for each point that was checked against the full
+    brake, its parameters and the largest error estimate [1/s] of a mode in the band.
+    """
+
+    arrays: Any
+    laws: Any
+    unilateral: Any
+    contact_names: tuple[str, ...]
+    band: tuple[float, float]
+    top: float
+    size: int
+    axes: tuple[Axis, ...] = ()
+    errors: Any = ()
+    tolerance: float = 0.05
+    method: str = "enriched"
+    high_damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        arrays = {
+            name: None if value is None else np.asarray(value, dtype=float) for name, value in self.arrays.items()
+        }
+        object.__setattr__(self, "arrays", arrays)
+        for field in ("contact_names", "axes", "errors", "band"):
+            object.__setattr__(self, field, tuple(getattr(self, field)))
+
+    @property
+    def error(self) -> float:
+        """The largest error estimate [1/s] of an eigenvalue in the band, over all points that were checked."""
+        return max((float(error) for _, error in self.errors), default=float("nan"))
+
+
+class ReducedBrake(Design):
+    """A finite-element brake on few coordinates, as :func:`reduce` returns it.
+
+    ``replace`` takes the parameters it was reduced for, and every coefficient of the friction law; ``system()`` is
+    dense, so every analysis takes it. ``reduction.error`` [1/s] says how far its eigenvalues may be off; ``checked``
+    measures that anywhere. Outside the ranges it was reduced for, `ParameterError`.
+    """
+
+    title: ClassVar[str] = "A finite-element brake, reduced"
+    source: ClassVar[str] = "the full brake"
+
+    reduction: Reduction
+    friction: FrictionLaw | None = None
+    values: Any = None
+    full: Any = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", dict(self.values or {}))
+
+    def __repr__(self) -> str:
+        return self.summary()
+
+    def summary(self) -> str:
+        """How large it is, what it may be asked, and how good it is."""
+        about = self.reduction
+        ranges = [f"{axis.name} from {axis.low:g} to {axis.high:g}" for axis in about.axes]
+        lines = [
+            f"{len(about.arrays['M'])} coordinates for {about.size} degrees of freedom, "
+            f"{len(about.contact_names)} contacts, {about.band[0]:g} to {about.band[1]:g} Hz ({about.method})",
+            f"largest error of an eigenvalue in the band: {about.error:.2g} 1/s at {len(about.errors)} points checked",
+        ]
+        if about.error > about.tolerance:
+            lines.append(f"that is more than the {about.tolerance:g} 1/s asked for")
+        if about.high_damping:
+            lines.append(f"directions above {about.top:.5g} Hz are damped by {100 * about.high_damping:.2g} % more")
+        return "\n".join(lines + [f"may vary: {text}" for text in ranges])
+
+    @property
+    def band(self) -> tuple[float, float]:
+        """(f1, f2) [Hz], in which its modes are to be trusted."""
+        return self.reduction.band
+
+    @property
+    def error(self) -> float:
+        """The largest error estimate [1/s] of an eigenvalue in the band, over all points that were checked."""
+        return self.reduction.error
+
+    def replace(self, changes: Mapping[str, Any] | None = None, **keywords: Any) -> Self:
+        """A copy with other values of what it was reduced for, or of its friction law."""
+        inner: dict[str, Any] = {}
+        values, whole = dict(self.values), {}
+        for name, value in {**(changes or {}), **keywords}.items():
+            axis = next((axis for axis in self.reduction.axes if axis.name == name), None)
+            if axis is not None:
+                values[name] = _in_range(axis, value)
+            elif name.startswith("friction.") and self.friction is not None:
+                self.friction.value_of(name.removeprefix("friction."))  # a name the law does not have is refused
+                inner[name.removeprefix("friction.")] = value
+            elif name == "friction" and isinstance(value, FrictionLaw):
+                whole["friction"] = value
+            elif name in ("reduction", "values", "full"):
+                whole[name] = value
+            else:
+                raise ParameterError(type(self).__name__, name, value, known_names(name, self._names()))
+        law = whole.get("friction", self.friction)
+        if inner and law is not None:
+            whole["friction"] = law.replace(inner)
+        return type(self)(
+            **{"reduction": self.reduction, "friction": self.friction, "full": self.full, "values": values} | whole
+        )
+
+    def value_of(self, path: str) -> Any:
+        """The value behind a name."""
+        if path in self.values:
+            return self.values[path]
+        if path.startswith("friction.") and self.friction is not None:
+            return self.friction.value_of(path.removeprefix("friction."))
+        if path == "friction":
+            return self.friction
+        raise ParameterError(type(self).__name__, path, None, known_names(path, self._names()))
+
+    def leaves(self, prefix: str = "") -> Any:
+        """Every parameter that may be varied, with its range and value."""
+        from squealbox.parameters import Parameter
+
+        for axis in self.reduction.axes:
+            about = Parameter("", axis.low, axis.high, meaning=f"{axis.name} of the full brake")
+            yield prefix + axis.name, about, self.values[axis.name]
+        if self.friction is not None:
+            yield from self.friction.leaves(f"{prefix}friction.")
+
+    def _names(self) -> list[str]:
+        return [name for name, _, _ in self.leaves()]
+
+    def array(self, field: str) -> Any:
+        """A projected field at the present values; leading axes of the values are kept. None where there is none."""
+        known = self.reduction.arrays[field]
+        if known is None:
+            return None
+        return known + sum(axis.at(field, self.values[axis.name]) for axis in self.reduction.axes)
+
+    def system(self) -> System:
+        """The small, dense system."""
+        rows = {field: self.array(field) for field in FIELDS}
+        contacts = []
+        for i, name in enumerate(self.reduction.contact_names):
+            unilateral = bool(self.reduction.unilateral[i])
+            contacts.append(
+                Contact(
+                    n=rows["n"][..., i, :],
+                    d=rows["d"][..., i, :],
+                    t=rows["t"][..., i, :],
+                    N0=rows["N0"][..., i],
+                    V=rows["V"][..., i],
+                    law=self.law_of(i),
+                    name=name,
+                    unilateral=unilateral,
+                    normal=rows["normal"][..., i, :] if unilateral else None,
+                    across=None if rows["across"] is None else rows["across"][..., i, :],
+                )
+            )
+        return System(rows["M"], rows["C"], rows["K"], rows["load"], tuple(contacts))
+
+    def law_of(self, index: int) -> FrictionLaw:
+        """The friction law of one contact."""
+        if self.friction is not None:
+            return self.friction
+        law: FrictionLaw = self.reduction.laws[index]
+        return law
+
+    def sliding_one_way(self) -> Self:
+        """The same brake without the cross direction of friction, as a motion needs it."""
+        arrays = {**self.reduction.arrays, "across": None}
+        return self.replace({"reduction": self.reduction.replace(arrays=arrays)})
+
+    def expand(self, shape: Any) -> Any:
+        """A displacement or mode of the small system (m,) or (m, k) on all degrees of freedom, without q0."""
+        return self._attached().basis @ shape
+
+    def checked(self, **values: Any) -> Any:
+        """Modes in the band at parameters, each with the estimate of its error against the full brake there.
+
+        values are parameters of the full brake with `_` for `.`, or none: the present ones. Returns a `Projected`.
+        """
+        named = {self._full_name(name): value for name, value in values.items()}
+        present = {**{axis.name: self.values[axis.name] for axis in self.reduction.axes}, **named}
+        if self.friction is not None:
+            inner = {f"friction.{name}": value for name, _, value in self.friction.leaves() if isinstance(value, float)}
+            present = {**inner, **present}
+        return self._attached().checked(present, self.band)
+
+    def _full_name(self, name: str) -> str:
+        matches = [known for known in self._names() if known in (name, name.replace("_", ".", 1))]
+        return matches[0] if matches else name
+
+    def _attached(self) -> FullBrake:
+        if self.full is None:
+            raise InvalidSystem("the full brake is not kept in files: reduce it again to expand or check")
+        full: FullBrake = self.full
+        return full
+
+
+def _in_range(axis: Axis, value: Any) -> Any:
+    number = np.asarray(value, dtype=float)
+    if not np.all((number >= axis.low) & (number <= axis.high)):
+        raise ParameterError(
+            "ReducedBrake", axis.name, value, f"{axis.low:g} to {axis.high:g}, what it was reduced for"
+        )
+    return float(number) if number.ndim == 0 else number
+
+
+def chebyshev_points(low: float, high: float, count: int) -> Any:
+    """Points at which a smooth function of one parameter is best known, in rising order."""
+    angles = np.pi * (np.arange(count) + 0.5) / count
+    return 0.5 * (low + high) - 0.5 * (high - low) * np.cos(angles)
+
+
+def _lagrange(points: Any, value: Any) -> Any:
+    """Weights (..., points) of the interpolating polynomial."""
+    gaps = value[..., None] - points
+    weights = np.ones(gaps.shape)
+    for i in range(len(points)):
+        for j in range(len(points)):
+            if i != j:
+                weights[..., i] *= gaps[..., j] / (points[i] - points[j])
+    return weights

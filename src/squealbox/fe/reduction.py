@@ -1,0 +1,246 @@
+"""From a large sparse brake to a small one with a known error: `reduce`.
+
+Three bases: "enriched", real modes and what friction and damping do to them (`basis.py`), grown by the residuals of the
+modes in the band until their error estimates are small at the corners of all ranges; "craig-bampton", every freedom
+that a contact touches and the modes with those held; "pod", the main directions of the modes of the full problem at a
+few values of what varies (Graebner et al. 2016).
+"""
+
+from collections.abc import Mapping
+from itertools import product
+from typing import Any, Literal
+
+import numpy as np
+
+from squealbox.fe.basis import joined
+from squealbox.fe.craig_bampton import craig_bampton_basis
+from squealbox.fe.full_brake import FullBrake, full_system
+from squealbox.fe.pencil import Pencil, pencil_of
+from squealbox.fe.projection import HEADROOM, Small, basis_for, modes_on, projected, residual_vectors
+from squealbox.fe.quadratic import full_modes
+from squealbox.fe.real_modes import real_modes
+from squealbox.fe.reduced_brake import FIELDS, Axis, ReducedBrake, Reduction, chebyshev_points
+from squealbox.system import InvalidSystem, as_system, linearise
+
+Basis = Literal["enriched", "craig-bampton", "pod"]
+METHODS = ("enriched", "craig-bampton", "pod")
+POINTS = 7  # Chebyshev points of a parameter that changes matrices
+ROUNDS = 3
+MOST_AXES = 4
+HIGH_DAMPING = (0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
+SEEN = 1e-5  # share of the strongest direction from which on the band's modes have a part in a direction
+HELD = 3.0  # times the band up to which modes with held contacts are taken
+SNAPSHOTS = 3  # values of each parameter at which POD looks
+
+
+def reduce(
+    design_or_system: Any,
+    band: tuple[float, float],
+    *,
+    varying: Mapping[str, tuple[float, float]] | None = None,
+    method: Basis = "enriched",
+    tolerance: float = 0.05,
+    time: float = 0.0,
+) -> ReducedBrake:
+    """A small brake whose modes in a band are those of a large sparse one.
+
+    Parameters
+    ----------
+    design_or_system : with sparse matrices; a bare `System` can vary the coefficients of its friction law
+    band : (f1, f2) [Hz]
+    varying : {parameter: (low, high)}: what shall be varied later; the basis is checked at every corner of the ranges
+    method : "enriched", "craig-bampton" or "pod", as the module's head says
+    tolerance : [1/s] the error estimate that every eigenvalue in the band shall stay below
+    time : instant of schedules [s]
+
+    Returns a `ReducedBrake`; its `error` may be above `tolerance`, and says so. Directions above the band that the
+    small brake would wrongly let grow are given the least modal damping that stops it (`reduction.high_damping`); its
+    effect in the band is part of the error. Raises `InvalidSystem` without steady sliding at a corner.
+    """
+    low, high = _checked(band, varying, method)
+    ranges = dict(varying or {})
+    system = as_system(design_or_system, linear=True)
+    if not system.is_sparse:
+        raise InvalidSystem(f"the system is dense, with {system.size} degrees of freedom: it needs no reduction")
+    corners = [dict(zip(ranges, values, strict=True)) for values in product(*ranges.values())] if ranges else []
+    pencils = [pencil_of(full_system(design_or_system, corner), time) for corner in corners]
+    reference = pencil_of(system, time)
+    modes, basis = _first_basis(method, design_or_system, reference, ranges, (low, high), time)
+    basis = _with_statics(reference, pencils, basis)
+    if method == "enriched":
+        basis = _grown([reference, *pencils], modes, basis, (low, high), tolerance)
+    assert reference.about is not None
+    full = FullBrake(design_or_system, basis, reference.about.equilibrium.q, modes.base, time)
+    arrays = full.projected_arrays(system)
+    axes, values = [], {}
+    for name, (start, end) in ranges.items():
+        axis = _axis(full, name, float(start), float(end), arrays)
+        if axis is not None:
+            axes.append(axis)
+            values[name] = float(design_or_system.value_of(name))
+    damping, amount = _damped_above(full, [reference, *pencils], modes.top * HEADROOM)
+    arrays["C"] = arrays["C"] + damping
+    law = system.contacts.law
+    reduction = Reduction(
+        arrays=arrays,
+        laws=law if isinstance(law, tuple) else [system.contacts.law_of(i) for i in range(len(system.contacts))],
+        unilateral=np.array(system.contacts.unilateral),
+        contact_names=system.contacts.names,
+        band=(low, high),
+        top=modes.top,
+        size=system.size,
+        axes=tuple(axes),
+        tolerance=tolerance,
+        method=method,
+        high_damping=amount,
+    )
+    shared = None if isinstance(law, tuple) or any(np.ndim(c) for c in law.coefficients()) else law
+    small = ReducedBrake(
+        reduction=reduction, friction=shared if len(system.contacts) else None, values=values, full=full
+    )
+    points = [({}, reference), *zip(corners, pencils, strict=True)]
+    errors = [(point, _error(small.replace(point), pencil, full, time)) for point, pencil in points]
+    return small.replace({"reduction": reduction.replace(errors=tuple(errors))})
+
+
+def _checked(band: Any, varying: Any, method: str) -> tuple[float, float]:
+    if np.shape(band) != (2,) or not (np.all(np.isfinite(band)) and 0.0 < band[0] < band[1]):
+        raise ValueError(f"band = {band!r}: expected (f1, f2) in Hz with 0 < f1 < f2")
+    if method not in METHODS:
+        raise ValueError(f"method = {method!r}: expected one of {', '.join(METHODS)}")
+    if len(varying or {}) > MOST_AXES:
+        raise ValueError(f"varying holds {len(varying)} parameters: expected at most {MOST_AXES}, for their corners")
+    for name, bounds in (varying or {}).items():
+        if np.shape(bounds) != (2,) or not (np.all(np.isfinite(bounds)) and bounds[0] < bounds[1]):
+            raise ValueError(f"varying[{name!r}] = {bounds!r}: expected (low, high) with low < high")
+    return float(band[0]), float(band[1])
+
+
+def _first_basis(method: str, design: Any, reference: Pencil, ranges: Any, band: Any, time: float) -> tuple[Any, Any]:
+    if method == "enriched":
+        return basis_for(reference, band)
+    modes = real_modes(reference.elastic, reference.M, band[1] / HEADROOM)
+    if method == "craig-bampton":
+        return modes, craig_bampton_basis(reference, _touched(design), HELD * band[1])
+    shapes = []
+    for values in product(*(np.linspace(low, high, SNAPSHOTS) for low, high in ranges.values())):
+        pencil = pencil_of(full_system(design, dict(zip(ranges, map(float, values), strict=True))), time)
+        mirrored = Pencil(pencil.M, pencil.C.T.tocsr(), pencil.K.T.tocsr(), pencil.elastic)
+        for one in (pencil, mirrored):  # right shapes, and left ones as right shapes of the transposed matrices
+            found = full_modes(one, band).shapes
+            shapes += [found.real, found.imag]
+    return modes, _main_directions(reference, np.concatenate(shapes, axis=1))
+
+
+def _main_directions(pencil: Pencil, shapes: Any, share: float = 1e-5) -> Any:
+    """The directions of `shapes` whose singular value is above `share` of the largest, V' M V = I."""
+    lengths = np.sqrt(np.einsum("ij,ij->j", shapes, pencil.M @ shapes))
+    shapes = shapes[:, lengths > 0.0] / lengths[lengths > 0.0]
+    gram = shapes.T @ (pencil.M @ shapes)
+    values, turns = np.linalg.eigh(0.5 * (gram + gram.T))
+    keep = values > share**2 * values[-1]
+    first = shapes @ (turns[:, keep] / np.sqrt(values[keep]))
+    return joined(pencil, np.zeros((pencil.size, 0)), first)
+
+
+def _touched(design: Any) -> Any:
+    """Degrees of freedom that a contact senses or acts on."""
+    table = as_system(design, linear=True).contacts
+    rows = [getattr(table, field) for field in ("n", "d", "t", "normal", "across")]
+    used = sum(np.asarray(abs(row).sum(axis=0)).ravel() for row in rows if row is not None)
+    return np.flatnonzero(used)
+
+
+def _with_statics(reference: Pencil, pencils: list[Pencil], basis: Any) -> Any:
+    """The basis with the differences of steady sliding between the corners and the reference."""
+    assert reference.about is not None
+    origin = reference.about.equilibrium.q
+    moved = [p.about.equilibrium.q - origin for p in pencils if p.about is not None]
+    columns = [q for q in moved if np.any(q)]
+    return joined(reference, basis, np.stack(columns, axis=1)) if columns else basis
+
+
+def _grown(pencils: list[Pencil], modes: Any, basis: Any, band: tuple[float, float], tolerance: float) -> Any:
+    """The basis with residual vectors of the modes in the band, at every corner."""
+    for _ in range(ROUNDS):
+        small = True
+        for pencil in pencils:
+            found = modes_on(pencil, modes.base, basis, band)
+            worst = np.abs(found.error) > 0.5 * tolerance
+            if np.any(worst):
+                small = False
+                basis = joined(pencils[0], basis, residual_vectors(pencil, modes.base, found, worst))
+        if small:
+            break
+    return basis
+
+
+def _axis(full: FullBrake, name: str, low: float, high: float, arrays: dict[str, Any]) -> Axis | None:
+    """What changes along one parameter; None for a coefficient of the friction law, which the contacts know."""
+    if name.startswith("friction."):
+        return None
+    points = chebyshev_points(low, high, POINTS)
+    samples = [full.projected_arrays(full.system({name: float(value)})) for value in points]
+    change = {}
+    for field in FIELDS:
+        known = arrays[field]
+        if known is None:
+            continue
+        if any(np.shape(sample[field]) != np.shape(known) for sample in samples):
+            raise InvalidSystem(f"{name} changes the contacts themselves: expected a parameter that keeps the mesh")
+        difference = np.stack([sample[field] - known for sample in samples])
+        if np.max(np.abs(difference), initial=0.0) > 1e-13 * np.max(np.abs(known), initial=0.0):
+            change[field] = difference
+    return Axis(name=name, low=low, high=high, points=points, change=change)
+
+
+def _damped_above(full: FullBrake, pencils: list[Pencil], top: float) -> tuple[Any, float]:
+    """The least damping with which no mode above `top` [Hz] grows at any corner, and that leaves the band alone.
+
+    It acts on the directions that no right shape of a mode below `top`, at any corner, has a part in: C_h u = 0 for
+    those u, so their eigenvalues stay exactly what they were.
+    """
+    smalls = [projected(pencil, full.basis) for pencil in pencils]
+    mass, elastic = smalls[0].M, full.basis.T @ (pencils[0].elastic @ full.basis)
+    if not any(_grows_above(small, 0.0, 2.0 * np.pi * top) for small in smalls):
+        return np.zeros_like(mass), 0.0
+    shapes = []
+    for small in smalls:
+        values, right, _, _ = small.eigen()
+        below = (values.imag >= 0.0) & (values.imag <= 2.0 * np.pi * top)
+        shapes += [right[:, below].real, right[:, below].imag]
+    half = np.linalg.cholesky(mass).T  # lengths by M
+    columns = half @ np.concatenate(shapes, axis=1)
+    columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    turned, sizes, _ = np.linalg.svd(columns)
+    rest = turned[:, np.sum(sizes > SEEN * sizes[0]) :]
+    if rest.shape[1] == 0:
+        return np.zeros_like(mass), 0.0
+    free = np.linalg.solve(half, rest)
+    squares, turns = np.linalg.eigh(free.T @ elastic @ free)
+    directions, rates = mass @ free @ turns, np.sqrt(np.maximum(squares, 0.0))
+    for amount in HIGH_DAMPING:
+        damping = (directions * (2.0 * amount * rates)) @ directions.T
+        if not any(_grows_above(small, damping, 2.0 * np.pi * top) for small in smalls):
+            return damping, amount
+    return damping, amount
+
+
+def _grows_above(small: Small, damping: Any, top: float) -> bool:
+    values = Small(small.M, small.C + damping, small.K).eigenvalues()
+    return bool(np.any((np.abs(values.imag) > top) & (values.real > 1e-10 * np.abs(values))))
+
+
+def _error(small: ReducedBrake, pencil: Pencil, full: FullBrake, time: float) -> float:
+    """The largest error of an eigenvalue in the band at one point, against the full brake there.
+
+    It adds what the basis misses to what else parts the small brake from the projected full one: interpolation over
+    parameters, added damping, contacts that its steady sliding would open otherwise.
+    """
+    found = modes_on(pencil, full.base, full.basis, small.band)
+    about = linearise(small.system(), time)
+    if not about.equilibrium.exists:
+        return float("inf")
+    values = Small(about.M, about.C, about.K).eigenvalues()
+    beside = np.array([np.min(np.abs(values - value)) for value in found.eigenvalues])
+    return float(np.max(np.abs(found.error) + beside, initial=0.0))

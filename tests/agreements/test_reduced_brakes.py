@@ -1,0 +1,150 @@
+"""A reduced brake and the full one: eigenvalues within the error bar, and the same answers from every analysis."""
+
+import numpy as np
+import pytest
+
+from fe_brakes import PUBLISHED, dense, pad_brake
+from squealbox import (
+    Coulomb,
+    ParameterError,
+    PublishedDiscBrake,
+    Result,
+    complex_modes,
+    critical_value,
+    equilibrium,
+    mechanism,
+    mode_energy,
+    reduce,
+    simulate,
+    stability,
+    sweep,
+    tracked_modes,
+)
+
+BAND = (3000.0, 7000.0)
+RANGE = {"friction.static": (0.1, 0.5)}
+
+
+def full_at(mu: float, **how):
+    return dense(pad_brake(friction=Coulomb(mu), **how))
+
+
+def in_band(values):
+    return values[(values.imag > 2 * np.pi * BAND[0]) & (values.imag < 2 * np.pi * BAND[1])]
+
+
+def farthest(values, every):
+    return max(float(np.min(np.abs(every - value))) for value in values)
+
+
+@pytest.fixture(scope="module")
+def small():
+    return reduce(pad_brake(friction=Coulomb(0.3), across=False, unilateral=True), BAND, varying=RANGE)
+
+
+@pytest.mark.parametrize("mu", [0.1, 0.22, 0.3, 0.41, 0.5])
+def test_eigenvalues_in_the_band_are_within_the_error(small, mu):
+    every = complex_modes(full_at(mu, across=False, unilateral=True)).eigenvalues
+    found = in_band(complex_modes(small.replace({"friction.static": mu})).eigenvalues)
+    assert len(found) == len(in_band(every)) > 5
+    assert farthest(found, every) < 2.0 * small.error
+    assert small.error < 0.1
+    checked = small.replace({"friction.static": mu}).checked()
+    assert farthest(checked.eigenvalues + checked.error, every) < 0.02
+
+
+def test_steady_sliding_is_that_of_the_full_brake_with_the_same_contacts_open(small):
+    for mu in (0.1, 0.3, 0.5):
+        expected = equilibrium(full_at(mu, across=False, unilateral=True))
+        found = equilibrium(small.replace({"friction.static": mu}).system())
+        np.testing.assert_array_equal(found.normal_force == 0.0, expected.normal_force == 0.0)
+        np.testing.assert_allclose(found.normal_force, expected.normal_force, atol=2e-3 * np.max(expected.normal_force))
+
+
+def test_onset_and_mechanism(small):
+    direct = critical_value(lambda mu: full_at(mu, across=False, unilateral=True), "mu", (0.1, 0.5), points=9)
+    found = critical_value(small, "friction.static", (0.1, 0.5), points=41)
+    assert float(found.value) == pytest.approx(float(direct.value), rel=2e-3)
+    assert found.mechanism == direct.mechanism == "flutter"
+    assert mechanism(small.replace({"friction.static": 0.5})).name == "flutter"
+
+
+def test_feed_in_of_every_contact_is_that_of_the_full_brake(small):
+    brake = small.replace({"friction.static": 0.45})
+    mode = complex_modes(brake).most_unstable
+    energy = mode_energy(brake, mode)
+    system = pad_brake(friction=Coulomb(0.45), across=False, unilateral=True)
+    full = complex_modes(system, band=BAND, method="full")
+    same = full.mode(int(np.argmin(np.abs(full.eigenvalues - mode.eigenvalue))))
+    expected = mode_energy(system, same)
+    np.testing.assert_allclose(
+        energy.circulation / energy.total,
+        expected.circulation / expected.total,
+        atol=1e-3 * np.max(np.abs(expected.circulation / expected.total)),
+    )
+    shape = brake.expand(mode.shape)
+    likeness = abs(np.vdot(shape, same.shape)) ** 2 / (np.vdot(shape, shape) * np.vdot(same.shape, same.shape)).real
+    assert likeness > 0.9999
+
+
+def test_tracking_sweeps_and_probability_take_it(small):
+    values = np.linspace(0.1, 0.5, 9)
+    tracked = tracked_modes(small, "friction.static", values)
+    assert np.all(np.isfinite(tracked.eigenvalues))
+    swept = sweep(small, {"friction.static": values}, complex_modes)
+    assert swept.dataset["largest_growth_rate"].shape == (9,)
+
+
+def test_a_small_perturbation_grows_in_time_as_the_eigenvalue_says(small):
+    brake = small.replace({"friction.static": 0.45})
+    mode = complex_modes(brake).most_unstable
+    motion = simulate(brake, 2e-3, start=mode.start(1e-9), method="dormand-prince-8")
+    steady = equilibrium(brake.system()).q
+    weight = brake.system().M @ mode.left
+    size = np.abs((motion.q - steady) @ np.conj(weight) * mode.eigenvalue + (motion.qd) @ np.conj(weight))
+    rate = np.polyfit(motion.t, np.log(size), 1)[0]
+    assert rate == pytest.approx(mode.growth_rate, rel=2e-2)
+
+
+@pytest.mark.parametrize("method", ["craig-bampton", "pod"])
+def test_the_other_bases_know_their_error(method):
+    system = pad_brake(friction=Coulomb(0.3))
+    brake = reduce(system, BAND, varying=RANGE, method=method)
+    every = complex_modes(full_at(0.5)).eigenvalues
+    found = in_band(complex_modes(brake.replace({"friction.static": 0.5})).eigenvalues)
+    assert farthest(found, every) < 2.0 * brake.error + 1e-3
+    assert brake.reduction.method == method
+
+
+def test_what_it_was_not_reduced_for_is_refused(small):
+    with pytest.raises(ParameterError, match="did you mean 'static'"):
+        small.replace({"friction.statik": 0.2})
+    with pytest.raises(ValueError, match="band"):
+        reduce(pad_brake(), (7000.0, 3000.0))
+    with pytest.raises(ValueError, match="dense"):
+        reduce(dense(pad_brake()), BAND)
+    with pytest.raises(ValueError, match="expected one of enriched"):
+        reduce(pad_brake(), BAND, method="guyan")
+
+
+def test_a_result_keeps_the_small_brake_but_not_the_full_one(small, tmp_path):
+    modes = complex_modes(small)
+    path = modes.save(tmp_path / "modes.nc")
+    again = Result.load(path).inputs["system"]
+    np.testing.assert_allclose(complex_modes(again).eigenvalues, modes.eigenvalues)
+    with pytest.raises(ValueError, match="not kept in files"):
+        again.expand(np.zeros(3))
+
+
+@pytest.mark.skipif(not PUBLISHED.is_dir(), reason="the published matrices are not beside this checkout")
+def test_the_published_brake_over_its_speed():
+    brake = PublishedDiscBrake(folder=str(PUBLISHED), assembly="b", angular_speed=2 * np.pi)
+    small = reduce(brake, (600.0, 3000.0), varying={"angular_speed": (2 * np.pi, 6 * np.pi)}, tolerance=0.1)
+    assert small.error < 0.2
+    for speed, expected in ((2 * np.pi, (2.0763, 783.097)), (4 * np.pi, (5.4742, 784.990))):
+        values = complex_modes(small.replace({"angular_speed": speed})).eigenvalues
+        nearest = values[np.argmin(np.abs(values - complex(expected[0], 2 * np.pi * expected[1])))]
+        assert nearest.real == pytest.approx(expected[0], abs=small.error)
+    assert stability.BandModes is not None
+    with pytest.raises(ParameterError, match="what it was reduced for"):
+        small.replace({"angular_speed": 100.0})
