@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from squealbox.averages import mean_over_phase
 from squealbox.parameters import DataSheet, ParameterError, parameter
 
 Formula = Callable[..., Any]
@@ -272,3 +273,135 @@ LAWS: tuple[type[FrictionLaw], ...] = (Coulomb, LinearSlope, Stribeck, Hyperboli
 def _not_above(law: FrictionLaw, name: str, value: Any, limit: Any) -> None:
     if value is not None and np.any(np.asarray(value) > np.asarray(limit)):
         raise ParameterError(type(law).__name__, name, value, f"at most static = {limit}")
+
+
+class Averaged(FrictionLaw):
+    """A law as slow motion meets it under fast dither: mean over a period of mu(|u|) sgn(u), u = v + w sin(phase).
+
+    With w = `velocity`, mu0 = mu(0+) and h(u) = (mu(|u|) - mu0) sgn(u),
+
+        mean(v) = mu0 (2/pi) asin(min(v/w, 1)) + E[h(v + w sin)]
+
+    in closed form for `Coulomb`, `LinearSlope` without a floor and `Cubic`, below the sliding speed (w <= v) for
+    `Stribeck` (the fall times I0(w/speed)) and `Hyperbolic`; by Gauss-Legendre in the phase, graded towards the
+    reversal, for all others. A contact under dither does not stick: its static limit is 0. The slope is infinite at
+    v = w. Source: separation of motions, Fidlin 1999; Thomsen 2005, Nonlinear Dynamics; own closed forms.
+
+    >>> round(float(Averaged(Coulomb(0.4), 1.0).mu(0.5)), 12)
+    0.133333333333
+    """
+
+    law: FrictionLaw
+    velocity: float = parameter("m/s", 0.0, low_open=True, meaning="amplitude of the dither's velocity")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not isinstance(self.law, FrictionLaw):
+            raise ParameterError("Averaged", "law", self.law, "a friction law")
+
+    def coefficients(self) -> tuple[Any, ...]:
+        """Static limit 0, the dither's velocity; mu0, a1, a3 where it is mu0 (2/pi) asin(v/w) + a1 v + a3 v^3."""
+        return (0.0 * np.asarray(self.velocity), self.velocity, *(self._polynomial() or ()))
+
+    def mu(self, velocity: Any) -> Any:
+        v, w = np.broadcast_arrays(np.abs(velocity), self.velocity)
+        base = self.law.mu(0.0)
+        return base * 2.0 / np.pi * np.arcsin(np.minimum(v / w, 1.0)) + self._rest(v, w, base, slope=False)
+
+    def slope_at(self, velocity: Any) -> Any:
+        v, w = np.broadcast_arrays(np.abs(velocity), self.velocity)
+        base = self.law.mu(0.0)
+        with np.errstate(divide="ignore"):
+            turning = np.where(v <= w, 2.0 / np.pi / np.sqrt(np.maximum(w * w - v * v, 0.0)), 0.0)
+        return base * turning + self._rest(v, w, base, slope=True)
+
+    @property
+    def texts(self) -> tuple[str, str] | None:
+        """Source of the law and its slope for the compiled engines; None where it is known by quadrature alone."""
+        return None if self._polynomial() is None else (_AVERAGED_MU, _AVERAGED_SLOPE)
+
+    def _polynomial(self) -> tuple[Any, Any, Any] | None:
+        """mu0, a1, a3 of the laws whose h is a cubic polynomial."""
+        law, w = self.law, self.velocity
+        if isinstance(law, Coulomb):
+            return law.mu(0.0), 0.0, 0.0
+        if isinstance(law, LinearSlope) and law.floor is None:
+            return law.static, law.slope, 0.0
+        if isinstance(law, Cubic):
+            fall = 1.5 * (law.static - law.kinetic) / law.speed
+            third = fall / (3.0 * law.speed * law.speed)
+            return law.static, -fall + 1.5 * third * w * w, third
+        return None
+
+    def _rest(self, v: Any, w: Any, base: Any, slope: bool) -> Any:
+        """E[h(v + w sin)], or its derivative by v, E[h']."""
+        cubic_part = self._polynomial()
+        if cubic_part is not None:
+            _, a1, a3 = cubic_part
+            return a1 + 3.0 * a3 * v * v if slope else v * (a1 + a3 * v * v)
+        if not np.any(w > v) and isinstance(self.law, (Stribeck, Hyperbolic)):
+            return _slow_dither(self.law, v, w, slope)
+        return _mean_over_phase(self.law, v, w, base, slope)
+
+
+def averaged(law: FrictionLaw, velocity: Any) -> FrictionLaw:
+    """The law that slow motion meets when dither moves the contact to and fro with `velocity` [m/s]; see `Averaged`.
+
+    `velocity` is the amplitude of the sliding velocity's fast part. Without dither (0) it is the law itself.
+
+    >>> round(float(averaged(Stribeck(0.4, 0.25, 0.3), 0.4).mu(0.5)), 9)
+    0.292393170
+    """
+    return law if np.ndim(velocity) == 0 and velocity == 0.0 else Averaged(law, velocity)
+
+
+_AVERAGED_MU = """def mu(v, p):
+    r = np.minimum(v / p[1], 1.0)
+    turned = np.arctan(r / (1.0 + np.sqrt(np.maximum(1.0 - r * r, 0.0))))
+    return p[2] * turned * 1.2732395447351628 + v * (p[3] + p[4] * v * v)
+"""
+_AVERAGED_SLOPE = """def slope(v, p):
+    inside = np.maximum(p[1] * p[1] - v * v, 1e-24 * p[1] * p[1])
+    return p[2] * 0.6366197723675814 / np.sqrt(inside) * (v < p[1]) + p[3] + 3.0 * p[4] * v * v
+"""
+
+
+def _slow_dither(law: Any, v: Any, w: Any, slope: bool) -> Any:
+    """E[h] or E[h'] where the sliding never reverses, w <= v."""
+    if isinstance(law, Stribeck):
+        from scipy.special import ive
+
+        fall = (law.static - law.kinetic) * np.exp((w - v) / law.speed) * ive(0, w / law.speed)
+        return -fall / law.speed if slope else fall - (law.static - law.kinetic)
+    one = 1.0 + law.delta * v
+    root = np.sqrt(one * one - (law.delta * w) ** 2)
+    return -law.static * law.delta * one / root**3 if slope else law.static * (1.0 / root - 1.0)
+
+
+def _mean_over_phase(law: FrictionLaw, v: Any, w: Any, base: Any, slope: bool) -> Any:
+    """E[h] or E[h'] by quadrature over the phase."""
+
+    def at(u: Any) -> Any:
+        values = _spread(law, np.abs(u), slope)
+        return values if slope else (values - np.asarray(base)[..., None, None]) * np.sign(u)
+
+    return mean_over_phase(at, v, w, _kinks(law))
+
+
+def _spread(law: FrictionLaw, u: Any, slope: bool) -> Any:
+    """mu or its slope at speeds (..., pieces, nodes), the coefficients' leading axes in front."""
+    if not hasattr(type(law), "formula"):
+        return law.slope_at(u) if slope else law.mu(u)
+    p = tuple(c[..., None, None] if np.ndim(c) else c for c in law.coefficients())
+    return (type(law).slope_formula if slope else type(law).formula)(u, p)
+
+
+def _kinks(law: FrictionLaw) -> list[Any]:
+    """Speeds at which the law is not smooth."""
+    if isinstance(law, Table):
+        return [float(speed) for speed in law.speeds if speed > 0.0]
+    if isinstance(law, LinearSlope) and law.floor is not None:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            reached = (np.asarray(law.floor) - law.static) / np.asarray(law.slope)
+        return [np.where(np.isfinite(reached) & (reached > 0.0), reached, 0.0)]
+    return []

@@ -27,6 +27,7 @@ from squealbox import sparse_sliding
 from squealbox.contacts import ROWS, Contact, Contacts, dense_rows, sparse_matrix
 from squealbox.factorisation import is_symmetric
 from squealbox.matrices import InvalidSystem, array, check_mass, check_width, checked_names, coupled, felt
+from squealbox.loops import Loop, check_loops, folded, near_sliding
 from squealbox.parameters import DataSheet
 from squealbox.result import Outcome
 from squealbox.schedules import Schedule, value_at
@@ -42,6 +43,7 @@ class System(DataSheet):
     load : f, shape (..., n) [N], or a schedule whose value has that shape
     contacts : the contacts, one by one or as a table :class:`Contacts`
     names : names of the degrees of freedom
+    loops : controllers that sense and act (`squealbox.loops`)
 
     M, C and K may be SciPy sparse arrays, of one system: steady sliding, linearisation, complex modes and their energy
     then stay sparse, and every other analysis says in one sentence that it wants a reduced system.
@@ -58,6 +60,7 @@ class System(DataSheet):
     load: Any = 0.0
     contacts: Any = ()
     names: tuple[str, ...] = ()
+    loops: tuple[Loop, ...] = ()
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
@@ -80,6 +83,7 @@ class System(DataSheet):
         check_width("load", np.asarray(value_at(self.load, 0.0)), size)
         set_(self, "contacts", self._sparse_contacts() if any_sparse else self._dense_contacts())
         set_(self, "names", checked_names(self.names, size))
+        set_(self, "loops", check_loops(self.loops, self.names, InvalidSystem))
 
     def _dense_contacts(self) -> tuple[Contact, ...]:
         contacts = self.contacts.dense() if isinstance(self.contacts, Contacts) else tuple(self.contacts)
@@ -195,7 +199,7 @@ def as_system(design_or_system: Any, *, linear: bool = False) -> System:
 
 def _system_of(given: Any) -> System:
     if isinstance(given, System):
-        return given
+        return folded(given)  # type: ignore[no-any-return]
     if isinstance(given, type):
         raise InvalidSystem(f"{given.__name__} is a class: expected a design made from it, {given.__name__}(...)")
     if isinstance(given, (str, os.PathLike)):
@@ -203,7 +207,7 @@ def _system_of(given: Any) -> System:
     if not callable(getattr(given, "system", None)):
         raise InvalidSystem(f"a {type(given).__name__} has no system(): expected a System or a design")
     system: System = given.system()
-    return system
+    return folded(system)  # type: ignore[no-any-return]
 
 
 def _checked_contact(contact: Any, i: int, size: int) -> Contact:
@@ -222,6 +226,7 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
     contacts r is linear in q, because mu depends on V alone, and one step is exact; with them r is piecewise linear and
     each step changes the set of open contacts, so the number of steps is bounded by that of the contacts' states.
     """
+    system = near_sliding(system)
     if system.is_sparse:
         return _sparse_equilibrium(system, time)
     no_rigid_contact(system, "steady sliding")
@@ -259,6 +264,7 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
 
 def linearise(system: System, time: float = 0.0) -> Linearised:
     """K_eff and C_eff about steady sliding at `time` [s]; an open contact only takes its stiffness out."""
+    system = near_sliding(system)
     state = equilibrium(system, time)
     if system.is_sparse:
         return Linearised(system.M, *_sparse_linearised(system, state), state)

@@ -12,6 +12,7 @@ import numpy as np
 
 from squealbox.result import COMPLETED, Outcome, Result, batched, quantity
 from squealbox.stability.deflation import special_modes
+from squealbox.stability.first_order import first_order_spectra
 from squealbox.static_deflection import levelled
 from squealbox.system import Linearised, as_system, linearise
 
@@ -292,6 +293,14 @@ def with_special(about: Linearised, eigenvalues: Any) -> Any:
     if not np.any(special):
         return eigenvalues
     eigenvalues = np.array(eigenvalues)
+    quick = special & (np.asarray(about.equilibrium.floating) == 0)
+    if np.any(quick):
+        values, answered = first_order_spectra(*(np.broadcast_to(part, about.K.shape)[quick] for part in (about.M, about.C, about.K)))
+        known = np.where(np.isnan(values), -1e3 * np.nanmax(np.abs(values), axis=-1, keepdims=True, initial=1.0), values)
+        values = np.take_along_axis(values, spectrum_order(known), axis=-1)
+        places = np.argwhere(quick)[answered]
+        eigenvalues[tuple(places.T)], special = values[answered], np.array(special)
+        special[tuple(places.T)] = False
     for at in map(tuple, np.argwhere(special)):
         found = special_modes(about.M[at], about.C[at], about.K[at])
         eigenvalues[at] = np.nan if found is None else found[0]

@@ -19,6 +19,7 @@ from squealbox.system import Linearised
 
 NEUTRAL = 1e-11  # |Re lambda| below this share of the largest |lambda|, at all values, is a mode without damping
 EDGE = 52  # halvings towards a value without an answer
+ROUND_OFF = 1e-13  # two modes that only pass each other come out as a pair apart by the root of the round-off
 DETAIL = 17  # values on which a suspicious stretch is scanned again
 
 
@@ -169,7 +170,7 @@ def coalescence(eigenvalues: Any, rigid: int = 0) -> Any:
     for i in range(half - rigid):
         for j in range(i):
             worst = np.fmax(worst, -np.real((squares[..., i] - squares[..., j]) ** 2))
-    return worst
+    return worst - ROUND_OFF
 
 
 def merging(eigenvalues: Any) -> complex:

@@ -1,0 +1,121 @@
+"""A brake under control as x' = A x + sum_a B_a u_a(t - T_a), u_a = H_a x: the linear form poles and margins are of.
+
+x = (q, q' of what has mass, loop states), about steady sliding. B_a holds where the force of loop a acts, on the brake
+and in the loop's own memory (G); loops without delay and sampling are still apart from A, so that each can be broken.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.loops import Loop
+from squealbox.parameters import ParameterError
+from squealbox.result import Outcome
+from squealbox.stability.first_order import first_order_rows
+from squealbox.system import System, linearise
+
+
+@dataclass(frozen=True, eq=False)
+class Plant:
+    """A (d, d), B (d, a), H (a, d), delay (a,) [s] of the loops that are not ideal, sampling (a,) [Hz] or 0.
+
+    displacement (n, d) and velocity (n, d) read q and q' from x; outcome is that of steady sliding.
+    """
+
+    A: Any
+    B: Any
+    H: Any
+    delay: Any
+    sampling: Any
+    displacement: Any
+    velocity: Any
+    loops: tuple[Loop, ...]
+    names: tuple[str, ...]
+    outcome: Outcome
+
+    @property
+    def closed(self) -> Any:
+        """A + B H: every loop closed at once, without its delay and sampling."""
+        return self.A + self.B @ self.H
+
+
+def with_loops(design_or_system: Any) -> System:
+    """The system with its loops still apart."""
+    return design_or_system if isinstance(design_or_system, System) else design_or_system.system()
+
+
+def plant(design_or_system: Any, time: float = 0.0) -> Plant:
+    """The linear form of a brake with loops; `ParameterError` without loops or with leading axes."""
+    system = with_loops(design_or_system)
+    if not system.loops:
+        raise ParameterError("closed_loop", "design", type(design_or_system).__name__, "a brake with loops: Controlled(brake, [PID(on='y')])")
+    rows = [loop.rows(system.names) for loop in system.loops]
+    if system.shape != () or any(np.ndim(row.P) > 1 for row in rows):
+        raise ParameterError("closed_loop", "design", f"leading axes {system.shape}", "one brake, without them")
+    from squealbox.loops import folded
+
+    whole = folded(system.replace(loops=tuple(loop.replace(delay=0.0, sampling=None, computing=0.0) for loop in system.loops)), limited=True)
+    steady = linearise(whole, time).equilibrium
+    about = linearise(system.replace(loops=()), time)
+    if bool(steady.exists) and whole.contacts:  # steady sliding is that of the closed loop
+        about = _about(system, steady, time)
+    outcome = steady.outcome
+    A, displacement, velocity, into = _first_order(about.M, about.C, about.K)
+    d, memory = len(A), [row.memory for row in rows]
+    total = d + sum(memory)
+    wide = np.zeros((total, total))
+    wide[:d, :d] = A
+    B, H = np.zeros((total, len(rows))), np.zeros((len(rows), total))
+    at = d
+    for a, row in enumerate(rows):
+        m = slice(at, at + row.memory)
+        at += row.memory
+        wide[m, :d] = row.E @ displacement + row.F @ velocity
+        wide[m, m] = row.A
+        B[:d, a], B[m, a] = into @ row.b, row.G
+        H[a, :d], H[a, m] = row.P @ displacement + row.R @ velocity, row.S
+    pad = ((0, 0), (0, total - d))
+    return Plant(
+        wide, B, H, np.array([loop.late for loop in system.loops]),
+        np.array([loop.sampling or 0.0 for loop in system.loops]), np.pad(displacement, pad), np.pad(velocity, pad),
+        system.loops, system.names, outcome,
+    )  # fmt: skip
+
+
+def _about(system: System, steady: Any, time: float) -> Any:
+    """The brake's own matrices at the steady state of the closed loop: its normal forces with the loops' static pull."""
+    n = system.size
+    shifted = tuple(
+        contact.replace(N0=float(steady.normal_force[i]) if not contact.unilateral or steady.normal_force[i] > 0.0 else 0.0, n=0.0 * contact.n)
+        for i, contact in enumerate(system.contacts)
+    )
+    del n
+    found = linearise(system.replace(loops=(), contacts=shifted, load=np.zeros(system.size)), time)
+    stiffness = np.array(found.K)
+    for i, contact in enumerate(system.contacts):
+        closed = not contact.unilateral or steady.normal_force[i] > 0.0
+        factor = steady.friction[i] * np.sign(steady.sliding_speed[i]) if closed else 0.0
+        stiffness -= factor * np.outer(contact.d, contact.n)
+        if not closed:
+            stiffness -= np.outer(contact.normal, contact.n)
+    return type(found)(found.M, found.C, stiffness, steady)
+
+
+def _first_order(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, Any, Any, Any]:
+    """A, the rows that read q and q' from x = (q, q_m'), and what a force (n,) does to x'."""
+    n = len(mass)
+    light = first_order_rows(mass)
+    z, m = np.flatnonzero(light), np.flatnonzero(~light)
+    velocity, into_v = np.zeros((n, n + m.size)), np.zeros((n, n))
+    velocity[m, n + np.arange(m.size)] = 1.0
+    if z.size:
+        own = np.linalg.inv(damping[np.ix_(z, z)])
+        velocity[z, :n] = -own @ stiffness[z, :]
+        velocity[z, n:] = -own @ damping[np.ix_(z, m)]
+        into_v[z[:, None], z] = own
+    displacement = np.hstack([np.eye(n), np.zeros((n, m.size))])
+    inverse = np.linalg.inv(mass[np.ix_(m, m)])
+    acceleration = -inverse @ (stiffness[m, :] @ displacement + damping[m, :] @ velocity)
+    force = inverse @ (np.eye(n)[m, :] - damping[np.ix_(m, z)] @ into_v[z, :])
+    return np.vstack([velocity, acceleration]), displacement, velocity, np.vstack([into_v, force])

@@ -1,0 +1,35 @@
+"""What is done against squeal: designs that hold a design. Depends on: designs, system, friction, loops, stability."""
+
+from squealbox.countermeasures.base import Countermeasure
+from squealbox.countermeasures.controlled import Controlled
+from squealbox.countermeasures.dither import Dithered, NormalDither
+from squealbox.countermeasures.mechanical import AddedDamping, AddedMass, AddedStiffness, Asymmetry, TunedMass
+from squealbox.countermeasures.shims import LayerDamping, Shim, ross_kerwin_ungar
+
+COUNTERMEASURES: dict[str, type[Countermeasure]] = {
+    "tuned_mass": TunedMass,
+    "added_mass": AddedMass,
+    "added_stiffness": AddedStiffness,
+    "added_damping": AddedDamping,
+    "shim": Shim,
+    "layer_damping": LayerDamping,
+    "asymmetry": Asymmetry,
+    "dithered": Dithered,
+    "normal_dither": NormalDither,
+}
+
+__all__ = [
+    "COUNTERMEASURES",
+    "AddedDamping",
+    "AddedMass",
+    "AddedStiffness",
+    "Asymmetry",
+    "Controlled",
+    "Countermeasure",
+    "Dithered",
+    "LayerDamping",
+    "NormalDither",
+    "Shim",
+    "TunedMass",
+    "ross_kerwin_ungar",
+]

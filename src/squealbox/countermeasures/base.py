@@ -1,0 +1,111 @@
+"""What every countermeasure is: a design that holds a design, and writes more rows beside its own.
+
+`replace({"brake.friction.static": 0.4})` reaches into the brake that is held; a name the countermeasure does not have is
+looked for in it too, so "friction.static" names the same parameter through any number of countermeasures, and every
+analysis that varies it works unchanged.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Self
+
+import numpy as np
+
+from squealbox.designs.base import Design
+from squealbox.loops import padded_load
+from squealbox.parameters import ParameterError, known_names
+from squealbox.system import Contact, System
+
+
+class Countermeasure(Design):
+    """A design that holds a design: `brake` with one thing done to it.
+
+    Its `system()` is that of the brake with rows added or changed; countermeasures nest in any order.
+    """
+
+    brake: Design
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not isinstance(self.brake, Design):
+            raise ParameterError(type(self).__name__, "brake", self.brake, "a design, such as DrumBrake()")
+
+    def replace(self, changes: Mapping[str, Any] | None = None, **keywords: Any) -> Self:
+        """A copy with other values; names that the countermeasure does not have are the brake's."""
+        own = {*self.field_names(), *self.aliases}
+        given = {**(changes or {}), **keywords}
+        return super().replace({name if name.partition(".")[0] in own else f"brake.{name}": given[name] for name in given})
+
+    def value_of(self, path: str) -> Any:
+        """The value behind a dotted name, the countermeasure's own or the brake's."""
+        own = path.partition(".")[0] in {*self.field_names(), *self.aliases}
+        return super().value_of(path) if own else self.brake.value_of(path)
+
+    @property
+    def innermost(self) -> Design:
+        """The brake itself, without any countermeasure."""
+        held = self.brake
+        while isinstance(held, Countermeasure):
+            held = held.brake
+        return held
+
+
+def direction(owner: str, field: str, system: System, on: str | Sequence[float]) -> Any:
+    """The unit vector of a degree of freedom by its name, or a row of numbers as it is, shape (n,)."""
+    if isinstance(on, str):
+        if on not in system.names:
+            raise ParameterError(owner, field, on, known_names(on, list(system.names)))
+        return np.eye(system.size)[system.names.index(on)]
+    row = np.asarray(on, dtype=float)
+    if row.shape != (system.size,) or not np.all(np.isfinite(row)) or not np.any(row):
+        raise ParameterError(owner, field, on, f"a name of {system.names}, or {system.size} numbers, one of them not 0")
+    return row
+
+
+def contact_index(owner: str, field: str, system: System, at: str) -> int:
+    """The place of the contact with that name; of the only one for an empty name."""
+    names = [contact.name for contact in system.contacts]
+    if at == "" and len(names) == 1:
+        return 0
+    if at not in names or names.count(at) > 1:
+        raise ParameterError(owner, field, at, known_names(at, names) if names else "a brake with contacts")
+    return names.index(at)
+
+
+def added(system: System, *, mass: Any = None, damping: Any = None, stiffness: Any = None) -> System:
+    """The system with matrices (..., n, n) added to its own."""
+    changes = {"M": mass, "C": damping, "K": stiffness}
+    return system.replace({name: getattr(system, name) + more for name, more in changes.items() if more is not None})
+
+
+def extended(system: System, *names: str) -> System:
+    """The system with further degrees of freedom at the end, as yet without mass, damping and stiffness.
+
+    A name that is taken gets a number behind it.
+    """
+    more = len(names)
+    taken = list(system.names)
+    for name in names:
+        number = 2
+        unique = name
+        while unique in taken:
+            unique, number = f"{name} {number}", number + 1
+        taken.append(unique)
+    matrices = {name: _padded(getattr(system, name), more, 2) for name in ("M", "C", "K")}
+    contacts = tuple(_padded_contact(contact, more) for contact in system.contacts)
+    return system.replace({**matrices, "load": padded_load(system.load, more), "contacts": contacts, "names": tuple(taken)})
+
+
+def outer(scale: Any, left: Any, right: Any) -> Any:
+    """scale left right', shape (..., n, n)."""
+    return np.asarray(scale, dtype=float)[..., None, None] * (
+        np.asarray(left)[..., :, None] * np.asarray(right)[..., None, :]
+    )
+
+
+def _padded(array: Any, more: int, axes: int) -> Any:
+    return np.pad(array, [(0, 0)] * (np.ndim(array) - axes) + [(0, more)] * axes)
+
+
+def _padded_contact(contact: Contact, more: int) -> Contact:
+    rows = {name: getattr(contact, name) for name in ("n", "d", "t", "normal")}
+    return contact.replace({name: _padded(row, more, 1) for name, row in rows.items() if row is not None})
