@@ -14,6 +14,7 @@ from squealbox.averages import mean_over_phase
 from squealbox.parameters import DataSheet, ParameterError, parameter
 
 Formula = Callable[..., Any]
+NEVER_STICKS = 1e-200  # static limit of a law that rises from 0: it reverses like any other, and cannot stick
 
 
 class FrictionLaw(DataSheet):
@@ -300,8 +301,8 @@ class Averaged(FrictionLaw):
             raise ParameterError("Averaged", "law", self.law, "a friction law")
 
     def coefficients(self) -> tuple[Any, ...]:
-        """Static limit 0, the dither's velocity; mu0, a1, a3 where it is mu0 (2/pi) asin(v/w) + a1 v + a3 v^3."""
-        return (0.0 * np.asarray(self.velocity), self.velocity, *(self._polynomial() or ()))
+        """No static limit, the dither's velocity; mu0, a1, a3 where it is mu0 (2/pi) asin(v/w) + a1 v + a3 v^3."""
+        return (NEVER_STICKS + 0.0 * np.asarray(self.velocity), self.velocity, *(self._polynomial() or ()))
 
     def mu(self, velocity: Any) -> Any:
         v, w = np.broadcast_arrays(np.abs(velocity), self.velocity)

@@ -219,7 +219,8 @@ LOOPS: dict[str, type[Loop]] = {
 def _lagging(own: Rows, rate: Any) -> Rows:
     """Controller and first-order actuator, f' = rate (command - f), u = f."""
     m, n = own.memory, own.b.size
-    lead = np.broadcast_shapes(np.shape(rate), np.shape(own.P)[:-1], np.shape(own.A)[:-2])
+    vectors = (np.shape(row)[:-1] for row in (own.P, own.R, own.S))
+    lead = np.broadcast_shapes(np.shape(rate), *vectors, np.shape(own.A)[:-2])
     A, E, F = np.zeros((*lead, m + 1, m + 1)), np.zeros((*lead, m + 1, n)), np.zeros((*lead, m + 1, n))
     G, S = np.zeros((*lead, m + 1)), np.zeros((*lead, m + 1))
     A[..., :m, :m], E[..., :m, :], F[..., :m, :], G[..., :m] = own.A, own.E, own.F, own.G
@@ -250,9 +251,8 @@ def folded(system: Any, *, limited: bool = False) -> Any:
     names = system.names
     rows = [loop.rows(names) for loop in chosen]
     n, more = system.size, sum(row.memory for row in rows)
-    lead = np.broadcast_shapes(
-        system.shape, *(np.shape(x)[:-1] for row in rows for x in (row.P, row.R, row.S)), *(np.shape(r.A)[:-2] for r in rows)
-    )
+    vectors = (np.shape(x)[:-1] for row in rows for x in (row.P, row.R, row.S, row.G))
+    lead = np.broadcast_shapes(system.shape, *vectors, *(np.shape(x)[:-2] for row in rows for x in (row.A, row.E, row.F)))
     M, C, K = (np.zeros((*lead, n + more, n + more)) for _ in range(3))
     for into, matrix in ((M, system.M), (C, system.C), (K, system.K)):
         into[..., :n, :n] = matrix
@@ -276,6 +276,15 @@ def folded(system: Any, *, limited: bool = False) -> Any:
         C[..., m, m] = (spring / rate)[..., None, None] * np.eye(row.memory)
         K[..., m, m] = -scale * (row.A + row.G[..., :, None] * S[..., None, :]) * unit[..., None, :]
     return _wider(system, M, C, K, more, tuple(loop for loop in system.loops if loop not in chosen))
+
+
+def near_sliding(system: Any) -> Any:
+    """The system near steady sliding, its loops as rows; `ParameterError` for loops with delay or sampling."""
+    near = folded(system, limited=True)
+    for loop in near.loops:
+        given = f"{type(loop).__name__}(on={loop.on!r}) with {'sampling' if loop.sampling is not None else 'a delay'}"
+        raise ParameterError("system", "loops", given, "loops that are rows of matrices: closed_loop() gives its poles")
+    return near
 
 
 def _wider(system: Any, M: Any, C: Any, K: Any, more: int, loops: tuple[Loop, ...]) -> Any:

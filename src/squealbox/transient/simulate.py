@@ -12,6 +12,7 @@ from squealbox.result import COMPLETED, Outcome
 from squealbox.system import InvalidSystem, System, as_system, equilibrium, no_rigid_contact
 from squealbox.transient import _march, _motion, moreau, packing
 from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
+from squealbox.transient.limited import in_time
 from squealbox.transient.methods import Method
 from squealbox.transient.own_laws import own_texts
 from squealbox.transient.trajectory import Trajectory
@@ -94,7 +95,7 @@ def simulate(
     >>> simulate(DrumBrake(), duration=1e-3).outcome
     'completed'
     """
-    system = as_system(design_or_system)
+    system = in_time(as_system(design_or_system))
     chosen = chosen_method(method, rtol, atol)
     if contact not in (*SCHEMES, TIME_STEPPING):
         raise ParameterError("simulate", "contact", contact, known_names(str(contact), [*SCHEMES, TIME_STEPPING]))

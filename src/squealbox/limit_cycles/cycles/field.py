@@ -17,6 +17,7 @@ import numpy as np
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Schedule, value_at
 from squealbox.system import System
+from squealbox.transient.limited import in_time
 from squealbox.transient.packing import inverse_mass
 
 OPEN = 2
@@ -40,6 +41,7 @@ class Field:
     """
 
     def __init__(self, system: System, contact: str = "exact", width: float = 1e-3) -> None:
+        system = in_time(system)
         check_autonomous(system)
         self.system, self.contact, self.width = system, contact, width
         n, rows = system.size, system.contacts

@@ -10,11 +10,12 @@ from squealbox import friction, schedules
 from squealbox.parameters import DataSheet
 from squealbox.schedules import Sum
 from squealbox.system import InvalidSystem, System, as_system
+from squealbox.transient.limited import in_time
 
 
 def stacked(designs: Sequence[Any]) -> System:
     """Systems of the same structure as one with a leading axis; `InvalidSystem` names one that differs."""
-    systems = [as_system(each) for each in designs]
+    systems = [in_time(as_system(each)) for each in designs]
     first = systems[0]
     for i, other in enumerate(systems):
         alike = other.size == first.size and len(other.contacts) == len(first.contacts)

@@ -12,6 +12,7 @@ from squealbox.parameters import ParameterError
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
 from squealbox.transient import packing
 from squealbox.transient.lanes.batch import stacked
+from squealbox.transient.limited import in_time
 from squealbox.transient.lanes.shape import LANES, layout
 from squealbox.transient.lanes.table import Jobs, tabulate
 from squealbox.transient.methods import Method
@@ -48,9 +49,9 @@ class Work:
         for first in range(0, total, size):
             part = slice(first, min(first + size, total))
             if names:
-                system = as_system(design.replace(dict(zip(names, (a[part] for a in flat), strict=True))))
+                system = in_time(as_system(design.replace(dict(zip(names, (a[part] for a in flat), strict=True)))))
             else:
-                system = stacked(design) if isinstance(design, (list, tuple)) else as_system(design)
+                system = stacked(design) if isinstance(design, (list, tuple)) else in_time(as_system(design))
             self._block(system, shape, part, total)
             if self.interrupted:
                 break

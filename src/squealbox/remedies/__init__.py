@@ -1,0 +1,6 @@
+"""What would silence this brake? Depends on: countermeasures, control, stability, transient, studies, loops, result."""
+
+from squealbox.remedies.candidates import Candidate, candidates_for
+from squealbox.remedies.ranking import Remedies, silence
+
+__all__ = ["Candidate", "Remedies", "candidates_for", "silence"]

@@ -1,0 +1,288 @@
+"""Every candidate at the dose it needs, how it fares over the scatter of production, and the table of them all."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.control import closed_loop
+from squealbox.countermeasures import Controlled, Dithered
+from squealbox.countermeasures.loss import growth_of
+from squealbox.designs.base import Design
+from squealbox.parameters import ParameterError
+from squealbox.remedies.candidates import Candidate, candidates_for, more_friction
+from squealbox.result import Outcome, Result, quantity
+from squealbox.studies.uncertainty.scatter import Scatter
+from squealbox.system import InvalidSystem, equilibrium
+from squealbox.transient import simulate
+
+TUNING = 0.03  # standard deviation of an absorber's frequency in production, relative
+ZOOM = 17
+PUSH, PERIODS = 0.05, 100.0  # m/s of the push, and how many periods of the worst mode it is followed
+HALF = 0.5
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Remedies(Result):
+    """Cures ranked by the squeal they leave, as :func:`silence` returns them. Rows are along `cure`.
+
+    `reached` says whether the dose makes the brake quiet at `margin` more friction; where none does, the dose is that
+    with the least growth. `line` is the Python that makes the cured brake, of the name `brake`.
+    """
+
+    name: Any = quantity("cure", "1", "what is done")
+    dose: Any = quantity("cure", "", "how much of it, in its own unit")
+    unit: Any = quantity("cure", "1", "unit of the dose")
+    reached: Any = quantity("cure", "1", "True where the brake is quiet at the margin too")
+    growth: Any = quantity("cure", "1/s", "largest growth rate at nominal friction")
+    growth_at_margin: Any = quantity("cure", "1/s", "largest growth rate with the margin in friction")
+    probability: Any = quantity("cure", "1", "share of the lot that squeals")
+    amplitude: Any = quantity("cure", "m", "vibration some time after a push, half peak to peak; NaN unknown")
+    cost: Any = quantity("cure", "1", "what it costs, in words")
+    caution: Any = quantity("cure", "1", "what to know before using it")
+    line: Any = quantity("cure", "1", "one line of Python that makes the cured brake")
+    before: float = float("nan")
+    growth_before: float = float("nan")
+    amplitude_before: float = float("nan")
+    margin: float = 0.1
+
+    def __len__(self) -> int:
+        return len(self.name)
+
+    def design(self, row: int) -> Design:
+        """The brake with the cure of that row, made by its line of Python."""
+        import squealbox
+        from squealbox import countermeasures, loops
+
+        known = {name: getattr(countermeasures, name) for name in countermeasures.__all__}
+        known |= {name: getattr(loops, name) for name in ("PID", "ActiveForce", "StateFeedback", "DelayedFeedback")}
+        del squealbox
+        made: Design = _made(str(self.line[row]), {**known, "brake": self.inputs["system"]})
+        return made
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """The table as text: cure, dose, growth, growth at the margin, P(squeal), after a push, cost, caution."""
+        return [
+            (
+                str(self.name[i]), f"{float(self.dose[i]):.4g} {self.unit[i]}".strip(), f"{float(self.growth[i]):+.4g}",
+                f"{float(self.growth_at_margin[i]):+.4g}", f"{float(self.probability[i]):.3f}",
+                f"{1e6 * float(self.amplitude[i]):.3g}", str(self.cost[i]), str(self.caution[i]),
+            )
+            for i in range(len(self))
+        ]  # fmt: skip
+
+    def summary(self) -> str:
+        """The ranked table, ready for an e-mail."""
+        head = ("cure", "dose", "growth [1/s]", f"at +{100.0 * self.margin:.3g} %", "P(squeal)", "after push [um]", "cost")
+        table = [head, *(row[:7] for row in self.rows())]
+        widths = [max(len(row[i]) for row in table) for i in range(len(head))]
+        lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in table]
+        first = (
+            f"Without: growth {self.growth_before:+.4g} 1/s, P(squeal) {self.before:.3f}, "
+            f"{1e6 * self.amplitude_before:.3g} um after a push"
+        )
+        cautions = [f"{self.name[i]}: {self.caution[i]}" for i in range(len(self)) if self.caution[i]]
+        return "\n".join([first, *lines, "", *cautions])
+
+    def __repr__(self) -> str:
+        return self.summary()
+
+
+def silence(
+    brake: Design,
+    scatter: Scatter,
+    candidates: Sequence[Candidate] | None = None,
+    margin: float = 0.1,
+    *,
+    samples: int = 2048,
+    seed: int = 0,
+    push: float = PUSH,
+) -> Remedies:
+    """What would silence this brake: every candidate at the dose it needs, ranked by the squeal it leaves.
+
+    Parameters
+    ----------
+    brake : any design with a friction law
+    scatter : how its parameters scatter in production
+    candidates : None takes `candidates_for`: each parameter, absorbers, dampers, masses, springs, shims, asymmetry,
+        dither, velocity feedback, active force control, combinations of two
+    margin : by which friction may rise without squeal
+    samples, seed : of the lot, the same for every candidate; absorbers scatter in their tuning by 3 % besides
+    push : [m/s] velocity of the push along the worst mode after which the motion is followed; 0 follows none
+
+    >>> from squealbox import Coulomb, ModeCoupling
+    >>> from squealbox.studies import Normal, Scatter
+    >>> brake = ModeCoupling(c1=0.02, c2=0.02, friction=Coulomb(1.05))
+    >>> table = silence(brake, Scatter({"friction.static": Normal(1.05, 0.05)}), samples=64, push=0.0)
+    >>> len(table) >= 15, bool(table.probability[0] < table.before)
+    (True, True)
+    """
+    if not (np.isfinite(margin) and margin >= 0.0):
+        raise ParameterError("silence", "margin", margin, "a finite number of at least 0")
+    if not isinstance(scatter, Scatter):
+        raise ParameterError("silence", "scatter", scatter, "a Scatter of the brake's parameters")
+    lot = scatter.sample(samples, seed=seed)
+    tuning = 1.0 + TUNING * np.random.default_rng(seed + 1).standard_normal(samples)
+    worse = more_friction(brake, 1.0 + margin)
+    chosen = list(candidates_for(brake, worse) if candidates is None else candidates)
+    rows = [_row(each, brake, margin, lot, tuning, push) for each in chosen]
+    rows = sorted(_one_side(rows), key=lambda row: (row["probability"], row["growth_at_margin"]))
+    names = ("name", "dose", "unit", "reached", "growth", "growth_at_margin", "probability", "amplitude", "cost", "caution", "line")
+    outcome = Outcome() if rows else Outcome("no_candidates", "nothing was given that could be tried")
+    return Remedies(
+        **{name: np.array([row[name] for row in rows]) for name in names}, before=_share(brake, lot),
+        growth_before=float(growth_of(brake)), amplitude_before=_pushed(brake, brake, push), margin=margin,
+        inputs={"system": brake}, settings={"samples": samples, "seed": seed, "push": push}, outcome=outcome,
+    )  # fmt: skip
+
+
+def _row(each: Candidate, brake: Design, margin: float, lot: Any, tuning: Any, push: float) -> dict[str, Any]:
+    dose, reached = _dose(each, margin)
+    cured = each.make(dose)
+    growth, later = float(growth_of(cured)), float(growth_of(more_friction(cured, 1.0 + margin)))
+    share = _share(cured, lot, each, tuning)
+    cautions = [*each.cautions, *_said(cured, brake)]
+    if not reached:
+        cautions.insert(0, f"no dose up to {float(np.abs(each.doses[-1])):.4g} {each.unit} makes it quiet at the margin")
+    if growth <= 0.0 and share > HALF:
+        cautions.insert(0, f"stable as drawn, and yet {100.0 * share:.0f} % of the lot squeals")
+    return {
+        "name": each.name, "dose": dose, "unit": each.unit, "reached": reached, "growth": growth, "growth_at_margin": later,
+        "probability": share, "amplitude": _pushed(cured, brake, push), "cost": each.cost(dose),
+        "caution": "; ".join(cautions), "line": each.line(dose),
+    }  # fmt: skip
+
+
+def _dose(each: Candidate, margin: float) -> tuple[float, bool]:
+    """The least dose at which the brake is quiet with the margin, or the one with the least growth."""
+    doses = np.asarray(each.doses, dtype=float)
+    growth = _growths(each, doses, margin)
+    quiet = growth <= 0.0
+    if not np.any(quiet):
+        return float(doses[int(np.argmin(growth))]), False
+    first = int(np.argmax(quiet))
+    if first == 0:
+        return float(doses[0]), True
+    low, high = doses[first - 1], doses[first]
+    for _ in range(4):
+        fine = np.linspace(low, high, ZOOM)
+        quiet = _growths(each, fine, margin) <= 0.0
+        k = max(int(np.argmax(quiet)), 1)
+        low, high = fine[k - 1], fine[k]
+    return float(high), True
+
+
+def _growths(each: Candidate, doses: Any, margin: float) -> Any:
+    if len(doses) == 1:
+        return np.atleast_1d(growth_of(more_friction(each.make(float(doses[0])), 1.0 + margin)))
+    return growth_of(more_friction(each.make(doses), 1.0 + margin))
+
+
+def _share(brake: Design, lot: dict[str, Any], each: Candidate | None = None, tuning: Any = None) -> float:
+    """Share of the lot that squeals, the cure kept as it is: a parameter that is changed scatters about its new value."""
+    values: dict[str, Any] = {}
+    for name, sample in lot.items():
+        here = brake.value_of(name)
+        usual = here if each is None else _innermost(brake).value_of(name)
+        values[name] = sample if each is None else sample + (here - _nominal(brake, each, name, usual))
+    if each is not None and each.tuned:
+        values[each.tuned] = brake.value_of(each.tuned) * tuning
+    growth = growth_of(brake.replace(values))
+    return float(np.mean(growth > 0.0))
+
+
+def _nominal(brake: Design, each: Candidate, name: str, here: Any) -> Any:
+    """The value of a parameter before the cure changed it."""
+    changed = each.name.rpartition(" ")[0]
+    if name != changed and name not in _innermost(brake).aliases:
+        return here
+    return here - float(each_change(each, brake, name))
+
+
+def each_change(each: Candidate, brake: Design, name: str) -> float:
+    """By how much a candidate that moves a parameter of the brake has moved it."""
+    none = each.make(0.0) if each.name.rpartition(" ")[2] in ("up", "down") else brake
+    return float(brake.value_of(name)) - float(none.value_of(name))
+
+
+def _innermost(brake: Design) -> Design:
+    found: Design = getattr(brake, "innermost", brake)
+    return found
+
+
+def _one_side(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Of a parameter's two directions the better one."""
+    best: dict[str, dict[str, Any]] = {}
+    for row in rows:
+        stem, _, side = row["name"].rpartition(" ")
+        key = stem if side in ("up", "down") else row["name"]
+        if key not in best or (row["probability"], row["growth_at_margin"]) < (
+            best[key]["probability"], best[key]["growth_at_margin"],
+        ):  # fmt: skip
+            best[key] = row
+    return list(best.values())
+
+
+def _said(cured: Design, brake: Design) -> list[str]:
+    if isinstance(cured, Dithered):
+        left = cured.friction_left
+        return [f"mean friction left {100.0 * float(np.min(left)):.0f} %", *cured.cautions()]
+    if isinstance(cured, Controlled):
+        found = closed_loop(cured)
+        if not found.stable:
+            return []
+        return [f"the delay must stay below {1e6 * found.delay_margin:.3g} us and the sampling above "
+                f"{found.sampling_margin(1.0):.4g} Hz (one sample to compute)"]
+    state = equilibrium(cured.system())
+    pulled = [c.name for c, force in zip(cured.system().contacts, np.atleast_1d(state.normal_force), strict=False) if force < 0.0]
+    was = [float(force) < 0.0 for force in np.atleast_1d(equilibrium(brake.system()).normal_force)]
+    return [f"{', '.join(pulled)} is pulled (N < 0)"] if len(pulled) > sum(was) else []
+
+
+def _pushed(cured: Design, brake: Design, push: float) -> float:
+    """Half peak to peak over the last tenth of a run that begins with a push along the brake's worst mode [m]."""
+    if push == 0.0:
+        return float("nan")
+    from squealbox.stability import complex_modes
+
+    worst = complex_modes(brake).most_unstable
+    moving = np.real(worst.shape) / np.max(np.abs(worst.shape))
+    duration = PERIODS / max(worst.frequency, 1e-12)
+    try:
+        steady = equilibrium(cured.system()).q
+        kick = np.zeros(steady.size)
+        kick[: moving.size] = push * moving
+        motion = simulate(cured, duration, (steady, kick), 2001)
+    except (InvalidSystem, ParameterError):
+        return float("nan")  # an engine that cannot run it: the table says NaN, unknown
+    if not motion.outcome.ok:
+        return float("nan")
+    last = motion.q[-200:, : moving.size]
+    return float(0.5 * np.max(np.ptp(last, axis=0)))
+
+
+def _made(line: str, known: dict[str, Any]) -> Any:
+    """What the line makes; only the names in `known` and numbers are read, no code is run."""
+    import ast
+
+    def of(node: ast.AST) -> Any:
+        if isinstance(node, ast.Expression):
+            return of(node.body)
+        if isinstance(node, ast.Constant):
+            return node.value
+        if isinstance(node, ast.Name):
+            return known[node.id]
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+            return -of(node.operand)
+        if isinstance(node, ast.List):
+            return [of(item) for item in node.elts]
+        if isinstance(node, ast.Dict):
+            return {of(k): of(v) for k, v in zip(node.keys, node.values, strict=True) if k is not None}
+        if isinstance(node, ast.Attribute) and node.attr == "replace":
+            return of(node.value).replace
+        if isinstance(node, ast.Call):
+            return of(node.func)(*map(of, node.args), **{str(k.arg): of(k.value) for k in node.keywords})
+        raise ParameterError("Remedies", "line", line, "a line of Python as `silence` writes it")
+
+    return of(ast.parse(line, mode="eval"))
