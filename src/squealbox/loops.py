@@ -78,7 +78,8 @@ class Loop(DataSheet):
         return own if self.bandwidth is None else _lagging(own, 2.0 * np.pi * np.asarray(self.bandwidth))
 
     def _unit(self, names: tuple[str, ...], field: str) -> Any:
-        name = self.on if field == "on" else self.sense or self.on
+        field = "sense" if field == "sense" and self.sense else "on"
+        name = self.sense if field == "sense" else self.on
         if not name:
             raise ParameterError(type(self).__name__, field, name, f"the degree of freedom it acts on, one of {list(names)}")
         if name not in names:
@@ -108,7 +109,7 @@ class PID(Loop):
 
 
 class StateFeedback(Loop):
-    """u = -(position . q + velocity . q'), a gain for each degree of freedom.
+    """u = -(position . q + velocity . q'), a gain for each degree of freedom; those left out at the end are 0.
 
     >>> StateFeedback(on="y", velocity=(0.0, 0.1)).rows(("x", "y")).R.tolist()
     [-0.0, -0.1]
@@ -128,10 +129,10 @@ class StateFeedback(Loop):
     def controller(self, names: tuple[str, ...]) -> Rows:
         n, gains = len(names), []
         for name in ("position", "velocity"):
-            given = np.array(getattr(self, name) or np.zeros(n))
-            if given.shape != (n,):
-                raise ParameterError("StateFeedback", name, getattr(self, name), f"{n} gains, one for each of {names}")
-            gains.append(given)
+            given = getattr(self, name)
+            if len(given) > n:
+                raise ParameterError("StateFeedback", name, given, f"at most {n} gains, one for each of {names}")
+            gains.append(np.pad(np.array(given, dtype=float), (0, n - len(given))))
         none = np.zeros((0, n))
         return Rows(np.zeros((0, 0)), none, none, np.zeros(0), -gains[0], -gains[1], np.zeros(0), self._unit(names, "on"))
 

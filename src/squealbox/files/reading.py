@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import DESIGNS, Design
-from squealbox.files import analyses
+from squealbox.files import analyses, countermeasures
 from squealbox.files.assembled import ASSEMBLED, read_assembled
 from squealbox.files.document import Document, document_of, open_document
 from squealbox.files.mechanism import OwnMechanism
@@ -102,7 +102,12 @@ def design_of(document: Document, tables: Mapping[str, Any], beside: tuple[str, 
 
     When something is wrong, the design without the faulty keys, so that sections can be checked against it.
     """
-    return _design(document, tables, beside) or _without_problems(document, tables)
+    around = {name: tables[name] for name in countermeasures.SECTIONS if name in tables}
+    tables = {name: value for name, value in tables.items() if name not in around}
+    brake = _design(document, tables, (*beside, *countermeasures.SECTIONS))
+    if brake is None or not around:
+        return brake or _without_problems(document, tables)
+    return countermeasures.wrapped(document, brake, around) or brake
 
 
 def _design(document: Document, tables: Mapping[str, Any], beside: tuple[str, ...] = ()) -> Design | None:

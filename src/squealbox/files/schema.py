@@ -5,6 +5,7 @@ import math
 import typing
 from typing import Any
 
+from squealbox.files import countermeasures
 from squealbox.files.analyses import Axis, Modes, Simulate
 from squealbox.files.arrays import TRIANGLES
 from squealbox.files.own_law import OwnLaw
@@ -44,6 +45,7 @@ def json_schema() -> Schema:
         STUDY: _study(),
         "scatter": scatter_schema(_sheet),
         "optimise": optimise_schema(_sheet),
+        **countermeasures.schemas(_field),
     }
     brakes = [_sheet(brake, first={"brake": {"const": name}}, more=sections) for name, brake in BRAKES.items()]
     return {

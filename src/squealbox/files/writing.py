@@ -12,7 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
+from squealbox.files.countermeasures import wrapped_text
 from squealbox.files.document import LARGEST
 from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES
@@ -60,6 +62,8 @@ def write_design(design: Design, path: str | os.PathLike[str], *, sections: str 
 
 def design_text(design: Design) -> str:
     """The TOML text of `design`."""
+    if isinstance(design, Countermeasure):
+        return wrapped_text(design, design_text, _text, NotWritable)
     kind = next((name for name, brake in BRAKES.items() if brake is type(design)), None)
     if kind is None:
         raise NotWritable(f"{type(design).__name__} is not one of the designs a file knows: {', '.join(BRAKES)}")
