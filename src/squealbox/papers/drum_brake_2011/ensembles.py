@@ -15,7 +15,15 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.papers.drum_brake_2011.cases import DEFAULT_READING, DURATION, MAP_ANGLES, Case
+from squealbox.papers.drum_brake_2011.cases import (
+    ALL_READINGS,
+    DEFAULT_READING,
+    DURATION,
+    INFERRED,
+    MAP_ANGLES,
+    PRINTED,
+    Case,
+)
 from squealbox.stability import stability_map
 from squealbox.system import as_system, equilibrium
 from squealbox.transient import Ensemble, Method, simulate_ensemble
@@ -44,16 +52,19 @@ MEANS = (
 class Sizes:
     """How many values each axis has: of the centres of pressure, of friction with load or speed, of friction alone.
 
-    `planes` are the readings whose friction is varied together with load and speed.
+    `planes` are the readings whose friction is varied together with load and speed, `mapped` those whose centres of
+    pressure are mapped by transients.
     """
 
     pressure: int = 141
     plane: int = 101
     friction: int = 301
     planes: tuple[str, ...] = (DEFAULT_READING,)
+    mapped: tuple[str, ...] = (DEFAULT_READING, "eq1_printed", "eq3")
 
 
-USUAL, FINE = Sizes(), Sizes(pressure=561, planes=(DEFAULT_READING, "eq3"))
+PRINTED_READINGS = tuple(name for name in ALL_READINGS if name not in (*INFERRED, PRINTED))
+USUAL, FINE = Sizes(), Sizes(561, planes=(DEFAULT_READING, "eq3"), mapped=PRINTED_READINGS)
 
 
 @dataclass(frozen=True)

@@ -69,10 +69,12 @@ def everything(
     What the transients need is compiled first, once, beside the one reading that has none: two workers that start on
     transients would each compile the same.
     """
+    from squealbox.papers.drum_brake_2011 import ensembles
+
     compiling = [{"kind": "compile", "contact": road, "label": f"compiled for {road} contact"} for road in (EXACT, RAW)]
     compiling += [
         {"kind": "compile maps", "reading": name, "label": f"compiled for maps of {name}"}
-        for name in readings if name in KERNELS
+        for name in readings if name in KERNELS and name in (ensembles.FINE if fine else ensembles.USUAL).mapped
     ]  # fmt: skip
     kinds = ("study", "search") if search else ("study",)
     tasks = [_task(kind, reading, figures, fine) for kind in kinds for reading in readings]

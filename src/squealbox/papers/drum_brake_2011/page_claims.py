@@ -53,8 +53,8 @@ def tally(found: Records, once: Records) -> str:
     return (
         f"{len(own[most])} of {len(once)} by one reading ({shown_name(most)}; amplitudes read as {measures}), "
         f"{len(met)} by some reading ({', '.join(met)}), {len(excluded)} excluded by theorem beside claims "
-        f"that are met ({', '.join(excluded) or 'none'}), the rest open ({', '.join(rest) or 'none'}).{inferred} The best of the "
-        f"printed readings, {shown_name(best)}, meets {len(printed[best])}."
+        f"that are met ({', '.join(excluded) or 'none'}), the rest open ({', '.join(rest) or 'none'}).{inferred} "
+        f"The best of the printed readings, {shown_name(best)}, meets {len(printed[best])}."
     )
 
 

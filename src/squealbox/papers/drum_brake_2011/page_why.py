@@ -34,7 +34,8 @@ def excluded(folder: Path) -> tuple[Any, ...]:
             "mu-5 and N-2 exclude each other",
             "In Eq. (3) friction leaves the mean square at 12981 rad/s, so 13140 at the onset can only be the upper of "
             "two nearly merged modes: it must be the less damped one, which needs c22 > c11 at 1 kN. At 15 kN the "
-            "lower mode grows, which needs c22 < c11. Both change in proportion to the load from the table's 212 - 218.",
+            "lower mode grows, which needs c22 < c11. Both change in proportion to the load from the table's "
+            "212 - 218.",
         ),
         "theorem_speed": (
             "V-1 and N-1 exclude each other",
@@ -110,8 +111,8 @@ def _chance(found: Any, name: str) -> str:
     counts = ", ".join(f"{number} meet {i}" for i, number in enumerate(found.counts) if number and i > 3)
     return (
         f"The search ({name}): {found.family:,} members, eight claims that eigenvalues decide ({', '.join(CLAIMS)}). "
-        f"The best meet {found.most} ({counts}). Of {found.sets} sets of scrambled numbers, physical and as many, the same "
-        f"search of {found.chance_family:,} members meets at least as many in {found.chance:.0%}."
+        f"The best meet {found.most} ({counts}). Of {found.sets} sets of scrambled numbers, physical and as many, the "
+        f"same search of {found.chance_family:,} members meets at least as many in {found.chance:.0%}."
     )
 
 
@@ -119,8 +120,8 @@ def _outcome(whole: Any) -> str:
     row, measure, ids = whole.best
     return (
         f"{whole.tried[0]:,} of the best members, mirror images left out, and {whole.tried[1]:,} on the finer grid "
-        f"were run for mu-7; {whole.meeting} come near it, {len(whole.rows)} were judged by all fifteen claims. The most "
-        f"that one meets is {len(ids)} ({', '.join(ids)}; amplitudes {measure}): "
+        f"were run for mu-7; {whole.meeting} come near it, {len(whole.rows)} were judged by all fifteen claims. The "
+        f"most that one meets is {len(ids)} ({', '.join(ids)}; amplitudes {measure}): "
         f"{family_search.described([*row[:5], row[4] * row[5]])}."
     )
 
@@ -141,7 +142,8 @@ def solver(folder: Path, found: list[Decay], onsets: Mapping[str, tuple[float, f
     return (
         Points((
             f"The paper's own method at its usual settings damps: {exact.early:.0f} 1/s become {plain.early:.0f} 1/s, "
-            f"and {plain.late:.0f} 1/s once the absolute tolerance governs, {plain.late / exact.late:.1f} times the truth.",
+            f"and {plain.late:.0f} 1/s once the absolute tolerance governs, "
+            f"{plain.late / exact.late:.1f} times the truth.",
             "That moves the onset in load, where growth is slow, and hardly that in friction, where it is fast.",
             "c1 and c2 are 0.05 sqrt(k m), not what a loss factor of 0.02 gives.",
         )),

@@ -141,8 +141,8 @@ def least_decay(at_rest: Any, at_ten: Any, load: float) -> Any:
     """The decay rate [1/s] of a mode at `load` [N] in (0, 10 kN), from those without load and at 10 kN.
 
     Theorem (V-1 and N-1 exclude each other at one speed). In Eq. (3) load enters the damping only, in proportion. To
-    the first order in damping a mode decays with p = (c11 (d - q1) + c22 (a - q1))/(q2 - q1), which is then affine in N:
-    a mode that decays at 10 kN (N-1) decays at 1 kN with at least 9/10 of what it has without load, 0.9 x 107 1/s.
+    the first order in damping a mode decays with p = (c11 (d - q1) + c22 (a - q1))/(q2 - q1), which is then affine in
+    N: a mode that decays at 10 kN (N-1) decays at 1 kN with at least 9/10 of what it has without load, 0.9 x 107 1/s.
     V-1 asks for no decay there. Speed enters steady sliding through alpha V only; within the studied speeds it shifts
     these rates by less than 1 1/s, because flutter is far (mu-1). A friction coefficient just below the onset of
     flutter, with hardly any decay left without load, escapes.

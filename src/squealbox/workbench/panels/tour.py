@@ -12,7 +12,7 @@ import numpy as np
 
 from squealbox.designs import Design, DrumBrake
 from squealbox.friction import LinearSlope
-from squealbox.papers.drum_brake_2011.cases import ALPHA, Case
+from squealbox.papers.drum_brake_2011.cases import ALPHA, INFERRED, Case
 from squealbox.papers.drum_brake_2011.claims import paper
 from squealbox.papers.drum_brake_2011.record import Record, count
 from squealbox.papers.drum_brake_2011.verdicts import verdicts
@@ -43,6 +43,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "reading": design.reading,
         "alpha": -slope,
         "assumed": abs(-slope - ALPHA) < 1e-12,
+        "inferred": design.reading in INFERRED,
         "claims": claims,
         "count": count(found),
         "title": paper()["title"],

@@ -30,7 +30,7 @@ export default {
   draw(panel, { data }) {
     panel.data = data;
     panel.element.dataset.agree = data.count.agree;
-    panel.remark = `Reading ${data.reading}, slope ${-data.alpha} s/m${data.assumed ? " (assumed)" : ""}: ${Object.entries(data.count).map(([verdict, many]) => `${many} ${verdict}`).join(", ")}.`;
+    panel.remark = `Reading ${data.reading}, slope ${-data.alpha} s/m${data.assumed ? " (assumed)" : ""}${data.inferred ? ", inferred from the paper's numbers and not printed, amplitudes peak to peak" : ""}: ${Object.entries(data.count).map(([verdict, many]) => `${many} ${verdict}`).join(", ")}.`;
     const rows = data.claims.map((claim) => make("tr", {}, make("th", { scope: "row" }, claim.id), make("td", {}, claim.statement), make("td", {}, mark(claim), ` ${claim.computed}`)));
     panel.list.replaceChildren(make("table", {}, make("tbody", {}, ...rows)));
     if (panel.step !== null) show(panel);
