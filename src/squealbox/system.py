@@ -14,7 +14,7 @@ system can be a whole map of systems: M is (..., n, n), n, d and t are (..., n),
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -24,7 +24,7 @@ from squealbox.friction import FrictionLaw
 from squealbox.matrices import InvalidSystem, array, check_mass, check_width, checked_names, coupled, felt, form
 from squealbox.parameters import DataSheet
 from squealbox.result import COMPLETED, Outcome
-from squealbox.schedules import Schedule, value_at
+from squealbox.schedules import MOVES, Schedule, swinging, value_at
 from squealbox.static_deflection import modulo_rigid_motion, solve
 
 
@@ -256,8 +256,12 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
 
 def linearise(system: System, time: float = 0.0) -> Linearised:
     """K_eff and C_eff about steady sliding at `time` [s]; an open contact only takes its stiffness out."""
-    state = equilibrium(system, time)
-    shape, size = system.shape, system.size
+    state, shape, size = equilibrium(system, time), system.shape, system.size
+    moving = swinging({"load": [system.load], **{x: [getattr(c, x) for c in system.contacts] for x in ("V", "N0")}})
+    if moving:  # it moves even at rest: nothing stands still to be linearised about
+        state = replace(
+            state, exists=np.zeros(shape, dtype=bool), outcome=Outcome("moving", MOVES.format(" and ".join(moving)))
+        )
     damping = np.array(np.broadcast_to(system.C, (*shape, size, size)))
     stiffness = np.array(np.broadcast_to(system.K, (*shape, size, size)))
     if system.contacts:
