@@ -81,7 +81,9 @@ class Loop(DataSheet):
         field = "sense" if field == "sense" and self.sense else "on"
         name = self.sense if field == "sense" else self.on
         if not name:
-            raise ParameterError(type(self).__name__, field, name, f"the degree of freedom it acts on, one of {list(names)}")
+            raise ParameterError(
+                type(self).__name__, field, name, f"the degree of freedom it acts on, one of {list(names)}"
+            )
         if name not in names:
             raise ParameterError(type(self).__name__, field, name, known_names(name, list(names)))
         return np.eye(len(names))[names.index(name)]
@@ -134,7 +136,9 @@ class StateFeedback(Loop):
                 raise ParameterError("StateFeedback", name, given, f"at most {n} gains, one for each of {names}")
             gains.append(np.pad(np.array(given, dtype=float), (0, n - len(given))))
         none = np.zeros((0, n))
-        return Rows(np.zeros((0, 0)), none, none, np.zeros(0), -gains[0], -gains[1], np.zeros(0), self._unit(names, "on"))
+        return Rows(
+            np.zeros((0, 0)), none, none, np.zeros(0), -gains[0], -gains[1], np.zeros(0), self._unit(names, "on")
+        )
 
 
 class DelayedFeedback(Loop):
@@ -190,7 +194,9 @@ class ActiveForce(Loop):
                 raise ParameterError("ActiveForce", "outer", self.outer, "a loop, such as PID(on='y'), or None")
             inner = self.outer
             if inner.bandwidth or inner.limit or inner.delay or inner.sampling:
-                raise ParameterError("ActiveForce", "outer", inner, "an ideal loop: the actuator is that of ActiveForce")
+                raise ParameterError(
+                    "ActiveForce", "outer", inner, "an ideal loop: the actuator is that of ActiveForce"
+                )
             object.__setattr__(self, "on", self.on or inner.on)
 
     def controller(self, names: tuple[str, ...]) -> Rows:
@@ -253,7 +259,9 @@ def folded(system: Any, *, limited: bool = False) -> Any:
     rows = [loop.rows(names) for loop in chosen]
     n, more = system.size, sum(row.memory for row in rows)
     vectors = (np.shape(x)[:-1] for row in rows for x in (row.P, row.R, row.S, row.G))
-    lead = np.broadcast_shapes(system.shape, *vectors, *(np.shape(x)[:-2] for row in rows for x in (row.A, row.E, row.F)))
+    lead = np.broadcast_shapes(
+        system.shape, *vectors, *(np.shape(x)[:-2] for row in rows for x in (row.A, row.E, row.F))
+    )
     M, C, K = (np.zeros((*lead, n + more, n + more)) for _ in range(3))
     for into, matrix in ((M, system.M), (C, system.C), (K, system.K)):
         into[..., :n, :n] = matrix

@@ -13,6 +13,10 @@ import numpy as np
 from squealbox.parameters import DataSheet, ParameterError, parameter
 
 Formula = Callable[..., Any]
+MOVES = (
+    "{} oscillates, so the brake moves even without vibration and has no steady sliding; the modes of one instant say "
+    "nothing of its stability. Follow its forced motion in time with simulate()"
+)
 
 
 class Schedule(DataSheet):
@@ -148,7 +152,9 @@ class Ramp(Schedule):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.stop is not None and np.any((np.asarray(self.start) - self.stop) * self.slope > 0.0):
-            expected = f"a slope from start = {self.start} towards stop = {self.stop}, where it stays constant, or stop = None"
+            expected = (
+                f"a slope from start = {self.start} towards stop = {self.stop}, where it stays constant, or stop = None"
+            )
             raise ParameterError("Ramp", "slope", self.slope, expected)
 
     @property
@@ -249,6 +255,24 @@ SCHEDULES: tuple[type[Schedule], ...] = (Constant, Ramp, Sinusoid, Table)
 def as_schedule(value: Any) -> Schedule:
     """A schedule as it is; a number or array becomes `Constant`."""
     return value if isinstance(value, Schedule) else Constant(value)
+
+
+def never_settles(schedule: Schedule) -> bool:
+    """True where a schedule goes on swinging for ever: a `Sinusoid`, or a sum with one; ramps and tables end.
+
+    >>> never_settles(Sinusoid(1.0, 0.5, 50.0)), never_settles(Ramp(1.0, -1.0))
+    (True, False)
+    """
+    for weight, part in schedule.terms():
+        swings = isinstance(part, Sinusoid) and np.any(part.amplitude) and np.any(part.frequency)
+        if np.any(weight) and swings:
+            return True
+    return False
+
+
+def swinging(parts: dict[str, list[Any]]) -> list[str]:
+    """Names of the values, numbers or schedules, of which one goes on swinging."""
+    return [name for name, values in parts.items() if any(isinstance(v, Schedule) and never_settles(v) for v in values)]
 
 
 def value_at(value: Any, time: Any) -> Any:

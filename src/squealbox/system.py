@@ -16,7 +16,7 @@ system can be a whole map of systems: M is (..., n, n), n, d and t are (..., n),
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -26,11 +26,11 @@ from scipy import sparse
 from squealbox import sparse_sliding
 from squealbox.contacts import ROWS, Contact, Contacts, dense_rows, sparse_matrix
 from squealbox.factorisation import is_symmetric
-from squealbox.matrices import InvalidSystem, array, check_mass, check_width, checked_names, coupled, felt
 from squealbox.loops import Loop, check_loops, folded, near_sliding
+from squealbox.matrices import InvalidSystem, array, check_mass, check_width, checked_names, coupled, felt
 from squealbox.parameters import DataSheet
 from squealbox.result import Outcome
-from squealbox.schedules import Schedule, value_at
+from squealbox.schedules import MOVES, Schedule, swinging, value_at
 from squealbox.static_deflection import ended, modulo_rigid_motion, solve
 
 
@@ -269,6 +269,11 @@ def linearise(system: System, time: float = 0.0) -> Linearised:
     if system.is_sparse:
         return Linearised(system.M, *_sparse_linearised(system, state), state)
     shape, size = system.shape, system.size
+    moving = swinging({"load": [system.load], **{x: [getattr(c, x) for c in system.contacts] for x in ("V", "N0")}})
+    if moving:  # it moves even at rest: nothing stands still to be linearised about
+        state = replace(
+            state, exists=np.zeros(shape, dtype=bool), outcome=Outcome("moving", MOVES.format(" and ".join(moving)))
+        )
     damping = np.array(np.broadcast_to(system.C, (*shape, size, size)))
     stiffness = np.array(np.broadcast_to(system.K, (*shape, size, size)))
     if system.contacts:

@@ -79,7 +79,7 @@ def branch(
         )
     for i, one in enumerate(several, 1):
         print(_said(f"Branch {i}", one, found.design, varied))
-    print(_coexistence(several, found.design, varied))
+    print(_coexistence(several, born, found.design, varied))
     curves = estimate_curves(found.design, varied.name, (varied.low, varied.high), several) if estimates else ()
     for curve in curves:
         print(f"Estimate beside them: {curve}")
@@ -129,13 +129,19 @@ def _said(name: str, one: Branch, design: "Design", varied: "Axis") -> str:
     return "\n".join(lines)
 
 
-def _coexistence(several: tuple[Branch, ...], design: "Design", varied: "Axis") -> str:
+def _coexistence(several: tuple[Branch, ...], born: HopfPoint, design: "Design", varied: "Axis") -> str:
     """Where a stable cycle exists beside stable steady sliding, as no eigenvalue shows."""
     values = np.concatenate([one.value[one.stable] for one in several])
     both = [v for v in values if complex_modes(design.replace({varied.name: float(v)})).stable]
     if not both:
         return "No stable cycle was found where steady sliding is stable."
-    ends, unit = readable(design, varied, np.array([min(both), max(both)]))
+    turns = np.concatenate([[float(born.value)] if born.outcome.ok else [], *(one.special_value for one in several)])
+    followed = np.concatenate([one.value for one in several])
+    low, high = min(both), max(both)
+    below = [v for v in turns if v < low and not np.any((followed > v) & (followed < low))]
+    above = [v for v in turns if v > high and not np.any((followed < v) & (followed > high))]
+    span = np.array([max(below, default=low), min(above, default=high)])  # the onset or fold itself, not a point by it
+    ends, unit = readable(design, varied, span)
     over = f"{varied.name} from {ends[0]:.7g} to {ends[1]:.7g} {unit}".rstrip()
     return f"Stable sliding and a stable cycle coexist: {over}. A run there ends in either, by its start."
 

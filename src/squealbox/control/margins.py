@@ -84,7 +84,9 @@ def delay_margin(plant: Plant) -> float:
         return _common_by_grid(plant)
     crossings = _crossings(plant.A, plant.B @ plant.H)
     own = float(plant.delay[0])
-    later = [w_t - own for w, t in crossings for w_t in (t + 2.0 * np.pi / w * np.arange(64)) if w_t > own * (1 + 1e-12)]
+    later = [
+        w_t - own for w, t in crossings for w_t in (t + 2.0 * np.pi / w * np.arange(64)) if w_t > own * (1 + 1e-12)
+    ]
     return float(min(later, default=np.inf))
 
 

@@ -49,13 +49,21 @@ def plant(design_or_system: Any, time: float = 0.0) -> Plant:
     """The linear form of a brake with loops; `ParameterError` without loops or with leading axes."""
     system = with_loops(design_or_system)
     if not system.loops:
-        raise ParameterError("closed_loop", "design", type(design_or_system).__name__, "a brake with loops: Controlled(brake, [PID(on='y')])")
+        raise ParameterError(
+            "closed_loop",
+            "design",
+            type(design_or_system).__name__,
+            "a brake with loops: Controlled(brake, [PID(on='y')])",
+        )
     rows = [loop.rows(system.names) for loop in system.loops]
     if system.shape != () or any(np.ndim(row.P) > 1 for row in rows):
         raise ParameterError("closed_loop", "design", f"leading axes {system.shape}", "one brake, without them")
     from squealbox.loops import folded
 
-    whole = folded(system.replace(loops=tuple(loop.replace(delay=0.0, sampling=None, computing=0.0) for loop in system.loops)), limited=True)
+    whole = folded(
+        system.replace(loops=tuple(loop.replace(delay=0.0, sampling=None, computing=0.0) for loop in system.loops)),
+        limited=True,
+    )
     steady = linearise(whole, time).equilibrium
     about = linearise(system.replace(loops=()), time)
     if bool(steady.exists) and whole.contacts:  # steady sliding is that of the closed loop
@@ -87,7 +95,10 @@ def _about(system: System, steady: Any, time: float) -> Any:
     """The brake's own matrices at the steady state of the closed loop: its normal forces with the loops' static pull."""
     n = system.size
     shifted = tuple(
-        contact.replace(N0=float(steady.normal_force[i]) if not contact.unilateral or steady.normal_force[i] > 0.0 else 0.0, n=0.0 * contact.n)
+        contact.replace(
+            N0=float(steady.normal_force[i]) if not contact.unilateral or steady.normal_force[i] > 0.0 else 0.0,
+            n=0.0 * contact.n,
+        )
         for i, contact in enumerate(system.contacts)
     )
     del n

@@ -39,7 +39,10 @@ class Late:
     def slope(self, s: Any) -> Any:
         """dD/ds."""
         s = np.asarray(s, dtype=complex)[..., None, None]
-        late = (delay * part * np.exp(np.minimum(-s.real * delay, 600.0) - 1j * s.imag * delay) for delay, part in self.parts)
+        late = (
+            delay * part * np.exp(np.minimum(-s.real * delay, 600.0) - 1j * s.imag * delay)
+            for delay, part in self.parts
+        )
         return np.eye(len(self.A)) + sum(late)
 
     def reach(self, line: float) -> float:
@@ -121,7 +124,9 @@ def newton(late: Late, guesses: Any, most: int = 16) -> Any:
         big = np.zeros((len(s), d + 1, d + 1), dtype=complex)
         big[:, :d, :d], big[:, d, :d] = matrix, c
         big[:, :d, d] = np.einsum("kij,kj->ki", late.slope(s), v)
-        defect = np.concatenate([np.einsum("kij,kj->ki", matrix, v), np.sum(c * v, axis=1, keepdims=True) - 1.0], axis=1)
+        defect = np.concatenate(
+            [np.einsum("kij,kj->ki", matrix, v), np.sum(c * v, axis=1, keepdims=True) - 1.0], axis=1
+        )
         usable = np.all(np.isfinite(big), axis=(1, 2)) & np.all(np.isfinite(defect), axis=1)
         usable[usable] = np.linalg.cond(big[usable]) < 1e15
         s, v, c, last, big, defect = (each[usable] for each in (s, v, c, last, big, defect))

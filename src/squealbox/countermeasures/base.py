@@ -33,7 +33,9 @@ class Countermeasure(Design):
         """A copy with other values; names that the countermeasure does not have are the brake's."""
         own = {*self.field_names(), *self.aliases}
         given = {**(changes or {}), **keywords}
-        return super().replace({name if name.partition(".")[0] in own else f"brake.{name}": given[name] for name in given})
+        return super().replace(
+            {name if name.partition(".")[0] in own else f"brake.{name}": given[name] for name in given}
+        )
 
     def value_of(self, path: str) -> Any:
         """The value behind a dotted name, the countermeasure's own or the brake's."""
@@ -92,7 +94,9 @@ def extended(system: System, *names: str) -> System:
         taken.append(unique)
     matrices = {name: _padded(getattr(system, name), more, 2) for name in ("M", "C", "K")}
     contacts = tuple(_padded_contact(contact, more) for contact in system.contacts)
-    return system.replace({**matrices, "load": padded_load(system.load, more), "contacts": contacts, "names": tuple(taken)})
+    return system.replace(
+        {**matrices, "load": padded_load(system.load, more), "contacts": contacts, "names": tuple(taken)}
+    )
 
 
 def outer(scale: Any, left: Any, right: Any) -> Any:

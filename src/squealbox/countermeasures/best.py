@@ -187,7 +187,9 @@ def _limits(start: Any, parameter: str, bounds: Any) -> tuple[float, float]:
     return 0.0, 2.0 * value if value > 0.0 else 1.0
 
 
-def _searched(judge: Judge, frequencies: Any, dampings: Any, grid: Any, most: int, starts: int = POLISHED) -> tuple[float, float, float]:
+def _searched(
+    judge: Judge, frequencies: Any, dampings: Any, grid: Any, most: int, starts: int = POLISHED
+) -> tuple[float, float, float]:
     """The best (value, frequency, damping), by Nelder and Mead in logarithms from the best points of the map."""
     from scipy.optimize import minimize
 

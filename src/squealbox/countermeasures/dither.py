@@ -73,8 +73,10 @@ class Dithered(Countermeasure):
         for i in chosen:
             name, speed = base.contacts[i].name, float(np.max(np.abs(state.sliding_speed[..., i])))
             if np.any(self.velocity < speed) and np.any(base.contacts[i].law.slope_at(speed) < 0.0):
-                said.append(f"dither of {np.max(self.velocity):g} m/s stays below the sliding speed {speed:g} m/s of "
-                            f"{name}: friction that weakens with speed falls faster on the mean, which destabilises")
+                said.append(
+                    f"dither of {np.max(self.velocity):g} m/s stays below the sliding speed {speed:g} m/s of "
+                    f"{name}: friction that weakens with speed falls faster on the mean, which destabilises"
+                )
             if np.any(state.normal_force[..., i] < 0.0):
                 said.append(f"{name} is pulled (N < 0): dither takes damping away there")
         said += resonances(self.brake, self.frequency)
@@ -125,7 +127,9 @@ class NormalDither(Countermeasure):
         """Where this dither does nothing, or more than meant."""
         said = []
         if np.any(np.asarray(self.ratio) > 1.0):
-            said.append(f"normal dither of {np.max(self.ratio):g} times N0: the contact lifts off, or is pulled (N < 0)")
+            said.append(
+                f"normal dither of {np.max(self.ratio):g} times N0: the contact lifts off, or is pulled (N < 0)"
+            )
         else:
             said.append("normal dither without lift-off does nothing to a linear brake with Coulomb friction")
         return (*said, *resonances(self.brake, self.frequency))

@@ -106,7 +106,9 @@ def at_the_window(start: Any, near: tuple[float, float, float], parameter: str) 
         return best
 
     found = minimize_scalar(
-        lambda x: margin(x)[0], bracket=(np.log(damping) - 0.02, np.log(damping) + 0.02), options={"xtol": 1e-6, "maxiter": 25}
+        lambda x: margin(x)[0],
+        bracket=(np.log(damping) - 0.02, np.log(damping) + 0.02),
+        options={"xtol": 1e-6, "maxiter": 25},
     )
     best = margin(float(found.x))
     return [best] if best[0] < 0.0 else []

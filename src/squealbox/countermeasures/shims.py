@@ -40,7 +40,9 @@ class Shim(Countermeasure):
     at: str
     stiffness: float = parameter("N/m", 0.0, low_open=True, meaning="stiffness of the shim at `frequency`", source=OWN)
     loss_factor: float = parameter("-", 0.0, default=0.0, meaning="loss factor at `frequency`", source=OWN)
-    frequency: float = parameter("Hz", 0.0, low_open=True, default=2000.0, meaning="where the loss is given", source=OWN)
+    frequency: float = parameter(
+        "Hz", 0.0, low_open=True, default=2000.0, meaning="where the loss is given", source=OWN
+    )
     turn: float = parameter("rad", -np.pi, np.pi, default=0.0, meaning="angle by which the force is moved", source=OWN)
     loss: str = choice("zener", "kelvin_voigt", default="zener", meaning="how the loss is said in time")
 
@@ -54,7 +56,9 @@ class Shim(Countermeasure):
             left = self.stiffness / (self.stiffness + spring)
             contact = base.contacts[place].replace(n=np.asarray(left)[..., None] * base.contacts[place].n)
             return _with(added(base, stiffness=outer(spring * (left - 1.0), unit, unit)), place, contact)
-        return self._zener(base, place, unit, spring) if self.loss == "zener" else self._voigt(base, place, unit, spring)
+        return (
+            self._zener(base, place, unit, spring) if self.loss == "zener" else self._voigt(base, place, unit, spring)
+        )
 
     def _contact(self, base: System) -> tuple[int, Any, Any]:
         """Place of the contact, its normal w (..., n) of length 1 and its stiffness k_c [N/m]."""
@@ -62,7 +66,9 @@ class Shim(Countermeasure):
         contact = base.contacts[place]
         size = np.linalg.norm(contact.n, axis=-1)
         if contact.rigid or not np.all(size > 0.0):
-            raise ParameterError("Shim", "at", self.at, "a contact with a stiffness, n not 0: a shim acts on its spring")
+            raise ParameterError(
+                "Shim", "at", self.at, "a contact with a stiffness, n not 0: a shim acts on its spring"
+            )
         unit = contact.n / size[..., None] if contact.normal is None else np.asarray(contact.normal)
         spring = np.sum(contact.n * unit, axis=-1) / np.sum(unit * unit, axis=-1)
         if np.any(np.abs(contact.n - spring[..., None] * unit) > 1e-9 * size[..., None]):
@@ -100,7 +106,9 @@ class Shim(Countermeasure):
         place, unit, spring = self._contact(base)
         contact = base.contacts[place]
         if not np.allclose(np.sum(unit * contact.d, axis=-1), 0.0, atol=1e-9):
-            raise ParameterError("Shim", "turn", self.turn, "0: friction of this contact does not act across its normal")
+            raise ParameterError(
+                "Shim", "turn", self.turn, "0: friction of this contact does not act across its normal"
+            )
         cosine, sine = (np.asarray(f(self.turn))[..., None] for f in (np.cos, np.sin))
         normal, along = unit * cosine + contact.d * sine, contact.d * cosine - unit * sine
         turned = contact.replace(n=spring[..., None] * normal, d=along, t=along, normal=normal)
@@ -159,7 +167,9 @@ class LayerDamping(Countermeasure):
     shear_parameter: float | None = parameter(
         "-", 0.0, low_open=True, default=None, optional=True, meaning="X of the layer; the best when left out"
     )
-    frequency: float = parameter("Hz", 0.0, low_open=True, default=2000.0, meaning="where the loss is given", source=OWN)
+    frequency: float = parameter(
+        "Hz", 0.0, low_open=True, default=2000.0, meaning="where the loss is given", source=OWN
+    )
 
     @property
     def loss(self) -> Any:

@@ -1,18 +1,18 @@
 """The sections [[countermeasures]] and [[loops]] of a design file: what is put around the brake, from inside out.
 
-    [[countermeasures]]
-    kind = "tuned_mass"
-    on = "y"
-    mass = "50 g"
-    frequency = "1906 Hz"
-    damping = 0.013
+[[countermeasures]]
+kind = "tuned_mass"
+on = "y"
+mass = "50 g"
+frequency = "1906 Hz"
+damping = 0.013
 
-    [[loops]]
-    kind = "active_force"
-    on = "y"
-    mass = "100 g"
-    time_constant = "50 us"
-    outer = { kind = "pid", proportional = "2 kN/m" }
+[[loops]]
+kind = "active_force"
+on = "y"
+mass = "100 g"
+time_constant = "50 us"
+outer = { kind = "pid", proportional = "2 kN/m" }
 """
 
 import dataclasses
@@ -96,7 +96,10 @@ def _sheet(document: Document, table: Mapping[str, Any], key: Key, kinds: Kinds,
     kind = table.get("kind")
     if not isinstance(kind, str) or kind not in kinds:
         said = "is missing" if kind is None else f"{shown(kind)} is unknown"
-        document.problem((*key, "kind") if kind is not None else key, f"the kind {said}, expected {known_names(str(kind or ''), list(kinds))}")
+        document.problem(
+            (*key, "kind") if kind is not None else key,
+            f"the kind {said}, expected {known_names(str(kind or ''), list(kinds))}",
+        )
         return None
     sheet, before = kinds[kind], len(document.problems)
     values = dict(given)
@@ -119,7 +122,9 @@ def _sheet(document: Document, table: Mapping[str, Any], key: Key, kinds: Kinds,
     try:
         return sheet(**values)
     except ParameterError as error:
-        document.problem((*key, error.name) if error.name in names else key, f"{shown(error.value)}: {error.expectation}")
+        document.problem(
+            (*key, error.name) if error.name in names else key, f"{shown(error.value)}: {error.expectation}"
+        )
         return None
 
 
@@ -147,13 +152,17 @@ def _works(document: Document, design: Design, key: Key) -> bool:
     return True
 
 
-def _lines(sheet: DataSheet, kinds: Kinds, text: Callable[[Any, str, str], str], refused: type[ValueError]) -> Iterator[str]:
+def _lines(
+    sheet: DataSheet, kinds: Kinds, text: Callable[[Any, str, str], str], refused: type[ValueError]
+) -> Iterator[str]:
     yield f"kind = {_kind(sheet, kinds, refused)}"
     for name, value in _said(sheet):
         yield f"{name} = {_text(sheet, name, value, text, refused)}"
 
 
-def _text(sheet: DataSheet, name: str, value: Any, text: Callable[[Any, str, str], str], refused: type[ValueError]) -> str:
+def _text(
+    sheet: DataSheet, name: str, value: Any, text: Callable[[Any, str, str], str], refused: type[ValueError]
+) -> str:
     if isinstance(value, Loop):
         inner = [f"kind = {_kind(value, LOOPS, refused)}"]
         inner += [f"{key} = {_text(value, key, item, text, refused)}" for key, item in _said(value)]
@@ -176,7 +185,9 @@ def _kind(sheet: DataSheet, kinds: Kinds, refused: type[ValueError]) -> str:
     return f'"{found}"'
 
 
-def _schema(word: str, sheet: type[DataSheet], field: Callable[[type[DataSheet], str], dict[str, Any]]) -> dict[str, Any]:
+def _schema(
+    word: str, sheet: type[DataSheet], field: Callable[[type[DataSheet], str], dict[str, Any]]
+) -> dict[str, Any]:
     properties: dict[str, Any] = {"kind": {"const": word}}
     required = ["kind"]
     for each in dataclasses.fields(sheet):  # type: ignore[arg-type]
@@ -191,4 +202,10 @@ def _schema(word: str, sheet: type[DataSheet], field: Callable[[type[DataSheet],
         if is_required(each):
             required.append(each.name)
     about = (sheet.__doc__ or "").strip().partition("\n")[0]
-    return {"type": "object", "description": about, "properties": properties, "required": required, "additionalProperties": False}
+    return {
+        "type": "object",
+        "description": about,
+        "properties": properties,
+        "required": required,
+        "additionalProperties": False,
+    }

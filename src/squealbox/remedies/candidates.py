@@ -59,7 +59,9 @@ def candidates_for(brake: Design, friction: Any) -> list[Candidate]:
     for name in names:
         found += [_absorber(brake, friction, name, share * masses[name]) for share in SHARES]
         found += [
-            _added(AddedDamping, "damping", brake, name, 3.0 * masses[name] * rate, "N s/m", "a damper or damping layer"),
+            _added(
+                AddedDamping, "damping", brake, name, 3.0 * masses[name] * rate, "N s/m", "a damper or damping layer"
+            ),
             _added(AddedMass, "mass", brake, name, 0.5 * masses[name], "kg", "weight"),
             _added(AddedStiffness, "stiffness", brake, name, 0.5 * springs[name], "N/m", "a stiffer support"),
         ]
@@ -107,7 +109,9 @@ def _parameter(brake: Design, path: str, about: Any, value: float, sign: float) 
 
     def cost(dose: float) -> str:
         amount = f"{np.rad2deg(dose):+.3g} deg" if turn else f"{100.0 * dose / value:+.3g} %"
-        what = {"static": "brake torque", "load1": "brake torque", "load2": "brake torque"}.get(path.rpartition(".")[2], "redesign")
+        what = {"static": "brake torque", "load1": "brake torque", "load2": "brake torque"}.get(
+            path.rpartition(".")[2], "redesign"
+        )
         return f"{what}, {path} {amount}"
 
     return Candidate(
@@ -262,7 +266,9 @@ def more_friction(brake: Design, factor: float) -> Design:
     if law is None:
         raise ParameterError("silence", "brake", type(brake).__name__, "a design with a friction law")
     path, sheet = law
-    numbers = [name for name, about in sheet.parameters().items() if about.unit == "-" and getattr(sheet, name) is not None]
+    numbers = [
+        name for name, about in sheet.parameters().items() if about.unit == "-" and getattr(sheet, name) is not None
+    ]
     return brake.replace({f"{path}.{name}": np.asarray(getattr(sheet, name)) * factor for name in numbers})
 
 

@@ -74,10 +74,20 @@ class Remedies(Result):
 
     def summary(self) -> str:
         """The ranked table, ready for an e-mail."""
-        head = ("cure", "dose", "growth [1/s]", f"at +{100.0 * self.margin:.3g} %", "P(squeal)", "after push [um]", "cost")
+        head = (
+            "cure",
+            "dose",
+            "growth [1/s]",
+            f"at +{100.0 * self.margin:.3g} %",
+            "P(squeal)",
+            "after push [um]",
+            "cost",
+        )
         table = [head, *(row[:7] for row in self.rows())]
         widths = [max(len(row[i]) for row in table) for i in range(len(head))]
-        lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in table]
+        lines = [
+            "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in table
+        ]
         first = (
             f"Without: growth {self.growth_before:+.4g} 1/s, P(squeal) {self.before:.3f}, "
             f"{1e6 * self.amplitude_before:.3g} um after a push"
@@ -128,7 +138,19 @@ def silence(
     chosen = list(candidates_for(brake, worse) if candidates is None else candidates)
     rows = [_row(each, brake, margin, lot, tuning, push) for each in chosen]
     rows = sorted(_one_side(rows), key=lambda row: (row["probability"], row["growth_at_margin"]))
-    names = ("name", "dose", "unit", "reached", "growth", "growth_at_margin", "probability", "amplitude", "cost", "caution", "line")
+    names = (
+        "name",
+        "dose",
+        "unit",
+        "reached",
+        "growth",
+        "growth_at_margin",
+        "probability",
+        "amplitude",
+        "cost",
+        "caution",
+        "line",
+    )
     outcome = Outcome() if rows else Outcome("no_candidates", "nothing was given that could be tried")
     return Remedies(
         **{name: np.array([row[name] for row in rows]) for name in names}, before=_share(brake, lot),
@@ -144,7 +166,9 @@ def _row(each: Candidate, brake: Design, margin: float, lot: Any, tuning: Any, p
     share = _share(cured, lot, each, tuning)
     cautions = [*each.cautions, *_said(cured, brake)]
     if not reached:
-        cautions.insert(0, f"no dose up to {float(np.abs(each.doses[-1])):.4g} {each.unit} makes it quiet at the margin")
+        cautions.insert(
+            0, f"no dose up to {float(np.abs(each.doses[-1])):.4g} {each.unit} makes it quiet at the margin"
+        )
     if growth <= 0.0 and share > HALF:
         cautions.insert(0, f"stable as drawn, and yet {100.0 * share:.0f} % of the lot squeals")
     return {
@@ -232,10 +256,16 @@ def _said(cured: Design, brake: Design) -> list[str]:
         found = closed_loop(cured)
         if not found.stable:
             return []
-        return [f"the delay must stay below {1e6 * found.delay_margin:.3g} us and the sampling above "
-                f"{found.sampling_margin(1.0):.4g} Hz (one sample to compute)"]
+        return [
+            f"the delay must stay below {1e6 * found.delay_margin:.3g} us and the sampling above "
+            f"{found.sampling_margin(1.0):.4g} Hz (one sample to compute)"
+        ]
     state = equilibrium(cured.system())
-    pulled = [c.name for c, force in zip(cured.system().contacts, np.atleast_1d(state.normal_force), strict=False) if force < 0.0]
+    pulled = [
+        c.name
+        for c, force in zip(cured.system().contacts, np.atleast_1d(state.normal_force), strict=False)
+        if force < 0.0
+    ]
     was = [float(force) < 0.0 for force in np.atleast_1d(equilibrium(brake.system()).normal_force)]
     return [f"{', '.join(pulled)} is pulled (N < 0)"] if len(pulled) > sum(was) else []
 

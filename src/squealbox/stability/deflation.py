@@ -16,6 +16,7 @@ import numpy as np
 
 from squealbox.stability.massless import reduced
 
+SLOW = 1e-6  # share of the largest |lambda| below which a mode counts as slow: a body that is only just held
 ZERO = 1e-12  # singular values below this share of 1 (all matrices are scaled to 1) count as zero
 
 
@@ -44,6 +45,21 @@ def special_modes(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, Any, An
     rights[:, columns], duals[:, columns] = level[:, None] * shapes, level[:, None] * lefts
     conditions[columns] = condition
     return out, rights, duals, conditions
+
+
+def vibrating(eigenvalues: Any, floating: Any) -> Any:
+    """The largest growth rate (...) beside the zeros of rigid-body motion and what is at infinity; -inf without one."""
+    rigid = (eigenvalues == 0.0) & (np.asarray(floating)[..., None] > 0)
+    growth = np.real(eigenvalues)
+    return np.max(np.where(rigid | np.isnan(growth), -np.inf, growth), axis=-1, initial=-np.inf)
+
+
+def uncertain(eigenvalues: Any, condition: Any, scale: Any) -> Any:
+    """Round-off of an eigenvalue over `scale`: of a slow pair beside fast ones it is its condition that counts."""
+    slow = np.abs(eigenvalues) < SLOW * scale
+    with np.errstate(invalid="ignore"):
+        error = 16.0 * np.finfo(float).eps * condition
+    return np.where(slow & np.isfinite(error), error, 0.0)
 
 
 def _levels(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, float]:

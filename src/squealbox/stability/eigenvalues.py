@@ -10,19 +10,17 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from squealbox.cautions import out_of_range
 from squealbox.result import COMPLETED, Outcome, Result, batched, quantity
-from squealbox.stability.deflation import special_modes
+from squealbox.stability.deflection import special_modes, uncertain, vibrating
 from squealbox.stability.first_order import first_order_spectra
 from squealbox.static_deflection import levelled
 from squealbox.system import Linearised, as_system, linearise
 
 MARGINAL = 1e-12  # growth below this share of the largest |lambda| is round-off, not growth
-SLOW = 1e-6  # share of the largest |lambda| below which a mode counts as slow: a body that is only just held
 NEAR_DEFECTIVE = 1e6  # condition number of an eigenvalue at which about 6 of 16 digits are lost
 
-SINGULAR_PENCIL = Outcome(
-    "singular_pencil", "every number is an eigenvalue: a motion without inertia, damping and stiffness"
-)
+SINGULAR_PENCIL = Outcome("singular_pencil", "every number is an eigenvalue: a motion with no force on it at all")
 
 
 class OneEigenvalue:
@@ -79,7 +77,6 @@ class ComplexModes(Result):
 
     The first n eigenvalues have Im >= 0, ascending in |Im|; the last n are their conjugates in the same order (of real
     eigenvalues the larger half stands in the first n). An entry without steady sliding holds NaN and exists = False.
-
     A rigid-body freedom, a motion that no spring feels, has eigenvalues that are exactly zero; `floating` counts such
     freedoms. They are no loss of stability: `largest_growth_rate` and `most_unstable` leave them out. A freedom
     without mass has eigenvalues at infinity, which stand as NaN behind the others.
@@ -94,6 +91,7 @@ class ComplexModes(Result):
     normal_force: Any = quantity("... contact", "N", "normal force of each contact in steady sliding, < 0 in tension")
     floating: Any = quantity("...", "1", "number of rigid-body freedoms, whose eigenvalues are zero")
     contacts: tuple[str, ...] = ()
+    caution: str = ""
 
     swept: ClassVar = {
         "largest_growth_rate": ("", "1/s", "largest growth rate"),
@@ -233,7 +231,9 @@ def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None,
     about = linearise(system, time)
     inputs = {"system": design_or_system, "time": time}
     names = tuple(contact.name or f"contact {i + 1}" for i, contact in enumerate(system.contacts))
-    modes = modes_of(about, inputs, names)
+    state = about.equilibrium
+    said = out_of_range(system, state.normal_force, state.sliding_speed) if np.any(state.exists) else ()
+    modes = replace(modes_of(about, inputs, names), caution="; ".join(said))
     band = getattr(design_or_system, "band", None) if band is None else band
     return modes if band is None else modes.within(band)
 
@@ -252,9 +252,8 @@ def modes_of(about: Linearised, inputs: Any = None, contacts: tuple[str, ...] = 
     for at in map(tuple, np.argwhere(special)):
         found = special_modes(about.M[at], about.C[at], about.K[at])
         usable[at] = found is not None
-        if found is None:
-            outcome = SINGULAR_PENCIL
-        if found is not None:
+        outcome = outcome if found else SINGULAR_PENCIL
+        if found:
             eigenvalues[at], right[at], left[at], condition[at] = found
     missing = ~usable
     return ComplexModes(
@@ -295,8 +294,12 @@ def with_special(about: Linearised, eigenvalues: Any) -> Any:
     eigenvalues = np.array(eigenvalues)
     quick = special & (np.asarray(about.equilibrium.floating) == 0)
     if np.any(quick):
-        values, answered = first_order_spectra(*(np.broadcast_to(part, about.K.shape)[quick] for part in (about.M, about.C, about.K)))
-        known = np.where(np.isnan(values), -1e3 * np.nanmax(np.abs(values), axis=-1, keepdims=True, initial=1.0), values)
+        values, answered = first_order_spectra(
+            *(np.broadcast_to(part, about.K.shape)[quick] for part in (about.M, about.C, about.K))
+        )
+        known = np.where(
+            np.isnan(values), -1e3 * np.nanmax(np.abs(values), axis=-1, keepdims=True, initial=1.0), values
+        )
         values = np.take_along_axis(values, spectrum_order(known), axis=-1)
         places = np.argwhere(quick)[answered]
         eigenvalues[tuple(places.T)], special = values[answered], np.array(special)
@@ -305,21 +308,6 @@ def with_special(about: Linearised, eigenvalues: Any) -> Any:
         found = special_modes(about.M[at], about.C[at], about.K[at])
         eigenvalues[at] = np.nan if found is None else found[0]
     return eigenvalues
-
-
-def vibrating(eigenvalues: Any, floating: Any) -> Any:
-    """The largest growth rate (...) beside the zeros of rigid-body motion and what is at infinity; -inf without one."""
-    rigid = (eigenvalues == 0.0) & (np.asarray(floating)[..., None] > 0)
-    growth = np.real(eigenvalues)
-    return np.max(np.where(rigid | np.isnan(growth), -np.inf, growth), axis=-1, initial=-np.inf)
-
-
-def uncertain(eigenvalues: Any, condition: Any, scale: Any) -> Any:
-    """Round-off of an eigenvalue over `scale`: of a slow pair beside fast ones it is its condition that counts."""
-    slow = np.abs(eigenvalues) < SLOW * scale
-    with np.errstate(invalid="ignore"):
-        error = 16.0 * np.finfo(float).eps * condition
-    return np.where(slow & np.isfinite(error), error, 0.0)
 
 
 def state_matrix(about: Linearised) -> tuple[Any, Any, Any, Outcome]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.parameters import DataSheet
 from squealbox.result import Outcome, Result, quantity
 from squealbox.stability.eigenvalues import MARGINAL
 from squealbox.stability.family import Family, Steady, entry
@@ -70,7 +71,22 @@ class StabilityMap(Result):
         """The arrays with the parameters as named coordinates."""
         dataset = super().to_dataset()
         names = {f"axis_{i}": name for i, name in enumerate(self.axes)}
-        return dataset.rename(names).assign_coords({name: np.asarray(values) for name, values in self.axes.items()})
+        coordinates = {
+            name: (name, np.asarray(values), {"units": self._unit(name)}) for name, values in self.axes.items()
+        }
+        return dataset.rename(names).assign_coords(coordinates)
+
+    def _unit(self, name: str) -> str:
+        """Unit of a parameter as its design declares it; empty where a function made the systems."""
+        sheet = self.inputs.get("system")
+        *inner, last = name.split(".")
+        for part in inner:
+            sheet = getattr(sheet, part, None)
+        if not isinstance(sheet, DataSheet):
+            return ""
+        declared = sheet.parameters()
+        last = getattr(sheet, "aliases", {}).get(last, (last,))[0]
+        return declared[last].unit if last in declared else ""
 
 
 def stability_map(

@@ -36,9 +36,12 @@ def html(modes: "ComplexModes") -> str:
 def _rows(modes: "ComplexModes") -> tuple[tuple[int, ...], list[tuple[str, ...]]]:
     entry = modes.most_unstable.entry
     values = modes.eigenvalues[entry]
-    scale = np.max(np.abs(values))
+    scale = np.nanmax(np.abs(values), initial=0.0)
     rows: list[tuple[str, ...]] = []
     for i, value in enumerate(values[: len(values) // 2]):
+        if not np.isfinite(value):
+            rows.append((str(i + 1), "-", "-", "-", "-", "no mass: at infinity"))
+            continue
         growth = value.real if abs(value.real) > 1e-12 * scale else 0.0
         ratio = -100.0 * growth / abs(value) if value != 0.0 else 0.0
         mark = "unstable" if growth > 0.0 else ""
@@ -66,6 +69,8 @@ def _cautions(modes: "ComplexModes", entry: tuple[int, ...]) -> list[str]:
     """One sentence when steady sliding needs a contact to pull."""
     forces = zip(modes.contacts, modes.normal_force[entry], strict=bool(modes.contacts))
     pulled = [f"{name} ({force:.4g} N)" for name, force in forces if force < 0.0]
+    others = [f"Caution: {part}" for part in modes.caution.split("; ") if part and "have to pull" not in part]
     if not pulled:
-        return []
-    return [f"Caution: in steady sliding the equations let {', '.join(pulled)} pull; a real contact would lift off."]
+        return others
+    return [f"Caution: in steady sliding the equations let {', '.join(pulled)} pull; a real contact would lift off.",
+            *others]  # fmt: skip

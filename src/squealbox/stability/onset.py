@@ -7,7 +7,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.result import Outcome, Result, quantity
-from squealbox.stability.eigenvalues import OneEigenvalue, modes_of, spectrum, vibrating
+from squealbox.stability.deflation import vibrating
+from squealbox.stability.eigenvalues import OneEigenvalue, modes_of, spectrum
 from squealbox.stability.family import Family, entry
 from squealbox.stability.mechanism import Mechanism, mechanism_at
 from squealbox.stability.scan import Scan, merging, scan
@@ -227,9 +228,9 @@ def _described(found: Scan, value: float, beside: float, k: int, rising: bool, i
         rank = int(np.sum((modes.growth_rate[0, :half] > modes.growth_rate[0, place]) & ~rigid))
         why = mechanism_at(entry(steady, (0,)), eigenvalue.imag, rank=rank)
         if max(why.circulation, why.slope) <= ROUND_OFF * abs(eigenvalue):  # nothing feeds it here, only beyond
-            beyond = found.family.at(np.array([value + (BESIDE if rising else -BESIDE) * width]))
-            if beyond.equilibrium.exists[0]:
-                why = mechanism_at(entry(beyond, (0,)), eigenvalue.imag, rank=rank)
+            further = found.family.at(np.array([value + (BESIDE if rising else -BESIDE) * width]))
+            if further.equilibrium.exists[0]:
+                why = mechanism_at(entry(further, (0,)), eigenvalue.imag, rank=rank)
         counts = (k, k + 1) if rising else (k + 1, k)
     return {
         "value": value,

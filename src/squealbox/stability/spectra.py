@@ -8,9 +8,9 @@ from typing import Any, Literal
 
 import numpy as np
 
+from squealbox.stability.deflation import SLOW
 from squealbox.stability.eigenvalues import (
     MARGINAL,
-    SLOW,
     modes_of,
     special_entries,
     state_matrix,
@@ -50,7 +50,8 @@ def _round_off(about: Linearised, values: Any, doubtful: Any) -> Any:
     for at in map(tuple, np.argwhere(np.any(doubtful, axis=-1))):
         state = about.equilibrium
         parts = (np.asarray(x)[at] for x in (state.q, state.normal_force, state.sliding_speed, state.friction))
-        alone = Equilibrium(*parts, np.asarray(state.exists)[at], state.outcome, 0)
+        q, normal, speed, mu = parts
+        alone = Equilibrium(q, normal, speed, mu, np.asarray(state.exists)[at], state.outcome)
         one = Linearised(about.M[at], about.C[at], about.K[at], alone)
         idle[at] = doubtful[at] & (modes_of(one).unstable_modes == 0)
     return idle

@@ -140,7 +140,20 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
         "stack": (128, 7), "clock": (7,),
         "mu": (m,), "size": (m,), "rebound": (m,), "approach": (m,), "poly": (DEGREE + 1,),
     }  # fmt: skip
-    names = ("stuck", "mode", "old", "forced", "at_zero", "fresh", "chosen", "touch", "leaving", "hit", "noisy", "basis_row")
+    names = (
+        "stuck",
+        "mode",
+        "old",
+        "forced",
+        "at_zero",
+        "fresh",
+        "chosen",
+        "touch",
+        "leaving",
+        "hit",
+        "noisy",
+        "basis_row",
+    )
     integers = dict.fromkeys(names, m) | {"row_contact": 2 * m, "row_kind": 2 * m, "count": 11}
     kinds = tuple((name, "f8", shape) for name, shape in floats.items())
     kinds += tuple((name, "i8", (size,)) for name, size in integers.items())

@@ -92,7 +92,7 @@ def branch(
     start: Any = None,
     *,
     value: float | None = None,
-    method: str = "harmonic_balance",
+    method: str = "auto",
     contact: str = "exact",
     width: float = 1e-3,
     harmonics: int = 9,
@@ -111,7 +111,8 @@ def branch(
         period doubling out of `Branch.points` (the branch of doubled
         period, with method "shooting"), or what :func:`shooting` takes, at `value` of the parameter
     value : where to start from; None takes the middle of the bounds
-    method : "harmonic_balance" (smooth or smoothed cycles, fast) or "shooting" (exact stick and slip)
+    method : "harmonic_balance" (smooth or smoothed cycles, fast), "shooting" (exact stick and slip), or "auto":
+        shooting where the cycle at the start sticks or reverses and contact is exact, else harmonic balance
     contact, width, harmonics : for harmonic balance
     direction : +1 walks to larger values first, -1 to smaller
     points : most points; largest_step : longest step, in shares of the range and of the size of the motion
@@ -129,11 +130,15 @@ def branch(
     >>> str(branch(brake, "friction.static", (0.1, 0.6), onset, points=150).outcome)
     'grazing'
     """
-    if method not in METHODS:
-        raise ParameterError("branch", "method", method, known_names(str(method), list(METHODS)))
+    if method not in (*METHODS, "auto"):
+        raise ParameterError("branch", "method", method, known_names(str(method), [*METHODS, "auto"]))
+    if len(bounds) != 2 or not np.all(np.isfinite(bounds)) or not bounds[0] < bounds[1]:
+        raise ParameterError("branch", "bounds", bounds, "two finite numbers (low, high) with low < high")
     span = float(bounds[1] - bounds[0])
     make = family(design, parameter)
     middle = 0.5 * (bounds[0] + bounds[1]) if value is None else value
+    if method == "auto":
+        method, start = _chosen(make, start, middle, contact)
     settings = {"bounds": list(bounds), "method": method, "contact": contact, "width": width, "harmonics": harmonics}
     if isinstance(start, HopfPoint) and (method, contact) not in METHODS_FROM_HOPF:
         raise ParameterError("branch", "start", "a HopfPoint", "shooting or exact contact from a Hopf point")
@@ -164,6 +169,19 @@ def branch(
         done.drop_last()
         done.outcome = _grazing_outcome(specials, done.visited[-1].p)
     return _collect(done.visited, done.seen, specials, done.outcome, parameter, settings, make(middle), design)
+
+
+def _chosen(make: Any, start: Any, value: float, contact: str) -> tuple[str, Any]:
+    """The method that can follow the cycle at the start, and the start, which may have become that cycle."""
+    if isinstance(start, BranchPoint):
+        return ("shooting" if start.kind == "period_doubling" else "harmonic_balance"), start
+    if isinstance(start, HopfPoint) or CONTACTS.get(contact) != "exact":
+        return "harmonic_balance", start
+    found = start if isinstance(start, Cycle) else shooting(make(value), start)
+    if not found.outcome.ok:
+        return "harmonic_balance", start
+    reverses = bool(np.any(found.mode == 0)) or len(found.event_time) > 0
+    return ("shooting", found) if reverses else ("harmonic_balance", start)
 
 
 def _grazing_outcome(specials: list[Special], last: float) -> Outcome:

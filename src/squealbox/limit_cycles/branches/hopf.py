@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.friction import Table
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.starting import steady_state
 from squealbox.result import COMPLETED, Outcome, Result, quantity
@@ -41,11 +42,12 @@ class HopfPoint(OneEigenvalue, Result):
     growth_slope: Any = quantity("", "1/s", "dRe lambda/dp, per unit of the parameter")
     frequency_slope: Any = quantity("", "rad/s", "dIm lambda/dp, per unit of the parameter")
     parameter: str = ""
+    caution: str = ""
 
     @property
     def kind(self) -> str:
-        """Supercritical, subcritical, or degenerate (|l1| lost in round-off)."""
-        if not np.isfinite(self.lyapunov):
+        """Supercritical, subcritical, degenerate (|l1| lost in round-off), or unknown (a law known by points only)."""
+        if not np.isfinite(self.lyapunov) or self.caution:
             return "unknown"
         size = float(np.max(np.abs(self.shape)))
         if abs(self.lyapunov) < 1e-10 * size:
@@ -69,7 +71,9 @@ class HopfPoint(OneEigenvalue, Result):
         """One line: where, at which frequency, and of which kind."""
         if not self.outcome.ok:
             return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
-        return f"{self.kind} Hopf point at {self.parameter} = {float(self.value):.10g}, {self.frequency:.6g} Hz"
+        kind = "Hopf point of unknown kind" if self.kind == "unknown" else f"{self.kind} Hopf point"
+        said = f"{kind} at {self.parameter} = {float(self.value):.10g}, {self.frequency:.6g} Hz"
+        return f"{said}; {self.caution}" if self.caution else said
 
 
 def family(design: Any, parameter: str) -> Callable[[float], Any]:
@@ -119,8 +123,19 @@ def hopf_point(design: Any, parameter: str, bounds: tuple[float, float]) -> Hopf
         inputs={"system": field.system}, outcome=Outcome(COMPLETED), value=np.asarray(value),
         eigenvalue=np.asarray(1j * eigenvalue.imag), shape=q, steady=steady,
         lyapunov=np.asarray(lyapunov_coefficient(field, steady, eigenvalue.imag, q, p)),
-        growth_slope=np.asarray(slope.real), frequency_slope=np.asarray(slope.imag), **about,
+        growth_slope=np.asarray(slope.real), frequency_slope=np.asarray(slope.imag),
+        caution=_tabulated(field), **about,
     )  # fmt: skip
+
+
+def _tabulated(field: Field) -> str:
+    """What points of a law do not say: its second and third derivative, on which the kind of the Hopf point rests."""
+    if any(isinstance(law, Table) for law in field.laws):
+        return (
+            "the kind rests on the second and third derivative of mu, which points of a table do not give: they "
+            "promise mu and about its slope; fit a law with a formula (fit_friction)"
+        )
+    return ""
 
 
 def critical_pair(field: Field, frequency: float) -> tuple[complex, Any, Any, Any]:

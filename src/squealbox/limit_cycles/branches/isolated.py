@@ -5,6 +5,7 @@ from many states do: what each settles to is solved for by shooting, equal cycle
 starts a branch that is followed both ways. Runs find stable cycles only; unstable ones lie on the branches.
 """
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -95,7 +96,7 @@ def _settled(field: Field, state: Any, settle: float | None, known: list[Cycle])
     return cycle
 
 
-def _alike(cycle: Cycle, period: Any, lowest: Any, highest: Any) -> bool:
+def _alike(cycle: Any, period: Any, lowest: Any, highest: Any) -> bool:
     """True when a motion has the period of the cycle, or a multiple of it, and its extremes."""
     turns = max(1.0, np.round(float(period / cycle.period)))
     size = 2.0 * np.max(cycle.amplitude)
@@ -142,11 +143,23 @@ def isolated_branches(
                 continue
             start = {"start": cycle, "value": float(value), "method": "shooting", **walk}
             ways = [branch(design, parameter, bounds, direction=way, **start) for way in (-1.0, 1.0)]
-            found.append(joined(*ways))
+            one = joined(*ways)
+            if not any(_same_way(one, other) for other in found):
+                found.append(one)
     return tuple(found[len(known) :])
 
 
-def passes(one: Branch, cycle: Cycle, value: float) -> bool:
+def _same_way(one: Branch, other: Branch) -> bool:
+    """True when most points of a branch lie on another one: the same branch, met again."""
+    on = 0
+    for i in range(len(one.value)):
+        at = SimpleNamespace(period=one.period[i], lowest=one.lowest[i], highest=one.highest[i],
+                             amplitude=one.amplitude[i])  # fmt: skip
+        on += passes(other, at, float(one.value[i]))
+    return len(one.value) > 0 and on > 0.5 * len(one.value)
+
+
+def passes(one: Branch, cycle: Any, value: float) -> bool:
     """True when a branch goes through a cycle at a value of the parameter."""
     p = one.value - value
     for i in np.flatnonzero(p[:-1] * p[1:] <= 0.0):

@@ -93,7 +93,8 @@ class Cycle(Result):
             return f"{self.outcome}: {self.outcome.message}"
         sizes = ", ".join(f"{name} {a:.6g} m" for name, a in zip(self.system.names, self.amplitude, strict=True))
         kind = "stable" if self.stable else "unstable"
-        return f"{kind} cycle, period {float(self.period):.10g} s ({self.frequency:.6g} Hz), amplitude {sizes}"
+        said = f"{kind} cycle, period {float(self.period):.10g} s ({self.frequency:.6g} Hz), amplitude {sizes}"
+        return f"{said}\nCaution: {self.caution}" if self.caution else said
 
 
 def ordered(multipliers: Any) -> Any:

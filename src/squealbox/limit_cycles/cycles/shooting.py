@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.cautions import out_of_range
 from squealbox.limit_cycles.cycles.cycle import Cycle, extremes, ordered
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.rounds import rounds
@@ -127,7 +128,9 @@ def cycle_through(
         inputs={"system": field.system}, settings=settings, outcome=outcome, period=np.asarray(period), t=run.t,
         q=run.q, qd=run.qd, sliding_velocity=run.sliding_velocity, mode=run.mode, multipliers=multipliers,
         lowest=low, highest=high, event_time=run.event_time, event_contact=run.event_contact,
-        event_mode=run.event_mode, error=float(error), caution=_caution(flights or []),
+        event_mode=run.event_mode, error=float(error),
+        caution="; ".join([*filter(None, [_caution(flights or [])]),
+                           *out_of_range(field.system, run.normal_force, run.sliding_velocity)]),
     )  # fmt: skip
 
 

@@ -50,6 +50,9 @@ def first_guess(field: Field, start: Any, settle: float | None) -> tuple[Any, fl
 def first_return(field: Field, x: Any, period: float) -> tuple[Any, float, Outcome]:
     """A state in fast slip on the motion from x, and the time after which the motion comes back to it."""
     run = fly(field, x, 12.0 * period, GUESS_RTOL, most=12 * PERIOD_STEPS)
+    if run.outcome.ok and _inside_a_stick(run):  # the belt is slow: look for as long as contacts may stick
+        window = 12.0 * (period + _longest_stick(field))
+        run = fly(field, x, window, GUESS_RTOL, most=LONG_STEPS)
     if not run.outcome.ok:
         return x, period, Outcome("no_cycle", f"the search for a return ended early: {run.outcome.message}")
     states = np.hstack([run.q, run.qd])
@@ -57,7 +60,8 @@ def first_return(field: Field, x: Any, period: float) -> tuple[Any, float, Outco
         return x, period, Outcome("no_cycle", "the motion grows without bound: no cycle in sight")
     size = np.ptp(states, axis=0)
     size = np.where(size > 0.0, size, 1.0)
-    if np.max(np.ptp(run.qd, axis=0)) <= STILL * max(float(np.max(np.abs(field.V), initial=0.0)), 1e-300):
+    fastest = max(float(np.max(np.abs(field.V), initial=0.0)), 1e-300)
+    if not np.any(run.mode == 0) and np.max(np.ptp(run.qd, axis=0)) <= STILL * fastest:
         return x, period, Outcome("steady_sliding", "the run settles on steady sliding, not on a cycle")
     begin = _fast_slip(run)
     section = np.concatenate([run.qd[begin], np.diff(run.qd[begin : begin + 2], axis=0)[0]]) / size**2
@@ -74,6 +78,27 @@ def first_return(field: Field, x: Any, period: float) -> tuple[Any, float, Outco
     if not crossing:
         return x, period, Outcome("no_cycle", "the motion does not return: a longer `settle` may help")
     return states[begin], found, Outcome(COMPLETED)
+
+
+def _inside_a_stick(run: Trajectory) -> bool:
+    """Whether a contact sticks in the run without having let go at least twice: its stick may outlast the run."""
+    return any(
+        bool(np.any(sticks)) and int(np.count_nonzero(sticks[:-1] & ~sticks[1:])) < 2 for sticks in (run.mode == 0).T
+    )
+
+
+def _longest_stick(field: Field) -> float:
+    """Estimate of the longest stick [s]: the spring's force runs through twice the static limit, 2 mu N / (k V)."""
+    inverse = np.linalg.pinv(field.system.K)
+    normal = np.abs(field.N0)
+    state = equilibrium(field.system)
+    if np.all(state.exists):
+        normal = np.maximum(normal, np.abs(state.normal_force))
+    soft = np.abs(np.einsum("ci,ij,cj->c", field.t, inverse, field.d))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        times = 2.0 * field.static * normal * soft / np.abs(field.V)
+    times = times[np.isfinite(times)]
+    return float(np.max(times, initial=0.0))
 
 
 def _fast_slip(run: Trajectory) -> int:

@@ -20,10 +20,12 @@ from squealbox.friction import Cubic, FrictionLaw, Stribeck
 from squealbox.limit_cycles.branches.hopf import family
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.limit_cycles.cycles.harmonic_balance import harmonic_balance
+from squealbox.parameters import ParameterError
 from squealbox.schedules import value_at
 
 POINTS = 256  # of the average; exponentially accurate for a smooth law
 SCAN = 400
+FINE = 8192  # of the touching cycle, whose law may fall steeply near v = 0
 
 
 def describing_function(design_or_system: Any, start: Any = None, **options: Any) -> Cycle:
@@ -116,13 +118,17 @@ def averaged_curve(design: Any, parameter: str, values: Any) -> tuple[Any, Any]:
     return table[:, 0], table[:, 1]
 
 
-def averaged_limit(law: Stribeck, normal_force: float, damping: float) -> float:
-    """Speed V [m/s] up to which a block on a belt can stick and slip, exponential law; NaN where it never does.
+def averaged_limit(law: FrictionLaw, normal_force: float, damping: float) -> float:
+    """Speed V [m/s] up to which a block on a belt can stick and slip; NaN where never, inf where always.
 
     There u = V, the cycle just touches sticking:
 
-        c V = 2 N (static - kinetic) exp(-V/s) I1(V/s)
+        c V = (N/pi) integral_0^2pi mu(V - V cos theta) cos theta dtheta
+            = 2 N (static - kinetic) exp(-V/s) I1(V/s)                         exponential law
+            = N 3/2 (static - kinetic) (V/s) (1 - 5 V^2/(4 s^2))               cubic law
 
+    and by quadrature for any other law whose coefficient at v = 0 is its static limit (else `ParameterError`: a drop
+    at v = 0 itself does work that the integral does not see). Of several such speeds the largest is given.
     Below it, and above the Hopf speed s ln(N (static - kinetic)/(c s)), steady sliding and stick-slip coexist. The
     error is of second order in (c, N mu). Source: derived here.
 
@@ -133,6 +139,15 @@ def averaged_limit(law: Stribeck, normal_force: float, damping: float) -> float:
     from scipy.optimize import brentq
     from scipy.special import ive
 
+    if not np.isclose(float(law.mu(0.0)), float(law.static_limit), rtol=1e-12, atol=0.0):
+        expected = "a law whose coefficient at v = 0 is its static limit; stick_slip cycles of others come by shooting"
+        raise ParameterError("averaged_limit", "law", law, expected)
+    if isinstance(law, Cubic):
+        drive = 1.5 * (law.static - law.kinetic) * normal_force / law.speed
+        left = 1.0 - damping / drive if drive > 0.0 else -1.0
+        return float(law.speed * np.sqrt(0.8 * left)) if left > 0.0 else float("nan")
+    if not isinstance(law, Stribeck):
+        return _limit_by_quadrature(law, normal_force, damping)
     drop = normal_force * (law.static - law.kinetic)
 
     def excess(r: float) -> float:  # exp(-r) I1(r)/r falls from 1/2 to 0 monotonically
@@ -144,3 +159,26 @@ def averaged_limit(law: Stribeck, normal_force: float, damping: float) -> float:
         if high > 1e12:
             return float("inf")
     return float(law.speed * brentq(excess, low, high, xtol=1e-15)) if high > low else float("nan")
+
+
+def _limit_by_quadrature(law: FrictionLaw, normal_force: float, damping: float) -> float:
+    """The largest V at which drive and damping of the touching cycle balance, by the midpoint rule."""
+    from scipy.optimize import brentq
+
+    theta = np.pi * (np.arange(FINE) + 0.5) / FINE
+    weight = np.cos(theta)
+
+    def excess(speed: float) -> float:  # per unit of speed
+        mu = law.mu(speed * (1.0 - weight))
+        return float(2.0 * normal_force * np.mean((mu - law.mu(speed)) * weight) / speed - damping)
+
+    speeds = np.geomspace(1e-6, 1e6, 481)
+    values = np.array([excess(speed) for speed in speeds])
+    rest = 1e-12 * max(abs(damping), abs(normal_force))
+    falls = np.flatnonzero((values[:-1] > rest) & (values[1:] <= rest))
+    if values[-1] > rest:
+        return float("inf")
+    if falls.size == 0:
+        return float("nan")
+    i = int(falls[-1])
+    return float(brentq(excess, speeds[i], speeds[i + 1], xtol=1e-15, rtol=1e-13))

@@ -1,0 +1,51 @@
+"""Where a motion leaves the range of its model: friction that drives, contacts that pull, laws beyond their data."""
+
+from typing import Any
+
+import numpy as np
+
+from squealbox.friction import Table
+from squealbox.system import System
+
+PULL = 1e-9  # of the largest normal force: less is round-off
+
+
+def out_of_range(system: System, normal_force: Any, sliding_velocity: Any) -> tuple[str, ...]:
+    """Sentences on what a motion asks of its contacts that their model does not promise.
+
+    Parameters
+    ----------
+    system : the system
+    normal_force, sliding_velocity : shape (..., contacts) [N], [m/s], of steady sliding or along a motion
+
+    A bilateral contact whose N falls below 0 pulls, a coefficient below 0 drives the sliding and does not oppose it; a
+    table is constant beyond its last point, which nobody measured. Source: the equation in `squealbox.system`.
+
+    >>> from squealbox import Contact, LinearSlope, System
+    >>> pad = Contact(n=[0.0], d=[1.0], t=[1.0], N0=1.0, V=20.0, law=LinearSlope(0.45, -0.03))
+    >>> out_of_range(System([[1.0]], [[0.0]], [[1.0]], 0.0, (pad,)), [1.0], [20.0])
+    ('contact 1: friction is negative at 20 m/s (mu = -0.15) and drives the sliding: give the law a floor',)
+    """
+    normal = np.atleast_2d(np.asarray(normal_force, dtype=float))
+    speed = np.atleast_2d(np.abs(np.asarray(sliding_velocity, dtype=float)))
+    said: list[str] = []
+    for i, contact in enumerate(system.contacts):
+        name = contact.name or f"contact {i + 1}"
+        n, v = normal[..., i].ravel(), speed[..., i].ravel()
+        n, v = n[np.isfinite(n)], v[np.isfinite(v)]
+        least, most = float(np.min(n, initial=0.0)), float(np.max(np.abs(n), initial=0.0))
+        if not contact.unilateral and least < -PULL * most:
+            said.append(f"{name}: N falls to {least:.4g} N: it would have to pull; a unilateral contact lifts off")
+        if v.size == 0 or any(np.ndim(x) for x in contact.law.coefficients()[:1]):
+            continue
+        fastest = float(np.max(v))
+        looked = np.linspace(0.0, fastest, 65) if v.size > 1 else v
+        mu = np.asarray(contact.law.mu(looked), dtype=float)
+        if np.min(mu) < 0.0:
+            at = float(looked[int(np.argmin(mu))])
+            said.append(f"{name}: friction is negative at {at:.4g} m/s (mu = {float(np.min(mu)):.4g}) and drives the "
+                        "sliding: give the law a floor")  # fmt: skip
+        if isinstance(contact.law, Table) and fastest > float(np.max(contact.law.speeds)) * (1.0 + 1e-12):
+            known = float(np.max(contact.law.speeds))
+            said.append(f"{name}: it slides at {fastest:.4g} m/s, beyond the law's data, which end at {known:.4g} m/s")
+    return tuple(said)
