@@ -91,7 +91,9 @@ class DiscBrake(Design):
     backplates: Backplates = Backplates()
     springs: Springs = Springs()
     friction: FrictionLaw = Coulomb(0.5)
-    pressure: float = parameter("Pa", 0.0, low_open=True, default=1.5e6, meaning="pressure on the piston's patch", source=OWN)
+    pressure: float = parameter(
+        "Pa", 0.0, low_open=True, default=1.5e6, meaning="pressure on the piston's patch", source=OWN
+    )
     piston_radius: float = parameter(
         "m", 0.0, low_open=True, default=0.021, meaning="radius of the patch that is pressed", source=OWN
     )
@@ -109,16 +111,22 @@ class DiscBrake(Design):
         super().__post_init__()
         disc, pads = self.disc, self.pads
         if not disc.inner_radius < disc.outer_radius:
-            raise ParameterError("Disc", "outer_radius", disc.outer_radius, f"more than its bore, {disc.inner_radius:g} m")
+            raise ParameterError(
+                "Disc", "outer_radius", disc.outer_radius, f"more than its bore, {disc.inner_radius:g} m"
+            )
         if not disc.inner_radius <= pads.inner_radius < pads.outer_radius <= disc.outer_radius:
-            expected = f"within the disc, {disc.inner_radius:g} to {disc.outer_radius:g} m, and the inner less than the outer"
+            expected = (
+                f"within the disc, {disc.inner_radius:g} to {disc.outer_radius:g} m, and the inner less than the outer"
+            )
             raise ParameterError("Pads", "outer_radius", pads.outer_radius, expected)
 
     def structure(self) -> "Structure":
         """Matrices per unit of modulus and density, contact points and faces; the same for all that shares a mesh."""
         for name, _, value in self.leaves():
             if np.ndim(value) and not name.startswith("friction"):
-                raise ParameterError("DiscBrake", name, value, "one number: one system at a time; reduce() makes a sweep")
+                raise ParameterError(
+                    "DiscBrake", name, value, "one number: one system at a time; reduce() makes a sweep"
+                )
         lining, disc, plate = self.pads.material, self.disc.material, self.backplates.material
         shape = (
             *(self.disc.inner_radius, self.disc.outer_radius, self.disc.thickness, disc.poisson),
@@ -139,7 +147,11 @@ class DiscBrake(Design):
         springs = self.springs.caliper * made.caliper + self.springs.abutment * made.abutment
         weight = self.contact_stiffness * made.area[self._touching(made)]
         rows = made.normal[self._touching(made)]
-        return {**found, "springs": (nothing, springs), "contact": (nothing, rows.T @ sparse.diags_array(weight) @ rows)}
+        return {
+            **found,
+            "springs": (nothing, springs),
+            "contact": (nothing, rows.T @ sparse.diags_array(weight) @ rows),
+        }
 
     def system(self) -> System:
         """M, C, K with every contact closed, the pressure as load, and a unilateral contact at every point."""
@@ -185,7 +197,9 @@ class DiscBrake(Design):
         offset = np.abs(made.angle)
         inside = (offset < 0.5 * self.pads.angle - self.pads.chamfer) & (offset >= 0.5 * self.pads.slot)
         if not np.any(inside):
-            raise ParameterError("Pads", "chamfer", self.pads.chamfer, "an angle that leaves some of the lining to touch")
+            raise ParameterError(
+                "Pads", "chamfer", self.pads.chamfer, "an angle that leaves some of the lining to touch"
+            )
         return np.flatnonzero(inside)
 
 
@@ -305,7 +319,9 @@ def structure(
         caliper = caliper + down.T @ sparse.diags_array(back.area / np.sum(back.area)) @ down
         pressed = np.hypot(back.place[0] - 0.5 * (inner + outer), back.place[1]) < piston
         if not np.any(pressed):
-            raise ParameterError("DiscBrake", "piston_radius", piston, "a patch that holds at least one quadrature point")
+            raise ParameterError(
+                "DiscBrake", "piston_radius", piston, "a patch that holds at least one quadrature point"
+            )
         load += down.T @ np.where(pressed, back.area * np.pi * piston**2 / np.sum(back.area[pressed]), 0.0)
         for end in (-0.5 * angle, 0.5 * angle):
             side = pad.face(lambda _r, t, z, end=end: (np.abs(t - end) < 1e-9) & (np.abs(z) > half + lining))

@@ -99,35 +99,52 @@ class Body:
         found[:, self.freedoms] = self.basis.doflocs
         return found
 
-    @cached_property
-    def _fold(self) -> Any:
-        raw = len(self.freedoms)
-        return sparse.csr_array((np.ones(raw), (np.arange(raw), self.freedoms)), shape=(raw, self.size))
-
     def stiffness(self, poisson: float, inside: Any = None) -> Any:
-        """K [N/m] for a Young's modulus of 1 N/m^2, of the elements marked `inside` or all."""
-        fem = skfem()
-        from skfem.models.elasticity import lame_parameters, linear_elasticity
+        """K [N/m] for a Young's modulus of 1 N/m^2, of the elements marked `inside` or all.
 
-        form = linear_elasticity(*lame_parameters(1.0, poisson))
-        return self._folded(fem.asm(form, self._part(inside)))
+        With H_aibj = int dphi_a/dx_i dphi_b/dx_j, K_aibj = lam H_aibj + mu (H_ajbi + delta_ij sum_k H_akbk).
+        """
+        first, second = poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), 0.5 / (1.0 + poisson)
+        basis = self._scalar
+        weight = np.sqrt(basis.dx)
+        slopes = np.stack([np.asarray(basis.basis[a][0].grad) * weight for a in range(basis.Nbfun)])
+        slopes = np.moveaxis(slopes, 2, 0)  # element, shape function, direction, point
+        count, shapes, _, points = slopes.shape
+        flat = slopes.reshape(count, 3 * shapes, points)
+        product = np.matmul(flat, np.swapaxes(flat, 1, 2)).reshape(count, shapes, 3, shapes, 3)
+        turned = np.swapaxes(product, 2, 4)
+        alike = np.einsum("eakbk->eab", product)
+        element = first * product + second * turned
+        for axis in range(3):
+            element[:, :, axis, :, axis] += second * alike
+        return self._assembled(element.reshape(count, 3 * shapes, 3 * shapes), inside)
 
     def mass(self, inside: Any = None) -> Any:
         """M [kg] for a density of 1 kg/m^3, of the elements marked `inside` or all."""
+        basis = self._scalar
+        weight = np.sqrt(basis.dx)
+        values = np.stack([np.asarray(basis.basis[a][0]) * weight for a in range(basis.Nbfun)])
+        values = np.moveaxis(values, 1, 0)
+        product = np.matmul(values, np.swapaxes(values, 1, 2))
+        count, shapes = product.shape[:2]
+        element = np.zeros((count, shapes, 3, shapes, 3))
+        for axis in range(3):
+            element[:, :, axis, :, axis] = product
+        return self._assembled(element.reshape(count, 3 * shapes, 3 * shapes), inside)
+
+    @cached_property
+    def _scalar(self) -> Any:
+        """The basis of one component; its shape function a with direction i is number 3 a + i of the whole."""
         fem = skfem()
-        from skfem.helpers import dot
+        return fem.Basis(self.basis.mesh, fem.ElementHexS2(), intorder=QUADRATURE)
 
-        form = fem.BilinearForm(lambda u, v, _: dot(u, v))
-        return self._folded(fem.asm(form, self._part(inside)))
-
-    def _part(self, inside: Any) -> Any:
-        if inside is None:
-            return self.basis
-        fem = skfem()
-        return fem.Basis(self.basis.mesh, self.basis.elem, intorder=QUADRATURE, elements=np.flatnonzero(inside))
-
-    def _folded(self, matrix: Any) -> Any:
-        found = sparse.csr_array(self._fold.T @ sparse.csr_array(matrix) @ self._fold)
+    def _assembled(self, element: Any, inside: Any) -> Any:
+        marked = np.arange(len(element)) if inside is None else np.flatnonzero(inside)
+        numbers = self.freedoms[self.basis.element_dofs[:, marked]].T.astype(np.int32)
+        width = numbers.shape[1]
+        rows, columns = np.repeat(numbers, width, axis=1), np.tile(numbers, (1, width))
+        matrix = sparse.coo_array((element[marked].ravel(), (rows.ravel(), columns.ravel())), shape=(self.size,) * 2)
+        found = matrix.tocsr()
         return sparse.csr_array(0.5 * (found + found.T))  # round-off of the sums alone parts them
 
     def face(self, where: Any) -> FacePoints:
@@ -137,12 +154,11 @@ class Body:
         border = flat.boundary_facets()
         middles = flat.p[:, flat.facets[:, border]].mean(axis=1)
         facets = border[where(*middles)]
-        basis = fem.FacetBasis(self.basis.mesh, self.basis.elem, facets=facets, intorder=QUADRATURE)
+        basis = fem.FacetBasis(self.basis.mesh, fem.ElementHexS2(), facets=facets, intorder=QUADRATURE)
         place = np.asarray(basis.global_coordinates()).reshape(3, -1)
-        values = [np.asarray(basis.basis[i][0]) for i in range(basis.Nbfun)]
-        shape = basis.dx.shape
-        columns = [np.broadcast_to(basis.element_dofs[i][:, None], shape) for i in range(basis.Nbfun)]
-        return FacePoints(place, basis.dx.ravel(), self._rows(values, columns, shape))
+        values = np.stack([np.broadcast_to(np.asarray(basis.basis[a][0]), basis.dx.shape) for a in range(basis.Nbfun)])
+        elements = np.broadcast_to(basis.tind[:, None], basis.dx.shape).ravel()
+        return FacePoints(place, basis.dx.ravel(), self._rows(values.reshape(basis.Nbfun, -1), elements))
 
     def points(self, place: Any) -> tuple[Any, Any, Any]:
         """U_x, U_y, U_z (k, n) at places (3, k) [m] in the body or on its faces."""
@@ -153,14 +169,10 @@ class Body:
             for breaks, value in ((self.r, r), (self.theta, theta), (self.z, place[2]))
         ]
         elements = self._lookup[tuple(index)]
-        basis = self.basis
+        basis = self._scalar
         local = basis.mapping.invF(place[:, :, None], tind=elements)
-        values, columns = [], []
-        for i in range(basis.Nbfun):
-            field = basis.elem.gbasis(basis.mapping, local, i, tind=elements)[0]
-            values.append(np.asarray(field).reshape(3, -1, 1))
-            columns.append(basis.element_dofs[i][elements][:, None])
-        return self._rows(values, columns, (place.shape[1], 1))
+        values = [np.asarray(basis.elem.lbasis(local, a)[0]).reshape(-1) for a in range(basis.Nbfun)]
+        return self._rows(np.stack(values), elements)
 
     @cached_property
     def _lookup(self) -> Any:
@@ -174,15 +186,14 @@ class Body:
         found[tuple(cells)] = np.arange(self.centres.shape[1])
         return found
 
-    def _rows(self, values: Any, columns: Any, shape: Any) -> tuple[Any, Any, Any]:
-        count = int(np.prod(shape))
-        numbers = np.broadcast_to(np.arange(count).reshape(shape), shape)
-        where = np.concatenate([numbers.ravel() for _ in values])
-        which = self.freedoms[np.concatenate([np.asarray(c).ravel() for c in columns])]
+    def _rows(self, values: Any, elements: Any) -> tuple[Any, Any, Any]:
+        """Rows of the three displacements from shape functions (20, k) in the elements (k,)."""
+        shapes, count = values.shape
+        where = np.tile(np.arange(count), shapes)
         rows = []
         for axis in range(3):
-            entries = np.concatenate([np.asarray(v)[axis].ravel() for v in values])
-            table = sparse.csr_array((entries, (where, which)), shape=(count, self.size))
+            which = self.freedoms[self.basis.element_dofs[axis::3][:, elements]].ravel()
+            table = sparse.csr_array((values.ravel(), (where, which)), shape=(count, self.size))
             table.eliminate_zeros()
             rows.append(table)
         return rows[0], rows[1], rows[2]
