@@ -1,0 +1,45 @@
+"""From entries between labels to a matrix: labels in order, internal freedoms behind."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squealbox.fe.readers.matrix import FileMatrix, MatrixFileError, complete
+
+
+def coded(path: Path, nodes: Any, directions: Any) -> Any:
+    """One whole number for each (node, direction); negative nodes, internal freedoms, sort behind all others."""
+    nodes, directions = np.asarray(nodes, dtype=np.int64), np.asarray(directions, dtype=np.int64)
+    if directions.size and (directions.min() < 0 or directions.max() > 99_999):
+        bad = directions[(directions < 0) | (directions > 99_999)][0]
+        raise MatrixFileError(path, f"the direction {bad} of a node: expected 1 to 6, or 0 for a scalar point")
+    if nodes.size and abs(nodes).max() >= 2**45:
+        raise MatrixFileError(path, f"the node number {nodes[abs(nodes).argmax()]}: expected at most {2**45}")
+    place = np.where(nodes < 0, 2**45 - nodes, nodes)
+    return place * 100_000 + directions
+
+
+def decoded_labels(codes: Any) -> Any:
+    """The inverse of `coded`, shape (n, 2)."""
+    place, direction = np.divmod(np.asarray(codes, dtype=np.int64), 100_000)
+    return np.column_stack([np.where(place > 2**45, 2**45 - place, place), direction])
+
+
+def between_labels(
+    path: Path, name: str, kind: str, rows: Any, columns: Any, values: Any, rule: str, **about: Any
+) -> FileMatrix:
+    """A square matrix from coded row and column labels, on the union of both."""
+    codes = np.union1d(rows, columns)
+    return complete(
+        path,
+        name,
+        kind,
+        np.searchsorted(codes, rows).astype(np.int32),
+        np.searchsorted(codes, columns).astype(np.int32),
+        values,
+        len(codes),
+        rule,
+        labels=decoded_labels(codes),
+        **about,
+    )
