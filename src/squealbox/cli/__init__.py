@@ -26,6 +26,9 @@ COMMANDS = {
     "init": Command("starter", "init", "write a commented example file that runs"),
     "list": Command("catalogue", "list_", "designs with their parameters, friction laws, schedules, methods, papers"),
     "modes": Command("stability", "modes", "is steady sliding stable? complex eigenvalues of a design file"),
+    "matrices": Command(
+        "matrices", "matrices", "what files of Abaqus, Nastran, Ansys ... hold: matrices, labels, frequencies"
+    ),
     "onset": Command("stability", "onset", "the value of a parameter at which squeal begins, and how"),
     "map": Command("maps", "map_", "stability over two parameters, with the boundary as curves"),
     "simulate": Command("transient", "simulate", "what happens in time: a transient with verdict, figures and data"),

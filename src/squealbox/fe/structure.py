@@ -195,6 +195,8 @@ def _aligned(chosen: dict[str, tuple[MatrixFile, FileMatrix]], units: str | None
     order, places = _common(files, found, labels)
     size = len(order) if order is not None else max(matrix.matrix.shape[0] for matrix in found.values())
     notes = [note for file in dict.fromkeys(files.values()) for note in file.notes if "constrained" not in note]
+    for matrix in found.values():
+        notes += [f"{matrix.name}: {note}" for note in matrix.notes if "no entry" not in note]
     arrays = {kind: _placed(matrix.matrix, places.get(kind), size) for kind, matrix in found.items()}
     if np.iscomplexobj(arrays[STIFFNESS].data):
         notes.append("the stiffness is complex: its imaginary part, structural damping, is left out")

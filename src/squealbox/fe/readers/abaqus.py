@@ -25,16 +25,24 @@ from squealbox.fe.readers.matrix import (
     complete,
     kind_of,
 )
-from squealbox.fe.readers.numbers import check_index, columns_of, number, significant_digits, text_lines
+from squealbox.fe.readers.numbers import (
+    check_index,
+    check_last_line,
+    columns_of,
+    number,
+    significant_digits,
+    text_lines,
+)
 
 KINDS = {"STIFFNESS": STIFFNESS, "MASS": MASS, "VISCOUS DAMPING": DAMPING, "STRUCTURAL DAMPING": STRUCTURAL}
 
 
 def read_coordinates(path: Path, stream: BinaryIO, first: str, *, half: bool = False, code: str = "Abaqus") -> Any:
     """``row column value`` from 1 without a header; `half` when the format stores one half only."""
+    ends = check_last_line(path, stream)
     rows, columns, values = columns_of(path, stream, 1, 3, comma=False)
     name = path.name if code == "Abaqus" else {".sti": "K", ".mas": "M"}.get(path.suffix.lower(), path.name)
-    rows, columns = check_index(path, rows, None, name), check_index(path, columns, None, name)
+    rows, columns = check_index(path, rows, None, name, 1), check_index(path, columns, None, name, 1)
     kind = kind_of(name) if kind_of(name) != OTHER else kind_of(path.stem)
     size = int(max(rows.max(initial=-1), columns.max(initial=-1))) + 1
     used = np.zeros(size, dtype=bool)
@@ -48,10 +56,20 @@ def read_coordinates(path: Path, stream: BinaryIO, first: str, *, half: bool = F
         raise MatrixFileError(
             path, f"row {empty[0] + 1} of {size} has no entry ({empty.size} such): expected stiffness in every row"
         )
-    notes = (f"{empty.size} of {size} rows have no entry",) if empty.size else ()
+    notes = (*ends, *((f"{empty.size} of {size} rows have no entry",) if empty.size else ()))
     digits = significant_digits(first.split()[-1:])
     matrix = complete(
-        path, name, kind, rows, columns, values, size, "half" if half else "either", digits=digits, notes=notes
+        path,
+        name,
+        kind,
+        rows,
+        columns,
+        values,
+        size,
+        "half" if half else "either",
+        lambda i: i + 1,
+        digits=digits,
+        notes=notes,
     )
     words = f"{code}, coordinate text" if code != "CalculiX" else "CalculiX matrix storage"
     return MatrixFile(path, words, (matrix,))
@@ -59,12 +77,15 @@ def read_coordinates(path: Path, stream: BinaryIO, first: str, *, half: bool = F
 
 def read_matrix_input(path: Path, stream: BinaryIO, first: str) -> MatrixFile:
     """``row node, row dof, column node, column dof, value``; half or complete is found by pairs."""
+    notes = check_last_line(path, stream)
     node, direction, other, along, values = columns_of(path, stream, 1, 5, comma="," in first)
     rows, columns = coded(path, node, direction), coded(path, other, along)
     del node, direction, other, along
     digits = significant_digits(re.split(r"[,\s]+", first.strip())[-1:])
     kind = kind_of(path.stem)
-    found = between_labels(path, path.name, kind, rows, columns, values, "either", digits=digits)
+    found = between_labels(
+        path, path.name, kind, rows, columns, values, "either", lambda i: i + 1, digits=digits, notes=notes
+    )
     return MatrixFile(path, "Abaqus, matrix input text", (found,))
 
 

@@ -161,7 +161,11 @@ def read_mat(path: Path) -> MatrixFile:
         if name.startswith("__"):
             continue
         if issparse(value):
-            whole = value.tocoo()
+            try:
+                value.check_format(full_check=True)
+                whole = value.tocoo()
+            except BROKEN as error:
+                raise MatrixFileError(path, f"{name[:40]} is no sparse matrix: {error}: a damaged file") from error
             if whole.data.dtype.kind not in "fiu":
                 raise MatrixFileError(path, f"{name} holds {whole.data.dtype}: expected real numbers")
             matrices.append(_entries(path, name, whole.row, whole.col, whole.data.astype(float), whole.shape))

@@ -27,7 +27,7 @@ def decoded_labels(codes: Any) -> Any:
 
 
 def between_labels(
-    path: Path, name: str, kind: str, rows: Any, columns: Any, values: Any, rule: str, **about: Any
+    path: Path, name: str, kind: str, rows: Any, columns: Any, values: Any, rule: str, lines: Any = None, **about: Any
 ) -> FileMatrix:
     """A square matrix from coded row and column labels, on the union of both."""
     codes = np.union1d(rows, columns)
@@ -40,6 +40,7 @@ def between_labels(
         values,
         len(codes),
         rule,
+        lines,
         labels=decoded_labels(codes),
         **about,
     )

@@ -10,7 +10,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from squealbox.fe.readers.matrix import OTHER, MatrixFile, MatrixFileError, complete, kind_of
-from squealbox.fe.readers.numbers import check_index, columns_of, decoded, number, significant_digits
+from squealbox.fe.readers.numbers import check_index, check_last_line, columns_of, decoded, number, significant_digits
 
 FIELDS = ("real", "double", "integer", "complex", "pattern")
 SYMMETRIES = ("general", "symmetric", "skew-symmetric", "hermitian")
@@ -60,7 +60,6 @@ def read_market(path: Path, stream: BinaryIO) -> MatrixFile:
             np.concatenate([columns, rows]),
             np.concatenate([values, -values]),
         )
-    notes = ()
     if symmetry == "general" and layout == "coordinate" and rows.size:
         one = (rows >= columns).all() or (rows <= columns).all()
         if one and np.any(rows != columns) and sizes[0] == sizes[1]:
@@ -70,16 +69,22 @@ def read_market(path: Path, stream: BinaryIO) -> MatrixFile:
     kind = kind_of(name) if sizes[0] == sizes[1] else OTHER
     if kind == OTHER and sizes[0] == sizes[1]:
         kind = next((kind_of(mark) for mark in ("MASS", "STIF") if mark in name.upper()), OTHER)
-    found = complete(path, name, kind, rows, columns, values, size, rule, digits=digits, notes=notes)
+    found = complete(
+        path, name, kind, rows, columns, values, size, rule, lambda i: line + 1 + i, digits=digits, notes=()
+    )
     words_ = "MatrixMarket" + (", written by Ansys *EXPORT,MMF" if "ANSYS" in creator.upper() else "")
     return MatrixFile(path, words_, (found,))
 
 
 def _coordinates(path: Path, stream: BinaryIO, line: int, sizes: list[int], symmetry: str) -> Any:
+    place = stream.tell()
+    check_last_line(path, stream)
+    stream.seek(place)
     rows, columns, values = columns_of(path, stream, line, 3, comma=False, comment=b"%")
     if len(values) != sizes[2]:
         raise MatrixFileError(path, f"says {sizes[2]} entries and holds {len(values)}: the file was cut or damaged")
-    rows, columns = check_index(path, rows, sizes[0], path.stem), check_index(path, columns, sizes[1], path.stem)
+    rows = check_index(path, rows, sizes[0], path.stem, line)
+    columns = check_index(path, columns, sizes[1], path.stem, line)
     stream.seek(0)
     sample = [raw.decode("ascii", "replace").split() for raw in stream.readlines(20_000)[line - 1 :]]
     return rows, columns, values, significant_digits([words[-1] for words in sample if words])

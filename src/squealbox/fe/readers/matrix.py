@@ -71,7 +71,9 @@ def kind_of(name: str) -> str:
     return OTHER
 
 
-def _sparse(rows: Any, columns: Any, values: Any, shape: tuple[int, int], path: Path, name: str) -> Any:
+def _sparse(
+    rows: Any, columns: Any, values: Any, shape: tuple[int, int], path: Path, name: str, lines: Any = None
+) -> Any:
     from scipy.sparse import coo_array
 
     stored = len(values)
@@ -80,9 +82,9 @@ def _sparse(rows: Any, columns: Any, values: Any, shape: tuple[int, int], path: 
         order = np.lexsort((columns, rows))
         r, c = rows[order], columns[order]
         at = int(np.flatnonzero((r[1:] == r[:-1]) & (c[1:] == c[:-1]))[0])
-        raise MatrixFileError(
-            path, f"{name} holds the entry of row {r[at] + 1}, column {c[at] + 1} twice: expected each entry once"
-        )
+        line = None if lines is None else lines(int(max(order[at], order[at + 1])))
+        where = f"row {r[at] + 1}, column {c[at] + 1}"
+        raise MatrixFileError(path, f"{name} holds the entry of {where} twice: expected each entry once", line)
     return matrix
 
 
@@ -95,6 +97,7 @@ def complete(
     values: Any,
     size: int | tuple[int, int],
     rule: str,
+    lines: Any = None,
     **about: Any,
 ) -> FileMatrix:
     """The matrix of these entries (from 0), its other half added where the file holds one half.
@@ -109,9 +112,10 @@ def complete(
         raise MatrixFileError(path, f"{name} holds no entries: expected some")
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
-        raise MatrixFileError(path, f"{name} holds {values[bad[0]]} as its entry {bad[0] + 1}: expected finite numbers")
+        line = None if lines is None else lines(int(bad[0]))
+        raise MatrixFileError(path, f"{name} holds {values[bad[0]]}: expected finite numbers", line)
     stored = len(values)
-    matrix = _sparse(rows, columns, values, shape, path, name)
+    matrix = _sparse(rows, columns, values, shape, path, name, lines)
     if shape[0] != shape[1]:
         return FileMatrix(name, kind, matrix, "rectangular", stored, **about)
     twins, off, lonely = _pairs(matrix)
@@ -129,13 +133,17 @@ def complete(
         )
     elif off and rule == "either" and twins != off:
         i, j = lonely
+        at = int(np.flatnonzero((rows == i) & (columns == j))[0])
         raise MatrixFileError(
             path,
             f"{name} holds {twins // 2} pairs both ways and {off - twins} entries one way, such as row {i + 1}, column "
             f"{j + 1}: expected a whole matrix or one half of it",
+            None if lines is None else lines(at),
         )
     if words == "complete":
         words = _symmetry(matrix)
+    if kind == STIFFNESS:
+        about["notes"] = (*about.get("notes", ()), *_without_diagonal(matrix, about.get("labels")))
     found = FileMatrix(name, kind, matrix, words, stored, **about)
     if kind == MASS:
         check_mass(path, found)
@@ -172,6 +180,15 @@ def _symmetry(matrix: Any) -> str:
     if skew.max() == 0.0:
         return "skew-symmetric"
     return f"unsymmetric ({int(wrong.sum()) // 2} pairs differ, largest difference {apart.max():.3g})"
+
+
+def _without_diagonal(matrix: Any, labels: Any) -> tuple[str, ...]:
+    """A note where freedoms are coupled and have no stiffness of their own."""
+    lost = np.flatnonzero((matrix.diagonal() == 0.0) & (np.diff(matrix.indptr) > 0))
+    if not lost.size:
+        return ()
+    first = ", ".join(shown_label(labels, int(row)) for row in lost[:3])
+    return (f"{lost.size} freedoms are coupled without stiffness of their own ({first}): multipliers, or a cut file",)
 
 
 def shown_label(labels: Any, row: int) -> str:

@@ -9,13 +9,13 @@ Form 6 is one half of a symmetric matrix, 1 a square one, 2 and 9 rectangular. A
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 
 from squealbox.fe.readers.labels import between_labels, coded, decoded_labels
 from squealbox.fe.readers.matrix import OTHER, FileMatrix, MatrixFile, MatrixFileError, complete, kind_of
-from squealbox.fe.readers.numbers import number, significant_digits, text_lines
+from squealbox.fe.readers.numbers import check_last_line, number, significant_digits, text_lines
 
 
 @dataclass
@@ -28,12 +28,13 @@ class _Card:
     columns_said: int
     line: int
     column: tuple[int, int] | None = None
-    entries: list[tuple[int, int, int, int, complex]] = field(default_factory=list)
+    entries: list[tuple[int, int, int, int, complex, int]] = field(default_factory=list)
     words: list[str] = field(default_factory=list)
 
 
 def read_dmig(path: Path, stream: BinaryIO) -> MatrixFile:
     """Every DMIG of the file; other cards are passed over."""
+    ends = check_last_line(path, stream)
     cards: dict[str, _Card] = {}
     current: _Card | None = None
     wide = False
@@ -54,7 +55,7 @@ def read_dmig(path: Path, stream: BinaryIO) -> MatrixFile:
     if not cards:
         raise MatrixFileError(path, "holds no DMIG: expected matrices, which an OP4 file beside it may hold")
     found = tuple(_finished(path, card) for card in cards.values())
-    return MatrixFile(path, "Nastran DMIG punch", found, _digits_note(found))
+    return MatrixFile(path, "Nastran DMIG punch", found, (*_digits_note(found), *ends))
 
 
 def _digits_note(found: tuple[FileMatrix, ...]) -> tuple[str, ...]:
@@ -107,7 +108,7 @@ def _dmig(path: Path, at: int, text: str, wide: bool, cards: dict[str, _Card]) -
     if not 0 <= card.column[1] <= 6 and card.form not in (2, 9):
         raise MatrixFileError(path, f"component {card.column[1]} of grid {card.column[0]}: expected 0 to 6", at)
     rest = words[3:] if wide else words[4:]
-    _take(path, at, [word for word in rest], card)
+    _take(path, at, list(rest), card)
     return card
 
 
@@ -136,9 +137,25 @@ def _take(path: Path, at: int, words: list[str], card: _Card) -> None:
         if not card.complex and part[3]:
             raise MatrixFileError(path, f"{part[3]!r} behind a real value: expected nothing there", at)
         column = card.column or (0, 0)
-        card.entries.append((grid, component, column[0], column[1], value))
+        card.entries.append((grid, component, column[0], column[1], value, at))
         if len(card.words) < 20:
             card.words.append(part[2])
+
+
+def _in_order(path: Path, card: _Card, rows: Any, columns: Any, lines: Any) -> None:
+    """The code writes columns, and rows in each, in ascending order; a few lines out of order are damage."""
+    same = columns[1:] == columns[:-1]
+    wrong = np.flatnonzero(np.where(same, rows[1:] <= rows[:-1], columns[1:] < columns[:-1]))
+    if card.form == 6:
+        upper = rows <= columns
+        side = upper if upper.mean() > 0.5 else rows >= columns
+        wrong = np.concatenate([wrong, np.flatnonzero(~side) - 1])
+    if 0 < len(wrong) <= 3 < len(rows):
+        raise MatrixFileError(
+            path,
+            f"DMIG {card.name} has a row or column out of order: lines were moved or damaged",
+            int(lines[wrong[0] + 1]),
+        )
 
 
 def _finished(path: Path, card: _Card) -> FileMatrix:
@@ -147,6 +164,7 @@ def _finished(path: Path, card: _Card) -> FileMatrix:
     table = [np.array(column) for column in zip(*card.entries, strict=True)]
     card.entries = []
     rows, columns = coded(path, table[0], table[1]), coded(path, table[2], table[3])
+    _in_order(path, card, rows, columns, table[5])
     kind, digits = kind_of(card.name), significant_digits(card.words)
     if card.form in (2, 9):
         codes, places = np.unique(rows), np.unique(columns)
@@ -159,12 +177,15 @@ def _finished(path: Path, card: _Card) -> FileMatrix:
             table[4],
             (len(codes), max(len(places), 1)),
             "full",
+            lambda i: int(table[5][i]),
             labels=decoded_labels(codes),
             column_labels=decoded_labels(places),
             digits=digits,
         )
     rule = "half" if card.form == 6 else "full"
-    found = between_labels(path, card.name, kind, rows, columns, table[4], rule, digits=digits)
+    found = between_labels(
+        path, card.name, kind, rows, columns, table[4], rule, lambda i: int(table[5][i]), digits=digits
+    )
     short = card.columns_said - len(found.labels)
     if short > 0 and kind == "stiffness":
         raise MatrixFileError(

@@ -52,6 +52,25 @@ def decoded(path: Path, raw: bytes, line: int) -> str:
     return text.rstrip("\r\n")
 
 
+def check_last_line(path: Path, stream: BinaryIO) -> tuple[str, ...]:
+    """A note where the last line has no end; `MatrixFileError` where its number is shorter than those before it too."""
+    stream.seek(0, 2)
+    size = stream.tell()
+    stream.seek(max(size - 4000, 0))
+    tail = stream.read()
+    stream.seek(0)
+    if tail.endswith((b"\n", b"\r")) or not tail.strip():
+        return ()
+    words = [line.replace(b",", b" ").split() for line in tail.splitlines()[-6:]]
+    counts = [significant_digits([line[-1].decode("latin-1")]) or 0 for line in words if line]
+    if len(counts) > 1 and min(counts[1:-1] or counts[:1]) >= 9 and counts[-1] < min(counts[1:-1] or counts[:1]):
+        line = 1
+        while block := stream.read(BLOCK):
+            line += block.count(b"\n")
+        raise MatrixFileError(path, "ends within a number: the file was cut short", line)
+    return ("the last line has no end: the file may have been cut",)
+
+
 def columns_of(path: Path, stream: BinaryIO, line: int, width: int, comma: bool, comment: bytes = b"") -> list[Any]:
     """The rest of a file as `width` columns; the first width - 1 as whole numbers, the last as floats."""
     parts: list[list[Any]] = [[] for _ in range(width)]
@@ -116,10 +135,11 @@ def _slow(path: Path, block: list[bytes], line: int, width: int, comma: bool, co
     return np.array(rows, dtype=float).reshape(-1, width)
 
 
-def check_index(path: Path, index: Any, size: int | None, name: str) -> Any:
-    """Indices from 1 as indices from 0; `MatrixFileError` for one outside 1 to `size`."""
+def check_index(path: Path, index: Any, size: int | None, name: str, first: int | None = None) -> Any:
+    """Indices from 1 as indices from 0; `MatrixFileError` for one outside 1 to `size`; `first` is the line of the first."""
     most = MOST_FREEDOMS if size is None else size
     bad = np.flatnonzero((index < 1) | (index > most))
     if bad.size:
-        raise MatrixFileError(path, f"{name}: entry {bad[0] + 1} has the index {index[bad[0]]}: expected 1 to {most}")
+        line = None if first is None else first + int(bad[0])
+        raise MatrixFileError(path, f"{name}: the index {index[bad[0]]}: expected 1 to {most}", line)
     return index - 1
