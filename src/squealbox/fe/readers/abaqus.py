@@ -39,7 +39,6 @@ KINDS = {"STIFFNESS": STIFFNESS, "MASS": MASS, "VISCOUS DAMPING": DAMPING, "STRU
 
 def read_coordinates(path: Path, stream: BinaryIO, first: str, *, half: bool = False, code: str = "Abaqus") -> Any:
     """``row column value`` from 1 without a header; `half` when the format stores one half only."""
-    ends = check_last_line(path, stream)
     rows, columns, values = columns_of(path, stream, 1, 3, comma=False)
     name = path.name if code == "Abaqus" else {".sti": "K", ".mas": "M"}.get(path.suffix.lower(), path.name)
     rows, columns = check_index(path, rows, None, name, 1), check_index(path, columns, None, name, 1)
@@ -56,7 +55,7 @@ def read_coordinates(path: Path, stream: BinaryIO, first: str, *, half: bool = F
         raise MatrixFileError(
             path, f"row {empty[0] + 1} of {size} has no entry ({empty.size} such): expected stiffness in every row"
         )
-    notes = (*ends, *((f"{empty.size} of {size} rows have no entry",) if empty.size else ()))
+    notes = (f"{empty.size} of {size} rows have no entry",) if empty.size else ()
     digits = significant_digits(first.split()[-1:])
     matrix = complete(
         path,
@@ -77,15 +76,13 @@ def read_coordinates(path: Path, stream: BinaryIO, first: str, *, half: bool = F
 
 def read_matrix_input(path: Path, stream: BinaryIO, first: str) -> MatrixFile:
     """``row node, row dof, column node, column dof, value``; half or complete is found by pairs."""
-    notes = check_last_line(path, stream)
     node, direction, other, along, values = columns_of(path, stream, 1, 5, comma="," in first)
     rows, columns = coded(path, node, direction), coded(path, other, along)
     del node, direction, other, along
     digits = significant_digits(re.split(r"[,\s]+", first.strip())[-1:])
     kind = kind_of(path.stem)
     found = between_labels(
-        path, path.name, kind, rows, columns, values, "either", lambda i: i + 1, digits=digits, notes=notes
-    )
+        path, path.name, kind, rows, columns, values, "either", lambda i: i + 1, digits=digits)
     return MatrixFile(path, "Abaqus, matrix input text", (found,))
 
 

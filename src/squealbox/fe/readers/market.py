@@ -10,7 +10,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from squealbox.fe.readers.matrix import OTHER, MatrixFile, MatrixFileError, complete, kind_of
-from squealbox.fe.readers.numbers import check_index, check_last_line, columns_of, decoded, number, significant_digits
+from squealbox.fe.readers.numbers import check_index, columns_of, decoded, number, significant_digits
 
 FIELDS = ("real", "double", "integer", "complex", "pattern")
 SYMMETRIES = ("general", "symmetric", "skew-symmetric", "hermitian")
@@ -77,9 +77,6 @@ def read_market(path: Path, stream: BinaryIO) -> MatrixFile:
 
 
 def _coordinates(path: Path, stream: BinaryIO, line: int, sizes: list[int], symmetry: str) -> Any:
-    place = stream.tell()
-    check_last_line(path, stream)
-    stream.seek(place)
     rows, columns, values = columns_of(path, stream, line, 3, comma=False, comment=b"%")
     if len(values) != sizes[2]:
         raise MatrixFileError(path, f"says {sizes[2]} entries and holds {len(values)}: the file was cut or damaged")

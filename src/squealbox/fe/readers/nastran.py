@@ -15,7 +15,7 @@ import numpy as np
 
 from squealbox.fe.readers.labels import between_labels, coded, decoded_labels
 from squealbox.fe.readers.matrix import OTHER, FileMatrix, MatrixFile, MatrixFileError, complete, kind_of
-from squealbox.fe.readers.numbers import check_last_line, number, significant_digits, text_lines
+from squealbox.fe.readers.numbers import number, significant_digits, text_lines
 
 
 @dataclass
@@ -34,7 +34,6 @@ class _Card:
 
 def read_dmig(path: Path, stream: BinaryIO) -> MatrixFile:
     """Every DMIG of the file; other cards are passed over."""
-    ends = check_last_line(path, stream)
     cards: dict[str, _Card] = {}
     current: _Card | None = None
     wide = False
@@ -55,7 +54,7 @@ def read_dmig(path: Path, stream: BinaryIO) -> MatrixFile:
     if not cards:
         raise MatrixFileError(path, "holds no DMIG: expected matrices, which an OP4 file beside it may hold")
     found = tuple(_finished(path, card) for card in cards.values())
-    return MatrixFile(path, "Nastran DMIG punch", found, (*_digits_note(found), *ends))
+    return MatrixFile(path, "Nastran DMIG punch", found, _digits_note(found))
 
 
 def _digits_note(found: tuple[FileMatrix, ...]) -> tuple[str, ...]:

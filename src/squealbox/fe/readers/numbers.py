@@ -22,7 +22,10 @@ def number(word: str) -> float:
     if not _NUMBER.fullmatch(word):
         raise ValueError(f"{word[:40]!r} is not a number")
     word = word.replace("D", "E").replace("d", "e")
-    return float(word if "e" in word.lower() else _NO_LETTER.sub(r"E\1", word))
+    value = float(word if "e" in word.lower() else _NO_LETTER.sub(r"E\1", word))
+    if abs(value) == float("inf"):
+        raise ValueError(f"{word[:40]!r} is no finite number")
+    return value
 
 
 def significant_digits(words: Any) -> int | None:
@@ -129,7 +132,7 @@ def _slow(path: Path, block: list[bytes], line: int, width: int, comma: bool, co
             row = [number(word) for word in words]
         except ValueError as error:
             raise MatrixFileError(path, f"{error}: expected {width} numbers", at) from error
-        if any(value != round(value) or abs(value) > 2**53 for value in row[:-1] if np.isfinite(value)):
+        if any(value != round(value) or abs(value) > 2**53 for value in row[:-1]):
             raise MatrixFileError(path, f"{text.strip()[:60]!r}: expected whole numbers before the last", at)
         rows.append(row)
     return np.array(rows, dtype=float).reshape(-1, width)

@@ -2,6 +2,7 @@
 
 import os
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from squealbox.fe.readers import abaqus, ansys, arrays, market, nastran, op4, optistruct
 from squealbox.fe.readers.matrix import MatrixFile, MatrixFileError, with_labels
-from squealbox.fe.readers.numbers import LARGEST_FILE, text_lines
+from squealbox.fe.readers.numbers import LARGEST_FILE, check_last_line, text_lines
 
 HEAD = 20_000
 KNOWN = "Abaqus .mtx, Nastran .pch or .op4, Ansys .full, MatrixMarket, OptiStruct .full.mat, CalculiX .sti, .mat, .npz"
@@ -28,7 +29,13 @@ def open_matrices(path: str | os.PathLike[str]) -> MatrixFile:
         raise MatrixFileError(path, f"cannot be read: {error.strerror or error}") from error
     if not head.strip():
         raise MatrixFileError(path, "is empty: expected a matrix")
-    return _binary(path, head) or _text(path, head)
+    found = _binary(path, head)
+    if found is not None:
+        return found
+    with path.open("rb") as stream:
+        ends = check_last_line(path, stream)
+    found = _text(path, head)
+    return replace(found, notes=(*found.notes, *ends)) if ends else found
 
 
 def _binary(path: Path, head: bytes) -> MatrixFile | None:

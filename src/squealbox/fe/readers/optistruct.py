@@ -118,7 +118,7 @@ def _labels(path: Path, block: _Block) -> Any:
     turned = block.rows == 2 and block.columns != 2
     for row, column, value in block.entries:
         i, j = (column, row) if turned else (row, column)
-        if j > 2 or value != round(value):
+        if j > 2 or value != round(value) or abs(value) > 2**45:
             raise MatrixFileError(
                 path, "DOFS is not a table of node and direction: expected whole numbers in two columns"
             )
