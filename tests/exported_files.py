@@ -13,9 +13,9 @@ import numpy as np
 LABELS = [(7, 1), (11, 1), (30, 1), (30, 2)]
 K = np.array([[3.0, -1.0, 0, 0], [-1, 2, -1, 0], [0, -1, 2, 0.5], [0, 0, 0.5, 4]]) * 1e6
 M = np.diag([1.0, 2.0, 3.0, 3.0])
-FREQUENCIES = np.sqrt(np.sort(np.linalg.eigvalsh(np.diag(M.diagonal() ** -0.5) @ K @ np.diag(M.diagonal() ** -0.5)))) / (
-    2 * np.pi
-)
+FREQUENCIES = np.sqrt(
+    np.sort(np.linalg.eigvalsh(np.diag(M.diagonal() ** -0.5) @ K @ np.diag(M.diagonal() ** -0.5)))
+) / (2 * np.pi)
 
 
 def lower(a):

@@ -160,7 +160,10 @@ def test_memory_is_at_most_three_times_the_matrix(tmp_path, monkeypatch):
     monkeypatch.setattr("squealbox.fe.readers.numbers.BLOCK", 20_000)
     size = 12_000
     text = "".join(
-        f"{i + 1} {j + 1} {9.0 if i == j else -1.0:.15e}\n" for i in range(size) for j in (i - 1, i, i + 1) if 0 <= j < size
+        f"{i + 1} {j + 1} {9.0 if i == j else -1.0:.15e}\n"
+        for i in range(size)
+        for j in (i - 1, i, i + 1)
+        if 0 <= j < size
     )
     made.write(tmp_path, "a_STIF1.mtx", text)
     open_matrices(tmp_path / "a_STIF1.mtx")  # what is imported on the way

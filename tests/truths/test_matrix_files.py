@@ -83,7 +83,9 @@ def test_negative_nodes_are_internal_and_sorted_apart(tmp_path):
     labels = [(1, 1), (2, 1), (-1, 1), (-1, 2)]
     mass = made.M.copy()
     mass[2:, 2:] = 0.0
-    paths = both(tmp_path, "i_MASS1.mtx", "i_STIF1.mtx", made.matrix_input(mass, labels), made.matrix_input(made.K, labels))
+    paths = both(
+        tmp_path, "i_MASS1.mtx", "i_STIF1.mtx", made.matrix_input(mass, labels), made.matrix_input(made.K, labels)
+    )
     found = read_matrices(*paths)
     assert found.labels.tolist() == [[1, 1], [2, 1], [-1, 1], [-1, 2]]
     assert found.internal.tolist() == [False, False, True, True]
@@ -106,7 +108,9 @@ def test_unsymmetric_is_kept_and_never_mirrored(tmp_path):
 def test_half_of_the_pairs_is_neither_half_nor_whole(tmp_path):
     lines = made.coordinate(made.K).splitlines(keepends=True)
     path = made.write(tmp_path, "h_STIF1.mtx", "".join(line for line in lines if not line.startswith("2 1 ")))
-    with pytest.raises(MatrixFileError, match=r"h_STIF1.mtx, line 2: .* 2 pairs both ways and 1 entries one way, such as"):
+    with pytest.raises(
+        MatrixFileError, match=r"h_STIF1.mtx, line 2: .* 2 pairs both ways and 1 entries one way, such as"
+    ):
         open_matrices(path)
 
 
@@ -187,7 +191,9 @@ def test_units_turn_displacements_and_rotations_alike(tmp_path):
     length = np.array([1e-3, 1.0])  # one mm of displacement, one rad
     k_mm = k_si * np.outer(length, length) * 1e3  # energy in mJ = N mm
     m_mm = m_si * np.outer(length, length) * 1e3
-    paths = both(tmp_path, "b_MASS1.mtx", "b_STIF1.mtx", made.matrix_input(m_mm, labels), made.matrix_input(k_mm, labels))
+    paths = both(
+        tmp_path, "b_MASS1.mtx", "b_STIF1.mtx", made.matrix_input(m_mm, labels), made.matrix_input(k_mm, labels)
+    )
     found = read_structure(mass=paths[0], stiffness=paths[1], units="mm-t-s")
     np.testing.assert_allclose(found.K.toarray(), k_si)
     np.testing.assert_allclose(found.M.toarray(), m_si)

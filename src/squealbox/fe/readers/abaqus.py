@@ -19,6 +19,7 @@ from squealbox.fe.readers.matrix import (
     OTHER,
     STIFFNESS,
     STRUCTURAL,
+    Entries,
     FileMatrix,
     MatrixFile,
     MatrixFileError,
@@ -57,16 +58,15 @@ def read_coordinates(path: Path, stream: BinaryIO, first: str, *, half: bool = F
         )
     notes = (f"{empty.size} of {size} rows have no entry",) if empty.size else ()
     digits = significant_digits(first.split()[-1:])
+    entries = Entries(rows, columns, values, lambda i: i + 1)
+    del rows, columns, values
     matrix = complete(
         path,
         name,
         kind,
-        rows,
-        columns,
-        values,
+        entries,
         size,
         "half" if half else "either",
-        lambda i: i + 1,
         digits=digits,
         notes=notes,
     )
@@ -81,8 +81,7 @@ def read_matrix_input(path: Path, stream: BinaryIO, first: str) -> MatrixFile:
     del node, direction, other, along
     digits = significant_digits(re.split(r"[,\s]+", first.strip())[-1:])
     kind = kind_of(path.stem)
-    found = between_labels(
-        path, path.name, kind, rows, columns, values, "either", lambda i: i + 1, digits=digits)
+    found = between_labels(path, path.name, kind, rows, columns, values, "either", lambda i: i + 1, digits=digits)
     return MatrixFile(path, "Abaqus, matrix input text", (found,))
 
 
@@ -202,4 +201,6 @@ class _Substructure:
             rows, columns = np.tril_indices(size)
         values = np.array(numbers)
         rule = "full" if whole else "half"
-        return complete(self.path, name, KINDS[name], rows, columns, values, size, rule, labels=labels, digits=14)
+        return complete(
+            self.path, name, KINDS[name], Entries(rows, columns, values), size, rule, labels=labels, digits=14
+        )

@@ -15,6 +15,7 @@ from squealbox.fe.readers.matrix import (
     MASS,
     MOST_FREEDOMS,
     STIFFNESS,
+    Entries,
     FileMatrix,
     MatrixFile,
     MatrixFileError,
@@ -148,7 +149,9 @@ def _matrix(
         raise MatrixFileError(records.path, f"{name} has {count} terms, the header says {terms}: a damaged file")
     r, c, v = (np.concatenate(parts) for parts in (rows, columns, values))
     free = ~(constrained[r] | constrained[c])
-    return complete(records.path, name, kind, r[free], c[free], v[free], size, "half", labels=labels, digits=16)
+    return complete(
+        records.path, name, kind, Entries(r[free], c[free], v[free]), size, "half", labels=labels, digits=16
+    )
 
 
 def is_full(raw: bytes) -> bool:

@@ -14,6 +14,7 @@ import numpy as np
 from squealbox.fe.readers.matrix import (
     MOST_FREEDOMS,
     OTHER,
+    Entries,
     FileMatrix,
     MatrixFile,
     MatrixFileError,
@@ -128,7 +129,7 @@ def _entries(path: Path, name: str, rows: Any, columns: Any, data: Any, shape: A
             path, f"{name} holds one triangle only: expected both, because nothing in the file says it is symmetric"
         )
     size = int(shape[0]) if square else (int(shape[0]), int(shape[1]))
-    return complete(path, name, kind, rows, columns, data, size, "full", digits=16)
+    return complete(path, name, kind, Entries(rows, columns, data), size, "full", digits=16)
 
 
 def _matrix(path: Path, name: str, array: Any) -> FileMatrix:

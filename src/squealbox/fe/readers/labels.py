@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.fe.readers.matrix import FileMatrix, MatrixFileError, complete
+from squealbox.fe.readers.matrix import Entries, FileMatrix, MatrixFileError, complete
 
 
 def coded(path: Path, nodes: Any, directions: Any) -> Any:
@@ -35,12 +35,9 @@ def between_labels(
         path,
         name,
         kind,
-        np.searchsorted(codes, rows).astype(np.int32),
-        np.searchsorted(codes, columns).astype(np.int32),
-        values,
+        Entries(*(np.searchsorted(codes, part).astype(np.int32) for part in (rows, columns)), values, lines),
         len(codes),
         rule,
-        lines,
         labels=decoded_labels(codes),
         **about,
     )

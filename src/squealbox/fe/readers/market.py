@@ -9,7 +9,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from squealbox.fe.readers.matrix import OTHER, MatrixFile, MatrixFileError, complete, kind_of
+from squealbox.fe.readers.matrix import OTHER, Entries, MatrixFile, MatrixFileError, complete, kind_of
 from squealbox.fe.readers.numbers import check_index, columns_of, decoded, number, significant_digits
 
 FIELDS = ("real", "double", "integer", "complex", "pattern")
@@ -69,9 +69,9 @@ def read_market(path: Path, stream: BinaryIO) -> MatrixFile:
     kind = kind_of(name) if sizes[0] == sizes[1] else OTHER
     if kind == OTHER and sizes[0] == sizes[1]:
         kind = next((kind_of(mark) for mark in ("MASS", "STIF") if mark in name.upper()), OTHER)
-    found = complete(
-        path, name, kind, rows, columns, values, size, rule, lambda i: line + 1 + i, digits=digits, notes=()
-    )
+    entries = Entries(rows, columns, values, lambda i: line + 1 + i)
+    del rows, columns, values
+    found = complete(path, name, kind, entries, size, rule, digits=digits)
     words_ = "MatrixMarket" + (", written by Ansys *EXPORT,MMF" if "ANSYS" in creator.upper() else "")
     return MatrixFile(path, words_, (found,))
 

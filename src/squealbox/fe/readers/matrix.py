@@ -71,18 +71,38 @@ def kind_of(name: str) -> str:
     return OTHER
 
 
-def _sparse(
-    rows: Any, columns: Any, values: Any, shape: tuple[int, int], path: Path, name: str, lines: Any = None
-) -> Any:
+@dataclass
+class Entries:
+    """Entries of a matrix, indices from 0; `lines` tells the line of the i-th one where the file is a text.
+
+    They are let go as soon as the matrix stands, so a caller that keeps none of its own holds each entry once.
+    """
+
+    rows: Any
+    columns: Any
+    values: Any
+    lines: Any = None
+
+    def line(self, index: int) -> int | None:
+        """The line of an entry."""
+        return None if self.lines is None else int(self.lines(index))
+
+    def free(self) -> None:
+        """Let the entries go."""
+        self.rows = self.columns = self.values = np.zeros(0)
+
+
+def _sparse(entries: Entries, shape: tuple[int, int], path: Path, name: str) -> Any:
     from scipy.sparse import coo_array
 
+    rows, columns, values = entries.rows, entries.columns, entries.values
     stored = len(values)
     matrix = coo_array((values, (rows, columns)), shape=shape).tocsr()
     if matrix.nnz != stored:
         order = np.lexsort((columns, rows))
         r, c = rows[order], columns[order]
         at = int(np.flatnonzero((r[1:] == r[:-1]) & (c[1:] == c[:-1]))[0])
-        line = None if lines is None else lines(int(max(order[at], order[at + 1])))
+        line = entries.line(int(max(order[at], order[at + 1])))
         where = f"row {r[at] + 1}, column {c[at] + 1}"
         raise MatrixFileError(path, f"{name} holds the entry of {where} twice: expected each entry once", line)
     return matrix
@@ -92,12 +112,9 @@ def complete(
     path: Path,
     name: str,
     kind: str,
-    rows: Any,
-    columns: Any,
-    values: Any,
+    entries: Entries,
     size: int | tuple[int, int],
     rule: str,
-    lines: Any = None,
     **about: Any,
 ) -> FileMatrix:
     """The matrix of these entries (from 0), its other half added where the file holds one half.
@@ -108,17 +125,19 @@ def complete(
     shape = (size, size) if isinstance(size, int) else size
     if max(shape) > MOST_FREEDOMS:
         raise MatrixFileError(path, f"{name} has {max(shape)} rows or columns: expected at most {MOST_FREEDOMS}")
-    if len(values) == 0:
+    stored = len(entries.values)
+    if stored == 0:
         raise MatrixFileError(path, f"{name} holds no entries: expected some")
-    bad = np.flatnonzero(~np.isfinite(values))
+    bad = np.flatnonzero(~np.isfinite(entries.values))
     if bad.size:
-        line = None if lines is None else lines(int(bad[0]))
-        raise MatrixFileError(path, f"{name} holds {values[bad[0]]}: expected finite numbers", line)
-    stored = len(values)
-    matrix = _sparse(rows, columns, values, shape, path, name, lines)
+        value, line = entries.values[bad[0]], entries.line(int(bad[0]))
+        raise MatrixFileError(path, f"{name} holds {value}: expected finite numbers", line)
+    matrix = _sparse(entries, shape, path, name)
     if shape[0] != shape[1]:
         return FileMatrix(name, kind, matrix, "rectangular", stored, **about)
     twins, off, lonely = _pairs(matrix)
+    if rule != "either" or twins in (0, off):
+        entries.free()
     words = "diagonal" if off == 0 else "complete"
     if off and rule != "full" and twins == 0:
         from scipy.sparse import diags_array
@@ -133,12 +152,12 @@ def complete(
         )
     elif off and rule == "either" and twins != off:
         i, j = lonely
-        at = int(np.flatnonzero((rows == i) & (columns == j))[0])
+        at = int(np.flatnonzero((entries.rows == i) & (entries.columns == j))[0])
         raise MatrixFileError(
             path,
             f"{name} holds {twins // 2} pairs both ways and {off - twins} entries one way, such as row {i + 1}, column "
             f"{j + 1}: expected a whole matrix or one half of it",
-            None if lines is None else lines(at),
+            entries.line(at),
         )
     if words == "complete":
         words = _symmetry(matrix)
@@ -157,6 +176,10 @@ def _pairs(matrix: Any) -> tuple[int, int, tuple[int, int]]:
     pattern = csr_array((np.ones(matrix.nnz, dtype=np.int8), matrix.indices, matrix.indptr), shape=matrix.shape)
     on = int(np.count_nonzero(pattern.diagonal()))
     off = pattern.nnz - on
+    turned = pattern.T.tocsr()
+    if np.array_equal(turned.indptr, pattern.indptr) and np.array_equal(turned.indices, pattern.indices):
+        return off, off, (0, 0)
+    del turned
     both = pattern.multiply(pattern.T).tocsr()
     twins = both.nnz - on
     if twins in (0, off):
@@ -168,7 +191,11 @@ def _pairs(matrix: Any) -> tuple[int, int, tuple[int, int]]:
 
 def _symmetry(matrix: Any) -> str:
     """Symmetric to the digits of a file (1e-9 of the largest entry of its row and column), or how far it is from that."""
-    apart = abs(matrix - matrix.T).tocsr()
+    turned = matrix.T.tocsr()
+    if np.array_equal(turned.indices, matrix.indices) and np.array_equal(turned.data, matrix.data):
+        return "symmetric, both halves"
+    apart = abs(matrix - turned).tocsr()
+    del turned
     if apart.nnz == 0 or apart.max() == 0.0:
         return "symmetric, both halves"
     size = np.sqrt(np.maximum(abs(matrix).max(axis=1).toarray().ravel(), 1e-300))

@@ -14,7 +14,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from squealbox.fe.readers.labels import between_labels, coded, decoded_labels
-from squealbox.fe.readers.matrix import OTHER, FileMatrix, MatrixFile, MatrixFileError, complete, kind_of
+from squealbox.fe.readers.matrix import OTHER, Entries, FileMatrix, MatrixFile, MatrixFileError, complete, kind_of
 from squealbox.fe.readers.numbers import number, significant_digits, text_lines
 
 
@@ -171,12 +171,14 @@ def _finished(path: Path, card: _Card) -> FileMatrix:
             path,
             card.name,
             OTHER,
-            np.searchsorted(codes, rows),
-            np.searchsorted(places, columns),
-            table[4],
+            Entries(
+                np.searchsorted(codes, rows),
+                np.searchsorted(places, columns),
+                table[4],
+                lambda i: int(table[5][i]),
+            ),
             (len(codes), max(len(places), 1)),
             "full",
-            lambda i: int(table[5][i]),
             labels=decoded_labels(codes),
             column_labels=decoded_labels(places),
             digits=digits,

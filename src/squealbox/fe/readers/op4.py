@@ -18,6 +18,7 @@ import numpy as np
 from squealbox.fe.readers.matrix import (
     MOST_FREEDOMS,
     OTHER,
+    Entries,
     FileMatrix,
     MatrixFile,
     MatrixFileError,
@@ -84,7 +85,7 @@ class _Columns:
 
             return FileMatrix(self.name, kind, csr_array((self.rows, self.columns)), "empty", 0, digits=self.digits)
         found = complete(
-            self.path, self.name, kind, rows, columns, values, size, "full", digits=self.digits, notes=notes
+            self.path, self.name, kind, Entries(rows, columns, values), size, "full", digits=self.digits, notes=notes
         )
         if square and self.form == 6 and found.symmetry.startswith("unsymmetric"):
             one = (rows >= columns).all() or (rows <= columns).all()
@@ -92,7 +93,9 @@ class _Columns:
                 raise MatrixFileError(
                     self.path, f"{self.name} says form 6, symmetric, and is {found.symmetry}: a damaged file"
                 )
-            found = complete(self.path, self.name, kind, rows, columns, values, size, "half", digits=self.digits)
+            found = complete(
+                self.path, self.name, kind, Entries(rows, columns, values), size, "half", digits=self.digits
+            )
         return found
 
 

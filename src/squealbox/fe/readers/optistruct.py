@@ -19,6 +19,7 @@ from squealbox.fe.readers.matrix import (
     MASS,
     MOST_FREEDOMS,
     STIFFNESS,
+    Entries,
     FileMatrix,
     MatrixFile,
     MatrixFileError,
@@ -134,7 +135,12 @@ def _matrix(path: Path, block: _Block, labels: Any) -> FileMatrix:
             path, f"{block.name} has {block.rows} rows and {block.columns} columns: expected a square one"
         )
     found = complete(
-        path, block.name, NAMES[block.name], rows[keep] - 1, columns[keep] - 1, values[keep], block.rows, "either"
+        path,
+        block.name,
+        NAMES[block.name],
+        Entries(rows[keep] - 1, columns[keep] - 1, values[keep]),
+        block.rows,
+        "either",
     )
     if labels is None:
         return found
