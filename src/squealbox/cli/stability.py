@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, read, readable
+from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, number, read, readable
 from squealbox.cli.progress import Progress
-from squealbox.cli.running import ComputationFailed
+from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.stability import (
     ComplexModes,
@@ -25,7 +25,15 @@ if TYPE_CHECKING:
     from squealbox.files.analyses import Axis
 
 
-def modes(file: Path, *, changes: Changes = (), allow_code: AllowCode = False, out: Path | None = None) -> None:
+def modes(
+    file: Path,
+    *,
+    changes: Changes = (),
+    allow_code: AllowCode = False,
+    band: Ends = None,
+    certify: bool = False,
+    out: Path | None = None,
+) -> None:
     """Is steady sliding stable? Complex eigenvalues: frequency, growth rate and damping of each mode.
 
     Parameters
@@ -36,11 +44,20 @@ def modes(file: Path, *, changes: Changes = (), allow_code: AllowCode = False, o
         other values for this run: --set friction.static=0.4 load="2 kN"
     allow_code
         run the Python file of a friction law that the design file names
+    band
+        of a finite-element brake: lowest and highest frequency, with or without a unit: 500 10kHz
+    certify
+        of a finite-element brake: prove by counting that no growing mode of the band is missing
     out
         folder for the table, a figure of the eigenvalues and one of what feeds and damps the worst mode
     """
     found = read(file, changes, allow_code)
     time = found.modes.time if found.modes else 0.0
+    if found.design.system().is_sparse:
+        _modes_in_band(found, time, band, certify, out)
+        return
+    if band is not None or certify:
+        raise UsageError("--band and --certify: for finite-element brakes; of this one all modes are shown")
     spectrum = complex_modes(found.design, time)
     if not spectrum.outcome.ok:
         raise ComputationFailed(spectrum.outcome)
@@ -50,6 +67,30 @@ def modes(file: Path, *, changes: Changes = (), allow_code: AllowCode = False, o
     if out is not None:
         folder(out)
         print(written(*_mode_files(spectrum, found, time, out)))
+
+
+def _modes_in_band(found: "DesignFile", time: float, band: Ends, certify: bool, out: Path | None) -> None:
+    """The modes of a finite-element brake in its band, each with an error bar."""
+    given = None if found.modes is None else found.modes.band
+    if band is not None:
+        low, high = (number(text, "Hz", f"--band {text}") for text in band)
+    elif given is not None and np.shape(given) == (2,):
+        low, high = (float(value) for value in given)
+    else:
+        raise UsageError('which band? give --band 500 10kHz, or band = ["500 Hz", "10 kHz"] under [modes]')
+    if not 0.0 < low < high:
+        raise UsageError(f"the band from {low:g} to {high:g} Hz: expected 0 < lowest < highest")
+    sure = certify or (found.modes is not None and found.modes.certify)
+    with Progress("looking for the modes"):
+        spectrum = complex_modes(found.design, time, band=(low, high), certify=sure)
+    if not spectrum.outcome.ok:
+        raise ComputationFailed(spectrum.outcome)
+    print(f"{found.design.title}, {found.path}\n{spectrum.summary()}")
+    if out is not None:
+        folder(out)
+        half = spectrum.eigenvalues.shape[-1] // 2
+        columns = _mode_columns(spectrum) | {"error [1/s]": spectrum.error[:half]}  # type: ignore[attr-defined]
+        print(written(spectrum.save(out / "modes.nc"), write_csv(out / "modes.csv", columns)))
 
 
 def onset(

@@ -25,6 +25,8 @@ class Modes(DataSheet):
     """[modes]: complex eigenvalues of steady sliding."""
 
     time: float = parameter("s", default=0.0, meaning="instant at which schedules are taken")
+    band: Vector = parameter("Hz", 0.0, default=None, optional=True, meaning="of a finite-element brake: from, to")
+    certify: bool = False  # count the growing modes of a finite-element brake by the winding number too
 
 
 class Simulate(DataSheet):

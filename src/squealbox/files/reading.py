@@ -10,6 +10,7 @@ import numpy as np
 
 from squealbox.designs import DESIGNS, Design
 from squealbox.files import analyses
+from squealbox.files.assembled import ASSEMBLED, read_assembled
 from squealbox.files.document import Document, document_of, open_document
 from squealbox.files.mechanism import OwnMechanism
 from squealbox.files.numbers import WRONG, read_choice, wrong
@@ -101,12 +102,14 @@ def design_of(document: Document, tables: Mapping[str, Any], beside: tuple[str, 
 
 def _design(document: Document, tables: Mapping[str, Any], beside: tuple[str, ...] = ()) -> Design | None:
     if "brake" not in tables:
-        document.problem((), f"the key 'brake' is missing, expected {known_names('', list(BRAKES))}")
+        document.problem((), f"the key 'brake' is missing, expected {known_names('', [*BRAKES, ASSEMBLED])}")
         return None
+    rest = {name: value for name, value in tables.items() if name != "brake"}
+    if tables["brake"] == ASSEMBLED:
+        return read_assembled(document, rest, (*SECTIONS, STUDY, *beside))
     kind = read_choice(document, tables["brake"], BRAKES, ("brake",))
     if kind is WRONG:
         return None
-    rest = {name: value for name, value in tables.items() if name != "brake"}
     design: Design | None = read_sheet(document, kind, rest, (), beside=(*SECTIONS, STUDY, *beside))
     if design is None:
         return None
