@@ -114,17 +114,15 @@ BAD = {
     "another size": ("K.npy", _saved(np.eye(3)), "a matrix of 2 rows and columns"),
     "mtx, empty": ("K.mtx", b"", "is not a Matrix Market .mtx file"),
     "mtx, text": ("K.mtx", b"hello\n", "is not a Matrix Market .mtx file"),
-    "mtx, no numbers": ("K.mtx", HEAD + b"2 2 4\n", "says 4 entries and holds 0"),
+    "mtx, no numbers": ("K.mtx", HEAD + b"2 2 4\n", "is not a Matrix Market .mtx file"),
     "mtx, huge": ("K.mtx", HEAD + b"100000000 100000000 1\n1 1 1.0\n", "expected one or two axes"),
-    "mtx, more entries than bytes": ("K.mtx", HEAD + b"2 2 99999999999\n1 1 1.0\n", "holds 1"),
-    "mtx, entry outside": ("K.mtx", HEAD + b"2 2 1\n3 3 1.0\n", "line 3: the index 3: expected 1 to 2"),
-    "mtx, not a number": ("K.mtx", HEAD + b"2 2 1\n1 1 x\n", "line 3: 'x' is not a number"),
-    "mtx, nan": ("K.mtx", HEAD + b"2 2 1\n1 1 nan\n", "line 3: 'nan' is not a number"),
-    "mtx, complex": (
-        "K.mtx", HEAD.replace(b"real", b"complex") + b"2 2 1\n1 1 1 1\n", "line 1: holds a complex general matrix"
-    ),
+    "mtx, more entries than bytes": ("K.mtx", HEAD + b"2 2 99999999999\n1 1 1.0\n", "is not as long as that"),
+    "mtx, entry outside": ("K.mtx", HEAD + b"2 2 1\n3 3 1.0\n", "is not a Matrix Market .mtx file"),
+    "mtx, not a number": ("K.mtx", HEAD + b"2 2 1\n1 1 x\n", "is not a Matrix Market .mtx file"),
+    "mtx, nan": ("K.mtx", HEAD + b"2 2 1\n1 1 nan\n", "entry [0, 0] is nan"),
+    "mtx, complex": ("K.mtx", HEAD.replace(b"real", b"complex") + b"2 2 1\n1 1 1 1\n", "expected real ones"),
     "mtx, a vector": (
-        "K.mtx", b"%%MatrixMarket vector coordinate real general\n2 1\n1 1\n", "line 1: expected %%MatrixMarket"
+        "K.mtx", b"%%MatrixMarket vector coordinate real general\n2 1\n1 1\n", "is not a Matrix Market .mtx file"
     ),
     "csv, empty": ("K.csv", b"", "expected one or two axes"),
     "csv, ragged": ("K.csv", b"1,2\n3\n", "has rows of different lengths"),
@@ -181,46 +179,3 @@ def test_a_zip_bomb_is_not_opened(tmp_path):
         archive.writestr("K.npy", bytes(10_000_000))
     with pytest.raises(DesignFileError, match=r"is not a NumPy \.npy file"):
         read(tmp_path, '"K.npy"')
-
-
-K_MARKET = "%%MatrixMarket matrix coordinate real {}\n2 2 {}\n"
-WHOLE = ["2.0D+06", "2.0+6", "2e6", "2.0d06"]
-CUT = {
-    K_MARKET.format("symmetric", 3) + "1 1 2,5e6\n2 1 -1e6\n2 2 2e6\n": "line 3: .*'2,5e6'",
-    K_MARKET.format("symmetric", 4) + "1 1 2e6\n2 1 -1e6\n1 2 -1e6\n2 2 2e6\n": "pairs occur both ways",
-    K_MARKET.format("general", 3) + "1 1 2e6\n2 1 -1e6\n2 2 2e6\n": "one triangle only",
-    "%%MatrixMarket matrix coordinate pattern general\n2 2 2\n1 1\n2 2\n": "pattern",
-}
-
-
-def own_brake(folder, stiffness, more=""):
-    (folder / "K.mtx").write_text(stiffness)
-    (folder / "own.toml").write_text(f'brake = "own"\nM = [[1, 0], [0, 1]]\nK = {{ file = "K.mtx"{more} }}\n')
-    return folder / "own.toml"
-
-
-@pytest.mark.parametrize("word", WHOLE)
-def test_a_number_of_fortran_is_read_whole(tmp_path, word):
-    text = K_MARKET.format("symmetric", 3) + f"1 1 {word}\n2 1 -1.0D+06\n2 2 {word}\n"
-    assert read_design(own_brake(tmp_path, text)).K.tolist() == [[2e6, -1e6], [-1e6, 2e6]]
-
-
-@pytest.mark.parametrize("text", CUT)
-def test_a_market_file_that_would_be_misread_is_refused(tmp_path, text):
-    with pytest.raises(DesignFileError, match=CUT[text]):
-        read_design(own_brake(tmp_path, text))
-
-
-def test_one_triangle_is_taken_as_it_is_only_where_the_file_says_so(tmp_path):
-    text = K_MARKET.format("general", 3) + "1 1 2e6\n2 1 -1e6\n2 2 2e6\n"
-    assert read_design(own_brake(tmp_path, text, ", unsymmetric = true")).K.tolist() == [[2e6, 0.0], [-1e6, 2e6]]
-    (tmp_path / "K.csv").write_text("2e6, 0\n-1e6, 2e6\n")
-    (tmp_path / "own.toml").write_text('brake = "own"\nM = [[1, 0], [0, 1]]\nK = "K.csv"\n')
-    with pytest.raises(DesignFileError, match="one triangle only"):
-        read_design(tmp_path / "own.toml")
-
-
-def test_a_light_mass_matrix_is_held_to_symmetry_by_its_own_size(tmp_path):
-    (tmp_path / "own.toml").write_text('brake = "own"\nM = [[1e-9, 5e-10], [0, 1e-9]]\nK = [[2, 1], [1, 2]]\n')
-    with pytest.raises(DesignFileError, match="not symmetric"):
-        read_design(tmp_path / "own.toml")

@@ -17,8 +17,6 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from squealbox.fe.readers.market import read_market
-from squealbox.fe.readers.matrix import OTHER, MatrixFileError
 from squealbox.files.document import Document, read_bytes
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_number, shown
@@ -76,7 +74,7 @@ def _numbers(document: Document, row: list[Any], about: Parameter, key: Key) -> 
 
 def _beside(document: Document, value: Any, about: Parameter, key: Key, ndim: int) -> Any:
     named = {"file": value} if isinstance(value, str) else value
-    if not isinstance(named.get("file"), str) or not set(named) <= {"file", "unit", "unsymmetric"}:
+    if not isinstance(named.get("file"), str) or not set(named) <= {"file", "unit"}:
         document.problem(key, f"{shown(value)}: expected {{ file = 'K.npy', unit = '{about.unit}' }}")
         return WRONG
     unit = named.get("unit", about.unit)
@@ -90,22 +88,10 @@ def _beside(document: Document, value: Any, about: Parameter, key: Key, ndim: in
         return WRONG
     if ndim == 1 and array.ndim == 2 and 1 in array.shape:
         array = array.ravel()
-    if ndim == 2 and one_triangle(array) and named.get("unsymmetric") is not True:
-        document.problem(
-            key, f"{named['file']!r} holds one triangle only: expected both, or unsymmetric = true to take it as it is"
-        )
-        return WRONG
     if array.ndim != ndim:
         document.problem(key, f"{named['file']!r} has the shape {array.shape}: expected {ndim} axes")
         return WRONG
     return array
-
-
-def one_triangle(array: Any) -> bool:
-    """Is it square, with entries on one side of the diagonal and none on the other?"""
-    if array.ndim != 2 or array.shape[0] != array.shape[1] or not np.all(np.isfinite(array)):
-        return False
-    return bool(np.any(np.tril(array, -1)) != np.any(np.triu(array, 1)))
 
 
 def path_beside(design: Path, name: str) -> Path:
@@ -158,19 +144,21 @@ def _npy(raw: bytes) -> np.ndarray:
 
 
 def _mtx(raw: bytes) -> np.ndarray:
-    """The reader of finite-element matrices reads it: a number cut off at an odd character would be a wrong one."""
+    from scipy.io import mminfo, mmread
+
     try:
-        sizes = next(line.split() for line in raw.splitlines()[1:] if line.strip() and not line.startswith(b"%"))
-        _check_size(tuple(int(size) for size in sizes[:2]))
-        (found,) = read_market(Path("matrix.mtx"), io.BytesIO(raw), OTHER).matrices
-    except MatrixFileError as error:
-        where = "" if error.line is None else f"line {error.line}: "
-        raise ArrayFileError(f"{where}{error.sentence}") from error
-    except (ValueError, StopIteration) as error:
-        raise (
-            error if isinstance(error, ArrayFileError) else ArrayFileError("is not a Matrix Market .mtx file")
-        ) from error
-    return np.asarray(found.matrix.toarray(), dtype=float)
+        rows, columns, entries, form, kind, _ = mminfo(io.BytesIO(raw))
+        if kind == "complex" or form not in ("coordinate", "array"):
+            raise ArrayFileError(f"holds {kind} numbers, expected real ones")
+        _check_size((rows, columns))
+        if entries > len(raw):  # an entry takes more than a byte
+            raise ArrayFileError(f"says it has {entries} entries, but is not as long as that")
+        matrix = mmread(io.BytesIO(raw))
+    except ArrayFileError:
+        raise
+    except (ValueError, TypeError, OverflowError, OSError, MemoryError, IndexError) as error:
+        raise ArrayFileError("is not a Matrix Market .mtx file") from error
+    return np.asarray(matrix.toarray() if hasattr(matrix, "toarray") else matrix, dtype=float)
 
 
 def _csv(raw: bytes) -> np.ndarray:

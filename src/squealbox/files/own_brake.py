@@ -64,7 +64,7 @@ class OwnBrake(Design):
         for name in ("K", "C"):
             if getattr(self, name) is not None:
                 self._square(name, size)
-        if np.any(abs(self.M - self.M.T) > 1e-9 * np.max(abs(self.M))):
+        if not np.allclose(self.M, self.M.T):
             raise ParameterError("OwnBrake", "M", "not symmetric", "a symmetric mass matrix")
         if self.load is not None and np.shape(self.load) != (size,):
             raise ParameterError("OwnBrake", "load", self.load, f"{size} forces, one for each degree of freedom")

@@ -131,7 +131,7 @@ def _array(about: Parameter, ndim: int) -> Schema:
     file = {"type": "string", "description": "a .npy, .mtx or .csv file beside this one"}
     table = {
         "type": "object",
-        "properties": {"file": file, "unit": {"type": "string"}, "unsymmetric": {"type": "boolean"}},
+        "properties": {"file": file, "unit": {"type": "string"}},
         "required": ["file"],
         "additionalProperties": False,
     }

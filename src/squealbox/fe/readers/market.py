@@ -16,8 +16,8 @@ FIELDS = ("real", "double", "integer", "complex", "pattern")
 SYMMETRIES = ("general", "symmetric", "skew-symmetric", "hermitian")
 
 
-def read_market(path: Path, stream: BinaryIO, kind: str | None = None) -> MatrixFile:
-    """A MatrixMarket file of real numbers; its name tells the kind of matrix where `kind` does not."""
+def read_market(path: Path, stream: BinaryIO) -> MatrixFile:
+    """A MatrixMarket file of real numbers; the file's name tells the kind of matrix."""
     header = decoded(path, stream.readline(2000), 1).lower().split()
     if len(header) != 5 or header[1] != "matrix" or header[2] not in ("coordinate", "array"):
         raise MatrixFileError(path, "expected %%MatrixMarket matrix coordinate real general, or the like", 1)
@@ -61,14 +61,13 @@ def read_market(path: Path, stream: BinaryIO, kind: str | None = None) -> Matrix
             np.concatenate([columns, rows]),
             np.concatenate([values, -values]),
         )
-    if kind is None and symmetry == "general" and layout == "coordinate" and rows.size:
+    if symmetry == "general" and layout == "coordinate" and rows.size:
         one = (rows >= columns).all() or (rows <= columns).all()
         if one and np.any(rows != columns) and sizes[0] == sizes[1]:
             raise MatrixFileError(
                 path, "says general and holds one triangle only: expected symmetric in the header, or both triangles", 1
             )
-    if kind is None:
-        kind = kind_of(name) if sizes[0] == sizes[1] else OTHER
+    kind = kind_of(name) if sizes[0] == sizes[1] else OTHER
     words_ = "MatrixMarket" + (", written by Ansys *EXPORT,MMF" if "ANSYS" in creator.upper() else "")
     if len(values) == 0:
         from scipy.sparse import csr_array
