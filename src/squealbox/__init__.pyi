@@ -29,7 +29,18 @@ from .designs import (
     SpragSlip,
     WobblingDisc,
 )
-from .fe import PublishedDiscBrake, ReducedBrake, reduce
+from .fe import (
+    AssembledBrake,
+    Interface,
+    PublishedDiscBrake,
+    ReducedBrake,
+    Rotation,
+    Structure,
+    StructureFiles,
+    read_matrices,
+    read_structure,
+    reduce,
+)
 from .files import Body, OwnBrake, OwnContact, OwnLaw, OwnMechanism, Spring, Touch, own_law, read_design, write_design
 from .fit import FrictionFit, fit_friction
 from .friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stribeck
@@ -108,6 +119,7 @@ __all__ = [
     "Contact",
     "equilibrium",
     "linearise",
+    "Contacts",
     # brakes on paper
     "designs",
     "DrumBrake",
@@ -136,10 +148,16 @@ __all__ = [
     "FrictionFit",
     # brakes of finite elements: sparse matrices, many contacts, reduced to few coordinates with a known error
     "fe",
-    "Contacts",
     "reduce",
     "ReducedBrake",
     "PublishedDiscBrake",
+    "read_matrices",
+    "read_structure",
+    "Structure",
+    "StructureFiles",
+    "Interface",
+    "Rotation",
+    "AssembledBrake",
     # is steady sliding stable, and from which value is it not?
     "stability",
     "complex_modes",

@@ -19,8 +19,8 @@ from squealbox.contacts import Contacts
 from squealbox.factorisation import Factor, SingularMatrix, factor
 
 STEP = 1e-12  # size of a step, relative to the displacement, at which the set of open contacts has settled
-INNER = 1e-11  # residual of a step solved by GMRES, relative to its right-hand side
-KRYLOV = 60  # vectors GMRES may keep; more, and a factorisation is the quicker way
+ROUGH, FINE = 1e-4, 1e-11  # residual of a step solved by GMRES: while the set of open contacts changes, and the last
+KRYLOV = 200  # vectors GMRES may keep; more, and a factorisation is the quicker way
 
 
 class SlidingState(NamedTuple):
@@ -44,6 +44,7 @@ def sliding_state(stiffness: Any, load: Any, contacts: Contacts, time: float) ->
         base = factor(stiffness)
     except SingularMatrix:
         base = None
+    exactly = not np.any(contacts.unilateral)
     for _ in range(3 + 2 * len(contacts)):
         normal = preload + contacts.n @ q
         closed = (normal > 0.0) | ~contacts.unilateral
@@ -53,14 +54,16 @@ def sliding_state(stiffness: Any, load: Any, contacts: Contacts, time: float) ->
         if np.linalg.norm(residual) == 0.0:
             return SlidingState(q, _pressing(normal, closed), speed, mu, False, True)
         try:
-            step = _step(base, stiffness_of(stiffness, contacts, mu * np.sign(speed), closed), residual)
+            jacobian = stiffness_of(stiffness, contacts, mu * np.sign(speed), closed)
+            step = _step(base, jacobian, residual, FINE if exactly else ROUGH)
         except SingularMatrix:
             return SlidingState(q, _pressing(normal, closed), speed, mu, True, False)
         q = q - step
         after = preload + contacts.n @ q
         same = np.array_equal((after > 0.0) | ~contacts.unilateral, closed)
-        if same or np.linalg.norm(step) <= STEP * np.linalg.norm(q):
+        if same and (exactly or np.linalg.norm(step) <= STEP * np.linalg.norm(q)):
             return SlidingState(q, _pressing(after, closed), speed, mu, False, True)
+        exactly = same  # the last step, with the set it has settled on
     return SlidingState(q, _pressing(preload + contacts.n @ q, closed), speed, mu, False, False)
 
 
@@ -68,11 +71,12 @@ def _pressing(normal: Any, closed: Any) -> Any:
     return np.where(closed, normal, 0.0)
 
 
-def _step(base: Factor | None, jacobian: Any, residual: Any) -> Any:
+def _step(base: Factor | None, jacobian: Any, residual: Any, accuracy: float) -> Any:
     if base is not None:
-        backwards = LinearOperator(jacobian.shape, matvec=base.solve, dtype=float)
-        step, missed = gmres(jacobian, residual, M=backwards, rtol=INNER, atol=0.0, restart=KRYLOV, maxiter=1)
-        if missed == 0 and np.linalg.norm(jacobian @ step - residual) <= 10.0 * INNER * np.linalg.norm(residual):
+        nearly_one = LinearOperator(jacobian.shape, matvec=lambda y: jacobian @ base.solve(y), dtype=float)
+        found, missed = gmres(nearly_one, residual, rtol=accuracy, atol=0.0, restart=KRYLOV, maxiter=1)
+        step = base.solve(found)
+        if missed == 0 and np.linalg.norm(jacobian @ step - residual) <= 10.0 * accuracy * np.linalg.norm(residual):
             return step
     return factor(jacobian).solve(residual)
 

@@ -70,7 +70,7 @@ def test_a_point_between_masters_is_shared_by_weights(tmp_path):
 
 
 def test_directions_are_turned_into_the_system_of_a_node(tmp_path):
-    """Node 1 has its displacements along axes turned by 30 degrees about z, given both ways; the spectrum is the same."""
+    """Node 1 has its displacements along axes turned by 30 degrees about z."""
     write_export(tmp_path)
     c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
     local = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])  # rows: local axes in global ones

@@ -1,29 +1,45 @@
 """Finite-element brakes: sparse solvers, modes with an error bar, reduction. Depends on: system, designs."""
 
 from squealbox.factorisation import Factor, SingularMatrix, factor
+from squealbox.fe.assembled import AssembledBrake, StructureFiles
 from squealbox.fe.certificate import Certificate, certificate
+from squealbox.fe.interfaces import CoordinateSystem, Interface, Rotation
 from squealbox.fe.pencil import Pencil, pencil_of
 from squealbox.fe.published import PublishedDiscBrake
 from squealbox.fe.quadratic import FullModes, full_modes
+from squealbox.fe.readers import MatrixFileError, open_matrices
 from squealbox.fe.real_modes import RealModes, count_below, real_modes
 from squealbox.fe.reduced_brake import ReducedBrake, Reduction
 from squealbox.fe.reduction import reduce
+from squealbox.fe.structure import Structure, read_matrices, read_structure
+from squealbox.fe.units import UNITS
 
 __all__ = [
+    "UNITS",
+    "AssembledBrake",
     "Certificate",
+    "CoordinateSystem",
     "Factor",
     "FullModes",
+    "Interface",
+    "MatrixFileError",
     "Pencil",
     "PublishedDiscBrake",
     "RealModes",
     "ReducedBrake",
     "Reduction",
+    "Rotation",
     "SingularMatrix",
+    "Structure",
+    "StructureFiles",
     "certificate",
     "count_below",
     "factor",
     "full_modes",
+    "open_matrices",
     "pencil_of",
+    "read_matrices",
+    "read_structure",
     "real_modes",
     "reduce",
 ]

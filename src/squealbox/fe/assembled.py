@@ -75,11 +75,13 @@ def _term(files: StructureFiles, name: str) -> Any:
 class AssembledBrake(Design):
     """A finite-element brake from exported matrices; its contacts are rows of the sparse system.
 
-    C = C_file + alpha M + beta K + O G + (1/O - 1/O_ref) D_R + D_4 / (2 pi F),  K = K_file + K_R + (O^2 - O_ref^2) K_geo + contacts. O is
-    the angular speed in units of 1 rad/s; O_ref is 0 where the matrices do not hold these terms yet, and then D_R / O
-    and O^2 K_geo are added whole: assembly (a) of the published 4,669-freedom brake; with O_ref = 1 it is (b). Friction
-    that turns with the sliding velocity comes from the pairs themselves (`Contact.across`); D_R is only for
-    an export that holds it as a matrix.
+    C = C_file + alpha M + beta K_file + O G + (1/O - 1/O_ref) D_R + D_4 / (2 pi F)
+    K = K_file + K_R + (O^2 - O_ref^2) K_geo + k A r_n r_n' of every pair
+
+    O is the angular speed in units of 1 rad/s. O_ref is 0 where the matrices do not hold these terms yet, and then
+    D_R / O and O^2 K_geo are added whole; with O_ref = 1 it is assembly (b) of the published 4,669-freedom brake.
+    Friction that turns with the sliding velocity comes from the pairs (`Contact.across`); D_R is only for an export
+    that holds it as a matrix.
     """
 
     title: ClassVar[str] = "A brake assembled from exported matrices"
@@ -99,7 +101,7 @@ class AssembledBrake(Design):
         "rad/s",
         0.0,
         default=0.0,
-        meaning="angular speed at which the matrices hold radial and geometric terms; 0: none",
+        meaning="at which the matrices hold radial and geometric terms; 0: none",
     )
 
     damping_frequency: float = parameter(

@@ -8,7 +8,7 @@ DENSE = 300
 
 
 def first_frequencies(mass: Any, stiffness: Any, count: int = 10) -> Any:
-    """The lowest `count` frequencies [Hz] of K u = w^2 M u, ascending; rigid ones are 0 to rounding, w^2 < 0 counts as 0.
+    """The lowest `count` frequencies [Hz] of K u = w^2 M u, ascending; rigid ones are 0 to rounding, as is w^2 < 0.
 
     Massless freedoms are allowed: the eigenvalues mu = 1 / (w^2 - s) of (K - s M)^-1 M at a shift s < 0 are looked for,
     and a massless freedom has mu = 0. An unsymmetric K may give complex w^2; their frequency is |Im sqrt(-w^2)|.

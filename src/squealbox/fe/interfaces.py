@@ -5,8 +5,8 @@ With the unit normal e_n from slave to master, e_t along the velocity of the mas
     r_e = e . (u_slave - sum_j w_j u_master_j)            a row of displacements along e
     N = N0 + k A r_n . q,   v = V - r_t . q',   d = r_t,   a = r_a,   K += k A r_n r_n'   unless K holds it already
 
-Directions are global; where the displacements of a node are along a coordinate system of its own (the CD field of Nastran,
-*TRANSFORM of Abaqus, NROTAT of Ansys) each row is turned there: its entries are R' e, with R the directions of that system.
+Directions are global; where a node moves along a coordinate system of its own (the CD field of Nastran, *TRANSFORM
+of Abaqus, NROTAT of Ansys) each row is turned there: its entries are R' e, with R the directions of that system.
 """
 
 import os
@@ -37,7 +37,7 @@ class Rotation(DataSheet):
 
 
 class CoordinateSystem(DataSheet):
-    """Directions in which some nodes' displacements are given: rectangular, or cylindrical about `axis` (r, theta, z)."""
+    """Directions of some nodes' displacements: rectangular, or cylindrical about `axis` (r, theta, z)."""
 
     nodes: Any = ()
     shape: str = choice("rectangular", "cylindrical", default="rectangular", meaning="kind of coordinates")
@@ -53,7 +53,7 @@ class CoordinateSystem(DataSheet):
         if self.shape == "cylindrical":
             towards = np.asarray(place, dtype=float) - _three("CoordinateSystem", "origin", self.origin, zero=True)
         e1 = towards - (towards @ e3) * e3
-        if np.linalg.norm(e1) <= 1e-9 * max(np.linalg.norm(towards), 1e-300):
+        if float(np.linalg.norm(e1)) <= 1e-9 * max(float(np.linalg.norm(towards)), 1e-300):
             raise ParameterError("CoordinateSystem", "axis", self.axis, "an axis that does not pass through the node")
         e1 = e1 / np.linalg.norm(e1)
         return np.column_stack([e1, np.cross(e3, e1), e3])
@@ -62,7 +62,7 @@ class CoordinateSystem(DataSheet):
 class Interface(DataSheet):
     """Two surfaces that slide: pairs from a CSV, contact stiffness, direction of sliding, preload.
 
-    `pairs` is a path or a tuple of `Pair`. `sliding` is a `Rotation` or a direction (x, y, z) in which the masters move.
+    `pairs` is a path or a tuple of `Pair`. `sliding` is a `Rotation` or a direction (x, y, z) in which masters move.
     `stiffness` is per area [N/m^3]; with in_matrices the export holds the closed contact, and K stays as it is. Preload
     of a pair is pressure times its area, or its own normal_force.
     """

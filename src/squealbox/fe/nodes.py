@@ -49,7 +49,6 @@ def read_nodes(path: str | os.PathLike[str], units: str | None = None) -> Nodes:
         raise MatrixFileError(path, "names no nodes: expected node, x, y, z")
     numbers = np.array([row[0] for row in rows], dtype=np.int64)
     if len(np.unique(numbers)) != len(numbers):
-        twice = numbers[np.flatnonzero(np.diff(np.sort(numbers)) == 0)[0]] if len(numbers) < 2 else None
         values, counts = np.unique(numbers, return_counts=True)
         twice = values[counts > 1][0]
         raise MatrixFileError(path, f"names node {twice} twice: expected each once")
@@ -67,7 +66,7 @@ def _place(path: Path, at: int, words: list[str]) -> tuple[int, list[float]]:
 
 
 def _table(path: Path, lines: list[tuple[int, str]]) -> list[Any]:
-    rows = []
+    rows: list[Any] = []
     for at, text in lines:
         words = [word.strip() for word in next(csv.reader([text]))] if text.strip() else []
         if not words or words[0].startswith("#") or (not rows and not re.match(r"[+-]?\d", words[0])):

@@ -53,12 +53,12 @@ class Pencil:
         return missed / (scale * np.linalg.norm(shapes, axis=0))
 
 
-def pencil_of(system: System, time: float = 0.0) -> Pencil:
-    """The matrices of a sparse system about steady sliding at `time` [s].
+def pencil_of(system: System, time: float = 0.0, about: Linearised | None = None) -> Pencil:
+    """The matrices of a sparse system about steady sliding at `time` [s], or as they were linearised before.
 
     Raises `InvalidSystem` where there is no steady sliding, with the reason.
     """
-    about = linearise(system, time)
+    about = linearise(system, time) if about is None else about
     state = about.equilibrium
     if not state.exists:
         raise InvalidSystem(f"no steady sliding to linearise about: {state.outcome} ({state.outcome.message})")

@@ -91,7 +91,7 @@ class Structure:
         return max(masses)
 
     def doubts(self, frequencies: Any = None) -> tuple[str, ...]:
-        """Sentences about units and freedoms that look wrong for a brake: mass, first elastic frequency, massless rows."""
+        """Sentences on what looks wrong for a brake: mass, first elastic frequency, massless and internal rows."""
         found = list(self.notes)
         if self.massless.any():
             found.append(f"{int(self.massless.sum())} freedoms without mass: {self._named(self.massless)}")
@@ -122,7 +122,7 @@ def read_matrices(
     nodes: Any = None,
     labels: str | os.PathLike[str] | None = None,
 ) -> Structure:
-    """The structure that these files hold together; which matrix is which is told by its name in the file or the file's.
+    """The structure that these files hold together; a matrix is known by its name in the file, or by the file's.
 
     Without `units` the numbers stay as they are. Raises `MatrixFileError` with file and line, `ParameterError`.
 
@@ -145,7 +145,8 @@ def read_matrices(
     if STIFFNESS not in chosen:
         names = ", ".join(matrix.name for file in files for matrix in file.matrices)[:200]
         raise MatrixFileError(
-            paths[0] if paths else "", f"no stiffness matrix among {names or 'no files'}: name it by read_structure"
+            Path(paths[0]) if paths else Path(),
+            f"no stiffness matrix among {names or 'no files'}: name it by read_structure",
         )
     return _aligned(chosen, units, nodes, labels)
 

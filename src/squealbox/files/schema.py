@@ -5,9 +5,11 @@ import math
 import typing
 from typing import Any
 
+from squealbox.fe.assembled import AssembledBrake
 from squealbox.files import countermeasures
 from squealbox.files.analyses import Axis, Modes, Simulate
 from squealbox.files.arrays import TRIANGLES
+from squealbox.files.assembled import ASSEMBLED
 from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES, STUDY
 from squealbox.files.sheets import LAW_NAMES, OWN, SCHEDULE_NAMES, field_type, is_required
@@ -52,10 +54,24 @@ def json_schema() -> Schema:
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "squealbox design file",
         "type": "object",
-        "properties": {"brake": {"enum": list(BRAKES), "description": "which brake the file describes"}},
+        "properties": {"brake": {"enum": [*BRAKES, ASSEMBLED], "description": "which brake the file describes"}},
         "required": ["brake"],
-        "oneOf": brakes,
+        "oneOf": [*brakes, _assembled(sections)],
         "definitions": definitions,
+    }
+
+
+def _assembled(sections: Schema) -> Schema:
+    """A brake of exported matrices; its tables are checked by their reader."""
+    own: Schema = {name: {} for name in AssembledBrake.field_names()}
+    scalars = {name: _number(about) for name, about in AssembledBrake.parameters().items()}
+    tables: Schema = {"structure": {"type": "object"}, "interfaces": {"type": "array"}, "systems": {"type": "array"}}
+    return {
+        "type": "object",
+        "description": "A finite-element brake from exported matrices",
+        "properties": {"brake": {"const": ASSEMBLED}, **own, **scalars, **tables, "friction": _ref("law"), **sections},
+        "required": ["brake", "structure"],
+        "additionalProperties": False,
     }
 
 

@@ -98,7 +98,7 @@ def band_modes(
     about = linearise(system, time)
     if not about.equilibrium.exists:
         return _nothing(design_or_system, system, about.equilibrium, (low, high), time)
-    pencil = pencil_of(system, time)
+    pencil = pencil_of(system, time, about)
     common: dict[str, Any] = {"band": (low, high), "method": method, "size": system.size}
     common |= {"steady": about.equilibrium.q, "exists": np.array(True), "contacts": system.contacts.names}
     common |= {"normal_force": about.equilibrium.normal_force, "inputs": _inputs(design_or_system, time)}

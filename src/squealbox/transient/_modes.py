@@ -22,7 +22,6 @@ from squealbox.transient._motion import (
 )
 from squealbox.transient._rigid import solve
 
-
 SWING = 160.0  # windows of time make one over the highest angular frequency
 
 

@@ -28,7 +28,6 @@ from squealbox.fe.readers.matrix import (
 )
 from squealbox.fe.readers.numbers import (
     check_index,
-    check_last_line,
     columns_of,
     number,
     significant_digits,
@@ -42,7 +41,7 @@ def read_coordinates(path: Path, stream: BinaryIO, first: str, *, half: bool = F
     """``row column value`` from 1 without a header; `half` when the format stores one half only."""
     rows, columns, values = columns_of(path, stream, 1, 3, comma=False)
     name = path.name if code == "Abaqus" else {".sti": "K", ".mas": "M"}.get(path.suffix.lower(), path.name)
-    rows, columns = check_index(path, rows, None, name, 1), check_index(path, columns, None, name, 1)
+    rows, columns = check_index(path, rows, None, 1), check_index(path, columns, None, 1)
     kind = kind_of(name) if kind_of(name) != OTHER else kind_of(path.stem)
     size = int(max(rows.max(initial=-1), columns.max(initial=-1))) + 1
     used = np.zeros(size, dtype=bool)
@@ -97,9 +96,11 @@ class _Substructure:
     """What has been read so far: nodes from comments, freedoms from data lines, numbers of each matrix."""
 
     def __init__(self, path: Path) -> None:
-        self.path, self.nodes, self.count, self.unsymmetric = path, [], 0, False
+        self.path, self.count, self.unsymmetric = path, 0, False
+        self.nodes: list[int] = []
         self.directions: list[list[int]] = []
-        self.part, self.blocks, self.listing = "", [], False
+        self.part, self.listing = "", False
+        self.blocks: list[tuple[str, int, list[float]]] = []
         self.node_order: list[tuple[int, list[int]]] = []
 
     def line(self, at: int, text: str) -> None:

@@ -1,8 +1,9 @@
 """The assembled file of Ansys, `job.full`, as its sparse solver writes it.
 
-A file of records ``length, flags, data, length`` in words of 4 bytes. The record behind the standard header says how many
-equations and terms there are and where K, M, C and the freedoms begin; each row of a matrix is a record of columns from 1
-and one of values, upper half only. Freedoms whose mark is negative are constrained: their rows are emptied here, and named.
+A file of records ``length, flags, data, length`` in words of 4 bytes. The record behind the standard header says how
+many equations and terms there are and where K, M, C and the freedoms begin; each row of a matrix is a record of columns
+from 1 and one of values, upper half only. Freedoms with a negative mark are constrained: their rows are emptied, and
+they are named.
 """
 
 from pathlib import Path

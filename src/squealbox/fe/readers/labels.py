@@ -35,7 +35,12 @@ def between_labels(
         path,
         name,
         kind,
-        Entries(*(np.searchsorted(codes, part).astype(np.int32) for part in (rows, columns)), values, lines),
+        Entries(
+            np.searchsorted(codes, rows).astype(np.int32),
+            np.searchsorted(codes, columns).astype(np.int32),
+            values,
+            lines,
+        ),
         len(codes),
         rule,
         labels=decoded_labels(codes),

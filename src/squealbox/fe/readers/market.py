@@ -1,7 +1,7 @@
 """MatrixMarket: an honest header, `general`, `symmetric`, `skew-symmetric` or `hermitian`, and what must fit it.
 
-Also what *EXPORT,MMF of Ansys writes, with a mapping vector of nodes in a file of its own. Numbers may have the exponent
-D or none of Fortran; a symmetric file that holds both triangles, a pattern and a number cut off are refused.
+Also what *EXPORT,MMF of Ansys writes, with a mapping vector of nodes in a file of its own. Numbers may have Fortran's
+exponent D or none; a symmetric file that holds both triangles, a pattern and a number cut off are refused.
 """
 
 from pathlib import Path
@@ -9,7 +9,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from squealbox.fe.readers.matrix import OTHER, Entries, MatrixFile, MatrixFileError, complete, kind_of
+from squealbox.fe.readers.matrix import OTHER, Entries, FileMatrix, MatrixFile, MatrixFileError, complete, kind_of
 from squealbox.fe.readers.numbers import check_index, columns_of, decoded, number, significant_digits
 
 FIELDS = ("real", "double", "integer", "complex", "pattern")
@@ -17,18 +17,19 @@ SYMMETRIES = ("general", "symmetric", "skew-symmetric", "hermitian")
 
 
 def read_market(path: Path, stream: BinaryIO) -> MatrixFile:
-    """A MatrixMarket file of real numbers."""
+    """A MatrixMarket file of real numbers; the file's name tells the kind of matrix."""
     header = decoded(path, stream.readline(2000), 1).lower().split()
     if len(header) != 5 or header[1] != "matrix" or header[2] not in ("coordinate", "array"):
         raise MatrixFileError(path, "expected %%MatrixMarket matrix coordinate real general, or the like", 1)
-    layout, kind, symmetry = header[2:]
-    if kind not in FIELDS or symmetry not in SYMMETRIES:
+    layout, numbers, symmetry = header[2:]
+    if numbers not in FIELDS or symmetry not in SYMMETRIES:
         raise MatrixFileError(
-            path, f"{kind} {symmetry}: expected one of {', '.join(FIELDS)} and {', '.join(SYMMETRIES)}", 1
+            path, f"{numbers} {symmetry}: expected one of {', '.join(FIELDS)} and {', '.join(SYMMETRIES)}", 1
         )
-    if kind in ("pattern", "complex") or symmetry == "hermitian":
-        raise MatrixFileError(path, f"holds a {kind} {symmetry} matrix: expected real numbers", 1)
-    line, words, creator = 1, [], ""
+    if numbers in ("pattern", "complex") or symmetry == "hermitian":
+        raise MatrixFileError(path, f"holds a {numbers} {symmetry} matrix: expected real numbers", 1)
+    line, creator = 1, ""
+    words: list[str] = []
     while not words:
         raw = stream.readline(100_000)
         line += 1
@@ -67,12 +68,14 @@ def read_market(path: Path, stream: BinaryIO) -> MatrixFile:
                 path, "says general and holds one triangle only: expected symmetric in the header, or both triangles", 1
             )
     kind = kind_of(name) if sizes[0] == sizes[1] else OTHER
-    if kind == OTHER and sizes[0] == sizes[1]:
-        kind = next((kind_of(mark) for mark in ("MASS", "STIF") if mark in name.upper()), OTHER)
+    words_ = "MatrixMarket" + (", written by Ansys *EXPORT,MMF" if "ANSYS" in creator.upper() else "")
+    if len(values) == 0:
+        from scipy.sparse import csr_array
+
+        return MatrixFile(path, words_, (FileMatrix(name, kind, csr_array((sizes[0], sizes[1])), "empty", 0),))
     entries = Entries(rows, columns, values, lambda i: line + 1 + i)
     del rows, columns, values
     found = complete(path, name, kind, entries, size, rule, digits=digits)
-    words_ = "MatrixMarket" + (", written by Ansys *EXPORT,MMF" if "ANSYS" in creator.upper() else "")
     return MatrixFile(path, words_, (found,))
 
 
@@ -80,8 +83,8 @@ def _coordinates(path: Path, stream: BinaryIO, line: int, sizes: list[int], symm
     rows, columns, values = columns_of(path, stream, line, 3, comma=False, comment=b"%")
     if len(values) != sizes[2]:
         raise MatrixFileError(path, f"says {sizes[2]} entries and holds {len(values)}: the file was cut or damaged")
-    rows = check_index(path, rows, sizes[0], path.stem, line)
-    columns = check_index(path, columns, sizes[1], path.stem, line)
+    rows = check_index(path, rows, sizes[0], line)
+    columns = check_index(path, columns, sizes[1], line)
     stream.seek(0)
     sample = [raw.decode("ascii", "replace").split() for raw in stream.readlines(20_000)[line - 1 :]]
     return rows, columns, values, significant_digits([words[-1] for words in sample if words])

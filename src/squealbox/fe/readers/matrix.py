@@ -15,7 +15,7 @@ class MatrixFileError(ValueError):
     """A matrix file cannot be read; one sentence with the file, the line where there is one, given and expected."""
 
     def __init__(self, path: Path | str, sentence: str, line: int | None = None) -> None:
-        self.path, self.line = Path(path), line
+        self.path, self.sentence, self.line = Path(path), sentence, line
         where = Path(path).name if line is None else f"{Path(path).name}, line {line}"
         super().__init__(f"{where}: {sentence}")
 
@@ -190,7 +190,7 @@ def _pairs(matrix: Any) -> tuple[int, int, tuple[int, int]]:
 
 
 def _symmetry(matrix: Any) -> str:
-    """Symmetric to the digits of a file (1e-9 of the largest entry of its row and column), or how far it is from that."""
+    """Symmetric to the digits of a file (1e-9 of the largest of its row and column), or how far from it."""
     turned = matrix.T.tocsr()
     if np.array_equal(turned.indices, matrix.indices) and np.array_equal(turned.data, matrix.data):
         return "symmetric, both halves"
@@ -224,7 +224,7 @@ def shown_label(labels: Any, row: int) -> str:
 
 
 def _whole_half(path: Path, name: str, kind: str, matrix: Any, labels: Any) -> None:
-    """A half whose diagonal is missing where rows are coupled was cut, unless the freedom is internal (a multiplier)."""
+    """A half without a diagonal where rows are coupled was cut, unless the freedom is internal (a multiplier)."""
     if kind not in (STIFFNESS, MASS):
         return
     lost = np.flatnonzero((matrix.diagonal() == 0.0) & (np.diff(matrix.indptr) > 0))

@@ -1,6 +1,6 @@
 """Nastran DMIG cards in a punch or bulk data file: fixed fields of 8 or 16 that may touch, or free fields with commas.
 
-    DMIG    KAAX           0       6       2       0              10     name, 0, form, type in, type out, polar, columns
+    DMIG    KAAX           0       6       2       0              10     name, 0, form, types, polar, columns
     DMIG*   KAAX                     1               3                    column: grid, component
     *                      1               3 6.788227013D+06             row: grid, component, real[, imaginary]
 
@@ -24,7 +24,7 @@ class _Card:
 
     name: str
     form: int
-    complex: bool
+    is_complex: bool
     columns_said: int
     line: int
     column: tuple[int, int] | None = None
@@ -129,11 +129,11 @@ def _take(path: Path, at: int, words: list[str], card: _Card) -> None:
             raise MatrixFileError(path, f"component {component} of grid {grid}: expected 0 to 6", at)
         try:
             real = number(part[2])
-            value: complex = complex(real, number(part[3])) if card.complex else real
+            value: complex = complex(real, number(part[3])) if card.is_complex else real
         except ValueError as error:
-            count = "two numbers" if card.complex else "a number"
+            count = "two numbers" if card.is_complex else "a number"
             raise MatrixFileError(path, f"{error}: expected grid, component and {count}", at) from error
-        if not card.complex and part[3]:
+        if not card.is_complex and part[3]:
             raise MatrixFileError(path, f"{part[3]!r} behind a real value: expected nothing there", at)
         column = card.column or (0, 0)
         card.entries.append((grid, component, column[0], column[1], value, at))

@@ -138,11 +138,11 @@ def _slow(path: Path, block: list[bytes], line: int, width: int, comma: bool, co
     return np.array(rows, dtype=float).reshape(-1, width)
 
 
-def check_index(path: Path, index: Any, size: int | None, name: str, first: int | None = None) -> Any:
-    """Indices from 1 as indices from 0; `MatrixFileError` for one outside 1 to `size`; `first` is the line of the first."""
+def check_index(path: Path, index: Any, size: int | None, first: int | None = None) -> Any:
+    """Indices from 0 for those from 1, which must be 1 to `size`; `first` is the line of the first."""
     most = MOST_FREEDOMS if size is None else size
     bad = np.flatnonzero((index < 1) | (index > most))
     if bad.size:
         line = None if first is None else first + int(bad[0])
-        raise MatrixFileError(path, f"{name}: the index {index[bad[0]]}: expected 1 to {most}", line)
+        raise MatrixFileError(path, f"the index {index[bad[0]]}: expected 1 to {most}", line)
     return index - 1

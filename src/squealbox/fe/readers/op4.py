@@ -50,7 +50,7 @@ class _Columns:
         if not (1 <= self.columns <= MOST_FREEDOMS and 1 <= self.rows <= MOST_FREEDOMS and 1 <= self.type <= 4):
             raise MatrixFileError(
                 self.path,
-                f"{self.name[:16]!r} has {self.columns} columns, {self.rows} rows, type {self.type}: expected an OP4 matrix",
+                f"{self.name[:16]!r} has {self.columns} columns, {self.rows} rows, type {self.type}: no OP4 matrix",
             )
 
     def take(self, column: int, row: int, values: Any, line: int | None = None) -> None:

@@ -132,7 +132,7 @@ def read_dof(path: Path) -> list[tuple[int, int]]:
 
 
 def read_labels(path: str | os.PathLike[str], rows: int) -> Any:
-    """Labels for `rows` rows, shape (rows, 2): a .dof, a list of nodes (each with the same number of directions), or CSV.
+    """Labels of `rows` rows, shape (rows, 2): a .dof, a list of nodes (each with as many directions), or a CSV.
 
     Raises `MatrixFileError`.
     """
@@ -157,7 +157,7 @@ def read_labels(path: str | os.PathLike[str], rows: int) -> Any:
 
 
 def _label_table(path: Path) -> Any:
-    labels = []
+    labels: list[tuple[int, int]] = []
     with path.open("rb") as stream:
         for at, text in text_lines(path, stream):
             if not text.strip() or (not labels and not re.match(r"\s*[+-]?\d", text)):

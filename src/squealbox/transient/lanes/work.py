@@ -12,9 +12,9 @@ from squealbox.parameters import ParameterError
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
 from squealbox.transient import packing
 from squealbox.transient.lanes.batch import stacked
-from squealbox.transient.limited import in_time
 from squealbox.transient.lanes.shape import LANES, layout
 from squealbox.transient.lanes.table import Jobs, tabulate
+from squealbox.transient.limited import in_time
 from squealbox.transient.methods import Method
 from squealbox.transient.observers import Observer
 
