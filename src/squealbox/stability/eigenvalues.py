@@ -12,7 +12,7 @@ import numpy as np
 
 from squealbox.cautions import out_of_range
 from squealbox.result import COMPLETED, Outcome, Result, batched, quantity
-from squealbox.stability.deflection import special_modes, uncertain, vibrating
+from squealbox.stability.deflation import special_modes, uncertain, vibrating
 from squealbox.stability.first_order import first_order_spectra
 from squealbox.static_deflection import levelled
 from squealbox.system import Linearised, as_system, linearise
