@@ -192,12 +192,8 @@ def start_rate(p, mode, s, stage, c):
         for i in range(n):
             rate -= p.w[c, i] * stage[0, i]
             size += abs(p.w[c, i] * stage[0, i])
-    else:
-        rate = mode[c] * slip_acceleration(p, c, stage[0], s)
-        size = abs(s.signal[p.signals + c])
-        for i in range(n):
-            size += abs(p.t[c, i] * stage[0, n + i])
-    return rate, 1e-8 * size
+        return rate, 1e-8 * size
+    return mode[c] * slip_acceleration(p, c, stage[0], s), s.leave[c]
 
 
 def lowest_power(p, r, mode, s, stage, c):

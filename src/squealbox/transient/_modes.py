@@ -17,11 +17,14 @@ from squealbox.transient._motion import (
     force_noise,
     list_sticking,
     normal_noise,
+    rate_terms,
     share_out,
     slip_acceleration,
 )
 from squealbox.transient._rigid import solve
 
+CLEAR = 50.0  # times the round-off of a force: what a mode that does not hold exceeds
+LEAVE = 1e-8  # share of its terms below which the acceleration of a contact that leaves zero speed counts as zero
 SWING = 160.0  # windows of time make one over the highest angular frequency
 
 
@@ -140,6 +143,8 @@ def settle(p, t, y, mode, s):
     """Solve for the modes of all contacts at zero speed together, then remove the drift of those that stick."""
     if not decide(p, t, y, mode, s):
         return False
+    for c in range(p.contacts):
+        s.leave[c] = LEAVE * rate_terms(p, c, y, s) + 1e-300
     contact_kinematics(p, y, s)
     for c in range(p.contacts):
         s.fresh[c] = s.at_zero[c] != 0 and mode[c] != STICK and mode[c] != OPEN
@@ -223,10 +228,10 @@ def wanted_mode(p, c, y, mode, s):
     if not s.at_zero[c]:
         return mode[c]
     if mode[c] == STICK:
-        if abs(s.force[c]) <= p.static[c] * s.normal[c] + force_noise(p, c, y, s):
+        if abs(s.force[c]) <= p.static[c] * s.normal[c] + CLEAR * force_noise(p, c, y, s):
             return STICK
         return 1 if s.force[c] > 0.0 else -1
-    if mode[c] * slip_acceleration(p, c, s.dy, s) >= -force_noise(p, c, y, s) * max(abs(p.g[c, c]), 1e-300):
+    if mode[c] * slip_acceleration(p, c, s.dy, s) >= -CLEAR * force_noise(p, c, y, s) * max(abs(p.g[c, c]), 1e-300):
         return mode[c]
     return STICK if s.normal[c] >= -normal_noise(p, c, y, s) else -mode[c]
 

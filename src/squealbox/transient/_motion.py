@@ -19,6 +19,7 @@ from squealbox.transient._rigid import constrain, solve
 
 RAW, EXACT, TANH, ARCTAN = 0, 1, 2, 3  # WITH_EVENTS is true in the file compiled for EXACT
 STICK, OPEN = 0, 2
+ROUND_OFF = 2e-14  # of a sum, as a share of its terms
 # s.clock: time, proposed step, logarithm of the previous error, end of the smooth piece, start of the window in which
 # events are counted, last instant inside the piece, fastest landing on a rigid contact so far
 TIME, STEP, LOG_ERROR, PIECE, WINDOW, INSIDE, FASTEST = 0, 1, 2, 3, 4, 5, 6
@@ -288,11 +289,11 @@ def normal_noise(p, c, y, s):
     total = abs(s.signal[p.contacts + c])
     for i in range(p.mk.shape[0]):
         total += abs(p.n[c, i] * y[i])
-    return 1e-12 * total
+    return ROUND_OFF * total
 
 
-def force_noise(p, c, y, s):
-    """Round-off of the terms that balance in the force of a sticking contact, and of its limit; never zero."""
+def rate_terms(p, c, y, s):
+    """Sum of the sizes of all that makes up V' - t . q''; forces as last computed."""
     n = p.mk.shape[0]
     total = abs(s.signal[p.signals + c])
     for i in range(n):
@@ -303,8 +304,14 @@ def force_noise(p, c, y, s):
             for e in range(p.contacts):
                 terms += abs(p.md[e, i] * s.force[e])
             total += abs(p.t[c, i]) * terms
+    return total
+
+
+def force_noise(p, c, y, s):
+    """Round-off of the terms that balance in the force of a sticking contact, and of its limit; never zero."""
+    total = rate_terms(p, c, y, s)
     mobility = abs(p.g[c, c])
-    size = 1e-12 * total / mobility if mobility > 0.0 else 0.0
+    size = ROUND_OFF * total / mobility if mobility > 0.0 else 0.0
     return size + p.static[c] * normal_noise(p, c, y, s) + 1e-300
 
 

@@ -134,7 +134,7 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
     width = 2 * n + m + 5
     floats: dict[str, tuple[int, ...]] = {
         "signal": (2 * (m + n) + m,), "normal": (m,), "speed": (m,), "force": (m,), "right": (2 * m,),
-        "matrix": (2 * m, 2 * m), "basis": (m + 1, m), "share": (m,), "wanted": (m,), "multiplier": (m,),
+        "matrix": (2 * m, 2 * m), "basis": (m + 1, m), "share": (m,), "leave": (m,), "wanted": (m,), "multiplier": (m,),
         "state": (width,), "state_new": (width,), "y": (width,), "y_dense": (width,), "dy": (width,),
         "stage": (STAGES, width), "phi": (2 * m,), "phi0": (2 * m,), "phi1": (2 * m,), "nodes": (5, 2 * m),
         "stack": (128, 7), "clock": (7,),

@@ -163,7 +163,9 @@ class _Run:
             self.problem["window"] = 1e-3 * self.period
         events = bool(self.problem["scheme"] == EXACT and self.problem["contacts"] > 0)
         march = kernel(events, counts=() if events else self._counts(), own=own_texts(self.system.contacts))
-        largest = self.method.largest_step or (min(span, self.period / 6.0) if events else span)
+        swing = float(packing.schedule_frequency(self.system))
+        seen = self.period / 6.0 if events else np.pi / (3.0 * swing) if swing > 0.0 else np.inf
+        largest = min(self.method.largest_step or np.inf, span, seen)
         records = (self.problem, self.rule, self.scratch, self.times, self.rows, self.events)
         return march, (*records, end, largest, 1e-14 * self.period, self.method.most_steps, BUDGET[0])
 

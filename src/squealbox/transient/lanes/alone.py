@@ -56,5 +56,6 @@ def slip_on(A, b, lane, j, sense, before, sliding):
     """Contact j slips from rest in the given sense; its force jumps from `before`."""
     push(A, b, lane, j, sense * sliding - before)
     A[b + (ROW_SLIPS + j) * WIDTH + lane] = sense
-    A[b + (ROW_FRESH + j) * WIDTH + lane] = 1.0
+    g = A[b + (ROW_OWN_G + j) * WIDTH + lane]
+    A[b + (ROW_FRESH + j) * WIDTH + lane] = 1e-8 * (rate_scale(A, b, lane, j) + g * abs(before))
     A[b + (ROW_PHI + j) * WIDTH + lane] = 0.0

@@ -72,7 +72,8 @@ def first_crossing(A, b, lane, j, h):
     """
     f0 = A[b + (ROW_PHI + j) * WIDTH + lane]
     f1 = A[b + (ROW_END + j) * WIDTH + lane]
-    fresh = j < CONTACTS and A[b + (ROW_FRESH + j) * WIDTH + lane] > 0.0
+    noise = A[b + (ROW_FRESH + j) * WIDTH + lane] if j < CONTACTS else 0.0
+    fresh = noise > 0.0
     if not smooth(A, b, lane, j):
         if not f0 > 0.0:
             return (0.0 if f1 <= 0.0 else 2.0), False
@@ -81,8 +82,7 @@ def first_crossing(A, b, lane, j, h):
         return 2.0, A[b + (ROW_INNER + j) * WIDTH + lane] <= 0.0
     b1 = f0 + h * A[b + (ROW_RATE + j) * WIDTH + lane] / 3.0
     b2 = f1 - h * A[b + (ROW_RATE_END + j) * WIDTH + lane] / 3.0
-    size = max(abs(b1), abs(b2), abs(f1))
-    if fresh and not b1 > -1e-9 * size:
+    if fresh and not 3.0 * b1 > -h * noise:
         return 0.0, False
     if not fresh and not f0 > 0.0:
         return 0.0, False

@@ -1,6 +1,7 @@
 """The text that tells whether a step is free of events, for the writer of the step in `step_text`."""
 
 from collections.abc import Sequence
+from math import comb
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,13 @@ def slope_weights(places: Sequence[float]) -> list[float]:
     """Weights of the values at these places for the slope at the last, 1, of the polynomial through them."""
     powers = np.vander(np.array(places), increasing=True).T
     return [float(x) for x in np.linalg.solve(powers, np.arange(float(len(places))))]
+
+
+def bernstein_weights(places: Sequence[float]) -> list[list[float]]:
+    """Weights of the values at these places for each Bernstein coefficient of the polynomial through them."""
+    degree, at = len(places) - 1, np.array(places)
+    values = [comb(degree, k) * at**k * (1.0 - at) ** (degree - k) for k in range(degree + 1)]
+    return [[float(x) for x in row] for row in np.linalg.inv(np.stack(values, axis=1))]
 
 
 class EventText(EquationText):
@@ -56,8 +64,7 @@ class EventText(EquationText):
             self.put(f"right{j} = value{j} - hh * rate1{j} * {1 / 3!r}")
             self.doubt(j, phi, self.sticks(j) if j < m else None)
             self.put(f"inner{j} = {inner}")
-            self.put(f"slack = 1e-9 * {fresh} * (abs(right{j}) + abs(value{j}))")
-            self.put(f"inside{j} = ({phi} + 3.0 * left{j} > -1.0 * slack) & (left{j} + right{j} > doubt{j})")
+            self.put(f"inside{j} = ({phi} + 3.0 * left{j} > -1.0 * hh * {fresh}) & (left{j} + right{j} > doubt{j})")
             self.put(f"inside{j} = inside{j} & (3.0 * right{j} + value{j} > 0.0) & (inner{j} > 0.0)")
             self.put(f"inside{j} = inside{j} | ({trust} > 0.5)")
             self.put(f"here{j} = {target} == {float(j)}")
@@ -128,14 +135,37 @@ class EventText(EquationText):
         """(value at the end, slopes at both ends, least value inside) of the function of a contact's mode."""
         end, stick = contact[-1], self.sticks(c)
         rates = self.first_rate(c, v, a, "t_"), self.first_rate(c, self.velocity, a1, "t_ + hh")
-        value = f"{self.row(f's{c}')} * {end['speed'][c]} + {stick} * {end['margin'][c]}"
-        inner = end["margin"][c]
-        for part in contact[:-1]:
-            inner = f"minimum({inner}, {part['margin'][c]})"
-        inner = f"where({stick} > 0.5, {inner}, 1.0)"
+        if not self.shape.along(c):
+            value, inner = f"1.0 - {self.row(f'open{c}')}" if self.shape.unilateral[c] else "1.0 + 0.0 * t_", "1.0"
+            rates = ("0.0 * t_", "0.0 * t_")
+        else:
+            noise = self.row(f"noise{c}")
+            value = f"{self.row(f's{c}')} * {end['speed'][c]} + {stick} * ({end['margin'][c]} + {noise})"
+            inner = end["margin"][c]
+            for part in self.inside_margins(c, contact):
+                inner = f"minimum({inner}, {part})"
+            inner = f"where({stick} > 0.5, {inner} + {noise}, 1.0)"
         if self.shape.unilateral[c]:
             value += f" - {self.row(f'open{c}')} * {end['normal'][c]}"
         return value, *rates, inner
+
+    def inside_margins(self, c: int, contact: Any) -> list[str]:
+        """The margin in each stage; under a schedule, whose dips are short, the Bernstein coefficients through some."""
+        if not self.shape.varying:
+            return [part["margin"][c] for part in contact[:-1]]
+        values = [self.row(f"phi{c}"), *(contact[k - 1]["margin"][c] for k in self.watched), contact[-1]["margin"][c]]
+        out = []
+        for k, weights in enumerate(bernstein_weights([0.0, *self.rule.c[self.watched], 1.0])[1:-1]):
+            terms = " + ".join(f"{w!r} * {x}" for w, x in zip(weights, values, strict=True))
+            self.put(f"coefficient{c}_{k} = {terms}")
+            out.append(f"coefficient{c}_{k}")
+        return out
+
+    @property
+    def watched(self) -> list[int]:
+        """Stages whose margins, with those at both ends, make a polynomial."""
+        inside = [k for k in range(1, self.rule.stages) if 0.2 < self.rule.c[k] < 0.95]
+        return self.probes if len(self.probes) > 1 else inside[:2]
 
     def first_rate(self, c: int, v: Any, a: Any, time: str) -> str:
         """Slope of the function of a contact's mode; that of a margin is not at hand."""

@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid
+from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta
 from squealbox.transient.lanes import alone, crossing, roots, samples, service
 from squealbox.transient.lanes.formulas import formulas
 from squealbox.transient.lanes.shape import LANES, Shape, layout, parameter_rows
@@ -49,7 +49,7 @@ PLACES = {
     "ROW_END": "end0", "ROW_RATE": "rate0", "ROW_RATE_END": "rate_end0", "ROW_INNER": "inner0", "ROW_FORCE":
     "force0", "ROW_ZERO": "zero0", "ROW_OWN_G": "own_g0", "ROW_NEXT_SAMPLE": "next", "ROW_SAMPLE": "sample",
     "ROW_HIGHEST": "highest", "ROW_CLOSE": "close", "ROW_PACE": "pace", "ROW_EARLY": "early0",
-    "ROW_EARLY_RATE": "early_rate0", "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0", "ROW_TERM": "term0_0",
+    "ROW_EARLY_RATE": "early_rate0", "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0", "ROW_NOISE": "noise0", "ROW_TERM": "term0_0",
 }  # fmt: skip
 
 
@@ -65,7 +65,7 @@ def source(shape: Shape) -> str:
     rows, step = layout(shape), TaylorStep(shape) if shape.taylor else Step(shape)
     fixed: dict[str, float] = {"WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples}
     fixed |= {"SERIES": shape.taylor, "TRIES": shape.exact and not shape.taylor}
-    fixed |= {"SIMPLE": shape.simple, "p.rigid[]": 0, "p.rigid_count": 0}
+    fixed |= {"SIMPLE": shape.simple, "STEPPED": shape.stepped, "p.rigid[]": 0, "p.rigid_count": 0}
     fixed |= {} if shape.varying else {"p.varying": 0}
     laws, schedules = {kind for kind, _ in shape.laws}, {kind for terms in shape.signals for kind, _ in terms}
     parts = [
@@ -87,7 +87,7 @@ def source(shape: Shape) -> str:
         parts += _engine.definitions(module, fixed)
     parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith("COMPLETED")]
     needed = {roots: fixed["TRIES"], crossing: fixed["TRIES"], alone: shape.simple}
-    needed |= {samples: shape.samples}
+    needed |= {samples: shape.samples, _runge_kutta: shape.stepped}
     for module in (*(each for each, used in needed.items() if used), service):
         parts += _engine.definitions(module, fixed, entries=("run",))
     return "\n\n".join(parts) + "\n"
@@ -121,7 +121,10 @@ def _gather(shape: Shape, places: dict[str, int]) -> str:
             put(f"p.g[{c}, {e}]", f"g{c}_{e}")
         for i in range(shape.laws[c][1]):
             put(f"p.law_coefficients[{c}, {i}]", f"law{c}_{i}")
-        put(f"p.static[{c}]", f"law{c}_0")
+        if shape.along(c):
+            put(f"p.static[{c}]", f"law{c}_0")
+        else:
+            lines.append(f"    p.static[{c}] = 0.0")
     put("p.smoothing", "width")
     put("p.window", "window")
     lines += _signals(shape, places)
@@ -141,14 +144,16 @@ def _one_contact(shape: Shape, places: dict[str, int]) -> list[str]:
     def value(c: int, name: str) -> str:
         return at(f"{name}{c}") if f"{name}{c}" in places else "0.0"
 
-    def scale(c: int) -> str:
-        return "".join(f" + abs({at(f't{c}_{i}')} * {at(f'v{i}')})" for i in range(shape.n) if f"t{c}_{i}" in places)
+    def scale(c: int, states: str = "v") -> str:
+        pairs = [(f"t{c}_{i}", f"{states}{i}") for i in range(shape.n) if f"t{c}_{i}" in places]
+        return "".join(f" + abs({at(row)} * {at(state)})" for row, state in pairs)
 
     answers = {
         "contact_normal": lambda c: value(c, "N0") + along(c, "n", "q"),
         "contact_speed": lambda c: value(c, "V") + along(c, "t", "v", "-"),
         "speed_scale": lambda c: f"abs({value(c, 'V')})" + scale(c),
         "slip_rate": lambda c: "0.0" + along(c, "t", "a", "-"),
+        "rate_scale": lambda c: "1e-300" + scale(c, "a"),
         "contact_static": lambda c: at(f"law{c}_0"),
     }
     texts = []

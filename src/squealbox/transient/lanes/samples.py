@@ -3,6 +3,23 @@
 # ruff: noqa: F821  (the places of the rows, DOFS and TERMS are generated)
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
+from squealbox.transient._motion import derivative
+from squealbox.transient._runge_kutta import take_step
+
+
+def on_step(A, b, lane, at, row, p, r, s):
+    """By a step of the method itself from the beginning of the lane's step, in the modes it had."""
+    room = p.mk.shape[0]
+    t0 = A[b + ROW_T_OLD * WIDTH + lane]
+    for i in range(DOFS):
+        s.state[i] = A[b + (ROW_Q_OLD + i) * WIDTH + lane]
+        s.state[room + i] = A[b + (ROW_Q_OLD + DOFS + i) * WIDTH + lane]
+    derivative(p, t0, s.state, s.mode, s, s.stage[0])
+    take_step(p, r, t0, max(at - t0, 0.0), s.state, s.mode, s, s.stage, s.state_new)
+    for i in range(DOFS):
+        row[i] = s.state_new[i]
+        row[DOFS + i] = s.state_new[room + i]
+
 
 def on_quintic(A, b, lane, at, row):
     """By the quintic of q, q' and q'' at both ends of the step."""

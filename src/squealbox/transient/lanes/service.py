@@ -12,16 +12,25 @@ import numpy as np
 from squealbox.transient._events import event_values
 from squealbox.transient._march import COMPLETED, INCONSISTENT, NOT_FINITE, RUNNING, STEP_LIMIT, UNDERFLOW, ZENO
 from squealbox.transient._modes import apply_event, start_modes
-from squealbox.transient._motion import INSIDE, OPEN, contact_matrix, derivative, list_sticking, share_out
+from squealbox.transient._motion import (
+    INSIDE,
+    OPEN,
+    STICK,
+    contact_matrix,
+    derivative,
+    force_noise,
+    list_sticking,
+    share_out,
+)
 from squealbox.transient._rigid import solve
 from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
-from squealbox.transient.lanes.samples import on_quintic, on_series
+from squealbox.transient.lanes.samples import on_quintic, on_series, on_step
 
 DONE, LOST, OVER, EVENT, LANDED, DUE = 1, 2, 4, 8, 16, 32
 
 
-def run(A, live, table, varies, fixed, times, samples, counter, total, out, p, s, stop, every):
+def run(A, live, table, varies, fixed, times, samples, counter, total, out, p, r, s, stop, every):
     """Advance all groups until no job is left, or until stop[0] is set; `live` counts the busy lanes of each group."""
     groups = live.shape[0]
     size = A.shape[0] // groups
@@ -40,7 +49,7 @@ def run(A, live, table, varies, fixed, times, samples, counter, total, out, p, s
                     flags = step(A, g * size)
                     if flags != 0:
                         live[g] -= serve(
-                            A, g * size, flags, table, varies, fixed, times, samples, counter, total, out, p, s
+                            A, g * size, flags, table, varies, fixed, times, samples, counter, total, out, p, r, s
                         )
             if busy == 0:
                 return True
@@ -48,7 +57,7 @@ def run(A, live, table, varies, fixed, times, samples, counter, total, out, p, s
             return False
 
 
-def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out, p, s):
+def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out, p, r, s):
     """Look after every flagged lane; returns how many of them found no further job."""
     idle = 0
     for lane in range(WIDTH):
@@ -56,7 +65,7 @@ def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out
             continue
         code = int(A[b + ROW_CODE * WIDTH + lane])
         if SAMPLES and code & DUE:
-            write_samples(A, b, lane, times, samples)
+            write_samples(A, b, lane, times, samples, p, r, s)
         ended = RUNNING
         if code & LOST:
             ended = UNDERFLOW if is_finite(A, b, lane) else NOT_FINITE
@@ -188,7 +197,8 @@ def refresh(A, b, lane, t, p, s):
         for c in range(CONTACTS):
             A[b + (ROW_OPENED + c) * WIDTH + lane] = 1.0 if s.mode[c] == OPEN else 0.0
             A[b + (ROW_SLIPS + c) * WIDTH + lane] = 0.0 if s.mode[c] == OPEN else float(s.mode[c])
-            A[b + (ROW_FRESH + c) * WIDTH + lane] = float(s.fresh[c])
+            A[b + (ROW_FRESH + c) * WIDTH + lane] = s.leave[c] if s.fresh[c] else 0.0
+            A[b + (ROW_NOISE + c) * WIDTH + lane] = force_noise(p, c, s.state, s) if s.mode[c] == STICK else 0.0
             A[b + (ROW_PHI + c) * WIDTH + lane] = 0.0 if s.fresh[c] else s.phi[c]
             if FUNCTIONS > CONTACTS:
                 A[b + (ROW_PHI + CONTACTS + c) * WIDTH + lane] = s.phi[p.contacts + c]
@@ -254,13 +264,18 @@ def finish(A, b, lane, ended, out):
         out[job, 5 + 2 * DOFS + k] = A[b + (ROW_OBSERVED + k) * WIDTH + lane]
 
 
-def write_samples(A, b, lane, times, samples):
+def write_samples(A, b, lane, times, samples, p, r, s):
     """State at the instants that lie in the step just taken."""
     job = int(A[b + ROW_JOB * WIDTH + lane])
+    if STEPPED:
+        gather(A, b, lane, p, s)
+        load_state(A, b, lane, p, s)
     k = int(A[b + ROW_SAMPLE * WIDTH + lane])
     while k < times.shape[0] and times[k] <= A[b + ROW_T * WIDTH + lane]:
         if SERIES:
             on_series(A, b, lane, times[k], samples[job, k])
+        elif STEPPED:
+            on_step(A, b, lane, times[k], samples[job, k], p, r, s)
         else:
             on_quintic(A, b, lane, times[k], samples[job, k])
         k += 1

@@ -56,6 +56,15 @@ class Shape:
         """Whether the usual event can be decided on the rows alone: constant signals, no contact that opens."""
         return self.exact and not self.varying and not any(self.unilateral)
 
+    def along(self, c: int) -> bool:
+        """Whether contact c has a direction along which it can stick."""
+        return all(any(f"{name}{c}_{i}" in self.present for i in range(self.n)) for name in ("t", "d"))
+
+    @property
+    def stepped(self) -> bool:
+        """Whether samples are steps of the method itself: an interpolation by values and slopes is coarser than it."""
+        return self.samples and self.tableau == "dormand-prince-8"
+
     @property
     def functions(self) -> int:
         """How many event functions there are."""
@@ -115,6 +124,7 @@ def layout(shape: Shape) -> Rows:
         rows.add(*(f"s{c}" for c in range(m)), *(f"open{c}" for c in range(m)))
         rows.add(*(f"force{c}" for c in range(m)))
         rows.add(*(f"h{c}_{b}" for c in range(m) for b in range(m)))
+        rows.add(*(f"noise{c}" for c in range(m)))
         for name in ("phi", "fresh", "end", "rate", "rate_end", "inner"):
             rows.add(*(f"{name}{j}" for j in range(shape.functions)))
     if shape.samples:

@@ -151,7 +151,8 @@ def _tolerances(system: System, method: Method, values: dict[str, Any], exact: b
     else:
         out |= {f"atol{k}": velocity / highest if k < n else np.asarray(velocity) for k in range(2 * n)}
     period = 2.0 * np.pi / pace
-    largest = np.minimum(duration, period / 6.0) if exact else np.full(np.shape(period), duration)
+    seen = period / 6.0 if exact else np.pi / (3.0 * np.maximum(swing, 1e-300)) + 0.0 * period
+    largest = np.minimum(duration, seen)
     if method.tableau == TAYLOR:
         longest = np.minimum(PARTS * period / 6.0, ANGLE / np.maximum(swing, 1e-300))
         largest = np.minimum(duration, longest)

@@ -109,7 +109,7 @@ class TaylorStep(EquationText):
 
     def margin(self, c: int, k: int, normal: str) -> str:
         """How far a sticking contact is below its limit on either side: two series without a corner."""
-        self.put(f"limit{c} = {self.row(f'law{c}_0')} * {normal}")
+        self.put(f"limit{c} = {self.row(f'law{c}_0')} * {normal} + {self.row(f'noise{c}')}")
         self.put(f"below{c}, above{c} = limit{c} - hold{c}_{k}, limit{c} + hold{c}_{k}")
         return f"below{c}"
 
@@ -154,7 +154,10 @@ class TaylorStep(EquationText):
         s, stick, normal = self.row(f"s{c}"), self.sticks(c), found["normal"][c]
         wide = f" - {self.row(f'open{c}')} * {normal}" if self.shape.unilateral[c] else ""
         held = "" if self.gliding else f" + {stick} * below{c}"
-        self.put(f"phi{c} = {s} * {found['speed'][c]}{held}{wide}")
+        if self.shape.along(c):
+            self.put(f"phi{c} = {s} * {found['speed'][c]}{held}{wide}")
+        else:
+            self.put(f"phi{c} = {s} * {s}{wide}")
         slips = f"where({s} * {s} > 0.5, {normal}, 1.0)" if wide else "1.0"
         self.put(f"psi{c} = {slips if self.gliding else f'where({stick} > 0.5, above{c}, {slips})'}")
         return f"phi{c}", f"psi{c}"

@@ -15,7 +15,7 @@ from squealbox.transient.lanes.batch import stacked
 from squealbox.transient.lanes.shape import LANES, layout
 from squealbox.transient.lanes.table import Jobs, tabulate
 from squealbox.transient.limited import in_time
-from squealbox.transient.methods import Method
+from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.observers import Observer
 
 BLOCK = 65_536  # trajectories whose parameters lie in memory together
@@ -83,7 +83,8 @@ class Work:
         from squealbox.transient.lanes.kernel import lane_kernel
 
         kernel = lane_kernel(jobs.shape)
-        rule = packing.pack(jobs.template, self.method, self.scheme, self.width, False)
+        record = packing.pack(jobs.template, self.method, self.scheme, self.width, False)
+        rule = packing.rule("dormand-prince-8" if self.method.tableau == TAYLOR else self.method.tableau)
         counter, stop = np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64)
         rows = layout(jobs.shape)
         size = len(rows) * LANES
@@ -95,10 +96,10 @@ class Work:
                 lanes, live = _on_a_line(GROUPS * size), np.zeros(GROUPS, dtype=np.int64)
                 lanes[rows.places["alive"] * LANES] = -1.0
                 n = jobs.shape.n
-                scratch = packing.scratch(rule, np.zeros(n), np.zeros(n), self.begin, 0.0)
+                scratch = packing.scratch(record, np.zeros(n), np.zeros(n), self.begin, 0.0)
                 kernel(
                     lanes, live, jobs.table, jobs.varies, jobs.fixed, self.times, samples, counter, count, out,
-                    rule.copy(), scratch, stop, EVERY,
+                    record.copy(), rule, scratch, stop, EVERY,
                 )  # fmt: skip
             except BaseException as error:  # handed to the caller below
                 failures.append(error)
