@@ -150,9 +150,8 @@ class Equilibrium:
     q (..., n) [m]; normal_force, sliding_speed and friction (..., contacts) in N, m/s and -; exists (...) bool;
     outcome "completed", "singular" (K_eff cannot be solved), "no_sliding" (a contact has V = 0, so any force up to the
     static limit balances) or "no_convergence"; with leading axes the outcome names the worst entry.
-
-    floating (...) is the number of rigid-body freedoms: motions that no spring and no contact feels. Where the forces
-    do not push along them, steady sliding is known but for such a motion, and q is the one of least length.
+    floating (...) counts rigid-body freedoms: motions that no spring and no contact feels and no force drives. Steady
+    sliding is known but for them, and q is the one of least length.
     """
 
     q: Any

@@ -47,8 +47,6 @@ def cycle(file: Path, *, exponents: int = 0, changes: Changes = (), out: Path | 
     print("Floquet multipliers: " + ", ".join(f"{value:.6g}" for value in np.abs(result.multipliers)) + " (absolute)")
     if exponents:
         print(_beside_multipliers(result, exponents))
-    if result.caution:
-        print(f"Note: {result.caution}")
     if out is not None:
         from squealbox import plots
 

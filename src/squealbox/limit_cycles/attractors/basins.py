@@ -79,6 +79,8 @@ class Basin(Result):
         """The share that vibrates, and a line for each attractor."""
         if self.outcome == "no_sliding":
             return f"{self.outcome}: {self.outcome.message}"
+        if len(self.attractor) and np.all(self.attractor == len(self.kind)):
+            return f"every one of {len(self.attractor)} runs failed: {self.outcome.message or self.outcome}"
         low, high = self.interval
         lines = [f"{100 * float(self.share):.1f} % of {len(self.attractor)} starts vibrate "
                  f"({100 * low:.1f} to {100 * high:.1f} %)"]  # fmt: skip

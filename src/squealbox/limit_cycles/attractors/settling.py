@@ -115,7 +115,7 @@ class Scales:
         system = batch.system
         n = system.size
         modes, state = complex_modes(system), equilibrium(system)
-        growth = np.max(modes.eigenvalues.real, axis=-1)
+        growth = modes.largest_growth_rate
         frequency = np.where(modes.angular_frequency > 0.0, modes.angular_frequency, np.inf)
         slowest = np.min(frequency, axis=-1)
         own = np.sqrt(np.abs(np.max(np.abs(np.linalg.eigvals(np.linalg.solve(system.M, system.K))), axis=-1)))
