@@ -28,7 +28,6 @@ def blocks(found: Records) -> tuple[Any, ...]:
         Section("What it shows, and whether this program shows it", (_findings(found),)),
         Section("Its fifteen claims, each once", (
             Tiles(_tiles(found, once)),
-            Text(tally(found, once)),
             _table(once),
             Section("By reading, with both measures of amplitude", (_by_reading(found),), folded=True),
             *(Section(f"{each['id']}: every number, its tolerance and why", _details(each["id"], found), folded=True)
@@ -49,9 +48,11 @@ def tally(found: Records, once: Records) -> str:
     measures = "; ".join(
         f"{measure}: {len(record.met_by_reading(found, measure)[most])}" for measure in AMPLITUDES
     )  # fmt: skip
-    inferred = " It is inferred from these numbers, so they are no test of it." if most in INFERRED else ""
+    inferred = (
+        f" {shown_name(most)} is inferred from these numbers, so they are no test of it." if most in INFERRED else ""
+    )
     return (
-        f"{len(own[most])} of {len(once)} by one reading ({shown_name(most)}; amplitudes read as {measures}), "
+        f"{len(own[most])} of {len(once)} numbers by one reading ({shown_name(most)}; amplitudes read as {measures}), "
         f"{len(met)} by some reading ({', '.join(met)}), {len(excluded)} excluded by theorem beside claims "
         f"that are met ({', '.join(excluded) or 'none'}), the rest open ({', '.join(rest) or 'none'}).{inferred} "
         f"The best of the printed readings, {shown_name(best)}, meets {len(printed[best])}."

@@ -68,10 +68,10 @@ def reconstruction(searched: Any, whole: Any, pictures: Any) -> tuple[Any, ...]:
         for name, what in zip(INFERRED, WHAT, strict=True)
     )
     signs, by_chance = family_search.stiffness_only()
-    words = ", ".join("".join("+" if s > 0 else "-" for s in family_search.SIGNS[i]) for i in signs)
+    words = " or ".join(", ".join("+" if s > 0 else "-" for s in family_search.SIGNS[i]) for i in signs)
     structure = (
         f"One structural finding: of the sixteen combinations of sign that friction can have in Eq. (3), exactly "
-        f"{len(signs)} ({words}, with the sign of sliding) meets the onset, both frequencies at mu = 0.1 and at "
+        f"{len(signs)} ({words} with the sign of sliding) meets the onset, both frequencies at mu = 0.1 and at "
         f"0.3 and the distance before the onset. Scrambled numbers are met as well in {by_chance:.0%} of the cases."
     )
     return (

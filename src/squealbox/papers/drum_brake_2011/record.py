@@ -123,8 +123,7 @@ def shown(part: Part | Mapping[str, Any], value: float | bool | None) -> str:
 
 
 def _best(found: list[Record]) -> Record:
-    order = (AGREE, UNDECIDED, DISAGREE)
-    best = min(found, key=lambda each: (order.index(each["verdict"]), -_share(each)))
+    best = min(found, key=lambda each: (each["verdict"] != AGREE, -_share(each), _miss(each)))
     agree = [each["reading"] for each in found if each["verdict"] == AGREE]
     otherwise = [
         each["reading"] for each in found if each["reading"] not in agree and AGREE in each["as"].values()
@@ -151,6 +150,16 @@ def _share(each: Record) -> float:
         if road in each["deciding"]
     ]
     return verdicts.count(AGREE) / len(verdicts)
+
+
+def _miss(each: Record) -> float:
+    """The mean distance of the numbers that count from the published ones, as a share; infinite without an answer."""
+    misses = [
+        abs(float(answer["computed"]) / float(part["published"]) - 1.0)
+        for part in each["parts"] if part["published"] is not True and part["published"]
+        for road, answer in part["roads"].items() if road in each["deciding"] and answer["computed"] is not None
+    ]  # fmt: skip
+    return float(np.mean(misses)) if misses else np.inf
 
 
 def _record(claim: Claim, reading: str, findings: Mapping[str, Any], measure: str) -> Record:
