@@ -7,6 +7,7 @@ from typing import Any
 
 from squealbox.files.analyses import Axis, Modes, Simulate
 from squealbox.files.arrays import TRIANGLES
+from squealbox.files.measurements import measurement_schemas
 from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES, STUDY
 from squealbox.files.sheets import LAW_NAMES, OWN, SCHEDULE_NAMES, field_type, is_required
@@ -44,6 +45,7 @@ def json_schema() -> Schema:
         STUDY: _study(),
         "scatter": scatter_schema(_sheet),
         "optimise": optimise_schema(_sheet),
+        **measurement_schemas(),
     }
     brakes = [_sheet(brake, first={"brake": {"const": name}}, more=sections) for name, brake in BRAKES.items()]
     return {
