@@ -172,7 +172,12 @@ class Slow:
         for i in range(len(places)):
             if column[i] <= 0.0:
                 return places[0] if i == 0 else brentq(function, places[i - 1], places[i], xtol=1e-15)
-            if 0 < i < len(places) - 1 and places[i - 1] < places[i + 1] and column[i] <= column[i - 1] and column[i] <= column[i + 1]:
+            if (
+                0 < i < len(places) - 1
+                and places[i - 1] < places[i + 1]
+                and column[i] <= column[i - 1]
+                and column[i] <= column[i + 1]
+            ):
                 low = minimize_scalar(function, bounds=(places[i - 1], places[i + 1]), method="bounded",
                                       options={"xatol": 1e-10})  # fmt: skip
                 if low.fun <= 0.0:

@@ -2,6 +2,7 @@
 # A room with more names than the story needs is public as a whole: `squealbox.friction.Table`, `squealbox.schedules.Table`.
 
 from . import (
+    calibration,
     designs,
     fe,
     files,
@@ -15,6 +16,7 @@ from . import (
     studies,
     transient,
 )
+from .calibration import Calibration, Measured, calibrate, compare
 from .contacts import Contacts
 from .continuation import Follower, follow
 from .designs import (
@@ -49,7 +51,18 @@ from .parameters import ParameterError
 from .plots import plot
 from .result import Outcome, Result
 from .schedules import Constant, Ramp, Schedule, Sinusoid
-from .signals import peaks, sound, sound_level, spectrogram, spectrum
+from .signals import (
+    Recording,
+    SquealEvents,
+    noise_matrix,
+    peaks,
+    read_recording,
+    sound,
+    sound_level,
+    spectrogram,
+    spectrum,
+    squeal_events,
+)
 from .stability import (
     Boundary,
     ComplexModes,
@@ -224,6 +237,17 @@ __all__ = [
     "spectrogram",
     "sound",
     "sound_level",
+    # what was measured: recordings, the squeal in them, and the parameters that fit
+    "read_recording",
+    "Recording",
+    "squeal_events",
+    "SquealEvents",
+    "noise_matrix",
+    "calibration",
+    "Measured",
+    "calibrate",
+    "Calibration",
+    "compare",
     # any result as a figure
     "plots",
     "plot",

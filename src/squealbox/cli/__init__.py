@@ -37,6 +37,14 @@ COMMANDS = {
     "scatter": Command("uncertainty", "scatter", "parameters scatter: how probable is squeal, and which matters?"),
     "optimise": Command("optimising", "optimise", "the best design within bounds: before and after, or a Pareto front"),
     "fit": Command("fitting", "fit", "measured friction coefficients (CSV) to a friction law, with confidence bands"),
+    "events": Command(
+        "recordings", "events", "squeal events in recordings: when, which frequency, how loud, how quick"
+    ),
+    "noise": Command("recordings", "noise", "a folder of stops: how often it squeals, at which speed and pressure"),
+    "calibrate": Command("calibrating", "calibrate", "parameters fitted to what was measured, with what stays open"),
+    "compare": Command(
+        "calibrating", "compare_", "a design beside the squeal of a recording: frequency, growth, level"
+    ),
     "cycle": Command("cycles", "cycle", "what the motion settles to: the limit cycle, its stability, figure and data"),
     "report": Command("reports", "report", "a design examined from every side, or any result, as one HTML page"),
     "listen": Command("listening", "listen", "the motion as sound at its true frequency (WAV), and how loud it may be"),

@@ -12,6 +12,7 @@ from squealbox.designs import DESIGNS, Design
 from squealbox.files import analyses, countermeasures
 from squealbox.files.assembled import ASSEMBLED, read_assembled
 from squealbox.files.document import Document, document_of, open_document
+from squealbox.files.measurements import Calibrated, Recorded, read_calibrated, read_recorded
 from squealbox.files.mechanism import OwnMechanism
 from squealbox.files.numbers import WRONG, read_choice, wrong
 from squealbox.files.own_brake import OwnBrake
@@ -30,6 +31,8 @@ SECTIONS: dict[str, Callable[..., Any]] = {
     "simulate": analyses.read_simulate,
     "scatter": read_scatter,
     "optimise": read_optimise,
+    "calibrate": read_calibrated,
+    "recording": read_recorded,
 }
 
 
@@ -46,6 +49,8 @@ class DesignFile:
     simulate: analyses.Simulate | None = None
     scatter: Scattered | None = None
     optimise: Optimise | None = None
+    calibrate: Calibrated | None = None
+    recording: Recorded | None = None
     study: bool = False  # does it hold a [study], which `study.read_study` reads?
 
 
@@ -60,7 +65,7 @@ def read_design(path: str | os.PathLike[str], *, allow_code: bool = False) -> De
 
 def read_file(path: str | os.PathLike[str], *, allow_code: bool = False) -> DesignFile:
     """The brake that the file at `path` describes, and its sections: [modes], [onset], [branch], [map],
-    [simulate], [scatter] and [optimise].
+    [simulate], [scatter], [optimise], [calibrate] and [recording].
 
     A friction law that is Python code (``law = "own"``) is run only with `allow_code`.
     Raises `DesignFileError`, whose `problems` are all that is wrong with the file, each with line, key and a sentence.

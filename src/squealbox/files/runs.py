@@ -53,7 +53,7 @@ def _quickest(system: System) -> float:
 
 
 def run(system: System, settings: Simulate, *, points: Any = None) -> Trajectory:
-    """The motion at `points` instants, a number of equal steps or the instants; by default as many as the section says."""
+    """The motion at `points`, a number of equal steps or the instants; by default as many as the section says."""
     return simulate(
         system,
         settings.duration,

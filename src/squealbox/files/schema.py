@@ -10,6 +10,7 @@ from squealbox.files import countermeasures
 from squealbox.files.analyses import Axis, Modes, Simulate
 from squealbox.files.arrays import TRIANGLES
 from squealbox.files.assembled import ASSEMBLED
+from squealbox.files.measurements import measurement_schemas
 from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES, STUDY
 from squealbox.files.sheets import LAW_NAMES, OWN, SCHEDULE_NAMES, field_type, is_required
@@ -48,6 +49,7 @@ def json_schema() -> Schema:
         "scatter": scatter_schema(_sheet),
         "optimise": optimise_schema(_sheet),
         **countermeasures.schemas(_field),
+        **measurement_schemas(),
     }
     brakes = [_sheet(brake, first={"brake": {"const": name}}, more=sections) for name, brake in BRAKES.items()]
     return {

@@ -1,11 +1,17 @@
-"""What a signal holds: spectrum, peaks, spectrogram, frequency, growth rate, sound and how loud. Depends on: result.
+"""What a signal holds: spectrum, peaks, growth rate, sound and how loud; recordings, and the squeal events in them.
+
+Depends on: result.
 
 Every function takes an array with its times ``t`` [s] or its sampling rate [Hz], or anything with ``.t`` and ``.q``,
 such as a trajectory, of which ``dof`` names one column. Fourier methods need equal time steps and refuse others.
 """
 
+from squealbox.signals.events import SquealEvents, squeal_events
 from squealbox.signals.growth import GrowthRate, dominant_frequency, growth_rate, highest_line, slope, with_error
+from squealbox.signals.noise import NoiseMatrix, noise_matrix
 from squealbox.signals.radiation import SoundLevel, a_weighting, piston_efficiency, sound_level
+from squealbox.signals.recordings import Recording, read_recording
+from squealbox.signals.rendering import rendered
 from squealbox.signals.samples import LEAST, Samples, SignalError, column, equal_steps, samples, values
 from squealbox.signals.spectra import Peaks, Spectrogram, Spectrum, peaks, spectrogram, spectrum
 from squealbox.signals.wav import audible, sixteen_bits, sound
@@ -13,12 +19,15 @@ from squealbox.signals.wav import audible, sixteen_bits, sound
 __all__ = [
     "LEAST",
     "GrowthRate",
+    "NoiseMatrix",
     "Peaks",
+    "Recording",
     "Samples",
     "SignalError",
     "SoundLevel",
     "Spectrogram",
     "Spectrum",
+    "SquealEvents",
     "a_weighting",
     "audible",
     "column",
@@ -26,8 +35,11 @@ __all__ = [
     "equal_steps",
     "growth_rate",
     "highest_line",
+    "noise_matrix",
     "peaks",
     "piston_efficiency",
+    "read_recording",
+    "rendered",
     "samples",
     "sixteen_bits",
     "slope",
@@ -35,6 +47,7 @@ __all__ = [
     "sound_level",
     "spectrogram",
     "spectrum",
+    "squeal_events",
     "values",
     "with_error",
 ]

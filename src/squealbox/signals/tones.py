@@ -203,6 +203,9 @@ class _Floor:
 
     def of(self, power: Any) -> Any:
         levels = np.maximum(np.sort(power[self.sample], axis=1)[:, 32], 1e-30)
+        if levels.size >= 5:  # a wide line that fills a band is not its noise
+            around = np.lib.stride_tricks.sliding_window_view(np.pad(levels, 2, mode="edge"), 5)
+            levels = np.sort(around, axis=1)[:, 2]
         level = np.interp(self.place, self.middles, levels)
         if levels.size > 1 and levels[0] > levels[1]:  # red noise goes on rising below the first band
             slope = np.log(levels[1] / levels[0]) / np.log(self.middles[1] / self.middles[0])

@@ -1,0 +1,22 @@
+"""From measurements to parameters: what a brake must be like to do what was measured. Depends on: stability, transient,
+studies, signals, friction, system, result, parameters.
+
+Measured numbers with their standard deviations go in, a design whose parameters are known as well as the data allow
+comes out, with intervals and with what the data cannot tell apart in words.
+"""
+
+from squealbox.calibration.calibrate import Calibration, calibrate
+from squealbox.calibration.comparison import Comparison, compare, modal_assurance
+from squealbox.calibration.measured import QUANTITIES, Measured, from_events, from_signal
+
+__all__ = [
+    "QUANTITIES",
+    "Calibration",
+    "Comparison",
+    "Measured",
+    "calibrate",
+    "compare",
+    "from_events",
+    "from_signal",
+    "modal_assurance",
+]

@@ -1,0 +1,138 @@
+"""Simulated and measured side by side: frequency, growth, level; and mode shapes by the modal assurance criterion.
+
+    MAC(a, b) = |a^H b|^2 / ((a^H a) (b^H b))
+
+1 for the same shape, 0 for shapes that have nothing in common. Source: R. J. Allemang, D. L. Brown 1982, Proc. 1st
+International Modal Analysis Conference, 110-116.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.result import Outcome, Result, quantity
+from squealbox.signals import SignalError, dominant_frequency, growth_rate, sound_level
+
+UNITS = {"frequency": "Hz", "growth rate": "1/s", "level": "dB(A)"}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Comparison(Result):
+    """What was simulated beside one measured event; a number one of the two does not have is NaN."""
+
+    simulated: Any = quantity("row", "", "what the model says")
+    measured: Any = quantity("row", "", "what was measured")
+    error: Any = quantity("row", "", "95 % error of the measured number; NaN where it has none")
+    away: Any = quantity("row", "1", "their distance in standard deviations")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The rows: frequency, growth rate, level."""
+        return tuple(self.settings["rows"])
+
+    def summary(self) -> str:
+        """A table, one line for each number."""
+        lines = [f"{'':12}  {'simulated':>12}  {'measured':>12}  {'95 % error':>10}  distance"]
+        for i, name in enumerate(self.names):
+            numbers = "  ".join(
+                "-".rjust(w) if not np.isfinite(x) else f"{x:{w}.{p}g}"
+                for x, w, p in ((self.simulated[i], 12, 7), (self.measured[i], 12, 7), (self.error[i], 10, 2))
+            )
+            away = (
+                f"{self.away[i]:+.1f} sd"
+                if np.isfinite(self.away[i])
+                else f"{self.simulated[i] - self.measured[i]:+.3g}"
+            )
+            lines.append(
+                f"{name:12}  {numbers}  {away if np.isfinite(self.simulated[i] - self.measured[i]) else '-'}"
+                f"  {UNITS[name]}"
+            )
+        head = [] if self.outcome.ok else [f"{self.outcome}: {self.outcome.message}"]
+        return "\n".join([*head, *lines, *self.settings["notes"]])
+
+    def __repr__(self) -> str:
+        return self.summary()
+
+
+def compare(simulated: Any, events: Any, *, event: int | None = None, dof: int | str = 0) -> Comparison:
+    """A motion, a limit cycle or modes beside a squeal event.
+
+    Parameters
+    ----------
+    simulated : a trajectory (its frequency over the last quarter, its growth over all of it and the level it would
+        make), a limit cycle (its frequency), or complex modes (frequency and growth of the one that grows fastest)
+    events : `SquealEvents`
+    event : which of them; left out, the loudest
+    dof : of a motion, the degree of freedom that is heard
+
+    Raises `SignalError` when there is no such event.
+    """
+    if events.count == 0:
+        raise SignalError(f"there is nothing to compare with: {events.outcome.message or 'no event'}")
+    index = int(np.argmax(events.level)) if event is None else event
+    if not 0 <= index < events.count:
+        raise SignalError(f"event = {event}: expected one of {events.count} events")
+    notes: list[str] = []
+    model = _said(simulated, dof, notes)
+    measured = [float(events.frequency[index]), float(events.growth_rate[index]), float(events.level[index])]
+    errors = [float(events.frequency_error[index]), float(events.growth_error[index]), np.nan]
+    if events.settings["unit"] != "dB(A)":
+        model[2] = np.nan
+        notes.append("levels are not compared: the recording has no calibration")
+    elif np.isfinite(model[2]):
+        notes.append("the simulated level is that of a plain piston: differences of levels mean more than levels")
+    sd = np.array(errors) / 1.96
+    with np.errstate(divide="ignore", invalid="ignore"):
+        away = np.where(sd > 0.0, (np.array(model) - measured) / sd, np.nan)
+    told = np.any(np.isfinite(model))
+    outcome = Outcome() if told else Outcome("nothing_to_compare", "what was simulated has no frequency")
+    return Comparison(
+        simulated=np.array(model), measured=np.array(measured), error=np.array(errors), away=away,
+        settings={"rows": list(UNITS), "event": index, "notes": notes}, outcome=outcome,
+    )  # fmt: skip
+
+
+def modal_assurance(shapes: Any, others: Any) -> Any:
+    """MAC of every column of `shapes` (n, k) with every column of `others` (n, m): shape (k, m).
+
+    Raises `SignalError` when the shapes have different numbers of rows, or one is nothing but zeros.
+
+    >>> modal_assurance([[1.0, 0.0], [1.0, 1.0]], [[2.0], [2.0]]).round(3).tolist()
+    [[1.0], [0.5]]
+    """
+    a, b = (np.atleast_2d(np.asarray(each, dtype=complex)) for each in (shapes, others))
+    if a.shape[0] != b.shape[0]:
+        raise SignalError(f"shapes of {a.shape[0]} and {b.shape[0]} places: expected the same places in both")
+    own, theirs = (np.sum(np.abs(each) ** 2, axis=0) for each in (a, b))
+    if not (np.all(own > 0.0) and np.all(theirs > 0.0)):
+        raise SignalError("a mode shape is nothing but zeros: expected motion somewhere")
+    return np.abs(a.conj().T @ b) ** 2 / np.outer(own, theirs)
+
+
+def _said(simulated: Any, dof: int | str, notes: list[str]) -> list[float]:
+    """Frequency, growth rate and level of what was simulated; NaN for what it does not have."""
+    if hasattr(simulated, "most_unstable"):
+        mode = simulated.most_unstable
+        return [float(mode.frequency), float(mode.growth_rate), np.nan]
+    if hasattr(simulated, "period"):
+        if not simulated.outcome.ok:
+            notes.append(f"the limit cycle ended with {simulated.outcome}")
+            return [np.nan] * 3
+        return [1.0 / float(simulated.period), np.nan, np.nan]
+    if not (hasattr(simulated, "t") and hasattr(simulated, "q")):
+        raise SignalError(f"{type(simulated).__name__}: expected a trajectory, a limit cycle or complex modes")
+    late = float(simulated.t[-1] - 0.25 * (simulated.t[-1] - simulated.t[0]))
+    found = [np.nan] * 3
+    try:
+        found[0] = dominant_frequency(simulated, dof=dof, begin=late)
+        growth = growth_rate(simulated, dof=dof)
+        if growth.steady:
+            found[1] = growth.rate
+        else:
+            notes.append("the motion has no one growth rate")
+        if hasattr(simulated, "qd"):
+            found[2] = float(sound_level(simulated, dof=dof, begin=late).weighted)
+    except SignalError as error:
+        notes.append(str(error))
+    return found

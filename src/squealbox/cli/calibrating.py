@@ -1,0 +1,108 @@
+"""`squealbox calibrate` and `squealbox compare`: a design beside what was measured of the brake."""
+
+from pathlib import Path
+
+from squealbox.calibration import Measured, compare, from_events
+from squealbox.calibration import calibrate as fitted
+from squealbox.cli.inputs import AllowCode, Changes, read
+from squealbox.cli.progress import Progress
+from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.files import DesignFile, write_design
+from squealbox.files.measurements import Recorded
+from squealbox.files.runs import run_closely
+from squealbox.signals import SignalError, SquealEvents, read_recording, squeal_events
+from squealbox.stability import complex_modes
+
+
+def calibrate(
+    file: Path,
+    *,
+    out: Path | None = None,
+    heard: bool = False,
+    changes: Changes = (),
+    allow_code: AllowCode = False,
+) -> None:
+    """Fit parameters to what was measured: values, intervals, and what the data cannot tell apart.
+
+    Parameters
+    ----------
+    file
+        design file with a section [calibrate]
+    out
+        design file with the fitted values
+    heard
+        take frequency and growth of the loudest event of the [recording] as measured too
+    changes
+        other values for this run: --set load1=900
+    allow_code
+        run the Python file of a friction law that the design file names
+    """
+    found = read(file, changes, allow_code)
+    if found.calibrate is None:
+        raise UsageError(f"{file}: has no section [calibrate], which says what is fitted to what")
+    measured: list[Measured] = list(found.calibrate.measured)
+    if heard:
+        events = _events(found)
+        measured += from_events(events, int(events.level.argmax())) if events.count else []
+    with Progress("calibrating"):
+        result = fitted(found.design, found.calibrate.parameters, measured, loss=found.calibrate.loss)
+    if result.outcome == "no_fit":
+        raise ComputationFailed(result.outcome)
+    print(result.summary())
+    if out is not None:
+        write_design(result.design, out)
+        print(f"written: {out}")
+
+
+def compare_(
+    file: Path,
+    recording: Path | None = None,
+    *,
+    unit: str = "Pa",
+    full_scale: float | None = None,
+    changes: Changes = (),
+    allow_code: AllowCode = False,
+) -> None:
+    """The modes and the motion of a design beside the loudest squeal event of a recording.
+
+    Parameters
+    ----------
+    file
+        design file; its section [simulate] says what is run, [recording] what it is compared with
+    recording
+        another recording than that of the section
+    unit
+        unit of that recording
+    full_scale
+        what its full scale is worth
+    changes
+        other values for this run
+    allow_code
+        run the Python file of a friction law that the design file names
+    """
+    found = read(file, changes, allow_code)
+    events = _events(found, recording, unit, full_scale)
+    try:
+        print(f"modes\n{compare(complex_modes(found.design), events).summary()}")
+        if found.simulate is not None:
+            with Progress("simulating"):
+                motion = run_closely(found.design.system(), found.simulate)
+            print(f"motion\n{compare(motion, events).summary()}")
+    except SignalError as error:
+        raise UsageError(str(error)) from error
+
+
+def _events(
+    found: DesignFile, recording: Path | None = None, unit: str = "Pa", full_scale: float | None = None
+) -> SquealEvents:
+    about = found.recording
+    if about is None and recording is None:
+        raise UsageError(f"{found.path}: has no section [recording], and no recording is named")
+    if recording is not None or about is None:
+        about = Recorded(str(recording), unit, full_scale)
+    path = Path(about.file) if recording is not None else found.path.parent / about.file
+    try:
+        sound = read_recording(path, unit=about.unit, full_scale=about.full_scale, rate=about.rate)
+        return squeal_events(sound, channel=about.channel, band=about.band, least_level=about.least_level)
+    except SignalError as error:
+        raise UsageError(str(error)) from error
