@@ -36,9 +36,11 @@ def html(modes: "ComplexModes") -> str:
 def _rows(modes: "ComplexModes") -> tuple[tuple[int, ...], list[tuple[str, ...]]]:
     entry = modes.most_unstable.entry
     values = modes.eigenvalues[entry]
-    scale = np.max(np.abs(values))
+    scale = np.nanmax(np.abs(values), initial=0.0)
     rows: list[tuple[str, ...]] = []
     for i, value in enumerate(values[: len(values) // 2]):
+        if np.isnan(value):
+            continue  # at infinity: a freedom without mass
         growth = value.real if abs(value.real) > 1e-12 * scale else 0.0
         ratio = -100.0 * growth / abs(value) if value != 0.0 else 0.0
         mark = "unstable" if growth > 0.0 else ""
