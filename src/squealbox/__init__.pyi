@@ -3,11 +3,14 @@
 
 from . import (
     calibration,
+    control,
+    countermeasures,
     designs,
     fe,
     files,
     friction,
     limit_cycles,
+    loops,
     plots,
     quantities,
     schedules,
@@ -19,6 +22,21 @@ from . import (
 from .calibration import Calibration, Measured, calibrate, compare
 from .contacts import Contacts
 from .continuation import Follower, follow
+from .control import ClosedLoop, closed_loop
+from .countermeasures import (
+    AddedDamping,
+    AddedMass,
+    AddedStiffness,
+    Asymmetry,
+    BestAbsorber,
+    Controlled,
+    Dithered,
+    LayerDamping,
+    NormalDither,
+    Shim,
+    TunedMass,
+    best_absorber,
+)
 from .designs import (
     BlockChain,
     DampingParadox,
@@ -47,8 +65,10 @@ from .files import Body, OwnBrake, OwnContact, OwnLaw, OwnMechanism, Spring, Tou
 from .fit import FrictionFit, fit_friction
 from .friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stribeck
 from .limit_cycles import Branch, Cycle, HopfPoint, branch, harmonic_balance, hopf_point, shooting
+from .loops import PID, ActiveForce, DelayedFeedback, Loop, StateFeedback
 from .parameters import ParameterError
 from .plots import plot
+from .remedies import Remedies, silence
 from .result import Outcome, Result
 from .schedules import Constant, Ramp, Schedule, Sinusoid
 from .signals import (
@@ -230,6 +250,33 @@ __all__ = [
     "Constraint",
     "Optimum",
     "quantities",
+    # what is done against squeal: designs that hold a design
+    "countermeasures",
+    "TunedMass",
+    "AddedMass",
+    "AddedStiffness",
+    "AddedDamping",
+    "Asymmetry",
+    "Shim",
+    "LayerDamping",
+    "Dithered",
+    "NormalDither",
+    "Controlled",
+    "best_absorber",
+    "BestAbsorber",
+    # loops that sense and act, and their poles and margins
+    "loops",
+    "Loop",
+    "PID",
+    "StateFeedback",
+    "DelayedFeedback",
+    "ActiveForce",
+    "control",
+    "closed_loop",
+    "ClosedLoop",
+    # what would silence this brake?
+    "silence",
+    "Remedies",
     # what a signal holds
     "signals",
     "spectrum",

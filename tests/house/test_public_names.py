@@ -11,8 +11,9 @@ STUB = ast.parse((PACKAGE / "__init__.pyi").read_text())
 
 # The story, by the room a name comes from: laws, schedules, system, designs, then what is asked of them, then pictures.
 STORY = [
-    "friction", "schedules", "system", "contacts", "designs", "files", "fit", "fe", "stability", "transient", "continuation",
-    "limit_cycles", "studies", "quantities", "signals", "plots", "result", "parameters",
+    "friction", "schedules", "system", "contacts", "designs", "files", "fit", "fe", "stability", "transient",
+    "continuation", "limit_cycles", "studies", "quantities", "countermeasures", "loops", "control", "remedies",
+    "calibration", "signals", "plots", "result", "parameters",
 ]  # fmt: skip
 
 

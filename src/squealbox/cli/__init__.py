@@ -36,6 +36,14 @@ COMMANDS = {
     "ensemble": Command("ensembles", "ensemble", "transients over two parameters: amplitude and frequency of each"),
     "scatter": Command("uncertainty", "scatter", "parameters scatter: how probable is squeal, and which matters?"),
     "optimise": Command("optimising", "optimise", "the best design within bounds: before and after, or a Pareto front"),
+    "silence": Command(
+        "silence", "silence", "what would silence this brake: cures ranked, with dose, cost and cautions"
+    ),
+    "absorber": Command("absorber", "absorber", "the best tuned mass: frequency, damping, how narrow it is"),
+    "dither": Command(
+        "dither", "dither", "fast dither of the sliding: growth rate and friction left over its amplitude"
+    ),
+    "loop": Command("loop", "loop", "poles and margins of a brake with loops: gain, phase, delay, sampling"),
     "fit": Command("fitting", "fit", "measured friction coefficients (CSV) to a friction law, with confidence bands"),
     "events": Command(
         "recordings", "events", "squeal events in recordings: when, which frequency, how loud, how quick"

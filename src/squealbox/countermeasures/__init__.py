@@ -1,6 +1,7 @@
 """What is done against squeal: designs that hold a design. Depends on: designs, system, friction, loops, stability."""
 
 from squealbox.countermeasures.base import Countermeasure
+from squealbox.countermeasures.best import BestAbsorber, best_absorber
 from squealbox.countermeasures.controlled import Controlled
 from squealbox.countermeasures.dither import Dithered, NormalDither
 from squealbox.countermeasures.mechanical import AddedDamping, AddedMass, AddedStiffness, Asymmetry, TunedMass
@@ -24,6 +25,7 @@ __all__ = [
     "AddedMass",
     "AddedStiffness",
     "Asymmetry",
+    "BestAbsorber",
     "Controlled",
     "Countermeasure",
     "Dithered",
@@ -31,5 +33,6 @@ __all__ = [
     "NormalDither",
     "Shim",
     "TunedMass",
+    "best_absorber",
     "ross_kerwin_ungar",
 ]

@@ -28,6 +28,7 @@ from squealbox.plots.points import (
 )
 from squealbox.plots.populations import ensemble_overview
 from squealbox.plots.reliability import design_point, subset_probability, surrogate
+from squealbox.plots.remedies import countermeasure_drawing, detuning_map, poles_figure, remedies_figure
 from squealbox.plots.spectra import component_growth, loudness, spectrogram, spectrum
 from squealbox.plots.stability import (
     boundary_curves,
@@ -58,10 +59,12 @@ __all__ = [
     "coexistence_region",
     "component_growth",
     "contact_comparison",
+    "countermeasure_drawing",
     "crossings",
     "cycle_overview",
     "damping_split",
     "design_point",
+    "detuning_map",
     "drawn",
     "eigenvalues",
     "energy",
@@ -83,6 +86,8 @@ __all__ = [
     "phase_plane",
     "plot",
     "point_curve",
+    "poles_figure",
+    "remedies_figure",
     "root_locus",
     "save",
     "search_for_a_push",

@@ -1,0 +1,56 @@
+"""`squealbox absorber`: the best tuned mass for a brake."""
+
+from pathlib import Path
+from typing import Literal
+
+from squealbox.cli.inputs import AllowCode, Changes, folder, number, read
+from squealbox.cli.progress import Progress
+from squealbox.cli.running import UsageError
+from squealbox.cli.tables import written
+from squealbox.countermeasures import best_absorber
+from squealbox.files import write_design
+
+
+def absorber(
+    file: Path,
+    *,
+    on: str,
+    mass: str,
+    aim: Literal["decay", "margin", "probability"] = "decay",
+    changes: Changes = (),
+    allow_code: AllowCode = False,
+    out: Path | None = None,
+) -> None:
+    """The best tuned mass: frequency and damping, what it brings, and how narrow it is.
+
+    Parameters
+    ----------
+    file
+        design file; its section [scatter] is needed for --aim probability
+    on
+        degree of freedom it stands on, such as y
+    mass
+        of the absorber, with or without a unit: "50 g"
+    aim
+        fastest decay, highest critical friction, or least probability of squeal
+    changes
+        other values for this run: --set friction.static=0.4 load="2 kN"
+    allow_code
+        run the Python file of a friction law that the design file names
+    out
+        folder for the detuning map and the brake with its absorber as a design file
+    """
+    found = read(file, changes, allow_code)
+    if aim == "probability" and found.scatter is None:
+        raise UsageError(f"{file} has no section [scatter], which --aim probability needs")
+    kilograms = number(mass, "kg", f"--mass {mass[:60]}")
+    scatter = found.scatter.scatter if found.scatter else None
+    with Progress("tuning the absorber"):
+        best = best_absorber(found.design, on, kilograms, aim, scatter)
+    print(f"{found.design.title}, {file}\n{best.summary()}")
+    if out is not None:
+        from squealbox import plots
+
+        folder(out)
+        paths = [best.save(out / "absorber.nc"), write_design(best.design, out / "with_absorber.toml")]
+        print(written(*paths, *plots.save(plots.plot(best, title=found.path.name), out / "absorber")))

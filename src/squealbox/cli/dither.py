@@ -1,0 +1,64 @@
+"""`squealbox dither`: what fast tangential dither does to a brake, on the mean."""
+
+from pathlib import Path
+
+import numpy as np
+
+from squealbox.cli.inputs import AllowCode, Changes, folder, number, read
+from squealbox.cli.running import UsageError
+from squealbox.cli.tables import write_csv, written
+from squealbox.countermeasures import Dithered
+from squealbox.stability import complex_modes
+
+
+def dither(
+    file: Path,
+    *,
+    velocity: tuple[str, str] = ("0.01 m/s", "1 m/s"),
+    frequency: str = "40 kHz",
+    along: str = "",
+    points: int = 25,
+    changes: Changes = (),
+    allow_code: AllowCode = False,
+    out: Path | None = None,
+) -> None:
+    """Fast dither of the sliding velocity: growth rate and mean friction left over its amplitude.
+
+    Parameters
+    ----------
+    file
+        design file
+    velocity
+        lowest and highest amplitude, with or without a unit: 0.01 1
+    frequency
+        of the dither; said to be near a mode where it is
+    along
+        name of the contact that is shaken; all when left out
+    points
+        amplitudes looked at
+    changes
+        other values for this run: --set friction.static=0.4 load="2 kN"
+    allow_code
+        run the Python file of a friction law that the design file names
+    out
+        folder for the table
+    """
+    found = read(file, changes, allow_code)
+    low, high = (number(text, "m/s", f"--velocity {text[:60]}") for text in velocity)
+    if not 0.0 < low < high or points < 2:
+        raise UsageError(
+            f"--velocity {' '.join(velocity)} --points {points}: expected 0 < low < high and 2 points or more"
+        )
+    hertz = number(frequency, "Hz", f"--frequency {frequency[:60]}")
+    amplitudes = np.geomspace(low, high, points)
+    cures = [Dithered(found.design, float(w), hertz, along) for w in amplitudes]
+    growth = np.array([float(complex_modes(cure).largest_growth_rate) for cure in cures])
+    left = np.array([float(np.min(cure.friction_left)) for cure in cures])
+    print(f"{found.design.title}, {file}\nvelocity [m/s]  growth [1/s]  least mean friction left [%]")
+    for w, g, part in zip(amplitudes, growth, left, strict=True):
+        print(f"{w:14.5g}  {g:+12.5g}  {100.0 * part:10.3g}")
+    said = dict.fromkeys(text for cure in (cures[0], cures[-1]) for text in cure.cautions())
+    print("\n".join(f"Caution: {text}" for text in said))
+    if out is not None:
+        columns = {"velocity [m/s]": amplitudes, "growth rate [1/s]": growth, "friction left [-]": left}
+        print(written(write_csv(folder(out) / "dither.csv", columns)))

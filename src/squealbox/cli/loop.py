@@ -1,0 +1,44 @@
+"""`squealbox loop`: poles and margins of a brake with loops."""
+
+from pathlib import Path
+
+from squealbox.cli.inputs import AllowCode, Changes, folder, read
+from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.tables import write_csv, written
+from squealbox.control import closed_loop
+
+
+def loop(
+    file: Path,
+    *,
+    changes: Changes = (),
+    allow_code: AllowCode = False,
+    out: Path | None = None,
+) -> None:
+    """Poles of the closed loop, margins of gain, phase, delay and sampling.
+
+    Parameters
+    ----------
+    file
+        design file with sections [[loops]]
+    changes
+        other values for this run: --set friction.static=0.4 load="2 kN"
+    allow_code
+        run the Python file of a friction law that the design file names
+    out
+        folder for the poles as table and figure
+    """
+    found = read(file, changes, allow_code)
+    if not found.design.system().loops:
+        raise UsageError(f"{file} has no section [[loops]], which says what senses and acts")
+    closed = closed_loop(found.design)
+    print(f"{found.design.title}, {file}\n{closed.summary()}")
+    if out is not None:
+        from squealbox import plots
+
+        folder(out)
+        columns = {"growth rate [1/s]": closed.poles.real, "frequency [Hz]": closed.frequency}
+        paths = [closed.save(out / "poles.nc"), write_csv(out / "poles.csv", columns)]
+        print(written(*paths, *plots.save(plots.plot(closed, title=found.path.name), out / "poles")))
+    if not closed.outcome.ok:
+        raise ComputationFailed(closed.outcome)

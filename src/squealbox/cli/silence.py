@@ -1,0 +1,75 @@
+"""`squealbox silence`: what would silence this brake."""
+
+from pathlib import Path
+
+import numpy as np
+
+from squealbox.cli.inputs import AllowCode, Changes, folder, read
+from squealbox.cli.progress import Progress
+from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.tables import write_csv, written
+from squealbox.remedies import silence as silenced
+
+
+def silence(
+    file: Path,
+    *,
+    margin: float = 0.1,
+    samples: int = 2048,
+    seed: int = 0,
+    changes: Changes = (),
+    allow_code: AllowCode = False,
+    out: Path | None = None,
+) -> None:
+    """What would silence this brake: cures ranked by the squeal they leave, with dose, costs and cautions.
+
+    The section [scatter] of the file says how parameters scatter in production.
+
+    Parameters
+    ----------
+    file
+        design file with a section [scatter]
+    margin
+        by which friction may rise without squeal: 0.1 is 10 %
+    samples
+        brakes in the lot
+    seed
+        of the lot
+    changes
+        other values for this run: --set friction.static=0.4 load="2 kN"
+    allow_code
+        run the Python file of a friction law that the design file names
+    out
+        folder for the table and a figure
+    """
+    found = read(file, changes, allow_code)
+    if found.scatter is None:
+        raise UsageError(f"{file} has no section [scatter], which says how parameters scatter in production")
+    if samples < 1 or seed < 0:
+        raise UsageError(f"--samples {samples} --seed {seed}: expected at least 1 and at least 0")
+    if not (np.isfinite(margin) and margin >= 0.0):
+        raise UsageError(f"--margin {margin}: expected a finite number of at least 0")
+    if out is not None:
+        folder(out)
+    with Progress("looking for what silences it"):
+        table = silenced(found.design, found.scatter.scatter, margin=margin, samples=samples, seed=seed)
+    print(f"{found.design.title}, {file}\n{table.summary()}")
+    if out is not None:
+        from squealbox import plots
+
+        names = (
+            "cure",
+            "dose",
+            "growth [1/s]",
+            "growth at margin [1/s]",
+            "P(squeal)",
+            "after push [um]",
+            "cost",
+            "caution",
+        )
+        columns = {name: np.array(column) for name, column in zip(names, zip(*table.rows(), strict=True), strict=True)}
+        columns["python"] = table.line
+        paths = [table.save(out / "silence.nc"), write_csv(out / "silence.csv", columns)]
+        print(written(*paths, *plots.save(plots.plot(table, title=found.path.name), out / "silence")))
+    if not table.outcome.ok:
+        raise ComputationFailed(table.outcome)
