@@ -12,7 +12,7 @@ STUB = ast.parse((PACKAGE / "__init__.pyi").read_text())
 # The story, by the room a name comes from: laws, schedules, system, designs, then what is asked of them, then pictures.
 STORY = [
     "friction", "schedules", "system", "designs", "files", "fit", "stability", "transient", "continuation",
-    "limit_cycles", "studies", "quantities", "signals", "plots", "result", "parameters",
+    "limit_cycles", "studies", "quantities", "signals", "calibration", "plots", "result", "parameters",
 ]  # fmt: skip
 
 
