@@ -259,7 +259,7 @@ def _tracks(power: Any, floor: Any, chance: float) -> Iterator[_Track]:
             line = _between(power[k], int(found[i]))
             near = [(abs(open_tracks[j].lines[-1] - line), j) for j in free]
             away, j = min(near, default=(np.inf, -1))
-            mean_square = float(np.sum(power[k, max(found[i] - 3, 0) : found[i] + 4]) / 1.5)
+            mean_square = float(np.sum(power[k, found[i] - 1 : found[i] + 2])) / _seen(line - found[i])
             if away <= WANDER:
                 del free[j]
                 track = open_tracks[j]
@@ -294,6 +294,13 @@ def _between(row: Any, k: int) -> float:
     return k + (0.5 * (left - right) / bend if bend < 0.0 else 0.0)
 
 
+def _seen(offset: float) -> float:
+    """What Hann's window shows of a tone in the three lines about it, `offset` lines off the middle one; 1.5 at 0."""
+    x = offset - np.array([-1.0, 0.0, 1.0])
+    x = np.where(np.abs(np.abs(x) - 1.0) < 1e-6, x + 2e-6, x)
+    return float(np.sum((np.sinc(x) / (1.0 - x**2)) ** 2))
+
+
 def _event(
     x: Any,
     rate: float,
@@ -310,7 +317,7 @@ def _event(
     frames = np.array(track.frames)
     frequency = lines[0] + step * np.array(track.lines)
     places = np.clip(np.round(track.lines).astype(int), 0, len(floor) - 1)
-    square = np.maximum(np.array(track.powers) - 7.0 / 1.5 * floor[places], 1e-3 * np.array(track.powers))
+    square = np.maximum(np.array(track.powers) - 2.0 * floor[places], 1e-3 * np.array(track.powers))
     middles = (starts[frames] + 0.5 * length) / rate
     weighted = square * weigh(frequency) ** 2
     level = 10.0 * np.log10(weighted / reference**2)

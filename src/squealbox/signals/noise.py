@@ -125,4 +125,4 @@ def _edges(name: str, given: Any, values: Any) -> Any:
         return edges
     known = values[np.isfinite(values)]
     low, high = (float(np.min(known)), float(np.max(known))) if known.size else (0.0, 1.0)
-    return np.linspace(low, high if high > low else low + max(abs(low), 1.0), CELLS + 1)
+    return np.linspace(low, high, CELLS + 1) if high > low else low + max(abs(low), 1.0) * np.array([-0.5, 0.5])

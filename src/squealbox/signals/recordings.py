@@ -11,6 +11,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from tokenize import TokenError
 from typing import Any
 
 import numpy as np
@@ -239,7 +240,7 @@ def _npy(path: Path, size: int, rate: float | None) -> Read:
                 f"{path.name}: holds {mapped.ndim} axes of {mapped.dtype}: expected one or two of real numbers"
             )
         x = np.array(mapped, dtype=float)
-    except (ValueError, TypeError, EOFError, SyntaxError, KeyError, AttributeError) as error:
+    except (ValueError, TypeError, EOFError, SyntaxError, TokenError, RecursionError, OverflowError) as error:
         if isinstance(error, SignalError):
             raise
         raise SignalError(f"{path.name}: is not a NumPy .npy file of numbers") from error
