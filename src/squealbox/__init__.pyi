@@ -51,6 +51,7 @@ from .designs import (
 )
 from .fe import (
     AssembledBrake,
+    DiscBrake,
     Interface,
     PublishedDiscBrake,
     ReducedBrake,
@@ -183,6 +184,7 @@ __all__ = [
     "fe",
     "reduce",
     "ReducedBrake",
+    "DiscBrake",
     "PublishedDiscBrake",
     "read_matrices",
     "read_structure",

@@ -3,6 +3,16 @@
 from squealbox.factorisation import Factor, SingularMatrix, factor
 from squealbox.fe.assembled import AssembledBrake, StructureFiles
 from squealbox.fe.certificate import Certificate, certificate
+from squealbox.fe.disc_brake import (
+    Backplates,
+    Disc,
+    DiscBrake,
+    Material,
+    Pads,
+    Preload,
+    Springs,
+    free_disc_modes,
+)
 from squealbox.fe.interfaces import CoordinateSystem, Interface, Rotation
 from squealbox.fe.pencil import Pencil, pencil_of
 from squealbox.fe.published import PublishedDiscBrake
@@ -17,24 +27,32 @@ from squealbox.fe.units import UNITS
 __all__ = [
     "UNITS",
     "AssembledBrake",
+    "Backplates",
     "Certificate",
     "CoordinateSystem",
+    "Disc",
+    "DiscBrake",
     "Factor",
     "FullModes",
     "Interface",
+    "Material",
     "MatrixFileError",
+    "Pads",
     "Pencil",
+    "Preload",
     "PublishedDiscBrake",
     "RealModes",
     "ReducedBrake",
     "Reduction",
     "Rotation",
     "SingularMatrix",
+    "Springs",
     "Structure",
     "StructureFiles",
     "certificate",
     "count_below",
     "factor",
+    "free_disc_modes",
     "full_modes",
     "open_matrices",
     "pencil_of",

@@ -20,6 +20,7 @@ from scipy import sparse
 from squealbox.contacts import Contacts
 from squealbox.designs.base import Design
 from squealbox.fe.grids import Body, breaks
+from squealbox.fe.real_modes import RealModes, real_modes
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, parameter
 from squealbox.system import Equilibrium, System, equilibrium
@@ -205,7 +206,7 @@ class DiscBrake(Design):
 
 @dataclass(frozen=True, eq=False)
 class Preload:
-    """Steady sliding of a disc brake: equilibrium, and of each contact point area [m^2], place (3, k) [m] and pad 0, 1."""
+    """Steady sliding of a disc brake, and of each contact point its area [m^2], place (3, k) [m] and pad, 0 or 1."""
 
     equilibrium: Equilibrium
     area: Any
@@ -229,7 +230,7 @@ class Preload:
 
 @dataclass(frozen=True, eq=False)
 class Structure:
-    """A meshed brake per unit of every modulus, density, stiffness and pressure; rows and matrices on all n freedoms."""
+    """A meshed brake per unit of each modulus, density, stiffness and pressure, on all n freedoms."""
 
     size: int
     mass: dict[str, Any]
@@ -269,7 +270,7 @@ def structure(
     """Mesh and assemble a disc and two pads; all lengths in m, the angle in rad."""
     half = 0.5 * thick
     around = breaks(0.0, 2.0 * np.pi, size / (0.5 * (inner + outer)), 12)
-    disc = Body(breaks(bore, rim, size, 2), around, breaks(-half, half, size), closed=True)
+    disc = Body(breaks(bore, rim, size, 2), around, breaks(-half, half, size, 2), closed=True)
     sector = breaks(-0.5 * angle, 0.5 * angle, size / (0.5 * (inner + outer)), 3)
     radii = breaks(inner, outer, size, 2)
     through = np.concatenate([breaks(0.0, lining, size), breaks(lining, lining + plate, size)[1:]])
@@ -350,6 +351,19 @@ def structure(
         bodies=bodies,
         kept=kept,
     )
+
+
+def free_disc_modes(disc: Disc, element_size: float, top: float, *, held: bool = False) -> RealModes:
+    """Undamped modes below `top` [Hz] of the disc alone, free or held at its bore: what a hammer test finds."""
+    half = 0.5 * disc.thickness
+    around = breaks(0.0, 2.0 * np.pi, element_size / (0.5 * (disc.inner_radius + disc.outer_radius)), 12)
+    radii = breaks(disc.inner_radius, disc.outer_radius, element_size, 2)
+    body = Body(radii, around, breaks(-half, half, element_size, 2), closed=True)
+    stiffness, mass = disc.material.young * body.stiffness(disc.material.poisson), disc.material.density * body.mass()
+    if held:
+        kept = np.flatnonzero(np.hypot(*body.places[:2]) > disc.inner_radius * (1.0 + 1e-6))
+        stiffness, mass = stiffness[kept][:, kept], mass[kept][:, kept]
+    return real_modes(sparse.csr_array(stiffness), sparse.csr_array(mass), top)
 
 
 def _directions(place: Any, sign: float) -> tuple[Any, Any, Any]:

@@ -22,6 +22,7 @@ from squealbox.fe.real_modes import RealModes, real_modes
 HEADROOM = 0.7  # modes above this share of the highest real mode of a basis are not shown: there it invents
 FEWEST = 12  # real modes that a basis holds at least
 ROUNDS = 4  # of growing a basis
+LEFT_OUT = 0.3  # of the tolerance: what a round of growing may leave out
 
 
 @dataclass(frozen=True)
@@ -112,13 +113,33 @@ def estimates(pencil: Pencil, base: Factor, values: Any, right: Any, left: Any) 
 
 
 def residual_vectors(pencil: Pencil, base: Factor, found: Projected, worst: Any) -> Any:
-    """Real and imaginary parts of K0^-1 r and K0^-1 s of the modes marked in `worst`, (n, 4k)."""
+    """Real and imaginary parts of du = K0^-1 r and dw = K0^-1 s of the modes marked in `worst`, (n, 4k).
+
+    The estimate is <dw, du> in the energy of K0. Each pair is scaled so that both have the same energy, |dw| |du|: what
+    a direction holds of them is then what leaving it out may cost, in 1/s.
+    """
     values = found.eigenvalues[worst]
     right = pencil.residual(values, found.right[:, worst])
     left = pencil.left_residual(values, found.left[:, worst])
-    columns = np.concatenate([right.real, right.imag, left.real, left.imag], axis=1)
-    lengths = np.linalg.norm(columns, axis=0)
-    return base.solve_many(columns[:, lengths > 0.0] / lengths[lengths > 0.0])
+    moved, moved_left = base.solve_many(right), base.solve_many(left)
+    sizes = [
+        np.sqrt(np.maximum(np.sum(np.conj(m) * r, axis=0).real, 1e-300))
+        for m, r in ((moved, right), (moved_left, left))
+    ]
+    balance = np.sqrt(sizes[1] / sizes[0])
+    moved, moved_left = moved * balance, moved_left / balance
+    return np.concatenate([moved.real, moved.imag, moved_left.real, moved_left.imag], axis=1)
+
+
+def main_directions(pencil: Pencil, basis: Any, vectors: Any, allowed: float) -> Any:
+    """The directions of scaled residual vectors that together hold all but `allowed` [1/s] of their energies."""
+    for _ in range(2):
+        vectors = vectors - basis @ (basis.T @ (pencil.M @ vectors))
+    energy = vectors.T @ (pencil.elastic @ vectors)
+    values, turns = np.linalg.eigh(0.5 * (energy + energy.T))
+    values = np.maximum(values, 0.0)
+    keep = np.cumsum(values) > allowed
+    return vectors @ (turns[:, keep] / np.sqrt(values[keep]))
 
 
 def refined_modes(
@@ -130,6 +151,7 @@ def refined_modes(
         worst = np.abs(found.error) > tolerance
         if not np.any(worst):
             break
-        basis = joined(pencil, basis, residual_vectors(pencil, modes.base, found, worst))
+        vectors = residual_vectors(pencil, modes.base, found, worst)
+        basis = joined(pencil, basis, main_directions(pencil, basis, vectors, LEFT_OUT * tolerance))
         found = modes_on(pencil, modes.base, basis, band)
     return found, basis

@@ -16,7 +16,16 @@ from squealbox.fe.basis import joined
 from squealbox.fe.craig_bampton import craig_bampton_basis
 from squealbox.fe.full_brake import FullBrake, full_system
 from squealbox.fe.pencil import Pencil, pencil_of
-from squealbox.fe.projection import HEADROOM, Small, basis_for, modes_on, projected, residual_vectors
+from squealbox.fe.projection import (
+    HEADROOM,
+    LEFT_OUT,
+    Small,
+    basis_for,
+    main_directions,
+    modes_on,
+    projected,
+    residual_vectors,
+)
 from squealbox.fe.quadratic import full_modes
 from squealbox.fe.real_modes import real_modes
 from squealbox.fe.reduced_brake import FIELDS, Axis, ReducedBrake, Reduction, chebyshev_points
@@ -27,7 +36,7 @@ METHODS = ("enriched", "craig-bampton", "pod")
 POINTS = 7  # Chebyshev points of a parameter that changes matrices
 ROUNDS = 3
 MOST_AXES = 4
-HIGH_DAMPING = (0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
+HIGH_DAMPING = (0.01, 0.05, 0.2, 1.0)  # damping ratios that are tried
 SEEN = 1e-5  # share of the strongest direction from which on the band's modes have a part in a direction
 HELD = 3.0  # times the band up to which modes with held contacts are taken
 SNAPSHOTS = 3  # values of each parameter at which POD looks
@@ -163,15 +172,16 @@ def _with_statics(reference: Pencil, pencils: list[Pencil], basis: Any) -> Any:
 def _grown(pencils: list[Pencil], modes: Any, basis: Any, band: tuple[float, float], tolerance: float) -> Any:
     """The basis with residual vectors of the modes in the band, at every corner."""
     for _ in range(ROUNDS):
-        small = True
+        vectors = []
         for pencil in pencils:
             found = modes_on(pencil, modes.base, basis, band)
             worst = np.abs(found.error) > 0.5 * tolerance
             if np.any(worst):
-                small = False
-                basis = joined(pencils[0], basis, residual_vectors(pencil, modes.base, found, worst))
-        if small:
+                vectors.append(residual_vectors(pencil, modes.base, found, worst))
+        if not vectors:
             break
+        together = np.concatenate(vectors, axis=1)
+        basis = joined(pencils[0], basis, main_directions(pencils[0], basis, together, LEFT_OUT * tolerance))
     return basis
 
 

@@ -1,0 +1,117 @@
+"""Finite-element brakes: what each stage costs, what the basis misses, and whether a hidden mode is found.
+
+    python benchmarks/finite_elements.py                    the own disc brake at about 15,000 degrees of freedom
+    python benchmarks/finite_elements.py 0.0042             smaller elements [m]: about 100,000
+    python benchmarks/finite_elements.py published FOLDER   the published brake of 4,669 degrees of freedom
+    ... full                                                beside the full quadratic problem
+    ... hidden                                              20 modes hidden and 20 times none
+
+One process, one thread; times are processor time. The last line is the peak memory.
+"""
+
+import os
+
+for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "RAYON_NUM_THREADS"):
+    os.environ.setdefault(name, "1")
+
+import resource  # noqa: E402
+import sys
+import time
+
+import numpy as np
+
+from squealbox import PublishedDiscBrake, complex_modes, equilibrium, reduce
+from squealbox.fe import certificate, full_modes, pencil_of
+from squealbox.fe.disc_brake import DiscBrake
+from squealbox.stability.band_modes import known_eigenvalues
+
+BAND = (500.0, 10e3)
+FRICTIONS = np.linspace(0.1, 0.6, 50)
+
+
+class Clock:
+    """Processor seconds between two laps."""
+
+    def __init__(self) -> None:
+        self.last = self.start = time.process_time()
+
+    def lap(self, what: str, count: int = 1) -> float:
+        now = time.process_time()
+        spent, self.last = (now - self.last) / count, now
+        print(f"{what:<62}{spent:>10.3f} s", flush=True)
+        return spent
+
+
+def matched(values, others) -> np.ndarray:
+    """Distance of each value to the nearest of the others [1/s]."""
+    return np.array([np.min(np.abs(others - value)) for value in values])
+
+
+def beside_the_full_problem(pencil, found, clock: Clock) -> float:
+    full = full_modes(pencil, BAND)
+    spent = clock.lap(f"full quadratic problem, {len(full.eigenvalues)} modes, {full.factorisations} shifts")
+    off = matched(found.eigenvalues, full.eigenvalues)
+    corrected = matched(found.eigenvalues + found.error, full.eigenvalues)
+    growth = np.array(
+        [full.eigenvalues[np.argmin(np.abs(full.eigenvalues - v))].real - v.real for v in found.eigenvalues]
+    )
+    ratio = np.abs(found.error) / off
+    print(f"  modes in the band: {len(found.eigenvalues)} on the basis, {len(full.eigenvalues)} in full")
+    print(f"  backward error of the full problem: {np.max(full.backward_error):.1e}")
+    print(f"  largest error of an eigenvalue {np.max(off):.3g} 1/s, of a growth rate {np.max(np.abs(growth)):.3g} 1/s")
+    print(f"  after adding the estimate {np.max(corrected):.3g} 1/s")
+    print(f"  estimate / error, 5-50-95 %: {np.round(np.quantile(ratio, [0.05, 0.5, 0.95]), 2)}")
+    print(f"  within 0.5 to 1.5: {np.mean((ratio > 0.5) & (ratio < 1.5)):.0%}")
+    return spent
+
+
+def hidden_modes(pencil, found, clock: Clock) -> None:
+    known = known_eigenvalues(found)
+    growing = [i for i, v in enumerate(found.eigenvalues) if v.real > np.abs(found.error[i])]
+    whole = certificate(pencil, known, BAND)
+    clock.lap(f"nothing hidden: {whole}"[:60])
+    most, right = whole.factorisations, 0
+    for trial in range(20):
+        hidden = growing[trial % len(growing)]
+        less = certificate(pencil, np.delete(known, hidden), BAND)
+        right, most = right + (less.missing == 1), max(most, less.factorisations)
+    clock.lap("one trial with a mode hidden", 20)
+    print(f"  found {right} of 20, at most {most} factorisations")
+
+
+def main(words: list[str]) -> None:
+    clock = Clock()
+    if "published" in words:
+        folder = words[words.index("published") + 1]
+        brake = PublishedDiscBrake(folder=folder, assembly="b", angular_speed=2.0 * np.pi)
+        varying = {"angular_speed": (2.0 * np.pi, 4.0 * np.pi)}
+        points = [{"angular_speed": value} for value in np.linspace(2.0 * np.pi, 4.0 * np.pi, 50)]
+    else:
+        size = next((float(word) for word in words if word.replace(".", "").isdigit()), 0.0115)
+        brake = DiscBrake(element_size=size)
+        varying = {"friction.static": (float(FRICTIONS[0]), float(FRICTIONS[-1]))}
+        points = [{"friction.static": float(value)} for value in FRICTIONS]
+    system = brake.system()
+    clock.lap(f"mesh and matrices, {system.size} degrees of freedom, {len(system.contacts)} points")
+    state = equilibrium(system)
+    lifted = float(np.mean(state.normal_force <= 0.0)) if len(system.contacts) else 0.0
+    clock.lap(f"steady sliding, {lifted:.0%} of the points lifted off")
+    small = reduce(brake, BAND, varying=varying)
+    clock.lap(f"reduced to {len(small.reduction.arrays['M'])} coordinates, error {small.error:.2g} 1/s")
+    swept = [complex_modes(small.replace(point)).unstable_modes for point in points]
+    each = clock.lap(f"one more value of {next(iter(varying))}, {min(swept)} to {max(swept)} modes grow", len(points))
+    print(f"{'from nothing to the sweep':<62}{clock.last - clock.start:>10.3f} s")
+    modes = complex_modes(brake, band=BAND)
+    clock.lap(f"complex modes of the brake alone, {len(modes.eigenvalues) // 2}")
+    print(modes.summary())
+    pencil, found = pencil_of(system), small.checked()
+    if "full" in words:
+        spent = beside_the_full_problem(pencil, found, clock)
+        print(f"  a further value is 1/{spent / each:.0f} of the full problem")
+    if "hidden" in words:
+        hidden_modes(pencil, found, clock)
+    print(f"peak memory {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6:.2f} GB")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
