@@ -1,0 +1,136 @@
+"""Every countermeasure goes where a design goes: files, arrays, drawings, the command line; remedies are reproduced."""
+
+import numpy as np
+import pytest
+
+from squealbox import (
+    PID,
+    ActiveForce,
+    AddedDamping,
+    AddedMass,
+    AddedStiffness,
+    Asymmetry,
+    Controlled,
+    DelayedFeedback,
+    Dithered,
+    DrumBrake,
+    LayerDamping,
+    LinearSlope,
+    NormalDither,
+    Scatter,
+    Shim,
+    StateFeedback,
+    TunedMass,
+    best_absorber,
+    closed_loop,
+    complex_modes,
+    plot,
+    read_design,
+    silence,
+    write_design,
+)
+from squealbox.cli import main
+from squealbox.countermeasures import COUNTERMEASURES
+from squealbox.countermeasures.loss import growth_of
+from squealbox.files import json_schema
+from squealbox.loops import LOOPS
+from squealbox.parameters import from_plain, to_plain
+from squealbox.result import Result
+from squealbox.studies import Normal
+
+DRUM = DrumBrake(friction=LinearSlope(0.36, -0.05))
+CASES = [
+    TunedMass(DRUM, "y", 0.05, 1906.0, 0.013),
+    AddedMass(DRUM, "y", 0.1),
+    AddedStiffness(DRUM, "x", 1e6, "y"),
+    AddedDamping(DRUM, "x", 100.0),
+    Shim(DRUM, "shoe 1", 2e9, 0.3),
+    LayerDamping(DRUM, "y", 0.5, 1.0),
+    Asymmetry(DRUM, "x", "y", 1e5),
+    Dithered(DRUM, 0.3),
+    NormalDither(DRUM, 0.2),
+    Controlled(TunedMass(DRUM, "y", 0.05, 1906.0), [
+        ActiveForce(0.1, 5e-5, PID(on="y", proportional=10.0)),
+        PID(on="x", derivative=3.0, limit=80.0, delay=2e-5, sampling=5e4),
+        StateFeedback(on="x", velocity=(1.0, 2.0)),
+        DelayedFeedback(on="y", derivative=2.0, delay=1e-5),
+    ]),
+]  # fmt: skip
+SCATTER = Scatter({"friction.static": Normal(0.36, 0.03), "k3": Normal(19e7, 5e6)})
+
+
+def named(case):
+    return type(case).__name__
+
+
+def test_every_kind_has_a_case():
+    assert {*map(type, CASES)} == {*COUNTERMEASURES.values(), Controlled}
+    assert {type(loop) for loop in CASES[-1].loops} == set(LOOPS.values())
+
+
+@pytest.mark.parametrize("case", CASES, ids=named)
+def test_it_survives_its_file_and_plain_data(case, tmp_path):
+    assert read_design(write_design(case, tmp_path / "brake.toml")) == case
+    assert from_plain(to_plain(case)) == case
+    assert case == case.replace()
+    assert hash(case) == hash(case.replace())
+
+
+@pytest.mark.parametrize("case", CASES, ids=named)
+def test_it_is_drawn_as_the_brake_it_holds(case):
+    assert plot(case).axes[0].get_title()
+
+
+@pytest.mark.parametrize("case", CASES[:-2], ids=named)
+def test_it_takes_arrays(case):
+    static = np.array([0.3, 0.36])
+    together = growth_of(case.replace({"friction.static": static}))
+    alone = [float(complex_modes(case.replace({"friction.static": s})).largest_growth_rate) for s in static]
+    assert together == pytest.approx(alone, rel=1e-8)
+
+
+def test_the_schema_knows_both_sections():
+    brakes = json_schema()["oneOf"]
+    assert all({"countermeasures", "loops"} <= set(brake["properties"]) for brake in brakes)
+
+
+@pytest.fixture(scope="module")
+def table():
+    return silence(DRUM, SCATTER, samples=128, push=0.0)
+
+
+def test_remedies_are_many_ranked_and_reproduced_by_their_line(table):
+    assert len(table) >= 15
+    assert np.all(np.diff(table.probability) >= 0.0)
+    for row in range(len(table)):
+        assert growth_of(table.design(row)) == pytest.approx(float(table.growth[row]), rel=1e-9, abs=1e-9)
+        if table.reached[row]:
+            assert table.growth_at_margin[row] <= 1e-9
+        if table.growth[row] <= 0.0 and table.probability[row] > 0.5:
+            assert "stable as drawn" in table.caution[row]
+
+
+def test_dampers_need_the_dose_that_is_known(table):
+    row = next(i for i in range(len(table)) if str(table.name[i]).startswith("dampers on"))
+    assert float(table.dose[row]) == pytest.approx(1983.0, abs=1.0)
+
+
+def test_results_survive_their_files(table, tmp_path):
+    for found in (table, best_absorber(DRUM, "y", 0.05), closed_loop(CASES[-1].replace({"loops.1.sampling": None}))):
+        back = Result.load(found.save(tmp_path / "result.nc"))
+        assert type(back) is type(found)
+        assert plot(found).axes
+
+
+def test_commands(tmp_path, capsys):
+    path = write_design(Controlled(DRUM, [PID(on=name, derivative=2e3) for name in "xy"]), tmp_path / "loop.toml")
+    assert main(["loop", str(path), "--out", str(tmp_path / "loop")]) == 0
+    assert "delay margin 7.58569e-05 s" in capsys.readouterr().out
+    plain = write_design(DRUM, tmp_path / "drum.toml")
+    assert main(["dither", str(plain), "--velocity", "0.21", "0.4", "--points", "3"]) == 0
+    assert "Caution" in capsys.readouterr().out
+    assert main(["absorber", str(plain), "--on", "y", "--mass", "50 g", "--out", str(tmp_path / "absorber")]) == 0
+    assert "tune to" in capsys.readouterr().out
+    assert read_design(tmp_path / "absorber" / "with_absorber.toml").mass == 0.05
+    assert main(["silence", str(plain)]) == 2
+    assert "[scatter]" in capsys.readouterr().err
