@@ -106,26 +106,6 @@ def test_bad_options_get_one_sentence_and_nothing_is_written(words, sentence, sa
     assert not (tmp_path / "out").exists()
 
 
-def test_changes_may_stand_before_the_file_and_ranges_may_be_negative(said, brake):
-    _, after, _ = said("modes", brake, "--set", "load=2 kN", "theta1=20 deg")
-    code, before, _ = said("modes", "--set", "load=2 kN", "theta1=20 deg", brake)
-    assert (code, before) == (0, after)
-    code, out, _ = said("onset", brake, "--parameter", "theta1", "--range", "-20deg", "20deg")
-    assert code == 0
-    assert "theta1" in out
-
-
-def test_what_is_missing_is_called_as_the_usage_line_calls_it(said):
-    code, _, err = said("modes")
-    assert code == 2
-    assert "FILE is missing: squealbox modes FILE" in err
-
-
-def test_a_byte_order_mark_is_no_part_of_the_text(said, brake):
-    brake.write_bytes(b"\xef\xbb\xbf" + brake.read_bytes())
-    assert said("modes", brake)[0] == 0
-
-
 def test_a_bad_file_says_all_its_problems(said, tmp_path):
     path = tmp_path / "brake.toml"
     path.write_text('brake = "drum_brake"\nm = -1\nload = "1 kg"\n')

@@ -6,9 +6,9 @@ import pytest
 from squealbox.designs import DESIGNS, DrumBrakeShoes, MassOnBelt
 from squealbox.friction import Coulomb, Hyperbolic, LinearSlope
 from squealbox.stability import critical_values, mechanism, mode_energy, stability_boundary
-from squealbox.stability.eigenvalues import spectrum
 from squealbox.stability.family import steady_sliding
 from squealbox.stability.mechanism import MIXED, contributions, mechanism_codes
+from squealbox.stability.state_matrix import spectrum
 from squealbox.system import System
 
 MUS = (0.05, 0.2, 0.3948, 0.45, 0.6, 0.8)

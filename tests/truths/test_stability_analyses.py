@@ -23,9 +23,9 @@ from squealbox.stability import (
     tracked_modes,
     transient_growth,
 )
-from squealbox.stability.eigenvalues import spectrum
 from squealbox.stability.family import steady_sliding
 from squealbox.stability.routh_hurwitz import undamped_squares
+from squealbox.stability.state_matrix import spectrum
 from squealbox.system import Contact, System
 
 ROUND_OFF = 1e-10  # sums of exact identities; eigenvalues of these systems are good to about 1e-13 of their size

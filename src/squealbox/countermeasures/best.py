@@ -18,8 +18,8 @@ from squealbox.designs.base import Design
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Result, quantity
 from squealbox.stability import complex_modes
-from squealbox.stability.eigenvalues import spectrum
 from squealbox.stability.family import steady_sliding
+from squealbox.stability.state_matrix import spectrum
 from squealbox.studies.uncertainty.scatter import Scatter
 
 AIMS = ("decay", "margin", "probability")

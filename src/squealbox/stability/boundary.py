@@ -16,10 +16,10 @@ import numpy as np
 from squealbox.continuation import StepControl, follow
 from squealbox.result import Outcome, Result, quantity
 from squealbox.stability.cells import Crossing, Samples, crossings
-from squealbox.stability.eigenvalues import spectrum
 from squealbox.stability.family import Family, Steady
 from squealbox.stability.scan import coalescence, is_neutral, on_divergence
 from squealbox.stability.sides import lying_on_a_side
+from squealbox.stability.state_matrix import spectrum
 
 STEPS = tuple(  # ever shorter towards a corner
     StepControl(first=longest / 10.0, smallest=2e-6, largest=longest, tolerance=1e-8, largest_turn=0.2, most_points=60)

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from squealbox.result import Outcome, Result, quantity
-from squealbox.stability.eigenvalues import spectrum
 from squealbox.stability.family import Family
 from squealbox.stability.onset import critical_value
+from squealbox.stability.state_matrix import spectrum
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -25,9 +25,10 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.stability.eigenvalues import MARGINAL, spectrum
+from squealbox.stability.eigenvalues import MARGINAL
 from squealbox.stability.family import Steady, steady_sliding
 from squealbox.stability.spectra import Engine, compiled, growth_of_parts, largest_growth
+from squealbox.stability.state_matrix import spectrum
 from squealbox.system import Linearised
 
 NAMES = ("stable", "flutter", "negative_slope", "divergence", "mixed")

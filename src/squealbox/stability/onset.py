@@ -8,10 +8,11 @@ import numpy as np
 
 from squealbox.result import Outcome, Result, quantity
 from squealbox.stability.deflation import vibrating
-from squealbox.stability.eigenvalues import OneEigenvalue, modes_of, spectrum
+from squealbox.stability.eigenvalues import OneEigenvalue, modes_of
 from squealbox.stability.family import Family, entry
 from squealbox.stability.mechanism import Mechanism, mechanism_at
 from squealbox.stability.scan import Scan, merging, scan
+from squealbox.stability.state_matrix import spectrum
 
 ASIDE = 1e-13  # share of the range by which a singular point is stepped aside
 POINT = 1e-9  # share of the range up to which a stretch without an answer is a single value

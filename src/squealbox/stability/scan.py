@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.stability.eigenvalues import spectrum
 from squealbox.stability.family import Family
+from squealbox.stability.state_matrix import spectrum
 from squealbox.system import Linearised
 
 NEUTRAL = 1e-11  # |Re lambda| below this share of the largest |lambda|, at all values, is a mode without damping

@@ -9,13 +9,8 @@ from typing import Any, Literal
 import numpy as np
 
 from squealbox.stability.deflation import SLOW
-from squealbox.stability.eigenvalues import (
-    MARGINAL,
-    modes_of,
-    special_entries,
-    state_matrix,
-    with_special,
-)
+from squealbox.stability.eigenvalues import MARGINAL, modes_of
+from squealbox.stability.state_matrix import special_entries, state_matrix, with_special
 from squealbox.system import Equilibrium, Linearised
 
 Engine = Literal["auto", "numpy", "compiled"]

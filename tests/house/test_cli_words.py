@@ -1,0 +1,33 @@
+"""The words of a command line: their order, ranges below zero, what is missing, files with a byte order mark."""
+
+import pytest
+
+from squealbox.cli import main
+
+
+@pytest.fixture
+def brake(tmp_path, capsys):
+    """The file that `init` writes."""
+    assert main(["init", str(tmp_path / "brake")]) == 0
+    capsys.readouterr()
+    return tmp_path / "brake" / "brake.toml"
+
+
+def test_changes_may_stand_before_the_file_and_ranges_may_be_negative(said, brake):
+    _, after, _ = said("modes", brake, "--set", "load=2 kN", "theta1=20 deg")
+    code, before, _ = said("modes", "--set", "load=2 kN", "theta1=20 deg", brake)
+    assert (code, before) == (0, after)
+    code, out, _ = said("onset", brake, "--parameter", "theta1", "--range", "-20deg", "20deg")
+    assert code == 0
+    assert "theta1" in out
+
+
+def test_what_is_missing_is_called_as_the_usage_line_calls_it(said):
+    code, _, err = said("modes")
+    assert code == 2
+    assert "FILE is missing: squealbox modes FILE" in err
+
+
+def test_a_byte_order_mark_is_no_part_of_the_text(said, brake):
+    brake.write_bytes(b"\xef\xbb\xbf" + brake.read_bytes())
+    assert said("modes", brake)[0] == 0
