@@ -148,7 +148,9 @@ class Ramp(Schedule):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.stop is not None and np.any((np.asarray(self.start) - self.stop) * self.slope > 0.0):
-            expected = f"a slope from start = {self.start} towards stop = {self.stop}, where it stays constant, or stop = None"
+            expected = (
+                f"a slope from start = {self.start} towards stop = {self.stop}, where it stays constant, or stop = None"
+            )
             raise ParameterError("Ramp", "slope", self.slope, expected)
 
     @property

@@ -132,9 +132,7 @@ class System(DataSheet):
         if not np.allclose(self.M, np.swapaxes(self.M, -1, -2)):
             raise InvalidSystem("M is not symmetric: expected a symmetric mass matrix")
         if not isinstance(self.load, Schedule):
-            if callable(self.load):
-                raise InvalidSystem(f"load = {self.load!r}: expected numbers [N] or a schedule")
-            load = np.asarray(self.load, dtype=float)
+            load = _array("load", self.load, 0)
             set_(self, "load", _array("load", np.broadcast_to(load, (size,)) if load.ndim == 0 else load, 1))
         _check_width("load", np.asarray(value_at(self.load, 0.0)), size)
         set_(self, "contacts", tuple(self.contacts))

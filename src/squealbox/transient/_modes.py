@@ -23,7 +23,6 @@ from squealbox.transient._motion import (
 )
 from squealbox.transient._rigid import solve
 
-
 CLEAR = 50.0  # times the round-off of a force: what a mode that does not hold exceeds
 LEAVE = 1e-8  # share of its terms below which the acceleration of a contact that leaves zero speed counts as zero
 SWING = 160.0  # windows of time make one over the highest angular frequency
