@@ -1,5 +1,6 @@
 # make demo   the drum-brake paper of 2011 from nothing: environment, install, study, and where its page is
 # make test   lint, import floors, types and tests
+# make fuzz   random systems against a slow integrator, for an hour; FUZZ=100 for fewer
 # make docs   the documentation, into docs/_build/html
 # make bench  the benchmarks
 # make format, make picture, make clean: tidy the code, draw the README's pictures, remove what was made
@@ -12,6 +13,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 OUT    ?= out/drum-brake-2011
 WORKERS ?= 2
+FUZZ   ?= 10000
 UV     ?= $(shell uv --version >/dev/null 2>&1 && echo uv)
 
 ifneq ($(UV),)
@@ -22,11 +24,11 @@ CREATE  = $(PYTHON) -m venv $(VENV)
 INSTALL = $(BIN)/python -m pip install --quiet --disable-pip-version-check
 endif
 
-.PHONY: help demo test lint floors types tests format docs picture bench fortran clean
+.PHONY: help demo test lint floors types tests fuzz format docs picture bench fortran clean
 .DEFAULT_GOAL := help
 
 help:
-	@sed -n '1,8s/^# \{0,1\}//p' Makefile
+	@sed -n '1,9s/^# \{0,1\}//p' Makefile
 
 demo: $(VENV)/.installed
 	$(BIN)/squealbox paper drum-brake-2011 --out $(OUT)
@@ -45,6 +47,9 @@ types: $(VENV)/.installed-dev
 
 tests: $(VENV)/.installed-dev
 	$(BIN)/python -m pytest -n $(WORKERS)
+
+fuzz: $(VENV)/.installed-dev
+	SQUEALBOX_FUZZ=$(FUZZ) $(BIN)/python -m pytest -q -n $(WORKERS) tests/properties/test_physics_fuzz.py
 
 format: $(VENV)/.installed-dev
 	$(BIN)/ruff check --fix

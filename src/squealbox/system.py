@@ -78,7 +78,7 @@ class System(DataSheet):
         if not isinstance(self.load, Schedule):
             if callable(self.load):
                 raise InvalidSystem(f"load = {self.load!r}: expected numbers [N] or a schedule")
-            load = np.asarray(self.load, dtype=float)
+            load = array("load", self.load, 0)
             set_(self, "load", array("load", np.broadcast_to(load, (size,)) if load.ndim == 0 else load, 1))
         check_width("load", np.asarray(value_at(self.load, 0.0)), size)
         set_(self, "contacts", self._sparse_contacts() if any_sparse else self._dense_contacts())

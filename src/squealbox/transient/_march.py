@@ -36,6 +36,7 @@ from squealbox.transient._motion import (
     evaluate_signals,
     is_open,
     list_sticking,
+    normal_force,
     sliding_velocity,
 )
 from squealbox.transient._rigid import paradox
@@ -65,6 +66,7 @@ def begin(p, r, s, times, rows, limit):
     if s.clock[STEP] == 0.0:
         s.clock[STEP] = first_step(p, r, t0, s.state, s.mode, s, s.stage, limit)
     s.count[EVALUATIONS] += 2
+    keep_range(p, s, t0)
     if p.every_step or times[0] <= t0:
         derivative(p, t0, s.state, s.mode, s, s.dy)
         write_row(p, s, rows, t0, s.state)
@@ -196,10 +198,22 @@ def finish_step(p, r, s, times, rows, t, h, t_new):
         s.stage[0, k] = s.stage[r.stages, k]
     s.clock[TIME] = t_new
     s.count[ACCEPTED] += 1
+    keep_range(p, s, t_new)
     if p.every_step:
         if WITH_EVENTS:
             derivative(p, t_new, s.state, s.mode, s, s.dy)
         write_row(p, s, rows, t_new, s.state)
+
+
+def keep_range(p, s, t):
+    """The least normal force of each contact that is not open, and its largest sliding speed, over the whole run."""
+    if p.varying:
+        evaluate_signals(p, t, s)
+    for c in range(p.contacts):
+        normal = normal_force(p, c, s.state, s)
+        if not is_open(p, c, s.mode, normal) and not p.rigid[c]:
+            s.lowest[c] = min(s.lowest[c], normal)
+        s.fastest[c] = max(s.fastest[c], abs(sliding_velocity(p, c, s.state, s)))
 
 
 def write_row(p, s, rows, t, y):

@@ -11,7 +11,7 @@ import numpy as np
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Column, Outcome, Result, batched, quantity
 from squealbox.system import System, as_system
-from squealbox.transient import _march
+from squealbox.transient import _march, cautions
 from squealbox.transient.lanes.work import HEAD, Progress, Work
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.observers import as_observers
@@ -33,7 +33,7 @@ class Ensemble(Result):
     ended names the outcome of each trajectory ("completed", or as in `simulate`; "not_run" after an interruption).
     observed maps each observer's name to its values, (..., n), (..., contacts) or (...), with k values each where it
     returns several; parameters maps dotted names to what varied, (...). sample_q and sample_qd are (..., instants, n),
-    empty when no instants were asked for.
+    empty when no instants were asked for. caution names contacts that were pulled though they cannot open.
     """
 
     ended: Any = quantity("...", "", "how each trajectory ended")
@@ -49,6 +49,7 @@ class Ensemble(Result):
     parameters: Mapping[str, Any] = field(default_factory=dict, metadata={"transient": True})
     observed: Mapping[str, Any] = field(default_factory=dict, metadata={"transient": True})
     seconds: float = 0.0
+    caution: str = ""
 
     coordinates: ClassVar = {"instant": "sample_time"}
 
@@ -252,6 +253,7 @@ def _result(
         sample_qd=samples[..., n:],
         parameters=parameters,
         observed=observed,
+        caution=cautions.of_an_ensemble(work.system, rows[:, at:]),
         seconds=time.monotonic() - work.began,
     )
 

@@ -134,7 +134,8 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
     width = 2 * n + m + 5
     floats: dict[str, tuple[int, ...]] = {
         "signal": (2 * (m + n) + m,), "normal": (m,), "speed": (m,), "force": (m,), "right": (2 * m,),
-        "matrix": (2 * m, 2 * m), "basis": (m + 1, m), "share": (m,), "leave": (m,), "wanted": (m,), "multiplier": (m,),
+        "matrix": (2 * m, 2 * m), "basis": (m + 1, m),
+        "share": (m,), "leave": (m,), "lowest": (m,), "fastest": (m,), "wanted": (m,), "multiplier": (m,),
         "state": (width,), "state_new": (width,), "y": (width,), "y_dense": (width,), "dy": (width,),
         "stage": (STAGES, width), "phi": (2 * m,), "phi0": (2 * m,), "phi1": (2 * m,), "nodes": (5, 2 * m),
         "stack": (128, 7), "clock": (7,),
@@ -159,7 +160,11 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
     kinds += tuple((name, "i8", (size,)) for name, size in integers.items())
     state = np.zeros(2 * n)
     state[: len(q)], state[n : n + len(qd)] = q, qd
-    return _record(_dtype(kinds), {"state": state, "clock": np.array([time, first_step, 0.0, 0.0, time, np.inf, 0.0])})
+    lowest = np.full(m, np.inf)
+    return _record(
+        _dtype(kinds),
+        {"state": state, "lowest": lowest, "clock": np.array([time, first_step, 0.0, 0.0, time, np.inf, 0.0])},
+    )
 
 
 def row_width(problem: Any) -> int:

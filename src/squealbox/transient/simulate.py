@@ -10,7 +10,7 @@ import numpy as np
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import InvalidSystem, System, as_system, equilibrium, no_rigid_contact
-from squealbox.transient import _march, _motion, moreau, packing
+from squealbox.transient import _march, _motion, cautions, moreau, packing
 from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import Method
@@ -198,6 +198,12 @@ class _Run:
         }
         return Outcome(name, f"{why}; reached t = {reached:.9g} s of {end:g} s with a step of {step:.3g} s", **evidence)
 
+    def _caution(self, settings: dict[str, Any], reversals: int) -> str:
+        """What a reader must know of the scheme, and of contacts that left the range of their model."""
+        m = len(self.system.contacts)
+        said = cautions.of_a_run(self.system, self.scratch["lowest"][:m], self.scratch["fastest"][:m])
+        return "; ".join(each for each in (_caution(settings, reversals), *said) if each)
+
     def trajectory(self, settings: dict[str, Any], outcome: Outcome) -> Trajectory:
         """The output so far as a result."""
         n, m = self.system.size, len(self.system.contacts)
@@ -227,7 +233,7 @@ class _Run:
             event_time=events[:, 0],
             event_contact=events[:, 1].astype(np.int64),
             event_mode=events[:, 2].astype(np.int8),
-            caution=_caution(settings, count[_motion.REVERSALS]),
+            caution=self._caution(settings, count[_motion.REVERSALS]),
             steps=count[_motion.ACCEPTED],
             rejected=count[_motion.REJECTED],
             evaluations=count[_motion.EVALUATIONS],

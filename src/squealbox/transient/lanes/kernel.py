@@ -49,7 +49,8 @@ PLACES = {
     "ROW_END": "end0", "ROW_RATE": "rate0", "ROW_RATE_END": "rate_end0", "ROW_INNER": "inner0", "ROW_FORCE":
     "force0", "ROW_ZERO": "zero0", "ROW_OWN_G": "own_g0", "ROW_NEXT_SAMPLE": "next", "ROW_SAMPLE": "sample",
     "ROW_HIGHEST": "highest", "ROW_CLOSE": "close", "ROW_PACE": "pace", "ROW_EARLY": "early0",
-    "ROW_EARLY_RATE": "early_rate0", "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0", "ROW_NOISE": "noise0", "ROW_TERM": "term0_0",
+    "ROW_EARLY_RATE": "early_rate0", "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0", "ROW_TERM": "term0_0",
+    "ROW_NOISE": "noise0", "ROW_LOWEST": "lowest0",
 }  # fmt: skip
 
 

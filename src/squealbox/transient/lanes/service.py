@@ -126,6 +126,8 @@ def begin(A, b, lane, job, fixed, times, p, s):
     for k in range(DOFS):
         A[b + (ROW_Q + k) * WIDTH + lane] = A[b + (ROW_START + k) * WIDTH + lane]
         A[b + (ROW_V + k) * WIDTH + lane] = A[b + (ROW_START + DOFS + k) * WIDTH + lane]
+    for c in range(CONTACTS):
+        A[b + (ROW_LOWEST + c) * WIDTH + lane] = np.inf
     set_observers(A, b, lane, fixed)
     if SAMPLES:
         A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = times[0]
@@ -262,6 +264,8 @@ def finish(A, b, lane, ended, out):
         out[job, 5 + k] = A[b + (ROW_Q + k) * WIDTH + lane]
     for k in range(MEMORY):
         out[job, 5 + 2 * DOFS + k] = A[b + (ROW_OBSERVED + k) * WIDTH + lane]
+    for c in range(CONTACTS):
+        out[job, 5 + 2 * DOFS + MEMORY + c] = A[b + (ROW_LOWEST + c) * WIDTH + lane]
 
 
 def write_samples(A, b, lane, times, samples, p, r, s):

@@ -61,6 +61,12 @@ class Shape:
         return all(any(f"{name}{c}_{i}" in self.present for i in range(self.n)) for name in ("t", "d"))
 
     @property
+    def pressed(self) -> list[int]:
+        """Contacts that cannot open and whose normal force varies: how far it falls is kept."""
+        varies = [any(f"n{c}_{i}" in self.present for i in range(self.n)) or self.varying for c in range(self.m)]
+        return [c for c in range(self.m) if varies[c] and not self.unilateral[c]]
+
+    @property
     def stepped(self) -> bool:
         """Whether samples are steps of the method itself: an interpolation by values and slopes is coarser than it."""
         return self.samples and self.tableau == "dormand-prince-8"
@@ -116,6 +122,7 @@ def layout(shape: Shape) -> Rows:
     rows.add(*parameter_rows(shape))
     rows.add("job", "alive", "t", "h", "t_end", "tries", "taken", "cautious", "code", "most")
     rows.add(*(f"q{i}" for i in range(n)), *(f"v{i}" for i in range(n)), *(f"a{i}" for i in range(n)))
+    rows.add(*(f"lowest{c}" for c in range(m)))
     if shape.exact:
         rows.add("target", "tolerance", "trust", "resume", "events", "window_start", "window_events", "turns")
         rows.add("low", "low_phi", "high", "high_phi", "high_rate", "close", "pace")

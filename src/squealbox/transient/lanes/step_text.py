@@ -173,6 +173,9 @@ class Step(EventText):
         for x, before, after in zip("qva", old, new, strict=True):
             for i in range(n):
                 self.keep(f"{x}{i}", f"where(accepted, {after[i]}, {before[i]})")
+        for c in shape.pressed:
+            least = self.row(f"lowest{c}")
+            self.keep(f"lowest{c}", f"where(accepted, minimum({least}, {self.end['normal'][c]}), {least})")
         self.put("t_now = where(accepted, t1, t_)")
         self.keep("t", "t_now")
         tries, taken = self.row("tries"), self.row("taken")

@@ -229,6 +229,11 @@ class TaylorStep(EquationText):
                     self.keep(f"term{i}_{k}", f"constant(at({q[i]}, {k}), unit)")
         for name, series, order in states(q, v, found["a"]):
             self.keep(name, f"where(fine, value({series}, end, {order}), {self.row(name)})")
+        for c in shape.pressed:
+            least = self.row(f"lowest{c}")
+            self.keep(
+                f"lowest{c}", f"where(fine, minimum({least}, value({found['normal'][c]}, end, {ORDER})), {least})"
+            )
         self.put("t_now = where(fine, t1, t_)")
         self.keep("t", "t_now")
         self.keep("taken", f"{self.row('taken')} + 1.0 * moved")

@@ -71,7 +71,7 @@ class Work:
         if len(jobs.table) < count:
             jobs = replace(jobs, table=np.broadcast_to(jobs.table, (count, jobs.table.shape[1])).copy())
         memory = sum(w.copies(system.size, len(system.contacts)) * w.width for w in watches)
-        width = HEAD + 2 * system.size + memory
+        width = HEAD + 2 * system.size + memory + len(system.contacts)
         out = np.full((count, width), np.nan)
         out[:, 0] = -1.0
         samples = np.full((count, max(self.times.size, 1), 2 * system.size) if self.times.size else (1, 1, 1), np.nan)

@@ -1,0 +1,136 @@
+"""Contacts that reverse, rest or land together, at zero speed or with no normal force: closed forms."""
+
+import numpy as np
+import pytest
+
+from small_systems import block_on_belt
+from squealbox import Contact, Coulomb, Ramp, System, simulate, simulate_ensemble
+
+
+def held(count, *, normal=1.0, law=None, mass=1.0, stiffness=0.0, load=0.0, speed=0.0):
+    """One body under `count` equal contacts."""
+    one = Contact(n=[0.0], d=[1.0], t=[1.0], N0=normal, V=speed, law=law or Coulomb(0.3))
+    return System([[mass]], [[0.0]], [[stiffness]], load, (one,) * count)
+
+
+def rigid(w, size, *, d=None, t=None, mu=0.0, restitution=0.0, gap=0.0):
+    """A rigid contact along w."""
+    nothing = np.zeros(size)
+    return Contact(nothing, nothing if d is None else d, nothing if t is None else t, 0.0, 0.0, Coulomb(mu),
+                   unilateral=True, normal=w, rigid=True, restitution=restitution, gap=gap)  # fmt: skip
+
+
+@pytest.mark.parametrize("count", [2, 3, 9])
+def test_parallel_contacts_are_one(count):
+    """x falls by 2 mu N/k in each half period until the spring cannot move it: 1 - 2 k 0.006 count."""
+    motion = simulate(held(count, stiffness=100.0), 60.0, ([1.0], [0.0]))
+    one = simulate(held(1, normal=float(count), stiffness=100.0), 60.0, ([1.0], [0.0]))
+    assert motion.outcome == one.outcome == "completed"
+    assert motion.q[-1] == pytest.approx(one.q[-1], abs=1e-9)
+    assert len(motion.event_time) == count * len(one.event_time)
+    assert np.all(motion.mode[-1] == 0)
+
+
+def test_two_halves_rest_at_the_closed_form():
+    assert simulate(held(2, stiffness=100.0), 60.0, ([1.0], [0.0])).q[-1, 0] == pytest.approx(-0.004, abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [9, 12])
+def test_many_contacts_beyond_their_limit(count):
+    motion = simulate(held(count, load=[10.0]), 10.0)
+    assert motion.outcome == "completed"
+    assert motion.q[-1, 0] == pytest.approx(0.5 * (10.0 - 0.3 * count) * 100.0, rel=1e-9)
+    below = simulate(held(count, load=[0.29 * count]), 10.0)
+    assert (below.outcome, len(below.event_time)) == ("completed", 0)
+    assert below.q[-1, 0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_two_equal_blocks_that_know_nothing_of_each_other():
+    rows = np.eye(2)
+    both = System(rows, 0.0 * rows, 100.0 * rows, 0.0,
+                  tuple(Contact([0.0, 0.0], e, e, 1.0, 0.0, Coulomb(0.3)) for e in rows))  # fmt: skip
+    motion = simulate(both, 10.0, ([1.0, 1.0], [0.0, 0.0]))
+    alone = simulate(held(1, stiffness=100.0), 10.0, ([1.0], [0.0]))
+    assert motion.outcome == "completed"
+    assert motion.q[-1] == pytest.approx(np.repeat(alone.q[-1], 2), abs=1e-9)
+    assert len(motion.event_time) == 2 * len(alone.event_time)
+
+
+@pytest.mark.parametrize("method", ["dormand-prince-8", "taylor", "bogacki-shampine"])
+def test_two_halves_in_an_ensemble(method):
+    rtol = 1e-10 if method != "bogacki-shampine" else 1e-8
+    law = Coulomb(0.4, 0.25)
+    halves = simulate_ensemble(held(2, normal=0.5, law=law, stiffness=1.0, speed=0.1), duration=30.0, method=method,
+                               rtol=rtol)  # fmt: skip
+    whole = simulate(held(1, law=law, stiffness=1.0, speed=0.1), 30.0, rtol=1e-13)
+    assert halves.ended == "completed"
+    assert halves.events >= len(whole.event_time)
+    assert halves.q[0] == pytest.approx(whole.q[-1, 0], abs=2e-8)
+    resting = simulate_ensemble(held(2, stiffness=100.0), duration=10.0, start=([1.0], [0.0]), method=method)
+    assert resting.ended == "completed"
+
+
+@pytest.mark.parametrize("other", [0.0, 1e-12, Ramp(5.0, -2.5)])
+def test_a_contact_that_is_not_pressed(other):
+    """10 N and none: released at 5 s by the load t; then q'' = t - 4."""
+    law = Coulomb(0.5, 0.4)
+    contacts = tuple(Contact(n=[0.0], d=[1.0], t=[1.0], N0=N0, V=0.0, law=law) for N0 in (10.0, other))
+    system = System([[1.0]], [[0.0]], [[0.0]], Ramp(0.0, 1.0, stop=None) * [1.0], contacts)
+    motion = simulate(system, 10.0)
+    assert motion.outcome == "completed"
+    assert motion.event_time[0] == pytest.approx(5.0, abs=1e-9)
+    assert motion.q[-1, 0] == pytest.approx(5.0**3 / 6.0 + 5.0**2 / 2.0, rel=1e-9)
+    found = simulate_ensemble(system, duration=10.0, rtol=1e-10)
+    assert found.ended == "completed"
+    assert found.q[0] == pytest.approx(motion.q[-1, 0], rel=1e-8)
+
+
+def test_pressure_that_ebbs_away_to_nothing():
+    """Without friction left the block swings freely: q = a cos(t - c) from the release on."""
+    motion = simulate(block_on_belt(Coulomb(0.3), 0.0, normal=Ramp(1.0, -0.5)), 20.0, ([0.1], [0.0]))
+    assert motion.outcome == "completed"
+    late = motion.t > 3.0
+    energy = 0.5 * motion.q[late, 0] ** 2 + 0.5 * motion.qd[late, 0] ** 2
+    assert energy == pytest.approx(energy[0], rel=1e-8)
+
+
+def test_a_ball_without_a_tangent():
+    """From 1 m with e = 1/2: landings after t1, then 2 e t1, 2 e^2 t1, ...; at rest after 3 t1."""
+    ball = System([[1.0]], [[0.0]], [[0.0]], [-9.81], (rigid([-1.0], 1, mu=0.4, restitution=0.5),))
+    motion = simulate(ball, 2.0, ([1.0], [0.0]))
+    first = np.sqrt(2.0 / 9.81)
+    assert motion.outcome == "completed"
+    assert motion.event_time[:3] == pytest.approx([first, 2.0 * first, 2.5 * first], rel=1e-9)
+    assert motion.q[-1, 0] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("height", [1e-14, 1e-9, 1e-6, 1e-2])
+def test_a_ball_just_above_the_floor(height):
+    contact = rigid([0.0, -1.0], 2, d=[1.0, 0.0], t=[1.0, 0.0], mu=0.3, restitution=0.5)
+    ball = System(np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), [0.0, -9.81], (contact,))
+    motion = simulate(ball, 2.0, ([0.0, height], [0.3, 0.0]))
+    assert motion.outcome == "completed"
+    assert motion.event_time[0] == pytest.approx(np.sqrt(2.0 * height / 9.81), rel=1e-6)
+    assert motion.steps < 200
+    assert np.all(np.abs(motion.qd[-1]) < 1e-12)
+
+
+def test_friction_and_a_stop_on_one_motion():
+    """1 m/s against 1 N over 0.1 m, then a stop without rebound: there it stays."""
+    friction = Contact([0.0, 0.0], [1.0, 0.0], [1.0, 0.0], 1.0, 0.0, Coulomb(1.0))
+    stop = rigid([1.0, 0.0], 2, d=[0.0, 1.0], t=[0.0, 1.0])
+    motion = simulate(System(np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), [0.0, 0.0], (friction, stop)), 2.0,
+                      ([-0.1, 0.0], [1.0, 0.0]))  # fmt: skip
+    assert motion.outcome == "completed"
+    assert motion.event_time[0] == pytest.approx(1.0 - np.sqrt(0.8), rel=1e-9)
+    assert motion.q[-1] == pytest.approx([0.0, 0.0], abs=1e-12)
+
+
+def test_three_balls_in_a_row():
+    """One strikes two that touch, all impacts at once, e = 1 (Newton): -1/3, 2/3, 2/3."""
+    rows = ([1.0, -1.0, 0.0], [0.0, 1.0, -1.0])
+    contacts = tuple(rigid(w, 3, restitution=1.0, gap=gap) for w, gap in zip(rows, (1.0, 0.0), strict=True))
+    motion = simulate(System(np.eye(3), np.zeros((3, 3)), np.zeros((3, 3)), np.zeros(3), contacts), 2.0,
+                      (np.zeros(3), [1.0, 0.0, 0.0]))  # fmt: skip
+    assert motion.outcome == "completed"
+    assert motion.qd[-1] == pytest.approx([-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0], abs=1e-9)
