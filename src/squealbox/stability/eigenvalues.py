@@ -158,7 +158,8 @@ class ComplexModes(Result):
         rigid = (self.eigenvalues[..., :half] == 0.0) & (np.asarray(self.floating)[..., None] > 0)
         growth = np.where(np.isnan(growth) | rigid, -np.inf, growth)
         if not np.any(np.isfinite(growth)):
-            raise ValueError("no mode in the band, so no most unstable one")
+            where = "with a finite eigenvalue beside rigid-body motion" if half == self.steady.shape[-1] else "in the band"
+            raise ValueError(f"no mode {where}, so no most unstable one")
         *entry, index = (int(i) for i in np.unravel_index(np.argmax(growth), growth.shape))
         return self.mode(index, tuple(entry))
 
@@ -361,6 +362,8 @@ def spectrum_order(eigenvalues: Any) -> Any:
     coalesced modes come out in the same order whatever the round-off.
     """
     shape, count = eigenvalues.shape, eigenvalues.shape[-1]
+    if eigenvalues.size == 0:
+        return np.zeros(shape, dtype=int)
     flat = eigenvalues.reshape(-1, count)
     scale = np.max(np.abs(flat), axis=-1, keepdims=True)
     by_size = np.argsort(np.abs(flat.imag), axis=-1, kind="stable")
