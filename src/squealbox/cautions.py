@@ -35,7 +35,9 @@ def out_of_range(system: System, normal_force: Any, sliding_velocity: Any) -> tu
         n, v = n[np.isfinite(n)], v[np.isfinite(v)]
         least, most = float(np.min(n, initial=0.0)), float(np.max(np.abs(n), initial=0.0))
         if not contact.unilateral and least < -PULL * most:
-            said.append(f"{name}: N falls to {least:.4g} N: it would have to pull; a unilateral contact lifts off")
+            said.append(
+                f"{name}: N falls to {least:.4g} N: it would have to pull, where a unilateral contact lifts off"
+            )
         if v.size == 0 or any(np.ndim(x) for x in contact.law.coefficients()[:1]):
             continue
         fastest = float(np.max(v))

@@ -158,7 +158,9 @@ class ComplexModes(Result):
         rigid = (self.eigenvalues[..., :half] == 0.0) & (np.asarray(self.floating)[..., None] > 0)
         growth = np.where(np.isnan(growth) | rigid, -np.inf, growth)
         if not np.any(np.isfinite(growth)):
-            raise ValueError("no mode in the band, so no most unstable one")
+            whole = half == self.steady.shape[-1]
+            where = "with a finite eigenvalue beside rigid-body motion" if whole else "in the band"
+            raise ValueError(f"no mode {where}, so no most unstable one")
         *entry, index = (int(i) for i in np.unravel_index(np.argmax(growth), growth.shape))
         return self.mode(index, tuple(entry))
 

@@ -12,6 +12,8 @@ def spectrum_order(eigenvalues: Any) -> Any:
     coalesced modes come out in the same order whatever the round-off.
     """
     shape, count = eigenvalues.shape, eigenvalues.shape[-1]
+    if eigenvalues.size == 0:
+        return np.zeros(shape, dtype=int)
     flat = eigenvalues.reshape(-1, count)
     scale = np.max(np.abs(flat), axis=-1, keepdims=True)
     by_size = np.argsort(np.abs(flat.imag), axis=-1, kind="stable")
