@@ -323,7 +323,10 @@ def structure(
             raise ParameterError(
                 "DiscBrake", "piston_radius", piston, "a patch that holds at least one quadrature point"
             )
-        load += down.T @ np.where(pressed, back.area * np.pi * piston**2 / np.sum(back.area[pressed]), 0.0)
+        middle, loaded = 0.5 * (inner + outer), float(np.sum(back.area[pressed]))
+        if piston <= 0.5 * (outer - inner) and piston <= middle * np.sin(min(0.5 * angle, 0.5 * np.pi)):
+            loaded = np.pi * piston**2  # the patch lies within the plate: its area is known better than by points
+        load += down.T @ np.where(pressed, back.area * loaded / np.sum(back.area[pressed]), 0.0)
         for end in (-0.5 * angle, 0.5 * angle):
             side = pad.face(lambda _r, t, z, end=end: (np.abs(t - end) < 1e-9) & (np.abs(z) > half + lining))
             _, turned, outward = _directions(side.place, sign)

@@ -102,6 +102,7 @@ def band_modes(
     common: dict[str, Any] = {"band": (low, high), "method": method, "size": system.size}
     common |= {"steady": about.equilibrium.q, "exists": np.array(True), "contacts": system.contacts.names}
     common |= {"normal_force": about.equilibrium.normal_force, "inputs": _inputs(design_or_system, time)}
+    common["floating"] = np.array(0)  # a body that is free to move has no mode in a band above 0
     common["settings"] = {"band": [low, high], "method": method, "tolerance": tolerance, "certify": certify}
     if method == "full":
         return _full(pencil, (low, high), count, common)
@@ -205,6 +206,7 @@ def _nothing(design: Any, system: System, state: Any, band: tuple[float, float],
         steady=np.full(system.size, np.nan),
         exists=np.array(False),
         normal_force=state.normal_force,
+        floating=np.array(0),
         error=np.zeros(0),
         estimate=flat,
         real_frequency=np.zeros(0),

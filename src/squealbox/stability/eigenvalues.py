@@ -13,62 +13,16 @@ import numpy as np
 from squealbox.cautions import out_of_range
 from squealbox.result import COMPLETED, Outcome, Result, batched, quantity
 from squealbox.stability.deflation import special_modes, uncertain, vibrating
+from squealbox.stability.mode import Mode, OneEigenvalue, damping_ratio
 from squealbox.stability.ordering import spectrum_order
 from squealbox.stability.state_matrix import special_entries, stand_in, state_matrix
 from squealbox.system import Linearised, as_system, linearise
 
 MARGINAL = 1e-12  # growth below this share of the largest |lambda| is round-off, not growth
+__all__ = ["ComplexModes", "Mode", "OneEigenvalue", "complex_modes", "damping_ratio", "modes_of", "spectrum"]
 NEAR_DEFECTIVE = 1e6  # condition number of an eigenvalue at which about 6 of 16 digits are lost
 
 SINGULAR_PENCIL = Outcome("singular_pencil", "every number is an eigenvalue: a motion with no force on it at all")
-
-
-class OneEigenvalue:
-    """What follows from the one eigenvalue a result carries."""
-
-    eigenvalue: Any
-
-    @property
-    def angular_frequency(self) -> float:
-        """|Im lambda| [rad/s]."""
-        return float(abs(np.imag(self.eigenvalue)))
-
-    @property
-    def frequency(self) -> float:
-        """|Im lambda| / (2 pi) [Hz]."""
-        return self.angular_frequency / (2.0 * np.pi)
-
-
-@dataclass(frozen=True, eq=False)
-class Mode(OneEigenvalue):
-    """One mode of one system, from which a simulation or a limit cycle can start.
-
-    eigenvalue [1/s]; shape u (n,) with |u| = 1 and its largest part real; left w (n,), scaled so that
-    w^H (2 lambda M + C) u = 1; steady (n,), the steady sliding displacement [m]; index, the place in the spectrum;
-    entry, the place in the leading axes.
-    """
-
-    eigenvalue: complex
-    shape: Any
-    left: Any
-    steady: Any
-    index: int
-    entry: tuple[int, ...] = ()
-
-    @property
-    def growth_rate(self) -> float:
-        """Re lambda [1/s]; positive grows."""
-        return float(np.real(self.eigenvalue))
-
-    @property
-    def damping_ratio(self) -> float:
-        """-Re lambda / |lambda| [-]; negative grows."""
-        return float(damping_ratio(self.eigenvalue))
-
-    def start(self, amplitude: float, phase: float = 0.0) -> tuple[Any, Any]:
-        """Displacement and velocity (q, qd) about steady sliding; `amplitude` of u in m, `phase` in rad."""
-        turned = amplitude * np.exp(1j * phase) * self.shape
-        return self.steady + turned.real, (self.eigenvalue * turned).real
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -271,12 +225,6 @@ def modes_of(about: Linearised, inputs: Any = None, contacts: tuple[str, ...] = 
         inputs=inputs or {},
         outcome=outcome,
     )
-
-
-def damping_ratio(eigenvalues: Any) -> Any:
-    """-Re lambda / |lambda| [-], NaN at lambda = 0."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return -np.real(eigenvalues) / np.abs(eigenvalues)
 
 
 def _modes(about: Linearised, eigenvalues: Any, states: Any, usable: Any) -> tuple[Any, Any, Any]:
