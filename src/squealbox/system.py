@@ -198,7 +198,7 @@ def as_system(design_or_system: Any, *, linear: bool = False) -> System:
 
 def _system_of(given: Any) -> System:
     if isinstance(given, System):
-        return folded(given)  # type: ignore[no-any-return]
+        return folded(given)
     if isinstance(given, type):
         raise InvalidSystem(f"{given.__name__} is a class: expected a design made from it, {given.__name__}(...)")
     if isinstance(given, (str, os.PathLike)):
@@ -206,7 +206,7 @@ def _system_of(given: Any) -> System:
     if not callable(getattr(given, "system", None)):
         raise InvalidSystem(f"a {type(given).__name__} has no system(): expected a System or a design")
     system: System = given.system()
-    return folded(system)  # type: ignore[no-any-return]
+    return folded(system)
 
 
 def _checked_contact(contact: Any, i: int, size: int) -> Contact:
