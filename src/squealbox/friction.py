@@ -279,14 +279,10 @@ def _not_above(law: FrictionLaw, name: str, value: Any, limit: Any) -> None:
 class Averaged(FrictionLaw):
     """A law as slow motion meets it under fast dither: mean over a period of mu(|u|) sgn(u), u = v + w sin(phase).
 
-    With w = `velocity`, mu0 = mu(0+) and h(u) = (mu(|u|) - mu0) sgn(u),
-
-        mean(v) = mu0 (2/pi) asin(min(v/w, 1)) + E[h(v + w sin)]
-
+    With w = `velocity`, mu0 = mu(0+), h(u) = (mu(|u|) - mu0) sgn(u): mu0 (2/pi) asin(min(v/w, 1)) + E[h(v + w sin)],
     in closed form for `Coulomb`, `LinearSlope` without a floor and `Cubic`, below the sliding speed (w <= v) for
     `Stribeck` (the fall times I0(w/speed)) and `Hyperbolic`; by Gauss-Legendre in the phase, graded towards the
-    reversal, for all others. A contact under dither does not stick: its static limit is 0. The slope is infinite at
-    v = w. Source: separation of motions, Fidlin 1999; Thomsen 2005, Nonlinear Dynamics; own closed forms.
+    reversal, for all others. A contact under dither does not stick. The slope is infinite at v = w. Source: separation of motions, Fidlin 1999; Thomsen 2005, Nonlinear Dynamics; own closed forms.
 
     >>> round(float(Averaged(Coulomb(0.4), 1.0).mu(0.5)), 12)
     0.133333333333
@@ -346,12 +342,10 @@ class Averaged(FrictionLaw):
 
 
 def averaged(law: FrictionLaw, velocity: Any) -> FrictionLaw:
-    """The law that slow motion meets when dither moves the contact to and fro with `velocity` [m/s]; see `Averaged`.
-
-    `velocity` is the amplitude of the sliding velocity's fast part. Without dither (0) it is the law itself.
+    """The law that slow motion meets when dither moves the contact with `velocity` [m/s]; the law itself for 0.
 
     >>> round(float(averaged(Stribeck(0.4, 0.25, 0.3), 0.4).mu(0.5)), 9)
-    0.292393170
+    0.29239317
     """
     return law if np.ndim(velocity) == 0 and velocity == 0.0 else Averaged(law, velocity)
 
@@ -362,8 +356,8 @@ _AVERAGED_MU = """def mu(v, p):
     return p[2] * turned * 1.2732395447351628 + v * (p[3] + p[4] * v * v)
 """
 _AVERAGED_SLOPE = """def slope(v, p):
-    inside = np.maximum(p[1] * p[1] - v * v, 1e-24 * p[1] * p[1])
-    return p[2] * 0.6366197723675814 / np.sqrt(inside) * (v < p[1]) + p[3] + 3.0 * p[4] * v * v
+    inside = np.sqrt(np.maximum(p[1] * p[1] - v * v, 1e-24 * p[1] * p[1]))
+    return p[2] * 0.6366197723675814 / inside * (v < p[1]) + p[3] + 3.0 * p[4] * v * v
 """
 
 
@@ -380,8 +374,6 @@ def _slow_dither(law: Any, v: Any, w: Any, slope: bool) -> Any:
 
 
 def _mean_over_phase(law: FrictionLaw, v: Any, w: Any, base: Any, slope: bool) -> Any:
-    """E[h] or E[h'] by quadrature over the phase."""
-
     def at(u: Any) -> Any:
         values = _spread(law, np.abs(u), slope)
         return values if slope else (values - np.asarray(base)[..., None, None]) * np.sign(u)

@@ -20,7 +20,7 @@ from squealbox.parameters import DataSheet, ParameterError, known_names, paramet
 
 @dataclass(frozen=True)
 class Rows:
-    """The matrices of one loop in the two lines above; P, R, b (..., n), E, F (..., m, n), A (..., m, m), G, S (..., m)."""
+    """The matrices of one loop; P, R, b (..., n), E, F (..., m, n), A (..., m, m), G, S (..., m)."""
 
     A: Any
     E: Any
@@ -40,8 +40,8 @@ class Rows:
 class Loop(DataSheet):
     """Base of the loops: `rows(names)`, and what the actuator is.
 
-    bandwidth [Hz] of a first-order actuator, limit [N] of its force, delay [s], sampling [Hz] with `computing` samples of
-    computing time, are None or 0 where the actuator is ideal.
+    bandwidth [Hz] of a first-order actuator, limit [N] of its force, delay [s], sampling [Hz] with `computing` samples
+    of computing time, are None or 0 where the actuator is ideal.
     """
 
     on: str = ""
@@ -144,8 +144,8 @@ class StateFeedback(Loop):
 class DelayedFeedback(Loop):
     """u(t) = -(proportional y + derivative y') at t - delay: the delay is the means, not the fault.
 
-    A displacement fed back a quarter of a period late, with a negative gain, damps. Source: Das and Mallik 2006, Journal
-    of Sound and Vibration 298.
+    A displacement fed back a quarter of a period late, with a negative gain, damps. Source: Das and Mallik 2006,
+    Journal of Sound and Vibration 298.
     """
 
     proportional: float = parameter("N/m", default=0.0, meaning="gain of the displacement")
@@ -160,9 +160,9 @@ class DelayedFeedback(Loop):
 class ActiveForce(Loop):
     """Active force control: the disturbance is estimated from acceleration and actuator force, and taken back.
 
-    u = u_c - W (mass q'' - u), W = 1/(1 + time_constant s), u_c the force of the `outer` loop (none: 0). With a PD outer
-    loop that is exactly a PID of Kp + Kd/tau, Kp/tau, Kd + mass/tau; without one it is a damper mass/tau. The filter's
-    state is w - (mass/tau) q', fed by the force the actuator really has, so nothing winds up at its limit; without an
+    u = u_c - W (mass q'' - u), W = 1/(1 + time_constant s), u_c the force of the `outer` loop (none: 0). With a PD
+    outer loop that is exactly a PID of Kp + Kd/tau, Kp/tau, Kd + mass/tau; without one a damper mass/tau. The
+    filter's state is w - (mass/tau) q', fed by the force the actuator really has, so nothing winds up at its limit; without an
     outer loop it is the damper, cut at the limit.
 
     >>> ActiveForce(mass=0.1, time_constant=0.5, on="y").rows(("x", "y")).R.tolist()

@@ -126,7 +126,7 @@ class ClosedLoop(Result):
 
         Delay and sampling are not in it. Needs the package `control`.
         """
-        import control
+        import control  # type: ignore[import-untyped]
 
         found = self.plant
         return control.ss(found.A, found.B, found.H, np.zeros((len(found.loops), len(found.loops))))
@@ -159,8 +159,8 @@ def closed_loop(design_or_system: Any, *, line: float | None = None, time: float
     line : [1/s] with a delay, poles to the right of it are found; None takes -3 over the longest delay
     time : instant of schedules [s]
 
-    Accuracy: each pole of a delayed loop solves its equation to round-off, and their number is confirmed by the argument
-    principle. A limit is not felt near steady sliding; `push_that_defeats` says how far that is.
+    Accuracy: each pole of a delayed loop solves its equation to round-off, and their number is confirmed by the
+    argument principle. A limit is not felt near steady sliding; the unstable cycle `shooting` finds says how far.
 
     >>> from squealbox import PID, System
     >>> block = System([[1.0]], [[-0.1]], [[1.0]], loops=(PID(on="q1", derivative=0.3),))

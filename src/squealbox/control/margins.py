@@ -4,9 +4,9 @@ With loop a broken and all others closed, a factor k on its force and a further 
 
     k exp(-i w T) L(i w) = 1,     L(s) = exp(-s T_a) H_a (s I - A')^-1 B_a
 
-so k and T follow from the frequencies where L is real and positive, and where |L| = 1. The first are real eigenvalues of
-the polynomial pencil Im L = 0, the second imaginary eigenvalues of a Hamiltonian matrix; with a delay in the loop they are
-looked for on a grid and refined. A delay common to all loops puts z = exp(-i w T) on the unit circle in
+so k and T follow from the frequencies where L is real and positive, and where |L| = 1. The first are real eigenvalues
+of the polynomial pencil Im L = 0, the second imaginary eigenvalues of a Hamiltonian matrix; with a delay in the loop
+they are looked for on a grid and refined. A delay common to all loops puts z = exp(-i w T) on the unit circle in
 
     det[ z^2 I (x) A1 + z (A0 (+) A0) + A1 (x) I ] = 0        A0 = A, A1 = B H   (Louisell 2001, IEEE TAC 46)
 """

@@ -92,8 +92,7 @@ def plant(design_or_system: Any, time: float = 0.0) -> Plant:
 
 
 def _about(system: System, steady: Any, time: float) -> Any:
-    """The brake's own matrices at the steady state of the closed loop: its normal forces with the loops' static pull."""
-    n = system.size
+    """The brake's own matrices at the steady state of the closed loop, with the loops' static pull on the contacts."""
     shifted = tuple(
         contact.replace(
             N0=float(steady.normal_force[i]) if not contact.unilateral or steady.normal_force[i] > 0.0 else 0.0,
@@ -101,7 +100,6 @@ def _about(system: System, steady: Any, time: float) -> Any:
         )
         for i, contact in enumerate(system.contacts)
     )
-    del n
     found = linearise(system.replace(loops=(), contacts=shifted, load=np.zeros(system.size)), time)
     stiffness = np.array(found.K)
     for i, contact in enumerate(system.contacts):

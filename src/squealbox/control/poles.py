@@ -1,14 +1,15 @@
 """Poles of loops with delay, x' = A x + sum_a B_a H_a x(t - T_a): all to the right of a line, and that they are all.
 
-Every pole solves det D(s) = 0, D(s) = s I - A - sum_a B_a H_a exp(-s T_a). A pseudospectral discretisation (Breda, Maset
-and Vermiglio 2005, SIAM J. Sci. Comput. 27, 482-495) gives the poles to the right of a line nearly, Newton's method on
-s and its vector exactly; the argument principle counts how many there must be,
+Every pole solves det D(s) = 0, D(s) = s I - A - sum_a B_a H_a exp(-s T_a). A pseudospectral discretisation (Breda,
+Maset and Vermiglio 2005, SIAM J. Sci. Comput. 27, 482-495) gives the poles to the right of a line nearly, Newton's
+method on s and its vector exactly; the argument principle counts how many there must be,
 
     (1/2 pi i) contour of (det D)'/det D ds
 
 around the rectangle that holds every pole to the right of the line: |s| <= |A| + sum |B_a H_a| exp(-line T_a).
 """
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -113,7 +114,7 @@ def refined(late: Late, guesses: Any, line: float) -> Any:
 
 
 def newton(late: Late, guesses: Any, most: int = 16) -> Any:
-    """The poles near the guesses (k,): Newton's method on D(s) v = 0, c.v = 1; those that do not converge are left out."""
+    """The poles near the guesses (k,): Newton's method on D(s) v = 0, c.v = 1; without those that do not converge."""
     s = np.array(guesses, dtype=complex)
     d, scale = len(late.A), late.reach(0.0)
     _, _, right = np.linalg.svd(late.matrix(s))
@@ -143,7 +144,7 @@ def count(late: Late, line: float, reach: float) -> int:
     longest = max(delay for delay, _ in late.parts)
     corners = [top, top + 1j * top, line + 1j * top, complex(line)]
     pieces = []
-    for begin, end in zip(corners, corners[1:], strict=False):
+    for begin, end in itertools.pairwise(corners):
         points = int(np.clip(64 + 8.0 * abs(end - begin) * longest, 64, MOST_POINTS // 8))
         pieces.append(begin + (end - begin) * np.linspace(0.0, 1.0, points)[:-1])
     path = np.append(np.concatenate(pieces), corners[-1])

@@ -2,7 +2,8 @@
 
 With one rate h = 1/sampling, u_a held over [k h + T_a, (k + 1) h + T_a) and T_a = (l - 1) h + r, 0 < r <= h,
 
-    x((k + 1) h) = exp(A h) x + sum_a [int_{h - r}^{h} exp(A s) ds B_a u_a(k - l) + int_0^{h - r} exp(A s) ds B_a u_a(k - l + 1)]
+    x((k + 1) h) = exp(A h) x + sum_a [int_{h - r}^{h} exp(A s) ds B_a u_a(k - l)
+                                       + int_0^{h - r} exp(A s) ds B_a u_a(k - l + 1)]
 
 is exact for any delay (Astrom and Wittenmark 1997, Computer-Controlled Systems, ch. 3). Growth is ln|z|/h.
 """

@@ -1,7 +1,7 @@
 """What every countermeasure is: a design that holds a design, and writes more rows beside its own.
 
-`replace({"brake.friction.static": 0.4})` reaches into the brake that is held; a name the countermeasure does not have is
-looked for in it too, so "friction.static" names the same parameter through any number of countermeasures, and every
+`replace({"brake.friction.static": 0.4})` reaches into the brake that is held; a name the countermeasure does not have
+is looked for in it too, so "friction.static" names the same parameter through any number of countermeasures, and every
 analysis that varies it works unchanged.
 """
 

@@ -1,6 +1,6 @@
 """Dither: fast motion put onto a contact, tangential (sliding velocity) or normal (normal force).
 
-Tangential dither w sin(2 pi f t) along the sliding turns Coulomb's step into a steep rise, (2 mu/pi) asin(v/w): it damps
+Tangential dither w sin(2 pi f t) along the sliding turns Coulomb's step into a rise, (2 mu/pi) asin(v/w): it damps
 and takes away mean friction. Below the sliding speed (w < V) it does not reverse and makes a falling law fall faster,
 by I0(w/speed) for an exponential one: it destabilises. Normal dither N0 (1 + r sin) does nothing at all to a linear
 brake with Coulomb friction as long as no contact lifts off (r <= 1); beyond, the mean normal force rises.
@@ -57,7 +57,7 @@ class Dithered(Countermeasure):
 
     @property
     def friction_left(self) -> Any:
-        """Mean friction coefficient over that without dither, at each contact's sliding speed, shape (..., contacts)."""
+        """Mean friction coefficient over that without dither at each contact's sliding speed, (..., contacts)."""
         base = equilibrium(self.brake.system())
         law = self.replace(direct=False).system().contacts
         left = [contact.law.mu(base.sliding_speed[..., i]) for i, contact in enumerate(law)]

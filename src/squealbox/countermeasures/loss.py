@@ -1,4 +1,4 @@
-"""Where one brake loses its stability first, narrow windows included, and tunings at which such a window just closes."""
+"""Where one brake loses its stability first, narrow windows included; tunings at which such a window just closes."""
 
 from typing import Any
 
@@ -101,7 +101,7 @@ def at_the_window(start: Any, near: tuple[float, float, float], parameter: str) 
             rates = growth_of(start.replace({"frequency": f, "damping": z, parameter: beyond}))
             first = int(np.argmax(rates > 0.0))
             if first > 0:
-                last = float(brentq(lambda x: at(f, z, x), beyond[first - 1], beyond[first], xtol=1e-13 * end))
+                last = float(brentq(lambda x, f=f: at(f, z, x), beyond[first - 1], beyond[first], xtol=1e-13 * end))
                 best = min(best, (-last, f, z))
         return best
 

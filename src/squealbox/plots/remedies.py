@@ -20,10 +20,11 @@ MOST_BARS = 24
 @plot.register(Countermeasure)
 def countermeasure_drawing(design: Countermeasure, *, axes: Any = None) -> "Figure":
     """The drawing of the brake that a countermeasure holds, with what is done to it written above."""
-    layers, held = [], design
+    layers: list[str] = []
+    held: Any = design
     while isinstance(held, Countermeasure):
         layers.append(type(held).title.lower())
-        held = held.brake  # type: ignore[assignment]
+        held = held.brake
     figure = brake_drawing(held, axes=axes)
     panel = figure.axes[0] if axes is None else axes
     panel.set_title(" on ".join([*layers, "the brake"]), fontsize=8)

@@ -1,4 +1,4 @@
-"""What might silence a brake: candidates with the doses they come in, their costs and the line of Python that says them."""
+"""What might silence a brake: candidates their doses and costs, and the line of Python that says them."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -121,12 +121,13 @@ def _parameter(brake: Design, path: str, about: Any, value: float, sign: float) 
 
 
 def _added(kind: Any, field: str, brake: Design, on: str, most: float, unit: str, what: str) -> Candidate:
-    cautions = ()
+    cautions: tuple[str, ...] = ()
     if kind is AddedDamping:
         cautions = (f"damping on {on} alone can destabilise a flutter pair",)
     return Candidate(
         f"{field} on {on}", lambda dose: kind(brake, on, dose), np.geomspace(1e-3, 1.0, DOSES) * most, unit,
-        lambda dose: f"{kind.__name__}(brake, {on!r}, {float(dose)!r})", lambda dose: f"{what}, {dose:.4g} {unit}", cautions,
+        lambda dose: f"{kind.__name__}(brake, {on!r}, {float(dose)!r})",
+        lambda dose: f"{what}, {dose:.4g} {unit}", cautions,
     )  # fmt: skip
 
 
@@ -165,7 +166,8 @@ def _asymmetry(brake: Design, names: list[str], most: float) -> Candidate:
     doses = np.geomspace(1e-3, 1.0, DOSES) * most
     return Candidate(
         f"asymmetry {on}/{against}", lambda dose: Asymmetry(brake, on, against, dose), doses, "N/m",
-        lambda dose: f"Asymmetry(brake, {on!r}, {against!r}, {float(dose)!r})", lambda dose: f"redesign, {dose:.4g} N/m",
+        lambda dose: f"Asymmetry(brake, {on!r}, {against!r}, {float(dose)!r})",
+        lambda dose: f"redesign, {dose:.4g} N/m",
     )  # fmt: skip
 
 
@@ -179,15 +181,18 @@ def _both(brake: Design, friction: Any, names: list[str], masses: dict[str, floa
         return AddedDamping(TunedMass(brake, on, mass, frequency, damping), other, dose)
 
     yield Candidate(
-        f"absorber on {on} and damper on {other}", with_damper, np.geomspace(1e-3, 1.0, DOSES) * masses[other] * rate, "N s/m",
-        lambda d: f"AddedDamping(TunedMass(brake, {on!r}, {mass!r}, {frequency!r}, {damping!r}), {other!r}, {float(d)!r})",
+        f"absorber on {on} and damper on {other}", with_damper,
+        np.geomspace(1e-3, 1.0, DOSES) * masses[other] * rate, "N s/m",
+        lambda d: f"AddedDamping(TunedMass(brake, {on!r}, {mass!r}, {frequency!r}, {damping!r}), {other!r}, "
+        f"{float(d)!r})",
         lambda d: f"{1e3 * mass:.3g} g and {d:.4g} N s/m", (), "brake.frequency",
     )  # fmt: skip
     first = TunedMass(friction, on, mass, frequency, damping)
     again, ratio = quick_tuning(first, other, second)
     yield Candidate(
         f"absorbers on {on} and {other}",
-        lambda d: TunedMass(TunedMass(brake, on, mass, frequency, damping), other, d, again, ratio), np.array([second]), "kg",
+        lambda d: TunedMass(TunedMass(brake, on, mass, frequency, damping), other, d, again, ratio),
+        np.array([second]), "kg",
         lambda d: f"TunedMass(TunedMass(brake, {on!r}, {mass!r}, {frequency!r}, {damping!r}), {other!r}, {float(d)!r}, "
         f"{again!r}, {ratio!r})",
         lambda d: f"{1e3 * (mass + d):.3g} g in all", ("two absorbers to be tuned",), "frequency",
@@ -201,14 +206,17 @@ def _shims(brake: Design, rate: float) -> Iterator[Candidate]:
             Shim(brake, contact.name, max(spring, 1.0)).system()
         except ParameterError:
             continue  # a contact without a spring of its own has nothing a shim could stand in series with
-        name, hertz = contact.name, rate / (2.0 * np.pi)
-        yield Candidate(
-            f"shim at {name}", lambda dose, name=name: Shim(brake, name, 1.0 / dose, 0.3, hertz),
-            np.geomspace(0.01, 10.0, DOSES) / spring, "m/N",
-            lambda dose, name=name: f"Shim(brake, {name!r}, {1.0 / float(dose)!r}, 0.3, {hertz!r})",
-            lambda dose: f"a shim of {1.0 / dose:.4g} N/m with loss factor 0.3",
-            ("a soft shim lengthens the pedal travel",),
-        )  # fmt: skip
+        yield _shim(brake, contact.name, spring, rate / (2.0 * np.pi))
+
+
+def _shim(brake: Design, name: str, spring: float, hertz: float) -> Candidate:
+    return Candidate(
+        f"shim at {name}", lambda dose: Shim(brake, name, 1.0 / dose, 0.3, hertz),
+        np.geomspace(0.01, 10.0, DOSES) / spring, "m/N",
+        lambda dose: f"Shim(brake, {name!r}, {1.0 / float(dose)!r}, 0.3, {hertz!r})",
+        lambda dose: f"a shim of {1.0 / dose:.4g} N/m with loss factor 0.3",
+        ("a soft shim lengthens the pedal travel",),
+    )  # fmt: skip
 
 
 def _feedback(brake: Design, names: list[str], most: float) -> Candidate:

@@ -52,12 +52,10 @@ class Remedies(Result):
 
     def design(self, row: int) -> Design:
         """The brake with the cure of that row, made by its line of Python."""
-        import squealbox
         from squealbox import countermeasures, loops
 
         known = {name: getattr(countermeasures, name) for name in countermeasures.__all__}
         known |= {name: getattr(loops, name) for name in ("PID", "ActiveForce", "StateFeedback", "DelayedFeedback")}
-        del squealbox
         made: Design = _made(str(self.line[row]), {**known, "brake": self.inputs["system"]})
         return made
 
@@ -151,9 +149,10 @@ def silence(
         "caution",
         "line",
     )
+    columns: dict[str, Any] = {name: np.array([row[name] for row in rows]) for name in names}
     outcome = Outcome() if rows else Outcome("no_candidates", "nothing was given that could be tried")
     return Remedies(
-        **{name: np.array([row[name] for row in rows]) for name in names}, before=_share(brake, lot),
+        **columns, before=_share(brake, lot),
         growth_before=float(growth_of(brake)), amplitude_before=_pushed(brake, brake, push), margin=margin,
         inputs={"system": brake}, settings={"samples": samples, "seed": seed, "push": push}, outcome=outcome,
     )  # fmt: skip
@@ -172,7 +171,8 @@ def _row(each: Candidate, brake: Design, margin: float, lot: Any, tuning: Any, p
     if growth <= 0.0 and share > HALF:
         cautions.insert(0, f"stable as drawn, and yet {100.0 * share:.0f} % of the lot squeals")
     return {
-        "name": each.name, "dose": dose, "unit": each.unit, "reached": reached, "growth": growth, "growth_at_margin": later,
+        "name": each.name, "dose": dose, "unit": each.unit, "reached": reached, "growth": growth,
+        "growth_at_margin": later,
         "probability": share, "amplitude": _pushed(cured, brake, push), "cost": each.cost(dose),
         "caution": "; ".join(cautions), "line": each.line(dose),
     }  # fmt: skip
@@ -204,7 +204,7 @@ def _growths(each: Candidate, doses: Any, margin: float) -> Any:
 
 
 def _share(brake: Design, lot: dict[str, Any], each: Candidate | None = None, tuning: Any = None) -> float:
-    """Share of the lot that squeals, the cure kept as it is: a parameter that is changed scatters about its new value."""
+    """Share of the lot that squeals with the cure; a parameter that is changed scatters about its new value."""
     values: dict[str, Any] = {}
     for name, sample in lot.items():
         here = brake.value_of(name)
