@@ -1,4 +1,4 @@
-"""Calibration in full counts: coverage of the 95 % intervals over synthetic data sets, designs a second, the round trip.
+"""Calibration in full counts: coverage of the 95 % intervals, designs a second, the round trip.
 
 python benchmarks/calibration.py [data sets] [stops]
 """
@@ -61,9 +61,7 @@ def round_trip(stops):
         ]
         found = calibrate(BRAKE, BOUNDS, data, seed=seed)
         held += (found.low <= TRUTH) & (found.high >= TRUTH)
-    print(
-        f"round trip of {stops} stops: frequency to 0.1 Hz {right}, growth within 2 sd {within}, parameters {held / stops}"
-    )
+    print(f"{stops} round trips: frequency to 0.1 Hz {right}, growth within 2 sd {within}, held {held / stops}")
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from scipy.signal import lfilter
 from squealbox.signals import SignalError, growth_rate, squeal_events
 
 RATE, TONE = 48_000.0, 2000.3
-KINDS = {  # growth [1/s], samples, noise over the largest amplitude, further tones (growth, Hz, amplitude, phase), colour
+KINDS = {  # growth, samples, noise over the largest amplitude, further tones, colour
     "steady": (0.0, 4800, 0.1, (), 0.0),
     "growing": (30.0, 4800, 0.1, (), 0.0),
     "burst": (100.0, 4800, 0.05, (), 0.0),
@@ -83,9 +83,7 @@ def events(hours):
             found += bool(np.any(near))
             extra += seen.count - int(np.count_nonzero(near))
             late += [abs(seen.onset[near][0] - begin)] if np.any(near) else []
-        print(
-            f"{decibel:4.1f} dB: {found} of 60 found, onset within {max(late, default=0) / 0.010667:.2f} hops, {extra} others"
-        )
+        print(f"{decibel:4.1f} dB: {found} of 60, onsets to {max(late, default=0) / 0.010667:.1f} hops, {extra} others")
     false, spent, minutes = 0, 0.0, max(round(60 * hours), 1)
     for minute in range(minutes):
         x = np.random.default_rng(1000 + minute).standard_normal(int(60 * RATE))

@@ -11,7 +11,7 @@ from house.rooms import PACKAGE, PROJECT
 DISTRIBUTIONS = {"dask": "distributed"}  # import name to the name it is installed by, where they differ
 PROJECT_TABLE = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]
 # Rooms that may use an extra, and which one.
-EXTRAS = {"studies": "studies", "workbench": "workbench"}
+EXTRAS = {"signals": "recordings", "studies": "studies", "workbench": "workbench"}
 
 
 def declared(requirements) -> set[str]:

@@ -1,0 +1,82 @@
+"""`squealbox events`, `noise`, `calibrate` and `compare`: from a recording to a calibrated design file."""
+
+import numpy as np
+import pytest
+
+from squealbox.files import read_design, read_file
+
+BRAKE = """brake = "drum_brake"
+friction = { law = "linear_slope", static = 0.36, slope = "-0.05 s/m" }
+[recording]
+file = "stop.csv"
+unit = "Pa"
+[calibrate.parameters]
+k3 = ["150 kN/mm", "230 kN/mm"]
+friction.static = [0.3, 0.42]
+[[calibrate.measured]]
+quantity = "growth_rate"
+value = "536 1/s"
+sd = "20 1/s"
+[[calibrate.measured]]
+quantity = "frequency"
+value = "2078 Hz"
+sd = "1 Hz"
+mode = "unstable"
+"""
+
+
+@pytest.fixture
+def stop(tmp_path):
+    """A recording of one burst, the conditions of its stop, and a design file beside it."""
+    t = np.arange(24000) / 24000.0
+    x = np.exp(536.0 * np.minimum(t - 0.4, 0.0) - 200.0 * np.maximum(t - 0.7, 0.0)) * np.sin(2 * np.pi * 2078.0 * t)
+    x = x + 1e-3 * np.random.default_rng(0).standard_normal(t.size)
+    table = np.column_stack([t, x])
+    np.savetxt(tmp_path / "stop.csv", table, delimiter=",", header="t [s],mic [Pa]", comments="", fmt="%.9g")
+    braking = "\n".join(f"{0.1 * i},{10 - i},20" for i in range(11))
+    (tmp_path / "stop.braking.csv").write_text(f"t,speed,pressure\n{braking}\n")
+    (tmp_path / "brake.toml").write_text(BRAKE)
+    return tmp_path
+
+
+def test_events_and_noise(stop, said):
+    code, out, err = said("events", str(stop / "stop.csv"), "--out", str(stop / "events.nc"))
+    assert (code, err) == (0, "")
+    assert "1 events" in out
+    assert "2078.0 Hz" in out
+    assert (stop / "events.nc").exists()
+    code, out, err = said("noise", str(stop))
+    assert (code, err) == (0, "")
+    assert "1 of 1 stops squeal" in out
+    code, out, err = said("events", str(stop / "missing.wav"))
+    assert (code, out) == (2, "")
+    assert "cannot be read" in err
+
+
+def test_calibrate_and_compare(stop, said):
+    code, out, err = said("calibrate", str(stop / "brake.toml"), "--out", str(stop / "fitted.toml"))
+    assert (code, err) == (0, "")
+    assert "95 % interval" in out
+    assert read_design(stop / "fitted.toml").k3 == pytest.approx(1.898e8, rel=2e-3)
+    code, out, err = said("compare", str(stop / "brake.toml"))
+    assert (code, err) == (0, "")
+    assert "frequency" in out
+    assert read_file(stop / "brake.toml").recording.unit == "Pa"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('"536 1/s"', '"536 kg"', "a mass"),
+        ('sd = "1 Hz"', "sd = 0", "expected a finite number"),
+        ('"growth_rate"', '"growth"', "unknown name 'growth'"),
+        ('mode = "unstable"', 'mode = "loudest"', "place by frequency"),
+        ("[0.3, 0.42]", "[0.42, 0.3]", "friction.static"),
+        ('unit = "Pa"', "unit = 3", "a word in quotes"),
+    ],
+)
+def test_what_is_wrong_in_the_sections_is_said(old, new, words, stop, said):
+    (stop / "brake.toml").write_text(BRAKE.replace(old, new, 1))
+    code, out, err = said("calibrate", str(stop / "brake.toml"))
+    assert (code, out) == (2, "")
+    assert words in err
