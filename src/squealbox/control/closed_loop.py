@@ -126,7 +126,7 @@ class ClosedLoop(Result):
 
         Delay and sampling are not in it. Needs the package `control`.
         """
-        import control  # type: ignore[import-untyped]
+        import control
 
         found = self.plant
         return control.ss(found.A, found.B, found.H, np.zeros((len(found.loops), len(found.loops))))

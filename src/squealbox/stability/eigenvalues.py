@@ -19,7 +19,7 @@ from squealbox.stability.state_matrix import special_entries, stand_in, state_ma
 from squealbox.system import Linearised, as_system, linearise
 
 MARGINAL = 1e-12  # growth below this share of the largest |lambda| is round-off, not growth
-__all__ = ["ComplexModes", "Mode", "OneEigenvalue", "complex_modes", "damping_ratio", "modes_of", "spectrum"]
+__all__ = ["ComplexModes", "Mode", "OneEigenvalue", "complex_modes", "damping_ratio", "modes_of"]
 NEAR_DEFECTIVE = 1e6  # condition number of an eigenvalue at which about 6 of 16 digits are lost
 
 SINGULAR_PENCIL = Outcome("singular_pencil", "every number is an eigenvalue: a motion with no force on it at all")
