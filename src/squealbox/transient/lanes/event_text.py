@@ -68,8 +68,6 @@ class EventText(EquationText):
             self.put(f"inside{j} = inside{j} & (3.0 * right{j} + value{j} > 0.0) & (inner{j} > 0.0)")
             self.put(f"inside{j} = inside{j} | ({trust} > 0.5)")
             self.put(f"here{j} = {target} == {float(j)}")
-            self.put(f"sure{j} = here{j} | ((value{j} > 0.0) & inside{j})")
-            self.put(f"clear = clear & sure{j}")
             self.put(f"steep{j} = hh * rate1{j}")
             if j < m:
                 fall = self.fall(phi, [part["margin"][j] for part in contact])
@@ -77,6 +75,12 @@ class EventText(EquationText):
                 self.put(f"held = held + 1.0 * here{j} * {self.sticks(j)}")
             self.put(f"gap = gap + 1.0 * here{j} * value{j}")
             self.put(f"pace = pace + 1.0 * here{j} * steep{j}")
+        for j in range(shape.functions):
+            sure = f"here{j} | ((value{j} > 0.0) & inside{j})"
+            if shape.functions > 1:  # another root in the same place, as of two contacts on one motion
+                self.put(f"near = minimum({self.row('tolerance')}, 1e-9 * (abs({self.row(f'phi{j}')}) + abs(left{j})))")
+                sure += f" | (landing & (abs(value{j}) <= 4.0 * abs(gap) + near))"
+            self.put(f"clear = clear & ({sure})")
         self.put(f"reach = minimum({self.reach!r} * rtol_, 1e-3) * (1.0 - 0.9 * held)")
         self.put("mended = (abs(gap) <= -1.0 * reach * pace) & (t_ + 1.01 * hh < t_end_)")
         self.put(f"close = mended | (abs(gap) <= {self.row('tolerance')})")

@@ -227,15 +227,20 @@ def hold_matrix(A, b, lane, p, s):
 def change_modes(A, b, lane, j, p, s):
     """An event of function j at the present state: new modes, and the bound on events in a window of time."""
     t = A[b + ROW_T * WIDTH + lane]
-    A[b + ROW_EVENTS * WIDTH + lane] += 1.0
     done = False
     if SIMPLE:
+        before = A[b + (ROW_SLIPS + j) * WIDTH + lane]
         done = change_alone(A, b, lane, j)
+        if done and A[b + (ROW_SLIPS + j) * WIDTH + lane] != before:
+            A[b + ROW_EVENTS * WIDTH + lane] += 1.0
     if not done:
         gather(A, b, lane, p, s)
         load_state(A, b, lane, p, s)
         if not apply_event(p, t, s.state, s.mode, s, j if j < CONTACTS else p.contacts + j - CONTACTS):
             return INCONSISTENT
+        for c in range(CONTACTS):
+            if s.mode[c] != s.old[c]:
+                A[b + ROW_EVENTS * WIDTH + lane] += 1.0
         opened = s.old[j] == OPEN if j < CONTACTS else True
         refresh(A, b, lane, t, p, s)
         if FUNCTIONS > CONTACTS and opened:  # N = 0 there: round-off of the other sign is no event of its own
