@@ -8,10 +8,10 @@ import pytest
 
 from house.rooms import PACKAGE, PROJECT
 
-DISTRIBUTIONS = {"dask": "distributed"}  # import name to the name it is installed by, where they differ
+DISTRIBUTIONS = {"dask": "distributed", "skfem": "scikit-fem"}  # import name to the name it is installed by, where they differ
 PROJECT_TABLE = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]
 # Rooms that may use an extra, and which one.
-EXTRAS = {"studies": "studies", "workbench": "workbench"}
+EXTRAS = {"studies": "studies", "workbench": "workbench", "fe": "fe", "factorisation.py": "fe"}
 
 
 def declared(requirements) -> set[str]:
