@@ -8,10 +8,14 @@ import pytest
 
 from house.rooms import PACKAGE, PROJECT
 
-DISTRIBUTIONS = {"dask": "distributed"}  # import name to the name it is installed by, where they differ
+# import name to the name it is installed by, where they differ
+DISTRIBUTIONS = {"dask": "distributed", "skfem": "scikit-fem"}
 PROJECT_TABLE = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]
 # Rooms that may use an extra, and which one.
-EXTRAS = {"signals": "recordings", "studies": "studies", "workbench": "workbench"}
+EXTRAS = {
+    "signals": "recordings", "studies": "studies", "workbench": "workbench", "fe": "fe", "factorisation.py": "fe",
+    "control": "control",
+}  # fmt: skip
 
 
 def declared(requirements) -> set[str]:
