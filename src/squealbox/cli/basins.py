@@ -6,7 +6,7 @@ from typing import Annotated
 import numpy as np
 from cyclopts import Parameter
 
-from squealbox.cli.inputs import AllowCode, Changes, folder, read
+from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -57,7 +57,7 @@ def basin_(
     """
     if starts < 1 or not (np.isfinite(spread) and spread > 0.0):
         raise UsageError(f"--starts {starts} --spread {spread:g}: expected at least one start and a spread above 0")
-    found = read(file, changes, allow_code)
+    found = in_motion(read(file, changes, allow_code))
     if out is not None:
         folder(out)
     with Progress(f"{starts} starts") as progress:

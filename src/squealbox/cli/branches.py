@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, read, readable, with_points
+from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, in_motion, read, readable, with_points
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.tables import write_csv, written
@@ -66,6 +66,7 @@ def branch(
     varied = with_points(axis(found.design, found.branch, parameter, range, RANGE), points)
     if out is not None:
         folder(out)
+    found = in_motion(found, varied)
     with Progress("looking for the onset") as progress:
         born, several = all_branches(found.design, varied, start, runs, at, progress)
     if not several:

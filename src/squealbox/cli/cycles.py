@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.cli.inputs import Changes, folder, read
+from squealbox.cli.inputs import Changes, folder, in_motion, read
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import written
 from squealbox.limit_cycles import Cycle, lyapunov_exponents, shooting
@@ -37,7 +37,7 @@ def cycle(file: Path, *, exponents: int = 0, changes: Changes = (), out: Path | 
     """
     if exponents < 0:
         raise UsageError(f"--exponents {exponents}: expected a number of periods")
-    found = read(file, changes)
+    found = in_motion(read(file, changes))
     result = shooting(found.design)
     if not result.outcome.ok:
         if exponents:

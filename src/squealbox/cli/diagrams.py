@@ -13,7 +13,7 @@ from squealbox.cli.inputs import (
     Changes,
     Ends,
     axis,
-    folder,
+    folder, in_motion,
     number,
     read,
     readable,
@@ -98,6 +98,7 @@ def diagram(
     """
     found = read(file, changes, allow_code)
     varied = with_points(axis(found.design, found.branch, parameter, range, RANGE), points)
+    found = in_motion(found, varied)
     length = None if duration is None else time_of("--duration", duration)
     plane = _section(found.design, section, dof)
     if out is not None:

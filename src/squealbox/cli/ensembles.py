@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.cli.inputs import AllowCode, Changes, folder, read, time_of
+from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read, time_of
 from squealbox.cli.maps import Plane, Span, axes_of
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
@@ -57,6 +57,7 @@ def ensemble(
         raise UsageError(f"--duration {duration}: expected a time above 0 s")
     if out is not None:
         folder(out)
+    found = in_motion(found, across, up)
     space = {each.name: each.values for each in (across, up)}
     with Progress(f"{int(across.points)} x {int(up.points)} transients") as progress:
         many = simulate_ensemble(

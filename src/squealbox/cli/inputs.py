@@ -8,8 +8,10 @@ from typing import Annotated, Any
 import cyclopts
 import numpy as np
 
+from squealbox.cli.progress import Progress
 from squealbox.cli.running import UsageError
 from squealbox.designs import Design
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files import DesignFile, read_file
 from squealbox.files.analyses import Axis, quantity_of
 from squealbox.files.units import UnitError, in_si
@@ -24,6 +26,28 @@ def read(file: Path, changes: Sequence[str] = (), allow_code: bool = False) -> D
     """The design file with ``--set friction.static=0.4`` and the like applied."""
     found = read_file(file, allow_code=allow_code)
     return dataclasses.replace(found, design=changed(found.design, changes))
+
+
+def small(found: DesignFile, *axes: Axis) -> DesignFile:
+    """The file with a finite-element brake reduced for `axes` and its sections, and what that promises printed."""
+    from squealbox.files.reduced import dense, promise
+
+    made = found
+    if found.design.system().is_sparse:
+        with Progress("reducing the finite-element brake"):
+            made = dense(found, axes)
+    if isinstance(made.design, ReducedBrake):
+        print(promise(made.design))
+    return made
+
+
+def in_motion(found: DesignFile, *axes: Axis) -> DesignFile:
+    """As :func:`small`, for motions in time: friction across the sliding direction is left out, and that is said."""
+    made = small(found, *axes)
+    if isinstance(made.design, ReducedBrake) and made.design.reduction.arrays["across"] is not None:
+        print("Motions leave out friction across the sliding direction, which damps: they are on the safe side.")
+        return dataclasses.replace(made, design=made.design.sliding_one_way())
+    return made
 
 
 def changed(design: Design, changes: Sequence[str]) -> Design:

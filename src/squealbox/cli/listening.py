@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.cli.inputs import AllowCode, Changes, read, time_of
+from squealbox.cli.inputs import AllowCode, Changes, in_motion, read, time_of
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.files.analyses import Simulate
@@ -49,6 +49,7 @@ def listen(
     if not 0.0 < seconds <= 60.0:
         raise UsageError(f"--duration {duration}: expected more than 0 and at most 60 s")
     settings = (found.simulate or Simulate()).replace({"duration": seconds})
+    found = in_motion(found)
     with Progress("simulating (the first run compiles the engine)"):
         motion = run(found.design.system(), settings, points=int(seconds * SAMPLES) + 1)
     if not motion.outcome.ok:

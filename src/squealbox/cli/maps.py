@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from cyclopts import Parameter
 
-from squealbox.cli.inputs import AllowCode, Changes, Option, axis, folder, read, readable, with_points
+from squealbox.cli.inputs import AllowCode, Changes, Option, axis, folder, read, readable, small, with_points
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -59,6 +59,7 @@ def map_(
     across, up = axes_of(found, x, y, points)
     if out is not None:
         folder(out)
+    found = small(found, across, up)
     with Progress(f"{int(across.points)} x {int(up.points)} points") as progress:
         grid = stability_map(found.design, {each.name: each.values for each in (across, up)})
         if not grid.outcome.ok:

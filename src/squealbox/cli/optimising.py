@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.cli.inputs import AllowCode, Changes, folder, read
+from squealbox.cli.inputs import AllowCode, Changes, folder, read, small
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -53,6 +53,7 @@ def optimise(
         raise UsageError(f"--seed {seed}: expected a whole number of at least 0")
     if out is not None:
         folder(out)
+    found = small(found)
     effort = section.effort
     with Progress(f"optimising {', '.join(section.variables)}"):
         result = optimised(

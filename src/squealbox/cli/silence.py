@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from squealbox.cli.inputs import AllowCode, Changes, folder, read
+from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -51,6 +51,7 @@ def silence(
         raise UsageError(f"--margin {margin}: expected a finite number of at least 0")
     if out is not None:
         folder(out)
+    found = in_motion(found)
     with Progress("looking for what silences it"):
         table = silenced(found.design, found.scatter.scatter, margin=margin, samples=samples, seed=seed)
     print(f"{found.design.title}, {file}\n{table.summary()}")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, number, read, readable
+from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, number, read, readable, small
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -123,6 +123,7 @@ def onset(
     varied = axis(found.design, found.onset, parameter, range, RANGE)
     if out is not None:
         folder(out)
+    found = small(found, varied)
     with Progress("looking for the onset"):
         crossings = critical_values(found.design, varied.name, (varied.low, varied.high))
     if not crossings.outcome.ok:

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from squealbox.cli.inputs import AllowCode, Changes, folder, read, time_of
+from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read, time_of
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -53,6 +53,7 @@ def simulate(
     found = read(file, changes, allow_code)
     options = {"start": start, "method": method, "contact": contact}
     settings = _settings(found.simulate or Simulate(), duration, options)
+    found = in_motion(found)
     system = found.design.system()
     start_of(system, settings)  # what cannot be started is said before a folder is made
     folder(out)

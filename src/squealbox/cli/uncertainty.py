@@ -8,7 +8,7 @@ import numpy as np
 from cyclopts import Parameter
 
 from squealbox import studies
-from squealbox.cli.inputs import AllowCode, Changes, folder, read
+from squealbox.cli.inputs import AllowCode, Changes, folder, read, small
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -63,6 +63,7 @@ def scatter(
     sampled = _sampled(section.sampled, samples, seed)
     if out is not None:
         folder(out)
+    found = small(found)
     print(f"{found.design.title}, {file}")
     failed = None
     files: list[Path] = []

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import DESIGNS, Design
+from squealbox.fe.disc_brake import DiscBrake
 from squealbox.files import analyses, countermeasures
 from squealbox.files.assembled import ASSEMBLED, read_assembled
 from squealbox.files.document import Document, document_of, open_document
@@ -16,15 +17,18 @@ from squealbox.files.measurements import Calibrated, Recorded, read_calibrated, 
 from squealbox.files.mechanism import OwnMechanism
 from squealbox.files.numbers import WRONG, read_choice, wrong
 from squealbox.files.own_brake import OwnBrake
+from squealbox.files.reduced import REDUCED, Reduced, read_reduce, read_reduced
 from squealbox.files.sheets import read_sheet
 from squealbox.files.uncertain import Optimise, Scattered, read_optimise, read_scatter
 from squealbox.parameters import ParameterError, known_names
 from squealbox.system import InvalidSystem
 
-BRAKES: dict[str, type[Design]] = {**DESIGNS, "own": OwnBrake, "mechanism": OwnMechanism}
+BRAKES: dict[str, type[Design]] = {**DESIGNS, "own": OwnBrake, "mechanism": OwnMechanism, "disc_brake": DiscBrake}
+READERS = {ASSEMBLED: read_assembled, REDUCED: read_reduced}  # brakes that files beside the design describe
 STUDY = "study"  # a section that `study.read_study` reads
 SECTIONS: dict[str, Callable[..., Any]] = {
     "modes": analyses.read_modes,
+    "reduce": read_reduce,
     "onset": analyses.read_onset,
     "branch": analyses.read_onset,
     "map": analyses.read_map,
@@ -51,6 +55,7 @@ class DesignFile:
     optimise: Optimise | None = None
     calibrate: Calibrated | None = None
     recording: Recorded | None = None
+    reduce: Reduced | None = None
     study: bool = False  # does it hold a [study], which `study.read_study` reads?
 
 
@@ -65,7 +70,7 @@ def read_design(path: str | os.PathLike[str], *, allow_code: bool = False) -> De
 
 def read_file(path: str | os.PathLike[str], *, allow_code: bool = False) -> DesignFile:
     """The brake that the file at `path` describes, and its sections: [modes], [onset], [branch], [map],
-    [simulate], [scatter], [optimise], [calibrate] and [recording].
+    [simulate], [scatter], [optimise], [reduce], [calibrate] and [recording].
 
     A friction law that is Python code (``law = "own"``) is run only with `allow_code`.
     Raises `DesignFileError`, whose `problems` are all that is wrong with the file, each with line, key and a sentence.
@@ -117,12 +122,12 @@ def design_of(document: Document, tables: Mapping[str, Any], beside: tuple[str, 
 
 def _design(document: Document, tables: Mapping[str, Any], beside: tuple[str, ...] = ()) -> Design | None:
     if "brake" not in tables:
-        document.problem((), f"the key 'brake' is missing, expected {known_names('', [*BRAKES, ASSEMBLED])}")
+        document.problem((), f"the key 'brake' is missing, expected {known_names('', [*BRAKES, *READERS])}")
         return None
     rest = {name: value for name, value in tables.items() if name != "brake"}
-    if tables["brake"] == ASSEMBLED:
-        return read_assembled(document, rest, (*SECTIONS, STUDY, *beside))
-    kind = read_choice(document, tables["brake"], BRAKES, ("brake",))
+    if isinstance(tables["brake"], str) and tables["brake"] in READERS:
+        return READERS[tables["brake"]](document, rest, (*SECTIONS, STUDY, *beside))
+    kind = read_choice(document, tables["brake"], {**BRAKES, **dict.fromkeys(READERS, Design)}, ("brake",))
     if kind is WRONG:
         return None
     design: Design | None = read_sheet(document, kind, rest, (), beside=(*SECTIONS, STUDY, *beside))

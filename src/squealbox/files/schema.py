@@ -13,6 +13,7 @@ from squealbox.files.assembled import ASSEMBLED
 from squealbox.files.measurements import measurement_schemas
 from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES, STUDY
+from squealbox.files.reduced import REDUCED, Reduce
 from squealbox.files.sheets import LAW_NAMES, OWN, SCHEDULE_NAMES, field_type, is_required
 from squealbox.files.study import OTHERS, Refine, Study
 from squealbox.files.uncertain_schema import optimise_schema, scatter_schema
@@ -36,6 +37,7 @@ def json_schema() -> Schema:
     sections = {
         "modes": _sheet(Modes),
         "simulate": _sheet(Simulate),
+        "reduce": _sheet(Reduce, more={"varying": {"type": "object", "description": "parameters and their ranges"}}),
         "onset": _ref("axis"),
         "branch": _ref("axis"),
         "map": {
@@ -56,9 +58,9 @@ def json_schema() -> Schema:
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "squealbox design file",
         "type": "object",
-        "properties": {"brake": {"enum": [*BRAKES, ASSEMBLED], "description": "which brake the file describes"}},
+        "properties": {"brake": {"enum": [*BRAKES, ASSEMBLED, REDUCED], "description": "which brake the file describes"}},
         "required": ["brake"],
-        "oneOf": [*brakes, _assembled(sections)],
+        "oneOf": [*brakes, _assembled(sections), _reduced(sections)],
         "definitions": definitions,
     }
 
@@ -73,6 +75,20 @@ def _assembled(sections: Schema) -> Schema:
         "description": "A finite-element brake from exported matrices",
         "properties": {"brake": {"const": ASSEMBLED}, **own, **scalars, **tables, "friction": _ref("law"), **sections},
         "required": ["brake", "structure"],
+        "additionalProperties": False,
+    }
+
+
+def _reduced(sections: Schema) -> Schema:
+    """A brake that `squealbox reduce` wrote."""
+    file: Schema = {"type": "string", "description": "the .npz file of squealbox reduce, beside this one"}
+    values: Schema = {"type": "object", "description": "values of what it was reduced for"}
+    own: Schema = {"brake": {"const": REDUCED}, "file": file, "values": values, "friction": _ref("law")}
+    return {
+        "type": "object",
+        "description": "A finite-element brake that was reduced before",
+        "properties": {**own, **sections},
+        "required": ["brake", "file"],
         "additionalProperties": False,
     }
 
@@ -110,6 +126,8 @@ def _field(sheet: type[DataSheet], name: str) -> Schema:
         return {"type": "array", "items": {"type": "string"} if item is str else _sheet(item)}
     if isinstance(declared, type) and issubclass(declared, FrictionLaw):
         return _ref("law")
+    if isinstance(declared, type) and issubclass(declared, DataSheet):
+        return _sheet(declared)
     return {"type": "boolean" if declared is bool else "string"}
 
 

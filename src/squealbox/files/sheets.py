@@ -93,6 +93,8 @@ def read_field(document: Document, sheet: type[DataSheet], name: str, value: Any
         return read_parameter(document, value, about, key, several=declared is Any and not about.schedule)
     if isinstance(declared, type) and issubclass(declared, FrictionLaw):
         return read_law(document, value, key)
+    if isinstance(declared, type) and issubclass(declared, DataSheet):
+        return _table(document, declared, value, key)
     words = sheet.choices().get(name)
     if words is not None:
         return read_choice(document, value, {word: word for word in words.options}, key)
@@ -251,6 +253,12 @@ def _sheets(document: Document, sheet: type[DataSheet], value: Any, key: Key) ->
         return wrong(document, key, value, f"tables, each under a line [[{key[-1]}]]")
     read = [read_sheet(document, sheet, item, (*key, i)) for i, item in enumerate(value)]
     return WRONG if any(item is None for item in read) else tuple(read)
+
+
+def _table(document: Document, sheet: type[DataSheet], value: Any, key: Key) -> Any:
+    if not isinstance(value, Mapping):
+        return wrong(document, key, value, f"a section [{'.'.join(str(part) for part in key)}]")
+    return read_sheet(document, sheet, value, key) or WRONG
 
 
 def _word(document: Document, value: Any, key: Key) -> Any:

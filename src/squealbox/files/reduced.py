@@ -1,0 +1,189 @@
+"""The section [reduce], which makes a finite-element brake small for all analyses; and `brake = "reduced"`.
+
+    [reduce]
+    band = ["500 Hz", "10 kHz"]                    left out, that of [modes]
+    varying = { "friction.static" = [0, 0.8] }     beside what [onset], [branch], [map] and [scatter] vary
+    tolerance = "0.05 1/s"
+
+    brake = "reduced"
+    file = "small.npz"                             what squealbox reduce wrote
+    friction = { law = "coulomb", static = 0.4 }   in place of the law it was reduced with
+    values = { angular_speed = 4 }                 of what it was reduced for
+"""
+
+import dataclasses
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.designs import Design
+from squealbox.fe.readers.matrix import MatrixFileError
+from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe.reduced_files import load_reduced
+from squealbox.fe.reduction import MOST_AXES, reduce
+from squealbox.files.analyses import Axis, quantity_of, read_ends
+from squealbox.files.arrays import ArrayFileError, Vector, path_beside
+from squealbox.files.asked import flattened, known
+from squealbox.files.document import Document
+from squealbox.files.lines import Key
+from squealbox.files.numbers import WRONG, shown, wrong
+from squealbox.files.sheets import read_law, read_sheet
+from squealbox.parameters import DataSheet, ParameterError, choice, known_names, parameter
+from squealbox.system import InvalidSystem
+
+if TYPE_CHECKING:
+    from squealbox.files.reading import DesignFile
+
+REDUCED = "reduced"
+KEYS = ("file", "friction", "values")
+RARE = 1e-6  # share of a distribution without bounds that is left out at either end
+MISSING = 'give [reduce] band = ["500 Hz", "10 kHz"] in the file, or the band of [modes]'
+
+
+class Reduce(DataSheet):
+    """[reduce]: a finite-element brake is made small once, for all that needs dense matrices."""
+
+    band: Vector = parameter("Hz", 0.0, default=None, optional=True, meaning="from, to; left out, that of [modes]")
+    method: str = choice("enriched", "craig-bampton", "pod", default="enriched", meaning="which basis")
+    tolerance: float = parameter("1/s", 0.0, low_open=True, default=0.05, meaning="error wanted of an eigenvalue")
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """What a section [reduce] says."""
+
+    how: Reduce
+    varying: dict[str, tuple[float, float]]
+
+
+def read_reduce(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Reduced | None:
+    """The section [reduce]."""
+    rest = {name: value for name, value in table.items() if name != "varying"}
+    how = read_sheet(document, Reduce, rest, key, beside=("varying",))
+    given = table.get("varying", {})
+    if not isinstance(given, Mapping):
+        wrong(document, (*key, "varying"), given, 'a table such as { "friction.static" = [0, 0.8] }')
+        return None
+    varying = {}
+    for name, value, place in flattened(given, (*key, "varying"), design):
+        about = known(document, name, place, design)
+        ends = read_ends(document, value, about, place)
+        if ends is not None:
+            varying[name] = ends
+    if how is not None and how.band is not None and not (np.shape(how.band) == (2,) and 0.0 < how.band[0] < how.band[1]):
+        wrong(document, (*key, "band"), [float(f) for f in how.band], 'two values such as ["500 Hz", "10 kHz"]')
+        return None
+    return None if how is None else Reduced(how, varying)
+
+
+def read_reduced(document: Document, tables: Mapping[str, Any], beside: tuple[str, ...]) -> Design | None:
+    """A brake that `squealbox reduce` wrote; None where something is wrong, which the document then holds."""
+    before = len(document.problems)
+    for name in tables:
+        if name not in KEYS:
+            document.problem((name,), f"unknown key, {known_names(name[:60], [*KEYS, *beside])}")
+    file, values = tables.get("file"), tables.get("values", {})
+    if "file" not in tables:
+        document.problem((), "the key 'file' is missing, expected the .npz file of squealbox reduce")
+    elif not isinstance(file, str):
+        wrong(document, ("file",), file, "the name of a .npz file in quotes")
+    if not isinstance(values, Mapping):
+        wrong(document, ("values",), values, "a table of numbers")
+    law = read_law(document, tables["friction"], ("friction",)) if "friction" in tables else None
+    if len(document.problems) > before or law is WRONG:
+        return None
+    try:
+        brake = load_reduced(path_beside(document.path, str(file)))
+    except (ArrayFileError, MatrixFileError) as error:
+        document.problem(("file",), str(error))
+        return None
+    if law is not None:
+        brake = brake.replace(friction=law)
+    for name, value, place in flattened(values, ("values",), brake):
+        try:
+            brake = brake.replace({name: value})
+        except (ParameterError, TypeError, ValueError) as error:
+            document.problem(place, f"{shown(value)}: {getattr(error, 'expectation', error)}")
+    return brake if len(document.problems) == before else None
+
+
+def dense(found: "DesignFile", axes: Iterable[Axis] = ()) -> "DesignFile":
+    """The file with its finite-element brake reduced for `axes` and for what its sections vary.
+
+    A brake with dense matrices is returned as it is. Raises `InvalidSystem`, one sentence, without a band.
+    """
+    if not found.design.system().is_sparse:
+        return found
+    about = found.reduce or Reduced(Reduce(), {})
+    band = about.how.band if about.how.band is not None else found.modes.band if found.modes else None
+    if band is None or np.shape(band) != (2,):
+        raise InvalidSystem(f"a finite-element brake is made small for this, which needs a band of frequency: {MISSING}")
+    varying = _ranges(found, axes)
+    try:
+        small = reduce(
+            found.design,
+            (float(band[0]), float(band[1])),
+            varying=varying,
+            method=about.how.method,  # type: ignore[arg-type]
+            tolerance=about.how.tolerance,
+            time=found.modes.time if found.modes else 0.0,
+        )
+    except ValueError as error:
+        if isinstance(error, (InvalidSystem, ParameterError)):
+            raise
+        raise InvalidSystem(str(error)) from error
+    return dataclasses.replace(found, design=small)
+
+
+def promise(brake: ReducedBrake) -> str:
+    """What a reduced brake promises, and how far it was looked at."""
+    about = brake.reduction
+    corners = [point for point, _ in about.errors if point]
+    names = sorted({name for point in corners for name in point})
+    over = [f"{name} {min(p[name] for p in corners):g} to {max(p[name] for p in corners):g}" for name in names]
+    held = "" if about.error <= about.tolerance else f", more than the {about.tolerance:g} 1/s asked for"
+    return (
+        f"Reduced from {about.size} to {len(about.arrays['M'])} coordinates for {about.band[0]:g} to {about.band[1]:g} "
+        f"Hz{' and ' + ', '.join(over) if over else ''}: eigenvalues in the band within {about.error:.2g} 1/s{held}, "
+        f"estimated at {len(about.errors)} points; that no growing mode is missing is not certified here "
+        "(squealbox modes --certify)."
+    )
+
+
+def error_table(brake: ReducedBrake) -> str:
+    """The points at which a reduced brake was checked against the full one, and its largest error there."""
+    rows = [f"{'error [1/s]':>12}  at"]
+    for point, error in brake.reduction.errors:
+        place = ", ".join(f"{name} = {value:g}" for name, value in point.items()) or "the design as the file gives it"
+        rows.append(f"{float(error):>12.2g}  {place}")
+    return "\n".join(rows)
+
+
+def _ranges(found: "DesignFile", axes: Iterable[Axis]) -> dict[str, tuple[float, float]]:
+    """Everything that is varied, each over the union of its ranges."""
+    spans = [(axis.name, float(axis.low), float(axis.high)) for axis in axes]
+    if found.reduce is not None:
+        spans += [(name, low, high) for name, (low, high) in found.reduce.varying.items()]
+    plane = () if found.map is None else (found.map.x, found.map.y)
+    spans += [(a.name, float(a.low), float(a.high)) for a in (found.onset, found.branch, *plane) if a is not None]
+    if found.scatter is not None:
+        for name, one in found.scatter.scatter.distributions.items():
+            low, high = (float(end) for end in one.support)
+            ends = float(one.ppf(RARE)), float(one.ppf(1.0 - RARE))
+            spans.append((name, low if np.isfinite(low) else ends[0], high if np.isfinite(high) else ends[1]))
+    if found.optimise is not None:
+        spans += [(name, float(low), float(high)) for name, (low, high) in found.optimise.variables.items()]
+    ranges: dict[str, tuple[float, float]] = {}
+    for name, low, high in spans:
+        about = quantity_of(found.design, name)
+        low, high = max(low, about.low), min(high, about.high)
+        before = ranges.get(name, (low, high))
+        ranges[name] = min(before[0], low), max(before[1], high)
+    if len(ranges) > MOST_AXES:
+        raise InvalidSystem(
+            f"the file varies {len(ranges)} parameters of a finite-element brake ({', '.join(ranges)}): expected at "
+            f"most {MOST_AXES}, because the reduced brake is checked at the corners of their ranges"
+        )
+    return ranges
