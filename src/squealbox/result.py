@@ -22,7 +22,6 @@ import numpy as np
 from squealbox.parameters import from_plain, load_kind, to_plain
 
 if TYPE_CHECKING:
-    import pandas as pd
     import xarray
 
 COMPLETED = "completed"
@@ -174,7 +173,7 @@ class Result:
         dataset = xarray.Dataset(variables, attrs={"kind": self.kind_name(), **attributes})
         return dataset.assign_coords(self._labels(dataset))
 
-    def to_dataframe(self) -> "pd.DataFrame":
+    def to_dataframe(self) -> Any:
         """One row for each entry of what the result runs over (instants, points, trajectories), as a `pandas` table.
 
         Columns are the arrays over it; what runs over more gives a column each: ``q[x]``, ``q[y]``. An array that

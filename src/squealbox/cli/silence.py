@@ -23,12 +23,13 @@ def silence(
 ) -> None:
     """What would silence this brake: cures ranked by the squeal they leave, with dose, costs and cautions.
 
-    The section [scatter] of the file says how parameters scatter in production.
+    The section [scatter] of the file says how parameters scatter in production; without it a usual scatter is assumed
+    and said.
 
     Parameters
     ----------
     file
-        design file with a section [scatter]
+        design file; squealbox init writes a first one
     margin
         by which friction may rise without squeal: 0.1 is 10 %
     samples
@@ -43,8 +44,6 @@ def silence(
         folder for the table and a figure
     """
     found = read(file, changes, allow_code)
-    if found.scatter is None:
-        raise UsageError(f"{file} has no section [scatter], which says how parameters scatter in production")
     if samples < 1 or seed < 0:
         raise UsageError(f"--samples {samples} --seed {seed}: expected at least 1 and at least 0")
     if not (np.isfinite(margin) and margin >= 0.0):
@@ -53,7 +52,8 @@ def silence(
         folder(out)
     found = in_motion(found)
     with Progress("looking for what silences it"):
-        table = silenced(found.design, found.scatter.scatter, margin=margin, samples=samples, seed=seed)
+        lot = found.scatter.scatter if found.scatter is not None else None
+        table = silenced(found.design, lot, margin=margin, samples=samples, seed=seed)
     print(f"{found.design.title}, {file}\n{table.summary()}")
     if out is not None:
         from squealbox import plots

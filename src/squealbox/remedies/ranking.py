@@ -12,6 +12,7 @@ from squealbox.countermeasures.loss import growth_of
 from squealbox.designs.base import Design
 from squealbox.parameters import ParameterError
 from squealbox.remedies.candidates import Candidate, candidates_for, more_friction
+from squealbox.remedies.production import ASSUMED, usual_scatter
 from squealbox.result import Outcome, Result, quantity
 from squealbox.studies.uncertainty.scatter import Scatter
 from squealbox.system import InvalidSystem, equilibrium
@@ -46,6 +47,7 @@ class Remedies(Result):
     growth_before: float = float("nan")
     amplitude_before: float = float("nan")
     margin: float = 0.1
+    assumption: str = ""
 
     def __len__(self) -> int:
         return len(self.name)
@@ -91,15 +93,14 @@ class Remedies(Result):
             f"{1e6 * self.amplitude_before:.3g} um after a push"
         )
         cautions = [f"{self.name[i]}: {self.caution[i]}" for i in range(len(self)) if self.caution[i]]
-        return "\n".join([first, *lines, "", *cautions])
-
-    def __repr__(self) -> str:
-        return self.summary()
+        missed = [f"margin not reached at any dose tried: {', '.join(map(str, self.name[~self.reached.astype(bool)]))}"]
+        said = [self.assumption] if self.assumption else []
+        return "\n".join([first, *lines, "", *(missed if not np.all(self.reached) else []), *cautions, *said])
 
 
 def silence(
     brake: Design,
-    scatter: Scatter,
+    scatter: Scatter | None = None,
     candidates: Sequence[Candidate] | None = None,
     margin: float = 0.1,
     *,
@@ -112,7 +113,7 @@ def silence(
     Parameters
     ----------
     brake : any design with a friction law
-    scatter : how its parameters scatter in production
+    scatter : how its parameters scatter in production; None takes `usual_scatter`, and the summary says so
     candidates : None takes `candidates_for`: each parameter, absorbers, dampers, masses, springs, shims, asymmetry,
         dither, velocity feedback, active force control, combinations of two
     margin : by which friction may rise without squeal
@@ -128,6 +129,8 @@ def silence(
     """
     if not (np.isfinite(margin) and margin >= 0.0):
         raise ParameterError("silence", "margin", margin, "a finite number of at least 0")
+    assumed = scatter is None
+    scatter = usual_scatter(brake) if scatter is None else scatter
     if not isinstance(scatter, Scatter):
         raise ParameterError("silence", "scatter", scatter, "a Scatter of the brake's parameters")
     lot = scatter.sample(samples, seed=seed)
@@ -155,6 +158,7 @@ def silence(
         **columns, before=_share(brake, lot),
         growth_before=float(growth_of(brake)), amplitude_before=_pushed(brake, brake, push), margin=margin,
         inputs={"system": brake}, settings={"samples": samples, "seed": seed, "push": push}, outcome=outcome,
+        assumption=ASSUMED if assumed else "",
     )  # fmt: skip
 
 

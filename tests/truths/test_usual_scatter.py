@@ -1,0 +1,33 @@
+"""The scatter that is assumed where none is given: what it varies, by how much, and that the table says so."""
+
+import numpy as np
+import pytest
+
+from squealbox import DrumBrake, LinearSlope, ModeCoupling, ParameterError, Stribeck, silence
+from squealbox.remedies import usual_scatter
+from squealbox.studies import Scatter
+
+
+def test_friction_springs_and_dampers_scatter_as_stated():
+    lot = usual_scatter(DrumBrake(friction=LinearSlope(0.36, -0.05))).sample(20_000, seed=1)
+    assert {"friction.static", "k1", "k2", "k3", "k4", "c1", "c2"} == set(lot)
+    spread = {name: np.std(values) / np.mean(values) for name, values in lot.items()}
+    expected = {"friction.static": 0.08, "k3": 0.03, "c1": 0.20}
+    for name, share in expected.items():
+        assert spread[name] == pytest.approx(share, rel=0.03)  # 1/sqrt(2 n) is 0.5 %
+
+
+def test_static_friction_never_falls_below_kinetic():
+    brake = DrumBrake(friction=Stribeck(0.40, 0.38, 0.3))
+    lot = usual_scatter(brake).sample(2000, seed=2)
+    assert np.min(lot["friction.static"]) >= 0.38
+    brake.replace({"friction.static": lot["friction.static"]})  # every one of them is a law
+
+
+def test_the_table_says_what_was_assumed_and_nothing_where_it_was_given():
+    brake = ModeCoupling(c1=0.02, c2=0.02)
+    assert "assumed scatter" in silence(brake, samples=64, push=0.0).summary()
+    own = Scatter(usual_scatter(brake).distributions)
+    assert "assumed" not in silence(brake, own, samples=64, push=0.0).summary()
+    with pytest.raises(ParameterError, match="a Scatter"):
+        silence(brake, {"friction.static": 0.1})
