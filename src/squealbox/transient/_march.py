@@ -305,7 +305,7 @@ def not_consistent(p, s):
                 s.hit[c] = sense
                 if found:
                     return PAINLEVE
-    return INCONSISTENT
+    return TENSION if pulled(p, s) else INCONSISTENT
 
 
 def restart(p, s, t):
