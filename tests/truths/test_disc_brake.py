@@ -103,7 +103,7 @@ def test_modes_shares_and_reduction():
     shares = brake.shares(mode.shape)
     assert sum(kinetic for kinetic, _ in shares.values()) == pytest.approx(1.0)
     assert set(shares) == {"disc", "linings", "backplates", "springs", "contact"}
-    reduced = reduce(brake, (1000.0, 4000.0), varying={"pads.material.young": (3.5e9, 4.5e9)})
+    reduced = reduce(brake, (1000.0, 3000.0), varying={"pads.material.young": (3.5e9, 4.5e9)})
     same = complex_modes(reduced).eigenvalues
     half = len(modes.eigenvalues) // 2
     off = [np.min(np.abs(same - value)) for value in modes.eigenvalues[:half]]
