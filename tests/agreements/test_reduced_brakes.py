@@ -47,8 +47,8 @@ def test_eigenvalues_in_the_band_are_within_the_error(small, mu):
     every = complex_modes(full_at(mu, across=False, unilateral=True)).eigenvalues
     found = in_band(complex_modes(small.replace({"friction.static": mu})).eigenvalues)
     assert len(found) == len(in_band(every)) > 5
-    assert farthest(found, every) < 2.0 * small.error
-    assert small.error < 0.1
+    assert farthest(found, every) < 0.1  # twice the tolerance asked for: between the corners the error is not bounded
+    assert small.error < 0.05
     checked = small.replace({"friction.static": mu}).checked()
     assert farthest(checked.eigenvalues + checked.error, every) < 0.02
 
