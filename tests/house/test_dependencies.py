@@ -8,10 +8,12 @@ import pytest
 
 from house.rooms import PACKAGE, PROJECT
 
-DISTRIBUTIONS = {"dask": "distributed"}  # import name to the name it is installed by, where they differ
+# Import name to the name it is installed by, where they differ.
+DISTRIBUTIONS = {"dask": "distributed", "skfem": "scikit-fem"}
 PROJECT_TABLE = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]
 # Rooms that may use an extra, and which one.
 EXTRAS = {"signals": "recordings", "studies": "studies", "workbench": "workbench"}
+EXTRAS |= {"fe": "fe", "factorisation.py": "fe"}
 
 
 def declared(requirements) -> set[str]:
