@@ -47,8 +47,8 @@ def test_eigenvalues_in_the_band_are_within_the_error(small, mu):
     every = complex_modes(full_at(mu, across=False, unilateral=True)).eigenvalues
     found = in_band(complex_modes(small.replace({"friction.static": mu})).eigenvalues)
     assert len(found) == len(in_band(every)) > 5
-    assert farthest(found, every) < 2.0 * small.error
-    assert small.error < 0.1
+    assert farthest(found, every) < 0.1  # twice the tolerance asked for: between the corners the error is not bounded
+    assert small.error < 0.05
     checked = small.replace({"friction.static": mu}).checked()
     assert farthest(checked.eigenvalues + checked.error, every) < 0.02
 
@@ -98,7 +98,7 @@ def test_tracking_sweeps_and_probability_take_it(small):
 def test_a_small_perturbation_grows_in_time_as_the_eigenvalue_says(small):
     brake = small.replace({"friction.static": 0.45})
     mode = complex_modes(brake).most_unstable
-    motion = simulate(brake, 2e-3, start=mode.start(1e-9), method="dormand-prince-8")
+    motion = simulate(brake, 3e-4, start=mode.start(1e-9), method="dormand-prince-8")
     steady = equilibrium(brake.system()).q
     weight = brake.system().M @ mode.left
     size = np.abs((motion.q - steady) @ np.conj(weight) * mode.eigenvalue + (motion.qd) @ np.conj(weight))

@@ -13,6 +13,7 @@ from squealbox.fe.disc_brake import (
     Springs,
     free_disc_modes,
 )
+from squealbox.fe.export import write_shape
 from squealbox.fe.interfaces import CoordinateSystem, Interface, Rotation
 from squealbox.fe.pencil import Pencil, pencil_of
 from squealbox.fe.published import PublishedDiscBrake
@@ -60,4 +61,5 @@ __all__ = [
     "read_structure",
     "real_modes",
     "reduce",
+    "write_shape",
 ]
