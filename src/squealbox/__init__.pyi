@@ -65,7 +65,17 @@ from .fe import (
 from .files import Body, OwnBrake, OwnContact, OwnLaw, OwnMechanism, Spring, Touch, own_law, read_design, write_design
 from .fit import FrictionFit, fit_friction
 from .friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stribeck
-from .limit_cycles import Branch, Cycle, HopfPoint, branch, harmonic_balance, hopf_point, shooting
+from .limit_cycles import (
+    Branch,
+    Cycle,
+    ForcedCycle,
+    HopfPoint,
+    branch,
+    forced_cycle,
+    harmonic_balance,
+    hopf_point,
+    shooting,
+)
 from .loops import PID, ActiveForce, DelayedFeedback, Loop, StateFeedback
 from .parameters import ParameterError
 from .plots import plot
@@ -236,6 +246,8 @@ __all__ = [
     "HopfPoint",
     "branch",
     "Branch",
+    "forced_cycle",
+    "ForcedCycle",
     # how does the answer vary?
     "studies",
     "sweep",

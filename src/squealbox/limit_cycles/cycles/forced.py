@@ -1,0 +1,271 @@
+"""Forced motion that repeats: loads, speeds or normal forces move with a period T, x(t0 + T) = x(t0).
+
+Newton's method on the flow over one period, with its exact derivative. Between events Phi' = A(t) Phi; at an event h = 0
+
+    S = I + (f+ - f-) h_x' / (h_x . f- + h_t)
+
+because the surface itself moves, v = V(t) - t.q' or N = N0(t) + n.q. A contact that sticks follows its counter-body,
+t.q'' = V'(t). The eigenvalues of Phi over T are the Floquet multipliers: the motion is stable where all are inside the
+unit circle, and no one of them is 1 of itself, as it is for a free cycle.
+Source: Leine and Nijmeijer 2004, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, Springer, Ch. 7.
+"""
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.saltation import surface
+from squealbox.parameters import ParameterError
+from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.schedules import Constant, Schedule, Sinusoid, value_at
+from squealbox.system import System, as_system, equilibrium
+from squealbox.transient import Method, Trajectory, simulate
+
+MOST_ROUNDS = 1000  # periods of one harmonic within which the others must come back
+INSTANT = 1e-6  # share of the period over which an event function is differenced in time
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ForcedCycle(Result):
+    """One period of a forced motion, as :func:`forced_cycle` returns it."""
+
+    period: Any = quantity("", "s", "period of what forces it")
+    t: Any = quantity("time", "s", "instants of one period")
+    q: Any = quantity("time dof", "m", "displacement")
+    qd: Any = quantity("time dof", "m/s", "velocity")
+    mode: Any = quantity("time contact", "1", "state of contact: -1, 1 slip, 0 stick, 2 open")
+    multipliers: Any = quantity("multiplier", "1", "Floquet multipliers, largest first")
+    error: Any = quantity("", "1", "last scaled residual")
+    events: int = 0
+
+    @property
+    def stable(self) -> bool:
+        """True where every disturbance dies out."""
+        return bool(self.outcome.ok and np.all(np.abs(self.multipliers) < 1.0))
+
+    @property
+    def growth_rate(self) -> float:
+        """ln|largest multiplier| / T [1/s]; positive grows."""
+        return float(np.log(np.max(np.abs(self.multipliers))) / self.period)
+
+    @property
+    def damping(self) -> float:
+        """-ln|product of the multipliers| / T [1/s]: the divergence, sum of damping over mass in the mean."""
+        with np.errstate(divide="ignore"):
+            return float(-np.sum(np.log(np.abs(self.multipliers))) / self.period)
+
+    @property
+    def amplitude(self) -> Any:
+        """Half the difference of the extremes of each displacement [m]."""
+        return 0.5 * np.ptp(self.q, axis=0)
+
+    def summary(self) -> str:
+        """Period, stability and amplitudes."""
+        if not self.outcome.ok:
+            return f"{self.outcome}: {self.outcome.message}"
+        state = "stable" if self.stable else "unstable"
+        sizes = ", ".join(f"{size:.6g}" for size in np.atleast_1d(self.amplitude))
+        return (
+            f"forced motion of period {float(self.period):.6g} s is {state}: growth rate {self.growth_rate:+.6g} 1/s, "
+            f"{self.events} events, amplitudes {sizes} m"
+        )
+
+    def __repr__(self) -> str:
+        return self.summary()
+
+
+class Moving(Field):
+    """The field of a system whose loads, speeds and normal forces move, at one instant after the other."""
+
+    def __init__(self, system: System, time: float) -> None:
+        super().__init__(_frozen(system, time))
+        self.moving, self.rising = system, np.zeros(len(system.contacts))
+        self.inverse = np.linalg.inv(system.M)
+        self.at(time)
+
+    def at(self, time: float) -> "Moving":
+        """The same field at another instant [s]."""
+        rows = self.moving.contacts
+        self.N0, self.V = (np.array([float(value_at(getattr(c, x), time)) for c in rows]) for x in ("N0", "V"))
+        self.rising = np.array([float(c.V.rate(time)) if isinstance(c.V, Schedule) else 0.0 for c in rows])
+        self.mf = self.inverse @ np.asarray(value_at(self.moving.load, time))
+        return self
+
+    def _holding(self, stuck: Any, a: Any) -> Any:
+        own = self.t[stuck] @ a - (self.rising[stuck] if np.ndim(a) == 1 else 0.0)
+        return -np.linalg.lstsq(self.t[stuck] @ self.md[stuck].T, own, rcond=1e-12)[0]
+
+
+def forced_cycle(
+    design_or_system: Any,
+    start: Any = None,
+    *,
+    rounds: int = 1,
+    rtol: float = 1e-12,
+    tolerance: float = 1e-9,
+    most_steps: int = 20,
+) -> ForcedCycle:
+    """The motion a brake repeats when loads, speeds or normal forces move periodically, and its Floquet multipliers.
+
+    Parameters
+    ----------
+    design_or_system : with `Sinusoid` schedules of commensurate frequencies, such as `Dithered(brake, direct=True)`
+    start : (q, qd) near the motion; None takes steady sliding at the first instant
+    rounds : periods of the forcing after which it repeats; 2 beyond a doubling
+    rtol : of the integration
+    tolerance : largest scaled residual accepted as converged [-]
+
+    Returns
+    -------
+    ForcedCycle, with outcome "completed", "no_convergence" or how the simulation ended.
+
+    >>> from squealbox import Contact, Coulomb, Sinusoid, System
+    >>> speed = Sinusoid(mean=0.5, amplitude=1.0, frequency=3.0)
+    >>> belt = Contact(n=[0.0], d=[1.0], t=[1.0], N0=1.0, V=speed, law=Coulomb(0.4))
+    >>> forced_cycle(System([[1.0]], [[0.02]], [[1.0]], 0.0, (belt,))).stable
+    True
+    """
+    system = as_system(design_or_system)
+    if system.shape != ():
+        raise ParameterError("forced_cycle", "system", f"leading axes {system.shape}", "one system, without them")
+    if int(rounds) != rounds or rounds < 1:
+        raise ParameterError("forced_cycle", "rounds", rounds, "a whole number of at least 1")
+    period = int(rounds) * common_period(system)
+    x = _start(system, start)
+    history: list[float] = []
+    settings = {"rounds": int(rounds), "rtol": rtol, "tolerance": tolerance}
+    for _ in range(most_steps):
+        motion, end, phi, events = _flight(system, x, period, rtol)
+        if not motion.outcome.ok:
+            return _made(design_or_system, settings, period, motion, np.full(x.size, np.nan), np.inf, events, motion.outcome)
+        scale = Field(_frozen(system, 0.0)).scale
+        size = float(np.max(np.abs(np.hstack([motion.q, motion.qd]) * scale))) or 1.0
+        history.append(float(np.max(np.abs((end - x) * scale))) / size)
+        if history[-1] <= tolerance:
+            values = np.linalg.eigvals(phi).astype(complex)
+            values = values[np.argsort(-np.abs(values), kind="stable")]
+            return _made(design_or_system, settings, period, motion, values, history[-1], events, Outcome(COMPLETED))
+        x = x + np.linalg.lstsq(np.eye(x.size) - phi, end - x, rcond=1e-14)[0]
+    message = f"Newton's method stopped at a scaled residual of {history[-1]:.3g}: give a start nearer to the motion"
+    outcome = Outcome("no_convergence", message, history=history)
+    return _made(design_or_system, settings, period, motion, np.full(x.size, np.nan), history[-1], events, outcome)
+
+
+def forced_branch(family: Any, values: Any, start: Any = None, **keywords: Any) -> Iterator[ForcedCycle]:
+    """Forced motions over a parameter such as amplitude or frequency: `family(value)` is the brake, each start the last.
+
+    An iterator; a motion that is not found does not end it, the next begins where the last was found.
+    """
+    for value in values:
+        found = forced_cycle(family(value), start, **keywords)
+        if found.outcome.ok:
+            start = (found.q[0], found.qd[0])
+        yield found
+
+
+def common_period(system: System) -> float:
+    """The period [s] of everything that moves; `ParameterError` when nothing does, or not with one period."""
+    frequencies = []
+    for value in (system.load, *(c.N0 for c in system.contacts), *(c.V for c in system.contacts)):
+        for weight, part in value.terms() if isinstance(value, Schedule) else ():
+            if isinstance(part, Constant) or not np.any(weight):
+                continue
+            if not isinstance(part, Sinusoid):
+                raise ParameterError("forced_cycle", "system", part, "schedules that repeat: Sinusoid or Constant")
+            if part.amplitude != 0.0 and part.frequency > 0.0:
+                frequencies.append(float(part.frequency))
+    if not frequencies:
+        expected = "a load, speed or normal force that moves; shooting() finds free cycles"
+        raise ParameterError("forced_cycle", "system", "everything is constant", expected)
+    base = min(frequencies)
+    ratios = [Fraction(f / base).limit_denominator(MOST_ROUNDS) for f in frequencies]
+    if any(abs(float(ratio) * base - f) > 1e-12 * f for ratio, f in zip(ratios, frequencies, strict=True)):
+        raise ParameterError("forced_cycle", "system", frequencies, "frequencies in ratios of whole numbers up to 1000")
+    return float(np.lcm.reduce([ratio.denominator for ratio in ratios])) / base
+
+
+def _flight(system: System, x: Any, period: float, rtol: float) -> tuple[Trajectory, Any, Any, int]:
+    """The motion over one period, its end, its derivative by the start, and the number of events."""
+    n = system.size
+    speed = float(np.max(np.abs(x[n:]), initial=0.0)) + max((abs(float(value_at(c.V, 0.0))) for c in system.contacts), default=0.0)
+    method = Method("dormand-prince-8", rtol=rtol, atol=1e-2 * rtol * (speed or 1.0), largest_step=period / 20.0)
+    motion = simulate(system, period, (x[:n], x[n:]), None, method)
+    phi = np.eye(2 * n)
+    if not motion.outcome.ok:
+        return motion, x, phi, 0
+    states = np.hstack([motion.q, motion.qd])
+    field = Moving(system, 0.0)
+    changed = [int(i) for i in np.flatnonzero(np.any(motion.mode[1:] != motion.mode[:-1], axis=1)) if i > 0]
+    for piece, (i, k) in enumerate(itertools.pairwise([0, *changed, len(motion.t) - 1])):
+        if piece > 0:
+            phi = _jump(field, states[i], motion.mode[i], motion.mode[i + 1], float(motion.t[i]), period) @ phi
+        if k > i:
+            phi = _piece(field, states[i], motion.mode[k], float(motion.t[i]), float(motion.t[k]), rtol) @ phi
+    return motion, states[-1], phi, len(changed)
+
+
+def _jump(field: Moving, x: Any, before: Any, after: Any, time: float, period: float) -> Any:
+    """Saltation at a surface that moves."""
+    own = np.flatnonzero(np.not_equal(before, after))
+    field.at(time)
+    surfaces = [surface(field, x, before, int(c)) for c in own]
+    cause = int(np.argmin([abs(value) / (size + 1e-300) for value, size, _ in surfaces]))
+    gradient = surfaces[cause][2]
+    f_before, f_after = field.rate(x, before), field.rate(x, after)
+    step = INSTANT * period
+    late, early = (surface(field.at(time + s), x, before, int(own[cause]))[0] for s in (step, -step))
+    rate = float(gradient @ f_before) + (late - early) / (2.0 * step)
+    return np.eye(len(x)) + np.outer(f_after - f_before, gradient) / rate
+
+
+def _piece(field: Moving, x: Any, mode: Any, begin: float, end: float, rtol: float) -> Any:
+    """The fundamental matrix of one smooth piece, in states scaled to one unit."""
+    from scipy.integrate import solve_ivp
+
+    size, scale = x.size, field.scale
+    ratio = scale[:, None] / scale
+
+    def rates(t: float, y: Any) -> Any:
+        state = y[:size] / scale
+        field.at(t)
+        a = field.jacobian(state, mode) * ratio
+        return np.concatenate([field.rate(state, mode) * scale, (a @ y[size:].reshape(size, size)).ravel()])
+
+    start = np.concatenate([x * scale, np.eye(size).ravel()])
+    largest = float(np.max(np.abs(start[:size]))) + float(np.max(np.abs(field.V), initial=0.0))
+    atol = np.concatenate([np.full(size, 0.1 * rtol * largest), np.full(size * size, 0.1 * rtol)])
+    done = solve_ivp(rates, (begin, end), start, "DOP853", rtol=max(rtol, 3e-14), atol=atol)
+    last = done.y[:, -1] if done.success else np.full(start.size, np.nan)
+    return last[size:].reshape(size, size) / ratio
+
+
+def _frozen(system: System, time: float) -> System:
+    contacts = tuple(
+        contact.replace(N0=float(value_at(contact.N0, time)), V=float(value_at(contact.V, time)))
+        for contact in system.contacts
+    )
+    return system.replace(contacts=contacts, load=np.asarray(value_at(system.load, time), dtype=float))
+
+
+def _start(system: System, start: Any) -> Any:
+    if start is not None:
+        q, qd = start
+        return np.concatenate([np.asarray(q, dtype=float), np.asarray(qd, dtype=float)])
+    steady = equilibrium(_frozen(system, 0.0)) if not any(isinstance(c.V, Schedule) for c in system.contacts) else None
+    q = steady.q if steady is not None and bool(steady.exists) else np.zeros(system.size)
+    return np.concatenate([q, np.zeros(system.size)])
+
+
+def _made(
+    design: Any, settings: dict[str, Any], period: float, motion: Trajectory, values: Any, error: float, events: int,
+    outcome: Outcome,
+) -> ForcedCycle:  # fmt: skip
+    return ForcedCycle(
+        period=np.asarray(period), t=motion.t, q=motion.q, qd=motion.qd, mode=motion.mode, multipliers=values,
+        error=np.asarray(error), events=events, inputs={"system": design}, settings=settings, outcome=outcome,
+    )  # fmt: skip
