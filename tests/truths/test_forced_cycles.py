@@ -4,7 +4,17 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from squealbox import Coulomb, Dithered, DrumBrake, LinearSlope, MassOnBelt, ModeCoupling, NormalDither, ParameterError, complex_modes
+from squealbox import (
+    Coulomb,
+    Dithered,
+    DrumBrake,
+    LinearSlope,
+    MassOnBelt,
+    ModeCoupling,
+    NormalDither,
+    ParameterError,
+    complex_modes,
+)
 from squealbox.limit_cycles import forced_branch, forced_cycle
 
 BLOCK = MassOnBelt(c=0.02, k=1.0, sliding_speed=0.5, load=1.0, friction=Coulomb(0.4))

@@ -1,6 +1,7 @@
 """Forced motion that repeats: loads, speeds or normal forces move with a period T, x(t0 + T) = x(t0).
 
-Newton's method on the flow over one period, with its exact derivative. Between events Phi' = A(t) Phi; at an event h = 0
+Newton's method on the flow over one period, with its exact derivative. Between events Phi' = A(t) Phi; at an event
+h = 0
 
     S = I + (f+ - f-) h_x' / (h_x . f- + h_t)
 
@@ -142,7 +143,9 @@ def forced_cycle(
     for _ in range(most_steps):
         motion, end, phi, events = _flight(system, x, period, rtol)
         if not motion.outcome.ok:
-            return _made(design_or_system, settings, period, motion, np.full(x.size, np.nan), np.inf, events, motion.outcome)
+            return _made(
+                design_or_system, settings, period, motion, np.full(x.size, np.nan), np.inf, events, motion.outcome
+            )
         scale = Field(_frozen(system, 0.0)).scale
         size = float(np.max(np.abs(np.hstack([motion.q, motion.qd]) * scale))) or 1.0
         history.append(float(np.max(np.abs((end - x) * scale))) / size)
@@ -157,9 +160,9 @@ def forced_cycle(
 
 
 def forced_branch(family: Any, values: Any, start: Any = None, **keywords: Any) -> Iterator[ForcedCycle]:
-    """Forced motions over a parameter such as amplitude or frequency: `family(value)` is the brake, each start the last.
+    """Forced motions over a parameter such as amplitude or frequency: `family(value)` is the brake.
 
-    An iterator; a motion that is not found does not end it, the next begins where the last was found.
+    An iterator, each start the last motion found; a motion that is not found does not end it, the next begins where the last was found.
     """
     for value in values:
         found = forced_cycle(family(value), start, **keywords)
@@ -192,7 +195,9 @@ def common_period(system: System) -> float:
 def _flight(system: System, x: Any, period: float, rtol: float) -> tuple[Trajectory, Any, Any, int]:
     """The motion over one period, its end, its derivative by the start, and the number of events."""
     n = system.size
-    speed = float(np.max(np.abs(x[n:]), initial=0.0)) + max((abs(float(value_at(c.V, 0.0))) for c in system.contacts), default=0.0)
+    speed = float(np.max(np.abs(x[n:]), initial=0.0)) + max(
+        (abs(float(value_at(c.V, 0.0))) for c in system.contacts), default=0.0
+    )
     method = Method("dormand-prince-8", rtol=rtol, atol=1e-2 * rtol * (speed or 1.0), largest_step=period / 20.0)
     motion = simulate(system, period, (x[:n], x[n:]), None, method)
     phi = np.eye(2 * n)
