@@ -162,7 +162,7 @@ def forced_cycle(
 def forced_branch(family: Any, values: Any, start: Any = None, **keywords: Any) -> Iterator[ForcedCycle]:
     """Forced motions over a parameter such as amplitude or frequency: `family(value)` is the brake.
 
-    An iterator, each start the last motion found; a motion that is not found does not end it, the next begins where the last was found.
+    An iterator: each motion starts from the last that was found, and one that is not found does not end it.
     """
     for value in values:
         found = forced_cycle(family(value), start, **keywords)
