@@ -282,7 +282,7 @@ class Averaged(FrictionLaw):
     With w = `velocity`, mu0 = mu(0+), h(u) = (mu(|u|) - mu0) sgn(u): mu0 (2/pi) asin(min(v/w, 1)) + E[h(v + w sin)],
     in closed form for `Coulomb`, `LinearSlope` without a floor and `Cubic`, below the sliding speed (w <= v) for
     `Stribeck` (the fall times I0(w/speed)) and `Hyperbolic`; by Gauss-Legendre in the phase, graded towards the
-    reversal, for all others. A contact under dither does not stick. The slope is infinite at v = w. Source: separation of motions, Fidlin 1999; Thomsen 2005, Nonlinear Dynamics; own closed forms.
+    reversal, for all others. It does not stick; its slope is infinite at v = w. Source: Fidlin 1999.
 
     >>> round(float(Averaged(Coulomb(0.4), 1.0).mu(0.5)), 12)
     0.133333333333

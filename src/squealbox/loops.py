@@ -162,8 +162,8 @@ class ActiveForce(Loop):
 
     u = u_c - W (mass q'' - u), W = 1/(1 + time_constant s), u_c the force of the `outer` loop (none: 0). With a PD
     outer loop that is exactly a PID of Kp + Kd/tau, Kp/tau, Kd + mass/tau; without one a damper mass/tau. The
-    filter's state is w - (mass/tau) q', fed by the force the actuator really has, so nothing winds up at its limit; without an
-    outer loop it is the damper, cut at the limit.
+    filter's state is w - (mass/tau) q', fed by the force the actuator really has, so nothing winds up at its limit;
+    without an outer loop it is the damper, cut at the limit.
 
     >>> ActiveForce(mass=0.1, time_constant=0.5, on="y").rows(("x", "y")).R.tolist()
     [-0.0, -0.2]

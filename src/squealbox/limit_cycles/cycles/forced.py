@@ -1,6 +1,7 @@
 """Forced motion that repeats: loads, speeds or normal forces move with a period T, x(t0 + T) = x(t0).
 
-Newton's method on the flow over one period, with its exact derivative. Between events Phi' = A(t) Phi; at an event h = 0
+Newton's method on the flow over one period, with its exact derivative. Between events Phi' = A(t) Phi; at an event
+h = 0
 
     S = I + (f+ - f-) h_x' / (h_x . f- + h_t)
 
@@ -159,9 +160,9 @@ def forced_cycle(
 
 
 def forced_branch(family: Any, values: Any, start: Any = None, **keywords: Any) -> Iterator[ForcedCycle]:
-    """Forced motions over a parameter such as amplitude or frequency: `family(value)` is the brake, each start the last.
+    """Forced motions over a parameter such as amplitude or frequency: `family(value)` is the brake.
 
-    An iterator; a motion that is not found does not end it, the next begins where the last was found.
+    An iterator: each motion starts from the last that was found, and one that is not found does not end it.
     """
     for value in values:
         found = forced_cycle(family(value), start, **keywords)
