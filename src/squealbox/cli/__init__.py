@@ -30,6 +30,7 @@ COMMANDS = {
     "matrices": Command(
         "matrices", "matrices", "what files of Abaqus, Nastran, Ansys ... hold: matrices, labels, frequencies"
     ),
+    "reduce": Command("reducing", "reduce_", "a small brake from a finite-element one, with its error, in a file"),
     "onset": Command("stability", "onset", "the value of a parameter at which squeal begins, and how"),
     "map": Command("maps", "map_", "stability over two parameters, with the boundary as curves"),
     "simulate": Command("transient", "simulate", "what happens in time: a transient with verdict, figures and data"),

@@ -10,6 +10,9 @@ from squealbox.cli.maps import Plane, Span, axes_of
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
+from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.files.analyses import Simulate
+from squealbox.files.runs import start_of
 from squealbox.transient import Ensemble, simulate_ensemble
 
 DURATION = "0.05 s"
@@ -58,10 +61,13 @@ def ensemble(
     if out is not None:
         folder(out)
     found = in_motion(found, across, up)
+    start = None
+    if isinstance(found.design, ReducedBrake) and found.simulate is not None:
+        start = start_of(found.design.system(), Simulate(q=found.simulate.q))  # rest, in its coordinates
     space = {each.name: each.values for each in (across, up)}
     with Progress(f"{int(across.points)} x {int(up.points)} transients") as progress:
         many = simulate_ensemble(
-            found.design, space, seconds, observe=("amplitude", "frequency"), grid=True,
+            found.design, space, seconds, observe=("amplitude", "frequency"), grid=True, start=start,
             progress=lambda done, total, spent: progress(_pace(done, total, spent)),
         )  # fmt: skip
     plane = Plane(found.design, across, up)

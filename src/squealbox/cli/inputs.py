@@ -32,10 +32,8 @@ def small(found: DesignFile, *axes: Axis) -> DesignFile:
     """The file with a finite-element brake reduced for `axes` and its sections, and what that promises printed."""
     from squealbox.files.reduced import dense, promise
 
-    made = found
-    if found.design.system().is_sparse:
-        with Progress("reducing the finite-element brake"):
-            made = dense(found, axes)
+    with Progress("reducing the finite-element brake"):
+        made = dense(found, axes)
     if isinstance(made.design, ReducedBrake):
         print(promise(made.design))
     return made
@@ -43,9 +41,11 @@ def small(found: DesignFile, *axes: Axis) -> DesignFile:
 
 def in_motion(found: DesignFile, *axes: Axis) -> DesignFile:
     """As :func:`small`, for motions in time: friction across the sliding direction is left out, and that is said."""
+    from squealbox.files.reduced import ONE_WAY
+
     made = small(found, *axes)
     if isinstance(made.design, ReducedBrake) and made.design.reduction.arrays["across"] is not None:
-        print("Motions leave out friction across the sliding direction, which damps: they are on the safe side.")
+        print(ONE_WAY)
         return dataclasses.replace(made, design=made.design.sliding_one_way())
     return made
 

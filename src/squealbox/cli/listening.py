@@ -48,8 +48,8 @@ def listen(
     seconds = time_of("--duration", duration)
     if not 0.0 < seconds <= 60.0:
         raise UsageError(f"--duration {duration}: expected more than 0 and at most 60 s")
-    settings = (found.simulate or Simulate()).replace({"duration": seconds})
     found = in_motion(found)
+    settings = (found.simulate or Simulate()).replace({"duration": seconds})
     with Progress("simulating (the first run compiles the engine)"):
         motion = run(found.design.system(), settings, points=int(seconds * SAMPLES) + 1)
     if not motion.outcome.ok:

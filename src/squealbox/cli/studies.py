@@ -1,17 +1,20 @@
 """`squealbox run`, `status`, `show` and `export`: studies that go on where they were stopped."""
 
+import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
+import numpy as np
 from cyclopts import Parameter
 
-from squealbox.cli.inputs import AllowCode, Changes, changed, folder
+from squealbox.cli.inputs import AllowCode, Changes, changed, folder, in_motion, small
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.study_analyses import UNITS, analysis_of
 from squealbox.cli.tables import write_csv, written
+from squealbox.files.analyses import Axis as Span
 from squealbox.files.study import read_study
-from squealbox.studies import Store, open_sweep, sweep
+from squealbox.studies import Space, Store, open_sweep, sweep
 from squealbox.studies.store import LOG, RESULT
 
 if TYPE_CHECKING:
@@ -57,7 +60,10 @@ def run(
     """
     found = read_study(file, allow_code=allow_code)
     study = found.study
-    design = changed(found.brake.design, changes)
+    brake = dataclasses.replace(found.brake, design=changed(found.brake.design, changes))
+    prepared = small if study.analysis in ("modes", "onset") else in_motion
+    brake = prepared(brake, *_spans(found.space))
+    found, design = dataclasses.replace(found, brake=brake), brake.design
     if scheduler is None and workers is None and study.workers is not None:
         workers = int(study.workers)
     if chunk is None and study.chunk is not None:
@@ -189,3 +195,13 @@ def _seconds(text: str) -> float:
     if not seconds > 0.0:
         raise UsageError(f"--time-limit {text[:40]}: expected a time above 0 s")
     return seconds
+
+
+def _spans(space: Space) -> list[Span]:
+    """The range of each number that a study varies, which a finite-element brake is reduced for."""
+    values = {name: np.unique(np.asarray(given)) for axis in space.axes for name, given in axis.values.items()}
+    return [
+        Span(name=name, low=float(each[0]), high=float(each[-1]))
+        for name, each in values.items()
+        if each.dtype.kind in "fiu" and len(each) > 1
+    ]

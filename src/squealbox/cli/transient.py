@@ -1,5 +1,6 @@
 """`squealbox simulate`: what happens in time."""
 
+import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -53,7 +54,8 @@ def simulate(
     found = read(file, changes, allow_code)
     options = {"start": start, "method": method, "contact": contact}
     settings = _settings(found.simulate or Simulate(), duration, options)
-    found = in_motion(found)
+    found = in_motion(dataclasses.replace(found, simulate=settings))
+    settings = found.simulate or settings
     system = found.design.system()
     start_of(system, settings)  # what cannot be started is said before a folder is made
     folder(out)

@@ -1,14 +1,14 @@
 """The section [reduce], which makes a finite-element brake small for all analyses; and `brake = "reduced"`.
 
-[reduce]
-band = ["500 Hz", "10 kHz"]                    left out, that of [modes]
-varying = { "friction.static" = [0, 0.8] }     beside what [onset], [branch], [map] and [scatter] vary
-tolerance = "0.05 1/s"
+    [reduce]
+    band = ["500 Hz", "10 kHz"]                    left out, that of [modes]
+    varying = { "friction.static" = [0, 0.8] }     beside what [onset], [branch], [map] and [scatter] vary
+    tolerance = "0.05 1/s"
 
-brake = "reduced"
-file = "small.npz"                             what squealbox reduce wrote
-friction = { law = "coulomb", static = 0.4 }   in place of the law it was reduced with
-values = { angular_speed = 4 }                 of what it was reduced for
+    brake = "reduced"
+    file = "small.npz"                             what squealbox reduce wrote
+    friction = { law = "coulomb", static = 0.4 }   in place of the law it was reduced with
+    values = { angular_speed = 4 }                 of what it was reduced for
 """
 
 import dataclasses
@@ -22,8 +22,7 @@ from squealbox.designs import Design
 from squealbox.fe.readers.matrix import MatrixFileError
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.fe.reduced_files import load_reduced
-from squealbox.fe.reduction import MOST_AXES, reduce
-from squealbox.files.analyses import Axis, quantity_of, read_ends
+from squealbox.files.analyses import Axis, Simulate, quantity_of, read_ends
 from squealbox.files.arrays import ArrayFileError, Vector, path_beside
 from squealbox.files.asked import flattened, known
 from squealbox.files.document import Document
@@ -39,6 +38,7 @@ if TYPE_CHECKING:
 REDUCED = "reduced"
 KEYS = ("file", "friction", "values")
 RARE = 1e-6  # share of a distribution without bounds that is left out at either end
+ONE_WAY = "Motions leave out friction across the sliding direction, which only damps."
 MISSING = 'give [reduce] band = ["500 Hz", "10 kHz"] in the file, or the band of [modes]'
 
 
@@ -72,11 +72,7 @@ def read_reduce(document: Document, table: Mapping[str, Any], key: Key, design: 
         ends = read_ends(document, value, about, place)
         if ends is not None:
             varying[name] = ends
-    if (
-        how is not None
-        and how.band is not None
-        and not (np.shape(how.band) == (2,) and 0.0 < how.band[0] < how.band[1])
-    ):
+    if how is not None and how.band is not None and not (np.shape(how.band) == (2,) and 0.0 < how.band[0] < how.band[1]):
         wrong(document, (*key, "band"), [float(f) for f in how.band], 'two values such as ["500 Hz", "10 kHz"]')
         return None
     return None if how is None else Reduced(how, varying)
@@ -118,29 +114,57 @@ def dense(found: "DesignFile", axes: Iterable[Axis] = ()) -> "DesignFile":
 
     A brake with dense matrices is returned as it is. Raises `InvalidSystem`, one sentence, without a band.
     """
+    if isinstance(found.design, ReducedBrake):
+        return _from_rest(found)
     if not found.design.system().is_sparse:
         return found
     about = found.reduce or Reduced(Reduce(), {})
     band = about.how.band if about.how.band is not None else found.modes.band if found.modes else None
     if band is None or np.shape(band) != (2,):
-        raise InvalidSystem(
-            f"a finite-element brake is made small for this, which needs a band of frequency: {MISSING}"
-        )
-    varying = _ranges(found, axes)
+        raise InvalidSystem(f"a finite-element brake is made small for this, which needs a band of frequency: {MISSING}")
+    from squealbox.fe.reduction import reduce
+
+    varying, how = _ranges(found, axes), about.how
+    ends = (float(band[0]), float(band[1]))
+    time = found.modes.time if found.modes else 0.0
     try:
         small = reduce(
-            found.design,
-            (float(band[0]), float(band[1])),
-            varying=varying,
-            method=about.how.method,  # type: ignore[arg-type]
-            tolerance=about.how.tolerance,
-            time=found.modes.time if found.modes else 0.0,
+            found.design, ends, varying=varying, method=how.method, tolerance=how.tolerance, time=time  # type: ignore[arg-type]
         )
     except ValueError as error:
         if isinstance(error, (InvalidSystem, ParameterError)):
             raise
         raise InvalidSystem(str(error)) from error
-    return dataclasses.replace(found, design=small)
+    return _from_rest(dataclasses.replace(found, design=with_rest(small)))
+
+
+def with_rest(small: ReducedBrake) -> ReducedBrake:
+    """The brake with the coordinates of q = 0 among its arrays, so that motions can start at rest."""
+    arrays = {**small.reduction.arrays, "rest": _on_basis(small, -small.full.steady)}
+    return small.replace({"reduction": small.reduction.replace(arrays=arrays)})
+
+
+def _on_basis(small: ReducedBrake, field: Any) -> Any:
+    """Coordinates of the motion on the basis nearest to one of the full brake, V'M V p = V'M u."""
+    full = small.full
+    mass = full.system({}).M
+    return np.linalg.solve(full.basis.T @ (mass @ full.basis), full.basis.T @ (mass @ np.asarray(field, dtype=float)))
+
+
+def _from_rest(found: "DesignFile") -> "DesignFile":
+    """The file with [simulate] in coordinates of its reduced brake, which are counted from steady sliding.
+
+    "rest" is q = 0 of the full brake; what the file adds to the start has a number for each freedom of the full one.
+    """
+    small, asked = found.design, found.simulate or Simulate()
+    if not isinstance(small, ReducedBrake):
+        return found
+    q, qd = (
+        field if field is None or small.full is None else _on_basis(small, field) for field in (asked.q, asked.qd)
+    )
+    if asked.start == "rest":
+        q = small.reduction.arrays["rest"] + (0.0 if q is None else q)
+    return dataclasses.replace(found, simulate=asked.replace(q=q, qd=qd))
 
 
 def promise(brake: ReducedBrake) -> str:
@@ -187,6 +211,8 @@ def _ranges(found: "DesignFile", axes: Iterable[Axis]) -> dict[str, tuple[float,
         low, high = max(low, about.low), min(high, about.high)
         before = ranges.get(name, (low, high))
         ranges[name] = min(before[0], low), max(before[1], high)
+    from squealbox.fe.reduction import MOST_AXES
+
     if len(ranges) > MOST_AXES:
         raise InvalidSystem(
             f"the file varies {len(ranges)} parameters of a finite-element brake ({', '.join(ranges)}): expected at "

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files.analyses import Axis, Map, Simulate, quantity_of, scalar_parameters
 from squealbox.files.runs import run, run_closely
 from squealbox.limit_cycles import hopf_point, shooting
@@ -80,6 +81,7 @@ class _Work:
     def __init__(self, design: Design, time: float, progress: Progress) -> None:
         self.design, self.time, self.progress = design, time, progress
         self.system = design.system()
+        self.moving = design.sliding_one_way().system() if isinstance(design, ReducedBrake) else self.system
         self.modes = complex_modes(design, time)
         self.found: dict[str, Any] = {}
         self.missing: dict[str, str] = {}
@@ -130,7 +132,7 @@ class _Work:
     def transient(self, simulate: Simulate | None) -> None:
         with self.part("transient", "transient (the first run compiles the engine)"):
             self.found["settings"] = settings = simulate or Simulate(duration=PERIODS * self._period())
-            self.found["motion"] = motion = run_closely(self.system, settings)
+            self.found["motion"] = motion = run_closely(self.moving, settings)
             if not motion.outcome.ok:
                 self.missing["sound"] = f"the transient ended early: {motion.outcome.message}"
                 return
@@ -145,7 +147,7 @@ class _Work:
             if not 20.0 <= pitch <= 20e3:
                 raise SignalError(f"its frequency, {pitch:.4g} Hz, is not one people hear")
             longer = settings.replace({"duration": max(HEARD, settings.duration)})
-            self.found["heard"] = run(self.system, longer, points=int(longer.duration * SAMPLING) + 1)
+            self.found["heard"] = run(self.moving, longer, points=int(longer.duration * SAMPLING) + 1)
 
     def cycle(self) -> None:
         """A limit cycle: from the usual start, the end of the transient, and pushes about steady sliding."""
@@ -158,7 +160,7 @@ class _Work:
         with self.part("cycle", "limit cycle"):
             for name, start in self._starts():
                 tried.append(name)
-                found = shooting(self.system, start)
+                found = shooting(self.moving, start)
                 best = self.found.get("cycle")
                 if best is None or (found.outcome.ok and not best.outcome.ok):
                     self.found["cycle"] = found

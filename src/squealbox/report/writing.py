@@ -5,7 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from squealbox.designs import Design
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files import DesignFile, read_file
+from squealbox.files.reduced import ONE_WAY, dense, promise
 from squealbox.report.blocks import Page, ReportError
 from squealbox.report.design_page import design_page
 from squealbox.report.examination import Examination
@@ -78,6 +80,7 @@ def _page_at(path: Path, allow_code: bool, progress: Progress) -> Page:
 
 
 def _file_page(found: DesignFile, progress: Progress) -> Page:
+    found = dense(found)
     time = found.modes.time if found.modes else 0.0
     about = examine(
         found.design, onset=found.onset, plane=found.map, simulate=found.simulate, time=time, progress=progress
@@ -88,7 +91,12 @@ def _file_page(found: DesignFile, progress: Progress) -> Page:
         f"The study in this file is not run for this page: squealbox run {name} --out DIR runs it, and squealbox "
         "report DIR shows what came out. This page is about the design as the file gives it."
     )
-    return design_page(about, title=title, command=f"squealbox report {name}", note=note if found.study else "")
+    notes = [note] if found.study else []
+    if isinstance(found.design, ReducedBrake):
+        notes.append(promise(found.design))
+        if found.design.reduction.arrays["across"] is not None:
+            notes.append(ONE_WAY)
+    return design_page(about, title=title, command=f"squealbox report {name}", note=" ".join(notes))
 
 
 def _name(what: Any) -> str:

@@ -1,0 +1,55 @@
+"""`squealbox reduce`: a small brake from a finite-element one, in a file that opens again as a brake."""
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+
+from squealbox.cli.inputs import AllowCode, Changes, Ends, number, read
+from squealbox.cli.progress import Progress
+from squealbox.cli.running import UsageError
+from squealbox.cli.tables import written
+from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe.reduced_files import save_reduced
+from squealbox.files.reduced import Reduce, Reduced, dense, error_table, promise
+
+
+def reduce_(
+    file: Path, *, out: Path, band: Ends = None, changes: Changes = (), allow_code: AllowCode = False
+) -> None:
+    """Make a small brake of a finite-element one: its modes in a band are those of the full one, with a known error.
+
+    It is reduced for everything that the file varies: varying of [reduce], [onset], [branch], [map], [scatter]. A file
+    with brake = "reduced" and file = "small.npz" then goes through every command in no time.
+
+    Parameters
+    ----------
+    file
+        design file of a finite-element brake
+    out
+        the .npz file that is written; M, C and K in it are for any program
+    band
+        lowest and highest frequency, with or without a unit: 500 10kHz; left out, that of [reduce] or [modes]
+    changes
+        other values for this run: --set friction.static=0.4
+    allow_code
+        run the Python file of a friction law that the design file names
+    """
+    found = read(file, changes, allow_code)
+    if out.suffix.lower() != ".npz":
+        raise UsageError(f"--out {out}: expected a name that ends in .npz")
+    if not found.design.system().is_sparse:
+        raise UsageError(f"{file} is no finite-element brake: its matrices are dense and need no reduction")
+    if band is not None:
+        given = found.reduce or Reduced(Reduce(), {})
+        low, high = (number(text, "Hz", f"--band {text}") for text in band)
+        if not 0.0 < low < high:
+            raise UsageError(f"--band {' '.join(band)}: expected 0 < lowest < highest")
+        how = given.how.replace(band=np.array([low, high]))
+        found = dataclasses.replace(found, reduce=dataclasses.replace(given, how=how))
+    with Progress("reducing the finite-element brake"):
+        small = dense(found).design
+    assert isinstance(small, ReducedBrake)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    print(f"{found.design.title}, {file}\n{promise(small)}\n{error_table(small)}")
+    print(written(save_reduced(small, out)))
