@@ -39,7 +39,7 @@ def bound(t, growth, amplitude, phase, noise, others):
 def growth(records):
     print(f"{'kind':20}  rate: rms/bound, cover   frequency: rms/bound, cover   not told   ms each")
     for kind, (g, count, noise, others, colour) in KINDS.items():
-        t, rng = np.arange(count) / RATE, np.random.default_rng(1)
+        t, rng = np.arange(count) / RATE, np.random.default_rng(2)
         amplitude = 1.0 if g <= 0.0 else float(np.exp(-g * t[-1]))
         misses, held, refused, spent = [], [], 0, 0.0
         for _ in range(records):

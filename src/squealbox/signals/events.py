@@ -105,12 +105,13 @@ class SquealEvents(Result):
 
 @dataclass
 class _Track:
-    """Peaks that follow each other: frames, lines (fractional), mean squares and heights."""
+    """Peaks that follow each other: frames, lines (fractional), sums over three lines, heights, distances."""
 
     frames: list[int]
     lines: list[float]
     powers: list[float]
     heights: list[float]
+    offsets: list[float]
 
 
 def squeal_events(
@@ -259,17 +260,18 @@ def _tracks(power: Any, floor: Any, chance: float) -> Iterator[_Track]:
             line = _between(power[k], int(found[i]))
             near = [(abs(open_tracks[j].lines[-1] - line), j) for j in free]
             away, j = min(near, default=(np.inf, -1))
-            mean_square = float(np.sum(power[k, found[i] - 1 : found[i] + 2])) / _seen(line - found[i])
+            mean_square = float(np.sum(power[k, found[i] - 1 : found[i] + 2]))
             if away <= WANDER:
                 del free[j]
                 track = open_tracks[j]
             else:
                 if heights[i] < 4.0 * reach and len(found) > 1 and _is_skirt(found, heights, i):
                     continue
-                track = _Track([], [], [], [])
+                track = _Track([], [], [], [], [])
                 open_tracks.append(track)
             track.frames.append(int(k))
             track.lines.append(line)
+            track.offsets.append(line - float(found[i]))
             track.powers.append(mean_square)
             track.heights.append(float(heights[i]))
     yield from open_tracks
@@ -294,11 +296,11 @@ def _between(row: Any, k: int) -> float:
     return k + (0.5 * (left - right) / bend if bend < 0.0 else 0.0)
 
 
-def _seen(offset: float) -> float:
-    """What Hann's window shows of a tone in the three lines about it, `offset` lines off the middle one; 1.5 at 0."""
-    x = offset - np.array([-1.0, 0.0, 1.0])
+def _seen(offsets: Any) -> Any:
+    """What Hann's window shows of a tone in the three lines about it, `offsets` lines off the middle one; 1.5 at 0."""
+    x = np.asarray(offsets)[:, None] - np.array([-1.0, 0.0, 1.0])
     x = np.where(np.abs(np.abs(x) - 1.0) < 1e-6, x + 2e-6, x)
-    return float(np.sum((np.sinc(x) / (1.0 - x**2)) ** 2))
+    return np.sum((np.sinc(x) / (1.0 - x**2)) ** 2, axis=1)
 
 
 def _event(
@@ -317,7 +319,8 @@ def _event(
     frames = np.array(track.frames)
     frequency = lines[0] + step * np.array(track.lines)
     places = np.clip(np.round(track.lines).astype(int), 0, len(floor) - 1)
-    square = np.maximum(np.array(track.powers) - 2.0 * floor[places], 1e-3 * np.array(track.powers))
+    total = np.array(track.powers) / _seen(track.offsets)
+    square = np.maximum(total - 2.0 * floor[places], 1e-3 * total)
     middles = (starts[frames] + 0.5 * length) / rate
     weighted = square * weigh(frequency) ** 2
     level = 10.0 * np.log10(weighted / reference**2)
