@@ -22,7 +22,10 @@ from squealbox import (
     mode_energy,
     stability_map,
 )
+from squealbox.limit_cycles import hopf_point, lyapunov_exponents, shooting
 from squealbox.stability import tracked_modes
+from squealbox.stability.deflation import special_modes
+from squealbox.stability.free_bodies import free_body_spectra
 from squealbox.system import InvalidSystem, equilibrium
 
 SPRING, FORCE = 1e4, 10.0
@@ -138,3 +141,31 @@ def test_many_contacts_are_asked_once() -> None:
     one = (Contact([0.01 * count], [1.0], [1.0], 1.0, 1.0, Coulomb(0.3)),)
     states = [equilibrium(System([[1.0]], [[0.1]], [[100.0]], 0.0, rows)) for rows in (many, one)]
     assert states[0].q == pytest.approx(states[1].q, rel=1e-12)
+
+
+def test_cycles_of_free_bodies_are_those_of_their_relative_motion() -> None:
+    """x = q1 - q2 obeys mu x'' + k x = F: one mass of mu = m1 m2 / (m1 + m2) on a belt, and m1 q1 + m2 q2 rests."""
+    reduced = 2.0 / 3.0
+    belt = Contact(n=[0.0], d=[1.0], t=[1.0], N0=FORCE, V=1.0, law=Stribeck(0.4, 0.2, 0.3))
+    alone = shooting(System([[reduced]], [[0.0]], [[SPRING]], 0.0, (belt,)))
+    free = shooting(couple(0.4))
+    assert free.stable
+    assert free.period == pytest.approx(float(alone.period), rel=1e-9)
+    assert np.sum(free.amplitude) == pytest.approx(float(alone.amplitude[0]), rel=1e-6)
+    assert free.amplitude[0] == pytest.approx(2.0 * free.amplitude[1], rel=1e-9)
+    assert free.multipliers.shape == (2,)
+    assert hopf_point(lambda damper: couple(0.4, damper=damper), "damper", (0.0, 5.0)).value == pytest.approx(
+        FORCE * 0.2 / 0.3 * np.exp(-1.0 / 0.3), rel=1e-9
+    )
+    still = lyapunov_exponents(couple(0.4), free.start, float(free.period), 10)
+    assert np.count_nonzero(still == 0.0) == 2
+
+
+def test_many_free_bodies_are_solved_together_as_one_by_one() -> None:
+    chain = SPRING * np.array([[1.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]])
+    mass = np.diag([1.0, 2.0, 0.3])
+    values, answered = free_body_spectra(mass[None], 1e-3 * chain[None], chain[None], np.array([1]))
+    assert answered[0]
+    one_by_one = special_modes(mass, 1e-3 * chain, chain)
+    assert one_by_one is not None
+    assert np.sort(values[0]) == pytest.approx(np.sort(one_by_one[0]), rel=1e-12, abs=1e-9)

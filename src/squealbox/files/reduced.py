@@ -1,14 +1,14 @@
 """The section [reduce], which makes a finite-element brake small for all analyses; and `brake = "reduced"`.
 
-    [reduce]
-    band = ["500 Hz", "10 kHz"]                    left out, that of [modes]
-    varying = { "friction.static" = [0, 0.8] }     beside what [onset], [branch], [map] and [scatter] vary
-    tolerance = "0.05 1/s"
+[reduce]
+band = ["500 Hz", "10 kHz"]                    left out, that of [modes]
+varying = { "friction.static" = [0, 0.8] }     beside what [onset], [branch], [map] and [scatter] vary
+tolerance = "0.05 1/s"
 
-    brake = "reduced"
-    file = "small.npz"                             what squealbox reduce wrote
-    friction = { law = "coulomb", static = 0.4 }   in place of the law it was reduced with
-    values = { angular_speed = 4 }                 of what it was reduced for
+brake = "reduced"
+file = "small.npz"                             what squealbox reduce wrote
+friction = { law = "coulomb", static = 0.4 }   in place of the law it was reduced with
+values = { angular_speed = 4 }                 of what it was reduced for
 """
 
 import dataclasses

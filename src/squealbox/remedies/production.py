@@ -2,7 +2,8 @@
 
 from squealbox.designs import Design
 from squealbox.parameters import ParameterError
-from squealbox.studies import Lognormal, Scatter, TruncatedNormal
+from squealbox.studies.uncertainty.distributions import Lognormal, TruncatedNormal
+from squealbox.studies.uncertainty.scatter import Scatter
 
 FRICTION, SPRINGS, DAMPERS = 0.08, 0.03, 0.20  # coefficients of variation
 ASSUMED = (

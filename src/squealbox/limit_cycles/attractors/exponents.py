@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.starting import state_of
 from squealbox.limit_cycles.cycles.variation import quick_flight
 from squealbox.system import as_system
 
@@ -50,18 +51,19 @@ def lyapunov_exponents(
     True
     """
     field = Field(as_system(design_or_system))
-    x = np.concatenate([np.asarray(part, dtype=float) for part in start])
-    frame, total = np.eye(x.size), np.zeros(x.size)
+    x = state_of(field, start)
+    frame = field.beside
+    total, still = np.zeros(frame.shape[1]), np.zeros(x.size - frame.shape[1])  # of a free common motion: exactly 0
     seen = np.full((spans, x.size), np.nan)
     for k in range(-aligned, spans):
-        total = np.zeros(x.size) if k == 0 else total
+        total = np.zeros(frame.shape[1]) if k == 0 else total
         flown = quick_flight(field, x, span, rtol)
         if not flown.outcome.ok:
             return seen if history else np.full(x.size, np.nan)
         x = flown.x
         frame, total = _grown(flown.phi * (field.scale[:, None] / field.scale) @ frame, total)
         if k >= 0:
-            seen[k] = np.sort(total / (span * (k + 1)))[::-1]
+            seen[k] = np.sort(np.concatenate([total / (span * (k + 1)), still]))[::-1]
     return seen if history else seen[-1]
 
 

@@ -271,6 +271,7 @@ def _collect(
     settings: dict[str, Any], system: Any, family_: Any,
 ) -> Branch:  # fmt: skip
     n = system.size
+    counted = len(seen[0]["multipliers"]) if seen else 2 * n  # without those of a free common motion
 
     def column(name: str, shape: tuple[int, ...] = ()) -> Any:
         return np.array([about[name] for about in seen]).reshape(len(seen), *shape)
@@ -279,7 +280,7 @@ def _collect(
         inputs={"system": system}, settings=settings, outcome=outcome, parameter=parameter,
         value=np.array([point.p for point in visited]), period=column("period"), lowest=column("lowest", (n,)),
         highest=column("highest", (n,)), start=column("begin", (2 * n,)), family=family_,
-        multipliers=column("multipliers", (2 * n,)).astype(complex), least_slip=column("least_slip"),
+        multipliers=column("multipliers", (counted,)).astype(complex), least_slip=column("least_slip"),
         sticking=column("sticking"),
         unknowns=np.array([point.x for point in visited]).reshape(len(visited), -1 if visited else 0),
         special_kind=np.array([kind for kind, _, _, _ in specials], dtype=str),

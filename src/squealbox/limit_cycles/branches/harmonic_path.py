@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.cycles.cycle import Cycle, extremes, ordered
+from squealbox.limit_cycles.cycles.cycle import Cycle, extremes
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.harmonic_balance import Balance, Grid, cycle_of
 from squealbox.parameters import ParameterError
@@ -92,7 +92,8 @@ class HarmonicPath:
     def multipliers(self, x: Any, p: float) -> Any:
         """Floquet multipliers of the cycle at a point."""
         steps = max(128, self.grid.samples)
-        return ordered(np.linalg.eigvals(self.balance(p).monodromy(*self.series(x), steps)))
+        balance = self.balance(p)
+        return balance.field.multipliers(balance.monodromy(*self.series(x), steps))
 
     def cycle(self, x: Any, p: float) -> Cycle:
         """The cycle at a point, on a fine grid; its error is the share of the last quarter of harmonics."""

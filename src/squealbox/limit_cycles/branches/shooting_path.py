@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.cycles.cycle import Cycle, extremes, ordered
+from squealbox.limit_cycles.cycles.cycle import Cycle, extremes
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.shooting import cycle_through
 from squealbox.limit_cycles.cycles.variation import Flight, flight, fly, quick_flight
@@ -144,7 +144,7 @@ class ShootingPath:
 
     def multipliers(self, x: Any, p: float) -> Any:
         """Floquet multipliers of the cycle at a point."""
-        return ordered(np.linalg.eigvals(self.fly(x, p)[1].phi))
+        return self.field(p).multipliers(self.fly(x, p)[1].phi)
 
     def least_slip(self, x: Any, p: float) -> float:
         """Least sliding speed in the sense of V [m/s] at the instants of the motion."""

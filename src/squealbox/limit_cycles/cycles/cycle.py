@@ -1,7 +1,8 @@
 """The result of a search for a limit cycle: one period of the motion, its Floquet multipliers, how it was found.
 
 A disturbance of a cycle is multiplied by a Floquet multiplier once each period. One of them is 1 (a shift in time); the
-cycle is stable when all others lie inside the unit circle. A sticking phase gives a multiplier 0.
+cycle is stable when all others lie inside the unit circle. A sticking phase gives a multiplier 0. Where bodies are free
+to move together, multipliers and motion are those beside that common motion, whose own two are 1 and left out.
 """
 
 from dataclasses import dataclass

@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.limit_cycles.cycles.cycle import ordered
+from squealbox.limit_cycles.cycles.pinned import pinned
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Schedule, value_at
 from squealbox.system import System
@@ -47,7 +49,10 @@ class Field:
         n, rows = system.size, system.contacts
         inverse = inverse_mass(system.M)
         self.size = n
-        self.mk, self.mc, self.mf = inverse @ system.K, inverse @ system.C, inverse @ value_at(system.load, 0.0)
+        self.frequency = float(np.sqrt(np.max(np.abs(np.linalg.eigvals(inverse @ system.K)))))
+        self.held_fast, self.rest = pinned(system, self.frequency)  # what moves, but for a common motion of bodies
+        self.mk, self.mc = (inverse @ matrix for matrix in (self.held_fast.K, self.held_fast.C))
+        self.mf = inverse @ value_at(system.load, 0.0)
         self.n, self.t, d = (np.array([getattr(c, name) for c in rows]).reshape(-1, n) for name in ("n", "t", "d"))
         self.d, self.md = d, d @ inverse.T
         normal = [np.zeros(n) if c.normal is None else c.normal for c in rows]
@@ -57,8 +62,20 @@ class Field:
         self.static = np.array([float(c.law.static_limit) for c in rows])
         self.laws = [c.law for c in rows]
         self.same = bool(rows) and all(law == self.laws[0] for law in self.laws)
-        self.frequency = float(np.sqrt(np.max(np.abs(np.linalg.eigvals(self.mk)))))
         self.scale = np.r_[np.full(n, self.frequency or 1.0), np.ones(n)]
+
+    @property
+    def beside(self) -> Any:
+        """Basis of the states beside a free common motion of bodies, shape (2n, 2n - 2 common)."""
+        none = np.zeros(self.rest.shape)
+        return np.block([[self.rest, none], [none, self.rest]])
+
+    def multipliers(self, monodromy: Any) -> Any:
+        """Floquet multipliers of the motion beside a free common one, as `ordered` puts them; NaN where unknown."""
+        inside = self.beside.T @ monodromy @ self.beside
+        if not np.all(np.isfinite(inside)):
+            return np.full(len(inside), np.nan)
+        return ordered(np.linalg.eigvals(inside))
 
     def coefficients(self, v: Any) -> tuple[Any, Any]:
         """mu and dmu/d|v| of each contact at speeds v (..., contacts) of either sign."""

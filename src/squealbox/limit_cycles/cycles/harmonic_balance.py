@@ -17,7 +17,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from squealbox.limit_cycles.cycles.cycle import Cycle, extremes, ordered
+from squealbox.limit_cycles.cycles.cycle import Cycle, extremes
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.shooting import CONTACTS
 from squealbox.limit_cycles.cycles.starting import first_guess
@@ -317,9 +317,8 @@ def cycle_of(
     states = balance.motion(coefficients, omega, (values, values @ grid.d))
     t, n = tau / omega, field.size
     low, high = extremes(t, states[:, :n], states[:, n:])
-    multipliers = np.full(2 * n, np.nan)
-    if outcome.ok:
-        multipliers = ordered(np.linalg.eigvals(balance.monodromy(coefficients, omega)))
+    monodromy = balance.monodromy(coefficients, omega) if outcome.ok else np.full((2 * n, 2 * n), np.nan)
+    multipliers = field.multipliers(monodromy)
     none = np.zeros(0)
     settings = {**settings, "harmonics": grid.harmonics, "samples": grid.samples}
     return Cycle(

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.cautions import out_of_range
-from squealbox.limit_cycles.cycles.cycle import Cycle, extremes, ordered
+from squealbox.limit_cycles.cycles.cycle import Cycle, extremes
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.rounds import rounds
 from squealbox.limit_cycles.cycles.shots import Newton, nodes_along
@@ -123,7 +123,7 @@ def cycle_through(
     instants = np.unique(np.r_[np.linspace(0.0, period, samples), rough.event_time])
     run = fly(field, x, period, settings["rtol"], np.minimum(instants, period))
     low, high = extremes(run.t, run.q, run.qd)
-    multipliers = ordered(np.linalg.eigvals(monodromy)) if np.all(np.isfinite(monodromy)) else np.full(x.size, np.nan)
+    multipliers = field.multipliers(monodromy)
     return Cycle(
         inputs={"system": field.system}, settings=settings, outcome=outcome, period=np.asarray(period), t=run.t,
         q=run.q, qd=run.qd, sliding_velocity=run.sliding_velocity, mode=run.mode, multipliers=multipliers,

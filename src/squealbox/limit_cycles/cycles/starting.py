@@ -32,7 +32,7 @@ def first_guess(field: Field, start: Any, settle: float | None) -> tuple[Any, fl
         return np.concatenate(start.start), float(start.period), Outcome(COMPLETED)
     if isinstance(start, (tuple, list)) and len(start) == 3:
         return np.concatenate([_vector(field, x) for x in start[:2]]), float(start[2]), Outcome(COMPLETED)
-    x = _state(field, start)
+    x = state_of(field, start)
     slowest = _slowest_period(field)
     duration = PERIODS * slowest if settle is None else settle
     if duration > slowest:  # where the first of its periods is out of reach, all are
@@ -109,7 +109,7 @@ def _fast_slip(run: Trajectory) -> int:
     return int(np.argmax(np.min(np.abs(run.sliding_velocity[:half]), axis=1)))
 
 
-def _state(field: Field, start: Any) -> Any:
+def state_of(field: Field, start: Any) -> Any:
     if isinstance(start, Trajectory):
         return np.concatenate([start.q[-1], start.qd[-1]])
     if start is None:
@@ -155,6 +155,6 @@ def _slowest_period(field: Field) -> float:
 
 def steady_state(field: Field) -> Any:
     """Steady sliding x (2n,), or NaN where there is none."""
-    state = equilibrium(field.system)
+    state = equilibrium(field.held_fast)
     q = state.q if np.all(state.exists) else np.full(field.size, np.nan)
     return np.concatenate([q, np.zeros(field.size)])

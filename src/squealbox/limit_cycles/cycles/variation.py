@@ -46,7 +46,7 @@ def fly(
     speed = max(float(np.max(np.abs(x[n:]), initial=0.0)), float(np.max(np.abs(field.V), initial=0.0)))
     method = Method("dormand-prince-8", rtol=rtol, atol=1e-2 * rtol * (speed or 1.0), most_steps=most)
     start = (x[:n], x[n:])
-    return simulate(field.system, duration, start, times, method, field.contact, width=field.width)
+    return simulate(field.held_fast, duration, start, times, method, field.contact, width=field.width)
 
 
 def flight(
