@@ -72,8 +72,9 @@ def read_reduce(document: Document, table: Mapping[str, Any], key: Key, design: 
         ends = read_ends(document, value, about, place)
         if ends is not None:
             varying[name] = ends
-    if how is not None and how.band is not None and not (np.shape(how.band) == (2,) and 0.0 < how.band[0] < how.band[1]):
-        wrong(document, (*key, "band"), [float(f) for f in how.band], 'two values such as ["500 Hz", "10 kHz"]')
+    band = None if how is None else how.band
+    if band is not None and not (np.shape(band) == (2,) and 0.0 < band[0] < band[1]):
+        wrong(document, (*key, "band"), [float(f) for f in band], 'two values such as ["500 Hz", "10 kHz"]')
         return None
     return None if how is None else Reduced(how, varying)
 
@@ -121,7 +122,7 @@ def dense(found: "DesignFile", axes: Iterable[Axis] = ()) -> "DesignFile":
     about = found.reduce or Reduced(Reduce(), {})
     band = about.how.band if about.how.band is not None else found.modes.band if found.modes else None
     if band is None or np.shape(band) != (2,):
-        raise InvalidSystem(f"a finite-element brake is made small for this, which needs a band of frequency: {MISSING}")
+        raise InvalidSystem(f"a finite-element brake is made small for this, which needs a frequency band: {MISSING}")
     from squealbox.fe.reduction import reduce
 
     varying, how = _ranges(found, axes), about.how

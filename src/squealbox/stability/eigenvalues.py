@@ -13,15 +13,9 @@ import numpy as np
 from squealbox.cautions import out_of_range
 from squealbox.result import COMPLETED, Outcome, Result, batched, quantity
 from squealbox.stability.deflation import special_modes, uncertain, vibrating
-<<<<<<< HEAD
 from squealbox.stability.mode import Mode, OneEigenvalue, damping_ratio
 from squealbox.stability.ordering import spectrum_order
 from squealbox.stability.state_matrix import special_entries, stand_in, state_matrix
-=======
-from squealbox.stability.first_order import first_order_spectra
-from squealbox.stability.free_bodies import free_body_spectra
-from squealbox.static_deflection import levelled
->>>>>>> finish
 from squealbox.system import Linearised, as_system, linearise
 
 MARGINAL = 1e-12  # growth below this share of the largest |lambda| is round-off, not growth
@@ -233,135 +227,6 @@ def modes_of(about: Linearised, inputs: Any = None, contacts: tuple[str, ...] = 
     )
 
 
-<<<<<<< HEAD
-=======
-def spectrum(about: Linearised) -> Any:
-    """Only the eigenvalues (..., 2n), ordered as in :class:`ComplexModes`; NaN where there are none."""
-    matrix, rate, usable, _ = state_matrix(about)
-    scaled = np.linalg.eigvals(np.where(usable[..., None, None], matrix, _stand_in(matrix))).astype(complex)
-    scaled = np.take_along_axis(scaled, spectrum_order(scaled), axis=-1)
-    return with_special(about, np.where(usable[..., None], scaled * rate[..., None], np.nan))
-
-
-def special_entries(about: Linearised) -> Any:
-    """True where steady sliding exists and a freedom carries no mass or moves as a rigid body, (...)."""
-    exists = np.asarray(about.equilibrium.exists)
-    known = np.broadcast_to(_regular(_once(about.M)), exists.shape)
-    return exists & (~known | (np.asarray(about.equilibrium.floating) > 0))
-
-
-def with_special(about: Linearised, eigenvalues: Any) -> Any:
-    """Eigenvalues (..., 2n) with those entries solved exactly whose pencil is singular; see `deflation`."""
-    special = special_entries(about)
-    if not np.any(special):
-        return eigenvalues
-    eigenvalues = np.array(eigenvalues)
-    quick = special & (np.asarray(about.equilibrium.floating) == 0)
-    if np.any(quick):
-        values, answered = first_order_spectra(
-            *(np.broadcast_to(part, about.K.shape)[quick] for part in (about.M, about.C, about.K))
-        )
-        known = np.where(
-            np.isnan(values), -1e3 * np.nanmax(np.abs(values), axis=-1, keepdims=True, initial=1.0), values
-        )
-        values = np.take_along_axis(values, spectrum_order(known), axis=-1)
-        places = np.argwhere(quick)[answered]
-        eigenvalues[tuple(places.T)], special = values[answered], np.array(special)
-        special[tuple(places.T)] = False
-    floating = np.broadcast_to(about.equilibrium.floating, special.shape)
-    free = special & (floating > 0) & np.broadcast_to(_regular(_once(about.M)), special.shape)
-    if np.any(free):
-        values, answered = free_body_spectra(
-            *(np.broadcast_to(part, about.K.shape)[free] for part in (about.M, about.C, about.K)), floating[free]
-        )
-        values = np.take_along_axis(values, spectrum_order(values), axis=-1)
-        places = np.argwhere(free)[answered]
-        eigenvalues[tuple(places.T)], special = values[answered], np.array(special)
-        special[tuple(places.T)] = False
-    for at in map(tuple, np.argwhere(special)):
-        found = special_modes(about.M[at], about.C[at], about.K[at])
-        eigenvalues[at] = np.nan if found is None else found[0]
-    return eigenvalues
-
-
-def state_matrix(about: Linearised) -> tuple[Any, Any, Any, Outcome]:
-    """[[0, I], [-M^-1 K/r^2, -M^-1 C/r]], its time scale r (...) [1/s], where it can be used, and the outcome."""
-    size = about.M.shape[-1]
-    exists = np.asarray(about.equilibrium.exists)
-    with np.errstate(all="ignore"):
-        mass = _once(about.M)
-        regular = _regular(mass)
-        mass = np.where(regular[..., None, None], mass, np.eye(size))
-        stiffness = _divided(mass, np.where(exists[..., None, None], about.K, 0.0))
-        damping = _divided(mass, np.where(exists[..., None, None], about.C, 0.0))
-        rate = np.maximum(np.sqrt(_largest(stiffness)), _largest(damping))
-        rate = np.where(np.isfinite(rate) & (rate > 0.0), rate, 1.0)
-        matrix = np.zeros((*stiffness.shape[:-2], 2 * size, 2 * size))
-        matrix[..., :size, size:] = np.eye(size)
-        np.divide(stiffness, -(rate[..., None, None] ** 2), out=matrix[..., size:, :size])
-        np.divide(damping, -rate[..., None, None], out=matrix[..., size:, size:])
-    regular = np.broadcast_to(regular, exists.shape)
-    finite = np.all(np.isfinite(matrix[..., size:, :]), axis=(-1, -2))
-    return matrix, rate, exists & regular & finite, _outcome(about, exists, finite | ~regular)
-
-
-def _regular(mass: Any) -> Any:
-    """Whether M can be inverted, judged after its rows and columns are brought to one size: kg beside kg m2."""
-    with np.errstate(all="ignore"):
-        regular = np.asarray(np.linalg.cond(mass, 1) < 1.0 / np.finfo(float).eps)
-        if not np.all(regular):
-            regular[~regular] = np.linalg.cond(levelled(mass[~regular])[0], 1) < 1.0 / np.finfo(float).eps
-    return regular
-
-
-def _once(mass: Any) -> Any:
-    """M (n, n) where all systems share one, else as it is."""
-    shared = all(step == 0 for step in mass.strides[:-2])
-    return mass[(0,) * (mass.ndim - 2)] if shared and mass.size else mass
-
-
-def _divided(mass: Any, matrix: Any) -> Any:
-    """M^-1 A; one factorisation where all systems share one M."""
-    if mass.ndim > 2 or matrix.ndim == 2:
-        return np.linalg.solve(mass, matrix)
-    columns = np.moveaxis(matrix, -2, 0)
-    return np.moveaxis(np.linalg.solve(mass, columns.reshape(len(mass), -1)).reshape(columns.shape), 0, -2)
-
-
-def spectrum_order(eigenvalues: Any) -> Any:
-    """Indices that put Im >= 0 first, ascending in |Im|, and then the conjugates; shape (..., 2n).
-
-    |Im| that agree to 1e-10 of the largest |lambda| count as equal and are ordered by falling growth rate, so that
-    coalesced modes come out in the same order whatever the round-off.
-    """
-    shape, count = eigenvalues.shape, eigenvalues.shape[-1]
-    if eigenvalues.size == 0:
-        return np.zeros(shape, dtype=int)
-    flat = eigenvalues.reshape(-1, count)
-    scale = np.max(np.abs(flat), axis=-1, keepdims=True)
-    by_size = np.argsort(np.abs(flat.imag), axis=-1, kind="stable")
-    sizes = np.take_along_axis(np.abs(flat.imag), by_size, axis=-1)
-    steps = np.diff(sizes, axis=-1, prepend=sizes[:, :1]) > 1e-10 * scale
-    group = np.empty_like(by_size)
-    np.put_along_axis(group, by_size, np.cumsum(steps, axis=-1), axis=-1)
-    side = np.where(flat.imag == 0.0, halves(flat), flat.imag < 0.0)
-    return np.lexsort((-flat.real, group, side), axis=-1).reshape(shape)
-
-
-def damping_ratio(eigenvalues: Any) -> Any:
-    """-Re lambda / |lambda| [-], NaN at lambda = 0."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return -np.real(eigenvalues) / np.abs(eigenvalues)
-
-
-def halves(flat: Any) -> Any:
-    """For real eigenvalues: 0 for the larger half of them (one more of an odd number), 1 for the smaller half."""
-    real = flat.imag == 0.0
-    rank = np.argsort(np.argsort(np.where(real, -flat.real, np.inf), axis=-1, kind="stable"), axis=-1, kind="stable")
-    return rank >= (np.sum(real, axis=-1, keepdims=True) + 1) // 2
-
-
->>>>>>> finish
 def _modes(about: Linearised, eigenvalues: Any, states: Any, usable: Any) -> tuple[Any, Any, Any]:
     size = about.M.shape[-1]
     inverse, invertible = _inverse(states)

@@ -22,8 +22,8 @@ def free_body_spectra(mass: Any, damping: Any, stiffness: Any, floating: Any) ->
     """
     size, count = mass.shape[-1], int(floating[0])
     values = np.zeros((len(mass), 2 * size), dtype=complex)
-    motion = np.linalg.svd(np.vstack([stiffness[0] / _largest(stiffness[0]), stiffness[0].T / _largest(stiffness[0])]))
-    motion = motion[2][size - count :].T
+    both = np.vstack([stiffness[0], stiffness[0].T]) / _largest(stiffness[0])
+    motion: Any = np.linalg.svd(both)[2][size - count :].T
     unfelt = np.asarray(floating == count)
     for part in (stiffness, damping):
         small = FELT * size * _largest(part)

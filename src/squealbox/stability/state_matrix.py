@@ -10,6 +10,7 @@ import numpy as np
 from squealbox.result import COMPLETED, Outcome
 from squealbox.stability.deflation import special_modes
 from squealbox.stability.first_order import first_order_spectra
+from squealbox.stability.free_bodies import free_body_spectra
 from squealbox.stability.ordering import spectrum_order
 from squealbox.static_deflection import levelled
 from squealbox.system import Linearised
@@ -46,6 +47,17 @@ def with_special(about: Linearised, eigenvalues: Any) -> Any:
         )
         values = np.take_along_axis(values, spectrum_order(known), axis=-1)
         places = np.argwhere(quick)[answered]
+        eigenvalues[tuple(places.T)], special = values[answered], np.array(special)
+        special[tuple(places.T)] = False
+    floating = np.broadcast_to(about.equilibrium.floating, special.shape)
+    free = special & (floating > 0) & np.broadcast_to(_regular(_once(about.M)), special.shape)
+    if np.any(free):
+        values, answered = free_body_spectra(
+            *(np.broadcast_to(part, about.K.shape)[free] for part in (about.M, about.C, about.K)),
+            floating=floating[free],
+        )
+        values = np.take_along_axis(values, spectrum_order(values), axis=-1)
+        places = np.argwhere(free)[answered]
         eigenvalues[tuple(places.T)], special = values[answered], np.array(special)
         special[tuple(places.T)] = False
     for at in map(tuple, np.argwhere(special)):

@@ -110,6 +110,7 @@ def _fast_slip(run: Trajectory) -> int:
 
 
 def state_of(field: Field, start: Any) -> Any:
+    """The state (q, qd) in one row, (2n,), that a start means: the end of a run, (q, qd), or None near a mode."""
     if isinstance(start, Trajectory):
         return np.concatenate([start.q[-1], start.qd[-1]])
     if start is None:
