@@ -1,14 +1,14 @@
 """The section [reduce], which makes a finite-element brake small for all analyses; and `brake = "reduced"`.
 
-    [reduce]
-    band = ["500 Hz", "10 kHz"]                    left out, that of [modes]
-    varying = { "friction.static" = [0, 0.8] }     beside what [onset], [branch], [map] and [scatter] vary
-    tolerance = "0.05 1/s"
+[reduce]
+band = ["500 Hz", "10 kHz"]                    left out, that of [modes]
+varying = { "friction.static" = [0, 0.8] }     beside what [onset], [branch], [map] and [scatter] vary
+tolerance = "0.05 1/s"
 
-    brake = "reduced"
-    file = "small.npz"                             what squealbox reduce wrote
-    friction = { law = "coulomb", static = 0.4 }   in place of the law it was reduced with
-    values = { angular_speed = 4 }                 of what it was reduced for
+brake = "reduced"
+file = "small.npz"                             what squealbox reduce wrote
+friction = { law = "coulomb", static = 0.4 }   in place of the law it was reduced with
+values = { angular_speed = 4 }                 of what it was reduced for
 """
 
 import dataclasses
@@ -72,7 +72,11 @@ def read_reduce(document: Document, table: Mapping[str, Any], key: Key, design: 
         ends = read_ends(document, value, about, place)
         if ends is not None:
             varying[name] = ends
-    if how is not None and how.band is not None and not (np.shape(how.band) == (2,) and 0.0 < how.band[0] < how.band[1]):
+    if (
+        how is not None
+        and how.band is not None
+        and not (np.shape(how.band) == (2,) and 0.0 < how.band[0] < how.band[1])
+    ):
         wrong(document, (*key, "band"), [float(f) for f in how.band], 'two values such as ["500 Hz", "10 kHz"]')
         return None
     return None if how is None else Reduced(how, varying)
@@ -121,7 +125,9 @@ def dense(found: "DesignFile", axes: Iterable[Axis] = ()) -> "DesignFile":
     about = found.reduce or Reduced(Reduce(), {})
     band = about.how.band if about.how.band is not None else found.modes.band if found.modes else None
     if band is None or np.shape(band) != (2,):
-        raise InvalidSystem(f"a finite-element brake is made small for this, which needs a band of frequency: {MISSING}")
+        raise InvalidSystem(
+            f"a finite-element brake is made small for this, which needs a band of frequency: {MISSING}"
+        )
     from squealbox.fe.reduction import reduce
 
     varying, how = _ranges(found, axes), about.how
@@ -129,7 +135,12 @@ def dense(found: "DesignFile", axes: Iterable[Axis] = ()) -> "DesignFile":
     time = found.modes.time if found.modes else 0.0
     try:
         small = reduce(
-            found.design, ends, varying=varying, method=how.method, tolerance=how.tolerance, time=time  # type: ignore[arg-type]
+            found.design,
+            ends,
+            varying=varying,
+            method=how.method,
+            tolerance=how.tolerance,
+            time=time,  # type: ignore[arg-type]
         )
     except ValueError as error:
         if isinstance(error, (InvalidSystem, ParameterError)):
@@ -159,9 +170,7 @@ def _from_rest(found: "DesignFile") -> "DesignFile":
     small, asked = found.design, found.simulate or Simulate()
     if not isinstance(small, ReducedBrake):
         return found
-    q, qd = (
-        field if field is None or small.full is None else _on_basis(small, field) for field in (asked.q, asked.qd)
-    )
+    q, qd = (field if field is None or small.full is None else _on_basis(small, field) for field in (asked.q, asked.qd))
     if asked.start == "rest":
         q = small.reduction.arrays["rest"] + (0.0 if q is None else q)
     return dataclasses.replace(found, simulate=asked.replace(q=q, qd=qd))

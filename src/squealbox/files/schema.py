@@ -58,7 +58,9 @@ def json_schema() -> Schema:
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "squealbox design file",
         "type": "object",
-        "properties": {"brake": {"enum": [*BRAKES, ASSEMBLED, REDUCED], "description": "which brake the file describes"}},
+        "properties": {
+            "brake": {"enum": [*BRAKES, ASSEMBLED, REDUCED], "description": "which brake the file describes"}
+        },
         "required": ["brake"],
         "oneOf": [*brakes, _assembled(sections), _reduced(sections)],
         "definitions": definitions,
