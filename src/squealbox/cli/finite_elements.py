@@ -1,4 +1,4 @@
-"""What `squealbox modes` adds for a finite-element brake: who moves and feeds, doubts, tables, mode shapes, coalescence."""
+"""What `squealbox modes` adds for a finite-element brake: who moves and feeds, doubts, tables, shapes, coalescence."""
 
 import dataclasses
 from pathlib import Path

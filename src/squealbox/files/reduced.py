@@ -134,14 +134,8 @@ def dense(found: "DesignFile", axes: Iterable[Axis] = ()) -> "DesignFile":
     ends = (float(band[0]), float(band[1]))
     time = found.modes.time if found.modes else 0.0
     try:
-        small = reduce(
-            found.design,
-            ends,
-            varying=varying,
-            method=how.method,
-            tolerance=how.tolerance,
-            time=time,  # type: ignore[arg-type]
-        )
+        method: Any = how.method
+        small = reduce(found.design, ends, varying=varying, method=method, tolerance=how.tolerance, time=time)
     except ValueError as error:
         if isinstance(error, (InvalidSystem, ParameterError)):
             raise

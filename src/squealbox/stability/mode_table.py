@@ -1,4 +1,4 @@
-"""The table of a finite-element brake's modes that an engineer pastes: conventions of other codes, who feeds, who moves.
+"""The table of a finite-element brake's modes that an engineer pastes: conventions of codes, who feeds, who moves.
 
 feed-in of a group = (circulation + slope - across) / (2 E) [1/s], summed over its contacts; with damping they add up
                      to the growth rate
