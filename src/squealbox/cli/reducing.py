@@ -14,9 +14,7 @@ from squealbox.fe.reduced_files import save_reduced
 from squealbox.files.reduced import Reduce, Reduced, dense, error_table, promise
 
 
-def reduce_(
-    file: Path, *, out: Path, band: Ends = None, changes: Changes = (), allow_code: AllowCode = False
-) -> None:
+def reduce_(file: Path, *, out: Path, band: Ends = None, changes: Changes = (), allow_code: AllowCode = False) -> None:
     """Make a small brake of a finite-element one: its modes in a band are those of the full one, with a known error.
 
     It is reduced for everything that the file varies: varying of [reduce], [onset], [branch], [map], [scatter]. A file

@@ -50,10 +50,10 @@ def silence(
         raise UsageError(f"--margin {margin}: expected a finite number of at least 0")
     if out is not None:
         folder(out)
-    found = in_motion(found)
+    brake = in_motion(found).design
     with Progress("looking for what silences it"):
         lot = found.scatter.scatter if found.scatter is not None else None
-        table = silenced(found.design, lot, margin=margin, samples=samples, seed=seed)
+        table = silenced(brake, lot, margin=margin, samples=samples, seed=seed)
     print(f"{found.design.title}, {file}\n{table.summary()}")
     if out is not None:
         from squealbox import plots

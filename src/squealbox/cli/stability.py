@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.cli.finite_elements import print_more
 from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, number, read, readable, small
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
@@ -86,11 +87,7 @@ def _modes_in_band(found: "DesignFile", time: float, band: Ends, certify: bool, 
     if not spectrum.outcome.ok:
         raise ComputationFailed(spectrum.outcome)
     print(f"{found.design.title}, {found.path}\n{spectrum.summary()}")
-    if out is not None:
-        folder(out)
-        half = spectrum.eigenvalues.shape[-1] // 2
-        columns = _mode_columns(spectrum) | {"error [1/s]": spectrum.error[:half]}  # type: ignore[attr-defined]
-        print(written(spectrum.save(out / "modes.nc"), write_csv(out / "modes.csv", columns)))
+    print_more(found, spectrum, (low, high), time, out)
 
 
 def onset(

@@ -129,9 +129,8 @@ def dense(found: "DesignFile", axes: Iterable[Axis] = ()) -> "DesignFile":
     ends = (float(band[0]), float(band[1]))
     time = found.modes.time if found.modes else 0.0
     try:
-        small = reduce(
-            found.design, ends, varying=varying, method=how.method, tolerance=how.tolerance, time=time  # type: ignore[arg-type]
-        )
+        method: Any = how.method
+        small = reduce(found.design, ends, varying=varying, method=method, tolerance=how.tolerance, time=time)
     except ValueError as error:
         if isinstance(error, (InvalidSystem, ParameterError)):
             raise
@@ -160,9 +159,7 @@ def _from_rest(found: "DesignFile") -> "DesignFile":
     small, asked = found.design, found.simulate or Simulate()
     if not isinstance(small, ReducedBrake):
         return found
-    q, qd = (
-        field if field is None or small.full is None else _on_basis(small, field) for field in (asked.q, asked.qd)
-    )
+    q, qd = (field if field is None or small.full is None else _on_basis(small, field) for field in (asked.q, asked.qd))
     if asked.start == "rest":
         q = small.reduction.arrays["rest"] + (0.0 if q is None else q)
     return dataclasses.replace(found, simulate=asked.replace(q=q, qd=qd))

@@ -1,0 +1,81 @@
+"""What `squealbox modes` adds for a finite-element brake: who moves and feeds, doubts, tables, shapes, coalescence."""
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squealbox.cli.inputs import folder, small
+from squealbox.cli.progress import Progress
+from squealbox.cli.tables import write_csv, written
+from squealbox.fe.assembled import AssembledBrake
+from squealbox.fe.mode_shapes import write_uff, write_vtu
+from squealbox.files import DesignFile
+from squealbox.files.analyses import Axis, scalar_parameters
+from squealbox.files.reduced import Reduce, Reduced
+from squealbox.stability import complex_modes
+from squealbox.stability.mode_table import mode_table, table_text
+
+FRICTION = "friction.static"
+POINTS = 61
+MESH = (
+    "Doubt: one mesh was looked at. Frequencies settle with the mesh, growth rates hardly do: export a finer one and "
+    "compare before believing a growth rate."
+)
+
+
+def print_more(found: DesignFile, spectrum: Any, band: tuple[float, float], time: float, out: Path | None) -> None:
+    """Rest of the page, and the files of `--out`."""
+    table = mode_table(found.design, spectrum, time)
+    print("\n".join(text for text in (table_text(table), MESH) if text))
+    if isinstance(found.design, AssembledBrake):
+        structure = found.design.exported()
+        frequencies = spectrum.frequency[: len(spectrum.eigenvalues) // 2]
+        for doubt in structure.doubts(frequencies if len(frequencies) else None):
+            print(f"Doubt: {doubt}.")
+    if out is None:
+        return
+    folder(out)
+    paths = [spectrum.save(out / "modes.nc"), write_csv(out / "modes.csv", table)]
+    paths += _shapes(found, spectrum, out) + _coalescence(found, band, out)
+    print(written(*paths))
+
+
+def _shapes(found: DesignFile, spectrum: Any, out: Path) -> list[Path]:
+    """VTU and UFF of the modes where places of nodes are known; a missing package is named."""
+    if not isinstance(found.design, AssembledBrake):
+        return []
+    structure, half = found.design.exported(), len(spectrum.eigenvalues) // 2
+    if structure.nodes is None or structure.labels is None or half == 0:
+        print('Mode shapes need the places of nodes: nodes = "nodes.csv" under [structure].')
+        return []
+    paths = []
+    for write, name in ((write_vtu, "modes.vtu"), (write_uff, "modes.uff")):
+        try:
+            paths.append(write(out / name, structure, spectrum.eigenvalues[:half], spectrum.right[:, :half]))
+        except ModuleNotFoundError as error:
+            if error.name not in ("meshio", "pyuff"):
+                raise
+            print(f"{name} is not written: {error}")
+    return paths
+
+
+def _coalescence(found: DesignFile, band: tuple[float, float], out: Path) -> list[Path]:
+    """Frequencies and growth rates over friction, from 0 to its value or the range of [onset], by a reduced brake."""
+    from squealbox import plots
+
+    if FRICTION not in scalar_parameters(found.design):
+        return []
+    top = float(found.design.value_of(FRICTION))
+    given = found.onset
+    varied = given if given is not None and given.name == FRICTION else Axis(FRICTION, 0.0, max(1.5 * top, 0.1))
+    about = found.reduce or Reduced(Reduce(), {})
+    asked = dataclasses.replace(found, reduce=dataclasses.replace(about, how=about.how.replace(band=np.array(band))))
+    brake = small(asked, varied).design
+    values = np.linspace(varied.low, varied.high, POINTS)
+    with Progress("friction from low to high"):
+        spectra = complex_modes(brake.replace({FRICTION: values}))
+    return list(
+        plots.save(plots.coalescence(values, spectra, name=FRICTION, title=found.path.name), out / "coalescence")
+    )
