@@ -159,7 +159,7 @@ class ComplexModes(Result):
         rigid = (self.eigenvalues[..., :half] == 0.0) & (np.asarray(self.floating)[..., None] > 0)
         growth = np.where(np.isnan(growth) | rigid, -np.inf, growth)
         if not np.any(np.isfinite(growth)):
-            where = "with a finite eigenvalue beside rigid-body motion" if half == self.steady.shape[-1] else "in the band"
+            where = "beside rigid-body motion" if half == self.steady.shape[-1] else "in the band"
             raise ValueError(f"no mode {where}, so no most unstable one")
         *entry, index = (int(i) for i in np.unravel_index(np.argmax(growth), growth.shape))
         return self.mode(index, tuple(entry))

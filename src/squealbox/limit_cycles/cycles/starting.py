@@ -110,6 +110,7 @@ def _fast_slip(run: Trajectory) -> int:
 
 
 def state_of(field: Field, start: Any) -> Any:
+    """The state (2n,) that a start stands for; `ParameterError` where it is none."""
     if isinstance(start, Trajectory):
         return np.concatenate([start.q[-1], start.qd[-1]])
     if start is None:
