@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.stability.massless import reduced
+from squealbox.stability.ordering import halves, spectrum_order
 
 SLOW = 1e-6  # share of the largest |lambda| below which a mode counts as slow: a body that is only just held
 ZERO = 1e-12  # singular values below this share of 1 (all matrices are scaled to 1) count as zero
@@ -119,8 +120,6 @@ def _lefts(m: Any, c: Any, k: Any, values: Any, shapes: Any) -> tuple[Any, Any]:
 
 def _places(values: Any, size: int) -> Any:
     """Where each eigenvalue goes: Im >= 0 ascending in the first half, the rest likewise in the second."""
-    from squealbox.stability.eigenvalues import halves, spectrum_order
-
     order = spectrum_order(values)
     side = np.where(values.imag == 0.0, halves(values[None])[0], values.imag < 0.0).astype(bool)
     places = np.zeros(len(values), dtype=int)

@@ -15,6 +15,8 @@ from squealbox.result import COMPLETED, Outcome, Result, batched, quantity
 from squealbox.stability.deflation import special_modes, uncertain, vibrating
 from squealbox.stability.first_order import first_order_spectra
 from squealbox.stability.free_bodies import free_body_spectra
+from squealbox.stability.ordering import damping_ratio, spectrum_order
+from squealbox.stability.vectors import mode_vectors
 from squealbox.static_deflection import levelled
 from squealbox.system import Linearised, as_system, linearise
 
@@ -158,8 +160,10 @@ class ComplexModes(Result):
         growth = self.growth_rate[..., :half]
         rigid = (self.eigenvalues[..., :half] == 0.0) & (np.asarray(self.floating)[..., None] > 0)
         growth = np.where(np.isnan(growth) | rigid, -np.inf, growth)
+        if not np.any(np.isfinite(growth)):  # nothing but rigid-body motion moves: it neither grows nor dies
+            growth = np.where(rigid, 0.0, -np.inf)
         if not np.any(np.isfinite(growth)):
-            where = "beside rigid-body motion" if half == self.steady.shape[-1] else "in the band"
+            where = "with a finite eigenvalue" if half == self.steady.shape[-1] else "in the band"
             raise ValueError(f"no mode {where}, so no most unstable one")
         *entry, index = (int(i) for i in np.unravel_index(np.argmax(growth), growth.shape))
         return self.mode(index, tuple(entry))
@@ -249,7 +253,7 @@ def modes_of(about: Linearised, inputs: Any = None, contacts: tuple[str, ...] = 
     scaled = np.take_along_axis(scaled.astype(complex), order, axis=-1)
     states = np.take_along_axis(states.astype(complex), order[..., None, :], axis=-1)
     eigenvalues = scaled * rate[..., None]
-    right, left, condition = _modes(about, eigenvalues, states, usable)
+    right, left, condition = mode_vectors(about, eigenvalues, states, usable)
     eigenvalues, right, left, condition, usable = map(np.array, (eigenvalues, right, left, condition, usable))
     for at in map(tuple, np.argwhere(special)):
         found = special_modes(about.M[at], about.C[at], about.K[at])
@@ -364,83 +368,6 @@ def _divided(mass: Any, matrix: Any) -> Any:
         return np.linalg.solve(mass, matrix)
     columns = np.moveaxis(matrix, -2, 0)
     return np.moveaxis(np.linalg.solve(mass, columns.reshape(len(mass), -1)).reshape(columns.shape), 0, -2)
-
-
-def spectrum_order(eigenvalues: Any) -> Any:
-    """Indices that put Im >= 0 first, ascending in |Im|, and then the conjugates; shape (..., 2n).
-
-    |Im| that agree to 1e-10 of the largest |lambda| count as equal and are ordered by falling growth rate, so that
-    coalesced modes come out in the same order whatever the round-off.
-    """
-    shape, count = eigenvalues.shape, eigenvalues.shape[-1]
-    if eigenvalues.size == 0:
-        return np.zeros(shape, dtype=int)
-    flat = eigenvalues.reshape(-1, count)
-    scale = np.max(np.abs(flat), axis=-1, keepdims=True)
-    by_size = np.argsort(np.abs(flat.imag), axis=-1, kind="stable")
-    sizes = np.take_along_axis(np.abs(flat.imag), by_size, axis=-1)
-    steps = np.diff(sizes, axis=-1, prepend=sizes[:, :1]) > 1e-10 * scale
-    group = np.empty_like(by_size)
-    np.put_along_axis(group, by_size, np.cumsum(steps, axis=-1), axis=-1)
-    side = np.where(flat.imag == 0.0, halves(flat), flat.imag < 0.0)
-    return np.lexsort((-flat.real, group, side), axis=-1).reshape(shape)
-
-
-def damping_ratio(eigenvalues: Any) -> Any:
-    """-Re lambda / |lambda| [-], NaN at lambda = 0."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return -np.real(eigenvalues) / np.abs(eigenvalues)
-
-
-def halves(flat: Any) -> Any:
-    """For real eigenvalues: 0 for the larger half of them (one more of an odd number), 1 for the smaller half."""
-    real = flat.imag == 0.0
-    rank = np.argsort(np.argsort(np.where(real, -flat.real, np.inf), axis=-1, kind="stable"), axis=-1, kind="stable")
-    return rank >= (np.sum(real, axis=-1, keepdims=True) + 1) // 2
-
-
-def _modes(about: Linearised, eigenvalues: Any, states: Any, usable: Any) -> tuple[Any, Any, Any]:
-    size = about.M.shape[-1]
-    inverse, invertible = _inverse(states)
-    with np.errstate(all="ignore"):
-        condition = np.linalg.norm(inverse, axis=-1) * np.linalg.norm(states, axis=-2)
-        right = _phased(states[..., :size, :])
-        mass = np.where(usable[..., None, None], about.M, np.eye(size))
-        left = np.linalg.solve(np.swapaxes(mass, -1, -2), np.conj(np.swapaxes(inverse[..., size:], -1, -2)))
-    damping = np.where(usable[..., None, None], about.C, 0.0)
-    stiffness = np.where(usable[..., None, None], about.K, 0.0)
-    lost = ~invertible & usable
-    if np.any(lost):
-        null = _left_null(mass[lost], damping[lost], stiffness[lost], eigenvalues[lost])
-        left[lost], condition[lost] = null, np.inf
-    slope = 2.0 * eigenvalues[..., None, :] * (mass @ right) + damping @ right
-    scale = np.sum(np.conj(left) * slope, axis=-2)
-    with np.errstate(all="ignore"):
-        scaled = left / np.conj(scale)[..., None, :]
-    return right, np.where(np.isfinite(scaled), scaled, left), condition
-
-
-def _inverse(states: Any) -> tuple[Any, Any]:
-    with np.errstate(all="ignore"):
-        invertible = np.linalg.cond(states) < 0.01 / np.finfo(float).eps
-    safe = np.where(invertible[..., None, None], states, np.eye(states.shape[-1]))
-    return np.linalg.inv(safe), invertible
-
-
-def _left_null(mass: Any, damping: Any, stiffness: Any, eigenvalues: Any) -> Any:
-    """Left null vectors of lambda^2 M + lambda C + K by singular values: exact even where modes have merged."""
-    value = eigenvalues[..., None, None]
-    dynamic = value**2 * mass[..., None, :, :] + value * damping[..., None, :, :] + stiffness[..., None, :, :]
-    vectors, _, _ = np.linalg.svd(dynamic)
-    return np.swapaxes(vectors[..., -1], -1, -2)
-
-
-def _phased(shapes: Any) -> Any:
-    """Shapes of length 1 whose first largest part is real and positive."""
-    size = np.abs(shapes)
-    first = np.argmax(size >= (1.0 - 1e-6) * np.max(size, axis=-2, keepdims=True), axis=-2)
-    largest = np.take_along_axis(shapes, first[..., None, :], axis=-2)
-    return shapes * (np.conj(largest) / np.abs(largest)) / np.linalg.norm(shapes, axis=-2, keepdims=True)
 
 
 def _largest(matrix: Any) -> Any:

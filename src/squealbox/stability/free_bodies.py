@@ -22,8 +22,8 @@ def free_body_spectra(mass: Any, damping: Any, stiffness: Any, floating: Any) ->
     """
     size, count = mass.shape[-1], int(floating[0])
     values = np.zeros((len(mass), 2 * size), dtype=complex)
-    motion = np.linalg.svd(np.vstack([stiffness[0] / _largest(stiffness[0]), stiffness[0].T / _largest(stiffness[0])]))
-    motion = motion[2][size - count :].T
+    both = np.vstack([stiffness[0], stiffness[0].T]) / _largest(stiffness[0])
+    motion = np.linalg.svd(both)[2][size - count :].T
     unfelt = np.asarray(floating == count)
     for part in (stiffness, damping):
         small = FELT * size * _largest(part)
@@ -48,5 +48,6 @@ def free_body_spectra(mass: Any, damping: Any, stiffness: Any, floating: Any) ->
 
 
 def _largest(matrix: Any) -> Any:
-    """The largest entry, with axes to divide by."""
-    return np.max(np.abs(matrix), axis=(-1, -2), keepdims=True)
+    """The largest entry, with axes to divide by; 1 where there is none."""
+    size = np.max(np.abs(matrix), axis=(-1, -2), keepdims=True)
+    return np.where(size > 0.0, size, 1.0)
