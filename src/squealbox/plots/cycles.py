@@ -8,6 +8,7 @@ import numpy as np
 from squealbox.limit_cycles import Branch, Cycle, EstimateCurve, HopfPoint, estimate_curves
 from squealbox.limit_cycles.estimates.curves import AVERAGED, DESCRIBING
 from squealbox.plots.dispatch import plot
+from squealbox.plots.facts import liveliest, read_of
 from squealbox.plots.style import WIDTH, drawing, figure_of, line, note, number, panels, quantity_label, scaled
 
 if TYPE_CHECKING:
@@ -28,8 +29,14 @@ ESTIMATES = {DESCRIBING: ("#0072B2", ":"), AVERAGED: ("#009E73", "-.")}
 
 
 @plot.register(Cycle)
-def cycle_overview(cycle: Cycle, *, dof: int = 0, title: str = "") -> "Figure":
-    """One period in time (sticking shaded), the orbit in the phase plane and the multipliers in the unit circle."""
+def cycle_overview(cycle: Cycle, *, dof: int | None = None, title: str = "") -> "Figure":
+    """One period in time (sticking shaded), the orbit in the phase plane and the multipliers in the unit circle.
+
+    dof : index of the degree of freedom; None takes the one that moves most. The axes name it, the title the cautions.
+    """
+    names = cycle.system.names
+    dof = liveliest(cycle.amplitude, names) if dof is None else dof
+    shown = read_of(names, dof)
     figure, axes = panels(1, 3, height=2.5, width_ratios=[1.4, 1.0, 1.0])
     factor, read = scaled("m", cycle.q[:, dof])
     speed, clock = scaled("m/s", cycle.qd[:, dof])
@@ -41,12 +48,12 @@ def cycle_overview(cycle: Cycle, *, dof: int = 0, title: str = "") -> "Figure":
                              transform=history.get_xaxis_transform())  # fmt: skip
         if np.any(stuck):
             note(history, "grey: a contact sticks", "lower left")
-        history.set(xlabel=quantity_label("time", time), ylabel=quantity_label("displacement", read))
+        history.set(xlabel=quantity_label("time", time), ylabel=quantity_label(shown, read))
         history.set_xlim(0.0, cycle.t[-1] / second)
         plane.plot(cycle.q[:, dof] / factor, cycle.qd[:, dof] / speed, **line(0))
         sticks = np.where(stuck, cycle.qd[:, dof], np.nan)
         plane.plot(cycle.q[:, dof] / factor, sticks / speed, color="#888888", linewidth=2.5, zorder=1)
-        plane.set(xlabel=quantity_label("displacement", read), ylabel=quantity_label("velocity", clock))
+        plane.set(xlabel=quantity_label(shown, read), ylabel=quantity_label("velocity", clock))
         plane.margins(0.08)
         angle = np.linspace(0.0, 2.0 * np.pi, 181)
         circle.plot(np.cos(angle), np.sin(angle), color="#888888", linewidth=0.7)
@@ -57,7 +64,8 @@ def cycle_overview(cycle: Cycle, *, dof: int = 0, title: str = "") -> "Figure":
         circle.set_aspect("equal", adjustable="datalim")
     kind = "stable" if cycle.stable else "unstable"
     said = f"{kind} cycle, {number(cycle.frequency)} Hz" if cycle.outcome.ok else str(cycle.outcome)
-    figure.suptitle(". ".join(filter(None, (title, said))), fontsize=8)
+    caution = f"Caution: {cycle.caution}" if cycle.caution else ""
+    figure.suptitle(". ".join(filter(None, (title, said))) + (f"\n{caution}" if caution else ""), fontsize=8, wrap=True)
     return figure
 
 
@@ -65,7 +73,7 @@ def cycle_overview(cycle: Cycle, *, dof: int = 0, title: str = "") -> "Figure":
 def branch_diagram(
     branches: Branch | Sequence[Branch],
     *,
-    dof: int = 0,
+    dof: int | None = None,
     hopf: HopfPoint | None = None,
     runs: tuple[Any, Any] | None = None,
     estimates: bool | Sequence[EstimateCurve] = True,
@@ -80,7 +88,7 @@ def branch_diagram(
     Parameters
     ----------
     branches : one or several
-    dof : index of the degree of freedom
+    dof : index of the degree of freedom; None takes the one that moves most, and the axis names it
     hopf : marks where the branch is born
     runs : (values, amplitudes [m]) of long runs, drawn as crosses
     estimates : quick estimates, drawn as dotted curves with how far they are off; True computes those of
@@ -90,6 +98,11 @@ def branch_diagram(
     axes : draw here instead of in a new figure
     """
     several = [branches] if isinstance(branches, Branch) else list(branches)
+    names = getattr(several[0].inputs.get("system"), "names", ())
+    if dof is None:
+        sizes = [np.max(b.amplitude, axis=0) for b in several if len(b.value)]
+        dof = liveliest(np.max(sizes, axis=0), names) if sizes and names else 0
+    read_as = f"amplitude {names[dof]}" if len(names) > 1 else "amplitude"
     largest = [b.amplitude[:, dof] for b in several]
     factor, read = scaled("m", *largest)
     with drawing(axes) as panel:
@@ -106,7 +119,7 @@ def branch_diagram(
         if runs is not None:
             values, sizes = (np.asarray(x) for x in runs)
             panel.plot(values / scale, sizes / factor, "+", color="#555555", markersize=4.5, label="long run")
-        panel.set(xlabel=name or several[0].parameter, ylabel=quantity_label("amplitude", read), title=title)
+        panel.set(xlabel=name or several[0].parameter, ylabel=quantity_label(read_as, read), title=title)
         panel.set_ylim(bottom=0.0)
         panel.margins(x=0.05)
         _legend(panel, alone=axes is None)

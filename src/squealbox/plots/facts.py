@@ -130,6 +130,18 @@ def _of_ensemble(found: Ensemble) -> list[Fact]:
             ("observed", ", ".join(found.observed) or "nothing", "")]  # fmt: skip
 
 
+def liveliest(sizes: Any, names: Any) -> int:
+    """The freedom that moves most; a turn (its name ends in _turn) only where nothing else moves: rad are no metres."""
+    sizes = np.nan_to_num(np.asarray(sizes, dtype=float))
+    moves = np.array([0.0 if str(name).endswith("_turn") else size for name, size in zip(names, sizes, strict=True)])
+    return int(np.argmax(moves if np.any(moves > 0.0) else sizes))
+
+
+def read_of(names: Any, dof: int) -> str:
+    """What an axis calls the displacement of a freedom: with its name where there are several."""
+    return "displacement" if len(names) < 2 else f"displacement {names[dof]}"
+
+
 def unit_of(result: Any, parameter: str) -> str:
     """The unit of a dotted parameter of the design a result was computed from; empty where it kept none."""
     design = result.inputs.get("system")

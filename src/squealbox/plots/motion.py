@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.plots.dispatch import plot
+from squealbox.plots.facts import liveliest, read_of
 from squealbox.plots.spectra import spectrum
 from squealbox.plots.style import drawing, figure_of, line, note, number, panels, quantity_label, scaled, uncertain
 from squealbox.signals import LEAST, SignalError, column, equal_steps, values
@@ -113,15 +114,25 @@ def energy(trajectory: Trajectory, *, unit: str | None = None, title: str = "", 
 
 
 @plot.register(Trajectory)
-def motion_overview(trajectory: Trajectory, *, dof: int | str = 0, title: str = "") -> "Figure":
+def motion_overview(trajectory: Trajectory, *, dof: int | str | None = None, title: str = "") -> "Figure":
     """Time history with the verdict, phase plane and spectrum of one degree of freedom.
 
     The spectrum of a run with unequal steps is that of a smooth curve through them, and says so. A run too short to
-    judge is drawn without verdict and spectrum.
+    judge is drawn without verdict and spectrum. dof None takes the freedom that moves most, and the axis names it.
     """
+    names = trajectory.system.names
+    if dof is None:
+        dof = liveliest(np.ptp(trajectory.q, axis=0), names)
+    place = list(names).index(dof) if isinstance(dof, str) else dof
     short = np.size(trajectory.t) < LEAST
     figure, axes = panels(1, 2 if short else 3, height=2.5, width_ratios=[1.5, 1.0, 1.2][: 2 if short else 3])
-    time_history(trajectory, dof=dof, verdict=None if short else verdict(trajectory, dof=dof), axes=axes[0])
+    time_history(
+        trajectory,
+        dof=dof,
+        verdict=None if short else verdict(trajectory, dof=dof),
+        axes=axes[0],
+        name=read_of(names, place),
+    )
     phase_plane(trajectory, dof=dof, axes=axes[1])
     if not short:
         even = equal_steps(trajectory.t)

@@ -111,9 +111,10 @@ class ComplexModes(Result):
         growth = self.growth_rate[..., :half]
         rigid = (self.eigenvalues[..., :half] == 0.0) & (np.asarray(self.floating)[..., None] > 0)
         growth = np.where(np.isnan(growth) | rigid, -np.inf, growth)
+        if not np.any(np.isfinite(growth)):  # nothing but rigid-body motion moves: it neither grows nor dies
+            growth = np.where(rigid, 0.0, -np.inf)
         if not np.any(np.isfinite(growth)):
-            whole = half == self.steady.shape[-1]
-            where = "with a finite eigenvalue beside rigid-body motion" if whole else "in the band"
+            where = "with a finite eigenvalue" if half == self.steady.shape[-1] else "in the band"
             raise ValueError(f"no mode {where}, so no most unstable one")
         *entry, index = (int(i) for i in np.unravel_index(np.argmax(growth), growth.shape))
         return self.mode(index, tuple(entry))

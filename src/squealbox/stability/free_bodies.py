@@ -48,5 +48,6 @@ def free_body_spectra(mass: Any, damping: Any, stiffness: Any, floating: Any) ->
 
 
 def _largest(matrix: Any) -> Any:
-    """The largest entry, with axes to divide by."""
-    return np.max(np.abs(matrix), axis=(-1, -2), keepdims=True)
+    """The largest entry, with axes to divide by; 1 where there is none."""
+    size = np.max(np.abs(matrix), axis=(-1, -2), keepdims=True)
+    return np.where(size > 0.0, size, 1.0)

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.stability.eigenvalues import MARGINAL, ComplexModes, damping_ratio
+from squealbox.stability.eigenvalues import MARGINAL, ComplexModes
+from squealbox.stability.mode import damping_ratio
 
 SQUEAL_BAND = (1e3, 16e3)  # Hz: where brake noise is called squeal
 

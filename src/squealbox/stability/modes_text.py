@@ -15,6 +15,8 @@ def summary(modes: "ComplexModes") -> str:
     """One line of verdict and a table of the n modes; with leading axes, of the most unstable entry."""
     if not np.any(modes.exists):
         return f"No complex modes: {modes.outcome} ({modes.outcome.message})"
+    if not np.any(np.isfinite(modes.eigenvalues)):
+        return "No complex modes: nothing has mass or damping, so every eigenvalue is at infinity"
     entry, rows = _rows(modes)
     table = [HEADER, *rows]
     widths = [max(len(row[i]) for row in table) for i in range(len(HEADER))]
@@ -24,7 +26,7 @@ def summary(modes: "ComplexModes") -> str:
 
 def html(modes: "ComplexModes") -> str:
     """The same table as HTML."""
-    if not np.any(modes.exists):
+    if not np.any(modes.exists) or not np.any(np.isfinite(modes.eigenvalues)):
         return f"<p>{html_module.escape(summary(modes))}</p>"
     entry, rows = _rows(modes)
     head = "".join(f"<th>{cell}</th>" for cell in HEADER)

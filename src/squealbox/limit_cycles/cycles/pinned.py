@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.schedules import value_at
+from squealbox.schedules import Schedule, value_at
 from squealbox.system import System
 
 FELT = 1e-12  # share of the largest entry below which a motion is not felt
@@ -36,6 +36,14 @@ def pinned(system: System, frequency: float) -> tuple[System, Any]:
     rate = frequency or 1.0
     rest = np.linalg.svd(weighted.T)[2][motions.shape[1] :].T
     return replace(system, K=system.K + 2.0 * rate**2 * held, C=system.C + 3.0 * rate * held), rest
+
+
+def at_rest_together(system: System) -> System:
+    """The system with its common motions held, as starts and attractors are asked for; one that varies, as it is."""
+    if system.shape or isinstance(system.load, Schedule):
+        return system
+    rate = float(np.sqrt(np.max(np.abs(system.K)) / (np.max(np.abs(system.M)) or 1.0)))
+    return pinned(system, rate)[0]
 
 
 def _common(system: System) -> Any:

@@ -115,7 +115,7 @@ def state_of(field: Field, start: Any) -> Any:
         return np.concatenate([start.q[-1], start.qd[-1]])
     if start is None:
         modes = complex_modes(field.system)
-        start = modes.most_unstable if np.any(modes.exists) else "rest"
+        start = modes.most_unstable if np.any(modes.exists & np.isfinite(modes.eigenvalues[..., 0])) else "rest"
         if isinstance(start, Mode) and start.growth_rate <= 0.0:
             start = "rest"
     if isinstance(start, Mode):
