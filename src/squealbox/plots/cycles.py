@@ -117,8 +117,8 @@ def branch_diagram(
         _estimates(panel, _known(several) if estimates is True else estimates or (), dof, factor, scale)
         panel.set_ylim(top=max(ends[1], 0.0))  # an estimate far above the cycles leaves the panel
         if runs is not None:
-            values, sizes = (np.asarray(x) for x in runs)
-            panel.plot(values / scale, sizes / factor, "+", color="#555555", markersize=4.5, label="long run")
+            at, sizes = (np.asarray(x) for x in runs)
+            panel.plot(at / scale, sizes / factor, "+", color="#555555", markersize=4.5, label="long run")
         panel.set(xlabel=name or several[0].parameter, ylabel=quantity_label(read_as, read), title=title)
         panel.set_ylim(bottom=0.0)
         panel.margins(x=0.05)
