@@ -8,10 +8,20 @@ import pytest
 
 from house.rooms import PACKAGE, PROJECT
 
-DISTRIBUTIONS = {"dask": "distributed"}  # import name to the name it is installed by, where they differ
+DISTRIBUTIONS = {
+    "dask": "distributed",
+    "skfem": "scikit-fem",
+}  # import name to the name it is installed by, where they differ
 PROJECT_TABLE = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]
 # Rooms that may use an extra, and which one.
-EXTRAS = {"signals": "recordings", "studies": "studies", "workbench": "workbench"}
+EXTRAS = {
+    "control": "control",
+    "factorisation.py": "fe",
+    "fe": "fe",
+    "signals": "recordings",
+    "studies": "studies",
+    "workbench": "workbench",
+}
 
 
 def declared(requirements) -> set[str]:
@@ -22,7 +32,11 @@ def declared(requirements) -> set[str]:
 def third_party(text: str) -> set[str]:
     """Top-level packages the source imports, without the standard library and this package."""
     found = set()
-    for node in ast.walk(ast.parse(text)):
+    tree = ast.parse(text)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            node.body = [ast.Pass()]  # read by type checkers only
+    for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             found |= {alias.name.split(".")[0] for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:

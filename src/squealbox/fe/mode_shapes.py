@@ -14,7 +14,8 @@ MISSING = "{0} is missing: pip install {0}"
 
 def displacements(structure: Structure, shapes: Any) -> tuple[Any, Any, Any]:
     """Node numbers (k,), places (k, 3) [m] and displacements (k, 3, modes) of shapes (n, modes), complex, global axes
-    where nodes have no coordinate system of their own; nodes without a freedom are left out."""
+    where nodes have no coordinate system of their own; nodes without a freedom are left out.
+    """
     if structure.nodes is None or structure.labels is None:
         raise ParameterError("structure", "nodes", None, "nodes = a file of node, x, y, z, to draw mode shapes")
     numbers = structure.nodes.numbers
