@@ -47,4 +47,4 @@ def test_what_is_misspelt_is_not_valid(name, validator):
 
 
 def test_every_brake_is_in_the_schema():
-    assert json_schema()["properties"]["brake"]["enum"] == [*BRAKES, "assembled"]
+    assert json_schema()["properties"]["brake"]["enum"] == [*BRAKES, "assembled", "reduced"]

@@ -8,6 +8,7 @@ import pytest
 
 from house.rooms import PACKAGE, PROJECT
 
+<<<<<<< HEAD
 # import name to the name it is installed by, where they differ
 DISTRIBUTIONS = {"dask": "distributed", "skfem": "scikit-fem"}
 PROJECT_TABLE = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]
@@ -16,6 +17,22 @@ EXTRAS = {
     "signals": "recordings", "studies": "studies", "workbench": "workbench", "fe": "fe", "factorisation.py": "fe",
     "control": "control",
 }  # fmt: skip
+=======
+DISTRIBUTIONS = {
+    "dask": "distributed",
+    "skfem": "scikit-fem",
+}  # import name to the name it is installed by, where they differ
+PROJECT_TABLE = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]
+# Rooms that may use an extra, and which one.
+EXTRAS = {
+    "control": "control",
+    "factorisation.py": "fe",
+    "fe": "fe",
+    "signals": "recordings",
+    "studies": "studies",
+    "workbench": "workbench",
+}
+>>>>>>> fejoin
 
 
 def declared(requirements) -> set[str]:
@@ -26,7 +43,11 @@ def declared(requirements) -> set[str]:
 def third_party(text: str) -> set[str]:
     """Top-level packages the source imports, without the standard library and this package."""
     found = set()
-    for node in ast.walk(ast.parse(text)):
+    tree = ast.parse(text)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            node.body = [ast.Pass()]  # read by type checkers only
+    for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             found |= {alias.name.split(".")[0] for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
