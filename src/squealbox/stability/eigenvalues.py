@@ -313,9 +313,8 @@ def with_special(about: Linearised, eigenvalues: Any) -> Any:
     floating = np.broadcast_to(about.equilibrium.floating, special.shape)
     free = special & (floating > 0) & np.broadcast_to(_regular(_once(about.M)), special.shape)
     if np.any(free):
-        values, answered = free_body_spectra(
-            *(np.broadcast_to(part, about.K.shape)[free] for part in (about.M, about.C, about.K)), floating[free]
-        )
+        mass, damping, stiffness = (np.broadcast_to(x, about.K.shape)[free] for x in (about.M, about.C, about.K))
+        values, answered = free_body_spectra(mass, damping, stiffness, floating[free])
         values = np.take_along_axis(values, spectrum_order(values), axis=-1)
         places = np.argwhere(free)[answered]
         eigenvalues[tuple(places.T)], special = values[answered], np.array(special)
