@@ -8,7 +8,6 @@ import pytest
 
 from house.rooms import PACKAGE, PROJECT
 
-<<<<<<< HEAD
 # import name to the name it is installed by, where they differ
 DISTRIBUTIONS = {"dask": "distributed", "skfem": "scikit-fem"}
 PROJECT_TABLE = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]
@@ -17,22 +16,6 @@ EXTRAS = {
     "signals": "recordings", "studies": "studies", "workbench": "workbench", "fe": "fe", "factorisation.py": "fe",
     "control": "control",
 }  # fmt: skip
-=======
-DISTRIBUTIONS = {
-    "dask": "distributed",
-    "skfem": "scikit-fem",
-}  # import name to the name it is installed by, where they differ
-PROJECT_TABLE = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]
-# Rooms that may use an extra, and which one.
-EXTRAS = {
-    "control": "control",
-    "factorisation.py": "fe",
-    "fe": "fe",
-    "signals": "recordings",
-    "studies": "studies",
-    "workbench": "workbench",
-}
->>>>>>> fejoin
 
 
 def declared(requirements) -> set[str]:

@@ -100,8 +100,8 @@ def branch_diagram(
     several = [branches] if isinstance(branches, Branch) else list(branches)
     names = getattr(several[0].inputs.get("system"), "names", ())
     if dof is None:
-        sizes = [np.max(b.amplitude, axis=0) for b in several if len(b.value)]
-        dof = liveliest(np.max(sizes, axis=0), names) if sizes and names else 0
+        peaks = [np.max(b.amplitude, axis=0) for b in several if len(b.value)]
+        dof = liveliest(np.max(peaks, axis=0), names) if peaks and names else 0
     read_as = f"amplitude {names[dof]}" if len(names) > 1 else "amplitude"
     largest = [b.amplitude[:, dof] for b in several]
     factor, read = scaled("m", *largest)
