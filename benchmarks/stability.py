@@ -16,11 +16,11 @@ if any(name in os.environ for name in UNWANTED) or os.environ.get("OPENBLAS_NUM_
     wanted = {name: value for name, value in os.environ.items() if name not in UNWANTED}
     os.execve(sys.executable, [sys.executable, *sys.argv], {**wanted, "OPENBLAS_NUM_THREADS": "1"})
 
-import numpy as np  # noqa: E402
+import numpy as np
 
-from squealbox import DrumBrake, LinearSlope  # noqa: E402
-from squealbox.stability import compiled_eigenvalues, stability_boundary, stability_map  # noqa: E402
-from squealbox.stability import kernels_two_dof as kernels  # noqa: E402
+from squealbox import DrumBrake, LinearSlope
+from squealbox.stability import compiled_eigenvalues, stability_boundary, stability_map
+from squealbox.stability import kernels_two_dof as kernels
 
 
 def least(function, repetitions=7):

@@ -24,10 +24,10 @@ from pathlib import Path
 for _name in ("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE"):  # they slow NumPy, and are read when it is loaded
     os.environ.pop(_name, None)
 
-import numpy as np  # noqa: E402
+import numpy as np
 
-from squealbox import DrumBrake, complex_modes, simulate_ensemble  # noqa: E402
-from squealbox.studies import grid, sweep  # noqa: E402
+from squealbox import DrumBrake, complex_modes, simulate_ensemble
+from squealbox.studies import grid, sweep
 
 BATCH = 16_384
 MEMORY = """

@@ -17,10 +17,10 @@ UNWANTED = ("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE")
 if any(name in os.environ for name in UNWANTED):
     os.execve(sys.executable, [sys.executable, *sys.argv], {k: v for k, v in os.environ.items() if k not in UNWANTED})
 
-import numpy as np  # noqa: E402
-from scipy.integrate import solve_ivp  # noqa: E402
+import numpy as np
+from scipy.integrate import solve_ivp
 
-from squealbox import DrumBrake, LinearSlope, simulate  # noqa: E402
+from squealbox import DrumBrake, LinearSlope, simulate
 
 DURATION = 0.05
 SLOPE = -0.05
