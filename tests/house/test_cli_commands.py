@@ -364,8 +364,9 @@ def test_a_folder_that_cannot_be_made_is_said(place, said, brake, tmp_path):
 def test_paper(said, tmp_path, monkeypatch):
     from squealbox.papers import drum_brake_2011
 
-    def reproduce(out, progress=None, fine=False):
+    def reproduce(out, progress=None, fine=False, search=False):
         assert not fine
+        assert not search
         progress("half of it", 0.5)
         (out / "index.html").write_text("a page")
         return out / "index.html"
@@ -385,4 +386,5 @@ def test_every_paper_listed_can_be_reproduced():
     from squealbox.cli.papers import PAPERS
 
     for paper in PAPERS.values():
-        assert list(inspect.signature(import_module(paper.module).reproduce).parameters) == ["out", "progress", "fine"]
+        asked = list(inspect.signature(import_module(paper.module).reproduce).parameters)
+        assert asked == ["out", "progress", "fine", "search"]

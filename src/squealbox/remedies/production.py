@@ -21,7 +21,7 @@ def usual_scatter(brake: Design) -> Scatter:
 
     >>> from squealbox import MassOnBelt
     >>> usual_scatter(MassOnBelt()).names
-    ('c', 'k', 'friction.static')
+    ('k', 'friction.static')
     """
     found: dict[str, Lognormal | TruncatedNormal] = {}
     values = {name: value for name, _, value in brake.leaves()}

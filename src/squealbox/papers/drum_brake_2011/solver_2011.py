@@ -53,7 +53,7 @@ def added_damping(angular_frequency: float, step: float) -> float:
     """The damping [1/s] the method adds to a rotation at this frequency [rad/s] with this step [s].
 
     >>> round(added_damping(13000.0, 5e-5))
-    103
+    129
     """
     z = 1j * angular_frequency * step
     return -math.log(abs(1.0 + z + z**2 / 2.0 + z**3 / 6.0)) / step
