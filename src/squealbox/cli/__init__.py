@@ -7,6 +7,7 @@ input, 130 stopped by the user.
 
 import difflib
 import io
+import os
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -97,6 +98,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if name not in COMMANDS:
         print(f"squealbox: {_unknown(name)}", file=sys.stderr)
         return BAD_INPUT
+    for library in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(library, "1")  # many small matrices: threads of the algebra stand in each other's way
     from squealbox.cli.running import run
 
     return run(name, COMMANDS[name], words[1:])
