@@ -85,10 +85,10 @@ def reconstruction(searched: Any, whole: Any, pictures: Any) -> tuple[Any, ...]:
         Text(structure),
         Text(_chance(searched, "the short form, belts as printed, made for this page")),
         *((Text(_chance(whole.searched, "the whole family")), Text(_outcome(whole))) if whole is not None else (
-            Text("The whole family, 29.7 million members and the transients of the best: squealbox paper "
-                 "drum-brake-2011 --search. It finds 6 of 8 as well, and for scrambled numbers as many in 15 %."),
+            Text("The whole family, and the transients of its best members, are gone through by: squealbox paper "
+                 "drum-brake-2011 --search. This page then shows its counts and its chance level."),
         )),
-        Text("So a match of this quality is suggestive and no proof: expect one in about seven by chance."),
+        Text("So a match of this quality is suggestive and no proof."),
         Section(f"The paper's figures by {RECONSTRUCTED}*, to lay the paper beside", pictures),
     )  # fmt: skip
 
