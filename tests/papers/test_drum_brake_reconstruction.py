@@ -46,7 +46,7 @@ def test_onset_in_load_by_the_slope(name: str) -> None:
 
 @pytest.mark.parametrize(("scheme", "sizes"), [("raw", (0.108, 0.204)), ("exact", (0.110, 0.205))])
 def test_amplitudes_at_two_frictions_peak_to_peak(scheme: str, sizes: tuple[float, float]) -> None:
-    """Of x [mm] over the last quarter of 0.05 s, from rest, as the paper ran it and exactly; published 0.11 and 0.20."""
+    """Of x [mm] over the last quarter of 0.05 s, from rest, as the paper ran it and exactly; published 0.11, 0.20."""
     how = {"method": "bogacki-shampine", "rtol": 1e-3} if scheme == "raw" else {}
     for mu, size in zip((0.40, 0.50), sizes, strict=True):
         run = simulate(DrumBrake(reading="reconstructed").replace({"friction.static": mu}), 0.05, contact=scheme, **how)
