@@ -7,7 +7,18 @@ import numpy as np
 import pytest
 
 from small_systems import METHODS, block_on_belt, drum, two_blocks_on_belt
-from squealbox import Constant, Contact, Coulomb, DrumBrake, LinearSlope, Method, ParameterError, System, simulate
+from squealbox import (
+    Constant,
+    Contact,
+    Coulomb,
+    DrumBrake,
+    LinearSlope,
+    MassOnBelt,
+    Method,
+    ParameterError,
+    System,
+    simulate,
+)
 from squealbox.result import Outcome, Result, ResultFileError
 from squealbox.system import InvalidSystem
 from squealbox.transient import Trajectory, _engine, packing
@@ -68,7 +79,7 @@ def test_strongly_negative_damping_is_not_finite():
 
 
 def test_a_stable_run_has_nothing_to_say():
-    motion = simulate(drum(0.3), 0.002)
+    motion = simulate(MassOnBelt(c=1.0, friction=Coulomb(0.3)), 0.002)  # no contact of it is pulled, as the drum's is
     assert (motion.outcome, motion.outcome.message, motion.caution) == ("completed", "", "")
 
 
