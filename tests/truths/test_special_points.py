@@ -100,7 +100,7 @@ def test_from_a_period_doubling_onto_the_doubled_branch():
     rise, moved = double.amplitude[:, 0] - point.amplitude[0], float(point.value) - double.value
     assert np.polyfit(np.log(rise), np.log(moved), 1)[0] == pytest.approx(2.0, abs=0.1)
     with pytest.raises(ParameterError, match="shooting"):
-        branch(blocks, "speed", (0.045, 0.06), point)
+        branch(blocks, "speed", (0.045, 0.06), point, method="harmonic_balance")
 
 
 def test_a_doubled_branch_doubles_again():

@@ -101,6 +101,11 @@ def _example(brake: str) -> "Design":
     from squealbox.files import BRAKES, OwnBrake, OwnContact, OwnMechanism
     from squealbox.friction import Coulomb, LinearSlope
 
+    if brake == "disc_brake":
+        raise UsageError(
+            '--brake disc_brake: a file of one line, brake = "disc_brake", beside a section [modes] with its band; '
+            "examples/caliper begins from exported matrices"
+        )
     if brake not in BRAKES:
         raise UsageError(f"--brake {brake[:40]}: {known_names(brake[:40], list(BRAKES))}")
     if BRAKES[brake] is DrumBrake:
