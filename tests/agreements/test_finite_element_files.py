@@ -80,7 +80,7 @@ def test_a_file_without_a_band_says_what_to_add(export, capsys):
     words = ["onset", str(export / "brake.toml"), "--parameter", "friction.static", "--range", "0", "1"]
     assert main(words) == 2
     assert "[reduce] band" in capsys.readouterr().err
-    with pytest.raises(InvalidSystem, match="band of frequency"):
+    with pytest.raises(InvalidSystem, match="frequency band"):
         dense(read_file(export / "brake.toml"))
 
 
