@@ -11,6 +11,7 @@ import json
 import os
 import platform
 import tempfile
+import textwrap
 from collections.abc import Callable, Mapping
 from functools import cache
 from importlib import metadata
@@ -135,7 +136,9 @@ class Result:
         if len(fields) > MOST_LINES:
             lines.append(f"  and {len(fields) - MOST_LINES} more arrays, listed by .to_dataset()")
         caution = str(getattr(self, "caution", ""))
-        return "\n".join([said, *lines, *([f"  Caution: {caution}"] if caution else [])])
+        if caution:
+            lines.append(textwrap.fill(f"Caution: {caution}", 118, initial_indent="  ", subsequent_indent="    "))
+        return "\n".join([said, *lines])
 
     @classmethod
     def kind_name(cls) -> str:
