@@ -215,7 +215,7 @@ def test_every_wrong_value_is_told_at_once(talk):
         ("map", {"x": "m", "y": "m"}),
         ("map", {"points": 1e9}),
         ("map", {"show": "secrets"}),
-        ("motion", {"dof": 99}),
+        ("motion", {"dof": 0.5}),
         ("motion", {"duration": -1}),
         ("motion", {"start": "nowhere"}),
         ("locus", [1]),

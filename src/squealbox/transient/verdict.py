@@ -95,7 +95,9 @@ def verdict(
     """
     outcome = getattr(motion, "outcome", None) or Outcome()
     if isinstance(motion, Trajectory):
-        motion = resolved(motion)
+        closer = resolved(motion)
+        if end is None or np.count_nonzero(closer.t <= end) >= LEAST:  # else only the last part was run again
+            motion = closer
     dof, name = _judged_dof(motion, dof)
     if not outcome.ok and np.size(motion.t) < LEAST:
         course = _nothing(motion)

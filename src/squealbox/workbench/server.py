@@ -14,7 +14,7 @@ from starlette.applications import Starlette
 from starlette.middleware import Middleware
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 from starlette.requests import Request
-from starlette.responses import FileResponse, HTMLResponse, RedirectResponse, Response
+from starlette.responses import FileResponse, HTMLResponse, Response
 from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
@@ -77,10 +77,8 @@ class Workbench:
         """The page, for those who know the token; it stays known to their browser."""
         if not self.token.known(request.scope):
             return HTMLResponse(NO_TOKEN, status_code=403)
-        given = self.token.in_address(request.scope)
-        response: Response = FileResponse(STATIC / "index.html", media_type="text/html")
-        if given:  # the cookie has it from now on: it stands in no address bar and no history; what is behind # stays
-            response = RedirectResponse("/", status_code=303)
+        response = FileResponse(STATIC / "index.html", media_type="text/html")
+        if self.token.in_address(request.scope):
             about: dict[str, Any] = {"httponly": True, "samesite": "strict", "path": "/", "max_age": 30 * 86400}
             response.set_cookie(self.token.cookie, self.token.token, **about)
         return response
