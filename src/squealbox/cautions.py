@@ -38,15 +38,19 @@ def out_of_range(system: System, normal_force: Any, sliding_velocity: Any) -> tu
             said.append(
                 f"{name}: N falls to {least:.4g} N: it would have to pull, where a unilateral contact lifts off"
             )
-        if v.size == 0 or any(np.ndim(x) for x in contact.law.coefficients()[:1]):
+        if v.size == 0:
             continue
         fastest = float(np.max(v))
-        looked = np.linspace(0.0, fastest, 65) if v.size > 1 else v
+        if any(np.ndim(x) for x in contact.law.coefficients()):  # a family of laws, each at its own speed
+            looked = np.abs(np.asarray(sliding_velocity, dtype=float)[..., i])
+        else:
+            looked = np.linspace(0.0, fastest, 65) if v.size > 1 else v
         mu = np.asarray(contact.law.mu(looked), dtype=float)
-        if np.min(mu) < 0.0:
-            at = float(looked[int(np.argmin(mu))])
-            said.append(f"{name}: friction is negative at {at:.4g} m/s (mu = {float(np.min(mu)):.4g}) and drives the "
-                        "sliding: give the law a floor")  # fmt: skip
+        least_mu = float(np.nanmin(mu))
+        if least_mu < 0.0:
+            at = float(np.broadcast_to(looked, mu.shape).flat[int(np.nanargmin(mu))])
+            said.append(f"{name}: friction is negative at {at:.4g} m/s (mu = {least_mu:.4g}) and drives the sliding: "
+                        "give the law a floor")  # fmt: skip
         if isinstance(contact.law, Table) and fastest > float(np.max(contact.law.speeds)) * (1.0 + 1e-12):
             known = float(np.max(contact.law.speeds))
             said.append(f"{name}: it slides at {fastest:.4g} m/s, beyond the law's data, which end at {known:.4g} m/s")

@@ -97,3 +97,10 @@ def test_a_branch_of_stick_slip_is_followed_by_the_method_that_can() -> None:
     assert np.all(walk.sticking > 0.0)
     with pytest.raises(ParameterError, match="low < high"):
         branch(lambda v: block(Coulomb(0.4, 0.2), v), "V", (0.3, 0.05))
+
+
+def test_a_family_of_laws_is_looked_at_member_by_member() -> None:
+    """0.3 - 0.2 * 2 < 0 in the last of four; with all slopes at -0.1 none is negative."""
+    said = complex_modes(block(LinearSlope(np.full(4, 0.3), np.array([0.0, -0.05, -0.1, -0.2])), 2.0)).caution
+    assert said == "contact 1: friction is negative at 2 m/s (mu = -0.1) and drives the sliding: give the law a floor"
+    assert not complex_modes(block(LinearSlope(np.full(4, 0.3), -0.1), 2.0)).caution
