@@ -1,12 +1,27 @@
 """One small example of every kind of result, for the tests that hold for all of them."""
 
+import dataclasses
 from collections.abc import Callable
 from functools import cache
 from typing import Any
 
 import numpy as np
 
-from squealbox import quantities, signals, stability, studies
+from squealbox import (
+    PID,
+    Contact,
+    Measured,
+    Sinusoid,
+    System,
+    calibrate,
+    compare,
+    forced_cycle,
+    quantities,
+    signals,
+    stability,
+    studies,
+)
+from squealbox.control import run_loops
 from squealbox.designs import DampingParadox, DrumBrake, MassOnBelt
 from squealbox.fit import fit_friction
 from squealbox.friction import Coulomb
@@ -49,6 +64,46 @@ def special() -> Any:
     return next(iter(cycles().points))
 
 
+def stop() -> Any:
+    """Squeal at 2 kHz that grows and dies in noise, with a braking speed that falls."""
+    t = np.arange(48000) / 48000.0
+    squeal = np.exp(np.minimum(60.0 * (t - 0.3), 0.0) + np.minimum(-80.0 * (t - 0.7), 0.0))
+    noise = np.random.default_rng(0).standard_normal(t.size)
+    return signals.squeal_events(0.5 * squeal * np.sin(2.0 * np.pi * 2000.0 * t) + 1e-3 * noise, 48000.0)
+
+
+def campaign() -> Any:
+    """Five stops in different conditions, two of them noisy."""
+    loud = stop()
+    quiet = signals.squeal_events(1e-3 * np.random.default_rng(1).standard_normal(24000), 48000.0)
+    stops = [(loud, 5.0, 2e6), (loud, 8.0, 1e6), (quiet, 6.0, 2e6), (quiet, 12.0, 1e6), (quiet, 15.0, 3e6)]
+    return signals.noise_matrix([
+        dataclasses.replace(each, settings={**each.settings, "stop": {"speed": speed, "pressure": pressure}})
+        for each, speed, pressure in stops
+    ])  # fmt: skip
+
+
+def fitted() -> Any:
+    """The drum's k3 and load from the growth rate and frequency of its worst mode."""
+    brake = drum().replace({FRICTION: 0.45})
+    modes = stability.complex_modes(brake)
+    worst = int(np.argmax(modes.growth_rate))
+    data = [Measured("growth_rate", float(modes.growth_rate[worst]), sd=5.0),
+            Measured("frequency", float(modes.frequency[worst]), sd=1.0)]  # fmt: skip
+    return calibrate(brake, {"k3": (0.8 * brake.k3, 1.2 * brake.k3), FRICTION: (0.4, 0.5)}, data, profile=False)
+
+
+def shaken() -> System:
+    """A block on a belt whose speed swings."""
+    speed = Sinusoid(mean=0.5, amplitude=1.0, frequency=3.0)
+    return System([[1.0]], [[0.02]], [[1.0]], 0.0, (Contact([0.0], [1.0], [1.0], 1.0, speed, Coulomb(0.4)),))
+
+
+def sampled() -> System:
+    """An oscillator with a loop that is sampled."""
+    return System([[1.0]], [[0.0]], [[1.0]], loops=(PID(on="q1", derivative=0.1, sampling=2.0),))
+
+
 def scattered(study: Callable[..., Any], **settings: Any) -> Any:
     """A study of the growth rate of the model of the damping paradox under scatter."""
     scatter = studies.Scatter({FRICTION: studies.Normal(0.28, 0.02), "eta1": studies.Uniform(0.01, 0.03)})
@@ -82,6 +137,12 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
     "DampingSplit": lambda: stability.damping_split(
         DampingParadox(), ("eta1", "eta2"), 0.04, "friction.static", (0.05, 0.6), splits=5
     ),
+    "ForcedCycle": lambda: forced_cycle(shaken()),
+    "LoopRun": lambda: run_loops(sampled(), 5.0, ([1.0], [0.0])),
+    "SquealEvents": stop,
+    "NoiseMatrix": campaign,
+    "Calibration": fitted,
+    "Comparison": lambda: compare(stability.complex_modes(drum()), stop()),
     "FrictionFit": lambda: fit_friction(np.linspace(0.0, 1.0, 8), 0.3 + 0.1 * np.exp(-np.linspace(0.0, 1.0, 8))),
     "Cycle": lambda: shooting(MassOnBelt(friction=Coulomb(0.4, 0.25))),
     "HopfPoint": hopf,

@@ -11,6 +11,7 @@ import importlib
 import math
 import re
 from collections.abc import Iterator, Mapping
+from types import FunctionType
 from typing import Any, ClassVar, Self, dataclass_transform
 
 import numpy as np
@@ -214,7 +215,10 @@ class DataSheet:
 
 
 def to_plain(value: Any) -> Any:
-    """`value` as lists, numbers, strings and dictionaries; a data sheet becomes a dictionary with its ``kind``."""
+    """`value` as lists, numbers, strings and dictionaries; a data sheet becomes a dictionary with its ``kind``.
+
+    A function of the user's cannot be kept: its name stands for it.
+    """
     if isinstance(value, DataSheet):
         return {"kind": value.kind(), **{name: to_plain(getattr(value, name)) for name in value.field_names()}}
     if isinstance(value, Mapping):
@@ -223,6 +227,8 @@ def to_plain(value: Any) -> Any:
         return [to_plain(item) for item in value]
     if isinstance(value, (np.ndarray, np.generic)):
         return value.tolist()
+    if isinstance(value, FunctionType):
+        return f"function {value.__qualname__}, not kept"
     return None if getattr(value, "left_out_of_files", False) else value
 
 

@@ -42,7 +42,7 @@ def stop(tmp_path):
 def test_events_and_noise(stop, said):
     code, out, err = said("events", str(stop / "stop.csv"), "--out", str(stop / "events.nc"))
     assert (code, err) == (0, "")
-    assert "1 events" in out
+    assert "1 event in" in out
     assert "2078.0 Hz" in out
     assert (stop / "events.nc").exists()
     code, out, err = said("noise", str(stop))

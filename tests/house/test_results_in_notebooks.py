@@ -28,7 +28,7 @@ class Undrawn(Result):
 
 def test_every_kind_of_the_package_is_drawn():
     for module in pkgutil.walk_packages(squealbox.__path__, "squealbox."):
-        if module.name.split(".")[1] in ("stability", "transient", "signals", "fit", "limit_cycles", "studies"):
+        if module.name.split(".")[1] not in ("cli", "workbench", "report", "papers", "plots"):
             importlib.import_module(module.name)
     kinds = [kind for kind in Result.kinds.values() if kind.__module__.startswith("squealbox.")]
     assert len(kinds) > 25

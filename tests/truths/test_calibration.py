@@ -7,6 +7,7 @@ from scipy.stats import chi2
 from squealbox import DrumBrake, LinearSlope, Measured, System, calibrate, complex_modes
 from squealbox.calibration import compare, from_signal, modal_assurance
 from squealbox.parameters import ParameterError
+from squealbox.result import Result
 from squealbox.signals import SignalError, squeal_events
 
 
@@ -149,3 +150,17 @@ def test_modal_assurance_of_the_same_and_of_other_shapes():
     assert modal_assurance(shapes, (2.0 - 1j) * shapes) == pytest.approx(np.eye(3), abs=1e-12)
     with pytest.raises(SignalError, match="same places"):
         modal_assurance(shapes, shapes[:4])
+
+
+def test_a_calibration_is_saved_and_read_again(tmp_path):
+    """Measured numbers and the design come back; of a design that is a function only the name can be kept."""
+    at = {"load": 2000.0}
+    data = [Measured("frequency", 2078.0, sd=1.0, mode="nearest", at=at), Measured("frequency", 2200.0, sd=1.0, mode=1)]
+    found = calibrate(DrumBrake(), {"k3": (1.5e8, 2.5e8)}, data, profile=False)
+    again = Result.load(found.save(tmp_path / "found.nc"))
+    assert again.inputs["measured"][0] == data[0]
+    assert again.design == found.design
+    own = calibrate(coupled, {"k": (1e3, 1e5), "D": (1.0, 1.1)}, [Measured("frequency", 30.0, sd=1.0)], profile=False)
+    again = Result.load(own.save(tmp_path / "own.nc"))
+    assert again.inputs["design"] == "function coupled, not kept"
+    assert np.array_equal(again.values, own.values)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.parameters import ParameterError, known_names
+from squealbox.parameters import DataSheet, ParameterError, known_names
 from squealbox.signals import SignalError, growth_rate
 from squealbox.signals.growth import LEVEL
 from squealbox.stability import complex_modes, first_crossings
@@ -17,8 +17,7 @@ UNITS = {"growth_rate": "1/s", "frequency": "Hz", "damping_ratio": "-", "amplitu
 DURATION = 0.1  # s of the transient an amplitude is taken from
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class Measured:
+class Measured(DataSheet):
     """One measured number.
 
     Parameters
@@ -48,6 +47,8 @@ class Measured:
     label: str = ""
 
     def __post_init__(self) -> None:
+        super().__post_init__()
+        object.__setattr__(self, "bounds", tuple(self.bounds))  # a file has lists
         if isinstance(self.quantity, str) and self.quantity not in QUANTITIES:
             raise ParameterError("Measured", "quantity", self.quantity, known_names(self.quantity, list(QUANTITIES)))
         for name, value, good in (("value", self.value, True), ("sd", self.sd, np.asarray(self.sd) > 0.0)):

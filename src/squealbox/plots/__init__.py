@@ -15,6 +15,7 @@ from squealbox.plots.facts import facts
 from squealbox.plots.fits import friction_fit
 from squealbox.plots.laws import friction_curve
 from squealbox.plots.maps import amplitude_map, stability_map
+from squealbox.plots.measured import calibration_figure, event_tracks, model_beside_measurement, noise_matrix_figure
 from squealbox.plots.modes import coalescence
 from squealbox.plots.motion import amplitude_course, energy, motion_overview, phase_plane, time_history
 from squealbox.plots.optimisation import optimum
@@ -28,7 +29,7 @@ from squealbox.plots.points import (
 )
 from squealbox.plots.populations import ensemble_overview
 from squealbox.plots.reliability import design_point, subset_probability, surrogate
-from squealbox.plots.remedies import countermeasure_drawing, detuning_map, poles_figure, remedies_figure
+from squealbox.plots.remedies import countermeasure_drawing, detuning_map, loop_run, poles_figure, remedies_figure
 from squealbox.plots.spectra import component_growth, loudness, spectrogram, spectrum
 from squealbox.plots.stability import (
     boundary_curves,
@@ -54,6 +55,7 @@ __all__ = [
     "boundary_curves",
     "brake_drawing",
     "branch_diagram",
+    "calibration_figure",
     "card",
     "coalescence",
     "coexistence_region",
@@ -69,18 +71,22 @@ __all__ = [
     "eigenvalues",
     "energy",
     "ensemble_overview",
+    "event_tracks",
     "facts",
     "finite_eigenvalues",
     "friction_curve",
     "friction_fit",
     "interval_bounds",
     "letters",
+    "loop_run",
     "loudness",
     "mechanism_map",
     "merging_points",
     "mode_energy",
+    "model_beside_measurement",
     "morris_effects",
     "motion_overview",
+    "noise_matrix_figure",
     "optimum",
     "panels",
     "phase_plane",

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.limit_cycles import Branch, Cycle, EstimateCurve, HopfPoint, estimate_curves
+from squealbox.limit_cycles import Branch, Cycle, EstimateCurve, ForcedCycle, HopfPoint, estimate_curves
 from squealbox.limit_cycles.estimates.curves import AVERAGED, DESCRIBING
 from squealbox.plots.dispatch import plot
 from squealbox.plots.facts import liveliest, read_of
@@ -28,8 +28,9 @@ MARKS = {
 ESTIMATES = {DESCRIBING: ("#0072B2", ":"), AVERAGED: ("#009E73", "-.")}
 
 
+@plot.register(ForcedCycle)
 @plot.register(Cycle)
-def cycle_overview(cycle: Cycle, *, dof: int | None = None, title: str = "") -> "Figure":
+def cycle_overview(cycle: Cycle | ForcedCycle, *, dof: int | None = None, title: str = "") -> "Figure":
     """One period in time (sticking shaded), the orbit in the phase plane and the multipliers in the unit circle.
 
     dof : index of the degree of freedom; None takes the one that moves most. The axes name it, the title the cautions.
@@ -63,8 +64,10 @@ def cycle_overview(cycle: Cycle, *, dof: int | None = None, title: str = "") -> 
         circle.set(xlabel="Re multiplier [-]", ylabel="Im multiplier [-]")
         circle.set_aspect("equal", adjustable="datalim")
     kind = "stable" if cycle.stable else "unstable"
-    said = f"{kind} cycle, {number(cycle.frequency)} Hz" if cycle.outcome.ok else str(cycle.outcome)
-    caution = f"Caution: {cycle.caution}" if cycle.caution else ""
+    what = "forced motion" if isinstance(cycle, ForcedCycle) else "cycle"
+    said = f"{kind} {what}, {number(cycle.frequency)} Hz" if cycle.outcome.ok else str(cycle.outcome)
+    said_of_range = getattr(cycle, "caution", "")
+    caution = f"Caution: {said_of_range}" if said_of_range else ""
     figure.suptitle(". ".join(filter(None, (title, said))) + (f"\n{caution}" if caution else ""), fontsize=8, wrap=True)
     return figure
 

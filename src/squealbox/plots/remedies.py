@@ -4,12 +4,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.control import ClosedLoop
+from squealbox.control import ClosedLoop, LoopRun
 from squealbox.countermeasures import BestAbsorber, Countermeasure
 from squealbox.plots.brakes import brake_drawing
 from squealbox.plots.dispatch import plot
-from squealbox.plots.style import COLUMN, drawing, figure_of, quantity_label
+from squealbox.plots.style import COLUMN, drawing, figure_of, line, quantity_label, scaled
 from squealbox.remedies import Remedies
+from squealbox.system import as_system
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -76,3 +77,23 @@ def poles_figure(found: ClosedLoop, *, title: str = "", axes: Any = None) -> "Fi
         panel.set(xlabel=quantity_label("growth rate", "1/s"), ylabel=quantity_label("frequency", "Hz"), title=title)
         panel.legend(loc="best", fontsize=6)
         return figure_of(panel)
+
+
+@plot.register(LoopRun)
+def loop_run(found: LoopRun, *, title: str = "", axes: Any = None) -> "Figure":
+    """Displacement of each freedom, and below the force of each loop, held until the next instant."""
+    names = as_system(found.inputs["system"]).names
+    second, clock = scaled("s", found.t)
+    size, read = scaled("m", found.q)
+    strength, unit = scaled("N", found.force)
+    with drawing(axes, rows=2, width=1.5 * COLUMN, height=3.4, sharex=True) as (above, below):
+        for i, name in enumerate(names):
+            above.plot(found.t / second, found.q[:, i] / size, label=name, **line(i))
+        for i in range(found.force.shape[1]):
+            below.step(found.t / second, found.force[:, i] / strength, where="post", label=f"loop {i + 1}", **line(i))
+        above.set(ylabel=quantity_label("displacement", read), title=title)
+        below.set(xlabel=quantity_label("time", clock), ylabel=quantity_label("force", unit))
+        below.set_xlim(found.t[0] / second, found.t[-1] / second)
+        for panel in (above, below):
+            panel.legend(loc="best", fontsize=6)
+        return figure_of(above)

@@ -89,7 +89,8 @@ class SquealEvents(Result):
                 f"{self.onset[i]:7.3f} s  {self.end[i]:7.3f} s  {self.frequency[i]:9.1f} Hz  {self.level[i]:8.1f}  "
                 f"{self.peak_level[i]:8.1f}  {rates}"
             )
-        head = f"{self.count} events in {self.duration:.3g} s, {100.0 * self.occurrence:.1f} % of the time"
+        counted = "1 event" if self.count == 1 else f"{self.count} events"
+        head = f"{counted} in {self.duration:.3g} s, {100.0 * self.occurrence:.1f} % of the time"
         notes = [f"note: {note}" for note in self.settings.get("notes", ())]
         return "\n".join(
             [

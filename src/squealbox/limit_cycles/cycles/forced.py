@@ -45,6 +45,16 @@ class ForcedCycle(Result):
     events: int = 0
 
     @property
+    def system(self) -> System:
+        """The system that moves."""
+        return as_system(self.inputs["system"])
+
+    @property
+    def frequency(self) -> float:
+        """1 / period [Hz]."""
+        return 1.0 / float(self.period)
+
+    @property
     def stable(self) -> bool:
         """True where every disturbance dies out."""
         return bool(self.outcome.ok and np.all(np.abs(self.multipliers) < 1.0))

@@ -1,0 +1,128 @@
+"""What was measured: squeal events, the noise matrix of a campaign, a calibration, a model beside a measurement."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealbox.calibration import Calibration, Comparison
+from squealbox.plots.dispatch import plot
+from squealbox.plots.style import COLUMN, WIDTH, drawing, figure_of, line, note, number, panels, quantity_label
+from squealbox.signals import NoiseMatrix, SquealEvents
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+NARROW = 0.45  # inches a row of a short table of bars
+SURE = 1.96  # standard deviations of a 95 % interval
+
+
+@plot.register(SquealEvents)
+def event_tracks(found: SquealEvents, *, title: str = "") -> "Figure":
+    """Frequency of each event over time, coloured by its level, and the levels below, over the whole recording."""
+    unit = found.settings.get("unit", "dB")
+    figure, axes = panels(2, 1, width=1.5 * COLUMN, height=3.6, sharex=True)
+    with drawing(axes) as (tracks, levels):
+        shown = found.track_level[np.isfinite(found.track_level)]
+        ends = (float(np.min(shown)), float(np.max(shown))) if shown.size else (0.0, 1.0)
+        points = None
+        for i in range(found.count):
+            known = np.isfinite(found.track_frequency[i])
+            time, level = found.track_time[i, known], found.track_level[i, known]
+            points = tracks.scatter(time, 1e-3 * found.track_frequency[i, known], c=level, s=5, vmin=ends[0],
+                                    vmax=ends[1], cmap="viridis", rasterized=known.sum() > 2000)  # fmt: skip
+            levels.plot(time, level, **line(0))
+            for panel in (tracks, levels):
+                panel.axvspan(found.onset[i], found.end[i], color="#eeeeee", zorder=0)
+        if points is not None:
+            figure.colorbar(points, ax=axes, label=quantity_label("level", unit), pad=0.02)
+        else:
+            note(tracks, str(found.outcome), "center")
+        tracks.set(ylabel=quantity_label("frequency", "kHz"), title=title)
+        if points is not None:  # a steady tone is a line, not its last digits
+            known = 1e-3 * found.track_frequency[np.isfinite(found.track_frequency)]
+            middle, half = 0.5 * (known.max() + known.min()), max(0.6 * np.ptp(known), 0.05 * known.max())
+            tracks.set_ylim(middle - half, middle + half)
+        levels.set(xlabel=quantity_label("time", "s"), ylabel=quantity_label("level", unit))
+        levels.set_xlim(0.0, found.duration)
+    return figure
+
+
+@plot.register(NoiseMatrix)
+def noise_matrix_figure(found: NoiseMatrix, *, title: str = "") -> "Figure":
+    """Share of the stops that squeal in each cell, with their numbers, and the histogram of the frequencies."""
+    x, y = found.settings["x"], found.settings["y"]
+    figure, axes = panels(1, 2, width=WIDTH, height=2.8, width_ratios=[1.3, 1.0])
+    with drawing(axes) as (cells, bins):
+        filled = cells.pcolormesh(found.x_edges, found.y_edges, 100.0 * found.share.T, cmap="YlOrRd", vmin=0.0,
+                                  vmax=100.0, edgecolors="white", linewidth=0.5)  # fmt: skip
+        figure.colorbar(filled, ax=cells, label=quantity_label("stops that squeal", "%"))
+        middles = (0.5 * (edges[:-1] + edges[1:]) for edges in (found.x_edges, found.y_edges))
+        across, up = np.meshgrid(*middles, indexing="ij")
+        for i in np.ndindex(*found.stops.shape):
+            if found.stops[i]:
+                dark = found.noisy[i] > 0.7 * found.stops[i]
+                cells.text(across[i], up[i], f"{found.noisy[i]:.0f} / {found.stops[i]:.0f}", ha="center", va="center",
+                           fontsize=6, color="white" if dark else "black")  # fmt: skip
+        cells.set(xlabel=x, ylabel=y, title="noisy / all stops")
+        bins.stairs(found.histogram, 1e-3 * found.frequency_edges, fill=True, color="#0072B2")
+        bins.set(xlabel=quantity_label("frequency", "kHz"), ylabel="events")
+        bins.yaxis.get_major_locator().set_params(integer=True)
+    figure.suptitle(title or f"{found.total_noisy} of {found.total} stops squeal", fontsize=8)
+    return figure
+
+
+@plot.register(Calibration)
+def calibration_figure(found: Calibration, *, title: str = "") -> "Figure":
+    """Each parameter with its 95 % interval, as a share of its best value, and the residuals in standard deviations."""
+    measured = [str(each) for each in found.settings["measured"]]
+    height = 1.0 + NARROW * max(len(found.names), len(measured)) * 0.6
+    figure, axes = panels(1, 2, width=WIDTH, height=height)
+    with drawing(axes) as (values, residuals):
+        rows = np.arange(len(found.names))
+        size = np.where(found.values == 0.0, 1.0, np.abs(found.values))
+        known = np.isfinite(found.errors)
+        low = np.where(np.isfinite(found.low), found.low, found.values - SURE * found.errors)
+        high = np.where(np.isfinite(found.high), found.high, found.values + SURE * found.errors)
+        reach = 100.0 * np.stack([found.values - low, high - found.values]) / size
+        look: dict[str, Any] = {"fmt": "o", "color": "#0072B2", "markersize": 4, "capsize": 3, "linewidth": 1.0}
+        values.errorbar(0.0 * rows, rows, xerr=np.where(known, np.maximum(reach, 0.0), 0.0), **look)
+        told = [f"{name} = {number(value)}" for name, value in zip(found.names, found.values, strict=True)]
+        values.set_yticks(rows, told, fontsize=7)
+        values.set(xlabel=quantity_label("95 % interval, of the best value", "%"))
+        rows = np.arange(len(measured))
+        residuals.axvspan(-SURE, SURE, color="#eeeeee", zorder=0)
+        residuals.axvline(0.0, color="black", linewidth=0.6)
+        residuals.plot(found.residuals, rows, "o", color="#D55E00", markersize=4)
+        residuals.set_xlim(*(np.array([-1.1, 1.1]) * max(3.0, float(np.nanmax(np.abs(found.residuals), initial=0.0)))))
+        residuals.set_yticks(rows, measured, fontsize=7)
+        residuals.set(xlabel=quantity_label("measured less predicted", "sd"))
+        for panel in (values, residuals):
+            panel.margins(y=0.3)
+            panel.invert_yaxis()
+    ended = "" if found.outcome.ok else f"{found.outcome}: {found.outcome.message}"
+    figure.suptitle("\n".join(filter(None, (title, ended))), fontsize=8, wrap=True)
+    return figure
+
+
+@plot.register(Comparison)
+def model_beside_measurement(found: Comparison, *, title: str = "", axes: Any = None) -> "Figure":
+    """How far each simulated number lies from the measured one, beside the measured number's own 95 % error."""
+    share = 100.0 * found.error / np.where(found.measured == 0.0, 1.0, np.abs(found.measured))
+    off = 100.0 * (found.simulated / np.where(found.measured == 0.0, np.nan, found.measured) - 1.0)
+    with drawing(axes, width=1.5 * COLUMN, height=0.9 + NARROW * len(found.names)) as panel:
+        rows = np.arange(len(found.names))
+        panel.axvline(0.0, color="black", linewidth=0.6)
+        panel.errorbar(np.zeros(rows.size), rows, xerr=np.nan_to_num(share), fmt="s", color="#000000", markersize=4,
+                       capsize=3, linewidth=1.0, label="measured, 95 %")  # fmt: skip
+        panel.plot(off, rows, "o", color="#D55E00", markersize=5, label="simulated")
+        numbers = zip(found.names, found.simulated, found.measured, strict=True)
+        panel.set_yticks(rows, [f"{name}\n{_or_dash(a)} for {_or_dash(b)}" for name, a, b in numbers], fontsize=7)
+        panel.set(xlabel=quantity_label("away from the measured number", "%"), title=title)
+        panel.margins(y=0.3)
+        panel.invert_yaxis()
+        panel.legend(loc="best", fontsize=6)
+        return figure_of(panel)
+
+
+def _or_dash(value: float) -> str:
+    return number(float(value), 5) if np.isfinite(value) else "-"
