@@ -30,7 +30,7 @@ def test_cells_run(path, tmp_path):
     page.write_text(cells(path.read_text()))
     environment = {**os.environ, "MPLBACKEND": "Agg"}
     command = [sys.executable, "-W", "error", str(page)]
-    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=200)
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=1500)
     assert done.returncode == 0, done.stderr
 
 
@@ -45,7 +45,7 @@ def built(source, folder) -> subprocess.CompletedProcess[str]:
     settings = ["nb_execution_mode=off", "suppress_warnings=ref.python,myst-nb.lexer"]
     command = [sys.executable, "-m", "sphinx", "-q", "--fail-on-warning", "-b", "html"]
     command += [word for setting in settings for word in ("-D", setting)]
-    return subprocess.run([*command, str(source), str(folder)], capture_output=True, text=True, timeout=200)
+    return subprocess.run([*command, str(source), str(folder)], capture_output=True, text=True, timeout=600)
 
 
 def test_the_documentation_is_built_without_a_warning(tmp_path):
