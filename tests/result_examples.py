@@ -6,6 +6,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from scipy.signal import lfilter
 
 from squealbox import (
     PID,
@@ -99,6 +100,14 @@ def shaken() -> System:
     return System([[1.0]], [[0.02]], [[1.0]], 0.0, (Contact([0.0], [1.0], [1.0], 1.0, speed, Coulomb(0.4)),))
 
 
+def shaken_by_noise(pressure: float) -> Any:
+    """The mode at 500 Hz of an oscillator under noise, with a growth rate of -40 + 8 pressure."""
+    pole = np.exp((-40.0 + 8.0 * pressure + 2j * np.pi * 500.0) / 4000.0)
+    push = np.random.default_rng(int(pressure)).standard_normal(20000)
+    answer = lfilter([0.0, pole.imag], [1.0, -2.0 * pole.real, abs(pole) ** 2], push)
+    return signals.operational_modes(answer, 4000.0, band=(300.0, 700.0))
+
+
 def sampled() -> System:
     """An oscillator with a loop that is sampled."""
     return System([[1.0]], [[0.0]], [[1.0]], loops=(PID(on="q1", derivative=0.1, sampling=2.0),))
@@ -142,6 +151,9 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
     "SquealEvents": stop,
     "NoiseMatrix": campaign,
     "Calibration": fitted,
+    "OperationalModes": lambda: shaken_by_noise(1.0),
+    "DampingOnset": lambda: signals.damping_onset([shaken_by_noise(x) for x in (1.0, 2.0, 3.0)], [1.0, 2.0, 3.0]),
+    "SoundQuality": lambda: signals.sound_quality(0.02 * np.sin(6283.0 * np.arange(24000) / 48000.0), 48000.0),
     "Comparison": lambda: compare(stability.complex_modes(drum()), stop()),
     "FrictionFit": lambda: fit_friction(np.linspace(0.0, 1.0, 8), 0.3 + 0.1 * np.exp(-np.linspace(0.0, 1.0, 8))),
     "Cycle": lambda: shooting(MassOnBelt(friction=Coulomb(0.4, 0.25))),

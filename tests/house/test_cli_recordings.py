@@ -1,7 +1,8 @@
-"""`squealbox events`, `noise`, `calibrate` and `compare`: from a recording to a calibrated design file."""
+"""`squealbox events`, `noise`, `damping`, `quality`, `calibrate`, `compare`: from a recording to a design file."""
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from squealbox.files import read_design, read_file
 
@@ -80,3 +81,24 @@ def test_what_is_wrong_in_the_sections_is_said(old, new, words, stop, said):
     code, out, err = said("calibrate", str(stop / "brake.toml"))
     assert (code, out) == (2, "")
     assert words in err
+
+
+def test_damping_and_quality(tmp_path, said):
+    for pressure in (1.0, 2.0, 3.0):
+        pole = np.exp((-80.0 + 20.0 * pressure + 2j * np.pi * 500.0) / 4000.0)
+        push = np.random.default_rng(int(pressure)).standard_normal(12000)
+        x = lfilter([0.0, pole.imag], [1.0, -2.0 * pole.real, abs(pole) ** 2], push)
+        np.save(tmp_path / f"{pressure:.0f}.npy", x)
+        rows = "\n".join(f"{time},{pressure}" for time in range(8))
+        (tmp_path / f"{pressure:.0f}.braking.csv").write_text(f"t,pressure\n{rows}\n")
+    files = [str(tmp_path / f"{i}.npy") for i in (1, 2, 3)]
+    band = ("--rate", "4kHz", "--band", "300Hz", "700Hz")
+    code, out, err = said("damping", *files, *band, "--against", "pressure")
+    assert (code, err) == (0, "")
+    assert "growth rate 0 at pressure = " in out
+    code, out, err = said("damping", *files, *band, "--against", "speed")
+    assert code == 2
+    assert "the record has pressure" in err
+    code, out, err = said("quality", files[0], "--rate", "4kHz", "--full-scale", "0.001")
+    assert (code, err) == (0, "")
+    assert "sone" in out

@@ -11,10 +11,10 @@ from house.rooms import PACKAGE, PROJECT
 # import name to the name it is installed by, where they differ
 DISTRIBUTIONS = {"dask": "distributed", "skfem": "scikit-fem"}
 PROJECT_TABLE = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]
-# Rooms that may use an extra, and which one.
+# Rooms, or single files, that may use an extra, and which one.
 EXTRAS = {
     "signals": "recordings", "studies": "studies", "workbench": "workbench", "fe": "fe", "factorisation.py": "fe",
-    "control": "control",
+    "control": "control", "signals/quality.py": "sound",
 }  # fmt: skip
 
 
@@ -40,8 +40,8 @@ def third_party(text: str) -> set[str]:
 
 @pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_imports_are_declared(path):
-    room = path.relative_to(PACKAGE).parts[0]
-    extra = PROJECT_TABLE["optional-dependencies"].get(EXTRAS.get(room, ""), [])
+    place = path.relative_to(PACKAGE)
+    extra = PROJECT_TABLE["optional-dependencies"].get(EXTRAS.get(str(place), EXTRAS.get(place.parts[0], "")), [])
     assert third_party(path.read_text()) <= declared(PROJECT_TABLE["dependencies"]) | declared(extra)
 
 

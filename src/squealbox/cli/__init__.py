@@ -51,6 +51,8 @@ COMMANDS = {
         "recordings", "events", "squeal events in recordings: when, which frequency, how loud, how quick"
     ),
     "noise": Command("recordings", "noise", "a folder of stops: how often it squeals, at which speed and pressure"),
+    "damping": Command("recordings", "damping", "damping of the modes before squeal, and the onset it points to"),
+    "quality": Command("recordings", "quality", "loudness, sharpness and roughness of recordings"),
     "calibrate": Command("calibrating", "calibrate", "parameters fitted to what was measured, with what stays open"),
     "compare": Command(
         "calibrating", "compare_", "a design beside the squeal of a recording: frequency, growth, level"

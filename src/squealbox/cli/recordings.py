@@ -1,13 +1,26 @@
-"""`squealbox events` and `squealbox noise`: squeal in recordings, one or a whole campaign."""
+"""`squealbox events`, `noise`, `damping` and `quality`: what recordings hold, one or a whole campaign."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import cyclopts
+import numpy as np
 
 from squealbox.cli.inputs import number
 from squealbox.cli.running import UsageError
-from squealbox.signals import SignalError, SquealEvents, noise_matrix, read_recording, squeal_events
+from squealbox.signals import (
+    Recording,
+    SignalError,
+    SquealEvents,
+    damping_onset,
+    noise_matrix,
+    operational_modes,
+    read_recording,
+    sound_quality,
+    squeal_events,
+)
 from squealbox.signals.events import BAND, LEAST_LEVEL
 
 SOUNDS = (".wav", ".flac", ".csv", ".uff", ".unv")
@@ -113,19 +126,134 @@ def noise(
     print(noise_matrix(stops, x=x, y=y).summary())
 
 
+def damping(
+    recordings: tuple[Path, ...],
+    /,
+    *,
+    band: Annotated[tuple[str, str], cyclopts.Parameter(negative="")],
+    against: str = "",
+    near: str | None = None,
+    unit: str = "",
+    full_scale: float | None = None,
+    rate: str | None = None,
+    channel: str = "0",
+    out: Path | None = None,
+) -> None:
+    """Damping of the modes in recordings without squeal, and where it ends: the onset of squeal, continued.
+
+    Beside stop.wav a table stop.braking.csv (t [s], speed, pressure, ...) gives the conditions of the record.
+
+    Parameters
+    ----------
+    recordings
+        .wav, .flac, .csv, .npy, .uff files of what a brake answers to the noise that shakes it
+    band
+        lowest and highest frequency of the modes: --band 1.5kHz 3kHz
+    against
+        braking quantity along which the growth rate is continued to zero: pressure, speed
+    near
+        frequency of the mode that is followed; left out, the least damped of the first record
+    unit
+        unit of the channels
+    full_scale
+        what full scale (of sound files) or one unit is worth
+    rate
+        sampling rate of files that do not tell it: 48kHz
+    channel
+        number from 0 on, or name
+    out
+        file for the onset as a dataset (.nc)
+    """
+    if not recordings:
+        raise UsageError("expected one recording or more")
+    if out is not None and not against:
+        raise UsageError("--out: keeps the onset, which --against asks for")
+    ends = tuple(number(each, "Hz", f"--band {each[:40]}") for each in band)
+    found, at = [], []
+    for path in recordings:
+        with _named(path):
+            sound = _sound(path, unit, full_scale, rate)
+            found.append(operational_modes(sound, channel=_place(channel), band=(ends[0], ends[1])))
+            print(f"{path}\n{found[-1].summary()}")
+            if against and against not in sound.braking:
+                known = ", ".join(sound.braking) or f"nothing: {path.with_suffix('.braking.csv').name} is missing"
+                raise SignalError(f"--against {against}: the record has {known}")
+            at.append(float(np.mean(sound.braking[against][1])) if against else 0.0)
+    if against:
+        onset = damping_onset(
+            found, at, near=None if near is None else number(near, "Hz", f"--near {near[:40]}"), name=against
+        )
+        print(onset.summary())
+        if out is not None:
+            print(f"written: {onset.save(out)}")
+
+
+def quality(
+    recordings: tuple[Path, ...],
+    /,
+    *,
+    full_scale: float | None = None,
+    rate: str | None = None,
+    channel: str = "0",
+    begin: str | None = None,
+    end: str | None = None,
+) -> None:
+    """Loudness, sharpness and roughness of recordings in Pa.
+
+    Parameters
+    ----------
+    recordings
+        .wav, .flac, .csv, .npy, .uff files
+    full_scale
+        what full scale (of sound files) or one unit is worth, in Pa
+    rate
+        sampling rate of files that do not tell it: 48kHz
+    channel
+        number from 0 on, or name
+    begin
+        where the stretch begins: 0.2s
+    end
+        where it ends
+    """
+    if not recordings:
+        raise UsageError("expected one recording or more")
+    ends = [None if each is None else number(each, "s", f"--{name}") for name, each in (("begin", begin), ("end", end))]
+    for path in recordings:
+        with _named(path):
+            sound = _sound(path, "Pa", full_scale, rate)
+            print(f"{path}: {sound_quality(sound, channel=_place(channel), begin=ends[0], end=ends[1]).summary()}")
+
+
 def _found(
     path: Path, unit: str, full_scale: float | None, rate: str | None, channel: str, band: Band, least_level: float
 ) -> SquealEvents:
     ends = BAND if band is None else tuple(number(each, "Hz", f"--band {each[:40]}") for each in band)
+    with _named(path):
+        sound = _sound(path, unit, full_scale, rate)
+        return squeal_events(sound, channel=_place(channel), band=(ends[0], ends[1]), least_level=least_level)
+
+
+def _sound(path: Path, unit: str, full_scale: float | None, rate: str | None) -> Recording:
+    """A recording with the braking quantities of the table beside it."""
+    braking = {}
+    beside = path.with_suffix(".braking.csv")
+    if beside.is_file():
+        table = read_recording(beside)
+        braking = {name: (table.t, table.samples[:, i]) for i, name in enumerate(table.names)}
     own = None if rate is None else number(rate, "Hz", f"--rate {rate[:40]}")
+    return read_recording(path, unit=unit, full_scale=full_scale, rate=own, braking=braking)
+
+
+def _place(channel: str) -> int | str:
+    return int(channel) if channel.isdigit() else channel
+
+
+@contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """What is wrong with a recording, said with its name."""
     try:
-        braking = {}
-        beside = path.with_suffix(".braking.csv")
-        if beside.is_file():
-            table = read_recording(beside)
-            braking = {name: (table.t, table.samples[:, i]) for i, name in enumerate(table.names)}
-        sound = read_recording(path, unit=unit, full_scale=full_scale, rate=own, braking=braking)
-        place = int(channel) if channel.isdigit() else channel
-        return squeal_events(sound, channel=place, band=(ends[0], ends[1]), least_level=least_level)
+        yield
     except SignalError as error:
         raise UsageError(f"{path.name}: {error}" if path.name not in str(error) else str(error)) from error
+    except ImportError as error:
+        raise UsageError(str(error)) from error

@@ -15,7 +15,15 @@ from squealbox.plots.facts import facts
 from squealbox.plots.fits import friction_fit
 from squealbox.plots.laws import friction_curve
 from squealbox.plots.maps import amplitude_map, stability_map
-from squealbox.plots.measured import calibration_figure, event_tracks, model_beside_measurement, noise_matrix_figure
+from squealbox.plots.measured import (
+    ambient_spectrum,
+    calibration_figure,
+    damping_line,
+    event_tracks,
+    model_beside_measurement,
+    noise_matrix_figure,
+    specific_loudness,
+)
 from squealbox.plots.modes import coalescence
 from squealbox.plots.motion import amplitude_course, energy, motion_overview, phase_plane, time_history
 from squealbox.plots.optimisation import optimum
@@ -46,6 +54,7 @@ from squealbox.plots.sweeps import search_for_a_push, sweep_overview
 from squealbox.plots.uncertainty import interval_bounds, morris_effects, sobol_indices, squeal_probability
 
 __all__ = [
+    "ambient_spectrum",
     "amplitude_and_section",
     "amplitude_course",
     "amplitude_map",
@@ -64,6 +73,7 @@ __all__ = [
     "countermeasure_drawing",
     "crossings",
     "cycle_overview",
+    "damping_line",
     "damping_split",
     "design_point",
     "detuning_map",
@@ -99,6 +109,7 @@ __all__ = [
     "search_for_a_push",
     "sensitivity",
     "sobol_indices",
+    "specific_loudness",
     "spectrogram",
     "spectrum",
     "squeal_probability",

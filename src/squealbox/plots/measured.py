@@ -7,7 +7,7 @@ import numpy as np
 from squealbox.calibration import Calibration, Comparison
 from squealbox.plots.dispatch import plot
 from squealbox.plots.style import COLUMN, WIDTH, drawing, figure_of, line, note, number, panels, quantity_label
-from squealbox.signals import NoiseMatrix, SquealEvents
+from squealbox.signals import DampingOnset, NoiseMatrix, OperationalModes, SoundQuality, SquealEvents
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -121,6 +121,53 @@ def model_beside_measurement(found: Comparison, *, title: str = "", axes: Any = 
         panel.margins(y=0.3)
         panel.invert_yaxis()
         panel.legend(loc="best", fontsize=6)
+        return figure_of(panel)
+
+
+@plot.register(OperationalModes)
+def ambient_spectrum(found: OperationalModes, *, title: str = "", axes: Any = None) -> "Figure":
+    """The measured spectrum, that of the modes and the noise, and each mode with its damping ratio."""
+    with drawing(axes, width=1.5 * COLUMN, height=2.8) as panel:
+        panel.semilogy(found.line, found.measured, color="#b0b0b0", linewidth=0.6, label="measured")
+        panel.semilogy(found.line, found.fitted, color="#D55E00", label="modes and noise")
+        for f, zeta, error in zip(found.frequency, found.damping_ratio, found.damping_error, strict=True):
+            panel.axvline(f, color="black", linewidth=0.5, linestyle=":")
+            panel.annotate(f" {number(100.0 * zeta, 3)} ± {number(100.0 * error, 1)} %", (f, 1.0), fontsize=6, va="top",
+                           xycoords=("data", "axes fraction"))  # fmt: skip
+        panel.set(xlabel=quantity_label("frequency", "Hz"), ylabel="power", title=title)
+        panel.margins(x=0.0)
+        panel.legend(loc="lower left", fontsize=6)
+        return figure_of(panel)
+
+
+@plot.register(DampingOnset)
+def damping_line(found: DampingOnset, *, title: str = "", axes: Any = None) -> "Figure":
+    """Growth rates with their errors over what was varied, the line through them, and where it meets zero."""
+    with drawing(axes, width=1.4 * COLUMN, height=2.6) as panel:
+        panel.axhline(0.0, color="black", linewidth=0.6)
+        panel.errorbar(found.at, found.growth_rate, yerr=found.growth_error, fmt="o", color="#0072B2", markersize=4,
+                       capsize=3, linewidth=1.0, label="measured, 95 %")  # fmt: skip
+        ends = [*found.at, *([float(found.value)] if found.outcome.ok else [])]
+        reach = np.array([min(ends), max(ends)])
+        panel.plot(reach, found.line[0] + found.line[1] * reach, color="#0072B2", linewidth=0.8, linestyle="--")
+        if found.outcome.ok:
+            panel.errorbar([found.value], [0.0], xerr=[[found.value - found.low], [found.high - found.value]], fmt="D",
+                           color="#D55E00", markersize=4, capsize=3, label="onset, 95 %")  # fmt: skip
+        panel.set(xlabel=found.settings["name"], ylabel=quantity_label("growth rate", "1/s"), title=title)
+        panel.legend(loc="best", fontsize=6)
+        return figure_of(panel)
+
+
+@plot.register(SoundQuality)
+def specific_loudness(found: SoundQuality, *, title: str = "", axes: Any = None) -> "Figure":
+    """Loudness in each critical band; the sums stand in the title."""
+    with drawing(axes, width=1.4 * COLUMN, height=2.4) as panel:
+        panel.fill_between(found.bark, found.specific_loudness, color="#0072B2", linewidth=0.0)
+        panel.set(xlabel=quantity_label("critical band", "Bark"), ylabel=quantity_label("loudness", "sone/Bark"))
+        panel.set_title(title or f"{number(found.loudness, 3)} sone, {number(found.sharpness, 3)} acum, "
+                                 f"{number(found.roughness, 2)} asper")  # fmt: skip
+        panel.set_xlim(0.0, 24.0)
+        panel.set_ylim(bottom=0.0)
         return figure_of(panel)
 
 

@@ -1,4 +1,5 @@
-"""What a signal holds: spectrum, peaks, growth rate, sound and how loud; recordings, and the squeal events in them.
+"""What a signal holds: spectrum, peaks, growth rate, sound and how loud; recordings, the squeal events in them, and
+the damping before it squeals.
 
 Depends on: result.
 
@@ -6,9 +7,11 @@ Every function takes an array with its times ``t`` [s] or its sampling rate [Hz]
 such as a trajectory, of which ``dof`` names one column. Fourier methods need equal time steps and refuse others.
 """
 
+from squealbox.signals.ambient import DampingOnset, OperationalModes, damping_onset, operational_modes
 from squealbox.signals.events import SquealEvents, squeal_events
 from squealbox.signals.growth import GrowthRate, dominant_frequency, growth_rate, highest_line, slope, with_error
 from squealbox.signals.noise import NoiseMatrix, noise_matrix
+from squealbox.signals.quality import SoundQuality, sound_quality
 from squealbox.signals.radiation import SoundLevel, a_weighting, piston_efficiency, sound_level
 from squealbox.signals.recordings import Recording, read_recording
 from squealbox.signals.rendering import rendered
@@ -18,24 +21,29 @@ from squealbox.signals.wav import audible, sixteen_bits, sound
 
 __all__ = [
     "LEAST",
+    "DampingOnset",
     "GrowthRate",
     "NoiseMatrix",
+    "OperationalModes",
     "Peaks",
     "Recording",
     "Samples",
     "SignalError",
     "SoundLevel",
+    "SoundQuality",
     "Spectrogram",
     "Spectrum",
     "SquealEvents",
     "a_weighting",
     "audible",
     "column",
+    "damping_onset",
     "dominant_frequency",
     "equal_steps",
     "growth_rate",
     "highest_line",
     "noise_matrix",
+    "operational_modes",
     "peaks",
     "piston_efficiency",
     "read_recording",
@@ -45,6 +53,7 @@ __all__ = [
     "slope",
     "sound",
     "sound_level",
+    "sound_quality",
     "spectrogram",
     "spectrum",
     "squeal_events",

@@ -18,7 +18,7 @@ import numpy as np
 from squealbox.result import Outcome, Result, quantity
 from squealbox.signals.event_ends import edges, rate_at, steady_frequency
 from squealbox.signals.radiation import HEARING, a_weighting
-from squealbox.signals.recordings import Recording
+from squealbox.signals.recordings import as_recording
 from squealbox.signals.samples import SignalError
 
 BAND = (2000.0, 16000.0)  # [Hz]
@@ -145,7 +145,7 @@ def squeal_events(
     >>> found.count, round(float(found.frequency[0]))
     (1, 3000)
     """
-    sound = recording if isinstance(recording, Recording) else _as_recording(recording, rate)
+    sound = as_recording(recording, rate, "Pa")
     x, rate = sound.channel(channel), sound.rate
     low, high = (float(each) for each in band)
     if not 0.0 < low < high or low >= 0.5 * rate:
@@ -194,17 +194,6 @@ _NAMES = (
     "onset", "end", "frequency", "frequency_error", "level", "peak_level", "growth_rate", "growth_error", "decay_rate",
     "decay_error", "track_time", "track_frequency", "track_level",
 )  # fmt: skip
-
-
-def _as_recording(signal: Any, rate: float | None) -> Recording:
-    if rate is None:
-        raise SignalError("rate is missing: expected the sampling rate in Hz, or a Recording")
-    return Recording(
-        signal,
-        rate,
-        units=("Pa",) * (1 if np.ndim(signal) == 1 else np.shape(signal)[1]),
-        names=tuple(f"channel {i + 1}" for i in range(1 if np.ndim(signal) == 1 else np.shape(signal)[1])),
-    )
 
 
 def _padded(value: Any, longest: int) -> Any:

@@ -103,6 +103,19 @@ class Recording:
         return float(np.interp(time, times, values, left=np.nan, right=np.nan))
 
 
+def as_recording(signal: Any, rate: float | None, unit: str) -> Recording:
+    """A `Recording` as it is; samples (k,) or (k, channels) with their `rate` [Hz] as one, in `unit`.
+
+    Raises `SignalError` when the rate is missing.
+    """
+    if isinstance(signal, Recording):
+        return signal
+    if rate is None:
+        raise SignalError("rate is missing: expected the sampling rate in Hz, or a Recording")
+    count = 1 if np.ndim(signal) == 1 else np.shape(signal)[1]
+    return Recording(signal, rate, tuple(f"channel {i + 1}" for i in range(count)), (unit,) * count)
+
+
 def read_recording(
     path: str | os.PathLike[str],
     *,
