@@ -70,7 +70,10 @@ def _ensembles(case: Case, sizes: ensembles.Sizes) -> tuple[dict[str, Drawer], l
     if case.reading in ALONG_FRICTION:
         over, onset = ensembles.maxima(case, sizes.friction), steady.onset_in_friction(case).value
         drawn["maxima"] = lambda: ensemble_figures.maxima(case, over, onset)
-    return drawn, [{"map": name, "points": int(each.kind.size), "shares": each.shares} for name, each in maps.items()]
+    return drawn, [
+        {"map": name, "points": each.kind.size, "run": int(np.sum(each.run)), "shares": each.shares}
+        for name, each in maps.items()
+    ]
 
 
 def save(figure: "Figure", path: Path) -> None:
