@@ -103,11 +103,6 @@ class Maxima:
     sliding: Any
 
 
-def compile_kernel(reading: str) -> None:
-    """One trajectory, so that the kernel of a reading is on disk."""
-    _run(Case(reading), {"friction.static": np.array([0.2, 0.3])}, 1e-3)
-
-
 def pressure(case: Case, size: int = USUAL.pressure) -> SquealMap:
     """Both centres of pressure, from 20 to 160 deg."""
     angles = np.deg2rad(np.linspace(*MAP_ANGLES, size))

@@ -156,12 +156,8 @@ def stiffness_only(sets: int = 2000) -> tuple[list[int], float]:
     return [int(i) for i in np.nonzero(met[:, 0])[0]], float(np.mean(np.any(met[:, 1:], axis=0)))
 
 
-def described(row: Any) -> str:
-    """A member in words."""
+def signs_of(row: Any) -> tuple[str, str, str, str]:
+    """The signs in front, of the belts and of the loads, and the share of N, of a member in words."""
     front, belts, loads, share = (int(each) for each in row[:4])
     words = ["".join("+" if s > 0 else "-" for s in SIGNS[i]) for i in (front, belts, loads)]
-    speed = row[5] / row[4]
-    return (
-        f"front {words[0]}, belts {words[1]}, loads {words[2]}, N in friction: {SHARES[share]}, "
-        f"alpha {row[4]:.4g} s/m, V_B {speed:.3g} m/s"
-    )
+    return words[0], words[1], words[2], SHARES[share]

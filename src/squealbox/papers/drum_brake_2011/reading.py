@@ -77,7 +77,10 @@ def _ensembles(case: Case, sizes: ensembles.Sizes) -> tuple[dict[str, Drawer], l
 
 
 def save(figure: "Figure", path: Path) -> None:
-    """Write PNG and SVG, with plain numbers at the ticks: as formulas they take longer than all the rest."""
+    """Write PNG and SVG, with plain numbers at the ticks and titles in their place.
+
+    Numbers as formulas, and titles that look for room above the ticks, would take longer than all the rest.
+    """
     from matplotlib.ticker import ScalarFormatter
 
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -85,6 +88,9 @@ def save(figure: "Figure", path: Path) -> None:
         formatter = axis.get_major_formatter()
         if isinstance(formatter, ScalarFormatter):
             formatter.set_useMathText(False)
+    with style.styled():
+        for axes in figure.axes:
+            axes.set_title(axes.get_title(), y=1.0)
     style.save(figure, path, dots=DOTS)
 
 

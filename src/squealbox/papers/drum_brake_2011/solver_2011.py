@@ -174,8 +174,8 @@ def onsets(case: Case) -> dict[str, tuple[float, float]]:
     """The least load [N] and friction coefficient from which on every motion tried persists, by setting."""
     return {
         setting: (
-            _least(LOADS, lambda load, setting=setting: _persists(run(case.design(load=load), setting))),
-            _least(FRICTIONS, lambda mu, setting=setting: _persists(run(case.design(mu=mu), setting))),
+            _least([(load, case.design(load=load)) for load in LOADS], setting),
+            _least([(mu, case.design(mu=mu)) for mu in FRICTIONS], setting),
         )
         for setting in SETTINGS
     }
@@ -200,11 +200,11 @@ def _persists(motion: Any) -> bool | None:
     return {"decays": False, "grows": True, "settles_on_cycle": True}.get(found.kind)
 
 
-def _least(values: tuple[float, ...], persists: Callable[[float], bool | None]) -> float:
-    """The least value from which on all persist, tried from the last down; infinite where the last does not."""
+def _least(tried: list[tuple[float, Any]], setting: str) -> float:
+    """The least value from which on all designs persist, tried from the last down; infinite where the last does not."""
     least = math.inf
-    for value in reversed(values):
-        if persists(value) is not True:
+    for value, design in reversed(tried):
+        if _persists(run(design, setting)) is not True:
             break
         least = value
     return least

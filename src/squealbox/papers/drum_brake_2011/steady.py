@@ -82,13 +82,13 @@ def pressure_map(case: Case, step: float = 1.0, mu: float = FRICTION, traced: bo
 def _boundary(design: Any, angles: Any, grown: Any) -> list[Any]:
     """The curves of zero growth through the map, each (k, 2) [deg].
 
-    Every point lies on an edge of the grid whose ends differ in sign, and is found there by the secant of the Illinois rule.
+    Every point lies on an edge of the grid whose ends differ in sign, and is found there by the rule of Illinois.
     """
     if not np.any(grown > 0.0) or not np.any(grown < 0.0):
         return []
     from contourpy import contour_generator
 
-    lines = contour_generator(angles, angles, np.where(grown.T > 0.0, 1.0, -1.0)).lines(0.0)
+    lines: Any = contour_generator(angles, angles, np.where(grown.T > 0.0, 1.0, -1.0)).lines(0.0)
     sizes = [len(line) for line in lines]
     index = (np.concatenate(lines) - angles[0]) / (angles[1] - angles[0])  # one of both is whole, the other a half
     low, high = angles[np.floor(index).astype(int)], angles[np.ceil(index).astype(int)]
