@@ -32,8 +32,8 @@ def reproduce(
 
     Source: Journal of Vibroengineering 13(2), paper 632, June 2011.
     """
-    from squealbox.papers.drum_brake_2011 import drawings, jobs, page, record, search_results, theorem_figures
-    from squealbox.papers.drum_brake_2011.cases import ALL_READINGS, DEFAULT_READING, RECONSTRUCTED, Case
+    from squealbox.papers.drum_brake_2011 import beside, jobs, page, record, search_results
+    from squealbox.papers.drum_brake_2011.cases import ALL_READINGS
     from squealbox.papers.drum_brake_2011.reading import save
     from squealbox.papers.drum_brake_2011.reconstruction import reconstruct
     from squealbox.report import write_page
@@ -41,15 +41,9 @@ def reproduce(
     folder = Path(out)
     figures = folder / "figures"
     figures.mkdir(parents=True, exist_ok=True)
-    case = Case(DEFAULT_READING)
-    save(drawings.model(case), figures / "fig1")
-    save(drawings.friction(case), figures / "fig2")
     whole = reconstruct(folder / "search", jobs.processors(), progress) if search else None
-    studies, searched = jobs.everything(ALL_READINGS, figures, progress, fine, search)
-    for name, draw in theorem_figures.ALL.items():
-        save(draw(), figures / name)
-    extras = page.extras(Case(RECONSTRUCTED), whole)
-    save(theorem_figures.solver(extras.decays), figures / "solver")
+    studies, searched, told = jobs.everything(ALL_READINGS, figures, progress, fine, search)
+    extras = beside.extras(told, whole)
     found = record.records(studies)
     record.write_json(folder / "claims.json", found, searched, extras)
     record.write_markdown(folder / "claims.md", found)

@@ -8,8 +8,12 @@ and what dies out has one that falls without limit. It squeals when its level is
 Where that differs from what the eigenvalues of steady sliding say, the same trajectory is computed once more over
 0.15 s. When it still squeals, at 0.7 of its level or more, it is on a cycle that exists beside stable sliding; when
 not, it was still ringing, and the run too short. The weakest decay this tells from a cycle is 3.6 1/s.
+
+A map begins with every fourth value of both axes. Each square whose corners are of different kinds, or in which the
+eigenvalues change sign, is halved down to the map's own grid; the rest takes the kind of its corners.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,7 +38,8 @@ HOLDS = 0.7  # of its level is what a cycle keeps from 0.05 s to then
 SETTLED = 0.5  # s: twenty times the slowest decay away from an onset
 OBSERVED = ("amplitude", "frequency", "poincare")  # the same everywhere, so that all maps share a kernel
 # A run of 0.05 s takes about 1,200 steps and 11,000 at most. One that needs ten times as many hangs, and is stopped.
-METHOD = Method("dormand-prince-8", rtol=1e-7, most_steps=100_000)
+METHOD = Method("taylor", rtol=1e-7, most_steps=50_000)
+COARSE = 4  # values of the map from one to the next with which it begins
 NUDGE = 1e-3  # of the equilibrium, how far from it the motions begin that show whether sliding is stable
 
 QUIET, SQUEAL, BESIDE, RINGING, HELD, UNKNOWN = range(6)
@@ -71,7 +76,8 @@ USUAL, FINE = Sizes(), Sizes(561, planes=(DEFAULT_READING, "eq3"), mapped=PRINTE
 class SquealMap:
     """A plane of two parameters by both roads, arrays (x, y): `growth` [1/s], `level` [-], `kind`, one of `MEANS`.
 
-    `x` and `y` are in SI units. `level` is NaN where the trajectory did not reach its end.
+    `x` and `y` are in SI units. `run` is True where a trajectory was run; elsewhere `kind` is that of the corners of
+    the square around, and `level` is NaN, as it is where a trajectory did not reach its end.
     """
 
     x: Any
@@ -79,6 +85,7 @@ class SquealMap:
     growth: Any
     level: Any
     kind: Any
+    run: Any
 
     @property
     def shares(self) -> list[float]:
@@ -94,11 +101,6 @@ class Maxima:
     from_rest: Any
     from_sliding: Any
     sliding: Any
-
-
-def compile_kernel(reading: str) -> None:
-    """One trajectory, so that the kernel of a reading is on disk."""
-    _run(Case(reading), {"friction.static": np.array([0.2, 0.3])}, 1e-3)
 
 
 def pressure(case: Case, size: int = USUAL.pressure) -> SquealMap:
@@ -136,20 +138,81 @@ def level(case: Case, run: Ensemble, speed: Any = None) -> Any:
     return np.where(ended, vibration / (case.speed if speed is None else speed), np.nan)
 
 
-def _map(case: Case, over: dict[str, Any]) -> SquealMap:
+def _map(case: Case, over: dict[str, Any], coarse: int = COARSE) -> SquealMap:
     x, y = over.values()
     growth = stability_map(case.design(), over, mechanism=False).growth_rate
     plane = dict(zip(over, np.meshgrid(x, y, indexing="ij"), strict=True))
-    short = level(case, _run(case, plane, DURATION), plane.get("sliding_speed"))
+    levels, kind = np.full(growth.shape, np.nan), np.full(growth.shape, UNKNOWN)
+
+    def run(there: Any) -> None:
+        chosen = {name: values[there] for name, values in plane.items()}
+        levels[there], kind[there] = _kinds(case, chosen, growth[there])
+
+    made = refined(growth > 0.0, kind, run, coarse)
+    return SquealMap(x, y, growth, levels, kind, made)
+
+
+def refined(unstable: Any, kind: Any, run: Callable[[Any], None], coarse: int) -> Any:
+    """Let `run` fill `kind` where it differs from its neighbours, and fill the rest; True where it was run.
+
+    Begins with every `coarse`-th value of both axes, a power of two; a square is halved whose corners differ in kind or
+    that holds stable and `unstable` points.
+    """
+    while coarse > 1 and any((size - 1) % coarse for size in kind.shape):
+        coarse //= 2
+    made = np.zeros(kind.shape, dtype=bool)
+    wanted = np.zeros(kind.shape, dtype=bool)
+    wanted[::coarse, ::coarse] = True
+    step = coarse
+    while True:
+        run(wanted & ~made)
+        made |= wanted
+        if step == 1:
+            break
+        split = _differ(kind, step, step) | _differ(unstable, step, 1)
+        split &= ~_differ(~made, step, step) & made[:-1:step, :-1:step]
+        half = step // 2
+        for i, j in np.ndindex(3, 3):
+            wanted[i * half :: step, j * half :: step][: split.shape[0], : split.shape[1]] |= split
+        step = half
+    filled = made.copy()
+    while step < coarse:  # from the finest squares up, so that each takes the kind of its own corner
+        step *= 2
+        for i, j in np.ndindex(step, step):
+            here = kind[i::step, j::step]
+            corner = kind[::step, ::step][: here.shape[0], : here.shape[1]]
+            known = filled[i::step, j::step]
+            from_corner = made[::step, ::step][: here.shape[0], : here.shape[1]]
+            here[~known & from_corner] = corner[~known & from_corner]
+            known |= from_corner
+    return made
+
+
+def _differ(values: Any, size: int, step: int) -> Any:
+    """Whether the values in each square of this size differ; corners alone with `step` = `size`, else every point."""
+    rows, columns = ((n - 1) // size for n in values.shape)
+    first = values[: rows * size : size, : columns * size : size]
+    found = np.zeros(first.shape, dtype=bool)
+    for i in range(0, size + 1, step):
+        for j in range(0, size + 1, step):
+            found |= values[i::size, j::size][:rows, :columns] != first
+    return found
+
+
+def _kinds(case: Case, there: dict[str, Any], growth: Any) -> tuple[Any, Any]:
+    """The level after 0.05 s at these points, and their kinds."""
+    first = _run(case, there, DURATION)
+    short = level(case, first, there.get("sliding_speed"))
     unstable = growth > 0.0
     kind = np.where(unstable, SQUEAL, QUIET)
     disputed = (short > LEVEL) != unstable
     if np.any(disputed):
-        there = {name: values[disputed] for name, values in plane.items()}
-        longer = level(case, _run(case, there, LONGER), there.get("sliding_speed"))
+        again = {name: values[disputed] for name, values in there.items()}
+        on = _run(case, again, LONGER - DURATION, start=(first.q[disputed], first.qd[disputed]))
+        longer = level(case, on, again.get("sliding_speed"))
         kind[disputed] = _why(unstable[disputed], short[disputed], longer)
     kind[~np.isfinite(short) | ~np.isfinite(growth)] = UNKNOWN
-    return SquealMap(x, y, growth, short, kind)
+    return short, kind
 
 
 def _why(unstable: Any, short: Any, longer: Any) -> Any:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.papers.drum_brake_2011.family import COARSE, PRINTED_BELTS, SHARES, SIGNS, USUAL, Grid, Variant
-from squealbox.papers.drum_brake_2011.family_modes import CLAIMS, Found, Members, published, scrambled
+from squealbox.papers.drum_brake_2011.family_modes import CLAIMS, Found, Members, published, scrambled, stacked
 from squealbox.studies import sweep
 
 SETS = 400  # scrambled sets of numbers
@@ -144,27 +144,20 @@ def stiffness_only(sets: int = 2000) -> tuple[list[int], float]:
     """
     grid = Grid((1e-6,), USUAL.product)  # alpha V without alpha: nothing but stiffness
     found = [Found.of(Members(front, SIGNS.index((1.0,) * 4), grid)) for front in range(len(SIGNS))]
+    wanted = stacked([published(), *scrambled(sets)])
 
-    def all_met(wanted: Any) -> list[bool]:
-        met = []
-        for each in found:
-            verdicts = each.met(wanted)
-            frequencies = each.members.frequencies(0.30)
-            both = [np.abs(frequencies[i] - wanted.at_load[i]) <= np.pi * 40.0 for i in (0, 1)]
-            met.append(bool(np.any((verdicts["mu-2"] & verdicts["mu-3"] & verdicts["mu-4"] & both[0] & both[1])[:, 0])))
-        return met
+    def all_met(each: Found) -> Any:
+        frequencies = each.members.frequencies(0.30)
+        both = [np.abs(frequencies[i] - wanted.at_load[i]) <= np.pi * 40.0 for i in (0, 1)]
+        met = [claim[:, 0] if claim.ndim == 4 else claim for claim in each.met(wanted, STIFFNESS[:3]).values()]
+        return np.any(met[0] & met[1] & met[2] & both[0] & both[1], axis=(0, -1))
 
-    signs = [i for i, yes in enumerate(all_met(published())) if yes]
-    others = [any(all_met(each)) for each in scrambled(sets)]
-    return signs, float(np.mean(others))
+    met = np.array([all_met(each) for each in found])  # (signs, sets)
+    return [int(i) for i in np.nonzero(met[:, 0])[0]], float(np.mean(np.any(met[:, 1:], axis=0)))
 
 
-def described(row: Any) -> str:
-    """A member in words."""
+def signs_of(row: Any) -> tuple[str, str, str, str]:
+    """The signs in front, of the belts and of the loads, and the share of N, of a member in words."""
     front, belts, loads, share = (int(each) for each in row[:4])
     words = ["".join("+" if s > 0 else "-" for s in SIGNS[i]) for i in (front, belts, loads)]
-    speed = row[5] / row[4]
-    return (
-        f"front {words[0]}, belts {words[1]}, loads {words[2]}, N in friction: {SHARES[share]}, "
-        f"alpha {row[4]:.4g} s/m, V_B {speed:.3g} m/s"
-    )
+    return words[0], words[1], words[2], SHARES[share]

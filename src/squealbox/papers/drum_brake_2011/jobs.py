@@ -11,17 +11,21 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
-from squealbox.papers.drum_brake_2011.cases import DEFAULT_READING, PRINTED, Case
+from squealbox.papers.drum_brake_2011.cases import DEFAULT_READING, PRINTED, RECONSTRUCTED, Case
 from squealbox.papers.drum_brake_2011.claims import EXACT, RAW
 
 MOST_WORKERS = 4  # each holds about 300 MB
-KERNELS = ("consistent", "eq1_printed", "componentwise", "eq3")  # eq3_signed has the equation of eq3
+HEAVIEST = (DEFAULT_READING, "eq1_printed", "eq3", RECONSTRUCTED)  # begun first, so that the workers end together
+BESIDE = {
+    "drawings": "model and theorems",
+    "family": "the family in its short form",
+}  # need no transients, and so keep a worker busy while these are compiled
 Job = dict[str, Any]
 Progress = Callable[[str, float], None]
 Idle = SimpleQueue[subprocess.Popen[str]]
@@ -31,27 +35,27 @@ class JobFailed(RuntimeError):
     """A worker could not finish a job; the message names the job."""
 
 
-def run(jobs: list[Job], progress: Progress | None = None, first: int = 0) -> list[Any]:
+def run(jobs: list[Job], progress: Progress | None = None) -> list[Any]:
     """The answers to all jobs, in their order; `progress` hears what was done and the share of jobs done.
 
-    The first `first` jobs are finished before the others begin. Raises `JobFailed` with the first job that fails.
+    A job begins in its turn, once those whose labels it has in `after` are done. Raises `JobFailed` with the first job
+    that fails.
     """
     answers: list[Any] = [None] * len(jobs)
-    done = 0
+    waiting, done, running = list(range(len(jobs))), set[str](), dict[Any, int]()
     count = min(processors(), MOST_WORKERS, len(jobs))
     with ThreadPoolExecutor(count) as threads, _workers(count) as idle:
-        for batch in (range(first), range(first, len(jobs))):
-            waiting = {threads.submit(_ask, idle, jobs[i]): i for i in batch}
-            try:
-                for future in as_completed(waiting):
-                    answers[waiting[future]] = future.result()
-                    done += 1
-                    if progress is not None:
-                        progress(jobs[waiting[future]]["label"], done / len(jobs))
-            except BaseException:
-                for future in waiting:
-                    future.cancel()
-                raise
+        while waiting or running:
+            ready = (i for i in waiting if done.issuperset(jobs[i].get("after", ())))
+            while len(running) < count and (i := next(ready, None)) is not None:
+                running[threads.submit(_ask, idle, jobs[i])] = i
+            waiting = [i for i in waiting if i not in running.values()]
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                i = running.pop(future)
+                answers[i] = future.result()
+                done.add(jobs[i]["label"])
+                if progress is not None:
+                    progress(jobs[i]["label"], len(done) / len(jobs))
     return answers
 
 
@@ -61,49 +65,55 @@ def everything(
     progress: Progress | None = None,
     fine: bool = False,
     search: bool = False,
-) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Study of every reading and, where asked, the search over its choices, by reading.
+) -> tuple[dict[str, Any], dict[str, Any], dict[str, Any]]:
+    """Study of every reading; where asked, the search over its choices, by reading; and what stands beside them.
 
-    The default reading's figures go to `figures` itself. Without `search` the second answer is empty.
+    The default reading's figures go to `figures` itself. Without `search` the second answer is empty. The third has the
+    answers of "family" and "solver", see `do`.
 
-    What the transients need is compiled first, once, beside the one reading that has none: two workers that start on
-    transients would each compile the same.
+    What the transients need is compiled first, once: two workers that start on transients would each compile the same.
     """
-    from squealbox.papers.drum_brake_2011 import ensembles
-
     compiling = [{"kind": "compile", "contact": road, "label": f"compiled for {road} contact"} for road in (EXACT, RAW)]
-    compiling += [
-        {"kind": "compile maps", "reading": name, "label": f"compiled for maps of {name}"}
-        for name in readings if name in KERNELS and name in (ensembles.FINE if fine else ensembles.USUAL).mapped
-    ]  # fmt: skip
+    compiled = [job["label"] for job in compiling]
+    order = sorted(readings, key=lambda name: HEAVIEST.index(name) if name in HEAVIEST else len(HEAVIEST))
     kinds = ("study", "search") if search else ("study",)
-    tasks = [_task(kind, reading, figures, fine) for kind in kinds for reading in readings]
-    alone = [task for task in tasks if task["reading"] == PRINTED]
-    others = [task for task in tasks if task["reading"] != PRINTED]
-    answers = run(compiling + alone + others, progress, len(compiling + alone))[len(compiling) :]
-    found = {(task["kind"], task["reading"]): answer for task, answer in zip(alone + others, answers, strict=True)}
+    tasks = [_task(kind, reading, figures, fine, compiled) for kind in kinds for reading in order]
+    beside = [{"kind": kind, "folder": str(figures), "label": label} for kind, label in BESIDE.items()]
+    solver = {"kind": "solver", "folder": str(figures), "label": "the solver of 2011", "after": compiled}
+    jobs = [*compiling, *beside, *tasks, solver]
+    found = {(job["kind"], job.get("reading")): answer for job, answer in zip(jobs, run(jobs, progress), strict=True)}
     searched = {name: found["search", name] for name in readings} if search else {}
-    return {name: found["study", name] for name in readings}, searched
+    told = {kind: found[kind, None] for kind in ("family", "solver")}
+    return {name: found["study", name] for name in readings}, searched, told
 
 
 def do(job: Job) -> Any:
-    """One job: the study or the search of one reading, or one run so that its kernel is compiled."""
-    from squealbox.papers.drum_brake_2011 import ensembles, motions, reading, search
+    """One job: the study or the search of one reading; one run so that its kernel is compiled; or what is for all.
+
+    "drawings" draws the model, the friction law and the theorems; "family" searches the family in its short form;
+    "solver" runs and draws the solver of 2011.
+    """
+    from squealbox.papers.drum_brake_2011 import beside, ensembles, motions, reading, search
 
     if job["kind"] == "compile":
         return motions.studies(Case(DEFAULT_READING), job["contact"])[motions.RUNS[0]].words
-    if job["kind"] == "compile maps":
-        return ensembles.compile_kernel(job["reading"])
+    if job["kind"] == "drawings":
+        return beside.drawings_of(Path(job["folder"]))
+    if job["kind"] == "family":
+        return beside.family()
+    if job["kind"] == "solver":
+        return beside.solver(Path(job["folder"]))
     if job["kind"] == "study":
         sizes = ensembles.FINE if job["fine"] else ensembles.USUAL
         return reading.study(Case(job["reading"]), Path(job["folder"]), sizes)
     return search.search(job["reading"])
 
 
-def _task(kind: str, reading: str, figures: Path, fine: bool) -> Job:
+def _task(kind: str, reading: str, figures: Path, fine: bool, compiled: list[str]) -> Job:
     folder = figures if reading == DEFAULT_READING else figures / reading
     label = f"{'study of' if kind == 'study' else 'search in'} {reading}"
-    return {"kind": kind, "reading": reading, "folder": str(folder), "label": label, "fine": fine}
+    return {"kind": kind, "reading": reading, "folder": str(folder), "label": label, "fine": fine,
+            "after": [] if reading == PRINTED else compiled}  # fmt: skip
 
 
 def processors() -> int:

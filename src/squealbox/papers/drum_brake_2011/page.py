@@ -1,14 +1,14 @@
 """The one page of the study: findings, claims, why they are met or not, the figures, what is assumed, the search."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from squealbox.papers.drum_brake_2011 import family_search, page_claims, page_why, record, search_results, solver_2011
-from squealbox.papers.drum_brake_2011.cases import ALPHA, DEFAULT_READING, DURATION, PRINTED, RECONSTRUCTED, SPEED, Case
+from squealbox.papers.drum_brake_2011 import page_claims, page_why, record, search_results
+from squealbox.papers.drum_brake_2011.beside import Extras
+from squealbox.papers.drum_brake_2011.cases import ALPHA, DEFAULT_READING, DURATION, PRINTED, RECONSTRUCTED, SPEED
 from squealbox.papers.drum_brake_2011.claims import AGREE, EXACT, RAW, ROADS, paper
-from squealbox.papers.drum_brake_2011.ensembles import LEVEL, LONGER, MEANS
+from squealbox.papers.drum_brake_2011.ensembles import COARSE, LEVEL, LONGER, MEANS
 from squealbox.papers.drum_brake_2011.motions import METHODS
 from squealbox.report import Cell, Code, Page, Picture, Points, Section, Table, Text
 
@@ -49,21 +49,6 @@ CAPTIONS = {
 }
 
 
-@dataclass(frozen=True)
-class Extras:
-    """What the page shows beside the readings: the search's short form and, if made, the whole; the solver of 2011."""
-
-    short: Any
-    decays: list[Any]
-    onsets: dict[str, tuple[float, float]]
-    whole: Any = None
-
-
-def extras(case: Case, whole: Any = None) -> Extras:
-    """The short form of the search, and what the solver of 2011 did in this case."""
-    return Extras(family_search.short(), solver_2011.decays(case), solver_2011.onsets(case), whole)
-
-
 def page(
     folder: Path,
     studies: Mapping[str, Any],
@@ -87,7 +72,7 @@ def page(
             Section("What the paper says", page_claims.blocks(found)),
             Section("What no reading can meet", page_why.excluded(folder)),
             Section("The reconstruction", page_why.reconstruction(
-                more.short, more.whole, redrawn
+                more, record.met_by_reading(found)[RECONSTRUCTED], redrawn
             )),
             Section("What the solver of 2011 did", (
                 *page_why.solver(folder, more.decays, more.onsets),
@@ -212,9 +197,13 @@ def _shares(maps: list[dict[str, Any]]) -> tuple[Any, ...]:
     """What the maps by transients are made of, and why they differ from those by eigenvalues."""
     if not maps:
         return ()
-    rows = tuple((each["map"], f"{each['points']:,}", *(f"{share:.2%}" for share in each["shares"])) for each in maps)
+    rows = tuple(
+        (each["map"], f"{each['points']:,}", f"{each['run']:,}", *(f"{share:.2%}" for share in each["shares"]))
+        for each in maps
+    )
     caption = (
-        "Maps by transients: share of each kind. A trajectory starts from rest and squeals when, over the last fifth "
+        f"Maps by transients: share of each kind. Every {COARSE}th value of both axes is run, and in between wherever "
+        "neighbours differ or the eigenvalues change sign; the rest is as its neighbours are. A trajectory starts from rest and squeals when, over the last fifth "
         f"of {1e3 * DURATION:g} ms, the speed of its vibration (2 pi times frequency times amplitude) is above "
         f"{LEVEL:g} V_B. Where that differs from the eigenvalues it is run again for {1e3 * LONGER:g} ms. What holds "
         "its level is a cycle beside stable sliding: the step load from rest reaches it, and an eigenvalue cannot see "
@@ -222,7 +211,7 @@ def _shares(maps: list[dict[str, Any]]) -> tuple[Any, ...]:
         "that the longer run is too short as well. Not decided: the trajectory hung where contacts stick and slip "
         "without end, and was stopped."
     )
-    return (Table(("map", "trajectories", *MEANS), rows, caption),)
+    return (Table(("map", "points", "trajectories", *MEANS), rows, caption),)
 
 
 def _why(part: record.Record) -> str:

@@ -6,6 +6,7 @@ from typing import Any
 
 from squealbox.designs.drum_brake_readings import READINGS
 from squealbox.papers.drum_brake_2011 import family_search, theorems
+from squealbox.papers.drum_brake_2011.beside import Extras
 from squealbox.papers.drum_brake_2011.cases import INFERRED, RECONSTRUCTED
 from squealbox.papers.drum_brake_2011.family_modes import CLAIMS
 from squealbox.papers.drum_brake_2011.solver_2011 import SETTINGS, Decay, damping_of_the_table
@@ -55,7 +56,7 @@ def excluded(folder: Path) -> tuple[Any, ...]:
     )
 
 
-def reconstruction(searched: Any, whole: Any, pictures: Any) -> tuple[Any, ...]:
+def reconstruction(more: Extras, own: list[str], pictures: Any) -> tuple[Any, ...]:
     """The inferred readings: what they are, how likely such a match is, and the paper's figures redrawn."""
     rows = tuple(
         (
@@ -67,7 +68,7 @@ def reconstruction(searched: Any, whole: Any, pictures: Any) -> tuple[Any, ...]:
         )
         for name, what in zip(INFERRED, WHAT, strict=True)
     )
-    signs, by_chance = family_search.stiffness_only()
+    signs, by_chance, searched, whole = more.signs, more.by_chance, more.short, more.whole
     words = " or ".join(", ".join("+" if s > 0 else "-" for s in family_search.SIGNS[i]) for i in signs)
     structure = (
         f"One structural finding: of the sixteen combinations of sign that friction can have in Eq. (3), exactly "
@@ -84,7 +85,7 @@ def reconstruction(searched: Any, whole: Any, pictures: Any) -> tuple[Any, ...]:
         Code(EQUATIONS),
         Text(structure),
         Text(_chance(searched, "the short form, belts as printed, made for this page")),
-        *((Text(_chance(whole.searched, "the whole family")), Text(_outcome(whole))) if whole is not None else (
+        *((Text(_chance(whole.searched, "the whole family")), *_outcome(whole, own)) if whole is not None else (
             Text("The whole family, and the transients of its best members, are gone through by: squealbox paper "
                  "drum-brake-2011 --search. This page then shows its counts and its chance level."),
         )),
@@ -116,14 +117,44 @@ def _chance(found: Any, name: str) -> str:
     )
 
 
-def _outcome(whole: Any) -> str:
-    row, measure, ids = whole.best
+def _outcome(whole: Any, own: list[str]) -> tuple[Any, ...]:
+    """What the best members of the whole search meet, beside what the reconstruction meets: ties and better ones."""
+    ties = whole.ties
+    most = len(ties[0][2])
+    if most > len(own):
+        against = (
+            f"That is more than {RECONSTRUCTED}* meets ({len(own)}): by these numbers the first of them is the better "
+            "reading."
+        )
+    elif most == len(own):
+        against = f"{RECONSTRUCTED}* meets as many: the paper's numbers do not tell these equations apart."
+    else:
+        against = f"{RECONSTRUCTED}* meets more ({len(own)}); it lies between the members that were judged."
+    choices: dict[tuple[str, ...], list[Any]] = {}
+    for row, measure, ids in ties:
+        choices.setdefault((*family_search.signs_of(row), measure, ", ".join(ids)), []).append(row)
+    rows = tuple(
+        (
+            Cell(", ".join(choice[:3]), f"N in friction: {choice[3]}"), choice[3], f"{len(members)}",
+            _range([row[4] for row in members]), _range([row[5] for row in members]), choice[4], choice[5],
+        )
+        for choice, members in choices.items()
+    )  # fmt: skip
+    head = ("signs: front, belts, loads", "N in friction", "members", "alpha [s/m]", "V_B [m/s]", "amplitudes", "meets")
+    caption = f"The members that meet {most} of the fifteen claims, by their choice of signs: none is left out."
     return (
-        f"{whole.tried[0]:,} of the best members, mirror images left out, and {whole.tried[1]:,} on the finer grid "
-        f"were run for mu-7; {whole.meeting} come near it, {len(whole.rows)} were judged by all fifteen claims. The "
-        f"most that one meets is {len(ids)} ({', '.join(ids)}; amplitudes {measure}): "
-        f"{family_search.described([*row[:5], row[4] * row[5]])}."
+        Text(
+            f"{whole.tried[0]:,} of the best members, mirror images left out, and {whole.tried[1]:,} on the finer grid "
+            f"were run for mu-7; {whole.meeting} come near it, {len(whole.rows)} were judged by all fifteen claims. "
+            f"The most that one meets is {most}, met by {len(ties)} members of {len(choices)} choices. {against}"
+        ),
+        Table(head, rows, caption),
     )
+
+
+def _range(values: list[float]) -> str:
+    low, high = min(values), max(values)
+    return f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
 
 
 def solver(folder: Path, found: list[Decay], onsets: Mapping[str, tuple[float, float]]) -> tuple[Any, ...]:

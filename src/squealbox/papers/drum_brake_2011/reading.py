@@ -70,11 +70,17 @@ def _ensembles(case: Case, sizes: ensembles.Sizes) -> tuple[dict[str, Drawer], l
     if case.reading in ALONG_FRICTION:
         over, onset = ensembles.maxima(case, sizes.friction), steady.onset_in_friction(case).value
         drawn["maxima"] = lambda: ensemble_figures.maxima(case, over, onset)
-    return drawn, [{"map": name, "points": int(each.kind.size), "shares": each.shares} for name, each in maps.items()]
+    return drawn, [
+        {"map": name, "points": each.kind.size, "run": int(np.sum(each.run)), "shares": each.shares}
+        for name, each in maps.items()
+    ]
 
 
 def save(figure: "Figure", path: Path) -> None:
-    """Write PNG and SVG, with plain numbers at the ticks: as formulas they take longer than all the rest."""
+    """Write PNG and SVG, with plain numbers at the ticks and titles in their place.
+
+    Numbers as formulas, and titles that look for room above the ticks, would take longer than all the rest.
+    """
     from matplotlib.ticker import ScalarFormatter
 
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -82,6 +88,9 @@ def save(figure: "Figure", path: Path) -> None:
         formatter = axis.get_major_formatter()
         if isinstance(formatter, ScalarFormatter):
             formatter.set_useMathText(False)
+    with style.styled():
+        for axes in figure.axes:
+            axes.set_title(axes.get_title(), y=1.0)
     style.save(figure, path, dots=DOTS)
 
 

@@ -49,11 +49,16 @@ class Reconstruction:
     meeting: int
 
     @property
+    def ties(self) -> list[tuple[Any, str, list[str]]]:
+        """The row, the measure and the claims of every member that meets most, in the better measure of each."""
+        found = [max(met.items(), key=lambda each: len(each[1])) for met in self.met]
+        most = max(len(ids) for _, ids in found)
+        return [(row, *each) for row, each in zip(self.rows, found, strict=True) if len(each[1]) == most]
+
+    @property
     def best(self) -> tuple[Any, str, list[str]]:
         """The row, the measure and the claims of the member that meets most; of equals the first."""
-        found = [(i, name, ids) for i, met in enumerate(self.met) for name, ids in met.items()]
-        i, name, ids = max(found, key=lambda each: len(each[2]))
-        return self.rows[i], name, ids
+        return self.ties[0]
 
 
 def amplitudes(variant: Variant) -> dict[str, float]:

@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 
 from squealbox.papers.drum_brake_2011.cases import FRICTION, MAP_ANGLES, SPEED, Case
-from squealbox.stability import ComplexModes, complex_modes, critical_value, stability_boundary, stability_map
+from squealbox.stability import ComplexModes, complex_modes, critical_value, stability_map
 from squealbox.stability.state_matrix import spectrum
 from squealbox.system import as_system, linearise
 
 MU_RANGE = (0.01, 1.0)
+ROOT_STEPS = 12  # of the Illinois rule on an edge of the map: to the last digits
 LOAD_RANGE = (100.0, 60e3)  # N; the paper goes to 25 kN
 
 
@@ -75,8 +76,38 @@ def pressure_map(case: Case, step: float = 1.0, mu: float = FRICTION, traced: bo
     grown = stability_map(design, over, mechanism=False).growth_rate
     if not traced:
         return PressureMap(angles, grown)
-    ends = dict.fromkeys(over, (float(np.deg2rad(low)), float(np.deg2rad(high))))
-    return PressureMap(angles, grown, [np.rad2deg(points) for points in stability_boundary(design, ends).curves])
+    return PressureMap(angles, grown, _boundary(design, angles, grown))
+
+
+def _boundary(design: Any, angles: Any, grown: Any) -> list[Any]:
+    """The curves of zero growth through the map, each (k, 2) [deg].
+
+    Every point lies on an edge of the grid whose ends differ in sign, and is found there by the rule of Illinois.
+    """
+    if not np.any(grown > 0.0) or not np.any(grown < 0.0):
+        return []
+    from contourpy import contour_generator
+
+    lines: Any = contour_generator(angles, angles, np.where(grown.T > 0.0, 1.0, -1.0)).lines(0.0)
+    sizes = [len(line) for line in lines]
+    index = (np.concatenate(lines) - angles[0]) / (angles[1] - angles[0])  # one of both is whole, the other a half
+    low, high = angles[np.floor(index).astype(int)], angles[np.ceil(index).astype(int)]
+
+    def growth_at(points: Any) -> Any:
+        theta1, theta2 = np.deg2rad(points).T
+        return growth(design.replace({"theta1": theta1, "theta2": theta2}))
+
+    at_low, at_high = growth_at(low), growth_at(high)
+    moved = np.zeros(len(low), dtype=int)  # the end that moved last: 1 low, -1 high
+    for _ in range(ROOT_STEPS):
+        middle = low + (at_low / (at_low - at_high))[:, None] * (high - low)
+        at_middle = growth_at(middle)
+        left = (at_middle > 0.0) == (at_low > 0.0)
+        at_high = np.where(left, np.where(moved == 1, 0.5 * at_high, at_high), at_middle)
+        at_low = np.where(left, at_middle, np.where(moved == -1, 0.5 * at_low, at_low))
+        low, high = np.where(left[:, None], middle, low), np.where(left[:, None], high, middle)
+        moved = np.where(left, 1, -1)
+    return np.split(middle, np.cumsum(sizes)[:-1])
 
 
 def modes(case: Case, **parameters: Any) -> ComplexModes:
