@@ -2,7 +2,9 @@
 
 Steps of SciPy's DOP853 at rtol 1e-12, none longer than a sixteenth of the fastest period in sight; every step is
 looked at in 12 places and at the minima between them, roots by Brent's rule. After an event each combination of modes
-is tried by integrating a short stretch with it: one that holds to its end is taken, sticking first.
+is tried by integrating a short stretch with it: one that holds to its end is taken, sticking first. Landings on rigid
+contacts try every combination of impulses. Rows without mass are solved for their velocities (damping among them) or
+their displacements (stiffness alone), before anything else.
 """
 
 from itertools import product
@@ -10,21 +12,70 @@ from types import SimpleNamespace
 
 import numpy as np
 from scipy.integrate import DOP853, solve_ivp
+from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq, minimize_scalar
 
-from squealbox.schedules import Sinusoid, value_at
+from squealbox import friction, schedules
 
 STICK, OPEN = 0, 2
 PLACES = np.linspace(0.0, 1.0, 13)
+MOST = 600  # events, after which the slow integrator gives up
+CLOSED = 1e-6  # share of the fastest landing below which a rebound counts as none: a convention of the program
 
 
-def angular_frequencies(system):
-    """Of the system without friction and of its harmonic schedules [rad/s]."""
-    found = [0.0, *np.sqrt(np.abs(np.linalg.eigvals(np.linalg.solve(system.M, system.K))))]
-    for value in (system.load, *(x for c in system.contacts for x in (c.V, c.N0))):
-        for _, part in value.terms() if hasattr(value, "terms") else ():
-            found += [2.0 * np.pi * part.frequency] if isinstance(part, Sinusoid) else []
-    return found
+def own_coefficient(law):
+    """mu(v) of a law from its data sheet, written anew."""
+    if isinstance(law, friction.Coulomb):
+        level = law.static if law.kinetic is None else law.kinetic
+        return lambda v: level
+    if isinstance(law, friction.Stribeck):
+        return lambda v: law.static * np.exp(-v / law.speed) + law.kinetic * -np.expm1(-v / law.speed)
+    if isinstance(law, friction.LinearSlope):
+        return lambda v: max(law.static + law.slope * v, -np.inf if law.floor is None else law.floor)
+    if isinstance(law, friction.Hyperbolic):
+        return lambda v: law.static / (1.0 + law.delta * v)
+    if isinstance(law, friction.Cubic):
+        return lambda v: law.static + (law.kinetic - law.static) * (3.0 - (v / law.speed) ** 2) * v / law.speed / 2.0
+    if isinstance(law, friction.Table):
+        curve = PchipInterpolator(law.speeds, law.values)
+        return lambda v: float(curve(min(max(v, law.speeds[0]), law.speeds[-1])))
+    raise TypeError(f"the slow integrator knows no {type(law).__name__}")
+
+
+def own_schedule(value):
+    """(value(t), rate(t)) of a number or schedule, written anew."""
+    if not hasattr(value, "terms"):
+        held = np.asarray(value, dtype=float)
+        return (lambda t: held), (lambda t: 0.0 * held)
+    parts = [(weight, *_simple(part)) for weight, part in value.terms()]
+    return (lambda t: sum(w * f(t) for w, f, _ in parts)), (lambda t: sum(w * g(t) for w, _, g in parts))
+
+
+def _simple(part):
+    if isinstance(part, schedules.Sinusoid):
+        om = 2.0 * np.pi * part.frequency
+        return (
+            lambda t: part.mean + part.amplitude * np.sin(om * t + part.phase),
+            lambda t: part.amplitude * om * np.cos(om * t + part.phase),
+        )
+    if isinstance(part, schedules.Constant):
+        return (lambda t: part.level), (lambda t: 0.0)
+    if isinstance(part, schedules.Table):
+        times, values = np.asarray(part.times, float), np.asarray(part.values, float)
+        slopes = np.concatenate([[0.0], np.diff(values) / np.diff(times), [0.0]])
+        rate = lambda t: slopes[np.searchsorted(times, t, side="right")]  # noqa: E731
+        return (lambda t: np.interp(t, times, values)), rate
+    end = np.inf if part.stop is None or part.slope == 0.0 else (part.stop - part.start) / part.slope
+    end = np.inf if end <= 0.0 else end
+    return (
+        lambda t: part.start + part.slope * min(max(t - part.begin, 0.0), end),
+        lambda t: part.slope if 0.0 <= t - part.begin < end else 0.0,
+    )
+
+
+def scheduled(system):
+    """Every load, normal force and speed of a system."""
+    return (system.load, *(x for c in system.contacts for x in (c.V, c.N0)))
 
 
 class Slow:
@@ -32,71 +83,144 @@ class Slow:
 
     def __init__(self, system):
         self.system, self.n, self.m = system, system.size, len(system.contacts)
-        self.d, self.t = (np.array([getattr(c, x) for c in system.contacts]).reshape(self.m, self.n) for x in "dt")
-        self.inverse = np.linalg.inv(system.M)
-        self.static = np.array([float(c.law.static_limit) for c in system.contacts])
-        self.step = 2.0 * np.pi / 16.0 / max(max(angular_frequencies(system)), 1e-3)
-        self.modes = [1] * self.m
-        self.laws = [(type(c.law).formula, c.law.coefficients()) for c in system.contacts]
+        rows = {x: np.array([np.zeros(self.n) if getattr(c, x) is None else getattr(c, x) for c in system.contacts])
+                for x in ("n", "d", "t", "normal")}  # fmt: skip
+        self.N, self.d, self.t, self.w = (x.reshape(self.m, self.n) for x in rows.values())
+        self.rigid = np.array([c.rigid for c in system.contacts], dtype=bool)
+        self.unilateral = np.array([c.unilateral for c in system.contacts], dtype=bool)
+        self.gap0 = np.array([c.gap for c in system.contacts])
+        self.restitution = np.array([c.restitution for c in system.contacts])
+        self.mu = [own_coefficient(c.law) for c in system.contacts]
+        self.static = np.array([float(c.law.coefficients()[0]) for c in system.contacts])
+        rubs = [any(mu(v) != 0.0 for v in (0.0, 1e-3, 1.0)) for mu in self.mu]
+        self.rubs = np.array(rubs, dtype=bool) & np.any(self.t != 0.0, axis=1)
+        self.rising = self.rubs & (self.static == 0.0)  # a force without a jump: no mode, no event
+        self.rubs &= ~self.rising
+        self.load = own_schedule(system.load)[0]
+        self.normal_given = [own_schedule(c.N0)[0] for c in system.contacts]
+        self.speed_given = [own_schedule(c.V) for c in system.contacts]
+        self.massive = np.any(system.M != 0.0, axis=1)
+        self.light = ~self.massive
+        self.some_light = bool(np.any(self.light))
+        self.inverse = np.zeros((self.n, self.n))
+        self.inverse[np.ix_(self.massive, self.massive)] = np.linalg.inv(
+            system.M[np.ix_(self.massive, self.massive)]
+        )
+        self.damped = self.light & np.any(system.C != 0.0, axis=1)
+        self.static_rows = self.light & ~self.damped
+        self.step = 2.0 * np.pi / 16.0 / max(*self.angular_frequencies(), 1e-3)
+        self.modes, self.fastest = [1] * self.m, 0.0
 
-    def mu(self, c, v):
-        formula, coefficients = self.laws[c]
-        return float(formula(v, coefficients))
+    def angular_frequencies(self):
+        """Of the system without friction and of its harmonic schedules [rad/s]."""
+        rates = np.linalg.eigvals(self.inverse @ self.system.K)
+        found = [0.0, *np.sqrt(np.abs(rates))]
+        for value in scheduled(self.system):
+            for _, part in value.terms() if hasattr(value, "terms") else ():
+                found += [2.0 * np.pi * part.frequency] if isinstance(part, schedules.Sinusoid) else []
+        return found
 
-    def given(self, t, y):
+    def completed(self, t, y):
+        """q and v with the rows without mass solved for."""
         q, v = y[: self.n], y[self.n :]
-        normal = np.array([float(value_at(c.N0, t) + c.n @ q) for c in self.system.contacts])
-        speed = np.array([float(value_at(c.V, t) - c.t @ v) for c in self.system.contacts])
-        rate = np.array([float(c.V.rate(t)) if hasattr(c.V, "rate") else 0.0 for c in self.system.contacts])
-        return normal, speed, rate
+        system = self.system
+        if self.some_light:
+            q, v = q.copy(), v.copy()
+            a, b = self.static_rows, self.damped
+            f = self.load(t) * np.ones(self.n)
+            if np.any(a):  # K_aa q_a = f_a - K_ao q_o
+                q[a] = np.linalg.solve(system.K[np.ix_(a, a)], f[a] - system.K[np.ix_(a, ~a)] @ q[~a])
+            if np.any(b):  # C_bb v_b = f_b - K_b q - C_bm v_m
+                m = self.massive
+                right = f[b] - system.K[b] @ q - system.C[np.ix_(b, m)] @ v[m]
+                v[b] = np.linalg.solve(system.C[np.ix_(b, b)], right)
+        return q, v
+
+    def given(self, t, q, v):
+        normal = np.array([float(x(t)) for x in self.normal_given]) + self.N @ q
+        speed = np.array([float(x(t)) for x, _ in self.speed_given]) - self.t @ v
+        return normal, speed
 
     def motion(self, t, y, modes):
         """(y', forces, normal forces, speeds) with the contacts in these modes."""
-        system, q, v = self.system, y[: self.n], y[self.n :]
-        normal, speed, rate = self.given(t, y)
+        q, v = self.completed(t, y)
+        normal, speed = self.given(t, q, v)
         force = np.zeros(self.m)
-        push = np.asarray(value_at(system.load, t), dtype=float) - system.C @ v - system.K @ q
-        for c, contact in enumerate(system.contacts):
-            if modes[c] in (1, -1):
-                force[c] = modes[c] * self.mu(c, max(modes[c] * speed[c], 0.0)) * normal[c]
-            elif modes[c] == OPEN:
-                push = push + contact.normal * normal[c]
+        push = self.load(t) - self.system.C @ v - self.system.K @ q
+        unknown = []  # (contact, row, right side, direction, weight, is it a normal force)
+        for c in range(self.m):
+            mode = modes[c]
+            if mode == OPEN:
+                if not self.rigid[c]:
+                    push = push + self.w[c] * normal[c]
+                normal[c] = normal[c] if not self.rigid[c] else 0.0
+                continue
+            slip = mode * self.mu[c](max(mode * speed[c], 0.0)) if mode != STICK else 0.0
+            slip = np.sign(speed[c]) * self.mu[c](abs(speed[c])) if self.rising[c] else slip
+            if self.rigid[c]:
+                unknown.append((c, self.w[c], 0.0, slip * self.d[c] - self.w[c], 1.0, True))
+            elif mode != STICK:
+                force[c] = slip * normal[c]
+            if mode == STICK:
+                weight = 1.0 if self.rigid[c] else max(self.static[c] * normal[c], 0.0)
+                unknown.append((c, self.t[c], float(self.speed_given[c][1](t)), self.d[c], weight, False))
         a = self.inverse @ (push + self.d.T @ force)
-        held = [c for c in range(self.m) if modes[c] == STICK]
-        if held:
-            weight = np.array([max(self.static[c] * normal[c], 0.0) for c in held])
-            weight = np.diag(weight / max(weight.max(), 1e-300))
-            matrix = self.t[held] @ self.inverse @ self.d[held].T @ weight
-            force[held] = weight @ np.linalg.lstsq(matrix, rate[held] - self.t[held] @ a, rcond=1e-11)[0]
-            a = a + self.inverse @ (self.d[held].T @ force[held])
+        if unknown:
+            rows, right = np.array([u[1] for u in unknown]), np.array([u[2] for u in unknown])
+            weight = np.array([u[4] for u in unknown])
+            weight = weight / max(weight.max(), 1e-300)
+            columns = self.inverse @ np.array([u[3] for u in unknown]).T * weight
+            found = weight * np.linalg.lstsq(rows @ columns, right - rows @ a, rcond=1e-11)[0]
+            a = a + self.inverse @ np.array([u[3] for u in unknown]).T @ found
+            for (c, *_, pressing), x in zip(unknown, found, strict=True):
+                if pressing:
+                    normal[c] = x
+                else:
+                    force[c] = x
         return np.concatenate([v, a]), force, normal, speed
 
+    def gap(self, q):
+        return self.gap0 - self.w @ q
+
     def functions(self, t, y, modes):
-        """Positive while the modes hold."""
+        """Two for each contact, positive while the modes hold."""
         _, force, normal, speed = self.motion(t, y, modes)
+        gap = self.gap(self.completed(t, y)[0])
+        out = np.ones((self.m, 2))
+        for c in range(self.m):
+            if modes[c] == OPEN:
+                out[c, 0] = gap[c] if self.rigid[c] else -normal[c]
+                continue
+            if modes[c] == STICK:
+                out[c, 0] = self.static[c] * normal[c] - abs(force[c]) if normal[c] > 1e-12 else 1.0
+            elif self.rubs[c]:
+                out[c, 0] = modes[c] * speed[c]
+            if self.unilateral[c]:
+                out[c, 1] = normal[c]
+        return out.ravel()
+
+    def choices(self, t, y):
+        """What each contact may do now."""
+        q, v = self.completed(t, y)
+        normal, speed = self.given(t, q, v)
+        gap, rate = self.gap(q), -self.w @ v
         out = []
         for c in range(self.m):
-            unilateral = self.system.contacts[c].unilateral
-            if modes[c] == OPEN:
-                out.append(-normal[c])
-            elif modes[c] == STICK:
-                out.append(self.static[c] * normal[c] - abs(force[c]) if normal[c] > 1e-12 else 1.0)
-            else:
-                out.append(modes[c] * speed[c] if self.static[c] > 0.0 else 1.0)
-                out += [normal[c]] if unilateral else []
-        return np.array(out)
+            size = abs(float(self.speed_given[c][0](t))) + np.sum(np.abs(self.t[c] * v)) + 1e-3
+            still, slides = abs(speed[c]) <= 1e-9 * size and self.rubs[c], 1 if speed[c] > 0 else -1
+            here = [STICK, 1, -1] if still else [slides if self.rubs[c] else 1]
+            if self.rigid[c]:
+                touching = gap[c] <= 1e-10 * (1.0 + abs(self.gap0[c]))
+                apart = rate[c] > 1e-9 * (1.0 + np.sum(np.abs(self.w[c] * v)))
+                here = [OPEN] if not touching or apart else [*here, OPEN]
+            elif self.unilateral[c] and normal[c] <= 1e-11 * (1.0 + abs(normal).max()):
+                here = [*here, OPEN] if abs(normal[c]) <= 1e-11 * (1.0 + abs(normal).max()) else [OPEN]
+            out.append(here)
+        return out
 
     def choose(self, t, y, until):
-        """Modes that hold over a short stretch, sticking first."""
-        normal, speed, _ = self.given(t, y)
-        choices = []
-        for c, contact in enumerate(self.system.contacts):
-            size = abs(float(value_at(contact.V, t))) + np.sum(np.abs(contact.t * y[self.n :])) + 1e-3
-            slow, slides = abs(speed[c]) <= 1e-9 * size, 1 if speed[c] > 0 else -1
-            here = [STICK, 1, -1] if slow else [slides]
-            if contact.unilateral and normal[c] <= 1e-11 * (1.0 + abs(normal).max()):
-                here = [*here, OPEN] if abs(normal[c]) <= 1e-11 * (1.0 + abs(normal).max()) else [OPEN]
-            choices.append(here)
+        """Modes that hold over a short stretch: the present ones, else sticking first."""
+        choices = self.choices(t, y)
         best, least = None, np.inf
         combinations = sorted(product(*choices), key=lambda modes: -sum(mode == STICK for mode in modes))
         for length in (1e-4, 1e-6, 1e-2):
@@ -115,38 +239,101 @@ class Slow:
                         rtol=1e-12, atol=1e-16, t_eval=t + stretch * np.array([0.3, 1.0]))  # fmt: skip
         worst = 0.0
         for s, x in zip(out.t, out.y.T, strict=True):
-            values = self.functions(s, x, modes)
-            sizes = 1e-4 * stretch / self.step + np.zeros(len(values))
-            worst = max(worst, float(np.max(-values / sizes, initial=0.0)))
+            worst = max(worst, float(np.max(-self.functions(s, x, modes) / (1e-4 * stretch / self.step), initial=0.0)))
         return worst
 
     def held(self, t, y, modes):
-        """Sticking contacts put exactly on their speed."""
-        held = [c for c in range(self.m) if modes[c] == STICK]
-        if not held:
+        """Sticking contacts put exactly on their speed, closed rigid ones on their floor."""
+        stuck = [c for c in range(self.m) if modes[c] == STICK]
+        closed = [c for c in range(self.m) if self.rigid[c] and modes[c] != OPEN]
+        if not stuck and not closed:
             return y
-        _, speed, _ = self.given(t, y)
-        matrix = self.t[held] @ self.inverse @ self.d[held].T
-        impulse = np.linalg.lstsq(matrix, speed[held], rcond=1e-11)[0]
         out = y.copy()
-        out[self.n :] += self.inverse @ (self.d[held].T @ impulse)
+        if closed:
+            column = self.inverse @ self.w[closed].T
+            gap = self.gap(out[: self.n])[closed]
+            out[: self.n] += column @ np.linalg.lstsq(self.w[closed] @ column, gap, rcond=1e-11)[0]
+        q, v = self.completed(t, out)
+        _, speed = self.given(t, q, v)
+        rows = np.vstack([self.t[stuck], self.w[closed]])
+        right = np.concatenate([speed[stuck], -self.w[closed] @ v])
+        column = self.inverse @ np.vstack([self.d[stuck], self.w[closed]]).T
+        out[self.n :] += column @ np.linalg.lstsq(rows @ column, right, rcond=1e-11)[0]
         return out
+
+    def land(self, t, y):
+        """Velocities after an impact of all rigid contacts that touch: Newton's restitution, Coulomb's impulses."""
+        q, v = self.completed(t, y)
+        _, speed = self.given(t, q, v)
+        rate = -self.w @ v
+        approach = np.where(rate < -1e-11, -rate, 0.0)
+        touching = [c for c in range(self.m) if self.rigid[c] and self.gap(q)[c] <= 1e-9 and rate[c] <= 1e-9]
+        self.fastest = max([self.fastest, *approach[touching]])
+        rebound = self.restitution * approach
+        rebound[rebound <= CLOSED * self.fastest] = 0.0
+        kinds = [([STICK, 1, -1] if self.rubs[c] else [1 if speed[c] >= 0 else -1]) + [OPEN]
+                 for c in touching]  # fmt: skip
+        best, least = v, np.inf
+        for combination in product(*kinds):
+            rows, right, directions, about = [], [], [], []
+            for c, kind in zip(touching, combination, strict=True):
+                mu = max(self.mu[c](abs(speed[c])), 0.0)
+                if kind == OPEN:
+                    continue
+                slip = 0.0 if kind == STICK else kind * mu
+                rows.append(-self.w[c])
+                right.append(rebound[c] - rate[c])
+                directions.append(slip * self.d[c] - self.w[c])
+                about.append((c, "normal"))
+                if kind == STICK:
+                    rows.append(self.t[c])
+                    right.append(speed[c])
+                    directions.append(self.d[c])
+                    about.append((c, "along"))
+            after, impulse = v, {}
+            if rows:
+                column = self.inverse @ np.array(directions).T
+                found = np.linalg.lstsq(np.array(rows) @ column, np.array(right), rcond=1e-11)[0]
+                after, impulse = v + column @ found, dict(zip(about, found, strict=True))
+            new_speed = speed + self.t @ v - self.t @ after
+            fault = 0.0
+            for c, kind in zip(touching, combination, strict=True):
+                mu, size = max(self.mu[c](abs(speed[c])), 0.0), impulse.get((c, "normal"), 0.0)
+                faults = [-size, rebound[c] + self.w[c] @ after]
+                if kind == STICK:
+                    faults.append(abs(impulse[c, "along"]) - mu * size)
+                elif kind != OPEN and self.rubs[c]:
+                    faults.append(-kind * new_speed[c])
+                fault = max(fault, *faults)
+            if fault < least - 1e-13:
+                best, least = after, fault
+        out = np.concatenate([q, best])
+        landed = [c for c in touching if approach[c] > 0.0]
+        return out, landed
 
     def run(self, duration, q, v):
         """q, v, and the events (time, contact, mode) of the whole run."""
         t, y, events = 0.0, np.concatenate([np.asarray(q, float), np.asarray(v, float)]), []
         kinks = [duration]
-        for value in (self.system.load, *(x for c in self.system.contacts for x in (c.V, c.N0))):
+        for value in scheduled(self.system):
             kinks += [b for b in value.breaks() if 0.0 < b < duration] if hasattr(value, "breaks") else []
         for end in sorted(set(kinks)):
             while t < end:
+                if len(events) > MOST:
+                    raise RuntimeError(f"more than {MOST} events")
+                landed = []
+                if np.any(self.rigid):
+                    y, landed = self.land(t, y)
                 chosen = self.choose(t, y, end)
                 if t > 0.0:
-                    events += [(t, c, chosen[c]) for c in range(self.m) if chosen[c] != self.modes[c]]
+                    events += [
+                        (t, c, chosen[c]) for c in range(self.m) if chosen[c] != self.modes[c] or c in landed
+                    ]
                 self.modes = chosen
                 y = self.held(t, y, self.modes)
                 t, y = self.until_event(t, y, end)
-        return SimpleNamespace(q=y[: self.n], qd=y[self.n :], events=events, modes=self.modes)
+        q, v = self.completed(t, y)
+        return SimpleNamespace(q=q, qd=v, events=events, modes=self.modes)
 
     def until_event(self, t, y, end):
         """March with fixed modes to the first event or the end."""
@@ -174,6 +361,8 @@ class Slow:
     @staticmethod
     def root(places, column, function):
         """The first root of one function, 2 when there is none."""
+        if np.ptp(column) == 0.0 and column[0] > 0.0:
+            return 2.0
         for i in range(len(places)):
             if column[i] <= 0.0:
                 return places[0] if i == 0 else brentq(function, places[i - 1], places[i], xtol=1e-15)
@@ -182,6 +371,7 @@ class Slow:
                 and places[i - 1] < places[i + 1]
                 and column[i] <= column[i - 1]
                 and column[i] <= column[i + 1]
+                and column[i] <= 2.0 * (max(column[i - 1], column[i + 1]) - column[i])  # else far above zero
             ):
                 low = minimize_scalar(function, bounds=(places[i - 1], places[i + 1]), method="bounded",
                                       options={"xatol": 1e-10})  # fmt: skip

@@ -18,10 +18,26 @@ NEVER_STICKS = 1e-200  # static limit of a law that rises from 0: it reverses li
 
 
 class FrictionLaw(DataSheet):
-    """Base of the laws: `mu`, `slope` and `coefficients`; a subclass names its two formulas."""
+    """Base of the laws: `mu`, `slope` and `coefficients`; a subclass names its two formulas.
+
+    One rule holds for all: sliding begins with no more friction than the contact sticks with, mu(0+) <= static limit. A
+    push between the two could neither hold the contact nor move it. Friction may rise with speed from there on.
+    """
 
     formula: ClassVar[Formula]
     slope_formula: ClassVar[Formula]
+    level: ClassVar[str] = "static"  # the parameter at fault where the rule is broken
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._check_start()
+
+    def _check_start(self) -> None:
+        limit, start = self.static_limit, self.mu(0.0)
+        if np.any(start > np.asarray(limit) + 1e-12 * (1.0 + np.asarray(limit))):
+            expected = f"at least mu(0) = {start}" if self.level == "static" else f"at most static = {limit}"
+            expected += "; what pushes between the two could neither hold the contact nor move it"
+            raise ParameterError(type(self).__name__, self.level, getattr(self, self.level, limit), expected)
 
     def coefficients(self) -> tuple[Any, ...]:
         """The coefficients p of the formula; p[0] is the static limit. Scalars, or arrays with leading axes."""
@@ -41,6 +57,12 @@ class FrictionLaw(DataSheet):
         return self.coefficients()[0]
 
 
+def _limit(static: Any, beyond: Any) -> Any:
+    """The static limit; of a law that rises from 0 the one that is not mistaken for no friction at all."""
+    rises = (np.asarray(static) == 0.0) & (np.asarray(beyond) > 0.0)
+    return np.where(rises, NEVER_STICKS, static)[()] if np.any(rises) else static
+
+
 def coulomb(v: Any, p: Any) -> Any:
     """mu = kinetic, p = (static, kinetic)."""
     return p[1] + 0.0 * v
@@ -52,9 +74,7 @@ def coulomb_slope(v: Any, p: Any) -> Any:
 
 
 class Coulomb(FrictionLaw):
-    """Constant friction while sliding, mu = kinetic, with a static limit that may be higher.
-
-    `kinetic` left out means kinetic = static.
+    """Constant friction while sliding, mu = kinetic, which left out is static, the limit of sticking; that may be higher.
 
     >>> float(Coulomb(0.4, 0.25).mu(1.0))
     0.25
@@ -63,12 +83,9 @@ class Coulomb(FrictionLaw):
     static: float = parameter("-", 0.0, 10.0, meaning="static limit; kinetic when that is left out")
     kinetic: float | None = parameter("-", 0.0, 10.0, default=None, optional=True, meaning="coefficient while sliding")
 
+    level = "kinetic"
     formula = staticmethod(coulomb)
     slope_formula = staticmethod(coulomb_slope)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        _not_above(self, "kinetic", self.kinetic, self.static)
 
     def coefficients(self) -> tuple[Any, ...]:
         return (self.static, self.static if self.kinetic is None else self.kinetic)
@@ -98,15 +115,12 @@ class LinearSlope(FrictionLaw):
     slope: float = parameter("s/m", meaning="dmu/d|v|; negative = weakening with speed")
     floor: float | None = parameter("-", 0.0, 10.0, default=None, optional=True, meaning="least coefficient, if any")
 
+    level = "floor"
     formula = staticmethod(linear_slope)
     slope_formula = staticmethod(linear_slope_slope)
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        _not_above(self, "floor", self.floor, self.static)
-
     def coefficients(self) -> tuple[Any, ...]:
-        return (self.static, self.slope, -np.inf if self.floor is None else self.floor)
+        return (_limit(self.static, self.slope), self.slope, -np.inf if self.floor is None else self.floor)
 
 
 def stribeck(v: Any, p: Any) -> Any:
@@ -136,7 +150,7 @@ class Stribeck(FrictionLaw):
     slope_formula = staticmethod(stribeck_slope)
 
     def coefficients(self) -> tuple[Any, ...]:
-        return (self.static, self.kinetic, self.speed)
+        return (_limit(self.static, self.kinetic), self.kinetic, self.speed)
 
 
 def hyperbolic(v: Any, p: Any) -> Any:
@@ -150,9 +164,7 @@ def hyperbolic_slope(v: Any, p: Any) -> Any:
 
 
 class Hyperbolic(FrictionLaw):
-    """mu = static/(1 + delta |v|).
-
-    Source: Leine, van Campen, de Kraker and van den Steen 1998, Nonlinear Dynamics 16, 41-54.
+    """mu = static/(1 + delta |v|). Source: Leine, van Campen, de Kraker and van den Steen 1998, Nonlinear Dynamics 16, 41-54.
 
     >>> float(Hyperbolic(1.0, 3.0).mu(1.0))
     0.25
@@ -183,7 +195,7 @@ def cubic_slope(v: Any, p: Any) -> Any:
 class Cubic(FrictionLaw):
     """Cubic curve with its least value at `speed`; friction rises again beyond it.
 
-    mu = static - 3/2 (static - kinetic) (r - r^3/3) with r = |v|/speed, so mu(speed) = kinetic.
+    mu = static - 3/2 (static - kinetic) (r - r^3/3) with r = |v|/speed, so mu(speed) = kinetic, above static a maximum.
     Source: Thomsen and Fidlin 2003, International Journal of Non-Linear Mechanics 38, 389-403, Eq. (2).
 
     >>> round(float(Cubic(0.4, 0.25, 0.5).mu(0.5)), 12)
@@ -191,25 +203,18 @@ class Cubic(FrictionLaw):
     """
 
     static: float = parameter("-", 0.0, 10.0, meaning="coefficient at zero sliding speed")
-    kinetic: float = parameter("-", 0.0, 10.0, meaning="least coefficient, reached at `speed`")
+    kinetic: float = parameter("-", 0.0, 10.0, meaning="least coefficient, at `speed`; greatest where above static")
     speed: float = parameter("m/s", 0.0, low_open=True, meaning="sliding speed of least friction")
 
     formula = staticmethod(cubic)
     slope_formula = staticmethod(cubic_slope)
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        _not_above(self, "kinetic", self.kinetic, self.static)
-
     def coefficients(self) -> tuple[Any, ...]:
-        return (self.static, self.kinetic, self.speed)
+        return (_limit(self.static, self.kinetic), self.kinetic, self.speed)
 
 
 def table(v: Any, p: Any) -> Any:
-    """Monotone cubic through measured points; p = (mu at v=0, count, speeds, coefficients, slopes).
-
-    Written as the first value plus the increment of each interval, clipped to it, so no branch and no search is needed.
-    """
+    """Monotone cubic through points, a clipped sum over intervals; p = (mu at v=0, count, speeds, values, slopes)."""
     count = int(p[1])
     mu = p[2 + count] + 0.0 * v
     for i in range(count - 1):
@@ -240,7 +245,7 @@ def table_slope(v: Any, p: Any) -> Any:
 class Table(FrictionLaw):
     """Measured points, joined by the monotone cubic of Fritsch and Carlson; constant beyond the first and last point.
 
-    Uses `scipy.interpolate.PchipInterpolator` for the slopes at the points, so no overshoot is invented between them.
+    Slopes at the points are those of `scipy.interpolate.PchipInterpolator`: no overshoot is invented between them.
 
     >>> float(Table([0.0, 1.0, 2.0], [0.5, 0.4, 0.3]).mu(1.0))
     0.4
@@ -252,8 +257,7 @@ class Table(FrictionLaw):
     formula = staticmethod(table)
     slope_formula = staticmethod(table_slope)
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
+    def _check_start(self) -> None:
         speeds, values = np.atleast_1d(self.speeds), np.atleast_1d(self.values)
         if speeds.ndim != 1 or speeds.size < 2 or np.any(np.diff(speeds) <= 0):
             raise ParameterError("Table", "speeds", self.speeds, "two or more increasing speeds in m/s")
@@ -264,16 +268,11 @@ class Table(FrictionLaw):
         from scipy.interpolate import PchipInterpolator
 
         slopes = PchipInterpolator(self.speeds, self.values).derivative()(self.speeds)
-        start = float(self.values[0])
+        start = _limit(float(self.values[0]), np.max(self.values))
         return tuple(float(x) for x in (start, len(slopes), *self.speeds, *self.values, *slopes))
 
 
 LAWS: tuple[type[FrictionLaw], ...] = (Coulomb, LinearSlope, Stribeck, Hyperbolic, Cubic, Table)
-
-
-def _not_above(law: FrictionLaw, name: str, value: Any, limit: Any) -> None:
-    if value is not None and np.any(np.asarray(value) > np.asarray(limit)):
-        raise ParameterError(type(law).__name__, name, value, f"at most static = {limit}")
 
 
 class Averaged(FrictionLaw):
@@ -292,9 +291,9 @@ class Averaged(FrictionLaw):
     velocity: float = parameter("m/s", 0.0, low_open=True, meaning="amplitude of the dither's velocity")
 
     def __post_init__(self) -> None:
-        super().__post_init__()
         if not isinstance(self.law, FrictionLaw):
             raise ParameterError("Averaged", "law", self.law, "a friction law")
+        super().__post_init__()
 
     def coefficients(self) -> tuple[Any, ...]:
         """No static limit, the dither's velocity; mu0, a1, a3 where it is mu0 (2/pi) asin(v/w) + a1 v + a3 v^3."""
@@ -314,7 +313,7 @@ class Averaged(FrictionLaw):
 
     @property
     def texts(self) -> tuple[str, str] | None:
-        """Source of the law and its slope for the compiled engines; None where it is known by quadrature alone."""
+        """Sources of law and slope for the compiled engines; None where it is known by quadrature alone."""
         return None if self._polynomial() is None else (_AVERAGED_MU, _AVERAGED_SLOPE)
 
     def _polynomial(self) -> tuple[Any, Any, Any] | None:

@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.friction import FrictionLaw
+from squealbox.friction import NEVER_STICKS, FrictionLaw
 from squealbox.parameters import ParameterError, parameter
 
 LARGEST = 20_000  # characters of a law's source
@@ -47,13 +47,18 @@ class OwnLaw(FrictionLaw):
     numbers: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        super().__post_init__()
         object.__setattr__(self, "numbers", _numbers(self.numbers))
         _texts(self.source)
+        super().__post_init__()
+
+    def _check_start(self) -> None:
+        if self.source in _ALLOWED:  # else `allow` looks
+            super()._check_start()
 
     def coefficients(self) -> tuple[Any, ...]:
         """The static limit, then the law's numbers."""
-        return (self.static, *self.numbers)
+        rising = np.where(np.asarray(self.static) == 0.0, NEVER_STICKS, self.static)
+        return (rising if np.ndim(rising) else float(rising), *self.numbers)
 
     def mu(self, velocity: Any) -> Any:
         return _functions(self.source)[0](np.abs(velocity), self.coefficients())
@@ -102,6 +107,7 @@ def law_from_file(path: Path, numbers: Sequence[float] = (), static: float | Non
 def allow(law: OwnLaw) -> OwnLaw:
     """Let the code of a law that was read from a file run in this process; returns the law."""
     _ALLOWED.add(law.source)
+    law._check_start()
     return law
 
 
