@@ -20,7 +20,6 @@ from squealbox.transient.simulate import MESSAGES, SCHEMES, chosen_method, insta
 if TYPE_CHECKING:
     import xarray
 
-USUAL_RTOL = 1e-7
 CODES = {_march.COMPLETED: COMPLETED} | {code: name for code, (name, _) in MESSAGES.items()}
 NOT_RUN = "not_run"
 THREADS = "SQUEALBOX_THREADS"  # in the environment: how many threads where nothing else is said
@@ -264,7 +263,7 @@ def _counts(column: Any) -> Any:
 
 def _method(method: str | Method, rtol: float | None, atol: Any) -> Method:
     """As given; a name alone takes the tolerance of an ensemble, where errors of 1e-6 serve and time counts."""
-    return chosen_method(method, USUAL_RTOL if rtol is None and isinstance(method, str) else rtol, atol)
+    return chosen_method(method, rtol, atol)
 
 
 def _outcome(ended: Any, interrupted: bool) -> Outcome:

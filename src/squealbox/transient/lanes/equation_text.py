@@ -9,7 +9,7 @@ rows H hold G_ss^-1, zero for the others, and change only at events.
 
 from squealbox.schedules import SCHEDULES
 from squealbox.transient.lanes.formulas import is_table
-from squealbox.transient.lanes.shape import LANES, Shape, layout
+from squealbox.transient.lanes.shape import Shape, layout
 
 CALLED = """
 
@@ -50,12 +50,12 @@ class EquationText:
         local = f"{name}_"
         if name not in self.loaded:
             self.loaded.add(name)
-            self.put(f"{local} = load(A, b + {self.rows.places[name] * LANES})")
+            self.put(f"{local} = load(A, b + {self.rows.places[name] * self.shape.lanes})")
         return local
 
     def keep(self, name: str, value: str) -> None:
         """Write a row."""
-        self.put(f"store(A, b + {self.rows.places[name] * LANES}, {value})")
+        self.put(f"store(A, b + {self.rows.places[name] * self.shape.lanes}, {value})")
 
     def entry(self, name: str) -> str | None:
         """The local of an entry of the equation, None when it is zero throughout."""
@@ -88,7 +88,7 @@ class EquationText:
             return "(" + ", ".join(self.row(f"{name}{i}") for i in range(count)) + ",)"
         columns = 3 - (at == 0)  # speeds, coefficients and slopes of a law; instants and values of a schedule
         known = {at: (count - 1) // columns}
-        return f"Given(A, b + {self.rows.places[f'{name}0'] * LANES}, {count}, {known})"
+        return f"Given(A, b + {self.rows.places[f'{name}0'] * self.shape.lanes}, {count}, {known})"
 
     def accelerations(self, q: list[str], v: list[str], time: str) -> dict[str, list[str]]:
         """q'' in locals, with the speed, normal force, friction force and stick margin of each contact."""
@@ -139,7 +139,7 @@ class EquationText:
     def flag(self, code: str, any_of: str) -> None:
         """`flags`: the lanes that need service; what each needs is written down only when one does."""
         self.put(f"flags = bits(({any_of}) & (alive_ > 0.5))")
-        self.put(f"if_flagged(flags, lambda: store(A, b + {self.rows.places['code'] * LANES}, {code}))")
+        self.put(f"if_flagged(flags, lambda: store(A, b + {self.rows.places['code'] * self.shape.lanes}, {code}))")
 
     def sticks(self, c: int) -> str:
         """1 while a contact sticks, else 0."""

@@ -6,6 +6,8 @@ import textwrap
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
+
 from squealbox import friction, schedules
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
@@ -70,3 +72,23 @@ class _OfLanes(ast.NodeTransformer):
             return ast.Name(node.attr, ast.Load())
         others = {"tanh": "lane_tanh", "abs": "abs", "absolute": "abs", "fabs": "abs"}
         return ast.Name(others[node.attr], ast.Load()) if node.attr in others else node
+
+
+def tried(text: str) -> str:
+    """Why a law's text mu(v, p) cannot be run on a series; empty where it can."""
+    from llvmlite import ir
+
+    from squealbox.transient.lanes import series, vectors
+
+    builder = ir.IRBuilder(ir.Function(ir.Module(), ir.FunctionType(ir.VoidType(), []), "mu").append_basic_block())
+    names: dict[str, Any] = {"np": np, **{name: getattr(series, name) for name in (*VECTOR_FUNCTIONS, "lane_tanh")}}
+    try:
+        exec(compile(lane_function(text, "mu"), "<own law>", "exec"), names)
+        with vectors.writing(builder, 1), series.deciding():
+            one = vectors.Lanes(vectors.number(1.0))
+            numbers = [one] * 64
+            found = names["mu"](series.Series(lambda k: None, (one, one)), numbers)
+            found[2] if isinstance(found, series.Series) else found
+    except Exception as error:  # whatever a user's text does there
+        return f"{error}"
+    return ""

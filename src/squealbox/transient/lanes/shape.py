@@ -7,7 +7,7 @@ from typing import Any
 from squealbox.transient._motion import EXACT
 from squealbox.transient.methods import TAYLOR
 
-LANES = 16  # of `vectors`, which loads numba
+LANES = 16  # trajectories side by side in an ensemble
 ORDER = 16  # of the velocities in a Taylor step; 14 to 20 cost the same at relative errors from 1e-5 to 1e-12
 PARTS = 3  # in which a Taylor step is looked at; each is at most a sixth of the shortest period, as other steps are
 UNIT_OF_WINDOW = 1e3 / (2.0 * math.pi)  # the series count in 1 / (highest angular frequency), 1e-3 / (2 pi) windows
@@ -35,6 +35,8 @@ class Shape:
     breaks: int = 0
     own: tuple[tuple[str, str], ...] = ()
     endless: tuple[tuple[str, str], ...] = ()
+    lanes: int = LANES
+    recorded: bool = False
 
     @property
     def taylor(self) -> bool:
@@ -55,6 +57,20 @@ class Shape:
     def simple(self) -> bool:
         """Whether the usual event can be decided on the rows alone: constant signals, no contact that opens."""
         return self.exact and not self.varying and not any(self.unilateral)
+
+    @property
+    def audited(self) -> bool:
+        """Whether the works of a recorded motion include that of a skew stiffness."""
+        return any(f"ka{i}_{j}" in self.present for i in range(self.n) for j in range(self.n))
+
+    @property
+    def followed(self) -> list[str]:
+        """What a recorded motion is told in, each a series of time in a step: the works first of friction, then of the
+        load, of circulation, of damping and of opening.
+        """
+        n, m = self.n, self.m
+        works = [f"work{c}" for c in range(m)] + [f"work_{name}" for name in ("load", "skew", "damping", "opening")]
+        return [f"q{i}" for i in range(n)] + works + [f"{name}{c}" for name in ("n", "v", "f") for c in range(m)]
 
     def along(self, c: int) -> bool:
         """Whether contact c has a direction along which it can stick."""
@@ -95,7 +111,8 @@ class Rows:
 def parameter_rows(shape: Shape) -> list[str]:
     """Names of the rows that come with a job: what the equation holds, then start, tolerances and limits."""
     n, m = shape.n, shape.m
-    names = [name for name in entries(n, m) if name in shape.present]
+    named = entries(n, m) + (audit(n) if shape.recorded else [])
+    names = [name for name in named if name in shape.present]
     for c, (_, count) in enumerate(shape.laws):
         names += [f"law{c}_{i}" for i in range(count)] + [f"slope{c}"]
     for index, terms in enumerate(shape.signals):
@@ -114,6 +131,11 @@ def entries(n: int, m: int) -> list[str]:
     names += [f"{name}{c}_{i}" for name in ("md", "mw", "d", "t", "n", "w") for c in range(m) for i in range(n)]
     names += [f"g{c}_{b}" for c in range(m) for b in range(m)]
     return names + [f"V{c}" for c in range(m)] + [f"N0{c}" for c in range(m)] + [f"f{i}" for i in range(n)]
+
+
+def audit(n: int) -> list[str]:
+    """Names of the further numbers a recorded motion's works take: damping, skew stiffness and load."""
+    return [f"{name}{i}_{j}" for name in ("c", "ka") for i in range(n) for j in range(n)] + [f"F{i}" for i in range(n)]
 
 
 def layout(shape: Shape) -> Rows:
@@ -140,6 +162,11 @@ def layout(shape: Shape) -> Rows:
             rows.add(*(f"term{i}_{k}" for i in range(n) for k in range(ORDER + 2)))
         else:
             rows.add(*(f"{x}_old{i}" for x in "qva" for i in range(n)))
+    if shape.recorded:
+        rows.add(
+            "next", "sample", "t_old", "span", *(f"done{k}" for k in range(m + 4)), *(f"fastest{c}" for c in range(m))
+        )
+        rows.add(*(f"term{k}_{name}" for k in range(ORDER + 2) for name in shape.followed))
     if any(observer.of == "contact" for observer in shape.observers):
         rows.add(*(f"work{c}" for c in range(m)))
     for k, observer in enumerate(shape.observers):

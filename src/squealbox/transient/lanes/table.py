@@ -10,10 +10,11 @@ from squealbox.system import InvalidSystem, System
 from squealbox.transient import packing
 from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.batch import first_of
-from squealbox.transient.lanes.shape import PARTS, Shape, entries, parameter_rows
+from squealbox.transient.lanes.shape import LANES, PARTS, Shape, audit, entries, parameter_rows
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.own_laws import law_kinds, own_texts
 
+FEW = 3  # freedoms and contacts up to which a single run shares its kernel with other patterns of zeros
 ANGLE = 1.2  # of a schedule's swing in a Taylor step: what a series of order 16 leaves out is 6e-14 of it
 
 
@@ -34,7 +35,7 @@ class Jobs:
 
 def tabulate(
     system: System, method: Method, scheme: int, width: float, start: tuple[Any, Any], duration: float,
-    begin: float, watches: tuple[Any, ...], coefficients: tuple[float, ...], samples: bool,
+    begin: float, watches: tuple[Any, ...], coefficients: tuple[float, ...], samples: bool, recorded: bool = False,
 ) -> Jobs:  # fmt: skip
     """The jobs of a batched system; leading axes are those of the system or else of the starts, flattened."""
     if any(contact.rigid for contact in system.contacts):
@@ -43,7 +44,7 @@ def tabulate(
         )
     batch = system.shape or np.shape(start[0])[:-1]
     count = int(np.prod(batch, dtype=int))
-    values, signals, breaks = _equation(system)
+    values, signals, breaks = _equation(system, recorded)
     template = first_of(system)
     n, m = system.size, len(system.contacts)
     q, qd = start
@@ -53,8 +54,11 @@ def tabulate(
     values |= {f"break{k}": instant for k, instant in enumerate(breaks)} | {"width": np.asarray(width)}
     kinds = law_kinds(system.contacts)
     laws = tuple((int(kind), len(c.law.coefficients())) for kind, c in zip(kinds, system.contacts, strict=True))
-    present = frozenset(name for name in entries(n, m) if name in values and np.any(values[name] != 0.0))
+    names = entries(n, m) + (audit(n) if recorded else [])
+    present = frozenset(name for name in names if name in values and np.any(values[name] != 0.0))
     unilateral = tuple(bool(c.unilateral) for c in system.contacts)
+    if recorded and n <= FEW and m <= FEW:
+        present = _filled(present, [name for name in names if name in values])
     shape = Shape(
         n,
         m,
@@ -69,6 +73,8 @@ def tabulate(
         len(breaks),
         own_texts(system.contacts),
         _endless(values, laws) if method.tableau == TAYLOR else (),
+        1 if recorded else LANES,
+        recorded,
     )
     names = parameter_rows(shape)
     fixed = np.zeros(3 + len(names) + len(coefficients))
@@ -87,7 +93,7 @@ def tabulate(
     return Jobs(shape, np.ascontiguousarray(table), varies, fixed, template)
 
 
-def _equation(system: System) -> tuple[dict[str, Any], Any, list[Any]]:
+def _equation(system: System, recorded: bool = False) -> tuple[dict[str, Any], Any, list[Any]]:
     """Numbers of the equation by name, kinds of the signals (none when all are constant), and their kinks."""
     n, contacts = system.size, system.contacts
     inverse = packing.inverse_mass(system.M)
@@ -115,9 +121,14 @@ def _equation(system: System) -> tuple[dict[str, Any], Any, list[Any]]:
     signals = [_terms(c.V) for c in contacts] + [_terms(c.N0) for c in contacts]
     load = packing.load_terms(system)
     signals += [[(_times(inverse, weight)[..., i], part) for weight, part in load] for i in range(n)]
+    if recorded:
+        put("c", system.C)
+        put("ka", 0.5 * (system.K - np.swapaxes(system.K, -1, -2)))
+        signals += [[(np.asarray(weight)[..., i], part) for weight, part in load] for i in range(n)]
     if all(isinstance(part, Constant) for terms in signals for _, part in terms):
         names = [f"V{c}" for c in range(len(contacts))] + [f"N0{c}" for c in range(len(contacts))]
-        for name, terms in zip([*names, *(f"f{i}" for i in range(n))], signals, strict=True):
+        names += [f"{name}{i}" for name in ("f", "F") for i in range(n)]
+        for name, terms in zip(names, signals, strict=False):
             values[name] = sum(weight * np.asarray(part.coefficients()[0]) for weight, part in terms)
         return values, (), []
     kinds = []
@@ -129,6 +140,19 @@ def _equation(system: System) -> tuple[dict[str, Any], Any, list[Any]]:
                 values[f"given{index}_{k}_{i}"] = np.asarray(coefficient, dtype=float)
     instants = sorted({t for terms in signals for _, part in terms for t in part.breaks()})
     return values, tuple(kinds), [np.asarray(t) for t in instants]
+
+
+def _filled(present: frozenset[str], names: list[str]) -> frozenset[str]:
+    """The names present and the zeros beside them: the rows of one contact, or a skew stiffness, are there or not."""
+    rows = {name.partition("_")[0] for name in present}
+    skew = any(row.startswith("ka") for row in rows)
+
+    def there(name: str) -> bool:
+        kind = name.rstrip("0123456789_")
+        own = name.partition("_")[0] in rows
+        return own if kind in ("md", "mw", "d", "t", "n", "w") else skew if kind == "ka" else True
+
+    return frozenset(name for name in names if there(name))
 
 
 def _terms(value: Any) -> list[tuple[Any, Schedule]]:

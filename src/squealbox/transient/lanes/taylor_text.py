@@ -77,6 +77,8 @@ class TaylorStep(EquationText):
         self.length(v)
         self.ending(found)
         self.observe_parts(found, q, v)
+        if self.shape.recorded:
+            self.record(found, q, v)
         self.finish(found, q, v)
         return "\n".join(["@traced_as_written", f"def {name}(A, b):", *self.lines, "    return flags\n"])
 
@@ -219,6 +221,40 @@ class TaylorStep(EquationText):
         tuples = ", ".join("(" + "".join(f"{x}{k}p{part}, " for k in range(n)) + ")" for x in "qva")
         return f"State({time}, {tuples})"
 
+    def record(self, found: dict[str, list[str]], q: list[str], v: list[str]) -> None:
+        """Keep the series of all that a recorded motion is told in, and the works done so far."""
+        n, m, shape = self.shape.n, self.shape.m, self.shape
+        rates = [f"({found['force'][c]} * ({' + '.join(self.product(f'd{c}', v)) or '0.0'}))" for c in range(m)]
+        load = [(" + ".join(self.signal(2 * m + n + i, f"F{i}", "time")), x) for i, x in enumerate(v)]
+        rates.append(" + ".join(f"({force}) * {x}" for force, x in load if force))
+        turned = [(" + ".join(self.product(f"ka{i}", q)), x) for i, x in enumerate(v)]
+        rates.append(" + ".join(f"(-{x}) * ({row})" for row, x in turned if row) if shape.audited else "")
+        rates.append(
+            " + ".join(f"{x} * ({row})" for i, x in enumerate(v) if (row := " + ".join(self.product(f"c{i}", v))))
+        )
+        lifted = [(" + ".join(self.product(f"w{c}", v)), c) for c in range(m) if shape.unilateral[c]]
+        rates.append(" + ".join(f"{self.row(f'open{c}')} * {found['normal'][c]} * ({row})" for row, c in lifted if row))
+        for k, rate in enumerate(rates):
+            self.put(f"works{k} = integral({rate}) * unit" if rate else f"works{k} = 0.0")
+            done = self.row(f"done{k}")
+            if rate:
+                self.keep(f"done{k}", f"where(moved, {done} + value(works{k}, end, {ORDER}), {done})")
+        told = [(each, ORDER + 1) for each in q] + [(f"works{k}", ORDER) for k in range(m + 4)]
+        told += [(each, ORDER) for name in ("normal", "speed") for each in found[name]]
+        told += [(each, ORDER - 1) for each in found["force"]]
+        for name, (series, order) in zip(shape.followed, told, strict=True):
+            for k in range(order + 1):
+                place = self.rows.places[f"term{k}_{name}"] * shape.lanes
+                value = f"at({series}, {k})" if k or not series.startswith("works") else self.row(f"done{series[5:]}")
+                self.put(f"store_known(A, b + {place}, {value})")
+        for c in range(m):
+            ends = f"maximum(abs(at({found['speed'][c]}, 0)), abs(value({found['speed'][c]}, end, {ORDER})))"
+            self.keep(
+                f"fastest{c}", f"where(fine, maximum({self.row(f'fastest{c}')}, {ends}), {self.row(f'fastest{c}')})"
+            )
+        self.keep("t_old", "t_")
+        self.keep("span", "end * unit")
+
     def finish(self, found: dict[str, list[str]], q: list[str], v: list[str]) -> None:
         """Take the step, count, and say which lanes need service."""
         n, shape = self.shape.n, self.shape
@@ -250,7 +286,7 @@ class TaylorStep(EquationText):
             self.keep("target", "target")
             self.keep("resume", self.row("largest"))
             code, any_of = code + " + 16.0 * event", any_of + " | event"
-        if shape.samples:
+        if shape.samples or shape.recorded:
             self.put(f"due = moved & (t_now >= {self.row('next')})")
             code, any_of = code + " + 32.0 * due", any_of + " | due"
         self.flag(code, any_of)

@@ -99,7 +99,7 @@ class Work:
                 scratch = packing.scratch(record, np.zeros(n), np.zeros(n), self.begin, 0.0)
                 kernel(
                     lanes, live, jobs.table, jobs.varies, jobs.fixed, self.times, samples, counter, count, out,
-                    record.copy(), rule, scratch, stop, EVERY,
+                    record.copy(), rule, scratch, stop, EVERY, np.zeros((1, 1)), np.zeros((1, 1)), counter,
                 )  # fmt: skip
             except BaseException as error:  # handed to the caller below
                 failures.append(error)
