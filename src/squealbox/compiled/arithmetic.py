@@ -1,6 +1,6 @@
 """Operations on numbers of translated code: each writes a line of LLVM's text and gives the register of its result.
 
-Rounding is as written: no operation is fused or reordered, so a translated function gives the very bits of the plain one
+Rounding is as written: no operation is fused or reordered, so a translated function gives the bits of the plain one
 wherever the C library does.
 """
 

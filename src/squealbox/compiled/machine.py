@@ -53,6 +53,10 @@ class Compiled:
         self.module: Any = None
 
     def __call__(self, *given: Any) -> Any:
+        return self.bound(*given)()
+
+    def bound(self, *given: Any) -> Callable[[], Any]:
+        """The call with these arguments, to be made several times: what lies in memory is read anew each time."""
         key = tuple(_key(each) for each in given)
         made = self.made.get(key)
         if made is None:
@@ -86,7 +90,7 @@ class Compiled:
 def _key(value: Any) -> Any:
     """What tells the kinds of arguments apart, quickly."""
     if isinstance(value, np.ndarray):
-        return value.dtype.char, value.ndim
+        return (value.dtype.char, value.ndim) if value.dtype.names is None else (id(value.dtype), value.dtype)
     if isinstance(value, np.void):
         return id(value.dtype), value.dtype
     return tuple(_key(each) for each in value) if isinstance(value, tuple) else type(value)
@@ -94,6 +98,8 @@ def _key(value: Any) -> Any:
 
 def _kind(value: Any) -> Any:
     """The kind of an argument handed over from Python."""
+    if isinstance(value, np.ndarray) and value.dtype.names is not None and value.shape == (1,):
+        return kind_of(Record(value.dtype, ""))
     if isinstance(value, np.ndarray):
         if value.dtype not in ELEMENTS or not value.flags.c_contiguous:
             raise TypeError(f"an array of {value.dtype}: compiled code takes float64 and int64, row by row")
@@ -216,32 +222,38 @@ def _machine_of_its_own() -> Any:
     return llvm.Target.from_default_triple().create_target_machine(jit=True)
 
 
-def _callable(address: int, kinds: tuple[Any, ...], returned: Any) -> Callable[..., Any]:
-    """The compiled function as a Python function; it releases the interpreter's lock while it runs."""
+def _callable(address: int, kinds: tuple[Any, ...], returned: Any) -> Callable[..., Callable[[], Any]]:
+    """Binds arguments to the compiled function, which releases the interpreter's lock while it runs."""
     types = [CTYPES[text] for kind in kinds for text in registers(kind)]
     function = ctypes.CFUNCTYPE(None, *types, ctypes.c_void_p)(address)
     parts = () if returned is None else (returned,) if isinstance(returned, str) else returned[1]
     turns = tuple({FLOAT: float, WHOLE: int, TRUTH: bool}[kind] for kind in parts)
 
-    def call(*given: Any) -> Any:
-        """Hand over addresses and numbers, and read what was returned."""
+    def bound(*given: Any) -> Callable[[], Any]:
+        """Hand over addresses and numbers; the arguments stay alive as long as the call."""
         out = (ctypes.c_double * max(len(parts), 1))()
         flat: list[Any] = []
         for each in given:
             _flatten(each, flat)
-        function(*flat, ctypes.addressof(out))
-        found = tuple(turn(x) for turn, x in zip(turns, out, strict=False))
-        return None if returned is None else found[0] if isinstance(returned, str) else found
+        flat.append(ctypes.addressof(out))
 
-    return call
+        def call(_: Any = (given, out)) -> Any:
+            function(*flat)
+            found = tuple(turn(x) for turn, x in zip(turns, out, strict=False))
+            return None if returned is None else found[0] if isinstance(returned, str) else found
+
+        return call
+
+    return bound
 
 
 def _flatten(value: Any, flat: list[Any]) -> None:
     if isinstance(value, np.ndarray):
         if not value.flags.c_contiguous:
             raise TypeError("an array that does not lie row by row")
-        flat.append(value.__array_interface__["data"][0])
-        flat.extend(value.shape)
+        flat.append((value if value.dtype.names is None else value.view(np.uint8)).ctypes.data)
+        if value.dtype.names is None:
+            flat.extend(value.shape)
     elif isinstance(value, np.void):
         flat.append(value.__array_interface__["data"][0])
     elif isinstance(value, tuple):

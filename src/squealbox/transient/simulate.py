@@ -16,12 +16,13 @@ from squealbox.transient import _march, _motion, cautions, moreau, packing
 from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR, Method
-from squealbox.transient.own_laws import own_texts, texts_of
+from squealbox.transient.own_laws import own_texts, texts_of, untraced
 from squealbox.transient.trajectory import Trajectory
 
 SCHEMES = {"exact": EXACT, "raw": RAW, "tanh": TANH, "smooth": ARCTAN, "arctan": ARCTAN}
 TIME_STEPPING = "time-stepping"
 LARGE = 160  # products of an acceleration up to which a generated step is written out
+KEPT = 16  # designs whose systems are at hand
 ROWS = 32_768  # room for steps at first; memory is touched only as rows are written
 BUDGET = (5_000, 50_000)  # least and most steps between two looks at the keyboard
 LOOK = 0.02  # s that should pass between them
@@ -99,7 +100,7 @@ def simulate(
     >>> simulate(DrumBrake(), duration=1e-3).outcome
     'completed'
     """
-    system = in_time(as_system(design_or_system))
+    system = system_of(design_or_system)
     if contact not in (*SCHEMES, TIME_STEPPING):
         raise ParameterError("simulate", "contact", contact, known_names(str(contact), [*SCHEMES, TIME_STEPPING]))
     for name, value, low in (("duration", duration, 0.0), ("width", width, 0.0), ("start_time", start_time, -np.inf)):
@@ -114,6 +115,7 @@ def simulate(
     if contact == TIME_STEPPING:
         return moreau.time_stepping(system, duration, q, qd, start_time, requested, step)
     if chosen.tableau == TAYLOR:
+        _has_series(system, contact)
         return _by_series(system, chosen, contact, width, q, qd, start_time, duration, requested, progress)
     run = _Run(system, chosen, SCHEMES[contact], width, q, qd, start_time, requested)
     outcome = run.to(start_time + duration, duration, progress)
@@ -122,6 +124,18 @@ def simulate(
         "width": width, "tableau": chosen.tableau, "rtol": chosen.rtol, "atol": run.atol.tolist(),
     }  # fmt: skip
     return run.trajectory(settings, outcome)
+
+
+LATEST: dict[int, tuple[Any, System]] = {}  # designs are frozen: the same one has the same system
+
+
+def system_of(design_or_system: Any) -> System:
+    """The system in time of a design; that of the latest designs is at hand."""
+    found = LATEST.pop(id(design_or_system), None) or (design_or_system, in_time(as_system(design_or_system)))
+    LATEST[id(design_or_system)] = found
+    if len(LATEST) > KEPT:
+        LATEST.pop(next(iter(LATEST)))
+    return found[1]
 
 
 class _Run:
@@ -191,7 +205,6 @@ class _Run:
     def _outcome(self, code: int, end: float) -> Outcome:
         if code == _march.COMPLETED:
             return Outcome(COMPLETED)
-        name, why = MESSAGES[code]
         s, n, room = self.scratch, self.system.size, len(self.problem["mk"])
         reached, step = float(s["clock"][_motion.TIME]), float(s["clock"][_motion.STEP])
         speed = s["speed"][: len(self.system.contacts)]
@@ -285,6 +298,15 @@ def _by_series(
     said = "; ".join(cautions.of_a_run(system, lowest, fastest))
     taken, tried = int(reached[1]), int(reached[2])
     return told(system, *run.columns(), settings, outcome, said, (taken, tried - taken, tried))
+
+
+def _has_series(system: System, contact: str) -> None:
+    """A method that was named and cannot serve is refused."""
+    if contact != "exact":
+        expected = "exact: a Taylor series does not see a jump of sgn, and a smoothed one makes its steps tiny"
+        raise ParameterError("simulate", "contact", contact, expected)
+    if why := no_series(system):
+        raise InvalidSystem(f"{why}: take another method than {TAYLOR}")
 
 
 def usual_method(system: System, contact: str) -> str:

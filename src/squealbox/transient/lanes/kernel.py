@@ -16,9 +16,9 @@ from squealbox.transient.lanes.taylor_text import TaylorStep
 HEAD = """
 from collections import namedtuple
 
-from squealbox.transient.lanes.tracing import apart, take, traced, traced_as_written
+from squealbox.transient.lanes.tracing import apart, take, traced, traced_as_written, wide
 from squealbox.transient.lanes.vectors import (
-    Given, arctan, bits, cos, exp, forget, if_flagged, lane_tanh, load, log, maximum, minimum, rough_power, sin, sqrt,
+    Given, arctan, at_once, bits, cos, exp, forget, if_flagged, lane_tanh, load, log, maximum, minimum, rough_power, sin, sqrt,
     store, store_known, where, with_sign,
 )
 # written by modules whose texts have the digest {digest}: a change of theirs makes another file
@@ -50,7 +50,9 @@ PLACES = {
     "ROW_END": "end0", "ROW_RATE": "rate0", "ROW_RATE_END": "rate_end0", "ROW_INNER": "inner0", "ROW_FORCE":
     "force0", "ROW_ZERO": "zero0", "ROW_OWN_G": "own_g0", "ROW_NEXT_SAMPLE": "next", "ROW_SAMPLE": "sample",
     "ROW_HIGHEST": "highest", "ROW_CLOSE": "close", "ROW_PACE": "pace", "ROW_EARLY": "early0",
-    "ROW_EARLY_RATE": "early_rate0", "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0", "ROW_TERM": "term0_0", "ROW_SPAN": "span", "ROW_FASTEST": "fastest0",
+    "ROW_EARLY_RATE": "early_rate0", "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0", "ROW_TERM": "term0_0",
+    "ROW_SPAN": "span", "ROW_FASTEST": "fastest0", "ROW_SINCE": "since", "ROW_VALUE": "value0",
+    "ROW_SLOPE": "slope_value0",
     "ROW_NOISE": "noise0", "ROW_LOWEST": "lowest0",
 }  # fmt: skip
 
@@ -66,7 +68,7 @@ def source(shape: Shape) -> str:
     """The text of the generated file."""
     rows, step = layout(shape), TaylorStep(shape) if shape.taylor else Step(shape)
     fixed: dict[str, float] = {"WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples}
-    fixed |= {"RECORDED": shape.recorded, "SHARES": PARTS, "FOLLOWED": len(shape.followed)}
+    fixed |= {"RECORDED": shape.recorded, "SHARES": PARTS, "FOLLOWED": len(shape.followed), "BREADTH": shape.breadth}
     fixed |= {"SERIES": shape.taylor, "TRIES": shape.exact and not shape.taylor}
     fixed |= {"SIMPLE": shape.simple, "STEPPED": shape.stepped, "p.rigid[]": 0, "p.rigid_count": 0}
     fixed |= {} if shape.varying else {"p.varying": 0}

@@ -81,22 +81,16 @@ def write_rows(A, b, lane, times, rows, count):
 def write_row(A, b, lane, t, since, row):
     """One row from the series of the step: time, state, works, then N, v, force and mode of each contact."""
     unit = A[b + ROW_WINDOW * WIDTH + lane] * UNIT_OF_WINDOW
-    x = since / unit
+    A[b + ROW_SINCE] = since / unit
+    evaluate(A, b)
     row[0] = t
-    for j in range(FOLLOWED):
-        total = 0.0
-        slope = 0.0
-        for k in range(TERMS - 1, -1, -1):
-            if j < DOFS:
-                slope = slope * x + total
-            total = total * x + A[b + (ROW_TERM + k * FOLLOWED + j) * WIDTH + lane]
-        if j < DOFS:
-            row[1 + j] = total
-            row[1 + DOFS + j] = slope / unit
-        elif j < DOFS + CONTACTS + 4:
-            row[1 + DOFS + j] = total
-        else:
-            row[2 + DOFS + j] = total
+    for i in range(DOFS):
+        row[1 + i] = A[b + ROW_VALUE + i]
+        row[1 + DOFS + i] = A[b + ROW_SLOPE + i] / unit
+    for j in range(DOFS, DOFS + CONTACTS + 4):
+        row[1 + DOFS + j] = A[b + ROW_VALUE + j]
+    for j in range(DOFS + CONTACTS + 4, FOLLOWED):
+        row[2 + DOFS + j] = A[b + ROW_VALUE + j]
     row[5 + 2 * DOFS + CONTACTS] = 0.0
     for c in range(CONTACTS):
         mode = A[b + (ROW_SLIPS + c) * WIDTH + lane]

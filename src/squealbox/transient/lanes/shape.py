@@ -72,6 +72,16 @@ class Shape:
         works = [f"work{c}" for c in range(m)] + [f"work_{name}" for name in ("load", "skew", "damping", "opening")]
         return [f"q{i}" for i in range(n)] + works + [f"{name}{c}" for name in ("n", "v", "f") for c in range(m)]
 
+    @property
+    def breadth(self) -> int:
+        """How many series are evaluated at once: those followed, and zeros up to whole registers."""
+        return -(-len(self.followed) // 8) * 8
+
+    @property
+    def followed_padded(self) -> list[str]:
+        """Names of `breadth` series."""
+        return [*self.followed, *(f"spare{j}" for j in range(self.breadth - len(self.followed)))]
+
     def along(self, c: int) -> bool:
         """Whether contact c has a direction along which it can stick."""
         return all(any(f"{name}{c}_{i}" in self.present for i in range(self.n)) for name in ("t", "d"))
@@ -166,7 +176,10 @@ def layout(shape: Shape) -> Rows:
         rows.add(
             "next", "sample", "t_old", "span", *(f"done{k}" for k in range(m + 4)), *(f"fastest{c}" for c in range(m))
         )
-        rows.add(*(f"term{k}_{name}" for k in range(ORDER + 2) for name in shape.followed))
+        rows.add(
+            "since", *(f"value{j}" for j in range(shape.breadth)), *(f"slope_value{j}" for j in range(shape.breadth))
+        )
+        rows.add(*(f"term{k}_{name}" for k in range(ORDER + 2) for name in shape.followed_padded))
     if any(observer.of == "contact" for observer in shape.observers):
         rows.add(*(f"work{c}" for c in range(m)))
     for k, observer in enumerate(shape.observers):

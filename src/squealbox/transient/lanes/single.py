@@ -1,8 +1,7 @@
-"""One motion by the generated step at width 1: rows of output, log of events and energy audit, as of the scalar march."""
+"""One motion by the generated step at width 1: rows of output, log of events and energy audit, as by the march."""
 
 import time as clock
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -20,6 +19,7 @@ RUNNING = -1.0  # in the row of results of a run that has not ended
 FIRST = 2_000  # trials between the first two looks at the keyboard
 MOST = 200_000
 LOOK = 0.02  # s that should pass between two
+MOST_KEPT = 64
 ROWS = 4_096  # room for rows of output at first
 
 
@@ -34,13 +34,28 @@ class Prepared:
     kernel: Any
 
 
-@lru_cache(maxsize=64)
+KEPT: dict[Any, tuple[System, Prepared]] = {}  # of the latest systems, told apart by identity, for they are frozen
+
+
 def prepared(system: System, method: Method, duration: float, begin: float) -> Prepared:
     """The table of one job, the places of its rows, its record and its kernel."""
+    atol = None if method.atol is None else np.asarray(method.atol, dtype=float).tobytes()
+    how = method.tableau, method.rtol, atol, method.first_step, method.largest_step, method.most_steps
+    key = id(system), *how, duration, begin
+    found = KEPT.pop(key, None) or (system, _prepared(system, method, duration, begin))
+    KEPT[key] = found
+    if len(KEPT) > MOST_KEPT:
+        KEPT.pop(next(iter(KEPT)))
+    return found[1]
+
+
+def _prepared(system: System, method: Method, duration: float, begin: float) -> Prepared:
     rest = np.zeros(system.size)
     jobs = tabulate(system, method, EXACT, 1e-3, (rest, rest), duration, begin, (), (), False, recorded=True)
     names = {name: 3 + row for row, name in enumerate(parameter_rows(jobs.shape))}
-    record = packing.pack(system, method, EXACT, 1e-3, False)
+    packed = packing.pack(system, method, EXACT, 1e-3, False)
+    record = np.zeros(1, dtype=packed.dtype)
+    record[0] = packed
     return Prepared(jobs, layout(jobs.shape), names, record, lane_kernel(jobs.shape))
 
 
@@ -64,7 +79,7 @@ class Single:
         self.count = np.zeros(2, dtype=np.int64)
         self.out = np.full((1, 5 + 2 * n + m), RUNNING)
         spare = np.zeros((1, 1, 1))
-        scratch = packing.scratch(made.record, q, qd, begin, 0.0)
+        scratch = packing.scratch(made.record[0], q, qd, begin, 0.0).base
         self.shared = (
             np.zeros(1, dtype=np.int64), made.jobs.table, made.jobs.varies, self.fixed, self.times, spare,
             np.zeros(1, dtype=np.int64), 1, self.out, made.record.copy(), packing.rule("dormand-prince-8"), scratch,
@@ -86,15 +101,15 @@ class Single:
         """Sliding velocities [m/s] at an instant."""
         return [float(value_at(c.V, t) - c.t @ qd) for c in self.system.contacts]
 
-    def call(self) -> tuple[Any, tuple[Any, ...]]:
+    def call(self, budget: int = FIRST) -> tuple[Any, tuple[Any, ...]]:
         """The kernel of this run, and what it is called with."""
-        return self.made.kernel, (self.lanes, *self.shared, FIRST, self.rows, self.events, self.count)
+        return self.made.kernel, (self.lanes, *self.shared, budget, self.rows, self.events, self.count)
 
     def to(self, end: float, progress: Any = None) -> tuple[int | None, str]:
         """Run to the end; returns how the kernel says it ended, None and why where it was stopped."""
         budget, began = FIRST, clock.monotonic()
         try:
-            while not self.made.kernel(self.lanes, *self.shared, budget, self.rows, self.events, self.count):
+            while not self._advance(budget):
                 self._make_room()
                 now = clock.monotonic()
                 if progress is not None:
@@ -105,6 +120,11 @@ class Single:
         if progress is not None:
             progress(float(self.out[0, 1]), end, clock.monotonic() - began)
         return int(self.out[0, 0]), ""
+
+    def _advance(self, budget: int) -> bool:
+        kernel, given = self.call(budget)
+        done: bool = kernel(*given)
+        return done
 
     def _make_room(self) -> None:
         rows, events = self.count

@@ -42,7 +42,18 @@ class TaylorStep(EquationText):
         return {"TERMS": ORDER + 2, "UNIT_OF_WINDOW": UNIT_OF_WINDOW}
 
     def text(self) -> str:
-        """The function `step(A, b)`, as of `step_text`: another trial where no lane of the group sticks."""
+        """The function `step(A, b)`, and `evaluate(A, b)` of a recorded motion."""
+        return self.steps() + (self.evaluation() if self.shape.recorded else "")
+
+    def evaluation(self) -> str:
+        """The text of `evaluate(A, b)`: all followed series and their slopes at the instant `since`, side by side."""
+        breadth, places = self.shape.breadth, self.rows.places
+        first = places[f"term0_{self.shape.followed[0]}"]
+        call = f"{places['since']}, {first}, {breadth}, {ORDER + 2}, {places['value0']}, {places['slope_value0']}"
+        return f"\n@wide({breadth})\ndef evaluate(A, b):\n    return at_once(A, b, {call})\n"
+
+    def steps(self) -> str:
+        """Another trial where no lane of the group sticks."""
         if not self.shape.exact:
             return self.trial("trial") + CALLED
         parts = [self.trial("trial")]

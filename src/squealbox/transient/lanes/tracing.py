@@ -8,14 +8,12 @@ from llvmlite import ir
 
 from squealbox.compiled.kinds import WHOLE, Array, Number
 from squealbox.compiled.translation import Function, Unit
-
 from squealbox.transient.lanes.vectors import (
     ALIGNED,
     ALLOWED,
     BUILDER,
     DOUBLE,
     INTEGER,
-    WIDTH,
     Given,
     Group,
     Lanes,
@@ -71,18 +69,23 @@ def traced(function: Callable[..., Any]) -> "Traced":
     return Traced(function)
 
 
+def wide(lanes: int) -> Callable[[Callable[..., Any]], "Traced"]:
+    """As `traced_as_written`, on so many lanes whatever the kernel has."""
+    return lambda function: Traced(function, lanes)
+
+
 class Traced:
     """A function of rows in memory that writes itself, once, when compiled code first calls it."""
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        self.function = function
+    def __init__(self, function: Callable[..., Any], lanes: int | None = None) -> None:
+        self.function, self.lanes = function, lanes
 
     def write(self, unit: Unit, caller: Function, values: list[Any]) -> Number:
         """Its call there."""
         rows, offset = values
         name = f"traced_{self.function.__name__}"
         if name not in unit.modules:
-            unit.modules[name] = self.module(name, unit.names["LANES"])
+            unit.modules[name] = self.module(name, self.lanes or unit.names["LANES"])
         caller.needed.add(f"declare i64 @{name}(ptr)")
         place = caller.put(f"getelementptr double, ptr {rows.pointer}, i64 {caller.numbered(offset, WHOLE).text}")
         return Number(WHOLE, caller.put(f"call i64 @{name}(ptr {place})"))

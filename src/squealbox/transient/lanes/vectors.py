@@ -58,8 +58,8 @@ def packed_type() -> Any:
 
 
 def alignment() -> int:
-    """Bytes at whose multiples rows begin."""
-    return min(ALIGNED, 8 * WIDTH.get())
+    """Bytes at whose multiples rows begin: those of a single run just so, those of a group on a line of the cache."""
+    return ALIGNED if WIDTH.get() == LANES else 8
 
 
 def wide_type() -> Any:
@@ -211,22 +211,38 @@ class Given:
         return self.whole[i] if i in self.whole else load(self.group, self.place + i * WIDTH.get())
 
 
-def load(group: Group, place: int) -> Lanes:
-    """The row that begins there."""
+def load(group: Group, place: int, aligned: int | None = None) -> Lanes:
+    """The row that begins there, at a multiple of so many bytes."""
     value = BUILDER.get().load(group.at(place))
-    value.align = alignment()
+    value.align = aligned or alignment()
     return Lanes(value)
 
 
-def store(group: Group, place: int, value: Any) -> None:
+def store(group: Group, place: int, value: Any, aligned: int | None = None) -> None:
     """Write a row."""
-    BUILDER.get().store(packed(value), group.at(place)).align = alignment()
+    BUILDER.get().store(packed(value), group.at(place)).align = aligned or alignment()
 
 
 def store_known(group: Group, place: int, value: Any) -> None:
     """Write a row, unless there is nothing to write: a coefficient that is zero in every lane."""
     if value is not None:
         store(group, place, value)
+
+
+def at_once(group: Group, b: int, since: int, terms: int, breadth: int, count: int, values: int, slopes: int) -> Any:
+    """Several series and their slopes at one instant, a lane for each: `count` coefficients, `breadth` apart."""
+    builder, packed_x = BUILDER.get(), ir.Constant(packed_type(), ir.Undefined)
+    x = builder.load(builder.gep(group.data, [INTEGER(b + since)]))
+    for i in range(WIDTH.get()):
+        packed_x = builder.insert_element(packed_x, x, SHORT(i))
+    at, total, slope = Lanes(packed_x), None, None
+    for k in range(count - 1, -1, -1):
+        term = load(group, b + terms + k * breadth, 8)
+        slope = total if slope is None or total is None else fused(slope, at, total)
+        total = term if total is None else fused(total, at, term)
+    store(group, b + values, total, 8)
+    store(group, b + slopes, slope, 8)
+    return INTEGER(0)
 
 
 def forget() -> None:
