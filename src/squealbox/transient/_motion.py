@@ -19,6 +19,7 @@ from squealbox.transient._rigid import constrain, solve
 
 RAW, EXACT, TANH, ARCTAN = 0, 1, 2, 3  # WITH_EVENTS is true in the file compiled for EXACT
 STICK, OPEN = 0, 2
+ALGEBRAIC, FIRST_ORDER = 0, 1  # kinds of rows without mass, as of `rows`
 ROUND_OFF = 2e-14  # of a sum, as a share of its terms
 # s.clock: time, proposed step, logarithm of the previous error, end of the smooth piece, start of the window in which
 # events are counted, last instant inside the piece, fastest landing on a rigid contact so far
@@ -152,24 +153,58 @@ def derivative(p, t, y, mode, s, dy):
         for c in range(p.contacts):
             a += p.md[c, i] * s.force[c]
         dy[n + i] = a
-    opening = release_open(p, y, mode, s, dy) if opened else 0.0
+    if opened:
+        release_open(p, mode, s, dy)
     solved = True
     if WITH_EVENTS and p.rigid_count > 0:
         solved = constrain(p, mode, s, dy, False)
     elif WITH_EVENTS and sticking > 0:
         solved = hold(p, s, sticking, dy)
-    energy_rates(p, y, s, opening, dy)
+    if p.light:
+        without_mass(p, y, dy)
+    energy_rates(p, y, s, opening_power(p, y, mode, s) if opened else 0.0, dy)
     return solved
 
 
-def release_open(p, y, mode, s, dy):
-    """Take the reaction of open contacts, held in K and the load, out of the accelerations; returns its power."""
+def without_mass(p, y, dy):
+    """Rows of first order and algebraic ones: what stands in dy in the place of q'' is q' of the former, q of the latter.
+
+    Their velocities are written into y, where the energy integrals and the output read them.
+    """
+    n = p.mk.shape[0]
+    for i in range(n):
+        if p.kind[i] == FIRST_ORDER:
+            dy[i] = dy[n + i]
+            y[n + i] = dy[n + i]
+            dy[n + i] = 0.0
+    for i in range(n):
+        if p.kind[i] == ALGEBRAIC:
+            y[i] = dy[n + i]
+            rate = 0.0
+            for j in range(n):
+                if p.kind[j] != ALGEBRAIC:
+                    rate -= p.mk[i, j] * y[n + j]
+            y[n + i] = rate
+            dy[i] = 0.0
+            dy[n + i] = 0.0
+
+
+def release_open(p, mode, s, dy):
+    """Take the reaction of open contacts, held in K and the load, out of the accelerations."""
+    n = p.mk.shape[0]
+    for c in range(p.contacts):
+        if is_open(p, c, mode, s.normal[c]) and not p.rigid[c]:
+            for i in range(n):
+                dy[n + i] += p.mw[c, i] * s.normal[c]
+
+
+def opening_power(p, y, mode, s):
+    """The power of that."""
     n = p.mk.shape[0]
     power = 0.0
     for c in range(p.contacts):
         if is_open(p, c, mode, s.normal[c]) and not p.rigid[c]:
             for i in range(n):
-                dy[n + i] += p.mw[c, i] * s.normal[c]
                 power += p.w[c, i] * y[n + i] * s.normal[c]
     return power
 

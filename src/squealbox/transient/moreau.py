@@ -69,6 +69,8 @@ def time_stepping(
     from squealbox.transient._engine import time_stepping_kernel
 
     problem = packing.pack(system, Method(), 0, 1.0, True)
+    if problem["light"]:
+        raise InvalidSystem('a row has no mass: time stepping solves for velocities; take contact="exact"')
     period = 1e3 * float(problem["window"])
     highest = packing.highest_frequency(problem["mk"])
     longest = 2.0 / highest if highest > 0.0 else np.inf

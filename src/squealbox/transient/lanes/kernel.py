@@ -34,6 +34,7 @@ from squealbox.transient.lanes.series import (
     Series, arctan, at, constant, cos, deciding, exp, from_zero, integral, lane_tanh, log, maximum, minimum, sin, sqrt,
     time_series, value, where,
 )
+from squealbox.transient.lanes.series import derivative as slope_series
 from squealbox.transient.lanes.taylor import grow, reach, ready, surely_slips
 from squealbox.transient.lanes.taylor_events import step_end
 """
@@ -72,6 +73,7 @@ def source(shape: Shape) -> str:
     fixed |= {"SERIES": shape.taylor, "TRIES": shape.exact and not shape.taylor}
     fixed |= {"SIMPLE": shape.simple, "STEPPED": shape.stepped, "p.rigid[]": 0, "p.rigid_count": 0}
     fixed |= {} if shape.varying else {"p.varying": 0}
+    fixed |= {} if shape.kinds else {"p.light": 0}
     laws, schedules = {kind for kind, _ in shape.laws}, {kind for terms in shape.signals for kind, _ in terms}
     parts = [
         *_engine.head(inline=False, own=shape.own, laws=laws, schedules=schedules),

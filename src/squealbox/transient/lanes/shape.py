@@ -6,6 +6,7 @@ from typing import Any
 
 from squealbox.transient._motion import EXACT
 from squealbox.transient.methods import TAYLOR
+from squealbox.transient.rows import FIRST_ORDER, WITH_MASS
 
 LANES = 16  # trajectories side by side in an ensemble
 ORDER = 16  # of the velocities in a Taylor step; 14 to 20 cost the same at relative errors from 1e-5 to 1e-12
@@ -19,7 +20,8 @@ class Shape:
 
     `present` names the entries that are not zero in the whole ensemble, such as "mk01". `signals` gives the kind of
     schedule of each term of V_c, N0_c and M^-1 f_i, in that order; () where it is a constant row. `endless` gives the
-    coefficients of laws that are infinite in the whole ensemble, as text.
+    coefficients of laws that are infinite in the whole ensemble, as text. `kinds` are those of `rows`, () where every row
+    has mass.
     """
 
     n: int
@@ -37,6 +39,7 @@ class Shape:
     endless: tuple[tuple[str, str], ...] = ()
     lanes: int = LANES
     recorded: bool = False
+    kinds: tuple[int, ...] = ()
 
     @property
     def taylor(self) -> bool:
@@ -56,7 +59,8 @@ class Shape:
     @property
     def simple(self) -> bool:
         """Whether the usual event can be decided on the rows alone: constant signals, no contact that opens."""
-        return self.exact and not self.varying and not any(self.unilateral)
+        pushed = any(f"md{c}_{i}" in self.present for c in range(self.m) for i in self.of(FIRST_ORDER))
+        return self.exact and not self.varying and not any(self.unilateral) and not pushed
 
     @property
     def audited(self) -> bool:
@@ -91,6 +95,14 @@ class Shape:
         """Contacts that cannot open and whose normal force varies: how far it falls is kept."""
         varies = [any(f"n{c}_{i}" in self.present for i in range(self.n)) or self.varying for c in range(self.m)]
         return [c for c in range(self.m) if varies[c] and not self.unilateral[c]]
+
+    def has_mass(self, i: int) -> bool:
+        """Whether row i has mass, and so a velocity of its own."""
+        return not self.kinds or self.kinds[i] == WITH_MASS
+
+    def of(self, *kinds: int) -> list[int]:
+        """The rows of these kinds."""
+        return [i for i in range(self.n) if (self.kinds[i] if self.kinds else WITH_MASS) in kinds]
 
     @property
     def stepped(self) -> bool:

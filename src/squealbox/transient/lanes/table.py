@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.schedules import Constant, Schedule
+from squealbox.schedules import Constant, Schedule, value_at
 from squealbox.system import InvalidSystem, System
 from squealbox.transient import packing
 from squealbox.transient._motion import EXACT
@@ -13,6 +13,7 @@ from squealbox.transient.lanes.batch import first_of
 from squealbox.transient.lanes.shape import LANES, PARTS, Shape, audit, entries, parameter_rows
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.own_laws import law_kinds, own_texts
+from squealbox.transient.rows import Rows, consistent, fastest_rate, rows_of
 
 FEW = 3  # freedoms and contacts up to which a single run shares its kernel with other patterns of zeros
 ANGLE = 1.2  # of a schedule's swing in a Taylor step: what a series of order 16 leaves out is 6e-14 of it
@@ -44,13 +45,15 @@ def tabulate(
         )
     batch = system.shape or np.shape(start[0])[:-1]
     count = int(np.prod(batch, dtype=int))
-    values, signals, breaks = _equation(system, recorded)
+    rows = rows_of(system)
+    values, signals, breaks = _equation(system, rows, recorded)
     template = first_of(system)
     n, m = system.size, len(system.contacts)
     q, qd = start
+    q = consistent(system, rows, q, np.asarray(value_at(system.load, begin), dtype=float))
     for k in range(n):
         values[f"start{k}"], values[f"start{n + k}"] = q[..., k], qd[..., k]
-    values |= _tolerances(system, method, values, scheme == EXACT and m > 0, duration)
+    values |= _tolerances(system, method, values, rows, scheme == EXACT and m > 0, duration)
     values |= {f"break{k}": instant for k, instant in enumerate(breaks)} | {"width": np.asarray(width)}
     kinds = law_kinds(system.contacts)
     laws = tuple((int(kind), len(c.law.coefficients())) for kind, c in zip(kinds, system.contacts, strict=True))
@@ -75,6 +78,7 @@ def tabulate(
         _endless(values, laws) if method.tableau == TAYLOR else (),
         1 if recorded else LANES,
         recorded,
+        () if rows.all_have_mass else rows.kinds,
     )
     names = parameter_rows(shape)
     fixed = np.zeros(3 + len(names) + len(coefficients))
@@ -93,10 +97,10 @@ def tabulate(
     return Jobs(shape, np.ascontiguousarray(table), varies, fixed, template)
 
 
-def _equation(system: System, recorded: bool = False) -> tuple[dict[str, Any], Any, list[Any]]:
+def _equation(system: System, rows: Rows, recorded: bool = False) -> tuple[dict[str, Any], Any, list[Any]]:
     """Numbers of the equation by name, kinds of the signals (none when all are constant), and their kinks."""
     n, contacts = system.size, system.contacts
-    inverse = packing.inverse_mass(system.M)
+    inverse = rows.inverse
     values: dict[str, Any] = {}
 
     def put(name: str, matrix: Any) -> None:
@@ -104,12 +108,12 @@ def _equation(system: System, recorded: bool = False) -> tuple[dict[str, Any], A
             for j in range(matrix.shape[-1]):
                 values[f"{name}{i}_{j}"] = matrix[..., i, j]
 
-    put("mk", inverse @ system.K)
-    put("mc", inverse @ system.C)
+    put("mk", rows.stiffness)
+    put("mc", rows.damping)
     for c, contact in enumerate(contacts):
         w = np.zeros(n) if contact.normal is None else contact.normal
-        rows = {"md": _times(inverse, contact.d), "mw": _times(inverse, w), "d": contact.d, "t": contact.t}
-        for name, vector in (rows | {"n": contact.n, "w": w}).items():
+        columns = {"md": _times(inverse, contact.d), "mw": _times(inverse, w), "d": contact.d, "t": contact.t}
+        for name, vector in (columns | {"n": rows.n[c], "w": w}).items():
             for i in range(n):
                 values[f"{name}{c}_{i}"] = np.asarray(vector)[..., i]
         for e, other in enumerate(contacts):
@@ -120,6 +124,8 @@ def _equation(system: System, recorded: bool = False) -> tuple[dict[str, Any], A
         values[f"slope{c}"] = np.asarray(contact.law.slope_at(0.0), dtype=float)
     signals = [_terms(c.V) for c in contacts] + [_terms(c.N0) for c in contacts]
     load = packing.load_terms(system)
+    for c in range(len(contacts)):
+        signals[len(contacts) + c] += packing.through_the_load(system, rows, c, load)
     signals += [[(_times(inverse, weight)[..., i], part) for weight, part in load] for i in range(n)]
     if recorded:
         put("c", system.C)
@@ -159,10 +165,12 @@ def _terms(value: Any) -> list[tuple[Any, Schedule]]:
     return list(value.terms()) if isinstance(value, Schedule) else [(np.asarray(1.0), Constant(value))]
 
 
-def _tolerances(system: System, method: Method, values: dict[str, Any], exact: bool, duration: float) -> dict[str, Any]:
+def _tolerances(
+    system: System, method: Method, values: dict[str, Any], rows: Rows, exact: bool, duration: float
+) -> dict[str, Any]:
     """Tolerances and limits of the steps, as `packing` and `simulate` choose them, one for each job."""
     n = system.size
-    own = _highest_frequency(values, n)
+    own = _highest_frequency(values, n) if rows.all_have_mass else fastest_rate(rows)
     highest = np.where(own > 0.0, own, 1.0)
     swing = packing.schedule_frequency(system)
     pace = np.maximum(own, swing)

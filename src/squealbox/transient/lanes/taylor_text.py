@@ -13,6 +13,7 @@ from squealbox.system import InvalidSystem
 from squealbox.transient.lanes.equation_text import CALLED, EquationText
 from squealbox.transient.lanes.formulas import is_table
 from squealbox.transient.lanes.shape import ORDER, PARTS, UNIT_OF_WINDOW, Shape
+from squealbox.transient.rows import ALGEBRAIC, FIRST_ORDER, WITH_MASS
 
 CALLED_BY_MODE = """
 
@@ -75,15 +76,18 @@ class TaylorStep(EquationText):
         self.put(f"unit = window_ * {UNIT_OF_WINDOW!r}")
         self.put("inside_ = np.inf")
         self.put("rest = (t_end_ - t_) / unit")
-        for state in (*(f"q{i}" for i in range(n)), *(f"v{i}" for i in range(n))):
+        heavy, moving = self.shape.of(WITH_MASS), self.shape.of(WITH_MASS, FIRST_ORDER)
+        for state in (*(f"q{i}" for i in moving), *(f"v{i}" for i in heavy)):
             self.put(f"{state}s = Series(None, ({self.row(state)},))")
         q, v = [f"q{i}s" for i in range(n)], [f"v{i}s" for i in range(n)]
         self.put("time = time_series(t_, unit)")
         self.put("with deciding() as kinks:")
         self.lines, before = [], self.lines
         found = self.accelerations(q, v, "time")
-        a = found["a"]
-        self.put(f"grow(({', '.join(q)},), ({', '.join(v)},), ({', '.join(a)},), unit, {ORDER})")
+        found["a"] = self.without_mass(found["a"])
+        names = ["".join(f"{x}{i}s, " for i in moving) for x in "qv"] + ["".join(f"{found['a'][i]}, " for i in heavy)]
+        grown = "".join(f"v{i}s, " for i in heavy)
+        self.put(f"grow(({names[0]}), ({names[1]}), ({grown}), ({names[2]}), unit, {ORDER})")
         self.lines = before + ["    " + line for line in self.lines]
         self.length(v)
         self.ending(found)
@@ -92,6 +96,19 @@ class TaylorStep(EquationText):
             self.record(found, q, v)
         self.finish(found, q, v)
         return "\n".join(["@traced_as_written", f"def {name}(A, b):", *self.lines, "    return flags\n"])
+
+    def without_mass(self, x: list[str]) -> list[str]:
+        """q'' of every row, where x is q' of rows of first order and q of algebraic ones: their series give the rest."""
+        out = list(x)
+        for i in self.shape.of(FIRST_ORDER):
+            self.put(f"v{i}s = {x[i]}")
+        for i in self.shape.of(ALGEBRAIC):
+            self.put(f"q{i}s = {x[i]}")
+            self.put(f"v{i}s = slope_series(q{i}s) * (1.0 / unit)")
+        for i in self.shape.of(FIRST_ORDER, ALGEBRAIC):
+            out[i] = f"a{i}s"
+            self.put(f"a{i}s = slope_series(v{i}s) * (1.0 / unit)")
+        return out
 
     def hold(self, k: int, a: list[str], forces: list[str], normals: list[str], time: str) -> list[str]:
         """As usual; nothing where no contact sticks."""
@@ -128,12 +145,12 @@ class TaylorStep(EquationText):
 
     def length(self, v: list[str]) -> None:
         """`x`: how long the step may be, in units of the series."""
-        n = self.shape.n
-        for i in range(n):
+        moving = self.shape.of(WITH_MASS, FIRST_ORDER)
+        for i in moving:
             here = f"(abs({self.row(f'q{i}')}) + unit * abs({self.row(f'v{i}')}))"
             self.put(f"size{i} = {self.row(f'atol{i}')} + rtol_ * {here}")
-        sizes = ", ".join(f"size{i}" for i in range(n))
-        self.put(f"reached, fine = reach(({', '.join(v)},), ({sizes},), unit, {ORDER})")
+        sizes, speeds = "".join(f"size{i}, " for i in moving), "".join(f"{v[i]}, " for i in moving)
+        self.put(f"reached, fine = reach(({speeds}), ({sizes}), unit, {ORDER})")
         self.put("x = minimum(reached, h_ / unit)")
         self.put("last = x >= rest * 0.999999999999")
         self.put("x = where(last, rest, x)")
