@@ -224,6 +224,8 @@ def refresh(A, b, lane, t, p, s):
     room = p.mk.shape[0]
     derivative(p, t, s.state, s.mode, s, s.dy)
     for i in range(DOFS):
+        if p.light:  # an algebraic row follows the others
+            A[b + (ROW_Q + i) * WIDTH + lane] = s.state[i]
         A[b + (ROW_V + i) * WIDTH + lane] = s.state[room + i]
         A[b + (ROW_ACCELERATION + i) * WIDTH + lane] = s.dy[room + i]
     if EXACT_CONTACT:

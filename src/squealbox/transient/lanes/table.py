@@ -60,7 +60,7 @@ def tabulate(
     names = entries(n, m) + (audit(n) if recorded else [])
     present = frozenset(name for name in names if name in values and np.any(values[name] != 0.0))
     unilateral = tuple(bool(c.unilateral) for c in system.contacts)
-    if recorded and n <= FEW and m <= FEW:
+    if recorded and rows.all_have_mass and n <= FEW and m <= FEW:
         present = _filled(present, [name for name in names if name in values])
     shape = Shape(
         n,
