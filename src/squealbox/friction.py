@@ -5,40 +5,14 @@ coefficients p. The same functions serve NumPy arrays here and are compiled by t
 arithmetic and NumPy functions. By convention p[0] is the static limit, the coefficient a sticking contact can reach.
 """
 
-from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from squealbox.averages import mean_over_phase
-from squealbox.parameters import DataSheet, ParameterError, parameter
-
-Formula = Callable[..., Any]
-NEVER_STICKS = 1e-200  # static limit of a law that rises from 0: it reverses like any other, and cannot stick
-
-
-class FrictionLaw(DataSheet):
-    """Base of the laws: `mu`, `slope` and `coefficients`; a subclass names its two formulas."""
-
-    formula: ClassVar[Formula]
-    slope_formula: ClassVar[Formula]
-
-    def coefficients(self) -> tuple[Any, ...]:
-        """The coefficients p of the formula; p[0] is the static limit. Scalars, or arrays with leading axes."""
-        raise NotImplementedError
-
-    def mu(self, velocity: Any) -> Any:
-        """Friction coefficient [-] at sliding velocity [m/s] of either sign; array in, array out."""
-        return type(self).formula(np.abs(velocity), self.coefficients())
-
-    def slope_at(self, velocity: Any) -> Any:
-        """Slope dmu/d|v| [s/m] at sliding velocity [m/s] of either sign; negative means weakening."""
-        return type(self).slope_formula(np.abs(velocity), self.coefficients())
-
-    @property
-    def static_limit(self) -> Any:
-        """The largest |friction force| / normal force a sticking contact can carry [-]."""
-        return self.coefficients()[0]
+from squealbox.bristles import Dahl, ElastoPlastic, LuGre
+from squealbox.law import NEVER_STICKS, FrictionLaw
+from squealbox.parameters import ParameterError, parameter
 
 
 def coulomb(v: Any, p: Any) -> Any:
@@ -268,7 +242,9 @@ class Table(FrictionLaw):
         return tuple(float(x) for x in (start, len(slopes), *self.speeds, *self.values, *slopes))
 
 
-LAWS: tuple[type[FrictionLaw], ...] = (Coulomb, LinearSlope, Stribeck, Hyperbolic, Cubic, Table)
+LAWS: tuple[type[FrictionLaw], ...] = (
+    Coulomb, LinearSlope, Stribeck, Hyperbolic, Cubic, Table, LuGre, Dahl, ElastoPlastic,
+)  # fmt: skip
 
 
 def _not_above(law: FrictionLaw, name: str, value: Any, limit: Any) -> None:

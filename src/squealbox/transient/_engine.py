@@ -17,6 +17,7 @@ from typing import Any
 from squealbox.compiled.machine import Compiled
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
+from squealbox.transient.smooth_laws import SMOOTH
 from squealbox.transient import _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta, _time_stepping
 
 COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
@@ -78,14 +79,21 @@ def head(
     own: tuple[tuple[str, str], ...] = (),
     laws: Collection[int] | None = None,
     schedules: Collection[int] | None = None,
+    smooth: Collection[int] | None = None,
 ) -> list[str]:
     """Decorators, and the laws and schedules behind one function each; of all kinds, or only of those named."""
     decorators = PLAIN if plain else "packed = None  # every function becomes part of its callers\n" if inline else ""
     parts = [HEADER.format(decorators=decorators)]
     parts += _dispatcher("law_mu", [law.formula for law in LAWS], "v", laws, [mu for mu, _ in own])
     parts += _dispatcher("law_slope", [law.slope_formula for law in LAWS], "v", laws, _calls_of_mu(own))
+    parts += _dispatcher("law_creep", [law.creep_formula or _no_creep for law in SMOOTH], "v, z", smooth)
+    parts += _dispatcher("law_grip", [law.grip_formula for law in SMOOTH if law.grip_formula], "v, z, rate", smooth)
     parts += _dispatcher("schedule_value", [each.formula for each in SCHEDULES], "t", schedules)
     return parts + _dispatcher("schedule_rate", [each.rate_formula for each in SCHEDULES], "t", schedules)
+
+
+def _no_creep(v: Any, z: Any, p: Any) -> Any:
+    return 0.0 * v
 
 
 def _calls_of_mu(own: tuple[tuple[str, str], ...]) -> list[str]:

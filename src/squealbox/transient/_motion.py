@@ -10,7 +10,7 @@ out by damping, work of taking out an open contact's reaction, and work of the n
 scheme uses it. A rigid contact has -gap in the place of N while it is open; closed, its N is solved for in `_rigid`.
 """
 
-# ruff: noqa: F821  (law_mu, law_slope, schedule_value, schedule_rate and WITH_EVENTS are written by _engine)
+# ruff: noqa: F821  (law_mu, law_slope, law_creep, law_grip, schedule_value, schedule_rate and WITH_EVENTS are written by _engine)
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
 import numpy as np
@@ -88,7 +88,20 @@ def sliding_velocity(p, c, y, s):
     speed = s.signal[c]
     for i in range(p.mk.shape[0]):
         speed -= p.t[c, i] * y[p.mk.shape[0] + i]
+    if p.smooth[c] > 0:
+        for i in range(p.mk.shape[0]):
+            speed -= p.s[c, i] * y[i]
     return speed
+
+
+def smooth_force(p, c, v, y, s):
+    """Force over normal force of a contact whose law is smooth; the rate of its memory goes into s.creep."""
+    z = 0.0
+    if p.memory[c] >= 0:
+        z = y[p.memory[c]]
+    coefficients = p.law_coefficients[c]
+    s.creep[c] = law_creep(p.smooth[c] - 1, v, z, coefficients)
+    return law_grip(p.smooth[c] - 1, v, z, s.creep[c], coefficients)
 
 
 def slip_acceleration(p, c, dy, s):
@@ -132,8 +145,13 @@ def derivative(p, t, y, mode, s, dy):
         normal = normal_force(p, c, y, s)
         speed = sliding_velocity(p, c, y, s)
         force = 0.0
+        grip = 0.0
+        if p.smooth[c] > 0:
+            grip = smooth_force(p, c, speed, y, s)
         if is_open(p, c, mode, normal):
             opened = True
+        elif p.smooth[c] > 0:
+            force = grip * normal
         elif WITH_EVENTS and p.rigid[c]:
             normal = 0.0
             s.mu[c] = sliding_coefficient(p, c, mode[c] * speed)
@@ -153,6 +171,9 @@ def derivative(p, t, y, mode, s, dy):
         for c in range(p.contacts):
             a += p.md[c, i] * s.force[c]
         dy[n + i] = a
+    for c in range(p.contacts):
+        if p.smooth[c] > 0 and p.memory[c] >= 0:
+            dy[n + p.memory[c]] = s.creep[c]
     if opened:
         release_open(p, mode, s, dy)
     solved = True

@@ -13,7 +13,8 @@ from squealbox.schedules import SCHEDULES, Constant, Schedule
 from squealbox.system import Contact, InvalidSystem, System
 from squealbox.transient.methods import Method, Tableau, tableau
 from squealbox.transient.own_laws import law_kinds
-from squealbox.transient.rows import WITH_MASS, Rows, fastest_rate, rows_of, sensed_load
+from squealbox.transient.smooth_laws import smooth_kinds
+from squealbox.transient.rows import WITH_MASS, Rows, audited, audited_matrix, commanding_load, fastest_rate, memories, rows_of, sensed_load
 
 UNIT = Constant(1.0)
 STAGES, DEGREE = 16, 7  # room in the record of a tableau
@@ -42,7 +43,7 @@ def _packed(system: System, scheme: int, width: float) -> tuple[Any, float]:
     n, contacts = system.size, system.contacts
     rows = rows_of(system)
     inverse = rows.inverse
-    d, t = (_rows([getattr(c, name) for c in contacts], n) for name in ("d", "t"))
+    d, t = _rows([c.d for c in contacts], n), _rows(list(rows.t), n)
     w = _rows([np.zeros(n) if c.normal is None else c.normal for c in contacts], n)
     normal = _rows(
         [c.normal if c.rigid else sensed for c, sensed in zip(contacts, rows.n, strict=True)], n
@@ -57,15 +58,18 @@ def _packed(system: System, scheme: int, width: float) -> tuple[Any, float]:
         "mc": rows.damping,
         "kind": np.array(rows.kinds, dtype=np.int64),
         "light": not rows.all_have_mass,
-        "c": system.C,
-        "ka": 0.5 * (system.K - system.K.T),
-        "circulatory": np.any(system.K != system.K.T),
+        "smooth": np.array(smooth_kinds(contacts), dtype=np.int64),
+        "memory": np.array(memories(system), dtype=np.int64),
+        "s": _rows(list(rows.s), n),
+        "c": audited_matrix(system, system.C),
+        "ka": 0.5 * (audited_matrix(system, system.K) - audited_matrix(system, system.K).T),
+        "circulatory": np.any(audited_matrix(system, system.K) != audited_matrix(system, system.K).T),
         "md": d @ inverse.T,
         "mw": w @ inverse.T,
-        "d": d,
+        "d": audited(system, d),
         "t": t,
         "n": normal,
-        "w": w,
+        "w": audited(system, w),
         "g": t @ inverse @ d.T,
         "unilateral": np.array([c.unilateral for c in contacts], dtype=np.int64),
         "static": np.array([static_limit(c) for c in contacts], dtype=float),
@@ -81,7 +85,7 @@ def _packed(system: System, scheme: int, width: float) -> tuple[Any, float]:
     }
     record = _record(_layout(values), values)
     record["atol"][:] = 1.0
-    record["kind"][n:] = WITH_MASS
+    record["kind"][n:], record["memory"][len(contacts) :] = WITH_MASS, -1
     return record, highest
 
 
@@ -101,7 +105,8 @@ def problem_type(n: int, m: int, law: int, terms: int, term: int, breaks: int) -
         "md": ("f8", (m, n)), "mw": ("f8", (m, n)), "d": ("f8", (m, n)), "t": ("f8", (m, n)),
         "n": ("f8", (m, n)), "w": ("f8", (m, n)), "g": ("f8", (m, m)),
         "unilateral": ("i8", (m,)), "static": ("f8", (m,)), "law_kind": ("i8", (m,)),
-        "kind": ("i8", (n,)), "rigid": ("i8", (m,)), "restitution": ("f8", (m,)),
+        "kind": ("i8", (n,)), "smooth": ("i8", (m,)), "memory": ("i8", (m,)), "s": ("f8", (m, n)),
+        "rigid": ("i8", (m,)), "restitution": ("f8", (m,)),
         "law_coefficients": ("f8", (m, law)), "signal_start": ("i8", (2 * (m + n) + 1,)),
         "term_weight": ("f8", (terms,)), "term_kind": ("i8", (terms,)),
         "term_coefficients": ("f8", (terms, term)), "breaks": ("f8", (breaks,)), "atol": ("f8", (2 * n,)),
@@ -141,7 +146,7 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
     floats: dict[str, tuple[int, ...]] = {
         "signal": (2 * (m + n) + m,), "normal": (m,), "speed": (m,), "force": (m,), "right": (2 * m,),
         "matrix": (2 * m, 2 * m), "basis": (m + 1, m),
-        "share": (m,), "leave": (m,), "lowest": (m,), "fastest": (m,), "wanted": (m,), "multiplier": (m,),
+        "share": (m,), "leave": (m,), "creep": (m,), "lowest": (m,), "fastest": (m,), "wanted": (m,), "multiplier": (m,),
         "state": (width,), "state_new": (width,), "y": (width,), "y_dense": (width,), "dy": (width,),
         "stage": (STAGES, width), "phi": (2 * m,), "phi0": (2 * m,), "phi1": (2 * m,), "nodes": (5, 2 * m),
         "stack": (128, 7), "clock": (7,),
@@ -193,8 +198,9 @@ def schedule_frequency(system: System) -> Any:
 
 
 def static_limit(contact: Contact) -> Any:
-    """The static limit of a contact's law; 0 of one that has no direction to stick along."""
-    return contact.law.static_limit if np.any(contact.t) and np.any(contact.d) else 0.0
+    """The static limit of a contact's law; 0 of one that has no direction to stick along, and of a smooth law."""
+    sticks = np.any(contact.t) and np.any(contact.d) and contact.law.grip_formula is None
+    return contact.law.static_limit if sticks else 0.0
 
 
 def schedule_kind(part: Schedule) -> int:
@@ -269,10 +275,11 @@ def _signals(system: System, rows: Rows) -> dict[str, Any]:
     inverse = rows.inverse
     lists = [_terms(c.V) for c in contacts] + [_terms(-c.gap if c.rigid else c.N0) for c in contacts]
     for c in range(len(contacts)):
+        lists[c] += commanded_by_the_load(system, rows, c, load)
         lists[len(contacts) + c] += through_the_load(system, rows, c, load)
     spare: list[list[Any]] = [[] for _ in range(_room(n) - n)]  # the march counts loads by the room, not by the size
     lists += [[((inverse @ weight)[i], part) for weight, part in load] for i in range(n)] + spare
-    lists += [[(weight[i], part) for weight, part in load] for i in range(n)] + spare
+    lists += [[(audited(system, weight)[i], part) for weight, part in load] for i in range(n)] + spare
     terms = [term for group in lists for term in group]
     kinds = np.array([schedule_kind(part) for _, part in terms], dtype=np.int64)
     coefficients = [np.array(part.coefficients(), dtype=float).ravel() for _, part in terms]
@@ -293,6 +300,14 @@ def through_the_load(system: System, rows: Rows, c: int, load: list[tuple[Any, S
     """What the load adds to the normal force of contact c through rows with neither mass nor damping."""
     row = sensed_load(system, rows, c)
     return [] if row is None else [(np.sum(row * weight, axis=-1), part) for weight, part in load]
+
+
+def commanded_by_the_load(
+    system: System, rows: Rows, c: int, load: list[tuple[Any, Schedule]]
+) -> list[tuple[Any, Any]]:
+    """What the load adds to the speed of a smooth contact that senses a row of first order."""
+    row = commanding_load(system, rows, c)
+    return [] if row is None else [(-np.sum(row * weight, axis=-1), part) for weight, part in load]
 
 
 def load_terms(system: System) -> list[tuple[Any, Schedule]]:

@@ -26,7 +26,7 @@ class Rows:
     """The equation of a system solved for x.
 
     kinds (n,) of the rows; inverse, S^-1 (..., n, n); stiffness and damping, S^-1 K and S^-1 C without the columns that
-    x holds; n and t of each contact (..., n), as they act on what the motion remembers.
+    x holds; n and t of each contact (..., n) as they sense what the motion remembers, v = V - t.q' - s.q.
     """
 
     kinds: tuple[int, ...]
@@ -34,6 +34,8 @@ class Rows:
     stiffness: Any
     damping: Any
     n: tuple[Any, ...]
+    t: tuple[Any, ...]
+    s: tuple[Any, ...]
 
     @property
     def all_have_mass(self) -> bool:
@@ -59,20 +61,27 @@ def row_kinds(system: System) -> tuple[int, ...]:
 def rows_of(system: System) -> Rows:
     """The rows of a system; `InvalidSystem` in one sentence where they determine no motion."""
     kinds = row_kinds(system)
-    inverse = _inverse(system, kinds)
+    inverse = solved_for(system, kinds)
     stiffness, damping = inverse @ system.K, inverse @ system.C
-    sensed = tuple(contact.n for contact in system.contacts)
+    sensed, along = (tuple(getattr(contact, name) for contact in system.contacts) for name in ("n", "t"))
     if all(kind == WITH_MASS for kind in kinds):
-        return Rows(kinds, inverse, stiffness, damping, sensed)
+        return Rows(kinds, inverse, stiffness, damping, sensed, along, tuple(0.0 * t for t in along))
     first, algebraic = ([i for i, kind in enumerate(kinds) if kind == which] for which in (FIRST_ORDER, ALGEBRAIC))
     stiffness, damping = np.array(stiffness), np.array(damping)
     stiffness[..., :, algebraic] = 0.0
     damping[..., :, [*first, *algebraic]] = 0.0
     _check_contacts(system, kinds, inverse, damping)
-    return Rows(kinds, inverse, stiffness, damping, tuple(_through(n, stiffness, algebraic) for n in sensed))
+    slides, commands = [], []
+    for t in along:  # a row of first order sensed by a smooth contact: its velocity is -(mk q + mc q')
+        rates = np.array(t)
+        rates[..., [i for i, kind in enumerate(kinds) if kind == WITH_MASS]] = 0.0
+        slides.append(t - rates - np.einsum("...i,...ij->...j", rates, damping))
+        commands.append(-np.einsum("...i,...ij->...j", rates, stiffness))
+    reached = tuple(_through(n, stiffness, algebraic) for n in sensed)
+    return Rows(kinds, inverse, stiffness, damping, reached, tuple(slides), tuple(commands))
 
 
-def _inverse(system: System, kinds: tuple[int, ...]) -> Any:
+def solved_for(system: System, kinds: tuple[int, ...]) -> Any:
     """S^-1, shape (..., n, n)."""
     shape = np.broadcast_shapes(*(x.shape for x in (system.M, *((system.C, system.K) if min(kinds) < 2 else ()))))
     matrix = np.array(np.broadcast_to(system.M, shape))
@@ -110,15 +119,17 @@ def _check_contacts(system: System, kinds: tuple[int, ...], inverse: Any, dampin
     for c, contact in enumerate(system.contacts):
         label = f"contacts[{c}]" + (f" ({contact.name})" if contact.name else "")
         for i in light:
-            if np.any(contact.t[..., i]):
+            smooth = contact.law.grip_formula is not None and kinds[i] == FIRST_ORDER
+            free = smooth and not any(np.any(_solved(inverse, each.d)[..., i]) for each in system.contacts)
+            if np.any(contact.t[..., i]) and not free:
                 raise InvalidSystem(
                     f"{label} slides on {names[i]!r}, a row without mass: its speed would jump with its own friction; "
                     "expected t on rows with mass"
                 )
         if contact.rigid and np.any(contact.normal[..., light]):
             raise InvalidSystem(f"{label} is rigid and touches a row without mass: an impact there has no inertia")
-        acts = np.einsum("...ij,...j->...i", inverse, contact.d)
-        lifts = None if contact.normal is None else np.einsum("...ij,...j->...i", inverse, contact.normal)
+        acts = _solved(inverse, contact.d)
+        lifts = None if contact.normal is None else _solved(inverse, contact.normal)
         for i in algebraic:
             if np.any(np.abs(acts[..., i]) > 1e-12 * np.max(np.abs(acts))):
                 raise InvalidSystem(
@@ -144,6 +155,10 @@ def _check_contacts(system: System, kinds: tuple[int, ...], inverse: Any, dampin
         )
 
 
+def _solved(inverse: Any, vector: Any) -> Any:
+    return np.einsum("...ij,...j->...i", inverse, vector)
+
+
 def _through(n: Any, stiffness: Any, algebraic: list[int]) -> Any:
     """A row that senses algebraic rows, as it senses the others through them."""
     if not algebraic or not np.any(n[..., algebraic]):
@@ -160,6 +175,36 @@ def sensed_load(system: System, rows: Rows, c: int) -> Any:
     if not algebraic or not np.any(sensed[..., algebraic]):
         return None
     return np.einsum("...i,...ij->...j", sensed[..., algebraic], rows.inverse[..., algebraic, :])
+
+
+def commanding_load(system: System, rows: Rows, c: int) -> Any:
+    """What the load adds to V' of a contact that senses rows of first order, v = V - t.q': a vector (..., n), or None."""
+    first = rows.of(FIRST_ORDER)
+    along = system.contacts[c].t
+    if not first or not np.any(along[..., first]):
+        return None
+    return np.einsum("...i,...ij->...j", along[..., first], rows.inverse[..., first, :])
+
+
+def memories(system: System) -> tuple[int, ...]:
+    """The row in which each contact's law keeps its memory, -1 without."""
+    kept: tuple[int, ...] = getattr(system, "memories", ())
+    return kept or (-1,) * len(system.contacts)
+
+
+def audited(system: System, vectors: Any) -> Any:
+    """Vectors (..., n) without the rows that the energy audit leaves out."""
+    left_out = list(getattr(system, "unaudited", ()))
+    if not left_out:
+        return vectors
+    out = np.array(vectors)
+    out[..., left_out] = 0.0
+    return out
+
+
+def audited_matrix(system: System, matrix: Any) -> Any:
+    """A matrix (..., n, n) without those rows and columns."""
+    return np.swapaxes(audited(system, np.swapaxes(audited(system, matrix), -1, -2)), -1, -2)
 
 
 def consistent(system: System, rows: Rows, q: Any, load: Any) -> Any:

@@ -17,7 +17,9 @@ from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.own_laws import own_texts, texts_of, untraced
+from squealbox.transient.smooth_laws import smooth_kinds
 from squealbox.transient.trajectory import Trajectory
+from squealbox.transient.widened import base_of, start_of
 
 SCHEMES = {"exact": EXACT, "raw": RAW, "tanh": TANH, "smooth": ARCTAN, "arctan": ARCTAN}
 TIME_STEPPING = "time-stepping"
@@ -110,8 +112,9 @@ def simulate(
     requested = _times(times, start_time, duration)
     if contact != "exact":
         no_rigid_contact(system, f"contact={contact!r}")
-    q, qd = _start(system, start, start_time)
-    _check_gaps(system, q)
+    q, qd = _start(base_of(system), start, start_time)
+    _check_gaps(base_of(system), q)
+    q, qd = start_of(system, q, qd, isinstance(start, str) and start == "sliding", start_time)
     if contact == TIME_STEPPING:
         return moreau.time_stepping(system, duration, q, qd, start_time, requested, step)
     if chosen.tableau == TAYLOR:
@@ -236,17 +239,19 @@ def told(
     steps: tuple[int, int, int],
 ) -> Trajectory:  # fmt: skip
     """Rows of output as a result: t, q, q', the works, then N, v, force and mode of each contact."""
-    n, m = system.size, len(system.contacts)
+    n, m, base = system.size, len(system.contacts), base_of(system)
     widths = [1, n, n, m, 1, 1, 1, 1, 1, m, m, m, m]
     columns = np.split(rows, np.cumsum(widths)[:-1], axis=1)
     t, q, qd, friction, load, circulation, dissipated, opening, impact, normal, speed, force, mode = columns
+    smooth = np.array(smooth_kinds(system.contacts)) > 0  # no events tell their sense
+    mode = np.where(smooth & (mode != OPEN), np.sign(speed), mode)
     return Trajectory(
-        inputs={"system": system},
+        inputs={"system": base},
         settings=settings,
         outcome=outcome,
         t=t[:, 0],
-        q=q,
-        qd=qd,
+        q=q[:, : base.size],
+        qd=qd[:, : base.size],
         normal_force=np.where(mode == OPEN, 0.0, normal),
         sliding_velocity=speed,
         friction_force=force,

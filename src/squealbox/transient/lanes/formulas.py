@@ -14,6 +14,7 @@ from squealbox.schedules import SCHEDULES
 from squealbox.system import InvalidSystem
 from squealbox.transient.lanes.shape import Shape
 from squealbox.transient.observers import extreme
+from squealbox.transient.smooth_laws import SMOOTH
 
 VECTOR_FUNCTIONS = ("where", "minimum", "maximum", "sqrt", "exp", "sin", "cos", "arctan", "log")
 
@@ -24,6 +25,10 @@ def formulas(shape: Shape) -> list[str]:
     laws = [*(inspect.getsource(law.formula) for law in LAWS), *(mu for mu, _ in shape.own)]
     for kind in sorted({kind for kind, _ in shape.laws}):
         parts.append(lane_function(laws[kind], f"lane_mu_{kind}", is_table(LAWS, kind)))
+    for kind in sorted({kind - 1 for kind in shape.smooth if kind > 0}):
+        law = SMOOTH[kind]
+        for name, formula in (("creep", law.creep_formula), ("grip", law.grip_formula)):
+            parts += [] if formula is None else [lane_function(inspect.getsource(formula), f"lane_{name}_{kind}")]
     for kind in sorted({kind for terms in shape.signals for kind, _ in terms}):
         for name, formula in (("value", SCHEDULES[kind].formula), ("rate", SCHEDULES[kind].rate_formula)):
             text = inspect.getsource(formula)

@@ -74,9 +74,11 @@ def source(shape: Shape) -> str:
     fixed |= {"SIMPLE": shape.simple, "STEPPED": shape.stepped, "p.rigid[]": 0, "p.rigid_count": 0}
     fixed |= {} if shape.varying else {"p.varying": 0}
     fixed |= {} if shape.kinds else {"p.light": 0}
+    fixed |= {} if shape.smooth else {"p.smooth[]": 0}
+    smooth = {kind - 1 for kind in shape.smooth if kind > 0}
     laws, schedules = {kind for kind, _ in shape.laws}, {kind for terms in shape.signals for kind, _ in terms}
     parts = [
-        *_engine.head(inline=False, own=shape.own, laws=laws, schedules=schedules),
+        *_engine.head(inline=False, own=shape.own, laws=laws, schedules=schedules, smooth=smooth),
         HEAD.format(
             lanes=shape.lanes,
             digest=digest(WRITERS[: None if shape.taylor else 2]),
@@ -126,7 +128,7 @@ def _gather(shape: Shape, places: dict[str, int]) -> str:
         for i in range(n):
             for j in range(n):
                 put(f"p.{name}[{i}, {j}]", f"{name}{i}_{j}")
-    for name in ("md", "mw", "d", "t", "n", "w"):
+    for name in ("md", "mw", "d", "t", "s", "n", "w"):
         for c in range(m):
             for i in range(n):
                 put(f"p.{name}[{c}, {i}]", f"{name}{c}_{i}")
@@ -207,7 +209,7 @@ def _observers(shape: Shape, places: dict[str, int]) -> str:
     lines = ["@inner", "def set_observers(A, b, lane, fixed):"]
     at = 3 + len(parameter_rows(shape))
     for k, observer in enumerate(shape.observers):
-        for i in range(observer.copies(shape.n, shape.m)):
+        for i in range(shape.copies(observer)):
             for j, value in enumerate(observer.start):
                 number = repr(float(value)).replace("inf", "np.inf").replace("nan", "np.nan")
                 lines.append(f"    A[b + {places[f'o{k}_{i}_{j}'] * shape.lanes} + lane] = {number}")

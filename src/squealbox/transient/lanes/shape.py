@@ -21,7 +21,8 @@ class Shape:
     `present` names the entries that are not zero in the whole ensemble, such as "mk01". `signals` gives the kind of
     schedule of each term of V_c, N0_c and M^-1 f_i, in that order; () where it is a constant row. `endless` gives the
     coefficients of laws that are infinite in the whole ensemble, as text. `kinds` are those of `rows`, () where every row
-    has mass.
+    has mass. `smooth` and `memories` are those of `smooth_laws` and `rows`, () without any; the first `seen` rows are those
+    that observers see.
     """
 
     n: int
@@ -40,6 +41,9 @@ class Shape:
     lanes: int = LANES
     recorded: bool = False
     kinds: tuple[int, ...] = ()
+    smooth: tuple[int, ...] = ()
+    memories: tuple[int, ...] = ()
+    seen: int = -1
 
     @property
     def taylor(self) -> bool:
@@ -60,7 +64,8 @@ class Shape:
     def simple(self) -> bool:
         """Whether the usual event can be decided on the rows alone: constant signals, no contact that opens."""
         pushed = any(f"md{c}_{i}" in self.present for c in range(self.m) for i in self.of(FIRST_ORDER))
-        return self.exact and not self.varying and not any(self.unilateral) and not pushed
+        plain = not (self.varying or any(self.unilateral) or any(self.smooth) or pushed)
+        return self.exact and plain
 
     @property
     def audited(self) -> bool:
@@ -88,13 +93,21 @@ class Shape:
 
     def along(self, c: int) -> bool:
         """Whether contact c has a direction along which it can stick."""
-        return all(any(f"{name}{c}_{i}" in self.present for i in range(self.n)) for name in ("t", "d"))
+        return not self.is_smooth(c) and all(any(f"{name}{c}_{i}" in self.present for i in range(self.n)) for name in ("t", "d"))
 
     @property
     def pressed(self) -> list[int]:
         """Contacts that cannot open and whose normal force varies: how far it falls is kept."""
         varies = [any(f"n{c}_{i}" in self.present for i in range(self.n)) or self.varying for c in range(self.m)]
         return [c for c in range(self.m) if varies[c] and not self.unilateral[c]]
+
+    def is_smooth(self, c: int) -> bool:
+        """Whether contact c has a law without events."""
+        return bool(self.smooth) and self.smooth[c] > 0
+
+    def copies(self, observer: Any) -> int:
+        """How often an observer looks: once for each freedom or contact, or once."""
+        return int(observer.copies(self.n if self.seen < 0 else self.seen, self.m))
 
     def has_mass(self, i: int) -> bool:
         """Whether row i has mass, and so a velocity of its own."""
@@ -150,7 +163,7 @@ def parameter_rows(shape: Shape) -> list[str]:
 def entries(n: int, m: int) -> list[str]:
     """Names of all numbers of the equation, zero or not, in the order of their rows."""
     names = [f"{name}{i}_{j}" for name in ("mk", "mc") for i in range(n) for j in range(n)]
-    names += [f"{name}{c}_{i}" for name in ("md", "mw", "d", "t", "n", "w") for c in range(m) for i in range(n)]
+    names += [f"{name}{c}_{i}" for name in ("md", "mw", "d", "t", "s", "n", "w") for c in range(m) for i in range(n)]
     names += [f"g{c}_{b}" for c in range(m) for b in range(m)]
     return names + [f"V{c}" for c in range(m)] + [f"N0{c}" for c in range(m)] + [f"f{i}" for i in range(n)]
 
@@ -195,7 +208,7 @@ def layout(shape: Shape) -> Rows:
     if any(observer.of == "contact" for observer in shape.observers):
         rows.add(*(f"work{c}" for c in range(m)))
     for k, observer in enumerate(shape.observers):
-        for i in range(observer.copies(n, m)):
+        for i in range(shape.copies(observer)):
             rows.add(*(f"o{k}_{i}_{j}" for j in range(len(observer.start))))
             rows.add(*(f"c{k}_{i}_{j}" for j in range(observer.coefficients)))
     return rows

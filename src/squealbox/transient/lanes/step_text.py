@@ -252,7 +252,7 @@ class Step(EventText):
             for c in range(shape.m):
                 self.work(c, contact, old, new)
         for k, observer in enumerate(shape.observers):
-            for i in range(observer.copies(shape.n, shape.m)):
+            for i in range(shape.copies(observer)):
                 memory = [self.row(f"o{k}_{i}_{j}") for j in range(len(observer.start))]
                 given = [self.row(f"c{k}_{i}_{j}") for j in range(observer.coefficients)]
                 before, after = self.views(observer.of, i, contact, old, new)
@@ -272,7 +272,8 @@ class Step(EventText):
             before, after = self.sliding(i, old, "t_"), (end["speed"][i], end["normal"][i])
             if self.shape.exact:  # the state may have been moved onto an event
                 after = self.sliding(i, new, "t1")
-            mode = self.row(f"s{i}") if self.shape.exact else f"(1.0 * ({end['speed'][i]} > 0.0) - 0.5) * 2.0"
+            senses = self.shape.exact and not self.shape.is_smooth(i)
+            mode = self.row(f"s{i}") if senses else f"(1.0 * ({end['speed'][i]} > 0.0) - 0.5) * 2.0"
             if self.shape.exact and self.shape.unilateral[i]:  # s is 0 in both; only a contact that sticks counts as 0
                 mode = f"({mode} + 2.0 * {self.row(f'open{i}')})"
             work = self.row(f"work{i}")
@@ -280,12 +281,13 @@ class Step(EventText):
                 f"Sliding(t_, {', '.join(before)}, {mode}, {work})",
                 f"Sliding(t1, {', '.join(after)}, {mode}, worked{i})",
             )
+        n = n if self.shape.seen < 0 else self.shape.seen
         tuples = [", ".join(f"({', '.join(x[:n])},)" for x in state) for state in (old, new)]
         return f"State(t_, {tuples[0]})", f"State(t1, {tuples[1]})"
 
     def sliding(self, c: int, state: Any, time: str) -> tuple[str, str]:
         """Sliding velocity and normal force of a contact."""
-        speed = self.signal(c, f"V{c}", time) + minus(self.product(f"t{c}", state[1]))
+        speed = self.speed(c, state[0], state[1], time)
         normal = self.signal(self.shape.m + c, f"N0{c}", time) + self.product(f"n{c}", state[0])
         return tuple(" + ".join(x).replace("+ -", "- ") or "0.0 * t_" for x in (speed, normal))  # type: ignore[return-value]
 

@@ -13,7 +13,8 @@ from squealbox.transient.lanes.batch import first_of
 from squealbox.transient.lanes.shape import LANES, PARTS, Shape, audit, entries, parameter_rows
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.own_laws import law_kinds, own_texts
-from squealbox.transient.rows import Rows, consistent, fastest_rate, rows_of
+from squealbox.transient.rows import Rows, audited, audited_matrix, consistent, fastest_rate, memories, rows_of
+from squealbox.transient.smooth_laws import smooth_kinds
 
 FEW = 3  # freedoms and contacts up to which a single run shares its kernel with other patterns of zeros
 ANGLE = 1.2  # of a schedule's swing in a Taylor step: what a series of order 16 leaves out is 6e-14 of it
@@ -79,6 +80,9 @@ def tabulate(
         1 if recorded else LANES,
         recorded,
         () if rows.all_have_mass else rows.kinds,
+        smooth_kinds(system.contacts) if any(smooth_kinds(system.contacts)) else (),
+        memories(system) if max(memories(system), default=-1) >= 0 else (),
+        int(getattr(system, "seen", n)),
     )
     names = parameter_rows(shape)
     fixed = np.zeros(3 + len(names) + len(coefficients))
@@ -112,8 +116,9 @@ def _equation(system: System, rows: Rows, recorded: bool = False) -> tuple[dict[
     put("mc", rows.damping)
     for c, contact in enumerate(contacts):
         w = np.zeros(n) if contact.normal is None else contact.normal
-        columns = {"md": _times(inverse, contact.d), "mw": _times(inverse, w), "d": contact.d, "t": contact.t}
-        for name, vector in (columns | {"n": rows.n[c], "w": w}).items():
+        columns = {"md": _times(inverse, contact.d), "mw": _times(inverse, w), "d": audited(system, contact.d)}
+        columns |= {"t": rows.t[c], "s": rows.s[c], "n": rows.n[c], "w": audited(system, w)}
+        for name, vector in columns.items():
             for i in range(n):
                 values[f"{name}{c}_{i}"] = np.asarray(vector)[..., i]
         for e, other in enumerate(contacts):
@@ -125,12 +130,15 @@ def _equation(system: System, rows: Rows, recorded: bool = False) -> tuple[dict[
     signals = [_terms(c.V) for c in contacts] + [_terms(c.N0) for c in contacts]
     load = packing.load_terms(system)
     for c in range(len(contacts)):
+        signals[c] += packing.commanded_by_the_load(system, rows, c, load)
         signals[len(contacts) + c] += packing.through_the_load(system, rows, c, load)
     signals += [[(_times(inverse, weight)[..., i], part) for weight, part in load] for i in range(n)]
     if recorded:
-        put("c", system.C)
-        put("ka", 0.5 * (system.K - np.swapaxes(system.K, -1, -2)))
-        signals += [[(np.asarray(weight)[..., i], part) for weight, part in load] for i in range(n)]
+        stiffness = audited_matrix(system, system.K)
+        put("c", audited_matrix(system, system.C))
+        put("ka", 0.5 * (stiffness - np.swapaxes(stiffness, -1, -2)))
+        told = [(audited(system, np.asarray(weight)), part) for weight, part in load]
+        signals += [[(weight[..., i], part) for weight, part in told] for i in range(n)]
     if all(isinstance(part, Constant) for terms in signals for _, part in terms):
         names = [f"V{c}" for c in range(len(contacts))] + [f"N0{c}" for c in range(len(contacts))]
         names += [f"{name}{i}" for name in ("f", "F") for i in range(n)]

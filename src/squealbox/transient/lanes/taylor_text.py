@@ -162,7 +162,8 @@ class TaylorStep(EquationText):
         watched = "".join(f"{name}, " for name in (*first, *second))
         largest = f"{self.row('largest')} / unit"
         self.ready(found)
-        safe = [f"surely_slips({self.row(f's{c}')}, {found['speed'][c]}, x, {ORDER})" for c in range(m)]
+        safe = [f"surely_slips({self.row(f's{c}')}, {found['speed'][c]}, x, {ORDER})" for c in range(m)
+                if not self.shape.is_smooth(c)]  # fmt: skip
         safe += ["(x < 0.0)"] * any(self.shape.unilateral)
         self.put(f"safe = {' & '.join(safe) or 'x > 0.0'}")
         self.put(f"found = step_end(({watched}), kinks, safe, x, {largest}, {ORDER})")
@@ -203,12 +204,12 @@ class TaylorStep(EquationText):
                 along = " + ".join(self.product(f"d{c}", v)) or "0.0 * t_"
                 self.put(f"power{c} = integral({found['force'][c]} * ({along}))")
         memory = {f"o{k}_{i}_{j}": self.row(f"o{k}_{i}_{j}") for k, each in enumerate(shape.observers)
-                  for i in range(each.copies(n, shape.m)) for j in range(len(each.start))}  # fmt: skip
+                  for i in range(shape.copies(each)) for j in range(len(each.start))}  # fmt: skip
         self.point(0, kinds, found, q, v)
         for part in range(1, PARTS + 1):
             self.point(part, kinds, found, q, v)
             for k, observer in enumerate(shape.observers):
-                for i in range(observer.copies(n, shape.m)):
+                for i in range(shape.copies(observer)):
                     names = [f"o{k}_{i}_{j}" for j in range(len(observer.start))]
                     given = "".join(f"{self.row(f'c{k}_{i}_{j}')}, " for j in range(observer.coefficients))
                     before, after = (self.view(observer.of, i, p) for p in (part - 1, part))
@@ -242,10 +243,11 @@ class TaylorStep(EquationText):
         if of == "dof":
             return f"Motion({time}, q{i}p{part}, v{i}p{part}, a{i}p{part})"
         if of == "contact":
-            mode = self.row(f"s{i}")
+            mode = f"(2.0 * (speed{i}p{part} > 0.0) - 1.0)" if self.shape.is_smooth(i) else self.row(f"s{i}")
             if self.shape.unilateral[i]:
                 mode = f"({mode} + 2.0 * {self.row(f'open{i}')})"
             return f"Sliding({time}, speed{i}p{part}, normal{i}p{part}, {mode}, work{i}p{part})"
+        n = n if self.shape.seen < 0 else self.shape.seen
         tuples = ", ".join("(" + "".join(f"{x}{k}p{part}, " for k in range(n)) + ")" for x in "qva")
         return f"State({time}, {tuples})"
 
