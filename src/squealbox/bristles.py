@@ -3,8 +3,8 @@
     F = N (s0 z + s1 z' + s2 v),        z' = creep(v, z)
 
 s0 = stiffness [1/m], s1 = damping [s/m], s2 = viscous [s/m], N the normal force, v the sliding velocity; in steady
-sliding s0 z = g(|v|) sgn(v), g the coefficient without its viscous part. A contact neither sticks nor slips by an event:
-what sticks creeps within the bristles. An open contact has no force, and its bristles go on as if it were closed.
+sliding s0 z = g(|v|) sgn(v), g the coefficient without its viscous part. No event tells sticking from slipping: what
+sticks creeps within the bristles. An open contact has no force, and its bristles go on as if it were closed.
 Each law is `friction.NAME` to files. Depends on: law, parameters.
 """
 
@@ -43,9 +43,14 @@ class BristleLaw(FrictionLaw):
         dry, slope = self.mu(speed) - self.grip[2] * speed, self.slope_at(speed) - self.grip[2]
         return -self.stiffness * speed / dry, speed * slope / dry
 
+    def direct_slope(self, velocity: Any) -> Any:
+        """s1 dz'/dv + s2 [s/m]: the rest of the slope comes with the bristles."""
+        _, damping, viscous = self.grip
+        return damping * self.relaxation(velocity)[1] + viscous
+
 
 def lugre(v: Any, p: Any) -> Any:
-    """mu = kinetic + (static - kinetic) exp(-(v/speed)^2) + viscous v, p = (static, kinetic, speed, s0, s1, s2, ...)."""
+    """mu = kinetic + (static - kinetic) exp(-(v/speed)^2) + viscous v, p = (static, kinetic, speed, s0, s1, s2)."""
     r = v / p[2]
     return p[1] + (p[0] - p[1]) * np.exp(-r * r) + p[5] * v
 

@@ -271,6 +271,8 @@ class Averaged(FrictionLaw):
         super().__post_init__()
         if not isinstance(self.law, FrictionLaw):
             raise ParameterError("Averaged", "law", self.law, "a friction law")
+        if self.law.has_memory:
+            raise ParameterError("Averaged", "law", self.law, "a law of the speed alone: one with memory is not averaged")
 
     def coefficients(self) -> tuple[Any, ...]:
         """No static limit, the dither's velocity; mu0, a1, a3 where it is mu0 (2/pi) asin(v/w) + a1 v + a3 v^3."""

@@ -35,6 +35,10 @@ class FrictionLaw(DataSheet):
         """Slope dmu/d|v| [s/m] at sliding velocity [m/s] of either sign; negative means weakening."""
         return type(self).slope_formula(np.abs(velocity), self.coefficients())
 
+    def direct_slope(self, velocity: Any) -> Any:
+        """What the force follows the speed with at once [s/m]; all of the slope where there is no memory."""
+        return self.slope_at(velocity)
+
     @property
     def has_memory(self) -> bool:
         """Whether friction depends on a state of the contact, z' = creep(v, z), beside its speed."""

@@ -17,8 +17,8 @@ from typing import Any
 from squealbox.compiled.machine import Compiled
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
-from squealbox.transient.smooth_laws import SMOOTH
 from squealbox.transient import _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta, _time_stepping
+from squealbox.transient.smooth_laws import SMOOTH
 
 COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Gt: operator.gt, ast.Lt: operator.lt,

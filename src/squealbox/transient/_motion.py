@@ -188,7 +188,7 @@ def derivative(p, t, y, mode, s, dy):
 
 
 def without_mass(p, y, dy):
-    """Rows of first order and algebraic ones: what stands in dy in the place of q'' is q' of the former, q of the latter.
+    """Rows of first order and algebraic ones: in the place of q'' stands q' of the former, q of the latter.
 
     Their velocities are written into y, where the energy integrals and the output read them.
     """

@@ -13,8 +13,18 @@ from squealbox.schedules import SCHEDULES, Constant, Schedule
 from squealbox.system import Contact, InvalidSystem, System
 from squealbox.transient.methods import Method, Tableau, tableau
 from squealbox.transient.own_laws import law_kinds
+from squealbox.transient.rows import (
+    WITH_MASS,
+    Rows,
+    audited,
+    audited_matrix,
+    commanding_load,
+    fastest_rate,
+    memories,
+    rows_of,
+    sensed_load,
+)
 from squealbox.transient.smooth_laws import smooth_kinds
-from squealbox.transient.rows import WITH_MASS, Rows, audited, audited_matrix, commanding_load, fastest_rate, memories, rows_of, sensed_load
 
 UNIT = Constant(1.0)
 STAGES, DEGREE = 16, 7  # room in the record of a tableau
@@ -146,7 +156,8 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
     floats: dict[str, tuple[int, ...]] = {
         "signal": (2 * (m + n) + m,), "normal": (m,), "speed": (m,), "force": (m,), "right": (2 * m,),
         "matrix": (2 * m, 2 * m), "basis": (m + 1, m),
-        "share": (m,), "leave": (m,), "creep": (m,), "lowest": (m,), "fastest": (m,), "wanted": (m,), "multiplier": (m,),
+        "share": (m,), "leave": (m,), "lowest": (m,), "fastest": (m,), "wanted": (m,), "multiplier": (m,),
+        "creep": (m,),
         "state": (width,), "state_new": (width,), "y": (width,), "y_dense": (width,), "dy": (width,),
         "stage": (STAGES, width), "phi": (2 * m,), "phi0": (2 * m,), "phi1": (2 * m,), "nodes": (5, 2 * m),
         "stack": (128, 7), "clock": (7,),

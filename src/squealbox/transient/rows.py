@@ -178,7 +178,7 @@ def sensed_load(system: System, rows: Rows, c: int) -> Any:
 
 
 def commanding_load(system: System, rows: Rows, c: int) -> Any:
-    """What the load adds to V' of a contact that senses rows of first order, v = V - t.q': a vector (..., n), or None."""
+    """What the load does to the speed of a contact that senses rows of first order: a vector (..., n), or None."""
     first = rows.of(FIRST_ORDER)
     along = system.contacts[c].t
     if not first or not np.any(along[..., first]):

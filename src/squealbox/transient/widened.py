@@ -100,10 +100,14 @@ def _with_limited_loops(system: System) -> System:
     for loop in system.loops:
         row, n = loop.rows(system.names), system.size
         if any(np.ndim(x) > k for x, k in ((row.P, 1), (row.R, 1), (row.A, 2), (loop.limit, 0))):
-            raise InvalidSystem(f"a {type(loop).__name__} with a limit varies in an ensemble: run such loops one by one")
+            raise InvalidSystem(
+                f"a {type(loop).__name__} with a limit varies in an ensemble: run such loops one by one"
+            )
         m = row.memory
         base, law = base_of(system), Saturation(float(loop.limit or 0.0))
-        told = Contact(np.zeros(base.size), row.b[: base.size], np.zeros(base.size), 1.0, 0.0, law, name=f"loop on {loop.on}")
+        told = Contact(
+            np.zeros(base.size), row.b[: base.size], np.zeros(base.size), 1.0, 0.0, law, name=f"loop on {loop.on}"
+        )
         fields, _ = _appended(system, m + 1, "loop state")
         z, w = slice(n, n + m), n + m
         spring, mass = (float(np.max(np.abs(x), initial=0.0)) or 1.0 for x in (system.K, system.M))
@@ -151,10 +155,13 @@ def _rotated(system: System) -> System | None:
     _, sizes, right = np.linalg.svd(null.T @ system.C @ null)
     rank = int(np.sum(sizes > NOTHING * size))
     first, algebraic = null @ right[:rank].T, null @ right[rank:].T
-    if algebraic.size and max(np.max(np.abs(algebraic.T @ system.C)), np.max(np.abs(system.C @ algebraic))) > 1e-9 * size:
+    if (
+        algebraic.size
+        and max(np.max(np.abs(algebraic.T @ system.C)), np.max(np.abs(system.C @ algebraic))) > 1e-9 * size
+    ):
         raise InvalidSystem(
-            f"a motion of {', '.join(system.names)} has neither mass nor damping of its own, and yet C joins it to others: "
-            "expected a mass or a damper on it"
+            f"a motion of {', '.join(system.names)} has neither mass nor damping of its own, and yet C joins it to "
+            "others: expected a mass or a damper on it"
         )
     T, n, k = np.hstack([moved, first, algebraic]), system.size, moved.shape[1]
     spring = float(np.max(np.abs(system.K))) or 1.0

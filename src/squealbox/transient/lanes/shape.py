@@ -20,9 +20,9 @@ class Shape:
 
     `present` names the entries that are not zero in the whole ensemble, such as "mk01". `signals` gives the kind of
     schedule of each term of V_c, N0_c and M^-1 f_i, in that order; () where it is a constant row. `endless` gives the
-    coefficients of laws that are infinite in the whole ensemble, as text. `kinds` are those of `rows`, () where every row
-    has mass. `smooth` and `memories` are those of `smooth_laws` and `rows`, () without any; the first `seen` rows are those
-    that observers see.
+    coefficients of laws that are infinite in the whole ensemble, as text. `kinds` are those of `rows`, () where every
+    row has mass. `smooth` and `memories` are those of `smooth_laws` and `rows`, () without any; observers see the first
+    `seen` rows.
     """
 
     n: int
@@ -93,7 +93,9 @@ class Shape:
 
     def along(self, c: int) -> bool:
         """Whether contact c has a direction along which it can stick."""
-        return not self.is_smooth(c) and all(any(f"{name}{c}_{i}" in self.present for i in range(self.n)) for name in ("t", "d"))
+        return not self.is_smooth(c) and all(
+            any(f"{name}{c}_{i}" in self.present for i in range(self.n)) for name in ("t", "d")
+        )
 
     @property
     def pressed(self) -> list[int]:

@@ -112,7 +112,7 @@ class Step(EventText):
         return "\n".join([*head, *self.lines, *tail])
 
     def without_mass(self, x: list[str], q: list[str], v: list[str]) -> None:
-        """In a stage: x is q' of rows of first order and q of algebraic ones, whose velocities follow from the others."""
+        """In a stage: x is q' of rows of first order and q of algebraic ones, whose velocities follow."""
         for i in self.shape.of(FIRST_ORDER):
             self.put(f"{v[i]} = {x[i]}")
         for i in self.shape.of(ALGEBRAIC):

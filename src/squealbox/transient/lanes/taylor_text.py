@@ -98,7 +98,7 @@ class TaylorStep(EquationText):
         return "\n".join(["@traced_as_written", f"def {name}(A, b):", *self.lines, "    return flags\n"])
 
     def without_mass(self, x: list[str]) -> list[str]:
-        """q'' of every row, where x is q' of rows of first order and q of algebraic ones: their series give the rest."""
+        """q'' of every row, where x is q' of rows of first order and q of algebraic ones."""
         out = list(x)
         for i in self.shape.of(FIRST_ORDER):
             self.put(f"v{i}s = {x[i]}")
@@ -195,7 +195,7 @@ class TaylorStep(EquationText):
 
     def observe_parts(self, found: dict[str, list[str]], q: list[str], v: list[str]) -> None:
         """Hand the parts of the step to the observers one after the other: they follow no longer ones."""
-        shape, n = self.shape, self.shape.n
+        shape = self.shape
         kinds = {observer.of for observer in shape.observers}
         if not kinds:
             return
