@@ -2,7 +2,19 @@
 
 import numpy as np
 
-from squealbox import Contact, Coulomb, Cubic, Hyperbolic, LinearSlope, Ramp, Sinusoid, Stribeck, System, friction, schedules
+from squealbox import (
+    Contact,
+    Coulomb,
+    Cubic,
+    Hyperbolic,
+    LinearSlope,
+    Ramp,
+    Sinusoid,
+    Stribeck,
+    System,
+    friction,
+    schedules,
+)
 
 
 def random_law(rng):

@@ -103,9 +103,7 @@ class Slow:
         self.light = ~self.massive
         self.some_light = bool(np.any(self.light))
         self.inverse = np.zeros((self.n, self.n))
-        self.inverse[np.ix_(self.massive, self.massive)] = np.linalg.inv(
-            system.M[np.ix_(self.massive, self.massive)]
-        )
+        self.inverse[np.ix_(self.massive, self.massive)] = np.linalg.inv(system.M[np.ix_(self.massive, self.massive)])
         self.damped = self.light & np.any(system.C != 0.0, axis=1)
         self.static_rows = self.light & ~self.damped
         self.step = 2.0 * np.pi / 16.0 / max(*self.angular_frequencies(), 1e-3)
@@ -326,9 +324,7 @@ class Slow:
                     y, landed = self.land(t, y)
                 chosen = self.choose(t, y, end)
                 if t > 0.0:
-                    events += [
-                        (t, c, chosen[c]) for c in range(self.m) if chosen[c] != self.modes[c] or c in landed
-                    ]
+                    events += [(t, c, chosen[c]) for c in range(self.m) if chosen[c] != self.modes[c] or c in landed]
                 self.modes = chosen
                 y = self.held(t, y, self.modes)
                 t, y = self.until_event(t, y, end)

@@ -5,56 +5,14 @@ coefficients p. The same functions serve NumPy arrays here and are compiled by t
 arithmetic and NumPy functions. By convention p[0] is the static limit, the coefficient a sticking contact can reach.
 """
 
-from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from squealbox.averages import mean_over_phase
-from squealbox.parameters import DataSheet, ParameterError, parameter
-
-Formula = Callable[..., Any]
-NEVER_STICKS = 1e-200  # static limit of a law that rises from 0: it reverses like any other, and cannot stick
-
-
-class FrictionLaw(DataSheet):
-    """Base of the laws: `mu`, `slope` and `coefficients`; a subclass names its two formulas.
-
-    One rule holds for all: sliding begins with no more friction than the contact sticks with, mu(0+) <= static limit. A
-    push between the two could neither hold the contact nor move it. Friction may rise with speed from there on.
-    """
-
-    formula: ClassVar[Formula]
-    slope_formula: ClassVar[Formula]
-    level: ClassVar[str] = "static"  # the parameter at fault where the rule is broken
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self._check_start()
-
-    def _check_start(self) -> None:
-        limit, start = self.static_limit, self.mu(0.0)
-        if np.any(start > np.asarray(limit) + 1e-12 * (1.0 + np.asarray(limit))):
-            expected = f"at least mu(0) = {start}" if self.level == "static" else f"at most static = {limit}"
-            expected += "; what pushes between the two could neither hold the contact nor move it"
-            raise ParameterError(type(self).__name__, self.level, getattr(self, self.level, limit), expected)
-
-    def coefficients(self) -> tuple[Any, ...]:
-        """The coefficients p of the formula; p[0] is the static limit. Scalars, or arrays with leading axes."""
-        raise NotImplementedError
-
-    def mu(self, velocity: Any) -> Any:
-        """Friction coefficient [-] at sliding velocity [m/s] of either sign; array in, array out."""
-        return type(self).formula(np.abs(velocity), self.coefficients())
-
-    def slope_at(self, velocity: Any) -> Any:
-        """Slope dmu/d|v| [s/m] at sliding velocity [m/s] of either sign; negative means weakening."""
-        return type(self).slope_formula(np.abs(velocity), self.coefficients())
-
-    @property
-    def static_limit(self) -> Any:
-        """The largest |friction force| / normal force a sticking contact can carry [-]."""
-        return self.coefficients()[0]
+from squealbox.bristles import Dahl, ElastoPlastic, LuGre
+from squealbox.law import NEVER_STICKS, FrictionLaw
+from squealbox.parameters import ParameterError, parameter
 
 
 def _limit(static: Any, beyond: Any) -> Any:
@@ -272,7 +230,9 @@ class Table(FrictionLaw):
         return tuple(float(x) for x in (start, len(slopes), *self.speeds, *self.values, *slopes))
 
 
-LAWS: tuple[type[FrictionLaw], ...] = (Coulomb, LinearSlope, Stribeck, Hyperbolic, Cubic, Table)
+LAWS: tuple[type[FrictionLaw], ...] = (
+    Coulomb, LinearSlope, Stribeck, Hyperbolic, Cubic, Table, LuGre, Dahl, ElastoPlastic,
+)  # fmt: skip
 
 
 class Averaged(FrictionLaw):
@@ -293,6 +253,10 @@ class Averaged(FrictionLaw):
     def __post_init__(self) -> None:
         if not isinstance(self.law, FrictionLaw):
             raise ParameterError("Averaged", "law", self.law, "a friction law")
+        if self.law.has_memory:
+            raise ParameterError(
+                "Averaged", "law", self.law, "a law of the speed alone: one with memory is not averaged"
+            )
         super().__post_init__()
 
     def coefficients(self) -> tuple[Any, ...]:

@@ -7,7 +7,7 @@
 A contact senses along n (normal force, N/m) and t (sliding), and acts along d. Linearised about steady sliding q0
 
     K_eff = K - sum mu sgn(V) d n'            non-symmetric: can flutter
-    C_eff = C + sum N_c(q0) mu'(|V|) d t'     indefinite where friction weakens with speed
+    C_eff = C + sum N_c(q0) mu'(|V|) d t'     indefinite where friction weakens with speed (`memory_rows`: with memory)
               + sum mu N_c(q0) / |V| a a'     where sliding is in a plane: a is the row across it
 
 because v = V - t.q' gives d(mu sgn(v))/dq' = -mu' t' at fixed sgn(v). Every array may carry leading axes, so that one
@@ -28,6 +28,7 @@ from squealbox.contacts import ROWS, Contact, Contacts, dense_rows, sparse_matri
 from squealbox.factorisation import is_symmetric
 from squealbox.loops import Loop, check_loops, folded, near_sliding
 from squealbox.matrices import InvalidSystem, array, check_mass, check_width, checked_names, coupled, felt
+from squealbox.memory_rows import no_memory, remembering, with_memory
 from squealbox.parameters import DataSheet
 from squealbox.result import Outcome
 from squealbox.schedules import MOVES, Schedule, swinging, value_at
@@ -279,7 +280,7 @@ def linearise(system: System, time: float = 0.0) -> Linearised:
         n, d, t, reaction = system.rows
         lifts = np.array([contact.unilateral for contact in system.contacts])
         closed = ~lifts | (state.normal_force > 0.0)
-        slope = _by_law(system, lambda law, speed: law.slope_at(speed), state.sliding_speed)
+        slope = _by_law(system, lambda law, speed: law.direct_slope(speed), state.sliding_speed)
         damping += coupled(d, np.where(closed, state.normal_force * slope, 0.0), t)
         stiffness -= coupled(d, np.where(closed, state.friction * np.sign(state.sliding_speed), 0.0), n)
         across = system.across
@@ -289,8 +290,11 @@ def linearise(system: System, time: float = 0.0) -> Linearised:
             damping += coupled(across, np.where(closed, turning, 0.0), across)
         if np.any(lifts):
             stiffness -= coupled(reaction, np.where(closed, 0.0, 1.0), n)
-    missing = ~state.exists[..., None, None]
     mass = np.broadcast_to(system.M, stiffness.shape)
+    if remembering(system.contacts):
+        (mass, damping, stiffness), q = with_memory(system.contacts, (mass, damping, stiffness), state, closed)
+        state = replace(state, q=q)
+    missing = ~state.exists[..., None, None]
     return Linearised(mass, np.where(missing, np.nan, damping), np.where(missing, np.nan, stiffness), state)
 
 
@@ -310,6 +314,7 @@ def contact_state(system: System, time: Any, q: Any, qd: Any) -> tuple[Any, Any,
     what a sticking contact carries is known only to the analysis that holds it there.
     """
     no_rigid_contact(system, "a contact's state")
+    no_memory(system.contacts, "a contact's state from q and q'")
     normals, speeds, forces = [], [], []
     for contact in system.contacts:
         normal = value_at(contact.N0, time) + np.sum(contact.n * q, axis=-1)
@@ -333,6 +338,7 @@ def _sparse_equilibrium(system: System, time: float) -> Equilibrium:
 def _sparse_linearised(system: System, state: Equilibrium) -> tuple[Any, Any]:
     """C_eff and K_eff; both NaN on the diagonal where there is no steady sliding."""
     table: Contacts = system.contacts
+    no_memory(table, "a sparse system")
     if not state.exists:
         nothing = sparse.diags_array(np.full(system.size, np.nan), format="csr")
         return nothing, nothing

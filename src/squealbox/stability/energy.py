@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.memory_rows import no_memory
 from squealbox.result import Result, quantity
 from squealbox.stability.eigenvalues import Mode, modes_of
 from squealbox.stability.family import across_dampers, steady_sliding
@@ -135,6 +136,7 @@ def mode_energy(design_or_system: Any, mode: Mode | int | None = None, time: flo
     system: System = as_system(design_or_system, linear=True)
     if system.is_sparse:
         return sparse_energy(system, mode, time)
+    no_memory(system.contacts, "the energy of a mode")
     steady = steady_sliding(system, time)
     if steady.K.ndim > 2:
         raise ValueError(f"leading axes {steady.K.shape[:-2]}: mode_energy() is for one system")

@@ -27,7 +27,10 @@ def steady_sliding(design_or_system: Any, time: float = 0.0) -> Steady:
     if system.is_sparse:
         as_system(system)  # says what to do instead
     about = linearise(system, time)
-    structural = np.broadcast_to(system.C, about.C.shape)
+    structural = np.zeros(about.C.shape)
+    structural[..., : system.size, : system.size] = system.C
+    for row in range(system.size, about.C.shape[-1]):
+        structural[..., row, row] = about.C[..., row, row]
     if any(contact.across is not None for contact in system.contacts):
         structural = structural + np.sum([x[..., None, None] * a for x, a in across_dampers(system, about)], axis=0)
     return Steady(about.M, about.C, about.K, about.equilibrium, structural, _elastic(system, about))
@@ -54,7 +57,8 @@ def _elastic(system: System, about: Linearised) -> Any:
         normal, speed, mu = (a[..., i] for a in (state.normal_force, state.sliding_speed, state.friction))
         closed = (normal > 0.0) if contact.unilateral else True
         force = np.where(closed, mu * np.sign(speed), 0.0)[..., None] * contact.d
-        stiffness = stiffness + force[..., None] * np.asarray(contact.n)[..., None, :]
+        n = system.size
+        stiffness[..., :n, :n] += force[..., None] * np.asarray(contact.n)[..., None, :]
     return 0.5 * (stiffness + np.swapaxes(stiffness, -1, -2))
 
 

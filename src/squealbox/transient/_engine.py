@@ -1,37 +1,30 @@
 """The one door to the compiler: plain functions in, compiled functions out, kept on disk between runs.
 
-The sources of the laws, the schedules and the march are joined into one file, named by the hash of its content, and
-that file is compiled by numba with its on-disk cache. So a change of any source makes a new file; nothing stale runs.
-`plain=True` runs the very same file without the compiler, which the tests use to compare the two.
+The sources of the laws, the schedules and the march are joined into one text, which `compiled` turns into machine code
+named by the hash of that text. So a change of any source makes new code; nothing stale runs.
+`plain=True` runs the very same text without the compiler, which the tests use to compare the two.
 """
 
 import ast
-import hashlib
-import importlib.util
 import inspect
 import operator
-import os
 import re
-import sys
-import tempfile
-import warnings
 from collections.abc import Callable, Collection, Mapping
 from functools import cache
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from squealbox.compiled.machine import Compiled
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
 from squealbox.transient import _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta, _time_stepping
+from squealbox.transient.smooth_laws import SMOOTH
 
 COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Gt: operator.gt, ast.Lt: operator.lt,
 }  # fmt: skip
 ENTRIES = ("march", "time_stepping")
 HEADER = '"""Made by squealbox; safe to delete."""\n\nimport numpy as np\n\n{decorators}'
-COMPILED = """from squealbox.transient._linking import entry, {inner}
-"""
 PLAIN = """
 
 def inner(function):
@@ -86,23 +79,21 @@ def head(
     own: tuple[tuple[str, str], ...] = (),
     laws: Collection[int] | None = None,
     schedules: Collection[int] | None = None,
+    smooth: Collection[int] | None = None,
 ) -> list[str]:
     """Decorators, and the laws and schedules behind one function each; of all kinds, or only of those named."""
-    decorators = PLAIN if plain else COMPILED.format(inner="packed as inner" if inline else "inner, packed")
+    decorators = PLAIN if plain else "packed = None  # every function becomes part of its callers\n" if inline else ""
     parts = [HEADER.format(decorators=decorators)]
     parts += _dispatcher("law_mu", [law.formula for law in LAWS], "v", laws, [mu for mu, _ in own])
     parts += _dispatcher("law_slope", [law.slope_formula for law in LAWS], "v", laws, _calls_of_mu(own))
+    parts += _dispatcher("law_creep", [law.creep_formula or _no_creep for law in SMOOTH], "v, z", smooth)
+    parts += _dispatcher("law_grip", [law.grip_formula for law in SMOOTH if law.grip_formula], "v, z, rate", smooth)
     parts += _dispatcher("schedule_value", [each.formula for each in SCHEDULES], "t", schedules)
     return parts + _dispatcher("schedule_rate", [each.rate_formula for each in SCHEDULES], "t", schedules)
 
 
-def cache_folder() -> Path:
-    """Where compiled code is kept: $SQUEALBOX_CACHE, else the user's cache folder."""
-    chosen = os.environ.get("SQUEALBOX_CACHE")
-    if chosen:
-        return Path(chosen)
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(base) / "squealbox" / "kernels"
+def _no_creep(v: Any, z: Any, p: Any) -> Any:
+    return 0.0 * v
 
 
 def _calls_of_mu(own: tuple[tuple[str, str], ...]) -> list[str]:
@@ -214,34 +205,22 @@ class _Fixed(ast.NodeTransformer):
         return node
 
 
-def load_module(text: str) -> ModuleType:
-    """The text as a module, from a file named by its content."""
-    name = f"squealbox_kernel_{hashlib.sha256(text.encode()).hexdigest()[:20]}"
-    path = _written(name, text)
-    spec = importlib.util.spec_from_file_location(name, path)
-    if spec is None or spec.loader is None:
-        raise ImportError(f"{path}: cannot be imported")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
+def load_module(text: str) -> Any:
+    """The text as a module: its functions compiled when they are first called, or plain ones."""
+    if PLAIN not in text:
+        return Translated(text)
+    module = ModuleType("squealbox_kernel")
+    exec(compile(text, "<kernel>", "exec"), module.__dict__)  # text of our own making
     return module
 
 
-def _written(name: str, text: str) -> Path:
-    folder = cache_folder()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        return _write_once(folder / f"{name}.py", text)
-    except OSError as error:
-        warnings.warn(f"{folder} is not writable ({error}): compiled code is not kept", RuntimeWarning, stacklevel=2)
-        return _write_once(Path(tempfile.mkdtemp(prefix="squealbox-")) / f"{name}.py", text)
+class Translated:
+    """A generated text whose functions are compiled one by one, each at its first call."""
 
+    def __init__(self, text: str) -> None:
+        self.text = text
 
-def _write_once(path: Path, text: str) -> Path:
-    if path.exists() and path.read_text() == text:
-        return path
-    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".part")
-    with os.fdopen(handle, "w") as file:
-        file.write(text)
-    os.replace(temporary, path)
-    return path
+    def __getattr__(self, name: str) -> Compiled:
+        if f"def {name}(" not in self.text:
+            raise AttributeError(name)
+        return Compiled(self.text, name)

@@ -10,7 +10,7 @@ out by damping, work of taking out an open contact's reaction, and work of the n
 scheme uses it. A rigid contact has -gap in the place of N while it is open; closed, its N is solved for in `_rigid`.
 """
 
-# ruff: noqa: F821  (law_mu, law_slope, schedule_value, schedule_rate and WITH_EVENTS are written by _engine)
+# ruff: noqa: F821  (law_mu, law_slope, law_creep, law_grip, schedule_value, schedule_rate and WITH_EVENTS are written by _engine)
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
 import numpy as np
@@ -19,6 +19,7 @@ from squealbox.transient._rigid import constrain, solve
 
 RAW, EXACT, TANH, ARCTAN = 0, 1, 2, 3  # WITH_EVENTS is true in the file compiled for EXACT
 STICK, OPEN = 0, 2
+ALGEBRAIC, FIRST_ORDER = 0, 1  # kinds of rows without mass, as of `rows`
 ROUND_OFF = 2e-14  # of a sum, as a share of its terms
 # s.clock: time, proposed step, logarithm of the previous error, end of the smooth piece, start of the window in which
 # events are counted, last instant inside the piece, fastest landing on a rigid contact so far
@@ -87,7 +88,20 @@ def sliding_velocity(p, c, y, s):
     speed = s.signal[c]
     for i in range(p.mk.shape[0]):
         speed -= p.t[c, i] * y[p.mk.shape[0] + i]
+    if p.smooth[c] > 0:
+        for i in range(p.mk.shape[0]):
+            speed -= p.s[c, i] * y[i]
     return speed
+
+
+def smooth_force(p, c, v, y, s):
+    """Force over normal force of a contact whose law is smooth; the rate of its memory goes into s.creep."""
+    z = 0.0
+    if p.memory[c] >= 0:
+        z = y[p.memory[c]]
+    coefficients = p.law_coefficients[c]
+    s.creep[c] = law_creep(p.smooth[c] - 1, v, z, coefficients)
+    return law_grip(p.smooth[c] - 1, v, z, s.creep[c], coefficients)
 
 
 def slip_acceleration(p, c, dy, s):
@@ -131,8 +145,13 @@ def derivative(p, t, y, mode, s, dy):
         normal = normal_force(p, c, y, s)
         speed = sliding_velocity(p, c, y, s)
         force = 0.0
+        grip = 0.0
+        if p.smooth[c] > 0:
+            grip = smooth_force(p, c, speed, y, s)
         if is_open(p, c, mode, normal):
             opened = True
+        elif p.smooth[c] > 0:
+            force = grip * normal
         elif WITH_EVENTS and p.rigid[c]:
             normal = 0.0
             s.mu[c] = sliding_coefficient(p, c, mode[c] * speed)
@@ -152,24 +171,61 @@ def derivative(p, t, y, mode, s, dy):
         for c in range(p.contacts):
             a += p.md[c, i] * s.force[c]
         dy[n + i] = a
-    opening = release_open(p, y, mode, s, dy) if opened else 0.0
+    for c in range(p.contacts):
+        if p.smooth[c] > 0 and p.memory[c] >= 0:
+            dy[n + p.memory[c]] = s.creep[c]
+    if opened:
+        release_open(p, mode, s, dy)
     solved = True
     if WITH_EVENTS and p.rigid_count > 0:
         solved = constrain(p, mode, s, dy, False)
     elif WITH_EVENTS and sticking > 0:
         solved = hold(p, s, sticking, dy)
-    energy_rates(p, y, s, opening, dy)
+    if p.light:
+        without_mass(p, y, dy)
+    energy_rates(p, y, s, opening_power(p, y, mode, s) if opened else 0.0, dy)
     return solved
 
 
-def release_open(p, y, mode, s, dy):
-    """Take the reaction of open contacts, held in K and the load, out of the accelerations; returns its power."""
+def without_mass(p, y, dy):
+    """Rows of first order and algebraic ones: in the place of q'' stands q' of the former, q of the latter.
+
+    Their velocities are written into y, where the energy integrals and the output read them.
+    """
+    n = p.mk.shape[0]
+    for i in range(n):
+        if p.kind[i] == FIRST_ORDER:
+            dy[i] = dy[n + i]
+            y[n + i] = dy[n + i]
+            dy[n + i] = 0.0
+    for i in range(n):
+        if p.kind[i] == ALGEBRAIC:
+            y[i] = dy[n + i]
+            rate = 0.0
+            for j in range(n):
+                if p.kind[j] != ALGEBRAIC:
+                    rate -= p.mk[i, j] * y[n + j]
+            y[n + i] = rate
+            dy[i] = 0.0
+            dy[n + i] = 0.0
+
+
+def release_open(p, mode, s, dy):
+    """Take the reaction of open contacts, held in K and the load, out of the accelerations."""
+    n = p.mk.shape[0]
+    for c in range(p.contacts):
+        if is_open(p, c, mode, s.normal[c]) and not p.rigid[c]:
+            for i in range(n):
+                dy[n + i] += p.mw[c, i] * s.normal[c]
+
+
+def opening_power(p, y, mode, s):
+    """The power of that."""
     n = p.mk.shape[0]
     power = 0.0
     for c in range(p.contacts):
         if is_open(p, c, mode, s.normal[c]) and not p.rigid[c]:
             for i in range(n):
-                dy[n + i] += p.mw[c, i] * s.normal[c]
                 power += p.w[c, i] * y[n + i] * s.normal[c]
     return power
 

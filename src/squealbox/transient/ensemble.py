@@ -15,12 +15,11 @@ from squealbox.transient import _march, cautions
 from squealbox.transient.lanes.work import HEAD, Progress, Work
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.observers import as_observers
-from squealbox.transient.simulate import MESSAGES, SCHEMES, chosen_method, instants_within
+from squealbox.transient.simulate import MESSAGES, SCHEMES, chosen_method, instants_within, usual_method
 
 if TYPE_CHECKING:
     import xarray
 
-USUAL_RTOL = 1e-7
 CODES = {_march.COMPLETED: COMPLETED} | {code: name for code, (name, _) in MESSAGES.items()}
 NOT_RUN = "not_run"
 THREADS = "SQUEALBOX_THREADS"  # in the environment: how many threads where nothing else is said
@@ -131,7 +130,7 @@ def simulate_ensemble(
     design_or_system: Any,
     parameters: Mapping[str, Any] | None = None,
     duration: float = 0.05,
-    method: str | Method = "dormand-prince-8",
+    method: str | Method | None = None,
     observe: Any = ("amplitude",),
     *,
     grid: bool = False,
@@ -154,8 +153,8 @@ def simulate_ensemble(
     parameters : dotted names, such as "friction.static", with arrays that are broadcast together; with ``grid=True``
         each array is an axis of its own
     duration : [s]
-    method : name of a tableau or a `Method`; "bogacki-shampine", "dormand-prince", "tsitouras", "dormand-prince-8", or
-        "taylor", which takes about two thirds of the time; with exact contact, and laws and schedules without tables
+    method : as in `simulate`, with the same tolerances: "taylor", "bogacki-shampine", "dormand-prince", "tsitouras",
+        "dormand-prince-8" or a `Method`; None takes "taylor" wherever the equation has a series
     observe : names out of `OBSERVERS`, or an `Observer` of your own; no trajectory is stored
     contact : "exact", "raw", "smooth" = "arctan", or "tanh", as in `simulate`
     start : "rest", "sliding", or (q, qd) whose arrays end with n and broadcast with the parameters; without parameters
@@ -189,7 +188,9 @@ def simulate_ensemble(
     instants = np.zeros(0)
     if times is not None:
         instants = instants_within("simulate_ensemble", np.atleast_1d(times), start_time, duration)
-    chosen = _method(method, rtol, atol)
+    names, arrays, shape = _space(design_or_system, parameters, grid, start)
+    named = method or _usual(design_or_system, names, arrays, contact)
+    chosen = chosen_method(named, rtol, atol)
     if chosen.tableau == TAYLOR and contact != "exact":
         raise ParameterError(
             "simulate_ensemble", "contact", contact, "exact: a Taylor series does not see a jump of sgn"
@@ -198,7 +199,6 @@ def simulate_ensemble(
         chosen, SCHEMES[contact], width, start, duration, start_time, as_observers(observe),
         instants, _threads(threads), progress,
     )  # fmt: skip
-    names, arrays, shape = _space(design_or_system, parameters, grid, start)
     job.run(design_or_system, names, arrays, shape)
     settings = {
         "duration": duration, "start_time": start_time, "contact": contact, "width": width, "grid": grid,
@@ -262,9 +262,12 @@ def _counts(column: Any) -> Any:
     return np.nan_to_num(column).astype(np.int64)
 
 
-def _method(method: str | Method, rtol: float | None, atol: Any) -> Method:
-    """As given; a name alone takes the tolerance of an ensemble, where errors of 1e-6 serve and time counts."""
-    return chosen_method(method, USUAL_RTOL if rtol is None and isinstance(method, str) else rtol, atol)
+def _usual(design: Any, names: tuple[str, ...], arrays: list[Any], contact: str) -> str:
+    """The method of a run that names none, as `simulate` would take it."""
+    first = design[0] if isinstance(design, (list, tuple)) and design else design
+    if names:
+        first = design.replace({name: float(np.ravel(array)[0]) for name, array in zip(names, arrays, strict=True)})
+    return usual_method(as_system(first), contact)
 
 
 def _outcome(ended: Any, interrupted: bool) -> Outcome:

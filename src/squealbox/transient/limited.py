@@ -12,6 +12,7 @@ import numpy as np
 from squealbox.friction import NEVER_STICKS, FrictionLaw
 from squealbox.parameters import parameter
 from squealbox.system import Contact, InvalidSystem, System
+from squealbox.transient.widened import widened
 
 
 class Limited(FrictionLaw):
@@ -41,23 +42,23 @@ class Limited(FrictionLaw):
 
 
 def in_time(system: System) -> System:
-    """The system whose loops are all rows or contacts; `InvalidSystem` for a loop that an engine cannot run."""
-    if not system.loops:
-        return system
-    contacts = list(system.contacts)
+    """The system whose loops are all rows or contacts, with rows for all it remembers.
+
+    Raises `InvalidSystem` for a loop that an engine cannot run.
+    """
+    contacts, others = list(system.contacts), []
     for i, loop in enumerate(system.loops):
         rows = loop.rows(system.names)
         if not loop.linear:
             what = "sampling" if loop.sampling is not None else "a delay"
             raise InvalidSystem(f"loops[{i}] has {what}: expected loops without; control.run_loops() runs it in time")
         if rows.memory or np.any(rows.P) or np.ndim(rows.R) > 1:
-            raise InvalidSystem(
-                f"loops[{i}] has a limit and feeds back more than a velocity: expected no limit, or velocity alone"
-            )
+            others.append(loop)
+            continue
         gain = float(np.linalg.norm(rows.R))
         if gain == 0.0:
             continue
         still = np.zeros(system.size)
         law = Limited(gain, float(loop.limit or 0.0))
         contacts.append(Contact(still, rows.b, -rows.R / gain, 1.0, 0.0, law, name=f"loop on {loop.on}"))
-    return system.replace(loops=(), contacts=tuple(contacts))
+    return widened(system.replace(loops=tuple(others), contacts=tuple(contacts)) if system.loops else system)

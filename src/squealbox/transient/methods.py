@@ -9,7 +9,10 @@ import numpy as np
 from squealbox.parameters import ParameterError, known_names
 from squealbox.transient import _dop853
 
-TAYLOR = "taylor"  # the solution's own series, in ensembles
+TAYLOR = "taylor"  # the solution's own series
+USUAL_RTOL = {
+    "bogacki-shampine": 1e-6, "dormand-prince": 1e-8, "tsitouras": 1e-8, "dormand-prince-8": 3e-10, TAYLOR: 1e-10,
+}  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +52,7 @@ class Method:
     """An algorithm with its tolerances.
 
     tableau : name, one of `TABLEAUX`
-    rtol : relative tolerance of each displacement and velocity in a step [-]
+    rtol : relative tolerance of each displacement and velocity in a step [-]; None takes `USUAL_RTOL` of the tableau
     atol : absolute tolerance of a velocity [m/s]; that of a displacement is atol / (highest angular frequency). None
         takes 1e-3 rtol times the fastest sliding speed, or times 1 m/s where nothing slides (below 1e-12 m/s). An
         array of 2n values [m, m/s] is taken as it is.
@@ -58,7 +61,7 @@ class Method:
     """
 
     tableau: str = "dormand-prince-8"
-    rtol: float = 3e-10
+    rtol: float = None  # type: ignore[assignment]
     atol: Any = None
     first_step: float | None = None
     largest_step: float | None = None
@@ -68,6 +71,8 @@ class Method:
         if self.tableau not in (*TABLEAUX, TAYLOR):
             names = [*TABLEAUX, TAYLOR]
             raise ParameterError("Method", "tableau", self.tableau, known_names(str(self.tableau), names))
+        if self.rtol is None:
+            object.__setattr__(self, "rtol", USUAL_RTOL[self.tableau])
         if not 1e-15 <= self.rtol < 1.0:
             raise ParameterError("Method", "rtol", self.rtol, "a number in [1e-15, 1)")
         for name in ("first_step", "largest_step"):

@@ -69,6 +69,10 @@ def time_stepping(
     from squealbox.transient._engine import time_stepping_kernel
 
     problem = packing.pack(system, Method(), 0, 1.0, True)
+    if any(contact.law.grip_formula is not None for contact in system.contacts):
+        raise InvalidSystem('a law has memory, or a loop a limit: time stepping knows neither; take contact="exact"')
+    if problem["light"]:
+        raise InvalidSystem('a row has no mass: time stepping solves for velocities; take contact="exact"')
     period = 1e3 * float(problem["window"])
     highest = packing.highest_frequency(problem["mk"])
     longest = 2.0 / highest if highest > 0.0 else np.inf

@@ -5,6 +5,7 @@ for each different text among the contacts, in their order.
 """
 
 from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -47,3 +48,11 @@ def law_kinds(contacts: Sequence[Contact]) -> Any:
             )
         kinds.append(LAWS.index(type(contact.law)) if texts is None else len(LAWS) + own.index(texts))
     return np.array(kinds, dtype=np.int64)
+
+
+@cache
+def untraced(text: str) -> str:
+    """Why the series of an own law's mu cannot be written; empty where it can."""
+    from squealbox.transient.lanes.formulas import tried
+
+    return tried(text)

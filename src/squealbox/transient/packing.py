@@ -13,6 +13,18 @@ from squealbox.schedules import SCHEDULES, Constant, Schedule
 from squealbox.system import Contact, InvalidSystem, System
 from squealbox.transient.methods import Method, Tableau, tableau
 from squealbox.transient.own_laws import law_kinds
+from squealbox.transient.rows import (
+    WITH_MASS,
+    Rows,
+    audited,
+    audited_matrix,
+    commanding_load,
+    fastest_rate,
+    memories,
+    rows_of,
+    sensed_load,
+)
+from squealbox.transient.smooth_laws import smooth_kinds
 
 UNIT = Constant(1.0)
 STAGES, DEGREE = 16, 7  # room in the record of a tableau
@@ -39,28 +51,35 @@ def _packed(system: System, scheme: int, width: float) -> tuple[Any, float]:
     if system.shape != ():
         raise InvalidSystem(f"the system has leading axes {system.shape}: simulate takes one system at a time")
     n, contacts = system.size, system.contacts
-    inverse = inverse_mass(system.M)
-    d, t = (_rows([getattr(c, name) for c in contacts], n) for name in ("d", "t"))
+    rows = rows_of(system)
+    inverse = rows.inverse
+    d, t = _rows([c.d for c in contacts], n), _rows(list(rows.t), n)
     w = _rows([np.zeros(n) if c.normal is None else c.normal for c in contacts], n)
-    normal = _rows([c.normal if c.rigid else c.n for c in contacts], n)  # of a rigid one -gap = normal . q - gap0
+    normal = _rows(
+        [c.normal if c.rigid else sensed for c, sensed in zip(contacts, rows.n, strict=True)], n
+    )  # of a rigid one -gap = normal . q - gap0
     laws = [np.array(c.law.coefficients(), dtype=float) for c in contacts]
-    stiffness = inverse @ system.K
-    highest = highest_frequency(stiffness)
+    highest = highest_frequency(rows.stiffness) if rows.all_have_mass else float(fastest_rate(rows))
     pace = max(highest, float(schedule_frequency(system)))
     values: dict[str, Any] = {
         "size": n,
         "contacts": len(contacts),
-        "mk": stiffness,
-        "mc": inverse @ system.C,
-        "c": system.C,
-        "ka": 0.5 * (system.K - system.K.T),
-        "circulatory": np.any(system.K != system.K.T),
+        "mk": rows.stiffness,
+        "mc": rows.damping,
+        "kind": np.array(rows.kinds, dtype=np.int64),
+        "light": not rows.all_have_mass,
+        "smooth": np.array(smooth_kinds(contacts), dtype=np.int64),
+        "memory": np.array(memories(system), dtype=np.int64),
+        "s": _rows(list(rows.s), n),
+        "c": audited_matrix(system, system.C),
+        "ka": 0.5 * (audited_matrix(system, system.K) - audited_matrix(system, system.K).T),
+        "circulatory": np.any(audited_matrix(system, system.K) != audited_matrix(system, system.K).T),
         "md": d @ inverse.T,
         "mw": w @ inverse.T,
-        "d": d,
+        "d": audited(system, d),
         "t": t,
         "n": normal,
-        "w": w,
+        "w": audited(system, w),
         "g": t @ inverse @ d.T,
         "unilateral": np.array([c.unilateral for c in contacts], dtype=np.int64),
         "static": np.array([static_limit(c) for c in contacts], dtype=float),
@@ -69,13 +88,14 @@ def _packed(system: System, scheme: int, width: float) -> tuple[Any, float]:
         "restitution": np.array([c.restitution for c in contacts], dtype=float),
         "law_kind": law_kinds(contacts),
         "law_coefficients": _padded(laws),
-        **_signals(system, inverse),
+        **_signals(system, rows),
         "scheme": scheme,
         "smoothing": width,
         "window": 1e-3 * 2.0 * np.pi / pace if pace > 0.0 else np.inf,
     }
     record = _record(_layout(values), values)
     record["atol"][:] = 1.0
+    record["kind"][n:], record["memory"][len(contacts) :] = WITH_MASS, -1
     return record, highest
 
 
@@ -95,13 +115,14 @@ def problem_type(n: int, m: int, law: int, terms: int, term: int, breaks: int) -
         "md": ("f8", (m, n)), "mw": ("f8", (m, n)), "d": ("f8", (m, n)), "t": ("f8", (m, n)),
         "n": ("f8", (m, n)), "w": ("f8", (m, n)), "g": ("f8", (m, m)),
         "unilateral": ("i8", (m,)), "static": ("f8", (m,)), "law_kind": ("i8", (m,)),
+        "kind": ("i8", (n,)), "smooth": ("i8", (m,)), "memory": ("i8", (m,)), "s": ("f8", (m, n)),
         "rigid": ("i8", (m,)), "restitution": ("f8", (m,)),
         "law_coefficients": ("f8", (m, law)), "signal_start": ("i8", (2 * (m + n) + 1,)),
         "term_weight": ("f8", (terms,)), "term_kind": ("i8", (terms,)),
         "term_coefficients": ("f8", (terms, term)), "breaks": ("f8", (breaks,)), "atol": ("f8", (2 * n,)),
     }  # fmt: skip
     return np.dtype(
-        [(name, "i8") for name in (*integers, "rigid_count")]
+        [(name, "i8") for name in (*integers, "rigid_count", "light")]
         + [(name, "f8") for name in ("smoothing", "window", "rtol")]
         + [(name, kind, shape) for name, (kind, shape) in arrays.items()]
     )
@@ -136,6 +157,7 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
         "signal": (2 * (m + n) + m,), "normal": (m,), "speed": (m,), "force": (m,), "right": (2 * m,),
         "matrix": (2 * m, 2 * m), "basis": (m + 1, m),
         "share": (m,), "leave": (m,), "lowest": (m,), "fastest": (m,), "wanted": (m,), "multiplier": (m,),
+        "creep": (m,),
         "state": (width,), "state_new": (width,), "y": (width,), "y_dense": (width,), "dy": (width,),
         "stage": (STAGES, width), "phi": (2 * m,), "phi0": (2 * m,), "phi1": (2 * m,), "nodes": (5, 2 * m),
         "stack": (128, 7), "clock": (7,),
@@ -187,8 +209,9 @@ def schedule_frequency(system: System) -> Any:
 
 
 def static_limit(contact: Contact) -> Any:
-    """The static limit of a contact's law; 0 of one that has no direction to stick along."""
-    return contact.law.static_limit if np.any(contact.t) and np.any(contact.d) else 0.0
+    """The static limit of a contact's law; 0 of one that has no direction to stick along, and of a smooth law."""
+    sticks = np.any(contact.t) and np.any(contact.d) and contact.law.grip_formula is None
+    return contact.law.static_limit if sticks else 0.0
 
 
 def schedule_kind(part: Schedule) -> int:
@@ -254,16 +277,20 @@ def _room(count: int, least: int = 2) -> int:
     return max(least, 1 << (int(count) - 1).bit_length())
 
 
-def _signals(system: System, inverse: Any) -> dict[str, Any]:
+def _signals(system: System, rows: Rows) -> dict[str, Any]:
     """The varying quantities V, N0, M^-1 f and f, each a sum of weighted schedules: term k belongs to signal i for
     signal_start[i] <= k < signal_start[i + 1].
     """
     n, contacts = system.size, system.contacts
     load = load_terms(system)
+    inverse = rows.inverse
     lists = [_terms(c.V) for c in contacts] + [_terms(-c.gap if c.rigid else c.N0) for c in contacts]
+    for c in range(len(contacts)):
+        lists[c] += commanded_by_the_load(system, rows, c, load)
+        lists[len(contacts) + c] += through_the_load(system, rows, c, load)
     spare: list[list[Any]] = [[] for _ in range(_room(n) - n)]  # the march counts loads by the room, not by the size
     lists += [[((inverse @ weight)[i], part) for weight, part in load] for i in range(n)] + spare
-    lists += [[(weight[i], part) for weight, part in load] for i in range(n)] + spare
+    lists += [[(audited(system, weight)[i], part) for weight, part in load] for i in range(n)] + spare
     terms = [term for group in lists for term in group]
     kinds = np.array([schedule_kind(part) for _, part in terms], dtype=np.int64)
     coefficients = [np.array(part.coefficients(), dtype=float).ravel() for _, part in terms]
@@ -278,6 +305,20 @@ def _signals(system: System, inverse: Any) -> dict[str, Any]:
         "break_count": len(breaks),
         "breaks": np.array(breaks, dtype=float),
     }
+
+
+def through_the_load(system: System, rows: Rows, c: int, load: list[tuple[Any, Schedule]]) -> list[tuple[Any, Any]]:
+    """What the load adds to the normal force of contact c through rows with neither mass nor damping."""
+    row = sensed_load(system, rows, c)
+    return [] if row is None else [(np.sum(row * weight, axis=-1), part) for weight, part in load]
+
+
+def commanded_by_the_load(
+    system: System, rows: Rows, c: int, load: list[tuple[Any, Schedule]]
+) -> list[tuple[Any, Any]]:
+    """What the load adds to the speed of a smooth contact that senses a row of first order."""
+    row = commanding_load(system, rows, c)
+    return [] if row is None else [(-np.sum(row * weight, axis=-1), part) for weight, part in load]
 
 
 def load_terms(system: System) -> list[tuple[Any, Schedule]]:

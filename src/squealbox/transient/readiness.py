@@ -18,7 +18,4 @@ def needs_compiling(design_or_system: Any) -> bool:
     from squealbox.transient.simulate import exact_call
 
     march, arguments = exact_call(as_system(design_or_system))
-    signature = tuple(march.typeof_pyval(each) for each in arguments)
-    if signature in march.overloads:
-        return False
-    return march._cache.load_overload(signature, march.targetctx) is None
+    return not march.ready(*arguments)

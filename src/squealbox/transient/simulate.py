@@ -7,19 +7,24 @@ from typing import Any
 
 import numpy as np
 
+from squealbox import friction, schedules
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
+from squealbox.schedules import Schedule
 from squealbox.system import InvalidSystem, System, as_system, equilibrium, no_rigid_contact
 from squealbox.transient import _march, _motion, cautions, moreau, packing
 from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
 from squealbox.transient.limited import in_time
-from squealbox.transient.methods import Method
-from squealbox.transient.own_laws import own_texts
+from squealbox.transient.methods import TAYLOR, Method
+from squealbox.transient.own_laws import own_texts, texts_of, untraced
+from squealbox.transient.smooth_laws import smooth_kinds
 from squealbox.transient.trajectory import Trajectory
+from squealbox.transient.widened import base_of, start_of
 
 SCHEMES = {"exact": EXACT, "raw": RAW, "tanh": TANH, "smooth": ARCTAN, "arctan": ARCTAN}
 TIME_STEPPING = "time-stepping"
-USUAL_RTOL = {"bogacki-shampine": 1e-6, "dormand-prince": 1e-8, "tsitouras": 1e-8, "dormand-prince-8": 3e-10}
+LARGE = 160  # products of an acceleration up to which a generated step is written out
+KEPT = 16  # designs whose systems are at hand
 ROWS = 32_768  # room for steps at first; memory is touched only as rows are written
 BUDGET = (5_000, 50_000)  # least and most steps between two looks at the keyboard
 LOOK = 0.02  # s that should pass between them
@@ -53,7 +58,7 @@ def simulate(
     duration: float,
     start: Any = None,
     times: Any = None,
-    method: str | Method = "dormand-prince-8",
+    method: str | Method | None = None,
     contact: str = "exact",
     *,
     rtol: float | None = None,
@@ -72,8 +77,10 @@ def simulate(
     start : (q, qd), shapes (n,) and (n,) [m], [m/s]; "rest" (the default: q = qd = 0, loads applied suddenly) or
         "sliding" (steady sliding without vibration)
     times : instants of output [s] within the run, shape (k,), increasing; a whole number k for k equidistant instants;
-        None for every step taken. They do not influence the steps.
-    method : name of a tableau or a `Method` with tolerances
+        None for every step taken, a long one in parts of at most a sixth of the shortest period. They do not influence
+        the steps.
+    method : "taylor" (the motion's own series, for exact contact), the name of a tableau, or a `Method` with
+        tolerances; None takes "taylor" wherever the equation has a series, else "dormand-prince-8"
     contact : "exact" (stick, slip and lift-off by events), "raw" (plain sgn), "smooth" = "arctan"
         ((2/pi) arctan(v/width)), "tanh" (tanh(v/width)) or "time-stepping" (Moreau, fixed step, for many contacts)
     rtol, atol : override those of `method`
@@ -95,20 +102,24 @@ def simulate(
     >>> simulate(DrumBrake(), duration=1e-3).outcome
     'completed'
     """
-    system = in_time(as_system(design_or_system))
-    chosen = chosen_method(method, rtol, atol)
+    system = system_of(design_or_system)
     if contact not in (*SCHEMES, TIME_STEPPING):
         raise ParameterError("simulate", "contact", contact, known_names(str(contact), [*SCHEMES, TIME_STEPPING]))
     for name, value, low in (("duration", duration, 0.0), ("width", width, 0.0), ("start_time", start_time, -np.inf)):
         if not (np.isfinite(value) and value > low):
             raise ParameterError("simulate", name, value, f"a finite number in ({low:g}, inf)")
+    chosen = chosen_method(method or usual_method(system, contact), rtol, atol)
     requested = _times(times, start_time, duration)
     if contact != "exact":
         no_rigid_contact(system, f"contact={contact!r}")
-    q, qd = _start(system, start, start_time)
-    _check_gaps(system, q)
+    q, qd = _start(base_of(system), start, start_time)
+    _check_gaps(base_of(system), q)
+    q, qd = start_of(system, q, qd, isinstance(start, str) and start == "sliding", start_time)
     if contact == TIME_STEPPING:
         return moreau.time_stepping(system, duration, q, qd, start_time, requested, step)
+    if chosen.tableau == TAYLOR:
+        _has_series(system, contact)
+        return _by_series(system, chosen, contact, width, q, qd, start_time, duration, requested, progress)
     run = _Run(system, chosen, SCHEMES[contact], width, q, qd, start_time, requested)
     outcome = run.to(start_time + duration, duration, progress)
     settings = {
@@ -116,6 +127,18 @@ def simulate(
         "width": width, "tableau": chosen.tableau, "rtol": chosen.rtol, "atol": run.atol.tolist(),
     }  # fmt: skip
     return run.trajectory(settings, outcome)
+
+
+LATEST: dict[int, tuple[Any, System]] = {}  # designs are frozen: the same one has the same system
+
+
+def system_of(design_or_system: Any) -> System:
+    """The system in time of a design; that of the latest designs is at hand."""
+    found = LATEST.pop(id(design_or_system), None) or (design_or_system, in_time(as_system(design_or_system)))
+    LATEST[id(design_or_system)] = found
+    if len(LATEST) > KEPT:
+        LATEST.pop(next(iter(LATEST)))
+    return found[1]
 
 
 class _Run:
@@ -185,64 +208,142 @@ class _Run:
     def _outcome(self, code: int, end: float) -> Outcome:
         if code == _march.COMPLETED:
             return Outcome(COMPLETED)
-        name, why = MESSAGES[code]
         s, n, room = self.scratch, self.system.size, len(self.problem["mk"])
         reached, step = float(s["clock"][_motion.TIME]), float(s["clock"][_motion.STEP])
-        evidence = {
-            "time": reached,
-            "step": step,
-            "q": s["state"][:n].tolist(),
-            "qd": s["state"][room : room + n].tolist(),
-            "sliding_velocity": s["speed"][: len(self.system.contacts)].tolist(),
-            "accepted": int(s["count"][_motion.ACCEPTED]),
-        }
-        return Outcome(name, f"{why}; reached t = {reached:.9g} s of {end:g} s with a step of {step:.3g} s", **evidence)
-
-    def _caution(self, settings: dict[str, Any], reversals: int) -> str:
-        """What a reader must know of the scheme, and of contacts that left the range of their model."""
-        m = len(self.system.contacts)
-        said = cautions.of_a_run(self.system, self.scratch["lowest"][:m], self.scratch["fastest"][:m])
-        return "; ".join(each for each in (_caution(settings, reversals), *said) if each)
+        speed = s["speed"][: len(self.system.contacts)]
+        state = s["state"][:n], s["state"][room : room + n], speed
+        return failed(code, end, reached, step, state, int(s["count"][_motion.ACCEPTED]))
 
     def trajectory(self, settings: dict[str, Any], outcome: Outcome) -> Trajectory:
         """The output so far as a result."""
-        n, m = self.system.size, len(self.system.contacts)
+        m = len(self.system.contacts)
         count = [int(x) for x in self.scratch["count"]]
-        rows = self.rows[: count[_motion.ROWS]]
-        events = self.events[: count[_motion.EVENTS]]
-        widths = [1, n, n, m, 1, 1, 1, 1, 1, m, m, m, m]
-        columns = np.split(rows, np.cumsum(widths)[:-1], axis=1)
-        t, q, qd, friction, load, circulation, dissipated, opening, impact, normal, speed, force, mode = columns
-        return Trajectory(
-            inputs={"system": self.system},
-            settings=settings,
-            outcome=outcome,
-            t=t[:, 0],
-            q=q,
-            qd=qd,
-            normal_force=np.where(mode == OPEN, 0.0, normal),
-            sliding_velocity=speed,
-            friction_force=force,
-            mode=mode.astype(np.int8),
-            work_friction=friction,
-            work_load=load[:, 0],
-            work_circulation=circulation[:, 0],
-            work_dissipated=dissipated[:, 0],
-            work_opening=opening[:, 0],
-            work_impact=impact[:, 0],
-            event_time=events[:, 0],
-            event_contact=events[:, 1].astype(np.int64),
-            event_mode=events[:, 2].astype(np.int8),
-            caution=self._caution(settings, count[_motion.REVERSALS]),
-            steps=count[_motion.ACCEPTED],
-            rejected=count[_motion.REJECTED],
-            evaluations=count[_motion.EVALUATIONS],
-        )
+        reversals = count[_motion.REVERSALS]
+        said = cautions.of_a_run(self.system, self.scratch["lowest"][:m], self.scratch["fastest"][:m])
+        caution = "; ".join(each for each in (_caution(settings, reversals), *said) if each)
+        steps = count[_motion.ACCEPTED], count[_motion.REJECTED], count[_motion.EVALUATIONS]
+        rows, events = self.rows[: count[_motion.ROWS]], self.events[: count[_motion.EVENTS]]
+        return told(self.system, rows, events, settings, outcome, caution, steps)
+
+
+def failed(code: int, end: float, reached: float, step: float, state: tuple[Any, Any, Any], accepted: int) -> Outcome:
+    """The outcome of a run that could not go on, with what it had reached: q, q' and sliding velocities."""
+    name, why = MESSAGES[code]
+    q, qd, speed = (np.asarray(each).tolist() for each in state)
+    message = f"{why}; reached t = {reached:.9g} s of {end:g} s with a step of {step:.3g} s"
+    return Outcome(name, message, time=reached, step=step, q=q, qd=qd, sliding_velocity=speed, accepted=accepted)
+
+
+def told(
+    system: System, rows: Any, events: Any, settings: dict[str, Any], outcome: Outcome, caution: str,
+    steps: tuple[int, int, int],
+) -> Trajectory:  # fmt: skip
+    """Rows of output as a result: t, q, q', the works, then N, v, force and mode of each contact."""
+    n, m, base = system.size, len(system.contacts), base_of(system)
+    widths = [1, n, n, m, 1, 1, 1, 1, 1, m, m, m, m]
+    columns = np.split(rows, np.cumsum(widths)[:-1], axis=1)
+    t, q, qd, friction, load, circulation, dissipated, opening, impact, normal, speed, force, mode = columns
+    smooth = np.array(smooth_kinds(system.contacts)) > 0  # no events tell their sense
+    mode = np.where(smooth & (mode != OPEN), np.sign(speed), mode)
+    return Trajectory(
+        inputs={"system": base},
+        settings=settings,
+        outcome=outcome,
+        t=t[:, 0],
+        q=q[:, : base.size],
+        qd=qd[:, : base.size],
+        normal_force=np.where(mode == OPEN, 0.0, normal),
+        sliding_velocity=speed,
+        friction_force=force,
+        mode=mode.astype(np.int8),
+        work_friction=friction,
+        work_load=load[:, 0],
+        work_circulation=circulation[:, 0],
+        work_dissipated=dissipated[:, 0],
+        work_opening=opening[:, 0],
+        work_impact=impact[:, 0],
+        event_time=events[:, 0],
+        event_contact=events[:, 1].astype(np.int64),
+        event_mode=events[:, 2].astype(np.int8),
+        caution=caution,
+        steps=steps[0],
+        rejected=steps[1],
+        evaluations=steps[2],
+    )
+
+
+def _by_series(
+    system: System, method: Method, contact: str, width: float, q: Any, qd: Any, begin: float, duration: float,
+    times: Any, progress: Progress | None,
+) -> Trajectory:  # fmt: skip
+    """The run by the generated step of a Taylor series."""
+    from squealbox.transient.lanes.single import Single
+
+    run, end, n, m = (
+        Single(system, method, q, qd, begin, duration, times),
+        begin + duration,
+        system.size,
+        len(system.contacts),
+    )
+    code, why = run.to(end, progress)
+    reached = run.out[0, 1:5] if code is not None else [run.at("t"), run.at("taken"), run.at("tries"), 0.0]
+    if code is None:
+        outcome = Outcome("interrupted", why, time=float(reached[0]))
+    elif code == _march.COMPLETED:
+        outcome = Outcome(COMPLETED)
+    else:
+        state = run.out[0, 5 : 5 + n], run.out[0, 5 + n : 5 + 2 * n]
+        speed = run.speeds(float(reached[0]), state[1])
+        outcome = failed(code, end, float(reached[0]), run.at("h"), (*state, speed), int(reached[1]))
+    settings = {
+        "duration": duration, "start": [q.tolist(), qd.tolist()], "start_time": begin, "contact": contact,
+        "width": width, "tableau": method.tableau, "rtol": method.rtol, "atol": run.atol.tolist(),
+    }  # fmt: skip
+    lowest, fastest = ([run.at(f"{name}{c}") for c in range(m)] for name in ("lowest", "fastest"))
+    said = "; ".join(cautions.of_a_run(system, lowest, fastest))
+    taken, tried = int(reached[1]), int(reached[2])
+    return told(system, *run.columns(), settings, outcome, said, (taken, tried - taken, tried))
+
+
+def _has_series(system: System, contact: str) -> None:
+    """A method that was named and cannot serve is refused."""
+    if contact != "exact":
+        expected = "exact: a Taylor series does not see a jump of sgn, and a smoothed one makes its steps tiny"
+        raise ParameterError("simulate", "contact", contact, expected)
+    if why := no_series(system):
+        raise InvalidSystem(f"{why}: take another method than {TAYLOR}")
+
+
+def usual_method(system: System, contact: str) -> str:
+    """The method of a run that names none: a Taylor series wherever the equation has one for the generated step."""
+    return TAYLOR if contact == "exact" and not no_series(system) else "dormand-prince-8"
+
+
+def no_series(system: System) -> str:
+    """Why the generated step of a Taylor series cannot run the system; empty where it can."""
+    contacts = system.contacts
+    if any(contact.rigid for contact in contacts):
+        return "a rigid contact has impacts"
+    values = [system.load, *(value for c in contacts for value in (c.V, c.N0))]
+    parts = [part for value in values if isinstance(value, Schedule) for _, part in value.terms()]
+    if any(isinstance(part, schedules.Table) for part in parts):
+        return "a schedule of measured points has no Taylor series"
+    if any(isinstance(c.law, friction.Table) for c in contacts):
+        return "a friction law of measured points has no Taylor series"
+    n, m = system.size, len(contacts)
+    if n * (2 * n + 4 * m) + m * m > LARGE:
+        return f"{n} degrees of freedom and {m} contacts are more than a generated step is written out for"
+    return next((why for c in contacts if (own := texts_of(c.law)) and (why := untraced(own[0]))), "")
 
 
 def exact_call(system: System) -> tuple[Any, tuple[Any, ...]]:
     """The compiled march of an exact run of the usual method with given instants, and what it is called with."""
-    method, rest = chosen_method("dormand-prince-8", None, None), np.zeros(system.size)
+    name, rest = usual_method(system, "exact"), np.zeros(system.size)
+    method = chosen_method(name, None, None)
+    if name == TAYLOR:
+        from squealbox.transient.lanes.single import Single
+
+        return Single(system, method, rest, rest, 0.0, 1.0, np.array([0.0, 1.0])).call()
     return _Run(system, method, EXACT, 1e-3, rest, rest, 0.0, np.array([0.0, 1.0])).call(1.0, 1.0)
 
 
@@ -259,7 +360,7 @@ def _caution(settings: dict[str, Any], reversals: int) -> str:
 
 def chosen_method(method: str | Method, rtol: float | None, atol: Any) -> Method:
     """A method with its usual tolerances, or those given."""
-    chosen = method if isinstance(method, Method) else Method(method, rtol=USUAL_RTOL.get(method, 1e-6))
+    chosen = method if isinstance(method, Method) else Method(method)
     given = {"rtol": rtol, "atol": atol}
     return replace(chosen, **{name: value for name, value in given.items() if value is not None})
 

@@ -16,11 +16,14 @@ import numpy as np
 
 from squealbox.limit_cycles.cycles.cycle import ordered
 from squealbox.limit_cycles.cycles.pinned import pinned
+from squealbox.memory_rows import no_memory
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Schedule, value_at
-from squealbox.system import System
+from squealbox.system import InvalidSystem, System
 from squealbox.transient.limited import in_time
 from squealbox.transient.packing import inverse_mass
+from squealbox.transient.rows import WITH_MASS, row_kinds
+from squealbox.transient.widened import Widened
 
 OPEN = 2
 SMOOTHINGS = ("tanh", "arctan")
@@ -35,6 +38,16 @@ def smoothed_sign(v: Any, width: float, kind: str) -> tuple[Any, Any]:
     return 2.0 / np.pi * np.arctan(r), 2.0 / (np.pi * width * (1.0 + r * r))
 
 
+def check_states(system: System) -> None:
+    """Raise `InvalidSystem` for a system that has other states than q and q'."""
+    no_memory(system.contacts, "a limit cycle in q and q'")
+    if isinstance(system, Widened) or any(kind != WITH_MASS for kind in row_kinds(system)):
+        raise InvalidSystem(
+            "M is singular, or a loop with a limit remembers: a limit cycle here is one of q and q' alone; simulate() runs "
+            "such a system to what it settles on"
+        )
+
+
 class Field:
     """f(x, mode) and df/dx of an autonomous system without leading axes.
 
@@ -44,6 +57,7 @@ class Field:
 
     def __init__(self, system: System, contact: str = "exact", width: float = 1e-3) -> None:
         system = in_time(system)
+        check_states(system)
         check_autonomous(system)
         self.system, self.contact, self.width = system, contact, width
         n, rows = system.size, system.contacts

@@ -43,11 +43,17 @@ def change_alone(A, b, lane, j):
 
 
 def others_slip(A, b, lane, j):
-    """Whether every other contact slips, well away from zero speed."""
+    """Whether every other contact slips, well away from zero speed.
+
+    Where all speeds are zero their rates give a scale, and what contact j has left of its own is as good as zero.
+    """
+    left = 100.0 * abs(contact_speed(A, b, lane, j)) if A[b + (ROW_SLIPS + j) * WIDTH + lane] != 0.0 else 0.0
     for c in range(CONTACTS):
         if c != j:
             mode = A[b + (ROW_SLIPS + c) * WIDTH + lane]
-            if mode == 0.0 or not mode * contact_speed(A, b, lane, c) > 1e-9 * speed_scale(A, b, lane, c):
+            rates = SWING * A[b + ROW_WINDOW * WIDTH + lane] * rate_scale(A, b, lane, c)
+            near = 1e-9 * (speed_scale(A, b, lane, c) + rates) + left
+            if mode == 0.0 or not mode * contact_speed(A, b, lane, c) > near:
                 return False
     return True
 

@@ -9,7 +9,7 @@ rows H hold G_ss^-1, zero for the others, and change only at events.
 
 from squealbox.schedules import SCHEDULES
 from squealbox.transient.lanes.formulas import is_table
-from squealbox.transient.lanes.shape import LANES, Shape, layout
+from squealbox.transient.lanes.shape import Shape, layout
 
 CALLED = """
 
@@ -50,12 +50,12 @@ class EquationText:
         local = f"{name}_"
         if name not in self.loaded:
             self.loaded.add(name)
-            self.put(f"{local} = load(A, b + {self.rows.places[name] * LANES})")
+            self.put(f"{local} = load(A, b + {self.rows.places[name] * self.shape.lanes})")
         return local
 
     def keep(self, name: str, value: str) -> None:
         """Write a row."""
-        self.put(f"store(A, b + {self.rows.places[name] * LANES}, {value})")
+        self.put(f"store(A, b + {self.rows.places[name] * self.shape.lanes}, {value})")
 
     def entry(self, name: str) -> str | None:
         """The local of an entry of the equation, None when it is zero throughout."""
@@ -88,7 +88,7 @@ class EquationText:
             return "(" + ", ".join(self.row(f"{name}{i}") for i in range(count)) + ",)"
         columns = 3 - (at == 0)  # speeds, coefficients and slopes of a law; instants and values of a schedule
         known = {at: (count - 1) // columns}
-        return f"Given(A, b + {self.rows.places[f'{name}0'] * LANES}, {count}, {known})"
+        return f"Given(A, b + {self.rows.places[f'{name}0'] * self.shape.lanes}, {count}, {known})"
 
     def accelerations(self, q: list[str], v: list[str], time: str) -> dict[str, list[str]]:
         """q'' in locals, with the speed, normal force, friction force and stick margin of each contact."""
@@ -98,15 +98,20 @@ class EquationText:
         if shape.varying:
             self.put(f"at{k} = minimum({time}, inside_)")
             time = f"at{k}"
-        speeds = [self.total(f"v{c}_{k}", self.signal(c, f"V{c}", time) + minus(self.product(f"t{c}", v)))
-                  for c in range(m)]  # fmt: skip
+        speeds = [self.total(f"v{c}_{k}", self.speed(c, q, v, time)) for c in range(m)]
         normals = [self.total(f"n{c}_{k}", self.signal(m + c, f"N0{c}", time) + self.product(f"n{c}", q))
                    for c in range(m)]  # fmt: skip
-        forces = [self.friction(c, k, speeds[c], normals[c]) for c in range(m)]
+        forces = [
+            self.smooth_force(c, k, speeds[c], normals[c], q)
+            if shape.is_smooth(c)
+            else self.friction(c, k, speeds[c], normals[c])
+            for c in range(m)
+        ]
         out = []
         for i in range(n):
             parts = self.signal(2 * m + i, f"f{i}", time)
             parts += minus(self.product(f"mk{i}", q)) + minus(self.product(f"mc{i}", v))
+            parts += [f"creep{c}_{k}" for c, row in enumerate(shape.memories) if row == i]
             for c in range(m):
                 push, lift = self.entry(f"md{c}_{i}"), self.entry(f"mw{c}_{i}")
                 parts += [f"{push} * {forces[c]}"] if push else []
@@ -115,6 +120,22 @@ class EquationText:
             out.append(self.total(f"a{i}_{k}", parts))
         margins = self.hold(k, out, forces, normals, time) if shape.exact else []
         return {"a": out, "speed": speeds, "normal": normals, "force": forces, "margin": margins}
+
+    def speed(self, c: int, q: list[str], v: list[str], time: str) -> list[str]:
+        """Terms of the sliding velocity V - t . q' - s . q of a contact."""
+        return self.signal(c, f"V{c}", time) + minus(self.product(f"t{c}", v)) + minus(self.product(f"s{c}", q))
+
+    def smooth_force(self, c: int, k: int, speed: str, normal: str, q: list[str]) -> str:
+        """Friction force of a contact without events, and the rate of its memory."""
+        kind, z = self.shape.smooth[c] - 1, "0.0"
+        p = self.given(f"law{c}_", self.shape.laws[c][1], False, 1)
+        rate = "0.0"
+        if self.shape.memories and self.shape.memories[c] >= 0:
+            z, rate = q[self.shape.memories[c]], f"creep{c}_{k}"
+            self.put(f"{rate} = lane_creep_{kind}({speed}, {z}, {p})")
+        shut = f" * (1.0 - {self.openness(c, normal)})" if self.shape.unilateral[c] else ""
+        self.put(f"f{c}_{k} = lane_grip_{kind}({speed}, {z}, {rate}, {p}) * {normal}{shut}")
+        return f"f{c}_{k}"
 
     def openness(self, c: int, normal: str) -> str:
         """1 where a unilateral contact is open, else 0."""
@@ -139,7 +160,7 @@ class EquationText:
     def flag(self, code: str, any_of: str) -> None:
         """`flags`: the lanes that need service; what each needs is written down only when one does."""
         self.put(f"flags = bits(({any_of}) & (alive_ > 0.5))")
-        self.put(f"if_flagged(flags, lambda: store(A, b + {self.rows.places['code'] * LANES}, {code}))")
+        self.put(f"if_flagged(flags, lambda: store(A, b + {self.rows.places['code'] * self.shape.lanes}, {code}))")
 
     def sticks(self, c: int) -> str:
         """1 while a contact sticks, else 0."""

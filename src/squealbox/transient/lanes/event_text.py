@@ -15,10 +15,11 @@ def probes(rule: Any) -> list[int]:
     return [inside[-4], inside[-2], inside[-1]] if len(inside) > 6 else inside[-1:]
 
 
-def slope_weights(places: Sequence[float]) -> list[float]:
-    """Weights of the values at these places for the slope at the last, 1, of the polynomial through them."""
+def slope_weights(places: Sequence[float], at: float = 1.0) -> list[float]:
+    """Weights of the values at these places for the slope there of the polynomial through them."""
     powers = np.vander(np.array(places), increasing=True).T
-    return [float(x) for x in np.linalg.solve(powers, np.arange(float(len(places))))]
+    slopes = [k * at ** max(k - 1, 0) for k in range(len(places))]
+    return [float(x) for x in np.linalg.solve(powers, slopes)]
 
 
 def bernstein_weights(places: Sequence[float]) -> list[list[float]]:
@@ -128,7 +129,8 @@ class EventText(EquationText):
     def mended(self, contact: Any, a: Any, q1: Any, v1: Any, a1: Any) -> tuple[list[str], list[str], list[str]]:
         """The state at the event beside which a trial has landed: Taylor's series over `shift`; the same elsewhere."""
         for i in range(self.shape.n):
-            self.put(f"jerk{i} = share * {self.fall(a[i], [x['a'][i] for x in contact])}")
+            jerk = self.fall(a[i], [x["a"][i] for x in contact]) if self.shape.has_mass(i) else "0.0 * t_"
+            self.put(f"jerk{i} = share * {jerk}")
             self.put(f"q_at{i} = {q1[i]} + shift * ({v1[i]} + 0.5 * shift * {a1[i]})")
             self.put(f"v_at{i} = {v1[i]} + shift * ({a1[i]} + 0.5 * jerk{i})")
             self.put(f"a_at{i} = {a1[i]} + jerk{i}")

@@ -6,12 +6,15 @@ import textwrap
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
+
 from squealbox import friction, schedules
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
 from squealbox.system import InvalidSystem
 from squealbox.transient.lanes.shape import Shape
 from squealbox.transient.observers import extreme
+from squealbox.transient.smooth_laws import SMOOTH
 
 VECTOR_FUNCTIONS = ("where", "minimum", "maximum", "sqrt", "exp", "sin", "cos", "arctan", "log")
 
@@ -22,6 +25,10 @@ def formulas(shape: Shape) -> list[str]:
     laws = [*(inspect.getsource(law.formula) for law in LAWS), *(mu for mu, _ in shape.own)]
     for kind in sorted({kind for kind, _ in shape.laws}):
         parts.append(lane_function(laws[kind], f"lane_mu_{kind}", is_table(LAWS, kind)))
+    for kind in sorted({kind - 1 for kind in shape.smooth if kind > 0}):
+        law = SMOOTH[kind]
+        for name, formula in (("creep", law.creep_formula), ("grip", law.grip_formula)):
+            parts += [] if formula is None else [lane_function(inspect.getsource(formula), f"lane_{name}_{kind}")]
     for kind in sorted({kind for terms in shape.signals for kind, _ in terms}):
         for name, formula in (("value", SCHEDULES[kind].formula), ("rate", SCHEDULES[kind].rate_formula)):
             text = inspect.getsource(formula)
@@ -70,3 +77,23 @@ class _OfLanes(ast.NodeTransformer):
             return ast.Name(node.attr, ast.Load())
         others = {"tanh": "lane_tanh", "abs": "abs", "absolute": "abs", "fabs": "abs"}
         return ast.Name(others[node.attr], ast.Load()) if node.attr in others else node
+
+
+def tried(text: str) -> str:
+    """Why a law's text mu(v, p) cannot be run on a series; empty where it can."""
+    from llvmlite import ir
+
+    from squealbox.transient.lanes import series, vectors
+
+    builder = ir.IRBuilder(ir.Function(ir.Module(), ir.FunctionType(ir.VoidType(), []), "mu").append_basic_block())
+    names: dict[str, Any] = {"np": np, **{name: getattr(series, name) for name in (*VECTOR_FUNCTIONS, "lane_tanh")}}
+    try:
+        exec(compile(lane_function(text, "mu"), "<own law>", "exec"), names)
+        with vectors.writing(builder, 1), series.deciding():
+            one = vectors.Lanes(vectors.number(1.0))
+            numbers = [one] * 64
+            found = names["mu"](series.Series(lambda k: None, (one, one)), numbers)
+            found[2] if isinstance(found, series.Series) else found
+    except Exception as error:  # whatever a user's text does there
+        return f"{error}"
+    return ""

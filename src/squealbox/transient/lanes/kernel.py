@@ -7,23 +7,24 @@ from pathlib import Path
 from typing import Any
 
 from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta
-from squealbox.transient.lanes import alone, crossing, roots, samples, service
+from squealbox.transient.lanes import alone, crossing, recording, roots, samples, service
 from squealbox.transient.lanes.formulas import formulas
-from squealbox.transient.lanes.shape import LANES, Shape, layout, parameter_rows
+from squealbox.transient.lanes.shape import PARTS, Shape, layout, parameter_rows
 from squealbox.transient.lanes.step_text import Step
 from squealbox.transient.lanes.taylor_text import TaylorStep
 
 HEAD = """
 from collections import namedtuple
 
-from squealbox.transient.lanes.tracing import apart, take, traced, traced_as_written
+from squealbox.transient.lanes.tracing import apart, take, traced, traced_as_written, wide
 from squealbox.transient.lanes.vectors import (
-    Given, arctan, bits, cos, exp, forget, if_flagged, lane_tanh, load, log, maximum, minimum, rough_power, sin, sqrt,
-    store, where, with_sign,
+    Given, arctan, at_once, bits, cos, exp, forget, if_flagged, lane_tanh, load, log, maximum, minimum, rough_power, sin, sqrt,
+    store, store_known, where, with_sign,
 )
 # written by modules whose texts have the digest {digest}: a change of theirs makes another file
 {more}
 
+LANES = {lanes}
 Motion = namedtuple("Motion", "t, q, qd, qdd")
 Sliding = namedtuple("Sliding", "t, velocity, normal, mode, work")
 State = namedtuple("State", "t, q, qd, qdd")
@@ -33,6 +34,7 @@ from squealbox.transient.lanes.series import (
     Series, arctan, at, constant, cos, deciding, exp, from_zero, integral, lane_tanh, log, maximum, minimum, sin, sqrt,
     time_series, value, where,
 )
+from squealbox.transient.lanes.series import derivative as slope_series
 from squealbox.transient.lanes.taylor import grow, reach, ready, surely_slips
 from squealbox.transient.lanes.taylor_events import step_end
 """
@@ -50,6 +52,8 @@ PLACES = {
     "force0", "ROW_ZERO": "zero0", "ROW_OWN_G": "own_g0", "ROW_NEXT_SAMPLE": "next", "ROW_SAMPLE": "sample",
     "ROW_HIGHEST": "highest", "ROW_CLOSE": "close", "ROW_PACE": "pace", "ROW_EARLY": "early0",
     "ROW_EARLY_RATE": "early_rate0", "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0", "ROW_TERM": "term0_0",
+    "ROW_SPAN": "span", "ROW_FASTEST": "fastest0", "ROW_SINCE": "since", "ROW_VALUE": "value0",
+    "ROW_SLOPE": "slope_value0",
     "ROW_NOISE": "noise0", "ROW_LOWEST": "lowest0",
 }  # fmt: skip
 
@@ -65,17 +69,27 @@ def source(shape: Shape) -> str:
     """The text of the generated file."""
     rows, step = layout(shape), TaylorStep(shape) if shape.taylor else Step(shape)
     fixed: dict[str, float] = {"WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples}
+    fixed |= {"RECORDED": shape.recorded, "SHARES": PARTS, "FOLLOWED": len(shape.followed), "BREADTH": shape.breadth}
     fixed |= {"SERIES": shape.taylor, "TRIES": shape.exact and not shape.taylor}
     fixed |= {"SIMPLE": shape.simple, "STEPPED": shape.stepped, "p.rigid[]": 0, "p.rigid_count": 0}
     fixed |= {} if shape.varying else {"p.varying": 0}
+    fixed |= {} if shape.kinds else {"p.light": 0}
+    fixed |= {} if shape.smooth else {"p.smooth[]": 0}
+    smooth = {kind - 1 for kind in shape.smooth if kind > 0}
     laws, schedules = {kind for kind, _ in shape.laws}, {kind for terms in shape.signals for kind, _ in terms}
     parts = [
-        *_engine.head(inline=False, own=shape.own, laws=laws, schedules=schedules),
-        HEAD.format(digest=digest(WRITERS[: None if shape.taylor else 2]), more=SERIES if shape.taylor else ""),
+        *_engine.head(inline=False, own=shape.own, laws=laws, schedules=schedules, smooth=smooth),
+        HEAD.format(
+            lanes=shape.lanes,
+            digest=digest(WRITERS[: None if shape.taylor else 2]),
+            more=SERIES if shape.taylor else "",
+        ),
         *formulas(shape),
         step.text(),
     ]
-    fixed |= {name: rows.places.get(row, 0) for name, row in PLACES.items()} | {"WIDTH": LANES} | step.constants()
+    fixed |= {name: rows.places.get(row, 0) for name, row in PLACES.items()} | {"WIDTH": shape.lanes} | step.constants()
+    if shape.recorded:
+        fixed["ROW_TERM"] = rows.places[f"term0_{shape.followed[0]}"]
     first = rows.places["o0_0_0"] if shape.observers else 0
     fixed |= {
         "DOFS": shape.n, "CONTACTS": shape.m, "FUNCTIONS": shape.functions, "GIVEN": len(parameter_rows(shape)),
@@ -86,9 +100,10 @@ def source(shape: Shape) -> str:
     parts += _one_contact(shape, rows.places) if shape.simple else []
     for module in (_motion, *((_rigid, _impacts, _modes, _events) if shape.exact else ())):
         parts += _engine.definitions(module, fixed)
-    parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith("COMPLETED")]
+    kept = ("COMPLETED", "TENSION", "@inner\ndef pulled(")
+    parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith(kept)]
     needed = {roots: fixed["TRIES"], crossing: fixed["TRIES"], alone: shape.simple}
-    needed |= {samples: shape.samples, _runge_kutta: shape.stepped}
+    needed |= {samples: shape.samples, recording: shape.recorded, _runge_kutta: shape.stepped}
     for module in (*(each for each, used in needed.items() if used), service):
         parts += _engine.definitions(module, fixed, entries=("run",))
     return "\n\n".join(parts) + "\n"
@@ -106,14 +121,14 @@ def _gather(shape: Shape, places: dict[str, int]) -> str:
 
     def put(target: str, name: str) -> None:
         if name in places:
-            lines.append(f"    {target} = A[b + {places[name] * LANES} + lane]")
+            lines.append(f"    {target} = A[b + {places[name] * shape.lanes} + lane]")
 
     n, m = shape.n, shape.m
     for name in ("mk", "mc"):
         for i in range(n):
             for j in range(n):
                 put(f"p.{name}[{i}, {j}]", f"{name}{i}_{j}")
-    for name in ("md", "mw", "d", "t", "n", "w"):
+    for name in ("md", "mw", "d", "t", "s", "n", "w"):
         for c in range(m):
             for i in range(n):
                 put(f"p.{name}[{c}, {i}]", f"{name}{c}_{i}")
@@ -136,7 +151,7 @@ def _one_contact(shape: Shape, places: dict[str, int]) -> list[str]:
     """Text of what `alone` asks of one contact of a lane: normal force, speed, rate, limit, and impulses."""
 
     def at(name: str) -> str:
-        return f"A[b + {places[name] * LANES} + lane]"
+        return f"A[b + {places[name] * shape.lanes} + lane]"
 
     def along(c: int, rows: str, states: str, sign: str = "+") -> str:
         pairs = [(f"{rows}{c}_{i}", f"{states}{i}") for i in range(shape.n) if f"{rows}{c}_{i}" in places]
@@ -177,15 +192,15 @@ def _signals(shape: Shape, places: dict[str, int]) -> list[str]:
         names = [f"V{c}" for c in range(m)] + [f"N0{c}" for c in range(m)] + [f"f{i}" for i in range(n)]
         for index, name in enumerate(names):
             if name in places:
-                lines.append(f"    s.signal[{index}] = A[b + {places[name] * LANES} + lane]")
+                lines.append(f"    s.signal[{index}] = A[b + {places[name] * shape.lanes} + lane]")
         return lines
-    for index, terms in enumerate(shape.signals):
+    for index, terms in enumerate(shape.signals[: 2 * m + n]):
         for k, (_, count) in enumerate(terms):
             at = f"p.signal_start[{index}] + {k}"
-            lines.append(f"    p.term_weight[{at}] = A[b + {places[f'weight{index}_{k}'] * LANES} + lane]")
+            lines.append(f"    p.term_weight[{at}] = A[b + {places[f'weight{index}_{k}'] * shape.lanes} + lane]")
             for i in range(count):
                 row = places[f"given{index}_{k}_{i}"]
-                lines.append(f"    p.term_coefficients[{at}, {i}] = A[b + {row * LANES} + lane]")
+                lines.append(f"    p.term_coefficients[{at}, {i}] = A[b + {row * shape.lanes} + lane]")
     return lines
 
 
@@ -194,11 +209,11 @@ def _observers(shape: Shape, places: dict[str, int]) -> str:
     lines = ["@inner", "def set_observers(A, b, lane, fixed):"]
     at = 3 + len(parameter_rows(shape))
     for k, observer in enumerate(shape.observers):
-        for i in range(observer.copies(shape.n, shape.m)):
+        for i in range(shape.copies(observer)):
             for j, value in enumerate(observer.start):
                 number = repr(float(value)).replace("inf", "np.inf").replace("nan", "np.nan")
-                lines.append(f"    A[b + {places[f'o{k}_{i}_{j}'] * LANES} + lane] = {number}")
+                lines.append(f"    A[b + {places[f'o{k}_{i}_{j}'] * shape.lanes} + lane] = {number}")
             for j in range(observer.coefficients):
-                lines.append(f"    A[b + {places[f'c{k}_{i}_{j}'] * LANES} + lane] = fixed[{at + j}]")
+                lines.append(f"    A[b + {places[f'c{k}_{i}_{j}'] * shape.lanes} + lane] = fixed[{at + j}]")
         at += observer.coefficients
     return "\n".join([*lines, "    return"]) + "\n"

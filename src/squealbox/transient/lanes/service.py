@@ -10,7 +10,17 @@ record filled from the lane, so stick, slip and lift-off mean the same in both.
 import numpy as np
 
 from squealbox.transient._events import event_values
-from squealbox.transient._march import COMPLETED, INCONSISTENT, NOT_FINITE, RUNNING, STEP_LIMIT, UNDERFLOW, ZENO
+from squealbox.transient._march import (
+    COMPLETED,
+    INCONSISTENT,
+    NOT_FINITE,
+    RUNNING,
+    STEP_LIMIT,
+    TENSION,
+    UNDERFLOW,
+    ZENO,
+    pulled,
+)
 from squealbox.transient._modes import apply_event, start_modes
 from squealbox.transient._motion import (
     INSIDE,
@@ -25,12 +35,13 @@ from squealbox.transient._motion import (
 from squealbox.transient._rigid import solve
 from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
+from squealbox.transient.lanes.recording import first_row, log_event, room_left, write_rows
 from squealbox.transient.lanes.samples import on_quintic, on_series, on_step
 
 DONE, LOST, OVER, EVENT, LANDED, DUE = 1, 2, 4, 8, 16, 32
 
 
-def run(A, live, table, varies, fixed, times, samples, counter, total, out, p, r, s, stop, every):
+def run(A, live, table, varies, fixed, times, samples, counter, total, out, p, r, s, stop, every, rows, events, count):
     """Advance all groups until no job is left, or until stop[0] is set; `live` counts the busy lanes of each group."""
     groups = live.shape[0]
     size = A.shape[0] // groups
@@ -39,25 +50,45 @@ def run(A, live, table, varies, fixed, times, samples, counter, total, out, p, r
             for lane in range(WIDTH):
                 A[g * size + ROW_ALIVE * WIDTH + lane] = 0.0
                 live[g] += refill(A, g * size, lane, table, varies, fixed, times, counter, total, out, p, s)
+        if RECORDED and live[0] > 0:
+            first_row(A, 0, 0, times, rows, count, s)
     while True:
         busy = 0
         for _ in range(every):
             busy = 0
             for g in range(groups):
                 if live[g] > 0:
+                    if RECORDED and not room_left(times, rows, events, count):
+                        return False
                     busy += 1
                     flags = step(A, g * size)
                     if flags != 0:
                         live[g] -= serve(
-                            A, g * size, flags, table, varies, fixed, times, samples, counter, total, out, p, r, s
+                            A,
+                            g * size,
+                            flags,
+                            table,
+                            varies,
+                            fixed,
+                            times,
+                            samples,
+                            counter,
+                            total,
+                            out,
+                            p,
+                            r,
+                            s,
+                            rows,
+                            events,
+                            count,
                         )
             if busy == 0:
                 return True
-        if stop[0] != 0:
+        if RECORDED or stop[0] != 0:
             return False
 
 
-def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out, p, r, s):
+def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out, p, r, s, rows, events, count):
     """Look after every flagged lane; returns how many of them found no further job."""
     idle = 0
     for lane in range(WIDTH):
@@ -66,17 +97,19 @@ def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out
         code = int(A[b + ROW_CODE * WIDTH + lane])
         if SAMPLES and code & DUE:
             write_samples(A, b, lane, times, samples, p, r, s)
+        if RECORDED and code & DUE:
+            write_rows(A, b, lane, times, rows, count)
         ended = RUNNING
         if code & LOST:
             ended = UNDERFLOW if is_finite(A, b, lane) else NOT_FINITE
         elif code & OVER and not code & DONE:
             ended = STEP_LIMIT
         elif EXACT_CONTACT and code & LANDED:
-            ended = change_modes(A, b, lane, int(A[b + ROW_TARGET * WIDTH + lane]), p, s)
+            ended = change_modes(A, b, lane, int(A[b + ROW_TARGET * WIDTH + lane]), p, s, events, count)
         elif TRIES and code & EVENT:
             which = locate(A, b, lane)
             if which >= 0:
-                ended = change_modes(A, b, lane, which, p, s)
+                ended = change_modes(A, b, lane, which, p, s, events, count)
         elif code & DONE:
             ended = next_piece(A, b, lane, fixed[0], p, s)
         if ended != RUNNING:
@@ -153,7 +186,7 @@ def start(A, b, lane, p, s):
     load_state(A, b, lane, p, s)
     t = A[b + ROW_T * WIDTH + lane]
     if EXACT_CONTACT and not start_modes(p, t, s.state, s.mode, s):
-        return INCONSISTENT
+        return TENSION if pulled(p, s) else INCONSISTENT
     refresh(A, b, lane, t, p, s)
     return RUNNING
 
@@ -191,6 +224,8 @@ def refresh(A, b, lane, t, p, s):
     room = p.mk.shape[0]
     derivative(p, t, s.state, s.mode, s, s.dy)
     for i in range(DOFS):
+        if p.light:  # an algebraic row follows the others
+            A[b + (ROW_Q + i) * WIDTH + lane] = s.state[i]
         A[b + (ROW_V + i) * WIDTH + lane] = s.state[room + i]
         A[b + (ROW_ACCELERATION + i) * WIDTH + lane] = s.dy[room + i]
     if EXACT_CONTACT:
@@ -224,7 +259,7 @@ def hold_matrix(A, b, lane, p, s):
             A[b + (ROW_HOLD + s.stuck[a] * CONTACTS + s.stuck[e]) * WIDTH + lane] = s.right[a]
 
 
-def change_modes(A, b, lane, j, p, s):
+def change_modes(A, b, lane, j, p, s, events, count):
     """An event of function j at the present state: new modes, and the bound on events in a window of time."""
     t = A[b + ROW_T * WIDTH + lane]
     done = False
@@ -233,14 +268,19 @@ def change_modes(A, b, lane, j, p, s):
         done = change_alone(A, b, lane, j)
         if done and A[b + (ROW_SLIPS + j) * WIDTH + lane] != before:
             A[b + ROW_EVENTS * WIDTH + lane] += 1.0
+            if RECORDED:
+                log_event(A, b, lane, j, A[b + (ROW_SLIPS + j) * WIDTH + lane], events, count)
     if not done:
         gather(A, b, lane, p, s)
         load_state(A, b, lane, p, s)
-        if not apply_event(p, t, s.state, s.mode, s, j if j < CONTACTS else p.contacts + j - CONTACTS):
-            return INCONSISTENT
+        solved = apply_event(p, t, s.state, s.mode, s, j if j < CONTACTS else p.contacts + j - CONTACTS)
         for c in range(CONTACTS):
             if s.mode[c] != s.old[c]:
                 A[b + ROW_EVENTS * WIDTH + lane] += 1.0
+                if RECORDED:
+                    log_event(A, b, lane, c, s.mode[c], events, count)
+        if not solved:
+            return TENSION if pulled(p, s) else INCONSISTENT
         opened = s.old[j] == OPEN if j < CONTACTS else True
         refresh(A, b, lane, t, p, s)
         if FUNCTIONS > CONTACTS and opened:  # N = 0 there: round-off of the other sign is no event of its own
@@ -254,7 +294,14 @@ def change_modes(A, b, lane, j, p, s):
     if t - A[b + ROW_WINDOW_START * WIDTH + lane] > A[b + ROW_WINDOW * WIDTH + lane]:
         A[b + ROW_WINDOW_START * WIDTH + lane] = t
         A[b + ROW_WINDOW_EVENTS * WIDTH + lane] = 0.0
-    return ZENO if A[b + ROW_WINDOW_EVENTS * WIDTH + lane] > 40.0 * (CONTACTS + 1) else RUNNING
+    if A[b + ROW_WINDOW_EVENTS * WIDTH + lane] <= 40.0 * (CONTACTS + 1):
+        return RUNNING
+    gather(A, b, lane, p, s)
+    load_state(A, b, lane, p, s)
+    derivative(p, t, s.state, s.mode, s, s.dy)
+    for c in range(CONTACTS):
+        s.at_zero[c] = s.mode[c] == STICK or c == j
+    return TENSION if pulled(p, s) else ZENO
 
 
 def finish(A, b, lane, ended, out):

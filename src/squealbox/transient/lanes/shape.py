@@ -6,8 +6,9 @@ from typing import Any
 
 from squealbox.transient._motion import EXACT
 from squealbox.transient.methods import TAYLOR
+from squealbox.transient.rows import FIRST_ORDER, WITH_MASS
 
-LANES = 16  # of `vectors`, which loads numba
+LANES = 16  # trajectories side by side in an ensemble
 ORDER = 16  # of the velocities in a Taylor step; 14 to 20 cost the same at relative errors from 1e-5 to 1e-12
 PARTS = 3  # in which a Taylor step is looked at; each is at most a sixth of the shortest period, as other steps are
 UNIT_OF_WINDOW = 1e3 / (2.0 * math.pi)  # the series count in 1 / (highest angular frequency), 1e-3 / (2 pi) windows
@@ -19,7 +20,9 @@ class Shape:
 
     `present` names the entries that are not zero in the whole ensemble, such as "mk01". `signals` gives the kind of
     schedule of each term of V_c, N0_c and M^-1 f_i, in that order; () where it is a constant row. `endless` gives the
-    coefficients of laws that are infinite in the whole ensemble, as text.
+    coefficients of laws that are infinite in the whole ensemble, as text. `kinds` are those of `rows`, () where every
+    row has mass. `smooth` and `memories` are those of `smooth_laws` and `rows`, () without any; observers see the first
+    `seen` rows.
     """
 
     n: int
@@ -35,6 +38,12 @@ class Shape:
     breaks: int = 0
     own: tuple[tuple[str, str], ...] = ()
     endless: tuple[tuple[str, str], ...] = ()
+    lanes: int = LANES
+    recorded: bool = False
+    kinds: tuple[int, ...] = ()
+    smooth: tuple[int, ...] = ()
+    memories: tuple[int, ...] = ()
+    seen: int = -1
 
     @property
     def taylor(self) -> bool:
@@ -54,17 +63,61 @@ class Shape:
     @property
     def simple(self) -> bool:
         """Whether the usual event can be decided on the rows alone: constant signals, no contact that opens."""
-        return self.exact and not self.varying and not any(self.unilateral)
+        pushed = any(f"md{c}_{i}" in self.present for c in range(self.m) for i in self.of(FIRST_ORDER))
+        plain = not (self.varying or any(self.unilateral) or any(self.smooth) or pushed)
+        return self.exact and plain
+
+    @property
+    def audited(self) -> bool:
+        """Whether the works of a recorded motion include that of a skew stiffness."""
+        return any(f"ka{i}_{j}" in self.present for i in range(self.n) for j in range(self.n))
+
+    @property
+    def followed(self) -> list[str]:
+        """What a recorded motion is told in, each a series of time in a step: the works first of friction, then of the
+        load, of circulation, of damping and of opening.
+        """
+        n, m = self.n, self.m
+        works = [f"work{c}" for c in range(m)] + [f"work_{name}" for name in ("load", "skew", "damping", "opening")]
+        return [f"q{i}" for i in range(n)] + works + [f"{name}{c}" for name in ("n", "v", "f") for c in range(m)]
+
+    @property
+    def breadth(self) -> int:
+        """How many series are evaluated at once: those followed, and zeros up to whole registers."""
+        return -(-len(self.followed) // 8) * 8
+
+    @property
+    def followed_padded(self) -> list[str]:
+        """Names of `breadth` series."""
+        return [*self.followed, *(f"spare{j}" for j in range(self.breadth - len(self.followed)))]
 
     def along(self, c: int) -> bool:
         """Whether contact c has a direction along which it can stick."""
-        return all(any(f"{name}{c}_{i}" in self.present for i in range(self.n)) for name in ("t", "d"))
+        return not self.is_smooth(c) and all(
+            any(f"{name}{c}_{i}" in self.present for i in range(self.n)) for name in ("t", "d")
+        )
 
     @property
     def pressed(self) -> list[int]:
         """Contacts that cannot open and whose normal force varies: how far it falls is kept."""
         varies = [any(f"n{c}_{i}" in self.present for i in range(self.n)) or self.varying for c in range(self.m)]
         return [c for c in range(self.m) if varies[c] and not self.unilateral[c]]
+
+    def is_smooth(self, c: int) -> bool:
+        """Whether contact c has a law without events."""
+        return bool(self.smooth) and self.smooth[c] > 0
+
+    def copies(self, observer: Any) -> int:
+        """How often an observer looks: once for each freedom or contact, or once."""
+        return int(observer.copies(self.n if self.seen < 0 else self.seen, self.m))
+
+    def has_mass(self, i: int) -> bool:
+        """Whether row i has mass, and so a velocity of its own."""
+        return not self.kinds or self.kinds[i] == WITH_MASS
+
+    def of(self, *kinds: int) -> list[int]:
+        """The rows of these kinds."""
+        return [i for i in range(self.n) if (self.kinds[i] if self.kinds else WITH_MASS) in kinds]
 
     @property
     def stepped(self) -> bool:
@@ -95,7 +148,8 @@ class Rows:
 def parameter_rows(shape: Shape) -> list[str]:
     """Names of the rows that come with a job: what the equation holds, then start, tolerances and limits."""
     n, m = shape.n, shape.m
-    names = [name for name in entries(n, m) if name in shape.present]
+    named = entries(n, m) + (audit(n) if shape.recorded else [])
+    names = [name for name in named if name in shape.present]
     for c, (_, count) in enumerate(shape.laws):
         names += [f"law{c}_{i}" for i in range(count)] + [f"slope{c}"]
     for index, terms in enumerate(shape.signals):
@@ -111,9 +165,14 @@ def parameter_rows(shape: Shape) -> list[str]:
 def entries(n: int, m: int) -> list[str]:
     """Names of all numbers of the equation, zero or not, in the order of their rows."""
     names = [f"{name}{i}_{j}" for name in ("mk", "mc") for i in range(n) for j in range(n)]
-    names += [f"{name}{c}_{i}" for name in ("md", "mw", "d", "t", "n", "w") for c in range(m) for i in range(n)]
+    names += [f"{name}{c}_{i}" for name in ("md", "mw", "d", "t", "s", "n", "w") for c in range(m) for i in range(n)]
     names += [f"g{c}_{b}" for c in range(m) for b in range(m)]
     return names + [f"V{c}" for c in range(m)] + [f"N0{c}" for c in range(m)] + [f"f{i}" for i in range(n)]
+
+
+def audit(n: int) -> list[str]:
+    """Names of the further numbers a recorded motion's works take: damping, skew stiffness and load."""
+    return [f"{name}{i}_{j}" for name in ("c", "ka") for i in range(n) for j in range(n)] + [f"F{i}" for i in range(n)]
 
 
 def layout(shape: Shape) -> Rows:
@@ -140,10 +199,18 @@ def layout(shape: Shape) -> Rows:
             rows.add(*(f"term{i}_{k}" for i in range(n) for k in range(ORDER + 2)))
         else:
             rows.add(*(f"{x}_old{i}" for x in "qva" for i in range(n)))
+    if shape.recorded:
+        rows.add(
+            "next", "sample", "t_old", "span", *(f"done{k}" for k in range(m + 4)), *(f"fastest{c}" for c in range(m))
+        )
+        rows.add(
+            "since", *(f"value{j}" for j in range(shape.breadth)), *(f"slope_value{j}" for j in range(shape.breadth))
+        )
+        rows.add(*(f"term{k}_{name}" for k in range(ORDER + 2) for name in shape.followed_padded))
     if any(observer.of == "contact" for observer in shape.observers):
         rows.add(*(f"work{c}" for c in range(m)))
     for k, observer in enumerate(shape.observers):
-        for i in range(observer.copies(n, m)):
+        for i in range(shape.copies(observer)):
             rows.add(*(f"o{k}_{i}_{j}" for j in range(len(observer.start))))
             rows.add(*(f"c{k}_{i}_{j}" for j in range(observer.coefficients)))
     return rows

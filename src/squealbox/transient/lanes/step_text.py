@@ -13,6 +13,7 @@ from squealbox.transient.lanes.event_text import EventText, probes, slope_weight
 from squealbox.transient.lanes.formulas import is_table
 from squealbox.transient.lanes.shape import Shape
 from squealbox.transient.methods import tableau
+from squealbox.transient.rows import ALGEBRAIC, FIRST_ORDER, WITH_MASS
 
 
 class Step(EventText):
@@ -24,7 +25,8 @@ class Step(EventText):
         self.starting: dict[str, list[str]] | None = None
         self.rule = tableau(shape.tableau)
         self.probes = probes(self.rule)
-        self.weights = slope_weights([0.0, *self.rule.c[self.probes], 1.0])
+        places = [0.0, *self.rule.c[self.probes], 1.0]
+        self.weights, self.first_weights = slope_weights(places, 1.0), slope_weights(places, 0.0)
 
     def forget(self) -> None:
         """Rows are read again after this point."""
@@ -75,17 +77,23 @@ class Step(EventText):
         self.put("hh = where(last, rest, h_)")
         q, v, a = ([self.row(f"{x}{i}") for i in range(n)] for x in "qva")
         vs, as_ = [v], [a]
+        heavy, moving = shape.of(WITH_MASS), shape.of(WITH_MASS, FIRST_ORDER)
         contact: list[dict[str, list[str]]] = []
         for stage in range(1, rule.stages + 1):
             weights = rule.b if stage == rule.stages else rule.a[stage, :stage]
             self.forget()
-            qs = [self.combined(f"q{i}s{stage}", q[i], weights, vs, i) for i in range(n)]
-            us = [self.combined(f"v{i}s{stage}", v[i], weights, as_, i) for i in range(n)]
+            for i in moving:
+                self.combined(f"q{i}s{stage}", q[i], weights, vs, i)
+            for i in heavy:
+                self.combined(f"v{i}s{stage}", v[i], weights, as_, i)
+            qs, us = ([f"{x}{i}s{stage}" for i in range(n)] for x in "qv")
             time = "t_ + hh" if stage == rule.stages else f"t_ + {rule.c[stage]!r} * hh"
             contact.append(self.accelerations(qs, us, time))
+            self.without_mass(contact[-1]["a"], qs, us)
             vs.append(us)
             as_.append(contact[-1]["a"])
-        q1, v1, a1 = qs, us, as_[-1]
+        q1, v1 = qs, us
+        a, a1 = self.slopes(v, a, us, contact)
         self.end = contact[-1]
         self.forget()
         self.error(q, v, q1, v1, vs, as_)
@@ -103,6 +111,30 @@ class Step(EventText):
         head, tail = ["@traced", "def trial(A, b):"], ["    return flags", CALLED]
         return "\n".join([*head, *self.lines, *tail])
 
+    def without_mass(self, x: list[str], q: list[str], v: list[str]) -> None:
+        """In a stage: x is q' of rows of first order and q of algebraic ones, whose velocities follow."""
+        for i in self.shape.of(FIRST_ORDER):
+            self.put(f"{v[i]} = {x[i]}")
+        for i in self.shape.of(ALGEBRAIC):
+            self.put(f"{q[i]} = {x[i]}")
+            self.total(v[i], minus(self.product(f"mk{i}", v)))
+
+    def slopes(self, v: list[str], a: list[str], v1: list[str], contact: Any) -> tuple[list[str], list[str]]:
+        """q'' at both ends; that of a row without mass by the polynomial through its velocities in the stages."""
+        before, after = list(a), list(contact[-1]["a"])
+        for i in self.shape.of(FIRST_ORDER):
+            before[i], after[i] = f"begun{i}", f"ended{i}"
+            values = [v[i], *(contact[k - 1]["a"][i] for k in self.probes), contact[-1]["a"][i]]
+            self.put(f"per{i} = where(hh > 0.0, 1.0 / hh, 0.0)")
+            for name, weights in ((before[i], self.first_weights), (after[i], self.weights)):
+                terms = " + ".join(f"{w!r} * {x}" for w, x in zip(weights, values, strict=True))
+                self.put(f"{name} = per{i} * ({terms})")
+        for i in self.shape.of(ALGEBRAIC):
+            before[i], after[i] = f"begun{i}", f"ended{i}"
+            for name, rates in ((before[i], before), (after[i], after)):
+                self.total(name, minus(self.product(f"mk{i}", rates)))
+        return before, after
+
     def combined(self, name: str, base: str, weights: Any, parts: list[list[str]], i: int) -> str:
         """base + sum of hh * weight * part; the products hh * weight serve all states of a stage."""
         terms = [f"{self.scaled(float(w))} * {part[i]}" for w, part in zip(weights, parts, strict=False) if w != 0.0]
@@ -119,30 +151,33 @@ class Step(EventText):
     def error(self, q: Any, v: Any, q1: Any, v1: Any, vs: Any, as_: Any) -> None:
         """`square`: the squared norm of the embedded error, as in `_runge_kutta.error_norm`."""
         n, rule = self.shape.n, self.rule
+        states = [*self.shape.of(WITH_MASS, FIRST_ORDER), *(n + i for i in self.shape.of(WITH_MASS))]
         for k, (old, new) in enumerate(zip((*q, *v), (*q1, *v1), strict=True)):
+            if k not in states:
+                continue
             self.put(f"size{k} = {self.row(f'atol{k}')} + rtol_ * maximum(abs({old}), abs({new}))")
             self.put(f"square{k} = size{k} * size{k}")
         for tag, weights in (("e", rule.e), ("x", rule.e3)):
             if weights is None:
                 continue
-            for k in range(2 * n):
+            for k in states:
                 parts = vs if k < n else as_
                 used = zip(weights, parts, strict=False)
                 terms = [f"{float(w)!r} * {part[k % n]}" for w, part in used if w != 0.0]
                 self.put(f"{tag}{k} = {' + '.join(terms)}".replace("+ -", "- "))
-            self.put(f"sum_{tag} = " + " + ".join(self.quotients(tag, 2 * n)))
+            self.put(f"sum_{tag} = " + " + ".join(self.quotients(tag, states)))
         if rule.e3 is None:
-            self.put(f"square = hh * hh * sum_e * {1.0 / (2 * n)!r}")
+            self.put(f"square = hh * hh * sum_e * {1.0 / len(states)!r}")
         else:
             self.put("below = sum_e + 0.01 * sum_x")
             self.put("below = where(below > 0.0, below, 1.0)")
-            self.put(f"square = hh * hh * sum_e * sum_e / below * {1.0 / (2 * n)!r}")
+            self.put(f"square = hh * hh * sum_e * sum_e / below * {1.0 / len(states)!r}")
 
-    def quotients(self, tag: str, count: int) -> list[str]:
+    def quotients(self, tag: str, states: list[int]) -> list[str]:
         """Sums of squares of error over size, up to four over one division: it costs as much as ten products."""
         out = []
-        for first in range(0, count, 4):
-            names = list(range(first, min(first + 4, count)))
+        for first in range(0, len(states), 4):
+            names = states[first : first + 4]
             above, below = f"{tag}{names[0]} * {tag}{names[0]}", f"square{names[0]}"
             for done, k in enumerate(names[1:], 1):
                 self.put(f"{tag}a{k} = ({above}) * square{k} + {tag}{k} * {tag}{k} * ({below})")
@@ -217,7 +252,7 @@ class Step(EventText):
             for c in range(shape.m):
                 self.work(c, contact, old, new)
         for k, observer in enumerate(shape.observers):
-            for i in range(observer.copies(shape.n, shape.m)):
+            for i in range(shape.copies(observer)):
                 memory = [self.row(f"o{k}_{i}_{j}") for j in range(len(observer.start))]
                 given = [self.row(f"c{k}_{i}_{j}") for j in range(observer.coefficients)]
                 before, after = self.views(observer.of, i, contact, old, new)
@@ -237,7 +272,8 @@ class Step(EventText):
             before, after = self.sliding(i, old, "t_"), (end["speed"][i], end["normal"][i])
             if self.shape.exact:  # the state may have been moved onto an event
                 after = self.sliding(i, new, "t1")
-            mode = self.row(f"s{i}") if self.shape.exact else f"(1.0 * ({end['speed'][i]} > 0.0) - 0.5) * 2.0"
+            senses = self.shape.exact and not self.shape.is_smooth(i)
+            mode = self.row(f"s{i}") if senses else f"(1.0 * ({end['speed'][i]} > 0.0) - 0.5) * 2.0"
             if self.shape.exact and self.shape.unilateral[i]:  # s is 0 in both; only a contact that sticks counts as 0
                 mode = f"({mode} + 2.0 * {self.row(f'open{i}')})"
             work = self.row(f"work{i}")
@@ -245,12 +281,13 @@ class Step(EventText):
                 f"Sliding(t_, {', '.join(before)}, {mode}, {work})",
                 f"Sliding(t1, {', '.join(after)}, {mode}, worked{i})",
             )
+        n = n if self.shape.seen < 0 else self.shape.seen
         tuples = [", ".join(f"({', '.join(x[:n])},)" for x in state) for state in (old, new)]
         return f"State(t_, {tuples[0]})", f"State(t1, {tuples[1]})"
 
     def sliding(self, c: int, state: Any, time: str) -> tuple[str, str]:
         """Sliding velocity and normal force of a contact."""
-        speed = self.signal(c, f"V{c}", time) + minus(self.product(f"t{c}", state[1]))
+        speed = self.speed(c, state[0], state[1], time)
         normal = self.signal(self.shape.m + c, f"N0{c}", time) + self.product(f"n{c}", state[0])
         return tuple(" + ".join(x).replace("+ -", "- ") or "0.0 * t_" for x in (speed, normal))  # type: ignore[return-value]
 

@@ -5,15 +5,18 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.schedules import Constant, Schedule
+from squealbox.schedules import Constant, Schedule, value_at
 from squealbox.system import InvalidSystem, System
 from squealbox.transient import packing
 from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.batch import first_of
-from squealbox.transient.lanes.shape import PARTS, Shape, entries, parameter_rows
+from squealbox.transient.lanes.shape import LANES, PARTS, Shape, audit, entries, parameter_rows
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.own_laws import law_kinds, own_texts
+from squealbox.transient.rows import Rows, audited, audited_matrix, consistent, fastest_rate, memories, rows_of
+from squealbox.transient.smooth_laws import smooth_kinds
 
+FEW = 3  # freedoms and contacts up to which a single run shares its kernel with other patterns of zeros
 ANGLE = 1.2  # of a schedule's swing in a Taylor step: what a series of order 16 leaves out is 6e-14 of it
 
 
@@ -34,7 +37,7 @@ class Jobs:
 
 def tabulate(
     system: System, method: Method, scheme: int, width: float, start: tuple[Any, Any], duration: float,
-    begin: float, watches: tuple[Any, ...], coefficients: tuple[float, ...], samples: bool,
+    begin: float, watches: tuple[Any, ...], coefficients: tuple[float, ...], samples: bool, recorded: bool = False,
 ) -> Jobs:  # fmt: skip
     """The jobs of a batched system; leading axes are those of the system or else of the starts, flattened."""
     if any(contact.rigid for contact in system.contacts):
@@ -43,18 +46,23 @@ def tabulate(
         )
     batch = system.shape or np.shape(start[0])[:-1]
     count = int(np.prod(batch, dtype=int))
-    values, signals, breaks = _equation(system)
+    rows = rows_of(system)
+    values, signals, breaks = _equation(system, rows, recorded)
     template = first_of(system)
     n, m = system.size, len(system.contacts)
     q, qd = start
+    q = consistent(system, rows, q, np.asarray(value_at(system.load, begin), dtype=float))
     for k in range(n):
         values[f"start{k}"], values[f"start{n + k}"] = q[..., k], qd[..., k]
-    values |= _tolerances(system, method, values, scheme == EXACT and m > 0, duration)
+    values |= _tolerances(system, method, values, rows, scheme == EXACT and m > 0, duration)
     values |= {f"break{k}": instant for k, instant in enumerate(breaks)} | {"width": np.asarray(width)}
     kinds = law_kinds(system.contacts)
     laws = tuple((int(kind), len(c.law.coefficients())) for kind, c in zip(kinds, system.contacts, strict=True))
-    present = frozenset(name for name in entries(n, m) if name in values and np.any(values[name] != 0.0))
+    names = entries(n, m) + (audit(n) if recorded else [])
+    present = frozenset(name for name in names if name in values and np.any(values[name] != 0.0))
     unilateral = tuple(bool(c.unilateral) for c in system.contacts)
+    if recorded and rows.all_have_mass and n <= FEW and m <= FEW:
+        present = _filled(present, [name for name in names if name in values])
     shape = Shape(
         n,
         m,
@@ -69,6 +77,12 @@ def tabulate(
         len(breaks),
         own_texts(system.contacts),
         _endless(values, laws) if method.tableau == TAYLOR else (),
+        1 if recorded else LANES,
+        recorded,
+        () if rows.all_have_mass else rows.kinds,
+        smooth_kinds(system.contacts) if any(smooth_kinds(system.contacts)) else (),
+        memories(system) if max(memories(system), default=-1) >= 0 else (),
+        int(getattr(system, "seen", n)),
     )
     names = parameter_rows(shape)
     fixed = np.zeros(3 + len(names) + len(coefficients))
@@ -87,10 +101,10 @@ def tabulate(
     return Jobs(shape, np.ascontiguousarray(table), varies, fixed, template)
 
 
-def _equation(system: System) -> tuple[dict[str, Any], Any, list[Any]]:
+def _equation(system: System, rows: Rows, recorded: bool = False) -> tuple[dict[str, Any], Any, list[Any]]:
     """Numbers of the equation by name, kinds of the signals (none when all are constant), and their kinks."""
     n, contacts = system.size, system.contacts
-    inverse = packing.inverse_mass(system.M)
+    inverse = rows.inverse
     values: dict[str, Any] = {}
 
     def put(name: str, matrix: Any) -> None:
@@ -98,12 +112,13 @@ def _equation(system: System) -> tuple[dict[str, Any], Any, list[Any]]:
             for j in range(matrix.shape[-1]):
                 values[f"{name}{i}_{j}"] = matrix[..., i, j]
 
-    put("mk", inverse @ system.K)
-    put("mc", inverse @ system.C)
+    put("mk", rows.stiffness)
+    put("mc", rows.damping)
     for c, contact in enumerate(contacts):
         w = np.zeros(n) if contact.normal is None else contact.normal
-        rows = {"md": _times(inverse, contact.d), "mw": _times(inverse, w), "d": contact.d, "t": contact.t}
-        for name, vector in (rows | {"n": contact.n, "w": w}).items():
+        columns = {"md": _times(inverse, contact.d), "mw": _times(inverse, w), "d": audited(system, contact.d)}
+        columns |= {"t": rows.t[c], "s": rows.s[c], "n": rows.n[c], "w": audited(system, w)}
+        for name, vector in columns.items():
             for i in range(n):
                 values[f"{name}{c}_{i}"] = np.asarray(vector)[..., i]
         for e, other in enumerate(contacts):
@@ -114,10 +129,20 @@ def _equation(system: System) -> tuple[dict[str, Any], Any, list[Any]]:
         values[f"slope{c}"] = np.asarray(contact.law.slope_at(0.0), dtype=float)
     signals = [_terms(c.V) for c in contacts] + [_terms(c.N0) for c in contacts]
     load = packing.load_terms(system)
+    for c in range(len(contacts)):
+        signals[c] += packing.commanded_by_the_load(system, rows, c, load)
+        signals[len(contacts) + c] += packing.through_the_load(system, rows, c, load)
     signals += [[(_times(inverse, weight)[..., i], part) for weight, part in load] for i in range(n)]
+    if recorded:
+        stiffness = audited_matrix(system, system.K)
+        put("c", audited_matrix(system, system.C))
+        put("ka", 0.5 * (stiffness - np.swapaxes(stiffness, -1, -2)))
+        told = [(audited(system, np.asarray(weight)), part) for weight, part in load]
+        signals += [[(weight[..., i], part) for weight, part in told] for i in range(n)]
     if all(isinstance(part, Constant) for terms in signals for _, part in terms):
         names = [f"V{c}" for c in range(len(contacts))] + [f"N0{c}" for c in range(len(contacts))]
-        for name, terms in zip([*names, *(f"f{i}" for i in range(n))], signals, strict=True):
+        names += [f"{name}{i}" for name in ("f", "F") for i in range(n)]
+        for name, terms in zip(names, signals, strict=False):
             values[name] = sum(weight * np.asarray(part.coefficients()[0]) for weight, part in terms)
         return values, (), []
     kinds = []
@@ -131,14 +156,29 @@ def _equation(system: System) -> tuple[dict[str, Any], Any, list[Any]]:
     return values, tuple(kinds), [np.asarray(t) for t in instants]
 
 
+def _filled(present: frozenset[str], names: list[str]) -> frozenset[str]:
+    """The names present and the zeros beside them: the rows of one contact, or a skew stiffness, are there or not."""
+    rows = {name.partition("_")[0] for name in present}
+    skew = any(row.startswith("ka") for row in rows)
+
+    def there(name: str) -> bool:
+        kind = name.rstrip("0123456789_")
+        own = name.partition("_")[0] in rows
+        return own if kind in ("md", "mw", "d", "t", "n", "w") else skew if kind == "ka" else True
+
+    return frozenset(name for name in names if there(name))
+
+
 def _terms(value: Any) -> list[tuple[Any, Schedule]]:
     return list(value.terms()) if isinstance(value, Schedule) else [(np.asarray(1.0), Constant(value))]
 
 
-def _tolerances(system: System, method: Method, values: dict[str, Any], exact: bool, duration: float) -> dict[str, Any]:
+def _tolerances(
+    system: System, method: Method, values: dict[str, Any], rows: Rows, exact: bool, duration: float
+) -> dict[str, Any]:
     """Tolerances and limits of the steps, as `packing` and `simulate` choose them, one for each job."""
     n = system.size
-    own = _highest_frequency(values, n)
+    own = _highest_frequency(values, n) if rows.all_have_mass else fastest_rate(rows)
     highest = np.where(own > 0.0, own, 1.0)
     swing = packing.schedule_frequency(system)
     pace = np.maximum(own, swing)

@@ -9,14 +9,19 @@ FINITE = 1e300
 SHARE = 0.1  # of the tolerance that each of the last two terms may take
 
 
-def grow(q: tuple[Any, ...], v: tuple[Any, ...], a: tuple[Any, ...], unit: Lanes, order: int) -> None:
-    """Coefficients of q to order + 1 and of v to `order` from q' = v, v' = a, which asks for those before."""
+def grow(
+    q: tuple[Any, ...], v: tuple[Any, ...], grown: tuple[Any, ...], a: tuple[Any, ...], unit: Lanes, order: int
+) -> None:
+    """Coefficients of q to order + 1 and of v to `order` from q' = v, v' = a, which asks for those before.
+
+    `grown` are the velocities of rows with mass, a their accelerations; those of other rows follow from the state.
+    """
     for k in range(order + 1):
         share = unit * (1.0 / (k + 1))
-        for i, displacement in enumerate(q):
-            displacement.known.append(times(at(v[i], k), share))
-        for i, velocity in enumerate(v) if k < order else ():
-            velocity.known.append(times(at(a[i], k), share))
+        for displacement, velocity in zip(q, v, strict=True):
+            displacement.known.append(times(at(velocity, k), share))
+        for velocity, acceleration in zip(grown, a, strict=True) if k < order else ():
+            velocity.known.append(times(at(acceleration, k), share))
 
 
 def reach(v: tuple[Any, ...], sizes: tuple[Any, ...], unit: Lanes, order: int) -> tuple[Lanes, Truth]:

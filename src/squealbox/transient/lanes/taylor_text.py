@@ -13,6 +13,7 @@ from squealbox.system import InvalidSystem
 from squealbox.transient.lanes.equation_text import CALLED, EquationText
 from squealbox.transient.lanes.formulas import is_table
 from squealbox.transient.lanes.shape import ORDER, PARTS, UNIT_OF_WINDOW, Shape
+from squealbox.transient.rows import ALGEBRAIC, FIRST_ORDER, WITH_MASS
 
 CALLED_BY_MODE = """
 
@@ -42,7 +43,18 @@ class TaylorStep(EquationText):
         return {"TERMS": ORDER + 2, "UNIT_OF_WINDOW": UNIT_OF_WINDOW}
 
     def text(self) -> str:
-        """The function `step(A, b)`, as of `step_text`: another trial where no lane of the group sticks."""
+        """The function `step(A, b)`, and `evaluate(A, b)` of a recorded motion."""
+        return self.steps() + (self.evaluation() if self.shape.recorded else "")
+
+    def evaluation(self) -> str:
+        """The text of `evaluate(A, b)`: all followed series and their slopes at the instant `since`, side by side."""
+        breadth, places = self.shape.breadth, self.rows.places
+        first = places[f"term0_{self.shape.followed[0]}"]
+        call = f"{places['since']}, {first}, {breadth}, {ORDER + 2}, {places['value0']}, {places['slope_value0']}"
+        return f"\n@wide({breadth})\ndef evaluate(A, b):\n    return at_once(A, b, {call})\n"
+
+    def steps(self) -> str:
+        """Another trial where no lane of the group sticks."""
         if not self.shape.exact:
             return self.trial("trial") + CALLED
         parts = [self.trial("trial")]
@@ -64,21 +76,39 @@ class TaylorStep(EquationText):
         self.put(f"unit = window_ * {UNIT_OF_WINDOW!r}")
         self.put("inside_ = np.inf")
         self.put("rest = (t_end_ - t_) / unit")
-        for state in (*(f"q{i}" for i in range(n)), *(f"v{i}" for i in range(n))):
+        heavy, moving = self.shape.of(WITH_MASS), self.shape.of(WITH_MASS, FIRST_ORDER)
+        for state in (*(f"q{i}" for i in moving), *(f"v{i}" for i in heavy)):
             self.put(f"{state}s = Series(None, ({self.row(state)},))")
         q, v = [f"q{i}s" for i in range(n)], [f"v{i}s" for i in range(n)]
         self.put("time = time_series(t_, unit)")
         self.put("with deciding() as kinks:")
         self.lines, before = [], self.lines
         found = self.accelerations(q, v, "time")
-        a = found["a"]
-        self.put(f"grow(({', '.join(q)},), ({', '.join(v)},), ({', '.join(a)},), unit, {ORDER})")
+        found["a"] = self.without_mass(found["a"])
+        names = ["".join(f"{x}{i}s, " for i in moving) for x in "qv"] + ["".join(f"{found['a'][i]}, " for i in heavy)]
+        grown = "".join(f"v{i}s, " for i in heavy)
+        self.put(f"grow(({names[0]}), ({names[1]}), ({grown}), ({names[2]}), unit, {ORDER})")
         self.lines = before + ["    " + line for line in self.lines]
         self.length(v)
         self.ending(found)
         self.observe_parts(found, q, v)
+        if self.shape.recorded:
+            self.record(found, q, v)
         self.finish(found, q, v)
         return "\n".join(["@traced_as_written", f"def {name}(A, b):", *self.lines, "    return flags\n"])
+
+    def without_mass(self, x: list[str]) -> list[str]:
+        """q'' of every row, where x is q' of rows of first order and q of algebraic ones."""
+        out = list(x)
+        for i in self.shape.of(FIRST_ORDER):
+            self.put(f"v{i}s = {x[i]}")
+        for i in self.shape.of(ALGEBRAIC):
+            self.put(f"q{i}s = {x[i]}")
+            self.put(f"v{i}s = slope_series(q{i}s) * (1.0 / unit)")
+        for i in self.shape.of(FIRST_ORDER, ALGEBRAIC):
+            out[i] = f"a{i}s"
+            self.put(f"a{i}s = slope_series(v{i}s) * (1.0 / unit)")
+        return out
 
     def hold(self, k: int, a: list[str], forces: list[str], normals: list[str], time: str) -> list[str]:
         """As usual; nothing where no contact sticks."""
@@ -115,12 +145,12 @@ class TaylorStep(EquationText):
 
     def length(self, v: list[str]) -> None:
         """`x`: how long the step may be, in units of the series."""
-        n = self.shape.n
-        for i in range(n):
+        moving = self.shape.of(WITH_MASS, FIRST_ORDER)
+        for i in moving:
             here = f"(abs({self.row(f'q{i}')}) + unit * abs({self.row(f'v{i}')}))"
             self.put(f"size{i} = {self.row(f'atol{i}')} + rtol_ * {here}")
-        sizes = ", ".join(f"size{i}" for i in range(n))
-        self.put(f"reached, fine = reach(({', '.join(v)},), ({sizes},), unit, {ORDER})")
+        sizes, speeds = "".join(f"size{i}, " for i in moving), "".join(f"{v[i]}, " for i in moving)
+        self.put(f"reached, fine = reach(({speeds}), ({sizes}), unit, {ORDER})")
         self.put("x = minimum(reached, h_ / unit)")
         self.put("last = x >= rest * 0.999999999999")
         self.put("x = where(last, rest, x)")
@@ -132,7 +162,8 @@ class TaylorStep(EquationText):
         watched = "".join(f"{name}, " for name in (*first, *second))
         largest = f"{self.row('largest')} / unit"
         self.ready(found)
-        safe = [f"surely_slips({self.row(f's{c}')}, {found['speed'][c]}, x, {ORDER})" for c in range(m)]
+        safe = [f"surely_slips({self.row(f's{c}')}, {found['speed'][c]}, x, {ORDER})" for c in range(m)
+                if not self.shape.is_smooth(c)]  # fmt: skip
         safe += ["(x < 0.0)"] * any(self.shape.unilateral)
         self.put(f"safe = {' & '.join(safe) or 'x > 0.0'}")
         self.put(f"found = step_end(({watched}), kinks, safe, x, {largest}, {ORDER})")
@@ -164,7 +195,7 @@ class TaylorStep(EquationText):
 
     def observe_parts(self, found: dict[str, list[str]], q: list[str], v: list[str]) -> None:
         """Hand the parts of the step to the observers one after the other: they follow no longer ones."""
-        shape, n = self.shape, self.shape.n
+        shape = self.shape
         kinds = {observer.of for observer in shape.observers}
         if not kinds:
             return
@@ -173,12 +204,12 @@ class TaylorStep(EquationText):
                 along = " + ".join(self.product(f"d{c}", v)) or "0.0 * t_"
                 self.put(f"power{c} = integral({found['force'][c]} * ({along}))")
         memory = {f"o{k}_{i}_{j}": self.row(f"o{k}_{i}_{j}") for k, each in enumerate(shape.observers)
-                  for i in range(each.copies(n, shape.m)) for j in range(len(each.start))}  # fmt: skip
+                  for i in range(shape.copies(each)) for j in range(len(each.start))}  # fmt: skip
         self.point(0, kinds, found, q, v)
         for part in range(1, PARTS + 1):
             self.point(part, kinds, found, q, v)
             for k, observer in enumerate(shape.observers):
-                for i in range(observer.copies(n, shape.m)):
+                for i in range(shape.copies(observer)):
                     names = [f"o{k}_{i}_{j}" for j in range(len(observer.start))]
                     given = "".join(f"{self.row(f'c{k}_{i}_{j}')}, " for j in range(observer.coefficients))
                     before, after = (self.view(observer.of, i, p) for p in (part - 1, part))
@@ -212,12 +243,47 @@ class TaylorStep(EquationText):
         if of == "dof":
             return f"Motion({time}, q{i}p{part}, v{i}p{part}, a{i}p{part})"
         if of == "contact":
-            mode = self.row(f"s{i}")
+            mode = f"(2.0 * (speed{i}p{part} > 0.0) - 1.0)" if self.shape.is_smooth(i) else self.row(f"s{i}")
             if self.shape.unilateral[i]:
                 mode = f"({mode} + 2.0 * {self.row(f'open{i}')})"
             return f"Sliding({time}, speed{i}p{part}, normal{i}p{part}, {mode}, work{i}p{part})"
+        n = n if self.shape.seen < 0 else self.shape.seen
         tuples = ", ".join("(" + "".join(f"{x}{k}p{part}, " for k in range(n)) + ")" for x in "qva")
         return f"State({time}, {tuples})"
+
+    def record(self, found: dict[str, list[str]], q: list[str], v: list[str]) -> None:
+        """Keep the series of all that a recorded motion is told in, and the works done so far."""
+        n, m, shape = self.shape.n, self.shape.m, self.shape
+        rates = [f"({found['force'][c]} * ({' + '.join(self.product(f'd{c}', v)) or '0.0'}))" for c in range(m)]
+        load = [(" + ".join(self.signal(2 * m + n + i, f"F{i}", "time")), x) for i, x in enumerate(v)]
+        rates.append(" + ".join(f"({force}) * {x}" for force, x in load if force))
+        turned = [(" + ".join(self.product(f"ka{i}", q)), x) for i, x in enumerate(v)]
+        rates.append(" + ".join(f"(-{x}) * ({row})" for row, x in turned if row) if shape.audited else "")
+        rates.append(
+            " + ".join(f"{x} * ({row})" for i, x in enumerate(v) if (row := " + ".join(self.product(f"c{i}", v))))
+        )
+        lifted = [(" + ".join(self.product(f"w{c}", v)), c) for c in range(m) if shape.unilateral[c]]
+        rates.append(" + ".join(f"{self.row(f'open{c}')} * {found['normal'][c]} * ({row})" for row, c in lifted if row))
+        for k, rate in enumerate(rates):
+            self.put(f"works{k} = integral({rate}) * unit" if rate else f"works{k} = 0.0")
+            done = self.row(f"done{k}")
+            if rate:
+                self.keep(f"done{k}", f"where(moved, {done} + value(works{k}, end, {ORDER}), {done})")
+        told = [(each, ORDER + 1) for each in q] + [(f"works{k}", ORDER) for k in range(m + 4)]
+        told += [(each, ORDER) for name in ("normal", "speed") for each in found[name]]
+        told += [(each, ORDER - 1) for each in found["force"]]
+        for name, (series, order) in zip(shape.followed, told, strict=True):
+            for k in range(order + 1):
+                place = self.rows.places[f"term{k}_{name}"] * shape.lanes
+                value = f"at({series}, {k})" if k or not series.startswith("works") else self.row(f"done{series[5:]}")
+                self.put(f"store_known(A, b + {place}, {value})")
+        for c in range(m):
+            ends = f"maximum(abs(at({found['speed'][c]}, 0)), abs(value({found['speed'][c]}, end, {ORDER})))"
+            self.keep(
+                f"fastest{c}", f"where(fine, maximum({self.row(f'fastest{c}')}, {ends}), {self.row(f'fastest{c}')})"
+            )
+        self.keep("t_old", "t_")
+        self.keep("span", "end * unit")
 
     def finish(self, found: dict[str, list[str]], q: list[str], v: list[str]) -> None:
         """Take the step, count, and say which lanes need service."""
@@ -250,7 +316,7 @@ class TaylorStep(EquationText):
             self.keep("target", "target")
             self.keep("resume", self.row("largest"))
             code, any_of = code + " + 16.0 * event", any_of + " | event"
-        if shape.samples:
+        if shape.samples or shape.recorded:
             self.put(f"due = moved & (t_now >= {self.row('next')})")
             code, any_of = code + " + 32.0 * due", any_of + " | due"
         self.flag(code, any_of)

@@ -5,23 +5,23 @@ from functools import wraps
 from typing import Any
 
 from llvmlite import ir
-from numba import extending, types
-from numba.core import cgutils
 
+from squealbox.compiled.kinds import WHOLE, Array, Number
+from squealbox.compiled.translation import Function, Unit
 from squealbox.transient.lanes.vectors import (
     ALIGNED,
     ALLOWED,
     BUILDER,
+    DOUBLE,
     INTEGER,
-    PACKED,
     Given,
     Group,
     Lanes,
+    declared,
     packed,
+    packed_type,
     writing,
 )
-
-intrinsic: Any = extending.intrinsic  # untyped, and its calls leave out the typing context
 
 
 def on_lines(function: Any) -> None:
@@ -36,8 +36,8 @@ def apart(function: Callable[..., Any]) -> Callable[..., Any]:
     def call(x: Lanes, given: Given) -> Lanes:
         builder = BUILDER.get()
         data = builder.gep(given.group.data, [INTEGER(given.place)])
-        kind = ir.FunctionType(PACKED, [PACKED, data.type])
-        made = cgutils.get_or_insert_function(builder.module, kind, f"{function.__name__}_{given.count}")
+        kind = ir.FunctionType(packed_type(), [packed_type(), data.type])
+        made = declared(builder.module, kind, f"{function.__name__}_{given.count}")
         if made.is_declaration:
             made.linkage = "internal"
             on_lines(made)
@@ -64,28 +64,51 @@ def traced_as_written(function: Callable[..., Any]) -> Any:
     return traced(strictly)
 
 
-def traced(function: Callable[..., Any]) -> Any:
+def traced(function: Callable[..., Any]) -> "Traced":
     """The plain function f(group, 0) -> integer for compiled callers, who give it an array and an offset."""
-
-    @intrinsic
-    def compiled(typing: Any, array: Any, offset: Any) -> Any:
-        def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-            data = context.make_array(sig.args[0])(context, builder, args[0]).data
-            on_lines(builder.function)
-            with writing(builder):
-                return function(Group(builder.gep(data, [args[1]])), 0)
-
-        return types.int64(array, offset), generate
-
-    return compiled
+    return Traced(function)
 
 
-@intrinsic
-def take(typing: Any, counter: Any) -> Any:
-    """The counter's value, which is raised by one at once, whatever other threads do."""
+def wide(lanes: int) -> Callable[[Callable[..., Any]], "Traced"]:
+    """As `traced_as_written`, on so many lanes whatever the kernel has."""
+    return lambda function: Traced(function, lanes)
 
-    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        data = context.make_array(sig.args[0])(context, builder, args[0]).data
-        return builder.atomic_rmw("add", data, ir.Constant(INTEGER, 1), "monotonic")
 
-    return types.int64(counter), generate
+class Traced:
+    """A function of rows in memory that writes itself, once, when compiled code first calls it."""
+
+    def __init__(self, function: Callable[..., Any], lanes: int | None = None) -> None:
+        self.function, self.lanes = function, lanes
+
+    def write(self, unit: Unit, caller: Function, values: list[Any]) -> Number:
+        """Its call there."""
+        rows, offset = values
+        name = f"traced_{self.function.__name__}"
+        if name not in unit.modules:
+            unit.modules[name] = self.module(name, self.lanes or unit.names["LANES"])
+        caller.needed.add(f"declare i64 @{name}(ptr)")
+        place = caller.put(f"getelementptr double, ptr {rows.pointer}, i64 {caller.numbered(offset, WHOLE).text}")
+        return Number(WHOLE, caller.put(f"call i64 @{name}(ptr {place})"))
+
+    def module(self, name: str, lanes: int) -> ir.Module:
+        """The function alone in LLVM's module, for so many lanes."""
+        module = ir.Module(name)
+        made = ir.Function(module, ir.FunctionType(INTEGER, [DOUBLE.as_pointer()]), name)
+        on_lines(made)
+        builder = ir.IRBuilder(made.append_basic_block())
+        with writing(builder, lanes):
+            builder.ret(self.function(Group(made.args[0]), 0))
+        return module
+
+
+class Take:
+    """`take(counter)`: the counter's value, which is raised by one at once, whatever other threads do."""
+
+    def write(self, unit: Unit, caller: Function, values: list[Any]) -> Number:
+        """Its call there."""
+        (counter,) = values
+        assert isinstance(counter, Array)
+        return Number(WHOLE, caller.put(f"atomicrmw add ptr {counter.pointer}, i64 1 monotonic"))
+
+
+take = Take()

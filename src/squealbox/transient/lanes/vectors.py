@@ -1,12 +1,12 @@
-"""Sixteen doubles as one number: plain Python run once on such numbers writes packed code.
+"""Several doubles as one number, sixteen or one: plain Python run once on such numbers writes packed code.
 
 A loop over lanes leaves it to the optimiser whether registers are packed, and it fails silently. Here a number is an
 LLVM vector, so the operations on it are packed whatever surrounds them: 512 bits wide where the processor has them,
 split in two or four or eight where it has not. The step and the formulas of friction laws, schedules and observers run
-as they stand, once, and each operation on a `Lanes` adds one instruction. So nothing of them is typed or lowered by
-numba, and one plain function serves NumPy, the scalar march and the lanes.
+as they stand, once, and each operation on a `Lanes` adds one instruction. So nothing of them passes through
+the compiler, and one plain function serves NumPy, the scalar march and the lanes.
 
-Importing this module loads llvmlite and numba; only generated files do.
+Importing this module loads llvmlite; only generated files do.
 """
 
 import math
@@ -17,15 +17,12 @@ from contextvars import ContextVar
 from typing import Any
 
 from llvmlite import ir
-from numba.core import cgutils
 
 from squealbox.system import InvalidSystem
+from squealbox.transient.lanes.shape import LANES
 
-LANES = 16
 FLAGS = ("contract", "nsz", "arcp")  # nnan and ninf would remove the tests for failed lanes
 DOUBLE, INTEGER, SHORT = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
-PACKED, LOGICAL = ir.VectorType(DOUBLE, LANES), ir.VectorType(ir.IntType(1), LANES)
-WIDE = ir.VectorType(INTEGER, LANES)
 ALIGNED = 64  # bytes: rows begin with a line of the cache
 BRANCH = (
     "a friction law, schedule or observer chooses by if, and, or, min or max: lanes compute both sides, "
@@ -39,23 +36,40 @@ ARITHMETIC = {
     "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "divide": operator.truediv,
     "less": operator.lt, "less_equal": operator.le, "greater": operator.gt, "greater_equal": operator.ge,
 }  # fmt: skip
+WIDTH: ContextVar[int] = ContextVar("lanes of a number", default=LANES)
 BUILDER: ContextVar[Any] = ContextVar("builder of the function being written")
 ALLOWED: ContextVar[tuple[str, ...]] = ContextVar("what the optimiser may do to the rounding", default=FLAGS)
 
 
 @contextmanager
-def writing(builder: Any) -> Iterator[None]:
-    """Let operations add their instructions there."""
-    token = BUILDER.set(builder)
+def writing(builder: Any, lanes: int | None = None) -> Iterator[None]:
+    """Let operations add their instructions there, on numbers of so many lanes."""
+    tokens = BUILDER.set(builder), WIDTH.set(lanes or WIDTH.get())
     try:
         yield
     finally:
-        BUILDER.reset(token)
+        BUILDER.reset(tokens[0])
+        WIDTH.reset(tokens[1])
+
+
+def packed_type() -> Any:
+    """LLVM's type of one number."""
+    return ir.VectorType(DOUBLE, WIDTH.get())
+
+
+def alignment() -> int:
+    """Bytes at whose multiples rows begin: those of a single run just so, those of a group on a line of the cache."""
+    return ALIGNED if WIDTH.get() == LANES else 8
+
+
+def wide_type() -> Any:
+    """LLVM's type of as many whole numbers."""
+    return ir.VectorType(INTEGER, WIDTH.get())
 
 
 def number(value: float) -> Any:
     """The same number in every lane."""
-    return ir.Constant(PACKED, [float(value)] * LANES)
+    return ir.Constant(packed_type(), [float(value)] * WIDTH.get())
 
 
 def packed(x: Any) -> Any:
@@ -63,10 +77,15 @@ def packed(x: Any) -> Any:
     return x.vector if isinstance(x, Lanes) else number(x)
 
 
+def declared(module: Any, kind: Any, name: str) -> Any:
+    """The function of that name and type in a module, declared at first use."""
+    return module.globals.get(name) or ir.Function(module, kind, name)
+
+
 def _call(name: str, *values: Any) -> Any:
     builder = BUILDER.get()
-    kind = ir.FunctionType(PACKED, [PACKED] * len(values))
-    return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"{name}.v{LANES}f64"), values)
+    kind = ir.FunctionType(packed_type(), [packed_type()] * len(values))
+    return builder.call(declared(builder.module, kind, f"{name}.v{WIDTH.get()}f64"), values)
 
 
 class Wider:
@@ -179,7 +198,7 @@ class Group:
     def at(self, place: int) -> Any:
         """Pointer to the row that begins there."""
         builder = BUILDER.get()
-        return builder.bitcast(builder.gep(self.data, [INTEGER(place)]), PACKED.as_pointer())
+        return builder.bitcast(builder.gep(self.data, [INTEGER(place)]), packed_type().as_pointer())
 
 
 class Given:
@@ -189,19 +208,41 @@ class Given:
         self.group, self.place, self.count, self.whole = group, place, count, whole
 
     def __getitem__(self, i: int) -> Any:
-        return self.whole[i] if i in self.whole else load(self.group, self.place + i * LANES)
+        return self.whole[i] if i in self.whole else load(self.group, self.place + i * WIDTH.get())
 
 
-def load(group: Group, place: int) -> Lanes:
-    """The row that begins there."""
+def load(group: Group, place: int, aligned: int | None = None) -> Lanes:
+    """The row that begins there, at a multiple of so many bytes."""
     value = BUILDER.get().load(group.at(place))
-    value.align = ALIGNED
+    value.align = aligned or alignment()
     return Lanes(value)
 
 
-def store(group: Group, place: int, value: Any) -> None:
+def store(group: Group, place: int, value: Any, aligned: int | None = None) -> None:
     """Write a row."""
-    BUILDER.get().store(packed(value), group.at(place)).align = ALIGNED
+    BUILDER.get().store(packed(value), group.at(place)).align = aligned or alignment()
+
+
+def store_known(group: Group, place: int, value: Any) -> None:
+    """Write a row, unless there is nothing to write: a coefficient that is zero in every lane."""
+    if value is not None:
+        store(group, place, value)
+
+
+def at_once(group: Group, b: int, since: int, terms: int, breadth: int, count: int, values: int, slopes: int) -> Any:
+    """Several series and their slopes at one instant, a lane for each: `count` coefficients, `breadth` apart."""
+    builder, packed_x = BUILDER.get(), ir.Constant(packed_type(), ir.Undefined)
+    x = builder.load(builder.gep(group.data, [INTEGER(b + since)]))
+    for i in range(WIDTH.get()):
+        packed_x = builder.insert_element(packed_x, x, SHORT(i))
+    at, total, slope = Lanes(packed_x), None, None
+    for k in range(count - 1, -1, -1):
+        term = load(group, b + terms + k * breadth, 8)
+        slope = total if slope is None or total is None else fused(slope, at, total)
+        total = term if total is None else fused(total, at, term)
+    store(group, b + values, total, 8)
+    store(group, b + slopes, slope, 8)
+    return INTEGER(0)
 
 
 def forget() -> None:
@@ -217,8 +258,10 @@ def where(truth: Any, yes: Any, no: Any) -> Lanes:
 def with_sign(x: Lanes, other: Lanes) -> Lanes:
     """x times the sign of `other`: x, -x, or 0 where `other` is 0; by the bit of the sign."""
     builder = BUILDER.get()
-    sign = builder.and_(builder.bitcast(other.vector, WIDE), ir.Constant(WIDE, [-(1 << 63)] * LANES))
-    turned = builder.bitcast(builder.xor(builder.bitcast(x.vector, WIDE), sign), PACKED)
+    sign = builder.and_(
+        builder.bitcast(other.vector, wide_type()), ir.Constant(wide_type(), [-(1 << 63)] * WIDTH.get())
+    )
+    turned = builder.bitcast(builder.xor(builder.bitcast(x.vector, wide_type()), sign), packed_type())
     return where(other == 0.0, 0.0, Lanes(turned))
 
 
@@ -239,7 +282,7 @@ def maximum(a: Any, b: Any) -> Any:
 def bits(truth: Truth) -> Any:
     """The truth values as the bits of one integer; 0 when none holds."""
     builder = BUILDER.get()
-    return builder.zext(builder.bitcast(truth.vector, ir.IntType(LANES)), INTEGER)
+    return builder.zext(builder.bitcast(truth.vector, ir.IntType(WIDTH.get())), INTEGER)
 
 
 def fused(a: Lanes, b: Lanes, c: Lanes) -> Lanes:
@@ -256,7 +299,7 @@ def if_any(truth: Truth, compute: Callable[[], tuple[Lanes, ...]], otherwise: tu
         inside = builder.block
     out = []
     for yes, no in zip(found, values, strict=True):
-        out.append(builder.phi(PACKED))
+        out.append(builder.phi(packed_type()))
         out[-1].add_incoming(yes, inside)
         out[-1].add_incoming(no, before)
     return tuple(Lanes(x) for x in out)
@@ -279,9 +322,9 @@ def sqrt(x: Any) -> Any:
 def rough_power(x: Lanes, exponent: float) -> Lanes:
     """x**exponent to a few per cent for x > 0, by the exponent and mantissa as a logarithm: for step factors."""
     builder, one = BUILDER.get(), float(1023 << 52)
-    whole = builder.sitofp(builder.bitcast(x.vector, WIDE), PACKED)
+    whole = builder.sitofp(builder.bitcast(x.vector, wide_type()), packed_type())
     scaled = builder.fmul(builder.fsub(whole, number(one)), number(exponent))
-    return Lanes(builder.bitcast(builder.fptosi(builder.fadd(scaled, number(one)), WIDE), PACKED))
+    return Lanes(builder.bitcast(builder.fptosi(builder.fadd(scaled, number(one)), wide_type()), packed_type()))
 
 
 EXP_TERMS = tuple(1.0 / math.factorial(k) for k in range(14))
@@ -300,8 +343,8 @@ def exp(x: Any) -> Any:
     total = number(EXP_TERMS[-1])
     for term in reversed(EXP_TERMS[:-1]):
         total = builder.fadd(builder.fmul(total, r, flags=FLAGS), number(term), flags=FLAGS)
-    power = builder.add(builder.fptosi(k, WIDE), ir.Constant(WIDE, [1023] * LANES))
-    scale = builder.bitcast(builder.shl(power, ir.Constant(WIDE, [52] * LANES)), PACKED)
+    power = builder.add(builder.fptosi(k, wide_type()), ir.Constant(wide_type(), [1023] * WIDTH.get()))
+    scale = builder.bitcast(builder.shl(power, ir.Constant(wide_type(), [52] * WIDTH.get())), packed_type())
     return Lanes(builder.fmul(total, scale))
 
 
@@ -322,9 +365,9 @@ def _each(name: str) -> Any:
         if not isinstance(x, Lanes):
             return getattr(math, name)(x)
         builder = BUILDER.get()
-        function = cgutils.get_or_insert_function(builder.module, ir.FunctionType(DOUBLE, [DOUBLE]), name)
-        out = ir.Constant(PACKED, ir.Undefined)
-        for i in range(LANES):
+        function = declared(builder.module, ir.FunctionType(DOUBLE, [DOUBLE]), name)
+        out = ir.Constant(packed_type(), ir.Undefined)
+        for i in range(WIDTH.get()):
             one = builder.call(function, [builder.extract_element(x.vector, SHORT(i))])
             out = builder.insert_element(out, one, SHORT(i))
         return Lanes(out)

@@ -17,6 +17,7 @@ from squealbox.transient.lanes.table import Jobs, tabulate
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.observers import Observer
+from squealbox.transient.widened import base_of, start_of
 
 BLOCK = 65_536  # trajectories whose parameters lie in memory together
 GROUPS = 2  # groups of sixteen lanes that a thread advances in turn: one hides the latency of the other
@@ -58,9 +59,10 @@ class Work:
 
     def _block(self, system: System, shape: tuple[int, ...], part: slice, total: int) -> None:
         count = part.stop - part.start
-        self.system = self.system or system
+        self.system = self.system or base_of(system)
         batch = system.shape if system.shape != () else (count,)
-        start = _starts(system, self.start, self.begin, shape, part, batch)
+        start = _starts(base_of(system), self.start, self.begin, shape, part, batch)
+        start = start_of(system, *start, isinstance(self.start, str) and self.start == "sliding", self.begin)
         watches = tuple(each.watch() for each in self.observers)
         begins = [self.begin + (1.0 - each.last) * self.duration for each in self.observers]
         coefficients = [x for each, t in zip(self.observers, begins, strict=True) for x in (t, *each.settings)]
@@ -70,14 +72,21 @@ class Work:
         )  # fmt: skip
         if len(jobs.table) < count:
             jobs = replace(jobs, table=np.broadcast_to(jobs.table, (count, jobs.table.shape[1])).copy())
-        memory = sum(w.copies(system.size, len(system.contacts)) * w.width for w in watches)
+        seen = base_of(system).size
+        memory = sum(w.copies(seen, len(system.contacts)) * w.width for w in watches)
         width = HEAD + 2 * system.size + memory + len(system.contacts)
         out = np.full((count, width), np.nan)
         out[:, 0] = -1.0
         samples = np.full((count, max(self.times.size, 1), 2 * system.size) if self.times.size else (1, 1, 1), np.nan)
-        self.rows.append(out)
-        self.samples.append(samples)
-        self._compute(jobs, out, samples, count, part.start, total)
+        n = system.size
+        shown = [*range(HEAD + seen), *range(HEAD + n, HEAD + n + seen), *range(HEAD + 2 * n, width)]
+        try:
+            self._compute(jobs, out, samples, count, part.start, total)
+        finally:
+            whole = n == seen
+            self.rows.append(out if whole else out[:, shown])
+            keep = [*range(seen), *range(n, n + seen)]
+            self.samples.append(samples if whole or not self.times.size else samples[:, :, keep])
 
     def _compute(self, jobs: Jobs, out: Any, samples: Any, count: int, before: int, total: int) -> None:
         from squealbox.transient.lanes.kernel import lane_kernel
@@ -99,7 +108,7 @@ class Work:
                 scratch = packing.scratch(record, np.zeros(n), np.zeros(n), self.begin, 0.0)
                 kernel(
                     lanes, live, jobs.table, jobs.varies, jobs.fixed, self.times, samples, counter, count, out,
-                    record.copy(), rule, scratch, stop, EVERY,
+                    record.copy(), rule, scratch, stop, EVERY, np.zeros((1, 1)), np.zeros((1, 1)), counter,
                 )  # fmt: skip
             except BaseException as error:  # handed to the caller below
                 failures.append(error)

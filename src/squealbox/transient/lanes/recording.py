@@ -1,0 +1,105 @@
+"""A lane's motion as rows of output: where steps end, or at given instants; and its events. Compiled by `kernel`.
+
+A step leaves the series of all that is followed, so a row costs no further evaluation of the equation.
+"""
+
+# ruff: noqa: F821  (the places of the rows and the counts are generated)
+# mypy: disable-error-code="name-defined,no-untyped-def"
+
+import numpy as np
+
+ROWS_WRITTEN, EVENTS_WRITTEN = 0, 1  # of `count`
+
+
+def room_left(times, rows, events, count):
+    """Whether one more step is sure to find room for its rows and its events."""
+    found = times.shape[0] > 0 or count[ROWS_WRITTEN] + SHARES <= rows.shape[0]
+    return found and count[EVENTS_WRITTEN] + CONTACTS <= events.shape[0]
+
+
+def first_row(A, b, lane, times, rows, count, s):
+    """The start, if it was asked for."""
+    t = A[b + ROW_T * WIDTH + lane]
+    for c in range(CONTACTS):
+        A[b + (ROW_FASTEST + c) * WIDTH + lane] = abs(s.speed[c])
+        if s.mode[c] != 2:
+            A[b + (ROW_LOWEST + c) * WIDTH + lane] = s.normal[c]
+    if times.shape[0] == 0:
+        A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = -np.inf
+    while times.shape[0] == 0 or (count[ROWS_WRITTEN] < times.shape[0] and times[count[ROWS_WRITTEN]] <= t):
+        row = rows[count[ROWS_WRITTEN]]
+        for k in range(row.shape[0]):
+            row[k] = 0.0
+        row[0] = t
+        state(A, b, lane, row)
+        first = 6 + 2 * DOFS + CONTACTS
+        for c in range(CONTACTS):
+            row[first + c] = s.normal[c]
+            row[first + CONTACTS + c] = s.speed[c]
+            row[first + 2 * CONTACTS + c] = s.force[c]
+            row[first + 3 * CONTACTS + c] = s.mode[c]
+        count[ROWS_WRITTEN] += 1
+        if times.shape[0] == 0:
+            return
+    if count[ROWS_WRITTEN] < times.shape[0]:
+        A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = times[count[ROWS_WRITTEN]]
+    else:
+        A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = np.inf
+
+
+def state(A, b, lane, row):
+    """q and q' of a row from the present state."""
+    for i in range(DOFS):
+        row[1 + i] = A[b + (ROW_Q + i) * WIDTH + lane]
+        row[1 + DOFS + i] = A[b + (ROW_V + i) * WIDTH + lane]
+
+
+def write_rows(A, b, lane, times, rows, count):
+    """The rows due in the step just taken: no further apart than a sixth of the shortest period, or as asked for."""
+    t0 = A[b + ROW_T_OLD * WIDTH + lane]
+    t1 = A[b + ROW_T * WIDTH + lane]
+    if times.shape[0] == 0:
+        span = A[b + ROW_SPAN * WIDTH + lane]
+        sixth = A[b + ROW_WINDOW * WIDTH + lane] * (1e3 / 6.0)
+        parts = min(max(int(np.ceil(span / sixth - 1e-6)), 1), SHARES)
+        for k in range(1, parts + 1):
+            share = k / parts
+            write_row(A, b, lane, t1 if k == parts else t0 + share * span, share * span, rows[count[ROWS_WRITTEN]])
+            count[ROWS_WRITTEN] += 1
+        state(A, b, lane, rows[count[ROWS_WRITTEN] - 1])
+        return
+    k = count[ROWS_WRITTEN]
+    while k < times.shape[0] and times[k] <= t1:
+        write_row(A, b, lane, times[k], max(times[k] - t0, 0.0), rows[k])
+        if times[k] == t1:
+            state(A, b, lane, rows[k])
+        k += 1
+    count[ROWS_WRITTEN] = k
+    A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = times[k] if k < times.shape[0] else np.inf
+
+
+def write_row(A, b, lane, t, since, row):
+    """One row from the series of the step: time, state, works, then N, v, force and mode of each contact."""
+    unit = A[b + ROW_WINDOW * WIDTH + lane] * UNIT_OF_WINDOW
+    A[b + ROW_SINCE] = since / unit
+    evaluate(A, b)
+    row[0] = t
+    for i in range(DOFS):
+        row[1 + i] = A[b + ROW_VALUE + i]
+        row[1 + DOFS + i] = A[b + ROW_SLOPE + i] / unit
+    for j in range(DOFS, DOFS + CONTACTS + 4):
+        row[1 + DOFS + j] = A[b + ROW_VALUE + j]
+    for j in range(DOFS + CONTACTS + 4, FOLLOWED):
+        row[2 + DOFS + j] = A[b + ROW_VALUE + j]
+    row[5 + 2 * DOFS + CONTACTS] = 0.0
+    for c in range(CONTACTS):
+        mode = A[b + (ROW_SLIPS + c) * WIDTH + lane]
+        row[6 + 2 * DOFS + 4 * CONTACTS + c] = 2.0 if A[b + (ROW_OPENED + c) * WIDTH + lane] > 0.0 else mode
+
+
+def log_event(A, b, lane, c, mode, events, count):
+    """Contact c has taken another mode."""
+    events[count[EVENTS_WRITTEN], 0] = A[b + ROW_T * WIDTH + lane]
+    events[count[EVENTS_WRITTEN], 1] = c
+    events[count[EVENTS_WRITTEN], 2] = mode
+    count[EVENTS_WRITTEN] += 1

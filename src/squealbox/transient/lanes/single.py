@@ -1,0 +1,138 @@
+"""One motion by the generated step at width 1: rows of output, log of events and energy audit, as by the march."""
+
+import time as clock
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.schedules import value_at
+from squealbox.system import System
+from squealbox.transient import packing
+from squealbox.transient._motion import EXACT
+from squealbox.transient.lanes.kernel import lane_kernel
+from squealbox.transient.lanes.shape import Rows, layout, parameter_rows
+from squealbox.transient.lanes.table import Jobs, tabulate
+from squealbox.transient.methods import Method
+
+RUNNING = -1.0  # in the row of results of a run that has not ended
+FIRST = 2_000  # trials between the first two looks at the keyboard
+MOST = 200_000
+LOOK = 0.02  # s that should pass between two
+MOST_KEPT = 64
+ROWS = 4_096  # room for rows of output at first
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """What runs of one system by one method share."""
+
+    jobs: Jobs
+    rows: Rows
+    names: dict[str, int]
+    record: Any
+    kernel: Any
+
+
+KEPT: dict[Any, tuple[System, Prepared]] = {}  # of the latest systems, told apart by identity, for they are frozen
+
+
+def prepared(system: System, method: Method, duration: float, begin: float) -> Prepared:
+    """The table of one job, the places of its rows, its record and its kernel."""
+    atol = None if method.atol is None else np.asarray(method.atol, dtype=float).tobytes()
+    how = method.tableau, method.rtol, atol, method.first_step, method.largest_step, method.most_steps
+    key = id(system), *how, duration, begin
+    found = KEPT.pop(key, None) or (system, _prepared(system, method, duration, begin))
+    KEPT[key] = found
+    if len(KEPT) > MOST_KEPT:
+        KEPT.pop(next(iter(KEPT)))
+    return found[1]
+
+
+def _prepared(system: System, method: Method, duration: float, begin: float) -> Prepared:
+    rest = np.zeros(system.size)
+    jobs = tabulate(system, method, EXACT, 1e-3, (rest, rest), duration, begin, (), (), False, recorded=True)
+    names = {name: 3 + row for row, name in enumerate(parameter_rows(jobs.shape))}
+    packed = packing.pack(system, method, EXACT, 1e-3, False)
+    record = np.zeros(1, dtype=packed.dtype)
+    record[0] = packed
+    return Prepared(jobs, layout(jobs.shape), names, record, lane_kernel(jobs.shape))
+
+
+class Single:
+    """One run, resumed until it ends."""
+
+    def __init__(
+        self, system: System, method: Method, q: Any, qd: Any, begin: float, duration: float, times: Any
+    ) -> None:
+        self.system, self.method, self.begin = system, method, begin
+        made = self.made = prepared(system, method, duration, begin)
+        n, m = system.size, len(system.contacts)
+        self.fixed = made.jobs.fixed.copy()
+        first = made.names["start0"] if n else 0
+        self.fixed[first : first + n], self.fixed[first + n : first + 2 * n] = q, qd
+        self.lanes = np.zeros(len(made.rows))
+        self.lanes[made.rows.places["alive"]] = -1.0
+        self.times = np.zeros(0) if times is None else times
+        self.rows = np.empty((ROWS if times is None else len(times), 6 + 2 * n + 5 * m))
+        self.events = np.empty((256 + m, 3))
+        self.count = np.zeros(2, dtype=np.int64)
+        self.out = np.full((1, 5 + 2 * n + m), RUNNING)
+        spare = np.zeros((1, 1, 1))
+        scratch = packing.scratch(made.record[0], q, qd, begin, 0.0).base
+        self.shared = (
+            np.zeros(1, dtype=np.int64), made.jobs.table, made.jobs.varies, self.fixed, self.times, spare,
+            np.zeros(1, dtype=np.int64), 1, self.out, made.record.copy(), packing.rule("dormand-prince-8"), scratch,
+            np.zeros(1, dtype=np.int64),
+        )  # fmt: skip
+
+    def at(self, name: str) -> float:
+        """The number in a row of the state."""
+        return float(self.lanes[self.made.rows.places[name]])
+
+    @property
+    def atol(self) -> Any:
+        """Absolute tolerances of q and q'."""
+        n = self.system.size
+        first = self.made.names["atol0"] if n else 0
+        return self.fixed[first : first + 2 * n]
+
+    def speeds(self, t: float, qd: Any) -> list[float]:
+        """Sliding velocities [m/s] at an instant."""
+        return [float(value_at(c.V, t) - c.t @ qd) for c in self.system.contacts]
+
+    def call(self, budget: int = FIRST) -> tuple[Any, tuple[Any, ...]]:
+        """The kernel of this run, and what it is called with."""
+        return self.made.kernel, (self.lanes, *self.shared, budget, self.rows, self.events, self.count)
+
+    def to(self, end: float, progress: Any = None) -> tuple[int | None, str]:
+        """Run to the end; returns how the kernel says it ended, None and why where it was stopped."""
+        budget, began = FIRST, clock.monotonic()
+        try:
+            while not self._advance(budget):
+                self._make_room()
+                now = clock.monotonic()
+                if progress is not None:
+                    progress(self.at("t"), end, now - began)
+                budget = min(2 * budget, MOST)
+        except KeyboardInterrupt:
+            return None, f"stopped by the user at t = {self.at('t'):g} s"
+        if progress is not None:
+            progress(float(self.out[0, 1]), end, clock.monotonic() - began)
+        return int(self.out[0, 0]), ""
+
+    def _advance(self, budget: int) -> bool:
+        kernel, given = self.call(budget)
+        done: bool = kernel(*given)
+        return done
+
+    def _make_room(self) -> None:
+        rows, events = self.count
+        if not len(self.times) and rows + 3 > len(self.rows):
+            self.rows = np.concatenate([self.rows, np.empty_like(self.rows)])
+        if events + len(self.system.contacts) > len(self.events):
+            self.events = np.concatenate([self.events, np.empty_like(self.events)])
+
+    def columns(self) -> tuple[Any, Any]:
+        """Rows of output and of events, as far as they were written."""
+        return self.rows[: self.count[0]], self.events[: self.count[1]]

@@ -1,0 +1,200 @@
+"""What a motion remembers beside q and q', as further rows behind those of the system: they are of first order.
+
+    a law with memory        z' = creep(v, z), one row for each such contact
+    a loop with a limit      z' = A z + E q + F q' + G u, and its command w' = P q + R q' + S z, which a contact without
+                             events senses and cuts: u = sat(w'); d holds b and G
+    a full singular M        q = T p, p in coordinates in which M and C leave no row in between
+
+Results show the rows in front, which are the system's own. Depends on: loops, rows, smooth_laws, system.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from squealbox.loops import padded, padded_load
+from squealbox.schedules import Schedule, value_at
+from squealbox.system import Contact, InvalidSystem, System
+from squealbox.transient.rows import row_kinds, solved_for
+from squealbox.transient.smooth_laws import Saturation
+
+NOTHING = 1e-12  # share of the largest entry below which one of a matrix in other coordinates is round-off
+
+
+class Widened(System):
+    """A system whose rows from `seen` on are its memory.
+
+    base is what results know of it; memories are the rows of the contacts' laws, -1 without; unaudited the rows outside
+    the energy audit; embedding (rows, seen) puts q and q' among the rows.
+    """
+
+    seen: int = 0
+    base: Any = None
+    memories: tuple[int, ...] = ()
+    unaudited: tuple[int, ...] = ()
+    embedding: Any = None
+
+
+def widened(system: System) -> System:
+    """The system with rows for all it remembers; itself where that is nothing."""
+    return _with_memory(_in_coordinates(_with_limited_loops(system)))
+
+
+def base_of(system: System) -> System:
+    """The system that results know."""
+    return system.base if isinstance(system, Widened) else system
+
+
+def start_of(system: System, q: Any, qd: Any, steady: bool, time: float) -> tuple[Any, Any]:
+    """q and q' (..., rows) of a start of the base; `steady` bends the bristles as steady sliding does."""
+    if not isinstance(system, Widened):
+        return q, qd
+    q, qd = (np.einsum("ij,...j->...i", system.embedding, np.asarray(x, dtype=float)) for x in (q, qd))
+    for contact, row in zip(system.contacts, system.memories or (-1,) * len(system.contacts), strict=True):
+        if steady and row >= 0:
+            deflection = contact.law.steady_deflection(value_at(contact.V, time))  # type: ignore[attr-defined]
+            q = np.array(np.broadcast_to(q, (*np.broadcast_shapes(q.shape[:-1], np.shape(deflection)), q.shape[-1])))
+            q[..., row] = deflection
+    return q, qd
+
+
+def _appended(system: System, more: int, name: str) -> tuple[dict[str, Any], Any]:
+    """The fields of the system with `more` empty rows at its end, and its leading axes."""
+    lead, n = np.broadcast_shapes(*(x.shape[:-2] for x in (system.M, system.C, system.K))), system.size
+    fields: dict[str, Any] = {key: np.zeros((*lead, n + more, n + more)) for key in ("M", "C", "K")}
+    for key in fields:
+        fields[key][..., :n, :n] = getattr(system, key)
+    contacts = []
+    for contact in system.contacts:
+        given = {key: getattr(contact, key) for key in ("n", "d", "t", "normal")}
+        contacts.append(contact.replace({key: padded(row, more) for key, row in given.items() if row is not None}))
+    fields |= {"contacts": tuple(contacts), "load": padded_load(system.load, more), "loops": system.loops}
+    fields["names"] = (*system.names, *(f"{name} {i + 1}" for i in range(more)))
+    old = system if isinstance(system, Widened) else None
+    fields["seen"], fields["base"] = (old.seen, old.base) if old else (n, system)
+    fields["memories"] = old.memories if old else ()
+    fields["unaudited"] = (*(old.unaudited if old else ()), *range(n, n + more))
+    embedding = np.eye(n) if old is None else old.embedding
+    fields["embedding"] = np.vstack([embedding, np.zeros((more, embedding.shape[1]))])
+    return fields, lead
+
+
+def _with_memory(system: System) -> System:
+    """A row for the state of each law with memory."""
+    having = [c for c, contact in enumerate(system.contacts) if contact.law.has_memory]
+    if not having:
+        return system
+    for c in having:
+        if system.contacts[c].rigid:
+            raise InvalidSystem(f"contacts[{c}] is rigid: a law with memory needs N = N0 + n . q; give it a stiffness")
+    n = system.size
+    fields, _ = _appended(system, len(having), "bristle")
+    rows = dict(zip(having, range(n, n + len(having)), strict=True))
+    for row in rows.values():
+        fields["C"][..., row, row] = 1.0
+    return Widened(**fields | {"memories": tuple(rows.get(c, -1) for c in range(len(system.contacts)))})
+
+
+def _with_limited_loops(system: System) -> System:
+    """Loops with a limit that feed back more than a velocity, as rows and a contact without events each."""
+    for loop in system.loops:
+        row, n = loop.rows(system.names), system.size
+        if any(np.ndim(x) > k for x, k in ((row.P, 1), (row.R, 1), (row.A, 2), (loop.limit, 0))):
+            raise InvalidSystem(
+                f"a {type(loop).__name__} with a limit varies in an ensemble: run such loops one by one"
+            )
+        m = row.memory
+        base, law = base_of(system), Saturation(float(loop.limit or 0.0))
+        told = Contact(
+            np.zeros(base.size), row.b[: base.size], np.zeros(base.size), 1.0, 0.0, law, name=f"loop on {loop.on}"
+        )
+        fields, _ = _appended(system, m + 1, "loop state")
+        z, w = slice(n, n + m), n + m
+        spring, mass = (float(np.max(np.abs(x), initial=0.0)) or 1.0 for x in (system.K, system.M))
+        time = spring / np.sqrt(spring / mass)
+        unit = spring / np.where(np.abs(row.S) > 0.0, np.abs(row.S), 1.0)  # z = unit times a displacement
+        scale = time / unit[:, None]
+        C, K = fields["C"], fields["K"]
+        C[..., z, :n], K[..., z, :n] = -scale * row.F, -scale * row.E
+        C[..., z, z], K[..., z, z] = time * np.eye(m), -scale * row.A * unit
+        C[..., w, w], C[..., w, :n], K[..., w, :n], K[..., w, z] = 1.0, -row.R, -row.P, -row.S * unit
+        acts, senses = np.concatenate([row.b, time / unit * row.G, [0.0]]), np.zeros(n + m + 1)
+        senses[w] = -1.0
+        cut = Contact(np.zeros(n + m + 1), acts, senses, 1.0, 0.0, law, name=told.name)
+        fields |= {"contacts": (*fields["contacts"], cut), "loops": (), "base": base.replace(
+            loops=(), contacts=(*base.contacts, told))}  # fmt: skip
+        system = Widened(**fields)
+    return system
+
+
+def _in_coordinates(system: System) -> System:
+    """Where M is singular otherwise than by rows of zeros, or C joins such rows: other coordinates behind q.
+
+    With R what M moves, N its null space, and N split by the null space of N' C N, T = [R N_1 N_2] is orthonormal.
+    """
+    try:
+        solved_for(system, row_kinds(system))
+    except InvalidSystem:
+        if max(x.ndim for x in (system.M, system.C, system.K)) > 2 or isinstance(system, Widened):
+            raise
+        changed = _rotated(system)
+        if changed is None:
+            raise
+        solved_for(changed, row_kinds(changed))
+        return changed
+    return system
+
+
+def _rotated(system: System) -> System | None:
+    values, vectors = np.linalg.eigh(system.M)
+    heavy = np.abs(values) > NOTHING * np.max(np.abs(values), initial=0.0)
+    moved, null = vectors[:, heavy], vectors[:, ~heavy]
+    if not null.shape[1]:
+        return None
+    size = float(np.max(np.abs(system.C), initial=0.0))
+    _, sizes, right = np.linalg.svd(null.T @ system.C @ null)
+    rank = int(np.sum(sizes > NOTHING * size))
+    first, algebraic = null @ right[:rank].T, null @ right[rank:].T
+    if (
+        algebraic.size
+        and max(np.max(np.abs(algebraic.T @ system.C)), np.max(np.abs(system.C @ algebraic))) > 1e-9 * size
+    ):
+        raise InvalidSystem(
+            f"a motion of {', '.join(system.names)} has neither mass nor damping of its own, and yet C joins it to "
+            "others: expected a mass or a damper on it"
+        )
+    T, n, k = np.hstack([moved, first, algebraic]), system.size, moved.shape[1]
+    spring = float(np.max(np.abs(system.K))) or 1.0
+    fields, _ = _appended(system, n, "coordinate")
+    for key, kept in (("M", k), ("C", k + rank), ("K", n)):
+        fields[key][:n, :n] = 0.0
+        fields[key][n : n + kept, n : n + kept] = _cleaned(T.T @ getattr(system, key) @ T)[:kept, :kept]
+    fields["K"][:n, :n], fields["K"][:n, n:] = spring * np.eye(n), -spring * T
+    contacts = []
+    for contact in system.contacts:
+        given = {key: getattr(contact, key) for key in ("n", "d", "t", "normal")}
+        rows = {key: np.concatenate([np.zeros(n), _cleaned(row @ T)]) for key, row in given.items() if row is not None}
+        contacts.append(contact.replace(rows))
+    fields |= {"contacts": tuple(contacts), "load": _turned(system.load, T), "unaudited": tuple(range(n))}
+    return Widened(**fields | {"embedding": np.vstack([np.eye(n), T.T])})
+
+
+def _cleaned(matrix: Any) -> Any:
+    return np.where(np.abs(matrix) > NOTHING * np.max(np.abs(matrix), initial=0.0), matrix, 0.0)
+
+
+def _turned(load: Any, T: Any) -> Any:
+    """A load in the coordinates behind q."""
+
+    def there(weight: Any) -> Any:
+        return np.concatenate([np.zeros(len(T)), np.broadcast_to(np.asarray(weight, dtype=float), (len(T),)) @ T])
+
+    if not isinstance(load, Schedule):
+        return there(load)
+    total: Any = None
+    for weight, part in load.terms():
+        level = getattr(part, "level", 1.0)
+        if np.ndim(level) > 0:
+            weight, part = np.asarray(weight) * level, part.replace(level=1.0)
+        total = part * there(weight) if total is None else total + part * there(weight)
+    return total
