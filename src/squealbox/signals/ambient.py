@@ -150,6 +150,9 @@ def damping_onset(
 ) -> DampingOnset:
     """The onset of squeal from the damping before it: growth rates against `at`, continued to zero.
 
+    The line is fitted with the errors as weights; its crossing has Fieller's interval (1954, J. R. Stat. Soc. B 16,
+    175-185), which is not bounded where the slope is not told from zero: then the outcome is "no_onset".
+
     Parameters
     ----------
     found : the modes of each record
@@ -157,9 +160,6 @@ def damping_onset(
     near : frequency of the mode in the first record [Hz]; left out, its least damped. It is followed to the nearest
         frequency from record to record, in the order of `at`
     name : what `at` is called
-
-    The line is fitted with the errors as weights; its crossing has Fieller's interval (1954, J. R. Stat. Soc. B 16,
-    175-185), which is not bounded where the slope is not told from zero: then the outcome is "no_onset".
 
     Raises `SignalError` for fewer than three records or a record without modes.
     """
