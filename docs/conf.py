@@ -13,7 +13,7 @@ copyright = "the squealbox developers"
 release = version = squealbox.__version__
 
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "plain_docstrings", "mathml"]
-exclude_patterns = ["_build", "_ext"]
+exclude_patterns = ["_build", "_ext", "paper"]  # the paper is for a journal's own tools
 html_theme = "furo"
 html_title = "squealbox"
 html_static_path = ["_static"]

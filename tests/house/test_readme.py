@@ -33,3 +33,16 @@ def test_links_and_pictures_exist():
     targets = re.findall(r"\]\(([^)#]+)", README)
     assert [target for target in targets if not (PROJECT / target).exists()] == []
     assert [target for target in targets if target.startswith("docs/images/")]
+
+
+def test_the_numbers_of_the_paper_are_what_is_computed(tmp_path):
+    """Recomputed as they stand; with one digit changed the program sees it."""
+    paper, program = (PROJECT / "docs" / "paper" / name for name in ("paper.md", "recompute.py"))
+    command = [sys.executable, str(tmp_path / "recompute.py")]
+    (tmp_path / "recompute.py").write_text(program.read_text())
+    (tmp_path / "paper.md").write_text(paper.read_text())
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
+    assert (done.returncode, done.stdout.count("NOT in the paper")) == (0, 0), done.stdout + done.stderr
+    (tmp_path / "paper.md").write_text(paper.read_text().replace("0.3327", "0.3328"))
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
+    assert (done.returncode, done.stdout.count("NOT in the paper")) == (1, 1), done.stdout + done.stderr
