@@ -6,8 +6,8 @@ the vibration as a share of the belt's. Friction reverses once that is about 1, 
 and what dies out has one that falls without limit. It squeals when its level is above 0.1.
 
 Where that differs from what the eigenvalues of steady sliding say, the same trajectory goes on to 0.15 s. When it still
-squeals, at 0.7 of its level or more, it is on a cycle that exists beside stable sliding; when not, it was still ringing,
-and the run too short. The weakest decay this tells from a cycle is 3.6 1/s.
+squeals, at 0.7 of its level or more, it is on a cycle that exists beside stable sliding; when not, it was still
+ringing, and the run too short. The weakest decay this tells from a cycle is 3.6 1/s.
 
 A map begins with every fourth value of both axes. Each square whose corners are of different kinds, or in which the
 eigenvalues change sign, is halved down to the map's own grid; the rest takes the kind of its corners.
