@@ -48,6 +48,33 @@ def test_each_reason_has_its_name() -> None:
     assert ensembles._why(unstable, short, longer).tolist() == expected
 
 
+@pytest.mark.parametrize("size", [33, 34, 2])
+def test_a_refined_map_is_the_full_one_with_fewer_runs(size: int) -> None:
+    """A disc and a half plane on a grid of any size: every point has its kind, most without a run."""
+    x, y = np.meshgrid(np.arange(size), np.arange(size), indexing="ij")
+    full = np.where((x - 12) ** 2 + (y - 15) ** 2 < 40, SQUEAL, np.where(y > 24, BESIDE, QUIET))
+    kind, asked = np.full(full.shape, UNKNOWN), np.zeros(full.shape, int)
+
+    def run(there) -> None:
+        asked[there] += 1
+        kind[there] = full[there]
+
+    made = ensembles.refined(full == SQUEAL, kind, run, 4)
+    np.testing.assert_array_equal(kind, full)
+    np.testing.assert_array_equal(asked, made.astype(int))  # none twice
+    assert size != 33 or made.mean() < 0.5
+
+
+def test_an_island_between_the_coarse_points_is_found_by_its_eigenvalues_alone() -> None:
+    """The limit of refining, said on the page: an island of one point is seen only where an eigenvalue tells of it."""
+    full = np.full((9, 9), QUIET)
+    full[2, 2] = BESIDE
+    for unstable, expected in ((np.zeros((9, 9), bool), QUIET), (full == BESIDE, BESIDE)):
+        kind = np.full(full.shape, UNKNOWN)
+        ensembles.refined(unstable, kind, lambda there, kind=kind: kind.__setitem__(there, full[there]), 4)
+        assert kind[2, 2] == expected
+
+
 def test_a_cycle_beside_stable_sliding_is_found() -> None:
     """theta1 = 20, theta2 = 125 deg: sliding is stable, but a step load ends on a cycle; at theta1 = 90 it does not."""
     over = {"theta1": np.deg2rad([20.0, 90.0]), "theta2": np.deg2rad([125.0, 126.0])}

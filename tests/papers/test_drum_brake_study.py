@@ -185,13 +185,14 @@ def folder(tmp_path_factory) -> Iterator[object]:
         default = reading.study(Case(DEFAULT_READING), figures, ensembles.Sizes(5, 5, 7))
         found = {name: default if name == DEFAULT_READING else printed for name in readings}
         assert wanted is False
+        jobs.do({"kind": "drawings", "folder": str(figures)})
         for name in readings:
             if name not in (PRINTED, DEFAULT_READING):
                 (figures / name).mkdir(exist_ok=True)
                 for file in (figures / PRINTED).iterdir():
                     (figures / name / file.name).write_bytes(file.read_bytes())
         progress("both", 1.0)
-        return found, {}
+        return found, {}, {kind: jobs.do({"kind": kind, "folder": str(figures)}) for kind in ("family", "solver")}
 
     heard = []
     with pytest.MonkeyPatch.context() as patch:
@@ -273,6 +274,16 @@ def test_jobs_run_in_their_own_processes(tmp_path) -> None:
     assert heard == [("printed", 1.0)]
     assert answer["figures"] == ["fig5", "fig9"]
     assert (tmp_path / "fig9.png").exists()
+
+
+def test_a_job_waits_for_what_it_needs(tmp_path) -> None:
+    heard = []
+    late = {"kind": "search", "reading": PRINTED, "label": "late", "after": ["early"]}
+    early = {"kind": "study", "reading": PRINTED, "folder": str(tmp_path), "label": "early", "fine": False}
+    answers = jobs.run([late, early], lambda what, share: heard.append((what, share)))
+    assert heard == [("early", 0.5), ("late", 1.0)]
+    assert "rows" in answers[0]
+    assert "findings" in answers[1]
 
 
 def test_a_job_that_fails_says_which(tmp_path) -> None:

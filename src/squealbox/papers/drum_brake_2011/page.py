@@ -37,7 +37,7 @@ CAPTIONS = {
     "The kick at the end is the belt coming to rest.",
     "fig9": "Fig. 9. Growth rate over both centres of pressure in steps of 1 deg. Black: its boundary. "
     "Blue: the published unstable zone.",
-    "maps_friction": "Friction with load and with speed. Left: growth rate by eigenvalues. Right: 101 x 101 transients "
+    "maps_friction": "Friction with load and with speed. Left: growth rate by eigenvalues. Right: transients "
     "from rest; black line: the boundary by eigenvalues. Specks along it decay by less than 3.6 1/s, too slowly to be "
     "told from a cycle.",
     "maps_pressure": "Centres of pressure. Left: growth rate by eigenvalues. Right: transients from rest at the same "
@@ -203,13 +203,13 @@ def _shares(maps: list[dict[str, Any]]) -> tuple[Any, ...]:
     )
     caption = (
         f"Maps by transients: share of each kind. Every {COARSE}th value of both axes is run, and in between wherever "
-        "neighbours differ or the eigenvalues change sign; the rest is as its neighbours are. A trajectory starts from rest and squeals when, over the last fifth "
-        f"of {1e3 * DURATION:g} ms, the speed of its vibration (2 pi times frequency times amplitude) is above "
-        f"{LEVEL:g} V_B. Where that differs from the eigenvalues it is run again for {1e3 * LONGER:g} ms. What holds "
-        "its level is a cycle beside stable sliding: the step load from rest reaches it, and an eigenvalue cannot see "
-        "it. What has fallen was still ringing: 50 ms are too short to tell. Unstable, yet quiet: it grows so slowly "
-        "that the longer run is too short as well. Not decided: the trajectory hung where contacts stick and slip "
-        "without end, and was stopped."
+        "neighbours differ or the eigenvalues change sign; the rest is as its neighbours are. A trajectory starts from "
+        f"rest and squeals when, over the last fifth of {1e3 * DURATION:g} ms, the speed of its vibration (2 pi times "
+        f"frequency times amplitude) is above {LEVEL:g} V_B. Where that differs from the eigenvalues it goes on to "
+        f"{1e3 * LONGER:g} ms. What holds its level is a cycle beside stable sliding: the step load from rest reaches "
+        "it, and an eigenvalue cannot see it. What has fallen was still ringing: 50 ms are too short to tell. "
+        "Unstable, yet quiet: it grows so slowly that the longer run is too short as well. Not decided: the trajectory "
+        "hung where contacts stick and slip without end, and was stopped."
     )
     return (Table(("map", "points", "trajectories", *MEANS), rows, caption),)
 
