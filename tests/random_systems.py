@@ -73,14 +73,14 @@ def any_law(rng):
     laws = (
         Stribeck(static, static * rng.uniform(1.05, 1.6), speed), Stribeck(0.0, static, speed), Coulomb(0.0),
         LinearSlope(static, rng.uniform(0.01, 0.3)), LinearSlope(0.0, rng.uniform(0.05, 0.5)),
-        friction.Table(speeds, np.sort(rng.uniform(0.1, 0.6, 5))[::-1]), friction.Table(speeds, rng.uniform(0.1, 0.6, 5)),
-        friction.Table(speeds[1:], rng.uniform(0.1, 0.6, 4)),
+        friction.Table(speeds, np.sort(rng.uniform(0.1, 0.6, 5))[::-1]),
+        friction.Table(speeds, rng.uniform(0.1, 0.6, 5)), friction.Table(speeds[1:], rng.uniform(0.1, 0.6, 4)),
     )  # fmt: skip
     return laws[rng.integers(len(laws))]
 
 
 def any_schedule(rng, mean, swing):
-    """A value in time whose swings stay within `swing` of its mean: held, ramped, in steps of a table, or oscillating."""
+    """A value in time within `swing` of its mean: held, ramped, along a table, or oscillating."""
     oscillating = Sinusoid(mean, rng.uniform(0.1, 1.0) * swing, 10.0 ** rng.uniform(-1.0, 0.7), rng.uniform(0.0, 6.0))
     towards = mean + swing * rng.uniform(-1.0, 1.0)
     ramp = Ramp(mean, (towards - mean) / rng.uniform(0.5, 3.0), towards, rng.uniform(0.0, 2.0))
@@ -90,13 +90,16 @@ def any_schedule(rng, mean, swing):
     return (mean, mean, oscillating, ramp, table, both)[rng.integers(6)]
 
 
-def wide_system(seed, most=6):
-    """Up to `most` freedoms and five contacts of every kind: on one motion, at rest, lifting off, rigid, without mass.
+ROOMS = ((1, 1), (1, 2), (2, 1), (2, 2), (3, 3), (4, 2), (1, 5), (5, 4), (6, 5))  # each compiles code of its own
+
+
+def wide_system(seed, rooms=ROOMS):
+    """Up to six freedoms and five contacts of every kind: on one motion, at rest, lifting off, rigid, without mass.
 
     Returns the system, its start, a duration [s] and words for what is in it.
     """
     rng = np.random.default_rng([20261129, seed])
-    n = int(rng.integers(1, most + 1))
+    n, m = rooms[rng.integers(len(rooms))]
     frame = np.linalg.qr(rng.standard_normal((n, n)))[0]
     stiffness = frame @ np.diag(rng.uniform(0.5, 8.0, n)) @ frame.T
     if rng.random() < 0.2:  # a body free to move
@@ -112,7 +115,8 @@ def wide_system(seed, most=6):
         stiffness[-1, -1] += 1.0
     load, contacts = rng.uniform(-0.5, 0.5, n), []
     at_rest = rng.random() < 0.2
-    for _ in range(int(rng.integers(1, 6))):
+    halves = m > 1 and rng.random() < 0.2
+    for _ in range(m - halves):
         row = np.zeros(n)
         row[:bodies] = np.eye(bodies)[rng.integers(bodies)] if rng.random() < 0.7 else rng.standard_normal(bodies)
         force = rng.uniform(0.5, 2.0)
@@ -140,7 +144,7 @@ def wide_system(seed, most=6):
             sensed = 0.1 * force * rng.standard_normal(n) / n if rng.random() < 0.3 else np.zeros(n)
             force_row = row if rng.random() < 0.85 or same else row * rng.uniform(0.5, 1.5)
             contacts.append(Contact(sensed, force_row, row, given, speed, law))
-    if len(contacts) < 5 and rng.random() < 0.2:
+    if halves:
         words.append("halves")
         contacts.append(contacts[-1] if not contacts[-1].rigid else contacts[0])
     start = rng.uniform(-1.0, 1.0, n), rng.uniform(-0.5, 0.5, n)

@@ -32,7 +32,7 @@ def coulomb_slope(v: Any, p: Any) -> Any:
 
 
 class Coulomb(FrictionLaw):
-    """Constant friction while sliding, mu = kinetic, which left out is static, the limit of sticking; that may be higher.
+    """Constant friction while sliding, mu = kinetic, by default that of sticking, static, which may be higher.
 
     >>> float(Coulomb(0.4, 0.25).mu(1.0))
     0.25
@@ -122,7 +122,7 @@ def hyperbolic_slope(v: Any, p: Any) -> Any:
 
 
 class Hyperbolic(FrictionLaw):
-    """mu = static/(1 + delta |v|). Source: Leine, van Campen, de Kraker and van den Steen 1998, Nonlinear Dynamics 16, 41-54.
+    """mu = static/(1 + delta |v|). Source: Leine and others 1998, Nonlinear Dynamics 16, 41-54.
 
     >>> float(Hyperbolic(1.0, 3.0).mu(1.0))
     0.25

@@ -58,6 +58,13 @@ def checked_names(names: Any, size: int) -> tuple[str, ...]:
     return names
 
 
+def liveliest(sizes: Any, units: Any) -> int:
+    """The degree of freedom that moves most; a rotation only where nothing else moves: rad are no metres."""
+    sizes = np.nan_to_num(np.asarray(sizes, dtype=float))
+    moves = np.where(np.array([unit == "rad" for unit in units], dtype=bool), 0.0, sizes)
+    return int(np.argmax(moves if np.any(moves > 0.0) else sizes))
+
+
 def array(name: str, value: Any, ndim: int) -> np.ndarray:
     """A read-only array of finite real numbers with at least `ndim` axes; `InvalidSystem` with its name else."""
     try:

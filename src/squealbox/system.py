@@ -45,6 +45,7 @@ class System(DataSheet):
     contacts : the contacts, one by one or as a table :class:`Contacts`
     names : names of the degrees of freedom
     loops : controllers that sense and act (`squealbox.loops`)
+    angles : names of those that are rotations [rad]; a name that ends in ``_turn`` is one without being listed
 
     M, C and K may be SciPy sparse arrays, of one system: steady sliding, linearisation, complex modes and their energy
     then stay sparse, and every other analysis says in one sentence that it wants a reduced system.
@@ -62,6 +63,7 @@ class System(DataSheet):
     contacts: Any = ()
     names: tuple[str, ...] = ()
     loops: tuple[Loop, ...] = ()
+    angles: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
@@ -84,6 +86,7 @@ class System(DataSheet):
         check_width("load", np.asarray(value_at(self.load, 0.0)), size)
         set_(self, "contacts", self._sparse_contacts() if any_sparse else self._dense_contacts())
         set_(self, "names", checked_names(self.names, size))
+        set_(self, "angles", tuple(self.angles))
         set_(self, "loops", check_loops(self.loops, self.names, InvalidSystem))
 
     def _dense_contacts(self) -> tuple[Contact, ...]:
@@ -101,6 +104,11 @@ class System(DataSheet):
     def is_sparse(self) -> bool:
         """True where M, C and K are sparse and the contacts a table."""
         return isinstance(self.contacts, Contacts)
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """Unit of each degree of freedom, m or rad."""
+        return tuple("rad" if name in self.angles or name.endswith("_turn") else "m" for name in self.names)
 
     @property
     def size(self) -> int:

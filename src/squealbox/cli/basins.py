@@ -1,7 +1,7 @@
 """`squealbox basin`: which starts lead to which motion, how likely each is, and the smallest dangerous push."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from cyclopts import Parameter
@@ -9,8 +9,10 @@ from cyclopts import Parameter
 from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.states import States, box_from
 from squealbox.cli.tables import write_csv, written
 from squealbox.limit_cycles import Basin, basin, dangerous_push
+from squealbox.limit_cycles.attractors.basins import half_widths
 from squealbox.limit_cycles.attractors.sections import state_names
 
 Two = Annotated[tuple[str, str] | None, Parameter(negative="", allow_leading_hyphen=True)]
@@ -22,6 +24,7 @@ def basin_(
     *,
     starts: int = 2000,
     spread: float = 1.0,
+    box: States = (),
     plane: Two = None,
     push: Push = False,
     seed: int = 1,
@@ -29,10 +32,11 @@ def basin_(
     allow_code: AllowCode = False,
     out: Path | None = None,
 ) -> None:
-    """Which starts lead to which motion: the share of each with its interval, for starts about steady sliding.
+    """Which starts lead to which motion: the share of each with its interval, for starts in a box.
 
-    The starts fill a box of half widths V/w (displacements) and V (velocities) times --spread, with V the fastest
-    sliding speed and w the slowest frequency. With --plane they lie on a grid in that plane and make a picture.
+    The box has half widths V/w (displacements) and V (velocities) times --spread about steady sliding, with V the
+    fastest sliding speed and w the slowest frequency, unless --box gives ends of its own to some states. With --plane
+    the starts lie on a grid in that plane and make a picture.
 
     Parameters
     ----------
@@ -42,6 +46,8 @@ def basin_(
         number of starts
     spread
         size of the box, in V/w and V
+    box
+        ends of some states, such as x=-1mm:1mm "y'=0:0.2 m/s" (a prime is a velocity); x=0 holds one
     plane
         two states to draw: x y' (a prime is a velocity)
     push
@@ -60,8 +66,13 @@ def basin_(
     found = in_motion(read(file, changes, allow_code))
     if out is not None:
         folder(out)
+    half: Any = spread
+    through = None
+    if box:
+        system = found.design.system()
+        half, through = box_from(system, box, half_widths(system, spread))
     with Progress(f"{starts} starts") as progress:
-        result = basin(found.design, spread, starts, plane=plane, seed=seed)
+        result = basin(found.design, half, starts, plane=plane, through=through, seed=seed)
         if result.outcome in ("no_sliding", "failed_runs"):
             raise ComputationFailed(result.outcome)
         smallest = None
@@ -83,9 +94,10 @@ def basin_(
 
 def _columns(result: Basin) -> dict[str, object]:
     """One row for each start: the state, what it leads to, and how long it ran."""
-    names, half = state_names(result.system), len(result.rest) // 2
+    names = state_names(result.system)
+    units = [*result.system.units, *(f"{unit}/s" for unit in result.system.units)]
     columns: dict[str, object] = {
-        f"{name} [{'m' if i < half else 'm/s'}]": result.start[:, i] for i, name in enumerate(names)
+        f"{name} [{unit}]": result.start[:, i] for i, (name, unit) in enumerate(zip(names, units, strict=True))
     }
     kinds = np.array([*result.kind, "failed", "not settled"], dtype=str)
     return {**columns, "attractor": result.attractor, "kind": kinds[result.attractor], "time [s]": result.time}

@@ -11,6 +11,7 @@ from squealbox.cli.running import ComputationFailed
 from squealbox.cli.tables import write_csv, written
 from squealbox.limit_cycles import Branch, EstimateCurve, HopfPoint, estimate_curves, hopf_point, isolated_branches
 from squealbox.limit_cycles import branch as followed
+from squealbox.matrices import liveliest
 from squealbox.result import Outcome
 from squealbox.stability import complex_modes
 
@@ -161,7 +162,8 @@ def _files(
 
     scale, unit = readable(design, varied, 1.0)
     name = f"{varied.name} [{unit or '-'}]"
-    dof = int(np.argmax(np.max(np.concatenate([one.amplitude for one in several]), axis=0)))
+    system = several[0].inputs["system"]
+    dof = liveliest(np.max(np.concatenate([one.amplitude for one in several]), axis=0), system.units)
     labels = [f"branch {i}" for i in range(1, len(several) + 1)] if len(several) > 1 else []
     title = f"{title}, {several[0].inputs['system'].names[dof]}"
     figure = plots.branch_diagram(several, dof=dof, hopf=born, labels=labels, name=name, scale=1.0 / scale,
@@ -190,6 +192,7 @@ def _columns(several: tuple[Branch, ...], name: str, scale: float) -> dict[str, 
         "largest multiplier [-]": column(lambda one: np.max(np.abs(one.multipliers[:, 1:]), axis=1)),
         "longest sticking [s]": column(lambda one: one.sticking),
     }
-    for i, dof in enumerate(several[0].inputs["system"].names):
-        columns[f"amplitude {dof} [m]"] = column(lambda one, i=i: one.amplitude[:, i])
+    system = several[0].inputs["system"]
+    for i, (dof, unit) in enumerate(zip(system.names, system.units, strict=True)):
+        columns[f"amplitude {dof} [{unit}]"] = column(lambda one, i=i: one.amplitude[:, i])
     return columns

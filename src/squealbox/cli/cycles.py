@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.cli.inputs import Changes, folder, in_motion, read
+from squealbox.cli.inputs import Changes, folder, in_motion, read, time_of
 from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.states import States, start_from
 from squealbox.cli.tables import written
 from squealbox.limit_cycles import Cycle, lyapunov_exponents, shooting
 from squealbox.limit_cycles.attractors.exponents import LOST
@@ -20,13 +21,29 @@ SETTLE = 300.0  # periods of the slowest mode
 ALIGNED = 50  # periods run before exponents are counted
 
 
-def cycle(file: Path, *, exponents: int = 0, changes: Changes = (), out: Path | None = None) -> None:
+def cycle(
+    file: Path,
+    *,
+    start: States = (),
+    period: str | None = None,
+    settle: str | None = None,
+    exponents: int = 0,
+    changes: Changes = (),
+    out: Path | None = None,
+) -> None:
     """What does the motion settle to? The limit cycle, with stick and slip, and its Floquet multipliers.
 
     Parameters
     ----------
     file
         design file; squealbox init writes a first one
+    start
+        of the run that leads to the cycle: rest, sliding, or states such as x=1mm "y'=0.2 m/s" (a prime is a velocity),
+        the others as in steady sliding; left out, along the most unstable mode, else from rest
+    period
+        with --start, a state taken to be on the cycle already, which also finds unstable ones: 12ms
+    settle
+        length of that run, by default 300 periods of the slowest mode: 2s
     exponents
         number of periods over which Lyapunov exponents are computed as well, such as 50; where no cycle is found, of
         the motion from rest after 300 periods of the slowest mode
@@ -38,7 +55,15 @@ def cycle(file: Path, *, exponents: int = 0, changes: Changes = (), out: Path | 
     if exponents < 0:
         raise UsageError(f"--exponents {exponents}: expected a number of periods")
     found = in_motion(read(file, changes))
-    result = shooting(found.design)
+    begin = start_from(found.design.system(), start)
+    if period is not None and begin is None:
+        raise UsageError(f"--period {period[:40]}: expected --start with the state that is on the cycle")
+    times = {name: time_of(f"--{name}", text) for name, text in (("period", period), ("settle", settle)) if text}
+    for name, value in times.items():
+        if not value > 0.0:
+            raise UsageError(f"--{name} {value:g}: expected a time above 0 s")
+    guess = begin if period is None or begin is None else (*begin, times["period"])
+    result = shooting(found.design, guess, settle=times.get("settle"))
     if not result.outcome.ok:
         if exponents:
             print(f"{found.design.title}, {file}\n{_of_the_motion(found.design, exponents)}")

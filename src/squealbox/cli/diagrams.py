@@ -137,7 +137,8 @@ def _section(design: "Design", text: str, dof: str | None) -> Section:
     planes = [*known, *(f"v{i + 1}" for i, _ in enumerate(system.contacts))]
     if where not in planes:
         raise UsageError(f"--section {text[:60]}: {known_names(where[:40], planes)}")
-    unit = "m" if where in system.names else "m/s"
+    turns = system.units[system.names.index(where.rstrip("'"))] if where in known else "m"
+    unit = turns if where in system.names else f"{turns}/s"
     return Section(name, where, number(words[2], unit, f"--section {text[:60]}") if len(words) == 3 else 0.0, way)
 
 
@@ -155,7 +156,9 @@ def _said(result: BifurcationDiagram, design: "Design", varied: "Axis") -> str:
         )
         moves = result.value[(kind == 2) | (kind == 0)]
         where = f"; vibrates from {shown(moves.min())} to {shown(moves.max())}" if moves.size else ""
-        most = ", ".join(f"{name} {np.nanmax(a):.3g} m" for name, a in zip(result.dofs, size.T, strict=True))
+        units = _units(result)
+        about = zip(units.items(), size.T, strict=True)
+        most = ", ".join(f"{each} {np.nanmax(a):.3g} {unit}" for (each, unit), a in about)
         lines.append(f"{sweep}: {counts}{where}; largest amplitude {most}")
     both = result.value[result.coexist]
     if both.size:
@@ -163,6 +166,13 @@ def _said(result: BifurcationDiagram, design: "Design", varied: "Axis") -> str:
     if not result.outcome.ok:
         lines.append(f"Note: {result.outcome.message}")
     return "\n".join(lines)
+
+
+def _units(result: BifurcationDiagram) -> dict[str, str]:
+    """The unit of each degree of freedom."""
+    from squealbox.plots.facts import unit_at
+
+    return {name: unit_at(result.inputs.get("system"), name) for name in result.dofs}
 
 
 def _files(
@@ -175,17 +185,17 @@ def _files(
     name = f"{varied.name} [{unit or '-'}]"
     dof = result.dofs.index(result.read.rstrip("'"))
     figure = plots.amplitude_and_section(result, branches=several, dof=dof, name=name, scale=1.0 / scale, title=title)
-    values = result.value * scale
+    values, units = result.value * scale, _units(result)
     rows: dict[str, Any] = {"sweep": np.repeat(np.array(result.sweeps), len(values)),
                             name: np.tile(values, len(result.sweeps)),
                             "kind": np.array([KINDS[int(code)] for code in result.kind.ravel()])}  # fmt: skip
     for i, each in enumerate(result.dofs):
-        rows |= {f"amplitude {each} [m]": result.amplitude[..., i].ravel(),
-                 f"least {each} [m]": result.lowest[..., i].ravel(),
-                 f"largest {each} [m]": result.highest[..., i].ravel(),
+        rows |= {f"amplitude {each} [{units[each]}]": result.amplitude[..., i].ravel(),
+                 f"least {each} [{units[each]}]": result.lowest[..., i].ravel(),
+                 f"largest {each} [{units[each]}]": result.highest[..., i].ravel(),
                  f"frequency of {each} [Hz]": result.frequency[..., i].ravel()}  # fmt: skip
     sweep, point, _ = held = np.nonzero(np.isfinite(result.crossings))
-    read_unit = "m" if result.read in result.dofs else "m/s"
+    read_unit = units[result.read.rstrip("'")] + ("" if result.read in result.dofs else "/s")
     passed = {"sweep": np.array(result.sweeps)[sweep], name: values[point],
               f"{result.section} [{read_unit}]": result.crossings[held]}  # fmt: skip
     return [*plots.save(figure, out / "diagram"), write_csv(out / "diagram.csv", rows),

@@ -13,6 +13,8 @@ from squealbox.cli.tables import write_csv, written
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files.analyses import Simulate
 from squealbox.files.runs import start_of
+from squealbox.matrices import liveliest
+from squealbox.system import as_system
 from squealbox.transient import Ensemble, simulate_ensemble
 
 DURATION = "0.05 s"
@@ -84,16 +86,21 @@ def _pace(done: int, total: int, seconds: float) -> str:
     return f"{done} of {total}, {rate:.0f}/s, {left:.0f} s left"
 
 
-def _largest(many: Ensemble) -> tuple[Any, Any]:
-    """Largest amplitude over the degrees of freedom, and the frequency of that one."""
+def _largest(many: Ensemble, design: Any) -> tuple[Any, Any, str, str]:
+    """Amplitude of the freedom that moves most, in each run alike among those of one unit; frequency, name, unit."""
+    system = as_system(design)
     amplitude = np.where(np.isfinite(many["amplitude"]), many["amplitude"], np.nan)
-    which = np.argmax(np.nan_to_num(amplitude), axis=-1)[..., None]
-    return tuple(np.take_along_axis(x, which, axis=-1)[..., 0] for x in (amplitude, many["frequency"]))  # type: ignore[return-value]
+    sizes = np.nan_to_num(amplitude)
+    unit = system.units[liveliest(np.max(sizes.reshape(-1, system.size), axis=0), system.units)]
+    alike = np.array([each == unit for each in system.units])
+    which = np.argmax(np.where(alike, sizes, -1.0), axis=-1)[..., None]
+    size, pitch = (np.take_along_axis(x, which, axis=-1)[..., 0] for x in (amplitude, many["frequency"]))
+    return size, pitch, "largest degree of freedom" if unit == "m" else "largest rotation", unit
 
 
 def _summary(many: Ensemble, plane: Plane) -> str:
     """How the transients ended, and the largest of them."""
-    amplitude, frequency = _largest(many)
+    amplitude, frequency, which, unit = _largest(many, plane.design)
     ended = ", ".join(f"{np.count_nonzero(many.ended == name)} {name}" for name in np.unique(many.ended))
     lines = [f"{many.ended.size} transients of {many.settings['duration']:g} s from rest: {ended}; {many.rate:.0f}/s"]
     if np.all(np.isnan(amplitude)):
@@ -101,8 +108,8 @@ def _summary(many: Ensemble, plane: Plane) -> str:
     column, row = np.unravel_index(np.nanargmax(amplitude), amplitude.shape)
     where = plane.place((plane.axes[0].values[column], plane.axes[1].values[row]))
     lines.append(
-        f"amplitude over the last fifth, largest degree of freedom: median {np.nanmedian(amplitude):.4g} m, "
-        f"largest {amplitude[column, row]:.4g} m at {frequency[column, row]:.5g} Hz, {where}"
+        f"amplitude over the last fifth, {which}: median {np.nanmedian(amplitude):.4g} {unit}, "
+        f"largest {amplitude[column, row]:.4g} {unit} at {frequency[column, row]:.5g} Hz, {where}"
     )
     return "\n".join(lines)
 
@@ -110,14 +117,23 @@ def _summary(many: Ensemble, plane: Plane) -> str:
 def _files(many: Ensemble, plane: Plane, title: str, out: Path) -> list[Path]:
     from squealbox import plots
 
-    amplitude, frequency = _largest(many)
+    amplitude, frequency, which, unit = _largest(many, plane.design)
     (x_name, y_name), (x_unit, y_unit) = plane.names, plane.units
     figure = plots.amplitude_map(
-        plane.x, plane.y, amplitude.T, x_name=x_name, x_unit=x_unit, y_name=y_name, y_unit=y_unit, title=title
+        plane.x,
+        plane.y,
+        amplitude.T,
+        x_name=x_name,
+        x_unit=x_unit,
+        y_name=y_name,
+        y_unit=y_unit,
+        title=title,
+        unit=unit,
+        name=f"amplitude, {which}",
     )
     columns = {
         **plane.columns(np.repeat(plane.x, len(plane.y)), np.tile(plane.y, len(plane.x))),
-        "amplitude [m]": amplitude.ravel(),
+        f"amplitude [{unit}]": amplitude.ravel(),
         "frequency [Hz]": frequency.ravel(),
         "events": many.events.ravel(),
         "ended": many.ended.ravel(),

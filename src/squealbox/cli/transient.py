@@ -98,12 +98,13 @@ def _results(motion: "Trajectory", title: str, out: Path) -> tuple[str, list[Pat
                  "sound); the verdict and the figures come from every step of the run")  # fmt: skip
     text += "".join(f"\nCaution: {said}" for said in _cautions(motion))
     (out / "verdict.txt").write_text(f"{text}\n", encoding="utf-8")
-    liveliest = sorted(range(len(judged)), key=lambda i: -float(judged[i].amplitude))[:MOST_FIGURES]
-    for i in sorted(liveliest):
+    turns = [unit == "rad" for unit in motion.system.units]
+    ranked = sorted(range(len(judged)), key=lambda i: (turns[i], -float(judged[i].amplitude)))[:MOST_FIGURES]
+    for i in sorted(ranked):
         name = motion.system.names[i]
         paths += plots.save(plots.plot(drawn, dof=i, title=f"{title}: {name}"), out / f"motion_{name}")
     paths += plots.save(plots.energy(motion, title=title), out / "energy")
-    paths += _sound(motion, liveliest[0], float(judged[liveliest[0]].frequency), out)
+    paths += _sound(motion, ranked[0], float(judged[ranked[0]].frequency), out)
     return text, [out / "verdict.txt", *paths]
 
 
@@ -129,8 +130,9 @@ def _columns(motion: "Trajectory") -> dict[str, Any]:
     names = motion.system.names
     contacts = [contact.name or f"contact {i + 1}" for i, contact in enumerate(motion.system.contacts)]
     columns = {"t [s]": motion.t}
-    columns |= {f"{name} [m]": motion.q[:, i] for i, name in enumerate(names)}
-    columns |= {f"d{name}/dt [m/s]": motion.qd[:, i] for i, name in enumerate(names)}
+    named = list(enumerate(zip(names, motion.system.units, strict=True)))
+    columns |= {f"{name} [{unit}]": motion.q[:, i] for i, (name, unit) in named}
+    columns |= {f"d{name}/dt [{unit}/s]": motion.qd[:, i] for i, (name, unit) in named}
     columns |= {f"normal force, {name} [N]": motion.normal_force[:, i] for i, name in enumerate(contacts)}
     columns |= {f"friction force, {name} [N]": motion.friction_force[:, i] for i, name in enumerate(contacts)}
     return columns | {f"mode, {name}": motion.mode[:, i] for i, name in enumerate(contacts)}

@@ -84,4 +84,5 @@ class WobblingDisc(Design):
             )
             for side, name in ((1.0, "upper pin"), (-1.0, "lower pin"))
         )
-        return System(block(self.J) * np.eye(2), damping, stiffness, np.zeros(2), contacts, names=("q1", "q2"))
+        inertia, names = block(self.J) * np.eye(2), ("q1", "q2")
+        return System(inertia, damping, stiffness, np.zeros(2), contacts, names=names, angles=names)

@@ -57,11 +57,13 @@ class OwnBrake(Design):
     normal_force: Any = parameter("N", default=0.0, schedule=True, meaning="normal force of the contacts at q = 0")
     contacts: tuple[OwnContact, ...] = ()
     names: tuple[str, ...] = ()
+    angles: tuple[str, ...] = ()  # names of those freedoms that are rotations; a name that ends in _turn is one anyway
 
     def __post_init__(self) -> None:
         super().__post_init__()
         object.__setattr__(self, "contacts", tuple(self.contacts))
         object.__setattr__(self, "names", tuple(self.names))
+        object.__setattr__(self, "angles", tuple(self.angles))
         size = self._square("M", None)
         for name in ("K", "C"):
             if getattr(self, name) is not None:
@@ -78,6 +80,10 @@ class OwnBrake(Design):
         for name in self.names:
             if not re.fullmatch("[A-Za-z][A-Za-z0-9_]{0,39}", name) or self.names.count(name) > 1:
                 raise ParameterError("OwnBrake", "names", name, "different names of letters, digits and _")
+        known = self.names or tuple(f"q{i + 1}" for i in range(size))
+        for name in self.angles:
+            if name not in known:
+                raise ParameterError("OwnBrake", "angles", name, f"names of degrees of freedom: {', '.join(known)}")
         for i, contact in enumerate(self.contacts):
             for name in ("n", "d", "t", "normal"):
                 value = getattr(contact, name)
@@ -91,7 +97,7 @@ class OwnBrake(Design):
         damping = np.zeros_like(self.M) if self.C is None else self.C
         contacts = tuple(self._contact(contact, i) for i, contact in enumerate(self.contacts))
         load = np.zeros(len(self.M)) if self.load is None else self.load
-        return System(self.M, damping, self.K, load, contacts, self.names)
+        return System(self.M, damping, self.K, load, contacts, self.names, angles=self.angles)
 
     def _contact(self, contact: OwnContact, index: int) -> Contact:
         return Contact(

@@ -133,6 +133,10 @@ def _design(document: Document, tables: Mapping[str, Any], beside: tuple[str, ..
     design: Design | None = read_sheet(document, kind, rest, (), beside=(*SECTIONS, STUDY, *beside))
     if design is None:
         return None
+    if kind in (OwnBrake, OwnMechanism) and "contacts" not in rest:
+        document.problem((), f"brake = {tables['brake']!r} has no contacts, so nothing in it rubs: expected a table "
+                         "[[contacts]] for each, or contacts = [] for a structure without friction")  # fmt: skip
+        return None
     try:
         with np.errstate(all="ignore"):  # an overflow is reported by the system as a value that is not finite
             design.system()

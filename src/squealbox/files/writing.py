@@ -105,6 +105,8 @@ def _lines(sheet: DataSheet, *, inline_laws: bool = False) -> Iterator[str]:
             yield from _commented(f"{field.name} = {_text(value, unit, field.name)}", _comment(about))
         elif field.name in words:
             yield from _commented(f"{field.name} = {_quoted(value)}", _words(words[field.name]))
+        elif field.name == "contacts" and value == ():
+            yield "contacts = []"  # said, since a brake without any is taken for a forgotten one
         elif value not in ("", (), field.default):
             yield f"{field.name} = {_text(value, '', field.name)}"
 

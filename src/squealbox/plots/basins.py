@@ -8,7 +8,9 @@ from squealbox.limit_cycles import Basin, DangerousPush
 from squealbox.limit_cycles.attractors.attractor import CYCLE, REST, SLIDING
 from squealbox.limit_cycles.attractors.basins import place
 from squealbox.limit_cycles.attractors.sections import state_names
+from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import plot
+from squealbox.plots.facts import unit_at
 from squealbox.plots.style import drawing, figure_of, number, quantity_label, scaled
 
 if TYPE_CHECKING:
@@ -64,7 +66,7 @@ class _axis:
         self.place = place(state_names(basin.system), name)
         moves = self.place >= len(basin.rest) // 2
         values = basin.start[:, self.place]
-        self.factor, unit = scaled("m/s" if moves else "m", values)
+        self.factor, unit = scaled(unit_at(basin.system, self.place % (len(basin.rest) // 2), moves=moves), values)
         self.label = quantity_label(f"{name} at t = 0", unit)
         self.ends = (float(np.min(values)) / self.factor, float(np.max(values)) / self.factor)
 
@@ -141,8 +143,10 @@ def _named(basin: Basin, i: int) -> str:
     kind = str(basin.kind[i])
     if kind in (SLIDING, REST):
         return kind
-    size = float(np.max(basin.highest[i] - basin.lowest[i])) / 2.0
-    factor, unit = scaled("m", size)
+    sizes = 0.5 * (basin.highest[i] - basin.lowest[i])
+    dof = liveliest(sizes, basin.system.units)
+    size = float(sizes[dof])
+    factor, unit = scaled(unit_at(basin.system, dof), size)
     return f"{SHORT.get(kind, kind)} of {number(size / factor, 3)} {unit}"
 
 
@@ -154,7 +158,7 @@ def _through(basin: Basin) -> str:
     fixed = [i for i, name in enumerate(names) if name not in basin.plane]
     words = []
     for i in fixed:
-        factor, unit = scaled("m" if i < half else "m/s", basin.through[i])
+        factor, unit = scaled(unit_at(basin.system, i % half, moves=i >= half), basin.through[i])
         words.append(f"{names[i]} = {number(basin.through[i] / factor, 3)} {unit}")
     return "plane at " + ", ".join(words)
 

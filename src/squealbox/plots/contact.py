@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.plots.dispatch import plot
+from squealbox.plots.facts import unit_at
 from squealbox.plots.style import drawing, figure_of, line, panels, quantity_label, scaled
 from squealbox.transient.comparison import ContactComparison
 
@@ -37,7 +38,7 @@ def _motions(panel: Any, comparison: ContactComparison, periods: float) -> None:
     span = periods * comparison.period[0] if np.isfinite(comparison.period[0]) else 0.1 * np.ptp(exact.t)
     begin = max(exact.t[-1] - span, exact.t[0])
     late = exact.t >= begin
-    factor, read = scaled("m", exact.q[late, dof])
+    factor, read = scaled(unit_at(exact.system, dof), exact.q[late, dof])
     second, clock = scaled("s", exact.t[late] - begin)
     for i, name, run in runs:
         shown = run.t >= begin

@@ -7,8 +7,9 @@ import numpy as np
 
 from squealbox.limit_cycles import Branch, Cycle, EstimateCurve, ForcedCycle, HopfPoint, estimate_curves
 from squealbox.limit_cycles.estimates.curves import AVERAGED, DESCRIBING
+from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import plot
-from squealbox.plots.facts import liveliest, read_of
+from squealbox.plots.facts import read_of, unit_at
 from squealbox.plots.style import WIDTH, drawing, figure_of, line, note, number, panels, quantity_label, scaled
 
 if TYPE_CHECKING:
@@ -36,11 +37,11 @@ def cycle_overview(cycle: Cycle | ForcedCycle, *, dof: int | None = None, title:
     dof : index of the degree of freedom; None takes the one that moves most. The axes name it, the title the cautions.
     """
     names = cycle.system.names
-    dof = liveliest(cycle.amplitude, names) if dof is None else dof
+    dof = liveliest(cycle.amplitude, cycle.system.units) if dof is None else dof
     shown = read_of(names, dof)
     figure, axes = panels(1, 3, height=2.5, width_ratios=[1.4, 1.0, 1.0])
-    factor, read = scaled("m", cycle.q[:, dof])
-    speed, clock = scaled("m/s", cycle.qd[:, dof])
+    factor, read = scaled(unit_at(cycle.system, dof), cycle.q[:, dof])
+    speed, clock = scaled(unit_at(cycle.system, dof, moves=True), cycle.qd[:, dof])
     second, time = scaled("s", cycle.t)
     stuck = np.any(cycle.mode == 0, axis=1)
     with drawing(axes) as (history, plane, circle):
@@ -101,13 +102,14 @@ def branch_diagram(
     axes : draw here instead of in a new figure
     """
     several = [branches] if isinstance(branches, Branch) else list(branches)
-    names = getattr(several[0].inputs.get("system"), "names", ())
+    system = several[0].inputs.get("system")
+    names, units = getattr(system, "names", ()), getattr(system, "units", ())
     if dof is None:
         peaks = [np.max(b.amplitude, axis=0) for b in several if len(b.value)]
-        dof = liveliest(np.max(peaks, axis=0), names) if peaks and names else 0
+        dof = liveliest(np.max(peaks, axis=0), units) if peaks and names else 0
     read_as = f"amplitude {names[dof]}" if len(names) > 1 else "amplitude"
     largest = [b.amplitude[:, dof] for b in several]
-    factor, read = scaled("m", *largest)
+    factor, read = scaled(unit_at(system, dof), *largest)
     with drawing(axes) as panel:
         shown: set[str] = set()
         for i, one in enumerate(several):

@@ -7,7 +7,7 @@ import numpy as np
 
 from squealbox.limit_cycles import BifurcationDiagram, Branch, Coexistence
 from squealbox.plots.dispatch import plot
-from squealbox.plots.facts import unit_of
+from squealbox.plots.facts import unit_at, unit_of
 from squealbox.plots.style import WIDTH, drawing, figure_of, note, panels, quantity_label, scaled, styled
 
 if TYPE_CHECKING:
@@ -98,15 +98,18 @@ def amplitude_and_section(
 
 def _marks(diagram: BifurcationDiagram, dof: int, show: str) -> tuple[Any, str, str]:
     """What is drawn, (sweep, point, mark), with its unit and words."""
+    system = diagram.inputs.get("system")
+    unit = unit_at(system, diagram.dofs[dof])
     if show == "amplitude":
-        return diagram.amplitude[..., dof, None], "m", "amplitude"
+        return diagram.amplitude[..., dof, None], unit, "amplitude"
     if show == "maxima":
-        return diagram.maxima[:, :, dof] - diagram.sliding[:, dof, None], "m", "maxima beside steady sliding"
+        return diagram.maxima[:, :, dof] - diagram.sliding[:, dof, None], unit, "maxima beside steady sliding"
     if not diagram.section:
         raise ValueError('show = "section": expected a diagram that was made with a section')
     if diagram.read in diagram.dofs:
-        return diagram.crossings - diagram.sliding[:, diagram.dofs.index(diagram.read), None], "m", diagram.section
-    return diagram.crossings, "m/s", diagram.section
+        beside = diagram.crossings - diagram.sliding[:, diagram.dofs.index(diagram.read), None]
+        return beside, unit_at(system, diagram.read), diagram.section
+    return diagram.crossings, unit_at(system, diagram.read.rstrip("'"), moves=True), diagram.section
 
 
 def _unit(result: Any, parameter: str) -> str:

@@ -56,7 +56,7 @@ def _of_trajectory(motion: Trajectory) -> list[Fact]:
     names = motion.system.names
     found = [read("duration", motion.t[-1] - motion.t[0] if len(motion.t) else np.nan, "s")]
     if len(motion.t):
-        found += [read(f"half peak to peak of {name}", 0.5 * np.ptp(motion.q[:, i]), "m")
+        found += [read(f"half peak to peak of {name}", 0.5 * np.ptp(motion.q[:, i]), unit_at(motion.system, i))
                   for i, name in list(enumerate(names))[:6]]  # fmt: skip
     found.append(("events (stick, slip, lift-off, landing)", str(len(motion.event_time)), ""))
     found.append(("steps, of which rejected", f"{motion.steps}, {motion.rejected}", ""))
@@ -77,8 +77,8 @@ def _of_cycle(cycle: Cycle) -> list[Fact]:
     if not cycle.outcome.ok:
         return []
     found = [read("period", cycle.period, "s", 6), read("frequency", cycle.frequency, "Hz", 6)]
-    found += [read(f"amplitude of {name}", size, "m") for name, size in zip(cycle.system.names, cycle.amplitude,
-                                                                             strict=True)]  # fmt: skip
+    about = zip(cycle.system.names, cycle.amplitude, cycle.system.units, strict=True)
+    found += [read(f"amplitude of {name}", size, unit) for name, size, unit in about]
     largest = float(np.max(np.abs(cycle.multipliers[1:]), initial=0.0))
     found.append(("stable", "yes" if cycle.stable else "no", ""))
     return [*found, ("largest multiplier but the trivial one", number(largest, 4), "")]
@@ -117,8 +117,15 @@ def _of_branch(branch: Branch) -> list[Fact]:
     return [
         (branch.parameter, f"{number(low)} to {number(high)}", unit),
         ("points, of which stable", f"{len(branch.value)}, {int(np.sum(branch.stable))}", ""),
-        read("largest amplitude", np.max(branch.amplitude), "m"),
+        *_largest(branch),
     ]
+
+
+def _largest(branch: Branch) -> list[Fact]:
+    """The largest amplitude, of displacements and of rotations."""
+    units = np.array(getattr(branch.inputs.get("system"), "units", ["m"] * branch.amplitude.shape[1]))
+    words = {"m": "largest amplitude", "rad": "largest amplitude of rotation"}
+    return [read(words[unit], np.max(branch.amplitude[:, units == unit]), unit) for unit in dict.fromkeys(units)]
 
 
 @facts.register
@@ -130,11 +137,12 @@ def _of_ensemble(found: Ensemble) -> list[Fact]:
             ("observed", ", ".join(found.observed) or "nothing", "")]  # fmt: skip
 
 
-def liveliest(sizes: Any, names: Any) -> int:
-    """The freedom that moves most; a turn (its name ends in _turn) only where nothing else moves: rad are no metres."""
-    sizes = np.nan_to_num(np.asarray(sizes, dtype=float))
-    moves = np.array([0.0 if str(name).endswith("_turn") else size for name, size in zip(names, sizes, strict=True)])
-    return int(np.argmax(moves if np.any(moves > 0.0) else sizes))
+def unit_at(system: Any, dof: int | str, *, moves: bool = False) -> str:
+    """The unit of a degree of freedom of a system, m or rad; of its velocity where it `moves`."""
+    names, units = getattr(system, "names", ()), getattr(system, "units", ())
+    place = list(names).index(dof) if isinstance(dof, str) and dof in names else dof
+    unit = units[place] if isinstance(place, (int, np.integer)) and place < len(units) else "m"
+    return f"{unit}/s" if moves else unit
 
 
 def read_of(names: Any, dof: int) -> str:

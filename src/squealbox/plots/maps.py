@@ -110,6 +110,8 @@ def amplitude_map(
     x_unit: str = "",
     y_name: str = "y",
     y_unit: str = "",
+    unit: str = "m",
+    name: str = "amplitude",
     title: str = "",
     axes: Any = None,
 ) -> "Figure":
@@ -118,7 +120,8 @@ def amplitude_map(
     Parameters
     ----------
     x, y : (nx,), (ny,), increasing, in the units named
-    amplitude : (ny, nx) [m], one row for each y; NaN where a run did not end is drawn grey
+    amplitude : (ny, nx), one row for each y; NaN where a run did not end is drawn grey
+    unit, name : of what is drawn, by default an amplitude in m
     """
     x, y, grid = _checked("amplitude", x, y, np.asarray(amplitude, dtype=float))
     from matplotlib.colors import LogNorm
@@ -129,6 +132,6 @@ def amplitude_map(
         panel.set_facecolor("#bbbbbb")
         shown = np.ma.masked_invalid(np.where(np.isfinite(grid), np.maximum(grid, 1e-4 * top), grid))
         mesh = panel.pcolormesh(x, y, shown, norm=LogNorm(1e-4 * top, top), cmap="magma_r", rasterized=True)
-        panel.figure.colorbar(mesh, ax=panel, label=quantity_label("amplitude", "m"), extend="both")
+        panel.figure.colorbar(mesh, ax=panel, label=quantity_label(name, unit), extend="both")
         panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
         return figure_of(panel)

@@ -4,8 +4,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import plot
-from squealbox.plots.facts import liveliest, read_of
+from squealbox.plots.facts import read_of, unit_at
 from squealbox.plots.spectra import spectrum
 from squealbox.plots.style import drawing, figure_of, line, note, number, panels, quantity_label, scaled, uncertain
 from squealbox.signals import LEAST, SignalError, column, equal_steps, values
@@ -42,7 +43,10 @@ def time_history(
     """
     columns = list(dof) if isinstance(dof, (list, tuple)) else [dof]
     curves = [values(motion, t, dof=which) for which in columns]
-    factor, read = scaled("m", *(x for _, x in curves), to=unit)
+    kinds = {unit_at(getattr(motion, "system", None), which) for which in columns}
+    if len(kinds) > 1:
+        raise SignalError(f"dof = {dof}: displacements [m] and rotations [rad] do not share an axis; draw them apart")
+    factor, read = scaled(kinds.pop(), *(x for _, x in curves), to=unit)
     second, clock = scaled("s", curves[0][0], to=time_unit)
     with drawing(axes) as panel:
         for i, (times, x) in enumerate(curves):
@@ -54,7 +58,7 @@ def time_history(
                 panel.plot(verdict.envelope_time / second, hull, **{**line(2), "linewidth": 1.1})
             low, high = panel.get_ylim()
             panel.set_ylim(low, high + 0.15 * (high - low))
-            note(panel, _verdict_note(verdict))
+            note(panel, _verdict_note(verdict, unit_at(getattr(motion, "system", None), columns[0])))
         panel.set_xlim(curves[0][0][0] / second, curves[0][0][-1] / second)
         panel.set(xlabel=quantity_label("time", clock), ylabel=quantity_label(name, read), title=title)
         if len(columns) > 1:
@@ -75,8 +79,9 @@ def phase_plane(
     """Velocity against displacement: the last `part` of the time dark, what came before pale, the start as a ring."""
     times, x = values(motion, dof=dof)
     velocity = np.asarray(motion.qd)[:, column(motion, dof)]
-    factor, read = scaled("m", x, to=unit)
-    speed, clock = scaled("m/s", velocity, to=speed_unit)
+    system = getattr(motion, "system", None)
+    factor, read = scaled(unit_at(system, dof), x, to=unit)
+    speed, clock = scaled(unit_at(system, dof, moves=True), velocity, to=speed_unit)
     late = times >= times[-1] - part * (times[-1] - times[0])
     with drawing(axes, height=2.8) as panel:
         panel.plot(x / factor, velocity / speed, color="#b0b0b0", linewidth=0.4)
@@ -122,7 +127,7 @@ def motion_overview(trajectory: Trajectory, *, dof: int | str | None = None, tit
     """
     names = trajectory.system.names
     if dof is None:
-        dof = liveliest(np.ptp(trajectory.q, axis=0), names)
+        dof = liveliest(np.ptp(trajectory.q, axis=0), trajectory.system.units)
     place = list(names).index(dof) if isinstance(dof, str) else dof
     short = np.size(trajectory.t) < LEAST
     figure, axes = panels(1, 2 if short else 3, height=2.5, width_ratios=[1.5, 1.0, 1.2][: 2 if short else 3])
@@ -137,7 +142,8 @@ def motion_overview(trajectory: Trajectory, *, dof: int | str | None = None, tit
     if not short:
         even = equal_steps(trajectory.t)
         times, x = values(trajectory, dof=dof) if even else smooth_curve(trajectory, dof=dof).even()
-        spectrum(x, times, axes=axes[2], title="" if even else "of a smooth curve through unequal steps")
+        spectrum(x, times, axes=axes[2], quantity=unit_at(trajectory.system, place),
+                 title="" if even else "of a smooth curve through unequal steps")  # fmt: skip
     if title or not trajectory.outcome.ok:
         ended = "" if trajectory.outcome.ok else f"{trajectory.outcome}: {trajectory.outcome.message}"
         figure.suptitle(". ".join(filter(None, (title, ended))), fontsize=8)
@@ -165,10 +171,10 @@ def amplitude_course(verdict: Verdict, *, unit: str | None = None, title: str = 
         return figure_of(panel)
 
 
-def _verdict_note(verdict: Verdict) -> str:
+def _verdict_note(verdict: Verdict, unit: str = "m") -> str:
     text = verdict.kind.replace("_", " ")
     if verdict.kind == "settles_on_cycle":
-        factor, read = scaled("m", verdict.amplitude)
+        factor, read = scaled(unit, verdict.amplitude)
         return f"{text}: {number(verdict.amplitude / factor, 3)} {read}, {number(verdict.frequency / 1e3)} kHz"
     if np.isfinite(verdict.growth_rate):
         return f"{text}: {uncertain(verdict.growth_rate, verdict.growth_rate_error)} 1/s"

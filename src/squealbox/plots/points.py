@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.limit_cycles import HopfPoint, PointCurve
+from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import plot
 from squealbox.plots.facts import unit_of
 from squealbox.plots.style import LINES, drawing, figure_of, line, note, number, quantity_label, scaled
@@ -112,15 +113,18 @@ def birth_of_a_cycle(found: HopfPoint, *, title: str = "", axes: Any = None) -> 
     end = found.beside(_size_of_first_rest(found))
     values = np.linspace(float(found.value), end, 201)
     reach = abs(end - float(found.value))
-    sizes = np.max(found.amplitude(values), axis=-1)
-    factor, read = scaled("m", sizes)
+    sizes, system = found.amplitude(values), found.inputs.get("system")
+    units = getattr(system, "units", ("m",) * sizes.shape[-1])
+    dof = liveliest(np.nanmax(sizes, axis=0), units)
+    sizes = sizes[:, dof]
+    factor, read = scaled(units[dof], sizes)
     stable = found.kind == "supercritical"
     with drawing(axes, height=2.6) as panel:
         panel.plot(values, sizes / factor, **line(0 if stable else 1), label=f"cycle, {found.kind}")
         panel.plot(float(found.value), 0.0, "o", color=UP, markersize=5.0, zorder=3, label="Hopf point")
         panel.set(xlabel=quantity_label(found.parameter, unit_of(found, found.parameter)), title=title)
         panel.set(
-            ylabel=quantity_label("amplitude, largest", read),
+            ylabel=quantity_label(f"amplitude {system.names[dof]}" if len(units) > 1 and system else "amplitude", read),
             xlim=(float(found.value) - reach, float(found.value) + reach),
         )
         panel.set_ylim(bottom=0.0)

@@ -4,10 +4,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import plot
 from squealbox.plots.facts import unit_of
 from squealbox.plots.maps import amplitude_map
 from squealbox.plots.style import LINES, drawing, figure_of, quantity_label, scaled
+from squealbox.system import as_system
 from squealbox.transient import Ensemble
 
 if TYPE_CHECKING:
@@ -18,27 +20,34 @@ if TYPE_CHECKING:
 def ensemble_overview(found: Ensemble, *, observer: str | None = None, title: str = "", axes: Any = None) -> "Figure":
     """What an observer saw over the parameters: a map over two, points over one, else sorted by size.
 
-    `observer` names it, by default the first. Of several degrees of freedom or values the largest is drawn. Runs that
-    did not end are left out.
+    `observer` names it, by default the first. Of several degrees of freedom the one that moves most is drawn and named,
+    of several values the largest. Runs that did not end are left out.
     """
     name = observer or next(iter(found.observed), "")
-    seen = found[name] if name else np.max(np.abs(found.q), axis=-1)
-    values = np.asarray(seen, dtype=float).reshape(*found.shape, -1)
+    seen = found[name] if name else np.abs(found.q)
+    of, unit = found.settings["observed"][name] if name else ("dof", "m")
+    seen = np.asarray(seen, dtype=float)
+    label = name.replace("_", " ") or "displacement"
+    if of == "dof" and unit == "m":  # displacements and rotations do not compare: what moves most is drawn, by name
+        system = as_system(found.inputs["system"])
+        sizes = np.where(np.isfinite(seen), seen, 0.0)
+        dof = liveliest(np.max(sizes.reshape(-1, system.size), axis=0), system.units)
+        seen, unit = seen.reshape(*found.shape, -1, system.size)[..., dof], system.units[dof]
+        label += f" {system.names[dof]}" if system.size > 1 else ""
+    values = seen.reshape(*found.shape, -1)
     values = np.max(np.where(np.isfinite(values), values, -np.inf), axis=-1)
     values = np.where(np.isfinite(values) & (found.ended == "completed"), values, np.nan)
-    label = name.replace("_", " ") or "largest displacement"
     if len(found.shape) == 2 and len(found.parameters) == 2:
         (x_name, x), (y_name, y) = found.parameters.items()
         x, y = (np.broadcast_to(each, found.shape) for each in (x, y))
         return amplitude_map(x[:, 0], y[0], values.T, x_name=x_name, x_unit=unit_of(found, x_name), y_name=y_name,
-                             y_unit=unit_of(found, y_name), title=title, axes=axes)  # fmt: skip
+                             y_unit=unit_of(found, y_name), unit=unit, name=label, title=title, axes=axes)  # fmt: skip
     if len(found.parameters) == 1:
         key, across = next(iter(found.parameters.items()))
         along, across = quantity_label(key, unit_of(found, key)), np.broadcast_to(across, found.shape).ravel()
         values = values.ravel()
     else:
         along, across, values = "run, sorted", np.arange(values.size) + 1.0, np.sort(values.ravel())
-    unit = {"amplitude": "m", "frequency": "Hz", "growth_rate": "1/s"}.get(name, "" if name else "m")
     factor, read = scaled(unit, values)
     with drawing(axes, height=2.6) as panel:
         panel.plot(across, values / factor, ".", color=LINES[0][0], markersize=3.0)

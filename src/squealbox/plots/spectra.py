@@ -6,6 +6,7 @@ import numpy as np
 
 from squealbox import signals
 from squealbox.plots.dispatch import plot
+from squealbox.plots.facts import unit_at
 from squealbox.plots.style import LINES, drawing, figure_of, line, note, number, quantity_label, scaled, uncertain
 
 NAMED = 0.03  # share of the highest peak from which a peak is named
@@ -24,6 +25,7 @@ def spectrum(
     unit: str | None = None,
     frequency_unit: str | None = None,
     name: str = "amplitude",
+    quantity: str = "",
     title: str = "",
     axes: Any = None,
     **cut: Any,
@@ -37,6 +39,7 @@ def spectrum(
     upto : highest frequency drawn [Hz]; by default twice that of the highest peak
     logarithmic : draw the amplitude over five decades on a logarithmic scale
     unit, frequency_unit : "mm", "µm", "kHz", "rad/s", "10³ rad/s" ...; by default what suits the numbers
+    quantity : unit of the signal, by default that of the degree of freedom, m or rad
     cut : `dof`, `begin`, `end`, `window` ... of :func:`squealbox.signals.spectrum`
     """
     lines = signal if isinstance(signal, signals.Spectrum) else signals.spectrum(signal, t, **cut)
@@ -44,7 +47,8 @@ def spectrum(
     limit = upto or 2.0 * float(found.frequency[0] if found.frequency.size else lines.frequency[-1] / 2.0)
     shown = lines.frequency <= limit
     hertz, read = scaled("Hz", lines.frequency[shown], to=frequency_unit)
-    factor, size = scaled("m", lines.amplitude[shown], to=unit)
+    own = quantity or unit_at(getattr(signal, "system", None), cut.get("dof", 0))
+    factor, size = scaled(own, lines.amplitude[shown], to=unit)
     with drawing(axes) as panel:
         draw = panel.semilogy if logarithmic else panel.plot
         draw(lines.frequency[shown] / hertz, lines.amplitude[shown] / factor, **{**line(0), "linewidth": 0.8})
@@ -112,7 +116,8 @@ def spectrogram(
     strongest = grid.frequency[np.argmax(np.max(grid.amplitude[1:], axis=1)) + 1]
     shown = grid.frequency <= (upto or 2.0 * strongest)
     hertz, read = scaled("Hz", grid.frequency[shown], to=frequency_unit)
-    factor, size = scaled("m", grid.amplitude[shown], to=unit)
+    own = unit_at(getattr(signal, "system", None), cut.get("dof", 0))
+    factor, size = scaled(own, grid.amplitude[shown], to=unit)
     second, clock = scaled("s", grid.time)
     top = float(np.max(grid.amplitude[shown])) / factor
     with drawing(axes, height=2.6) as panel:

@@ -40,12 +40,12 @@ PREFIXES: dict[str, tuple[tuple[float, str], ...]] = {
     "m": ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")),
     "s": ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs")),
     "Hz": ((1e6, "MHz"), (1e3, "kHz"), (1.0, "Hz")),
-    "rad/s": ((1e3, "10³ rad/s"), (1.0, "rad/s")),
+    "rad/s": ((1e3, "10³ rad/s"), (1.0, "rad/s"), (1e-3, "mrad/s"), (1e-6, "µrad/s")),
     "N": ((1e6, "MN"), (1e3, "kN"), (1.0, "N"), (1e-3, "mN")),
     "Pa": ((1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1.0, "Pa")),
     "J": ((1e3, "kJ"), (1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"), (1e-9, "nJ")),
     "m/s": ((1.0, "m/s"), (1e-3, "mm/s"), (1e-6, "µm/s")),
-    "rad": ((np.pi / 180.0, "°"),),
+    "rad": ((np.pi / 180.0, "°"), (1e-3, "mrad"), (1e-6, "µrad"), (1e-9, "nrad")),
 }
 
 # What a file would say of its making, left out so that equal figures give equal files.

@@ -71,13 +71,15 @@ def map_over_two(
     return {"data": data, "layout": layout}
 
 
-def motion_and_spectrum(t: Any, columns: dict[str, Any], spectra: dict[str, tuple[Any, Any]], upto: float) -> Figure:
+def motion_and_spectrum(
+    t: Any, columns: dict[str, Any], spectra: dict[str, tuple[Any, Any]], upto: float, unit: str = "m"
+) -> Figure:  # fmt: skip
     """Displacements over time, to be zoomed into, and below them their amplitude spectra up to a frequency [Hz]."""
     stride = max(1, int(np.ceil(len(t) / MOST)))
     second, clock = scaled("s", t)
-    factor, read = scaled("m", *columns.values())
+    factor, read = scaled(unit, *columns.values())
     hertz, pitch = scaled("Hz", np.array([upto]))
-    line_factor, line_read = scaled("m", *(amplitude for _, amplitude in spectra.values()))
+    line_factor, line_read = scaled(unit, *(amplitude for _, amplitude in spectra.values()))
     data = []
     for i, (name, x) in enumerate(columns.items()):
         line = {"color": LINES[i % len(LINES)][0], "width": 1}

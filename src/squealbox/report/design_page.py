@@ -50,7 +50,7 @@ def _tiles(found: Examination) -> Tiles:
     if found.verdicts:
         one = found.verdicts[found.liveliest]
         moves = f"half peak to peak of {found.system.names[found.liveliest]}, {one.kind.replace('_', ' ')}"
-        tiles.append((words.quantity(one.amplitude, "m", 3), moves, ""))
+        tiles.append((words.quantity(one.amplitude, found.system.units[found.liveliest], 3), moves, ""))
     if found.cycle is not None and found.cycle.outcome.ok:
         beside = ", beside stable sliding" if found.coexists else ""
         tiles.append(

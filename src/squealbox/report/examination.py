@@ -2,11 +2,10 @@
 
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from squealbox.designs import Design
 from squealbox.files.analyses import Axis, Map, Simulate
 from squealbox.limit_cycles import Cycle, HopfPoint
+from squealbox.matrices import liveliest
 from squealbox.result import Result
 from squealbox.signals import SoundLevel
 from squealbox.stability import (
@@ -69,8 +68,8 @@ class Examination:
     @property
     def liveliest(self) -> int:
         """The degree of freedom that moves most at the end of the transient."""
-        sizes = [float(np.nan_to_num(v.amplitude)) for v in self.verdicts]
-        return int(np.argmax(sizes)) if sizes else 0
+        sizes = [float(v.amplitude) for v in self.verdicts]
+        return liveliest(sizes, self.system.units) if sizes else 0
 
     @property
     def coexists(self) -> bool:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from squealbox import plots
+from squealbox.matrices import liveliest
 from squealbox.report import charts, words
 from squealbox.report.blocks import Chart, Points, Sound, Text
 from squealbox.report.examination import Examination
@@ -19,7 +20,9 @@ def transient(found: Examination) -> Iterator[Any]:
     """The transient with its spectrum and verdicts, where its energy went, and its sound."""
     motion = found.motion
     if motion is not None and found.verdicts:
-        order = sorted(range(found.system.size), key=lambda i: -float(np.nan_to_num(found.verdicts[i].amplitude)))
+        unit = found.system.units[found.liveliest]
+        alike = [i for i, each in enumerate(found.system.units) if each == unit]  # rotations have a scale of their own
+        order = sorted(alike, key=lambda i: -float(np.nan_to_num(found.verdicts[i].amplitude)))
         kept = sorted(order[:MOST_DRAWN])
         names = [found.system.names[i] for i in kept]
         spectra = {}
@@ -28,7 +31,7 @@ def transient(found: Examination) -> Iterator[Any]:
             spectra[name] = (lines.frequency, lines.amplitude)
         pitch = float(np.nan_to_num(found.verdicts[found.liveliest].frequency)) or 1.0
         moving = charts.motion_and_spectrum(
-            motion.t, dict(zip(names, motion.q[:, kept].T, strict=True)), spectra, 4.5 * pitch
+            motion.t, dict(zip(names, motion.q[:, kept].T, strict=True)), spectra, 4.5 * pitch, unit
         )
         figure = plots.motion_overview(motion, dof=found.liveliest)
         caption = (
@@ -66,7 +69,7 @@ def limit_cycle(found: Examination) -> Iterator[Any]:
     """The limit cycle, how it is born, and whether it exists beside stable sliding."""
     cycle = found.cycle
     if cycle is not None and cycle.outcome.ok:
-        dof = int(np.argmax(cycle.amplitude))
+        dof = liveliest(cycle.amplitude, found.system.units)
         caption = f"One period of {found.system.names[dof]}, its orbit, and the multipliers of a disturbance."
         yield picture(plots.cycle_overview(cycle, dof=dof), caption)
     yield Points(tuple(words.cycle(found)))

@@ -8,6 +8,7 @@ import numpy as np
 
 from squealbox import plots
 from squealbox.designs import Design
+from squealbox.matrices import liveliest
 from squealbox.plots.cards import has_drawing, has_figure, parameter_rows
 from squealbox.plots.sweeps import numeric_answers
 from squealbox.report.blocks import Code, Page, Picture, Points, ReportError, Section, Sound, Table, Text
@@ -85,7 +86,7 @@ def _about(result: Result) -> Iterator[Any]:
 def _motion(motion: Trajectory) -> Iterator[Any]:
     verdicts = [verdict(motion, dof=i) for i in range(motion.system.size)]
     yield Points(tuple(f"{name}: {one.text}" for name, one in zip(motion.system.names, verdicts, strict=True)))
-    dof = int(np.argmax([float(np.nan_to_num(one.amplitude)) for one in verdicts]))
+    dof = liveliest([float(one.amplitude) for one in verdicts], motion.system.units)
     pitch = float(np.nan_to_num(verdicts[dof].frequency))
     if AUDIBLE[0] <= pitch <= AUDIBLE[1] and equal_steps(motion.t):
         yield Sound(wav(motion, dof), f"The motion of {motion.system.names[dof]} as sound, at its true frequency.")

@@ -121,7 +121,8 @@ def _cycle(found: Examination) -> Iterator[str]:
         return
     kind = "stable" if cycle.stable else "unstable"
     sizes = ", ".join(
-        f"{name} {quantity(size, 'm')}" for name, size in zip(found.system.names, cycle.amplitude, strict=True)
+        f"{name} {quantity(size, unit)}"
+        for name, size, unit in zip(found.system.names, cycle.amplitude, found.system.units, strict=True)
     )
     pitch = quantity(cycle.frequency, "Hz", 5)
     yield f"There is a {kind} limit cycle of {pitch}, half peak to peak {sizes}, reached from {found.tried[-1]}."

@@ -221,6 +221,11 @@ def unit_starts(size: int, starts: int, seed: int, places: Sequence[int] | None)
     return 2.0 * qmc.Sobol(size, rng=seed).random_base2(power)[:starts] - 1.0
 
 
+def half_widths(system: System, spread: float = 1.0) -> Any:
+    """The usual half widths (2n,) of the box of starts, V/w1 [m] and V [m/s], times `spread`."""
+    return _spread(spread, Scales.of(Batch.over(system), 1), system.size)
+
+
 def _spread(spread: Any, scales: Scales, n: int) -> Any:
     speed = float(scales.speed[0]) or 1.0
     usual = np.repeat([speed / float(scales.slowest[0]), speed], n)

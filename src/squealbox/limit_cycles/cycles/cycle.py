@@ -92,7 +92,8 @@ class Cycle(Result):
         """One line: period, frequency, amplitudes, stability."""
         if not self.outcome.ok:
             return f"{self.outcome}: {self.outcome.message}"
-        sizes = ", ".join(f"{name} {a:.6g} m" for name, a in zip(self.system.names, self.amplitude, strict=True))
+        about = zip(self.system.names, self.amplitude, self.system.units, strict=True)
+        sizes = ", ".join(f"{name} {a:.6g} {unit}" for name, a, unit in about)
         kind = "stable" if self.stable else "unstable"
         said = f"{kind} cycle, period {float(self.period):.10g} s ({self.frequency:.6g} Hz), amplitude {sizes}"
         return f"{said}\nCaution: {self.caution}" if self.caution else said

@@ -13,6 +13,7 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.limit_cycles import Branch, Cycle, HopfPoint, branch, hopf_point, shooting
 from squealbox.parameters import ParameterError
+from squealbox.plots.facts import unit_at
 from squealbox.plots.style import scaled
 from squealbox.stability import complex_modes, critical_values
 from squealbox.system import System
@@ -128,8 +129,8 @@ def _drawn(
     walks: list[Branch],
     start: str,
 ) -> Answer:
-    axis = axis_of(design, parameter)
-    metre, unit = scaled("m", *(walk.amplitude[:, dof] for walk in walks)) if walks else (1.0, "m")
+    axis, own = axis_of(design, parameter), unit_at(design.system(), dof)
+    metre, unit = scaled(own, *(walk.amplitude[:, dof] for walk in walks)) if walks else (1.0, own)
     grid = np.linspace(*span, GRID)
     quiet = np.asarray(complex_modes(design.replace({parameter: grid})).stable)
     data: dict[str, Any] = {

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.plots.facts import unit_at
 from squealbox.plots.style import scaled
 from squealbox.signals import SignalError, dominant_frequency, peaks, spectrogram, spectrum
 from squealbox.stability import complex_modes
@@ -57,9 +58,9 @@ def usual_duration(design: Design) -> float:
 
 def _signals(motion: Trajectory, dof: int, data: dict[str, Any]) -> Answer:
     x, v, t = motion.q[:, dof], motion.qd[:, dof], motion.t
-    metre, size = scaled("m", x)
+    metre, size = scaled(unit_at(motion.system, dof), x)
     second, clock = scaled("s", t)
-    speed, rate = scaled("m/s", v)
+    speed, rate = scaled(unit_at(motion.system, dof, moves=True), v)
     data |= {"unit": size, "clock": clock, "speed": rate}
     judged = verdict(motion, dof=dof)
     data |= {

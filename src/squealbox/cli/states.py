@@ -1,0 +1,79 @@
+"""A start, or a box of starts, from the command line: states by name, in their own units.
+
+    --start sliding    --start x=1mm "x'=0.2 m/s"    --box x=-1mm:1mm y=0 "y'=-0.1:0.1"
+
+A prime marks a velocity. What is not named is as in steady sliding, or at zero where there is none.
+"""
+
+from collections.abc import Sequence
+from typing import Annotated, Any
+
+import numpy as np
+from cyclopts import Parameter
+
+from squealbox.cli.inputs import number
+from squealbox.cli.running import UsageError
+from squealbox.limit_cycles.attractors.sections import state_names
+from squealbox.parameters import known_names
+from squealbox.system import System, equilibrium
+
+States = Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=True, show_default=False)]
+WORDS = ("rest", "sliding")
+
+
+def start_from(system: System, given: Sequence[str]) -> tuple[Any, Any] | None:
+    """(q, qd) of ``--start``: None for nothing given, rest, sliding, or sliding with some states set."""
+    if not given:
+        return None
+    n = system.size
+    if list(given) == ["rest"]:
+        return np.zeros(n), np.zeros(n)
+    x = np.concatenate([_sliding(system, must=list(given) == ["sliding"]), np.zeros(n)])
+    if list(given) != ["sliding"]:
+        expected = 'rest, sliding, or NAME=VALUE such as x=1mm "x\'=0.2"'
+        for i, text, label in _named(system, given, "--start", expected):
+            x[i] = number(text, _unit(system, i), label)
+    return x[:n], x[n:]
+
+
+def box_from(system: System, given: Sequence[str], usual: Any) -> tuple[Any, Any]:
+    """Half widths (2n,) and middle (q, qd) of ``--box``; states that are not named keep their `usual` half width."""
+    half, middle = np.array(usual, dtype=float), np.concatenate([_sliding(system), np.zeros(system.size)])
+    for i, text, label in _named(system, given, "--box", 'NAME=LOW:HIGH or NAME=VALUE, such as x=-1mm:1mm "x\'=0"'):
+        low, _, high = text.partition(":")
+        ends = [number(end, _unit(system, i), label) for end in ((low, high) if high else (low, low))]
+        if ends[0] > ends[1]:
+            raise UsageError(f"{label}: expected the lower end first")
+        half[i], middle[i] = 0.5 * (ends[1] - ends[0]), 0.5 * (ends[0] + ends[1])
+    return half, (middle[: system.size], middle[system.size :])
+
+
+def _named(system: System, given: Sequence[str], option: str, expected: str) -> list[tuple[int, str, str]]:
+    """Place in the state, text and label of each NAME=TEXT."""
+    names, found = state_names(system), {}
+    for each in given:
+        name, equals, text = (part.strip() for part in each.partition("="))
+        label = f"{option} {each[:60]}"
+        if not equals or not text:
+            raise UsageError(f"{label}: expected {expected}")
+        if name not in names:
+            raise UsageError(f"{label}: unknown state, {known_names(name, names)}")
+        if names.index(name) in found:
+            raise UsageError(f"{label}: {name} is given twice")
+        found[names.index(name)] = (text, label)
+    return [(i, *rest) for i, rest in found.items()]
+
+
+def _unit(system: System, i: int) -> str:
+    unit = system.units[i % system.size]
+    return unit if i < system.size else f"{unit}/s"
+
+
+def _sliding(system: System, must: bool = False) -> Any:
+    """Steady sliding, shape (n,); zeros where there is none."""
+    state = equilibrium(system)
+    if np.all(state.exists):
+        return np.asarray(state.q, dtype=float)
+    if must:
+        raise UsageError(f"--start sliding: there is no steady sliding to start from: {state.outcome.message}")
+    return np.zeros(system.size)
