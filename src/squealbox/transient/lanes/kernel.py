@@ -18,8 +18,8 @@ from collections import namedtuple
 
 from squealbox.transient.lanes.tracing import apart, take, traced, traced_as_written, wide
 from squealbox.transient.lanes.vectors import (
-    Given, arctan, at_once, bits, cos, exp, forget, if_flagged, lane_tanh, load, log, maximum, minimum, rough_power, sin, sqrt,
-    store, store_known, where, with_sign,
+    Given, arctan, at_once, bits, cos, exp, forget, if_flagged, lane_tanh, load, log, maximum, minimum, rough_power,
+    sin, sqrt, store, store_known, where, with_sign,
 )
 # written by modules whose texts have the digest {digest}: a change of theirs makes another file
 {more}
