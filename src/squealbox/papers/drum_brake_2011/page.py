@@ -198,7 +198,7 @@ def _shares(maps: list[dict[str, Any]]) -> tuple[Any, ...]:
     if not maps:
         return ()
     rows = tuple(
-        (each["map"], f"{each['points']:,}", f"{each['run']:,}", *(f"{share:.2%}" for share in each["shares"]))
+        (Cell(each["map"], f"{each['run']:,} of {each['points']:,} run"), *(f"{share:.2%}" for share in each["shares"]))
         for each in maps
     )
     caption = (
@@ -211,7 +211,7 @@ def _shares(maps: list[dict[str, Any]]) -> tuple[Any, ...]:
         "Unstable, yet quiet: it grows so slowly that the longer run is too short as well. Not decided: the trajectory "
         "hung where contacts stick and slip without end, and was stopped."
     )
-    return (Table(("map", "points", "trajectories", *MEANS), rows, caption),)
+    return (Table(("map", *MEANS), rows, caption),)
 
 
 def _why(part: record.Record) -> str:
