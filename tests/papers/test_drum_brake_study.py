@@ -207,7 +207,7 @@ def test_every_figure_is_there_twice(folder) -> None:
     for number in range(1, 10):
         for kind in ("png", "svg"):
             assert (folder / "figures" / f"fig{number}.{kind}").stat().st_size > 5000
-    assert (folder / "figures" / PRINTED / "fig9.svg").exists()
+    assert (folder / "figures" / PRINTED / "fig9.png").exists()
 
 
 def test_claims_json_has_every_claim_in_every_reading(folder) -> None:
@@ -265,6 +265,13 @@ def test_search_csv_has_a_row_for_each_combination(tmp_path) -> None:
     searched = {PRINTED: search.search(PRINTED, budget=1.0)}
     rows = search_results.write_csv(tmp_path / "search.csv", searched).read_text(encoding="utf-8").splitlines()
     assert len(rows) == 1 + len(searched[PRINTED]["rows"])
+
+
+@pytest.mark.parametrize("count", [1, len(ALL_READINGS)])
+def test_the_figure_of_the_search_has_a_panel_for_each_reading(count: int) -> None:
+    row = {"alpha": 0.05, "speed": 0.2, "verdicts": {"mu-1": AGREE, "mu-2": DISAGREE}}
+    figure = search_results.draw({name: {"rows": [row]} for name in ALL_READINGS[:count]})
+    assert [panel.get_title() for panel in figure.axes if panel.axison] == list(ALL_READINGS[:count])
 
 
 def test_jobs_run_in_their_own_processes(tmp_path) -> None:

@@ -38,7 +38,7 @@ CAPTIONS = {
     "fig9": "Fig. 9. Growth rate over both centres of pressure in steps of 1 deg. Black: its boundary. "
     "Blue: the published unstable zone.",
     "maps_friction": "Friction with load and with speed. Left: growth rate by eigenvalues. Right: transients "
-    "from rest; black line: the boundary by eigenvalues. Specks along it decay by less than 3.6 1/s, too slowly to be "
+    "from rest; black line: the boundary by eigenvalues. Specks along it decay by less than 3.5 1/s, too slowly to be "
     "told from a cycle.",
     "maps_pressure": "Centres of pressure. Left: growth rate by eigenvalues. Right: transients from rest at the same "
     "points; black line: the boundary by eigenvalues; pink: the published zone.",
@@ -197,7 +197,7 @@ def _shares(maps: list[dict[str, Any]]) -> tuple[Any, ...]:
     """What the maps by transients are made of, and why they differ from those by eigenvalues."""
     if not maps:
         return ()
-    rows = tuple(
+    rows: tuple[tuple[str | Cell, ...], ...] = tuple(
         (Cell(each["map"], f"{each['run']:,} of {each['points']:,} run"), *(f"{share:.2%}" for share in each["shares"]))
         for each in maps
     )
