@@ -142,7 +142,7 @@ def test_a_map_without_an_unstable_point_still_shows_its_angles() -> None:
 
 def test_the_boundary_of_the_map_is_drawn_as_traced() -> None:
     """Two bands across the square have four edges; on each the largest growth rate vanishes."""
-    found = steady.pressure_map(Case("consistent"), step=5.0, traced=True)
+    found = steady.pressure_map(Case("consistent"), traced=True)
     assert found.curves is not None
     assert len(found.curves) == 4
     panel = figures.pressure_maps({0.30: found}).axes[0]

@@ -243,7 +243,7 @@ def _again() -> tuple[Any, ...]:
         Code("squealbox paper drum-brake-2011 --out DIR\nsquealbox paper drum-brake-2011 --out DIR --search"),
         Code('from squealbox.papers.drum_brake_2011 import reproduce\n\nreproduce("DIR")'),
         Text(
-            "DIR then holds this page, claims.json, claims.md, and the figures as PNG and SVG in figures/; with "
+            "DIR then holds this page, claims.json, claims.md, and the figures in figures/; with "
             "--search also search.csv. "
             f"Assumed for the printed readings: alpha = {ALPHA:g} s/m, V_B = {SPEED:g} m/s. Transients: "
             f"{'; '.join(methods)}."
