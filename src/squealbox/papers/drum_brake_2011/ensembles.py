@@ -167,8 +167,10 @@ def refined(unstable: Any, kind: Any, run: Callable[[Any], None], coarse: int) -
     wanted[::coarse, ::coarse] = True
     step = coarse
     while True:
-        run(wanted & ~made)
-        made |= wanted
+        new = wanted & ~made
+        if np.any(new):
+            run(new)
+        made |= new
         if step == 1:
             break
         split = _differ(kind, step, step) | _differ(unstable, step, 1)
