@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from squealbox.designs import DrumBrake
-from squealbox.papers.drum_brake_2011 import family_search, reconstruction
+from squealbox.papers.drum_brake_2011 import family_search, page_why, reconstruction
 from squealbox.papers.drum_brake_2011.cases import HALF, RECONSTRUCTED, WHOLE, Case
+from squealbox.papers.drum_brake_2011.claims import claims
 from squealbox.papers.drum_brake_2011.family import PRINTED_BELTS, SHARES, SIGNS, Grid, Variant
 from squealbox.papers.drum_brake_2011.family_judged import MemberCase, claims_met
 from squealbox.papers.drum_brake_2011.family_modes import CLAIMS, Found, Members, published, scrambled
@@ -113,3 +114,20 @@ def test_a_search_that_was_stopped_goes_on(tmp_path, monkeypatch) -> None:
     again = sweep(Variant(), space, family_search.score, out=tmp_path / "members")
     np.testing.assert_array_equal(np.asarray(first["counts"]), np.asarray(again["counts"]))
     assert np.asarray(first["counts"]).sum() == family_search.USUAL.size
+
+
+def _outcome(counts: list[int], own: int) -> str:
+    """What the page says of a search whose members meet so many claims, beside a reconstruction that meets `own`."""
+    ids = [claim.id for claim in claims()]
+    rows = np.array([[5.0, 4.0, i, 0.0, 0.05 + 0.01 * i, 1.0] for i in range(len(counts))])
+    met = [{"half peak to peak": ids[: n - 1], "peak to peak": ids[:n]} for n in counts]
+    whole = reconstruction.Reconstruction(None, rows, met, (10, 2), 1)
+    text, table = page_why._outcome(whole, ids[:own])
+    assert len(table.rows) == counts.count(max(counts))
+    return str(text.text)
+
+
+def test_the_page_names_ties_and_better_members() -> None:
+    assert "met by 2 members of 2 choices. reconstructed* meets as many" in _outcome([7, 6, 7], 7)
+    assert "the first of them is the better reading" in _outcome([8, 7], 7)
+    assert "reconstructed* meets more (7)" in _outcome([6, 5], 7)

@@ -77,7 +77,7 @@ def time_series(runs: tuple[Run, ...], raw: Studies, exact: Studies) -> "Figure"
         _spectra(right, raw[run], exact[run])
         _printed(left, right, run, raw)
         for panel in (left, right):
-            panel.yaxis.get_major_locator().set_params(nbins=5)
+            panel.yaxis.get_major_locator().set_params(nbins=4)
             if run != runs[-1]:
                 panel.set_xlabel("")
         if run != runs[0]:
@@ -96,6 +96,8 @@ def phase_planes(runs: tuple[Run, ...], raw: Studies, exact: Studies) -> "Figure
         panel.axis("off")
     for panel, run in zip(panels, runs, strict=False):
         _phase_plane(panel, str(run), raw[run], exact[run])
+        for axis in (panel.xaxis, panel.yaxis):
+            axis.get_major_locator().set_params(nbins=4)
     return figure
 
 

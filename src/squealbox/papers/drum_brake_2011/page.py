@@ -38,7 +38,7 @@ CAPTIONS = {
     "fig9": "Fig. 9. Growth rate over both centres of pressure in steps of 1 deg. Black: its boundary. "
     "Blue: the published unstable zone.",
     "maps_friction": "Friction with load and with speed. Left: growth rate by eigenvalues. Right: transients "
-    "from rest; black line: the boundary by eigenvalues. Specks along it decay by less than 3.6 1/s, too slowly to be "
+    "from rest; black line: the boundary by eigenvalues. Specks along it decay by less than 3.5 1/s, too slowly to be "
     "told from a cycle.",
     "maps_pressure": "Centres of pressure. Left: growth rate by eigenvalues. Right: transients from rest at the same "
     "points; black line: the boundary by eigenvalues; pink: the published zone.",
@@ -197,8 +197,8 @@ def _shares(maps: list[dict[str, Any]]) -> tuple[Any, ...]:
     """What the maps by transients are made of, and why they differ from those by eigenvalues."""
     if not maps:
         return ()
-    rows = tuple(
-        (each["map"], f"{each['points']:,}", f"{each['run']:,}", *(f"{share:.2%}" for share in each["shares"]))
+    rows: tuple[tuple[str | Cell, ...], ...] = tuple(
+        (Cell(each["map"], f"{each['run']:,} of {each['points']:,} run"), *(f"{share:.2%}" for share in each["shares"]))
         for each in maps
     )
     caption = (
@@ -211,7 +211,7 @@ def _shares(maps: list[dict[str, Any]]) -> tuple[Any, ...]:
         "Unstable, yet quiet: it grows so slowly that the longer run is too short as well. Not decided: the trajectory "
         "hung where contacts stick and slip without end, and was stopped."
     )
-    return (Table(("map", "points", "trajectories", *MEANS), rows, caption),)
+    return (Table(("map", *MEANS), rows, caption),)
 
 
 def _why(part: record.Record) -> str:
@@ -243,7 +243,7 @@ def _again() -> tuple[Any, ...]:
         Code("squealbox paper drum-brake-2011 --out DIR\nsquealbox paper drum-brake-2011 --out DIR --search"),
         Code('from squealbox.papers.drum_brake_2011 import reproduce\n\nreproduce("DIR")'),
         Text(
-            "DIR then holds this page, claims.json, claims.md, and the figures as PNG and SVG in figures/; with "
+            "DIR then holds this page, claims.json, claims.md, and the figures in figures/; with "
             "--search also search.csv. "
             f"Assumed for the printed readings: alpha = {ALPHA:g} s/m, V_B = {SPEED:g} m/s. Transients: "
             f"{'; '.join(methods)}."

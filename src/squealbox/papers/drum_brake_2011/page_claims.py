@@ -30,8 +30,9 @@ def blocks(found: Records) -> tuple[Any, ...]:
             Tiles(_tiles(found, once)),
             _table(once),
             Section("By reading, with both measures of amplitude", (_by_reading(found),), folded=True),
-            *(Section(f"{each['id']}: every number, its tolerance and why", _details(each["id"], found), folded=True)
-              for each in once),
+            Section("Every number, its tolerance and why, claim by claim", tuple(
+                Section(f"{each['id']}: {each['statement']}", _details(each["id"], found), folded=True) for each in once
+            ), folded=True),
         )),
     )  # fmt: skip
 
@@ -149,9 +150,10 @@ def _table(once: Records) -> Table:
             state = Cell("open", f"nearest: {shown_name(each['reading'])}{other}")
         what = each["computed"].replace("_", " ")
         measure = f"amplitudes {each['amplitude']}" if each["amplitude"] else ""
-        rows.append((Cell(each["id"], each["statement"]), state, Cell(each["published"]), Cell(what, measure)))
+        computed = f"computed: {what}" + (f"; {measure}" if measure else "")
+        rows.append((Cell(each["id"], each["statement"]), state, Cell(each["published"], computed)))
     caption = "By the best reading of each claim. A claim is met when all of its parts that count are."
-    return Table(("claim", "", "published", "computed by the best reading"), tuple(rows), caption)
+    return Table(("claim", "", "published, and computed by the best reading"), tuple(rows), caption)
 
 
 def _by_reading(found: Records) -> Table:

@@ -60,11 +60,10 @@ def reconstruction(more: Extras, own: list[str], pictures: Any) -> tuple[Any, ..
     """The inferred readings: what they are, how likely such a match is, and the paper's figures redrawn."""
     rows = tuple(
         (
-            Cell(f"{name}*"),
+            Cell(f"{name}*", what),
             f"{-READINGS[name].slope:g} s/m",
             f"{READINGS[name].sliding_speed:g} m/s",
             "peak to peak",
-            what,
         )
         for name, what in zip(INFERRED, WHAT, strict=True)
     )
@@ -81,7 +80,7 @@ def reconstruction(more: Extras, own: list[str], pictures: Any) -> tuple[Any, ..
             "They differ from Eq. (3) with signed sliding in one sign: friction in the y row is +, - and not -, +, "
             "which is what friction that drags the drum along the belt asks for with sgn(V_B sin theta - y')."
         ),
-        Table(("reading", "alpha", "V_B", "amplitudes", "what it is"), rows, "*: inferred. Both were fitted."),
+        Table(("reading", "alpha", "V_B", "amplitudes"), rows, "*: inferred. Both were fitted."),
         Code(EQUATIONS),
         Text(structure),
         Text(_chance(searched, "the short form, belts as printed, made for this page")),
@@ -99,13 +98,24 @@ WHAT = (
     "its simple sister: no N in friction, loads along the springs, round numbers",
 )
 EQUATIONS = """\
-reconstructed, with s = sin theta, c = cos theta of shoe 1 and 2, mu(v) = mu0 - alpha |v|
-x: ... = -N1 s1 + N2 s2 + mu (k3 y + N) c1^2 sgn(V c1 - x') - mu (k4 y - N) c2^2 sgn(V c2 - x')
-y: ... = -N1 c1 + N2 c2 + mu (k3 x - N) s1^2 sgn(V s1 - y') - mu (k4 x - N) s2^2 sgn(V s2 - y')
+s, c: sin and cos of theta1, theta2
+mu(v) = mu0 - alpha |v|
+
+reconstructed
+x: ... = -N1 s1 + N2 s2
+       + mu (k3 y + N) c1^2 sgn(V c1 - x')
+       - mu (k4 y - N) c2^2 sgn(V c2 - x')
+y: ... = -N1 c1 + N2 c2
+       + mu (k3 x - N) s1^2 sgn(V s1 - y')
+       - mu (k4 x - N) s2^2 sgn(V s2 - y')
 
 reconstructed_simple
-x: ... = -N1 s1 - N2 s2 + mu k3 c1^2 y sgn(V c1 - x') - mu k4 c2^2 y sgn(V c2 - x')
-y: ... = -N1 c1 - N2 c2 + mu k3 s1^2 x sgn(V s1 - y') - mu k4 s2^2 x sgn(V s2 - y')"""
+x: ... = -N1 s1 - N2 s2
+       + mu k3 c1^2 y sgn(V c1 - x')
+       - mu k4 c2^2 y sgn(V c2 - x')
+y: ... = -N1 c1 - N2 c2
+       + mu k3 s1^2 x sgn(V s1 - y')
+       - mu k4 s2^2 x sgn(V s2 - y')"""
 
 
 def _chance(found: Any, name: str) -> str:

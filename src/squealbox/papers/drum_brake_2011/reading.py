@@ -53,7 +53,7 @@ def study(case: Case, folder: Path, sizes: ensembles.Sizes = ensembles.USUAL) ->
     else:
         found |= {RAW: by_transients.without_contacts(), EXACT: by_transients.without_contacts()}
     for name, draw in sorted(drawn.items()):
-        save(draw(), folder / name)
+        save(draw(), folder / name, ("png", "svg") if case.reading in sizes.vector else ("png",))
     plain = {road: _plain(each) for road, each in found.items()}
     return {"findings": plain, "amplitude": case.amplitude, "runs": runs, "shares": shares, "figures": sorted(drawn)}
 
@@ -76,8 +76,8 @@ def _ensembles(case: Case, sizes: ensembles.Sizes) -> tuple[dict[str, Drawer], l
     ]
 
 
-def save(figure: "Figure", path: Path) -> None:
-    """Write PNG and SVG, with plain numbers at the ticks and titles in their place.
+def save(figure: "Figure", path: Path, formats: tuple[str, ...] = ("png", "svg")) -> None:
+    """Write the figure as PNG and SVG, with plain numbers at the ticks and titles in their place.
 
     Numbers as formulas, and titles that look for room above the ticks, would take longer than all the rest.
     """
@@ -91,7 +91,7 @@ def save(figure: "Figure", path: Path) -> None:
     with style.styled():
         for axes in figure.axes:
             axes.set_title(axes.get_title(), y=1.0)
-    style.save(figure, path, dots=DOTS)
+    style.save(figure, path, formats, dots=DOTS)
 
 
 def _plain(found: dict[str, Finding]) -> dict[str, Any]:

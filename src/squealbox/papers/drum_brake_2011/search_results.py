@@ -31,9 +31,12 @@ def met(row: Mapping[str, Any]) -> list[str]:
 
 def draw(searched: Mapping[str, Any]) -> "Figure":
     """Number of claims met over alpha and sliding speed, a panel for each reading, the better of both floors."""
-    columns = 3
-    figure, panels = plots.panels(-(-len(searched) // columns), columns, width=8.4, height=4.6)
-    for panel, (reading, each) in zip(np.ravel(panels), searched.items(), strict=True):
+    columns = 4
+    rows = -(-len(searched) // columns)
+    figure, panels = plots.panels(rows, columns, width=8.8, height=2.3 * rows, squeeze=False)
+    for panel in np.ravel(panels)[len(searched) :]:
+        panel.axis("off")
+    for panel, (reading, each) in zip(np.ravel(panels), searched.items(), strict=False):
         numbers = np.full((len(ALPHAS), len(SPEEDS)), np.nan)
         for row in each["rows"]:
             place = ALPHAS.index(row["alpha"]), SPEEDS.index(row["speed"])

@@ -52,7 +52,7 @@ def damping() -> "Figure":
                 "", (where, 120.0 * needs), (where, 0.0), arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.6}
             )
             side = {"ha": "left" if where < 8 else "right", "color": colour}
-            axes.text(where + (0.3 if where < 8 else -0.3), 95.0 * needs, name, **side)
+            axes.text(where + (0.3 if where < 8 else -0.3), (108.0 if needs > 0 else -95.0), name, **side)
         axes.set(xlim=(0.0, 17.0), ylim=(-150.0, 260.0), xlabel="load [kN]", ylabel="$c_{22} - c_{11}$ [N s/m]")
         axes.set_title("both arrows cannot be on one line")
         return figure_of(axes)
@@ -87,7 +87,8 @@ def onset() -> "Figure":
         axes.plot(mu, 1e-15 * curve, color=BLUE, linewidth=1.2, label="the one parabola through them")
         axes.plot([0.0, 0.10, 0.30], 1e-15 * np.array(values), "o", color=INK, markersize=4.0)
         for where, value, name in zip((0.0, 0.10, 0.30), values, ("table", "mu-3", "N-2"), strict=True):
-            axes.annotate(name, (where, 1e-15 * value), (6, 4), textcoords="offset points")
+            below = name == "table"  # the dashed line passes above
+            axes.annotate(name, (where, 1e-15 * value), (4, -14) if below else (6, 4), textcoords="offset points")
         case = Case(RECONSTRUCTED)
         split = np.diff(steady.frequencies(steady.modes(case, mu=mu)) ** 2)[..., 0] ** 2
         axes.plot(
@@ -95,11 +96,11 @@ def onset() -> "Figure":
         )
         axes.axhline(0.0, color=GREY, linewidth=0.6)
         axes.plot(theorems.PUBLISHED_ONSET, 0.0, "s", color=RED, markersize=6.0)
-        axes.annotate("published onset 0.40", (0.40, 0.0), (-6, 10), textcoords="offset points", color=RED, ha="right")
+        axes.annotate("published onset 0.40", (0.40, 0.0), (-6, -12), textcoords="offset points", color=RED, ha="right")
         axes.annotate(
-            f"{theorems.onset_from_frequencies():.3f}", (0.44, 0.0), (2, 8), textcoords="offset points", color=BLUE
+            f"{theorems.onset_from_frequencies():.3f}", (0.44, 0.0), (4, 8), textcoords="offset points", color=BLUE
         )
-        axes.set(xlim=(0.0, 0.47), ylim=(-0.8, 10.0), xlabel="friction coefficient [-]")
+        axes.set(xlim=(0.0, 0.5), ylim=(-1.2, 10.0), xlabel="friction coefficient [-]")
         axes.set_ylabel("$(\\omega_2^2 - \\omega_1^2)^2$ [10$^{15}$ rad$^4$/s$^4$]")
         axes.set_title("modes meet where it vanishes")
         axes.legend(loc="upper right")
