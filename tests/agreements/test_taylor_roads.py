@@ -134,8 +134,11 @@ def test_what_has_no_series_is_refused_in_one_sentence():
     varied = {"friction.static": [0.1, 0.2]}
     with pytest.raises(ParameterError, match="jump of sgn"):
         simulate_ensemble(drum(), varied, 1e-3, "taylor", contact="raw")
-    with pytest.raises(ParameterError, match="taylor"):
-        simulate(drum(), 1e-3, method="taylor")
+    with pytest.raises(ParameterError, match="jump of sgn"):
+        simulate(drum(), 1e-3, method="taylor", contact="raw")
     points = DrumBrake(friction=Table([0.0, 0.5, 1.0], [0.3, 0.25, 0.2]))
     with pytest.raises(InvalidSystem, match="measured points"):
         simulate_ensemble(points, {"theta1": [0.6, 0.65]}, 1e-3, "taylor")
+    with pytest.raises(InvalidSystem, match="measured points"):
+        simulate(points, 1e-3, method="taylor")
+    assert simulate(points, 1e-3).settings["tableau"] == "dormand-prince-8"

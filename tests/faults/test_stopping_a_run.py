@@ -7,6 +7,8 @@ import pytest
 
 from squealbox import DrumBrake, LinearSlope, simulate, simulate_ensemble
 from squealbox.transient import needs_compiling
+from squealbox.transient.lanes import single
+from squealbox.transient.lanes.kernel import lane_kernel
 
 DRUM = DrumBrake(friction=LinearSlope(0.45, -0.05))
 FOREVER = 1e5  # s of motion: hours of computing
@@ -55,13 +57,15 @@ def test_an_ensemble_ends_with_its_threads():
 
 
 def test_a_machine_without_the_kernel_knows_it(monkeypatch, tmp_path):
-    from squealbox.transient import _engine
+    def forget():
+        single.KEPT.clear()
+        lane_kernel.cache_clear()
 
     simulate(DRUM, 1e-3)
     assert not needs_compiling(DRUM)
     monkeypatch.setenv("SQUEALBOX_CACHE", str(tmp_path))
-    _engine.kernel.cache_clear()
+    forget()
     try:
         assert needs_compiling(DRUM)
     finally:
-        _engine.kernel.cache_clear()
+        forget()

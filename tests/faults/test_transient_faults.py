@@ -22,6 +22,7 @@ from squealbox import (
 from squealbox.result import Outcome, Result, ResultFileError
 from squealbox.system import InvalidSystem
 from squealbox.transient import Trajectory, _engine, packing
+from squealbox.transient.lanes import single
 
 module = importlib.import_module("squealbox.transient.simulate")
 
@@ -83,24 +84,27 @@ def test_a_stable_run_has_nothing_to_say():
     assert (motion.outcome, motion.outcome.message, motion.caution) == ("completed", "", "")
 
 
-def test_interrupted(monkeypatch):
+@pytest.mark.parametrize("method", ["taylor", "dormand-prince-8"])
+def test_interrupted(monkeypatch, method):
     # Ctrl-C between two calls of the compiled march: the run ends with what it has
-    kernel = _engine.kernel
+    calls = []
 
-    def impatient(*arguments, **options):
-        march, calls = kernel(*arguments, **options), []
-
-        def run(*records):
+    def impatient(march):
+        def run(*given):
             calls.append(1)
             if len(calls) == 4:
                 raise KeyboardInterrupt
-            return march(*records)
+            return march(*given)
 
         return run
 
-    monkeypatch.setattr(_engine, "kernel", impatient)
+    kernel, advance = _engine.kernel, single.Single.advance
+    monkeypatch.setattr(_engine, "kernel", lambda *given, **options: impatient(kernel(*given, **options)))
+    monkeypatch.setattr(single.Single, "advance", impatient(advance))
     monkeypatch.setattr(module, "BUDGET", (20, 20))
-    motion = simulate(drum(0.3), 0.05)
+    monkeypatch.setattr(single, "FIRST", 20)
+    monkeypatch.setattr(single, "MOST", 20)
+    motion = simulate(drum(0.3), 0.05, method=method)
     assert motion.outcome == "interrupted"
     assert motion.steps > 0
     assert motion.outcome.evidence["time"] == motion.t[-1]

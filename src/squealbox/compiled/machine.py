@@ -20,8 +20,9 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.compiled.expressions import ELEMENTS, result
 from squealbox.compiled.kinds import FLOAT, TEXTS, TRUTH, WHOLE, Array, Record, kind_of, registers
-from squealbox.compiled.translation import ELEMENTS, Unit, result
+from squealbox.compiled.translation import Unit
 
 DECORATORS = ("inner", "packed", "entry")  # of plain functions that are translated; packed ones into their callers
 PATIENCE = 0.5  # s of compiling after which a terminal is told
@@ -29,7 +30,7 @@ PASSES = (  # those that plain loops gain by; LLVM's own list takes ten times as
     "sroa", "simplify_cfg", "always_inliner", "instruction_combine", "loop_simplify", "loop_rotate", "new_gvn",
     "instruction_combine", "simplify_cfg", "global_dead_code_eliminate",
 )  # fmt: skip
-TRANSLATORS = ("kinds.py", "arithmetic.py", "translation.py", "machine.py")
+TRANSLATORS = ("kinds.py", "arithmetic.py", "expressions.py", "translation.py", "machine.py")
 CTYPES = {"ptr": ctypes.c_void_p, "i64": ctypes.c_int64, "double": ctypes.c_double, "i1": ctypes.c_bool}
 LOCK = threading.Lock()
 KEPT: list[Any] = []  # execution engines, for as long as their code may be called

@@ -1,7 +1,6 @@
 """The equation of motion as plain loops, compiled by `_engine` and run as they stand by the tests.
 
-The leading axis of p.mk is the room for degrees of freedom, a constant to the compiler, so loops over it are unrolled;
-the rows beyond p.size are zero. Loops over contacts run to the count.
+The leading axis of p.mk is the room for degrees of freedom, zero beyond p.size; loops over contacts run to the count.
 
 Every function here takes the records of `packing`: the problem (p) and the scratch (s). The state y holds q, q' and
 then the running energy integrals: work of each contact's friction, of the load, of the skew stiffness, energy taken
@@ -33,8 +32,7 @@ REVERSALS = 10
 def evaluate_signals(p, t, s):
     """Speeds, preloads, load and the rates of the speeds at time t, each a sum of weighted schedules.
 
-    s.clock[INSIDE] is the last instant of the present smooth piece, so the end of a step onto a kink sees the left
-    side.
+    s.clock[INSIDE] ends the present smooth piece, so the end of a step onto a kink sees the left side.
     """
     signal = s.signal
     t = min(t, s.clock[INSIDE])

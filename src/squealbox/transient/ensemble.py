@@ -12,10 +12,11 @@ from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Column, Outcome, Result, batched, quantity
 from squealbox.system import System, as_system
 from squealbox.transient import _march, cautions
+from squealbox.transient.choosing import chosen_method, usual_method
 from squealbox.transient.lanes.work import HEAD, Progress, Work
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.observers import as_observers
-from squealbox.transient.simulate import MESSAGES, SCHEMES, chosen_method, instants_within, usual_method
+from squealbox.transient.simulate import MESSAGES, SCHEMES, instants_within
 
 if TYPE_CHECKING:
     import xarray

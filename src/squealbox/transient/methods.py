@@ -61,7 +61,7 @@ class Method:
     """
 
     tableau: str = "dormand-prince-8"
-    rtol: float = None  # type: ignore[assignment]
+    rtol: Any = None
     atol: Any = None
     first_step: float | None = None
     largest_step: float | None = None

@@ -2,28 +2,25 @@
 
 import time as clock
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from squealbox import friction, schedules
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
-from squealbox.schedules import Schedule
 from squealbox.system import InvalidSystem, System, as_system, equilibrium, no_rigid_contact
 from squealbox.transient import _march, _motion, cautions, moreau, packing
 from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
+from squealbox.transient.choosing import check_series, chosen_method, usual_method
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR, Method
-from squealbox.transient.own_laws import own_texts, texts_of, untraced
+from squealbox.transient.own_laws import own_texts
 from squealbox.transient.smooth_laws import smooth_kinds
 from squealbox.transient.trajectory import Trajectory
 from squealbox.transient.widened import base_of, start_of
 
 SCHEMES = {"exact": EXACT, "raw": RAW, "tanh": TANH, "smooth": ARCTAN, "arctan": ARCTAN}
 TIME_STEPPING = "time-stepping"
-LARGE = 160  # products of an acceleration up to which a generated step is written out
 KEPT = 16  # designs whose systems are at hand
 ROWS = 32_768  # room for steps at first; memory is touched only as rows are written
 BUDGET = (5_000, 50_000)  # least and most steps between two looks at the keyboard
@@ -118,7 +115,7 @@ def simulate(
     if contact == TIME_STEPPING:
         return moreau.time_stepping(system, duration, q, qd, start_time, requested, step)
     if chosen.tableau == TAYLOR:
-        _has_series(system, contact)
+        check_series(system, contact)
         return _by_series(system, chosen, contact, width, q, qd, start_time, duration, requested, progress)
     run = _Run(system, chosen, SCHEMES[contact], width, q, qd, start_time, requested)
     outcome = run.to(start_time + duration, duration, progress)
@@ -305,37 +302,6 @@ def _by_series(
     return told(system, *run.columns(), settings, outcome, said, (taken, tried - taken, tried))
 
 
-def _has_series(system: System, contact: str) -> None:
-    """A method that was named and cannot serve is refused."""
-    if contact != "exact":
-        expected = "exact: a Taylor series does not see a jump of sgn, and a smoothed one makes its steps tiny"
-        raise ParameterError("simulate", "contact", contact, expected)
-    if why := no_series(system):
-        raise InvalidSystem(f"{why}: take another method than {TAYLOR}")
-
-
-def usual_method(system: System, contact: str) -> str:
-    """The method of a run that names none: a Taylor series wherever the equation has one for the generated step."""
-    return TAYLOR if contact == "exact" and not no_series(system) else "dormand-prince-8"
-
-
-def no_series(system: System) -> str:
-    """Why the generated step of a Taylor series cannot run the system; empty where it can."""
-    contacts = system.contacts
-    if any(contact.rigid for contact in contacts):
-        return "a rigid contact has impacts"
-    values = [system.load, *(value for c in contacts for value in (c.V, c.N0))]
-    parts = [part for value in values if isinstance(value, Schedule) for _, part in value.terms()]
-    if any(isinstance(part, schedules.Table) for part in parts):
-        return "a schedule of measured points has no Taylor series"
-    if any(isinstance(c.law, friction.Table) for c in contacts):
-        return "a friction law of measured points has no Taylor series"
-    n, m = system.size, len(contacts)
-    if n * (2 * n + 4 * m) + m * m > LARGE:
-        return f"{n} degrees of freedom and {m} contacts are more than a generated step is written out for"
-    return next((why for c in contacts if (own := texts_of(c.law)) and (why := untraced(own[0]))), "")
-
-
 def exact_call(system: System) -> tuple[Any, tuple[Any, ...]]:
     """The compiled march of an exact run of the usual method with given instants, and what it is called with."""
     name, rest = usual_method(system, "exact"), np.zeros(system.size)
@@ -356,13 +322,6 @@ def _caution(settings: dict[str, Any], reversals: int) -> str:
         return f"plain sgn was stepped over {reversals} times: no tolerance bounds the error there; {advice}"
     width = settings["width"]
     return f"sliding reversed {reversals} times inside a smoothing of {width:g} m/s: sticking became creep; {advice}"
-
-
-def chosen_method(method: str | Method, rtol: float | None, atol: Any) -> Method:
-    """A method with its usual tolerances, or those given."""
-    chosen = method if isinstance(method, Method) else Method(method)
-    given = {"rtol": rtol, "atol": atol}
-    return replace(chosen, **{name: value for name, value in given.items() if value is not None})
 
 
 def _times(times: Any, start_time: float, duration: float) -> Any:

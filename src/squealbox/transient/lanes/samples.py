@@ -7,6 +7,13 @@ from squealbox.transient._motion import derivative
 from squealbox.transient._runge_kutta import take_step
 
 
+def on_end(A, b, lane, row):
+    """The end of the step itself."""
+    for i in range(DOFS):
+        row[i] = A[b + (ROW_Q + i) * WIDTH + lane]
+        row[DOFS + i] = A[b + (ROW_V + i) * WIDTH + lane]
+
+
 def on_step(A, b, lane, at, row, p, r, s):
     """By a step of the method itself from the beginning of the lane's step, in the modes it had."""
     room = p.mk.shape[0]

@@ -36,8 +36,9 @@ from squealbox.transient._rigid import solve
 from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
 from squealbox.transient.lanes.recording import first_row, log_event, room_left, write_rows
-from squealbox.transient.lanes.samples import on_quintic, on_series, on_step
+from squealbox.transient.lanes.samples import on_end, on_quintic, on_series, on_step
 
+OVERFLOW = 1e200  # a state that large has a series beyond all numbers
 DONE, LOST, OVER, EVENT, LANDED, DUE = 1, 2, 4, 8, 16, 32
 
 
@@ -119,15 +120,12 @@ def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out
 
 
 def is_finite(A, b, lane):
-    """Whether the derivative at the present state is a number: then the step was too small, not the motion lost."""
+    """Whether the present state and its derivative are numbers: then the step was too small, not the motion lost."""
     total = 0.0
     for i in range(DOFS):
-        total += (
-            A[b + (ROW_Q + i) * WIDTH + lane]
-            + A[b + (ROW_V + i) * WIDTH + lane]
-            + A[b + (ROW_ACCELERATION + i) * WIDTH + lane]
-        )
-    return np.isfinite(total)
+        total += abs(A[b + (ROW_Q + i) * WIDTH + lane]) + abs(A[b + (ROW_V + i) * WIDTH + lane])
+        total += abs(A[b + (ROW_ACCELERATION + i) * WIDTH + lane])
+    return total < (OVERFLOW if SERIES else np.inf)
 
 
 def refill(A, b, lane, table, varies, fixed, times, counter, total, out, p, s):
@@ -328,7 +326,9 @@ def write_samples(A, b, lane, times, samples, p, r, s):
         load_state(A, b, lane, p, s)
     k = int(A[b + ROW_SAMPLE * WIDTH + lane])
     while k < times.shape[0] and times[k] <= A[b + ROW_T * WIDTH + lane]:
-        if SERIES:
+        if times[k] == A[b + ROW_T * WIDTH + lane]:
+            on_end(A, b, lane, samples[job, k])
+        elif SERIES:
             on_series(A, b, lane, times[k], samples[job, k])
         elif STEPPED:
             on_step(A, b, lane, times[k], samples[job, k], p, r, s)

@@ -109,7 +109,7 @@ class Single:
         """Run to the end; returns how the kernel says it ended, None and why where it was stopped."""
         budget, began = FIRST, clock.monotonic()
         try:
-            while not self._advance(budget):
+            while not self.advance(budget):
                 self._make_room()
                 now = clock.monotonic()
                 if progress is not None:
@@ -121,7 +121,8 @@ class Single:
             progress(float(self.out[0, 1]), end, clock.monotonic() - began)
         return int(self.out[0, 0]), ""
 
-    def _advance(self, budget: int) -> bool:
+    def advance(self, budget: int) -> bool:
+        """So many steps; whether the run has ended."""
         kernel, given = self.call(budget)
         done: bool = kernel(*given)
         return done

@@ -1,0 +1,50 @@
+"""Which method a run takes: its usual one, or that which was named, with the usual tolerances or those given."""
+
+from dataclasses import replace
+from typing import Any
+
+from squealbox import friction, schedules
+from squealbox.parameters import ParameterError
+from squealbox.schedules import Schedule
+from squealbox.system import InvalidSystem, System
+from squealbox.transient.methods import TAYLOR, Method
+from squealbox.transient.own_laws import texts_of, untraced
+
+LARGE = 160  # products of an acceleration up to which a generated step is written out
+
+
+def check_series(system: System, contact: str) -> None:
+    """A method that was named and cannot serve is refused."""
+    if contact != "exact":
+        expected = "exact: a Taylor series does not see a jump of sgn, and a smoothed one makes its steps tiny"
+        raise ParameterError("simulate", "contact", contact, expected)
+    if why := no_series(system):
+        raise InvalidSystem(f"{why}: take another method than {TAYLOR}")
+
+
+def usual_method(system: System, contact: str) -> str:
+    """The method of a run that names none: a Taylor series wherever the equation has one for the generated step."""
+    n, m = system.size, len(system.contacts)
+    small = n * (2 * n + 4 * m) + m * m <= LARGE
+    return TAYLOR if contact == "exact" and small and not no_series(system) else "dormand-prince-8"
+
+
+def no_series(system: System) -> str:
+    """Why the generated step of a Taylor series cannot run the system; empty where it can."""
+    contacts = system.contacts
+    if any(contact.rigid for contact in contacts):
+        return "a rigid contact has impacts"
+    values = [system.load, *(value for c in contacts for value in (c.V, c.N0))]
+    parts = [part for value in values if isinstance(value, Schedule) for _, part in value.terms()]
+    if any(isinstance(part, schedules.Table) for part in parts):
+        return "a schedule of measured points has no Taylor series"
+    if any(isinstance(c.law, friction.Table) for c in contacts):
+        return "a friction law of measured points has no Taylor series"
+    return next((why for c in contacts if (own := texts_of(c.law)) and (why := untraced(own[0]))), "")
+
+
+def chosen_method(method: str | Method, rtol: float | None, atol: Any) -> Method:
+    """A method with its usual tolerances, or those given."""
+    chosen = method if isinstance(method, Method) else Method(method)
+    given = {"rtol": rtol, "atol": atol}
+    return replace(chosen, **{name: value for name, value in given.items() if value is not None})
