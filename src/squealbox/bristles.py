@@ -8,7 +8,7 @@ sticks creeps within the bristles. An open contact has no force, and its bristle
 Each law is `friction.NAME` to files. Depends on: law, parameters.
 """
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -19,9 +19,6 @@ from squealbox.parameters import ParameterError, parameter
 class BristleLaw(FrictionLaw):
     """Base of the laws with memory: what a linearisation needs of them beside their curve."""
 
-    if TYPE_CHECKING:
-        stiffness: float
-
     @classmethod
     def kind(cls) -> str:
         """The name a file knows it by: all laws are of `friction`."""
@@ -30,18 +27,18 @@ class BristleLaw(FrictionLaw):
     @property
     def grip(self) -> tuple[Any, Any, Any]:
         """s0 [1/m], s1 [s/m] and s2 [s/m]."""
-        return self.stiffness, getattr(self, "damping", 0.0), getattr(self, "viscous", 0.0)
+        raise NotImplementedError
 
     def steady_deflection(self, velocity: Any) -> Any:
         """z [m] of steady sliding at a velocity of either sign."""
         dry = self.mu(velocity) - self.grip[2] * np.abs(velocity)
-        return np.sign(velocity) * dry / self.stiffness
+        return np.sign(velocity) * dry / self.grip[0]
 
     def relaxation(self, velocity: Any) -> tuple[Any, Any]:
         """(dz'/dz [1/s], dz'/dv [-]) in steady sliding: -s0 |v|/g and |v| g'/g."""
         speed = np.abs(velocity)
         dry, slope = self.mu(speed) - self.grip[2] * speed, self.slope_at(speed) - self.grip[2]
-        return -self.stiffness * speed / dry, speed * slope / dry
+        return -self.grip[0] * speed / dry, speed * slope / dry
 
     def direct_slope(self, velocity: Any) -> Any:
         """s1 dz'/dv + s2 [s/m]: the rest of the slope comes with the bristles."""
@@ -98,6 +95,11 @@ class LuGre(BristleLaw):
     creep_formula = staticmethod(lugre_creep)
     grip_formula = staticmethod(lugre_grip)
 
+    @property
+    def grip(self) -> tuple[Any, Any, Any]:
+        """s0 [1/m], s1 [s/m] and s2 [s/m]."""
+        return self.stiffness, self.damping, self.viscous
+
     def coefficients(self) -> tuple[Any, ...]:
         return (self.static, self.kinetic, self.speed, *self.grip)
 
@@ -150,6 +152,11 @@ class Dahl(BristleLaw):
         if not np.all(np.isin(self.exponent, (1.0, 2.0, 3.0))):
             raise ParameterError("Dahl", "exponent", self.exponent, "1, 2 or 3")
 
+    @property
+    def grip(self) -> tuple[Any, Any, Any]:
+        """s0 [1/m], s1 [s/m] and s2 [s/m]."""
+        return self.stiffness, 0.0, 0.0
+
     def coefficients(self) -> tuple[Any, ...]:
         weights = (1.0 * (np.asarray(self.exponent) == i) for i in (1, 2, 3))
         return (self.kinetic, self.stiffness, *(float(w) if np.ndim(w) == 0 else w for w in weights))
@@ -161,12 +168,15 @@ class Dahl(BristleLaw):
 
 
 def elasto_plastic_creep(v: Any, z: Any, p: Any) -> Any:
-    """z' = v (1 - a s0 z sgn(v)/g(v)), a = 0 below the break-away deflection and 1 at that of steady sliding."""
+    """z' = v (1 - a s0 z sgn(v)/g(v)), a = 0 below the break-away deflection and 1 at that of steady sliding.
+
+    The share ends at 1 + 1e-7, where a is 1 to 3e-14: no kink lies where sliding is steady.
+    """
     r = v / p[2]
     g = p[1] + (p[0] - p[1]) * np.exp(-r * r)
     along = np.where(v > 0.0, z, -z)
     least = p[6] * p[1] / p[3]
-    share = np.minimum(np.maximum((along - least) / (g / p[3] - least), 0.0), 1.0)
+    share = np.minimum(np.maximum((along - least) / (g / p[3] - least), 0.0), 1.0000001)
     return v * (1.0 - (0.5 - 0.5 * np.cos(3.141592653589793 * share)) * p[3] * along / g)
 
 
@@ -201,6 +211,11 @@ class ElastoPlastic(BristleLaw):
         super().__post_init__()
         if np.any(np.asarray(self.static) < np.asarray(self.kinetic)):  # else z_b could lie beyond z_s
             raise ParameterError("ElastoPlastic", "kinetic", self.kinetic, f"at most static = {self.static}")
+
+    @property
+    def grip(self) -> tuple[Any, Any, Any]:
+        """s0 [1/m], s1 [s/m] and s2 [s/m]."""
+        return self.stiffness, self.damping, self.viscous
 
     def coefficients(self) -> tuple[Any, ...]:
         return (self.static, self.kinetic, self.speed, *self.grip, self.breakaway)

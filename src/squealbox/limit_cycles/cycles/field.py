@@ -43,8 +43,8 @@ def check_states(system: System) -> None:
     no_memory(system.contacts, "a limit cycle in q and q'")
     if isinstance(system, Widened) or any(kind != WITH_MASS for kind in row_kinds(system)):
         raise InvalidSystem(
-            "M is singular, or a loop with a limit remembers: a limit cycle here is one of q and q' alone; simulate() runs "
-            "such a system to what it settles on"
+            "M is singular, or a loop with a limit remembers: a limit cycle here is one of q and q' alone; simulate() "
+            "runs such a system to what it settles on"
         )
 
 
