@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from squealbox import Contact, Coulomb, DrumBrake, System, complex_modes, simulate, simulate_ensemble
+from squealbox import Contact, Coulomb, DrumBrake, System, complex_modes, fit_friction, simulate, simulate_ensemble
 from squealbox.friction import Averaged, Dahl, ElastoPlastic, FrictionLaw, LuGre
 from squealbox.limit_cycles import shooting
 from squealbox.parameters import ParameterError
@@ -191,6 +191,25 @@ def test_motion_along_a_mode_is_its_pole() -> None:
     assert np.max(np.abs(moved.q - steady[:2] - exact[:, :2])) < 1e-5 * np.max(np.abs(exact[:, :2]))
     with pytest.raises(ParameterError, match="deflections"):
         simulate(brake, 1e-3, start=(*start[:2], [0.0]))
+
+
+def test_bristles_that_feed_energy_in_are_named() -> None:
+    """s1 |v| > 4 g somewhere in the run; the twin stays below."""
+    fast = simulate(block(LuGre(0.3, 0.3, 0.1, 1e4, 60.0)), 0.2, times=3)
+    slow = simulate(block(LuGre(0.3, 0.3, 0.1, 1e4, 3.0)), 0.2, times=3)
+    assert "bristles" in fast.caution
+    assert "bristles" not in slow.caution
+
+
+def test_a_fit_of_steady_sliding_gives_its_three_numbers() -> None:
+    speeds = np.linspace(0.01, 0.5, 30)
+    true = LuGre(0.45, 0.3, 0.12)
+    found = fit_friction(speeds, true.mu(speeds), law=("lugre", "elasto_plastic", "stribeck"))
+    assert isinstance(found.law_named("lugre"), LuGre)
+    assert np.allclose(found.coefficients[0], [0.45, 0.3, 0.12], rtol=1e-8)
+    assert np.allclose(found.coefficients[1], [0.45, 0.3, 0.12], rtol=1e-8)
+    assert found.names[found.best] != "stribeck"
+    assert "lugre" not in fit_friction(speeds, true.mu(speeds)).names
 
 
 def test_open_contact_has_no_force() -> None:
