@@ -64,7 +64,7 @@ from .fe import (
 )
 from .files import Body, OwnBrake, OwnContact, OwnLaw, OwnMechanism, Spring, Touch, own_law, read_design, write_design
 from .fit import FrictionFit, fit_friction
-from .friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stribeck
+from .friction import Coulomb, Cubic, Dahl, ElastoPlastic, FrictionLaw, Hyperbolic, LinearSlope, LuGre, Stribeck
 from .limit_cycles import (
     Branch,
     Cycle,
@@ -155,6 +155,9 @@ __all__ = [
     "Stribeck",
     "Hyperbolic",
     "Cubic",
+    "LuGre",
+    "Dahl",
+    "ElastoPlastic",
     # what varies in time
     "schedules",
     "Schedule",

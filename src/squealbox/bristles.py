@@ -8,7 +8,7 @@ sticks creeps within the bristles. An open contact has no force, and its bristle
 Each law is `friction.NAME` to files. Depends on: law, parameters.
 """
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -19,9 +19,6 @@ from squealbox.parameters import ParameterError, parameter
 class BristleLaw(FrictionLaw):
     """Base of the laws with memory: what a linearisation needs of them beside their curve."""
 
-    if TYPE_CHECKING:
-        stiffness: float
-
     @classmethod
     def kind(cls) -> str:
         """The name a file knows it by: all laws are of `friction`."""
@@ -30,18 +27,24 @@ class BristleLaw(FrictionLaw):
     @property
     def grip(self) -> tuple[Any, Any, Any]:
         """s0 [1/m], s1 [s/m] and s2 [s/m]."""
-        return self.stiffness, getattr(self, "damping", 0.0), getattr(self, "viscous", 0.0)
+        raise NotImplementedError
 
     def steady_deflection(self, velocity: Any) -> Any:
         """z [m] of steady sliding at a velocity of either sign."""
         dry = self.mu(velocity) - self.grip[2] * np.abs(velocity)
-        return np.sign(velocity) * dry / self.stiffness
+        return np.sign(velocity) * dry / self.grip[0]
 
     def relaxation(self, velocity: Any) -> tuple[Any, Any]:
         """(dz'/dz [1/s], dz'/dv [-]) in steady sliding: -s0 |v|/g and |v| g'/g."""
         speed = np.abs(velocity)
         dry, slope = self.mu(speed) - self.grip[2] * speed, self.slope_at(speed) - self.grip[2]
-        return -self.stiffness * speed / dry, speed * slope / dry
+        return -self.grip[0] * speed / dry, speed * slope / dry
+
+    def feeds(self, velocity: Any) -> Any:
+        """Whether s1 |v| > 4 g, where the bristles may put energy in: (s0 z + s1 z') v < s0 z z' for some z."""
+        speed = np.abs(velocity)
+        dry = self.mu(speed) - self.grip[2] * speed
+        return self.grip[1] * speed > 4.0 * dry
 
     def direct_slope(self, velocity: Any) -> Any:
         """s1 dz'/dv + s2 [s/m]: the rest of the slope comes with the bristles."""
@@ -78,7 +81,9 @@ class LuGre(BristleLaw):
         F = N (s0 z + s1 z' + s2 v),   z' = v - s0 |v| z/g(v),   g = kinetic + (static - kinetic) exp(-(v/speed)^2)
 
     with s0 = stiffness, s1 = damping, s2 = viscous; steady sliding has mu = g(|v|) + s2 |v|, and a contact at rest the
-    stiffness N s0. Passive for s1 below 4 g/(s0 |v|) wherever it slides (Barabanov and Ortega 2000).
+    stiffness N s0. It only takes energy out while s1 |v| <= 4 g(|v|); a run that went beyond says so. Stiff: z settles at
+    s0 |v|/g, so 50 ms of the drum at s0 = 1e5/m take 1,300 Taylor steps at 0.5 m/s and 13,000 at 5 m/s, and in proportion
+    to s0.
 
     Source: Canudas de Wit, Olsson, Astrom and Lischinsky 1995, IEEE Transactions on Automatic Control 40, 419-425.
 
@@ -97,6 +102,11 @@ class LuGre(BristleLaw):
     slope_formula = staticmethod(lugre_slope)
     creep_formula = staticmethod(lugre_creep)
     grip_formula = staticmethod(lugre_grip)
+
+    @property
+    def grip(self) -> tuple[Any, Any, Any]:
+        """s0 [1/m], s1 [s/m] and s2 [s/m]."""
+        return self.stiffness, self.damping, self.viscous
 
     def coefficients(self) -> tuple[Any, ...]:
         return (self.static, self.kinetic, self.speed, *self.grip)
@@ -150,6 +160,11 @@ class Dahl(BristleLaw):
         if not np.all(np.isin(self.exponent, (1.0, 2.0, 3.0))):
             raise ParameterError("Dahl", "exponent", self.exponent, "1, 2 or 3")
 
+    @property
+    def grip(self) -> tuple[Any, Any, Any]:
+        """s0 [1/m], s1 [s/m] and s2 [s/m]."""
+        return self.stiffness, 0.0, 0.0
+
     def coefficients(self) -> tuple[Any, ...]:
         weights = (1.0 * (np.asarray(self.exponent) == i) for i in (1, 2, 3))
         return (self.kinetic, self.stiffness, *(float(w) if np.ndim(w) == 0 else w for w in weights))
@@ -161,12 +176,15 @@ class Dahl(BristleLaw):
 
 
 def elasto_plastic_creep(v: Any, z: Any, p: Any) -> Any:
-    """z' = v (1 - a s0 z sgn(v)/g(v)), a = 0 below the break-away deflection and 1 at that of steady sliding."""
+    """z' = v (1 - a s0 z sgn(v)/g(v)), a = 0 below the break-away deflection and 1 at that of steady sliding.
+
+    The share ends at 1 + 1e-7, where a is 1 to 3e-14: no kink lies where sliding is steady.
+    """
     r = v / p[2]
     g = p[1] + (p[0] - p[1]) * np.exp(-r * r)
     along = np.where(v > 0.0, z, -z)
     least = p[6] * p[1] / p[3]
-    share = np.minimum(np.maximum((along - least) / (g / p[3] - least), 0.0), 1.0)
+    share = np.minimum(np.maximum((along - least) / (g / p[3] - least), 0.0), 1.0000001)
     return v * (1.0 - (0.5 - 0.5 * np.cos(3.141592653589793 * share)) * p[3] * along / g)
 
 
@@ -201,6 +219,11 @@ class ElastoPlastic(BristleLaw):
         super().__post_init__()
         if np.any(np.asarray(self.static) < np.asarray(self.kinetic)):  # else z_b could lie beyond z_s
             raise ParameterError("ElastoPlastic", "kinetic", self.kinetic, f"at most static = {self.static}")
+
+    @property
+    def grip(self) -> tuple[Any, Any, Any]:
+        """s0 [1/m], s1 [s/m] and s2 [s/m]."""
+        return self.stiffness, self.damping, self.viscous
 
     def coefficients(self) -> tuple[Any, ...]:
         return (self.static, self.kinetic, self.speed, *self.grip, self.breakaway)

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stribeck
+from squealbox.friction import Coulomb, Cubic, ElastoPlastic, FrictionLaw, Hyperbolic, LinearSlope, LuGre, Stribeck
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome, Result, quantity
 
@@ -48,7 +48,17 @@ CANDIDATES: dict[str, Candidate] = {
         (0.0, 0.0, 1e-12),
         lambda v, mu: (float(np.max(mu)), float(np.min(mu)), float(np.max(v))),
     ),
+    **{
+        name: Candidate(
+            law,
+            ("static", "kinetic", "speed"),
+            (1e-12, 1e-12, 1e-12),
+            lambda v, mu: (float(np.max(mu)), float(np.min(mu)), float(np.ptp(v)) / 3.0),
+        )
+        for name, law in (("lugre", LuGre), ("elasto_plastic", ElastoPlastic))
+    },
 }
+USUAL = tuple(name for name, candidate in CANDIDATES.items() if candidate.law.creep_formula is None)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -115,7 +125,9 @@ def fit_friction(
     ----------
     speeds : shape (n,), [m/s] sliding speeds, 0 or more, n >= 5
     values : shape (n,), [-] measured coefficients in [0, 10]
-    law : name of a law or several; left out, all of coulomb, linear_slope, stribeck, hyperbolic, cubic
+    law : name of a law or several; left out, all of coulomb, linear_slope, stribeck, hyperbolic, cubic. Of lugre and
+        elasto_plastic the curve of steady sliding is fitted: static, kinetic and speed; what their bristles do, a
+        stiffness from pre-sliding, is not in such points and keeps its usual value
     level : confidence level of the bands, between 0 and 1
 
     Returns the fits. A sliding measurement cannot tell the static limit: the fitted laws take mu(v -> 0) for it.
@@ -127,7 +139,7 @@ def fit_friction(
     'stribeck'
     """
     v, mu = _points(speeds, values)
-    names = list(CANDIDATES) if law is None else [law] if isinstance(law, str) else list(law)
+    names = list(USUAL) if law is None else [law] if isinstance(law, str) else list(law)
     for name in names:
         if name not in CANDIDATES:
             raise ParameterError("fit_friction", "law", name, known_names(str(name), list(CANDIDATES)))
@@ -235,4 +247,6 @@ def _formula_numbers(candidate: Candidate, p: Sequence[float]) -> tuple[float, .
     """The free numbers as the formula of the law wants them, before they are known to make a law."""
     if candidate.law is Coulomb:
         return (p[0], p[0])
+    if candidate.law.creep_formula is not None:
+        return (*p, 1.0, 0.0, 0.0)
     return (*p, -np.inf) if candidate.law is LinearSlope else tuple(p)

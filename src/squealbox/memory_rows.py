@@ -12,16 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.contacts import Contact
+from squealbox.contacts import Contact, Contacts
 from squealbox.matrices import InvalidSystem
 
 
-def remembering(contacts: Sequence[Contact]) -> list[int]:
+def remembering(contacts: Sequence[Contact] | Contacts) -> list[int]:
     """The contacts whose law has memory."""
     return [c for c, contact in enumerate(contacts) if contact.law.has_memory]
 
 
-def no_memory(contacts: Sequence[Contact], what: str) -> None:
+def no_memory(contacts: Sequence[Contact] | Contacts, what: str) -> None:
     """Raise `InvalidSystem` where a law has memory: `what` knows friction of the speed alone."""
     for c in remembering(contacts):
         law = type(contacts[c].law).__name__

@@ -14,7 +14,7 @@ from squealbox import Coulomb, Cubic, DrumBrake, Hyperbolic, LinearSlope, Parame
 from squealbox.cli.starter import mechanism_example
 from squealbox.files import BRAKES, NotWritable, OwnBrake, OwnContact, own_law, read_design, read_file, write_design
 from squealbox.files.sheets import LAW_NAMES, SCHEDULE_NAMES
-from squealbox.friction import Table
+from squealbox.friction import Dahl, ElastoPlastic, LuGre, Table
 from squealbox.parameters import from_plain, to_plain
 from squealbox.schedules import Constant
 from squealbox.schedules import Table as TimeTable
@@ -28,6 +28,9 @@ LAWS = [
     Hyperbolic(1.0, 3.0),
     Cubic(0.4, 0.25, 0.5),
     Table([0.0, 0.1, 1.0], [0.5, 0.4, 0.35]),
+    LuGre(0.45, 0.3, 0.1, 2e5, 30.0, 0.01),
+    Dahl(0.4, 1e4, 2.0),
+    ElastoPlastic(0.45, 0.3, 0.1, 2e5, 30.0, 0.01, 0.5),
 ]
 SCHEDULES = [
     Constant(0.2),

@@ -17,7 +17,8 @@ def fit(file: Path, *, law: tuple[str, ...] = (), level: float = 0.95, out: Path
     file
         CSV file of two columns, sliding speed in m/s and friction coefficient; a first line of names is skipped
     law
-        laws to try: coulomb, linear_slope, stribeck, hyperbolic, cubic; all when left out
+        laws to try: coulomb, linear_slope, stribeck, hyperbolic, cubic, which are all when left out; lugre and
+        elasto_plastic by their curve of steady sliding
     level
         confidence level of the bands
     out

@@ -28,9 +28,13 @@ from squealbox.studies.uncertainty.distributions import Distribution
 Sheet = TypeVar("Sheet", bound=DataSheet)
 
 
+NAMES = {"LuGre": "lugre"}  # words that are written as one
+
+
 def name_of(sheet: type[DataSheet]) -> str:
     """The name a file knows a class by: ``linear_slope`` for `LinearSlope`."""
-    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", sheet.__name__).lower()
+    name = sheet.__name__
+    return NAMES.get(name) or re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
 
 
 LAW_NAMES: dict[str, type[FrictionLaw]] = {name_of(law): law for law in LAWS}

@@ -59,7 +59,7 @@ def _packed(system: System, scheme: int, width: float) -> tuple[Any, float]:
         [c.normal if c.rigid else sensed for c, sensed in zip(contacts, rows.n, strict=True)], n
     )  # of a rigid one -gap = normal . q - gap0
     laws = [np.array(c.law.coefficients(), dtype=float) for c in contacts]
-    highest = highest_frequency(rows.stiffness) if rows.all_have_mass else float(fastest_rate(rows))
+    highest = highest_frequency(rows.stiffness) if rows.all_have_mass else float(fastest_rate(system, rows))
     pace = max(highest, float(schedule_frequency(system)))
     values: dict[str, Any] = {
         "size": n,

@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.schedules import Constant, Schedule
+from squealbox.memory_rows import remembering
+from squealbox.schedules import Constant, Schedule, value_at
 from squealbox.system import InvalidSystem, System
 
 WITH_MASS, FIRST_ORDER, ALGEBRAIC = 2, 1, 0  # how often a row's displacement is differentiated
@@ -219,20 +220,37 @@ def consistent(system: System, rows: Rows, q: Any, load: Any) -> Any:
     return out
 
 
-def fastest_rate(rows: Rows) -> Any:
-    """Largest |eigenvalue| [1/s] of the equation without friction, (...): what a step must resolve."""
+def fastest_rate(system: System, rows: Rows) -> Any:
+    """Largest |eigenvalue| [1/s] of the equation without friction, (...): what a step must resolve.
+
+    Contacts with memory hold with the stiffness of their bristles under the normal force of the system at rest.
+    """
+    held = rows.stiffness
+    for c in remembering(system.contacts):
+        contact = system.contacts[c]
+        force = np.abs(value_at(contact.N0, 0.0)) + np.abs(np.sum(rows.n[c] * _at_rest(system), axis=-1))
+        spring = force * contact.law.grip[0]
+        held = held + np.asarray(spring)[..., None, None] * _solved(rows.inverse, contact.d)[..., :, None] * rows.t[c]
     n, heavy, first = len(rows.kinds), rows.of(WITH_MASS), rows.of(FIRST_ORDER)
-    matrix = np.zeros((*rows.stiffness.shape[:-2], 2 * n, 2 * n))
+    matrix = np.zeros((*held.shape[:-2], 2 * n, 2 * n))
     speeds = [n + i for i in heavy]
     matrix[..., heavy, speeds] = 1.0
     for i in (*heavy, *first):
         at = n + i if i in heavy else i
-        matrix[..., at, :n], matrix[..., at, n:] = -rows.stiffness[..., i, :], -rows.damping[..., i, :]
+        matrix[..., at, :n], matrix[..., at, n:] = -held[..., i, :], -rows.damping[..., i, :]
     keep = [*heavy, *first, *speeds]
     matrix = matrix[..., keep, :][..., :, keep]
-    unit = np.sqrt(np.max(np.abs(rows.stiffness[..., heavy, :]), axis=(-1, -2), initial=0.0))
+    unit = np.sqrt(np.max(np.abs(held[..., heavy, :]), axis=(-1, -2), initial=0.0))
     unit = np.where(unit > 0.0, unit, 1.0)[..., None]
     level = np.ones((*matrix.shape[:-2], len(keep)))
     level[..., len(keep) - len(heavy) :] = unit
     scaled = matrix * level[..., None, :] / level[..., :, None]
     return np.max(np.abs(np.linalg.eigvals(scaled)), axis=-1, initial=0.0)
+
+
+def _at_rest(system: System) -> Any:
+    """K^-1 f at the start, 0 where there is none."""
+    load = np.asarray(value_at(system.load, 0.0), dtype=float)
+    with np.errstate(all="ignore"):
+        q = np.einsum("...ij,...j->...i", np.linalg.pinv(system.K), load)
+    return np.where(np.isfinite(q), q, 0.0)

@@ -17,7 +17,7 @@ from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.own_laws import own_texts
 from squealbox.transient.smooth_laws import smooth_kinds
 from squealbox.transient.trajectory import Trajectory
-from squealbox.transient.widened import base_of, start_of
+from squealbox.transient.widened import base_of, parted, start_of
 
 SCHEMES = {"exact": EXACT, "raw": RAW, "tanh": TANH, "smooth": ARCTAN, "arctan": ARCTAN}
 TIME_STEPPING = "time-stepping"
@@ -72,7 +72,8 @@ def simulate(
     design_or_system : a design, or a `System` without leading axes
     duration : [s], > 0
     start : (q, qd), shapes (n,) and (n,) [m], [m/s]; "rest" (the default: q = qd = 0, loads applied suddenly) or
-        "sliding" (steady sliding without vibration)
+        "sliding" (steady sliding without vibration). Laws with memory begin with their bristles straight, or bent as in
+        steady sliding; (q, qd, z) gives their deflections [m], one for each such contact
     times : instants of output [s] within the run, shape (k,), increasing; a whole number k for k equidistant instants;
         None for every step taken, a long one in parts of at most a sixth of the shortest period. They do not influence
         the steps.
@@ -109,9 +110,10 @@ def simulate(
     requested = _times(times, start_time, duration)
     if contact != "exact":
         no_rigid_contact(system, f"contact={contact!r}")
+    start, z = parted("simulate", start, system)
     q, qd = _start(base_of(system), start, start_time)
     _check_gaps(base_of(system), q)
-    q, qd = start_of(system, q, qd, isinstance(start, str) and start == "sliding", start_time)
+    q, qd = start_of(system, q, qd, z, isinstance(start, str) and start == "sliding", start_time)
     if contact == TIME_STEPPING:
         return moreau.time_stepping(system, duration, q, qd, start_time, requested, step)
     if chosen.tableau == TAYLOR:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.loops import padded, padded_load
+from squealbox.parameters import ParameterError
 from squealbox.schedules import Schedule, value_at
 from squealbox.system import Contact, InvalidSystem, System
 from squealbox.transient.rows import row_kinds, solved_for
@@ -45,16 +46,32 @@ def base_of(system: System) -> System:
     return system.base if isinstance(system, Widened) else system
 
 
-def start_of(system: System, q: Any, qd: Any, steady: bool, time: float) -> tuple[Any, Any]:
-    """q and q' (..., rows) of a start of the base; `steady` bends the bristles as steady sliding does."""
+def parted(function: str, start: Any, system: System) -> tuple[Any, Any]:
+    """A start (q, q', z) as (q, q') and z, the deflections [m] of the contacts with memory; others as given."""
+    if isinstance(start, str) or not isinstance(start, (tuple, list)) or len(start) != 3:
+        return start, None
+    count = sum(row >= 0 for row in getattr(system, "memories", ()))
+    z = np.asarray(start[2], dtype=float)
+    if count == 0 or z.shape[-1:] != (count,) or not np.all(np.isfinite(z)):
+        expected = f"(q, qd, z) with {count} deflections, one for each contact with memory" if count else "(q, qd)"
+        raise ParameterError(function, "start", start, expected)
+    return start[:2], z
+
+
+def start_of(system: System, q: Any, qd: Any, z: Any, steady: bool, time: float) -> tuple[Any, Any]:
+    """q and q' (..., rows) of a start of the base; `steady` bends the bristles as steady sliding does, else z or 0."""
     if not isinstance(system, Widened):
         return q, qd
     q, qd = (np.einsum("ij,...j->...i", system.embedding, np.asarray(x, dtype=float)) for x in (q, qd))
     for contact, row in zip(system.contacts, system.memories or (-1,) * len(system.contacts), strict=True):
         if steady and row >= 0:
-            deflection = contact.law.steady_deflection(value_at(contact.V, time))  # type: ignore[attr-defined]
+            deflection = contact.law.steady_deflection(value_at(contact.V, time))
             q = np.array(np.broadcast_to(q, (*np.broadcast_shapes(q.shape[:-1], np.shape(deflection)), q.shape[-1])))
             q[..., row] = deflection
+    if z is not None:
+        rows = [row for row in system.memories if row >= 0]
+        q = np.array(np.broadcast_to(q, (*np.broadcast_shapes(q.shape[:-1], z.shape[:-1]), q.shape[-1])))
+        q[..., rows] = z
     return q, qd
 
 
@@ -99,7 +116,7 @@ def _with_limited_loops(system: System) -> System:
     """Loops with a limit that feed back more than a velocity, as rows and a contact without events each."""
     for loop in system.loops:
         row, n = loop.rows(system.names), system.size
-        if any(np.ndim(x) > k for x, k in ((row.P, 1), (row.R, 1), (row.A, 2), (loop.limit, 0))):
+        if any(np.ndim(x) > k for x, k in ((row.P, 1), (row.R, 1), (row.A, 2), (np.asarray(loop.limit), 0))):
             raise InvalidSystem(
                 f"a {type(loop).__name__} with a limit varies in an ensemble: run such loops one by one"
             )

@@ -14,7 +14,17 @@ import numpy as np
 
 from squealbox.designs import DESIGNS, Design
 from squealbox.files.sheets import LAW_NAMES, name_of
-from squealbox.friction import Coulomb, Cubic, FrictionLaw, Hyperbolic, LinearSlope, Stribeck
+from squealbox.friction import (
+    Coulomb,
+    Cubic,
+    Dahl,
+    ElastoPlastic,
+    FrictionLaw,
+    Hyperbolic,
+    LinearSlope,
+    LuGre,
+    Stribeck,
+)
 from squealbox.parameters import DataSheet, ParameterError, known_names
 from squealbox.schedules import Schedule, value_at
 from squealbox.system import InvalidSystem
@@ -78,12 +88,17 @@ def law_like(law: FrictionLaw, name: str, speed: float) -> FrictionLaw:
     speed = abs(speed) or 1.0
     falling = max(-float(law.slope_at(speed)), 0.0)
     kinetic = min(max(float(law.mu(speed)), 0.0), static)
+    some = max(static, 1e-3), max(kinetic, 1e-3)  # bristles need friction to bend
+    stiffness = float(getattr(law, "stiffness", 1e5))
     made: dict[str, FrictionLaw] = {
         "coulomb": Coulomb(static, kinetic),
         "linear_slope": LinearSlope(static, float(law.slope_at(speed))),
         "stribeck": Stribeck(static, kinetic, speed),
         "hyperbolic": Hyperbolic(static, falling / static if static else 0.0),
         "cubic": Cubic(static, kinetic, speed),
+        "lugre": LuGre(*some, speed, stiffness),
+        "dahl": Dahl(some[1], stiffness),
+        "elasto_plastic": ElastoPlastic(*some, speed, stiffness),
     }
     return law if name_of(type(law)) == name else made[name]
 

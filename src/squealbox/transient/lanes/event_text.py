@@ -142,7 +142,8 @@ class EventText(EquationText):
         end, stick = contact[-1], self.sticks(c)
         rates = self.first_rate(c, v, a, "t_"), self.first_rate(c, self.velocity, a1, "t_ + hh")
         if not self.shape.along(c):
-            value, inner = f"1.0 - {self.row(f'open{c}')}" if self.shape.unilateral[c] else "1.0 + 0.0 * t_", "1.0"
+            value = f"1.0 - {self.row(f'open{c}')}" if self.shape.unilateral[c] else "1.0 + 0.0 * t_"
+            inner = "1.0 + 0.0 * t_"
             rates = ("0.0 * t_", "0.0 * t_")
         else:
             noise = self.row(f"noise{c}")

@@ -178,7 +178,7 @@ def _tolerances(
 ) -> dict[str, Any]:
     """Tolerances and limits of the steps, as `packing` and `simulate` choose them, one for each job."""
     n = system.size
-    own = _highest_frequency(values, n) if rows.all_have_mass else fastest_rate(rows)
+    own = _highest_frequency(values, n) if rows.all_have_mass else fastest_rate(system, rows)
     highest = np.where(own > 0.0, own, 1.0)
     swing = packing.schedule_frequency(system)
     pace = np.maximum(own, swing)

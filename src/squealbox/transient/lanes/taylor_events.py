@@ -60,15 +60,15 @@ def _looked_at(
     watched = [*functions, *(where(d[0] > 0.0, d, -d) for d in kinks)]
     part = clear.end * (1.0 / PARTS)
     tiny = clear.end < TINY
-    parts = _parts(watched, part, moving, tiny, order)
+    parts = _parts(watched, len(functions), part, moving, tiny, order)
     doubtful = parts[0][0].doubtful
     for each in [each for row in parts for each in row][1:]:
         doubtful = doubtful | each.doubtful
     return if_any(doubtful, lambda: _ended(watched, len(functions), parts, part, tiny, clear, order), clear)
 
 
-def _parts(watched: list[Any], part: Lanes, moving: Truth, tiny: Truth, order: int) -> list[list[Part]]:
-    """For each part of the step, each function."""
+def _parts(watched: list[Any], events: int, part: Lanes, moving: Truth, tiny: Truth, order: int) -> list[list[Part]]:
+    """For each part of the step, each function; a kink that is never left, as of what rests, is none."""
     out: list[list[Part]] = [[] for _ in range(PARTS)]
     for number, function in enumerate(watched):
         if not isinstance(function, Series):
@@ -80,6 +80,8 @@ def _parts(watched: list[Any], part: Lanes, moving: Truth, tiny: Truth, order: i
             f1, g1 = value_and_slope(function, part * float(i), order)
             ends = (f0, g0 * part, f1, g1 * part)
             sure, crosses, leaves = _surely(*ends, part, tiny, slack if i == 1 else None)
+            if number >= events:
+                sure = sure | (abs(f0) + abs(g0) + abs(f1) + abs(g1) <= 0.0)
             out[i - 1].append(Part(number, ends, ~sure & moving, crosses, leaves))
             f0, g0 = f1, g1
     return out

@@ -17,7 +17,7 @@ from squealbox.transient.lanes.table import Jobs, tabulate
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.observers import Observer
-from squealbox.transient.widened import base_of, start_of
+from squealbox.transient.widened import base_of, parted, start_of
 
 BLOCK = 65_536  # trajectories whose parameters lie in memory together
 GROUPS = 2  # groups of sixteen lanes that a thread advances in turn: one hides the latency of the other
@@ -61,8 +61,9 @@ class Work:
         count = part.stop - part.start
         self.system = self.system or base_of(system)
         batch = system.shape if system.shape != () else (count,)
-        start = _starts(base_of(system), self.start, self.begin, shape, part, batch)
-        start = start_of(system, *start, isinstance(self.start, str) and self.start == "sliding", self.begin)
+        given, z = parted("simulate_ensemble", self.start, system)
+        start = _starts(base_of(system), given, self.begin, shape, part, batch)
+        start = start_of(system, *start, z, isinstance(self.start, str) and self.start == "sliding", self.begin)
         watches = tuple(each.watch() for each in self.observers)
         begins = [self.begin + (1.0 - each.last) * self.duration for each in self.observers]
         coefficients = [x for each, t in zip(self.observers, begins, strict=True) for x in (t, *each.settings)]
