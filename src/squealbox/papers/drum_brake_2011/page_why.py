@@ -145,7 +145,7 @@ def _outcome(whole: Any, own: list[str]) -> tuple[Any, ...]:
         choices.setdefault((*family_search.signs_of(row), measure, ", ".join(ids)), []).append(row)
     rows = tuple(
         (
-            Cell(", ".join(choice[:3]), f"N in friction: {choice[3]}"), choice[3], f"{len(members)}",
+            ", ".join(choice[:3]), choice[3], f"{len(members)}",
             _range([row[4] for row in members]), _range([row[5] for row in members]), choice[4], choice[5],
         )
         for choice, members in choices.items()
