@@ -103,11 +103,11 @@ def _choices(folder: Path, searched: Mapping[str, Any]) -> tuple[Section, ...]:
 
 def _readings(readings: list[str], found: list[record.Record]) -> Table:
     rows = (_reading_row(reading, [each for each in found if each["reading"] == reading]) for reading in readings)
-    head = ("reading", "what it is", "agree", "disagree", "not decidable", "parts that agree")
+    head = ("reading", "agree", "disagree", "not decidable", "parts that agree")
     return Table(head, tuple(rows), "*: inferred from the paper's numbers, not printed.")
 
 
-def _reading_row(reading: str, found: list[record.Record]) -> tuple[str, ...]:
+def _reading_row(reading: str, found: list[record.Record]) -> tuple[str | Cell, ...]:
     numbers = record.count(found)
     verdicts = [
         part["roads"][road]["verdict"]
@@ -115,8 +115,7 @@ def _reading_row(reading: str, found: list[record.Record]) -> tuple[str, ...]:
     ]  # fmt: skip
     parts = f"{verdicts.count(AGREE)} of {len(verdicts)}"
     return (
-        page_claims.shown_name(reading),
-        READING_MEANS[reading],
+        Cell(page_claims.shown_name(reading), READING_MEANS[reading]),
         *(str(number) for number in numbers.values()),
         parts,
     )

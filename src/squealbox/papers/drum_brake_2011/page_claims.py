@@ -138,22 +138,24 @@ def _finite(answer: Mapping[str, Any]) -> bool:
 
 
 def _table(once: Records) -> Table:
+    """Two columns, so that a phone shows both: the claim, and what became of it."""
     rows = []
     for each in once:
         met = each["verdict"] == AGREE
         if met:
-            state = Cell("met", f"by {', '.join(shown_name(name) for name in each['agree'])}", AGREE)
+            state, why = "met", f"by {', '.join(shown_name(name) for name in each['agree'])}"
         elif each["id"] in EXCLUDED:
-            state = Cell("excluded", f"beside {EXCLUDED[each['id']]}")
+            state, why = "excluded", f"beside {EXCLUDED[each['id']]}"
         else:
             other = f"; {', '.join(each['otherwise'])} with the other measure of amplitude" if each["otherwise"] else ""
-            state = Cell("open", f"nearest: {shown_name(each['reading'])}{other}")
+            state, why = "open", f"nearest: {shown_name(each['reading'])}{other}"
         what = each["computed"].replace("_", " ")
-        measure = f"amplitudes {each['amplitude']}" if each["amplitude"] else ""
-        computed = f"computed: {what}" + (f"; {measure}" if measure else "")
-        rows.append((Cell(each["id"], each["statement"]), state, Cell(each["published"], computed)))
+        measure = f", amplitudes {each['amplitude']}" if each["amplitude"] else ""
+        told = f"computed {what}{measure}; {why}"
+        claim = Cell(f"{each['id']}: {each['published']}", each["statement"])
+        rows.append((claim, Cell(state, told, AGREE if met else "")))
     caption = "By the best reading of each claim. A claim is met when all of its parts that count are."
-    return Table(("claim", "", "published, and computed by the best reading"), tuple(rows), caption)
+    return Table(("claim", "what became of it"), tuple(rows), caption)
 
 
 def _by_reading(found: Records) -> Table:
