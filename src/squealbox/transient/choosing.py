@@ -3,13 +3,17 @@
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from squealbox import friction, schedules
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Schedule
 from squealbox.system import InvalidSystem, System
+from squealbox.transient.latest import Latest
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.own_laws import texts_of, untraced
 
+USUAL = Latest()
 LARGE = 160  # products of an acceleration up to which a generated step is written out
 
 
@@ -24,6 +28,11 @@ def check_series(system: System, contact: str) -> None:
 
 def usual_method(system: System, contact: str) -> str:
     """The method of a run that names none: a Taylor series wherever the equation has one for the generated step."""
+    found: str = USUAL.of(system, contact, lambda: _usual_method(system, contact))
+    return found
+
+
+def _usual_method(system: System, contact: str) -> str:
     n, m = system.size, len(system.contacts)
     small = n * (2 * n + 4 * m) + m * m <= LARGE
     return TAYLOR if contact == "exact" and small and not no_series(system) else "dormand-prince-8"
@@ -40,7 +49,18 @@ def no_series(system: System) -> str:
         return "a schedule of measured points has no Taylor series"
     if any(isinstance(c.law, friction.Table) for c in contacts):
         return "a friction law of measured points has no Taylor series"
+    if system.shape == () and shares_vary(system):
+        return "contacts that hold the same motion share its force by limits that vary within a step"
     return next((why for c in contacts if (own := texts_of(c.law)) and (why := untraced(own[0]))), "")
+
+
+def shares_vary(system: System) -> bool:
+    """Whether contacts that hold the same motion share its force by limits that vary: a step holds the shares fixed."""
+    along = [c for c in system.contacts if np.any(c.t) and np.any(c.d)]
+    rows = np.array([c.t for c in along], dtype=float).reshape(-1, system.size)
+    if len(along) < 2 or np.linalg.matrix_rank(rows) == len(along):
+        return False
+    return any(np.any(c.n) or isinstance(c.N0, Schedule) for c in along)
 
 
 def chosen_method(method: str | Method, rtol: float | None, atol: Any) -> Method:

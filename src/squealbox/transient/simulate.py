@@ -12,6 +12,7 @@ from squealbox.system import InvalidSystem, System, as_system, equilibrium, no_r
 from squealbox.transient import _march, _motion, cautions, moreau, packing
 from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
 from squealbox.transient.choosing import check_series, chosen_method, usual_method
+from squealbox.transient.latest import Latest
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.own_laws import own_texts
@@ -21,7 +22,6 @@ from squealbox.transient.widened import base_of, parted, start_of
 
 SCHEMES = {"exact": EXACT, "raw": RAW, "tanh": TANH, "smooth": ARCTAN, "arctan": ARCTAN}
 TIME_STEPPING = "time-stepping"
-KEPT = 16  # designs whose systems are at hand
 ROWS = 32_768  # room for steps at first; memory is touched only as rows are written
 BUDGET = (5_000, 50_000)  # least and most steps between two looks at the keyboard
 LOOK = 0.02  # s that should pass between them
@@ -128,16 +128,13 @@ def simulate(
     return run.trajectory(settings, outcome)
 
 
-LATEST: dict[int, tuple[Any, System]] = {}  # designs are frozen: the same one has the same system
+SYSTEMS = Latest(16)
 
 
 def system_of(design_or_system: Any) -> System:
-    """The system in time of a design; that of the latest designs is at hand."""
-    found = LATEST.pop(id(design_or_system), None) or (design_or_system, in_time(as_system(design_or_system)))
-    LATEST[id(design_or_system)] = found
-    if len(LATEST) > KEPT:
-        LATEST.pop(next(iter(LATEST)))
-    return found[1]
+    """The system in time of a design."""
+    found: System = SYSTEMS.of(design_or_system, (), lambda: in_time(as_system(design_or_system)))
+    return found
 
 
 class _Run:

@@ -13,13 +13,13 @@ from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.kernel import lane_kernel
 from squealbox.transient.lanes.shape import Rows, layout, parameter_rows
 from squealbox.transient.lanes.table import Jobs, tabulate
+from squealbox.transient.latest import Latest
 from squealbox.transient.methods import Method
 
 RUNNING = -1.0  # in the row of results of a run that has not ended
 FIRST = 2_000  # trials between the first two looks at the keyboard
 MOST = 200_000
 LOOK = 0.02  # s that should pass between two
-MOST_KEPT = 64
 ROWS = 4_096  # room for rows of output at first
 
 
@@ -34,19 +34,15 @@ class Prepared:
     kernel: Any
 
 
-KEPT: dict[Any, tuple[System, Prepared]] = {}  # of the latest systems, told apart by identity, for they are frozen
+KEPT = Latest()
 
 
 def prepared(system: System, method: Method, duration: float, begin: float) -> Prepared:
     """The table of one job, the places of its rows, its record and its kernel."""
     atol = None if method.atol is None else np.asarray(method.atol, dtype=float).tobytes()
-    how = method.tableau, method.rtol, atol, method.first_step, method.largest_step, method.most_steps
-    key = id(system), *how, duration, begin
-    found = KEPT.pop(key, None) or (system, _prepared(system, method, duration, begin))
-    KEPT[key] = found
-    if len(KEPT) > MOST_KEPT:
-        KEPT.pop(next(iter(KEPT)))
-    return found[1]
+    how = method.tableau, method.rtol, atol, method.first_step, method.largest_step, method.most_steps, duration, begin
+    found: Prepared = KEPT.of(system, how, lambda: _prepared(system, method, duration, begin))
+    return found
 
 
 def _prepared(system: System, method: Method, duration: float, begin: float) -> Prepared:
