@@ -107,7 +107,22 @@ class Slow:
         self.damped = self.light & np.any(system.C != 0.0, axis=1)
         self.static_rows = self.light & ~self.damped
         self.step = 2.0 * np.pi / 16.0 / max(*self.angular_frequencies(), 1e-3)
+        reach = np.linalg.norm(self.d @ self.inverse, axis=1)
+        self.reach = np.where(reach > 0.0, reach, 1.0)  # contacts on one motion come to their limits together
         self.modes, self.fastest = [1] * self.m, 0.0
+        self.alike = [(a, b, sign) for b in range(self.m) for a in range(b) if (sign := self.on_one_motion(a, b))]
+
+    def on_one_motion(self, a, b):
+        """The sign between the speeds of two contacts that always slide together; 0 where they do not."""
+        size = np.linalg.norm(self.t[b]) / max(np.linalg.norm(self.t[a]), 1e-300)
+        if not (self.rubs[a] and self.rubs[b]):
+            return 0
+        for sign in (1, -1):
+            one, other = self.system.contacts[a].V, self.system.contacts[b].V
+            held = not hasattr(one, "terms") and not hasattr(other, "terms") and np.isclose(sign * size * one, other)
+            if np.allclose(self.t[b], sign * size * self.t[a]) and (held or (one is other and sign * size == 1.0)):
+                return sign
+        return 0
 
     def angular_frequencies(self):
         """Of the system without friction and of its harmonic schedules [rad/s]."""
@@ -160,7 +175,7 @@ class Slow:
             elif mode != STICK:
                 force[c] = slip * normal[c]
             if mode == STICK:
-                weight = 1.0 if self.rigid[c] else max(self.static[c] * normal[c], 0.0)
+                weight = 1.0 if self.rigid[c] else np.sqrt(max(self.static[c] * normal[c], 0.0) / self.reach[c])
                 unknown.append((c, self.t[c], float(self.speed_given[c][1](t)), self.d[c], weight, False))
         a = self.inverse @ (push + self.d.T @ force)
         if unknown:
@@ -221,6 +236,8 @@ class Slow:
         choices = self.choices(t, y)
         best, least = None, np.inf
         combinations = sorted(product(*choices), key=lambda modes: -sum(mode == STICK for mode in modes))
+        combinations = [x for x in combinations if all(OPEN in (x[a], x[b]) or x[b] == s * x[a]
+                                                       for a, b, s in self.alike)]  # fmt: skip
         for length in (1e-4, 1e-6, 1e-2):
             stretch = min(length * self.step, until - t)
             for modes in combinations:

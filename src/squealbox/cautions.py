@@ -5,9 +5,36 @@ from typing import Any
 import numpy as np
 
 from squealbox.friction import Table
+from squealbox.schedules import value_at
 from squealbox.system import System
 
+SMALL = 0.25  # rad: beyond it sin differs from its angle by more than 1 %, and the equation knows only the angle
 PULL = 1e-9  # of the largest normal force: less is round-off
+
+
+def along(system: System, q: Any, qd: Any) -> tuple[str, ...]:
+    """As :func:`out_of_range`, from the displacements and velocities (..., n) of a motion under constant N0 and V.
+
+    Rotations beyond `SMALL` are said too: the equation is linear in them.
+
+    >>> wheel = System([[1.0]], [[0.0]], [[1.0]], 0.0, (), names=("wheel_turn",))
+    >>> along(wheel, [[0.5]], [[0.0]])
+    ('wheel_turn turns by 28.6 deg: the equation is linear in rotations and holds for small ones',)
+    """
+    q, qd = np.atleast_2d(np.asarray(q, dtype=float)), np.atleast_2d(np.asarray(qd, dtype=float))
+    n, _, t, _ = system.rows
+    N0, V = (np.array([float(value_at(getattr(c, x), 0.0)) for c in system.contacts]) for x in ("N0", "V"))
+    return (*out_of_range(system, N0 + q @ n.T, V - qd @ t.T), *turned(system, q))
+
+
+def turned(system: System, q: Any) -> tuple[str, ...]:
+    """A sentence for each rotation (..., n) that leaves the range of small angles."""
+    most = np.max(np.abs(np.nan_to_num(np.atleast_2d(q))), axis=0, initial=0.0)
+    return tuple(
+        f"{name} turns by {np.rad2deg(size):.3g} deg: the equation is linear in rotations and holds for small ones"
+        for name, size, unit in zip(system.names, most, system.units, strict=True)
+        if unit == "rad" and size > SMALL
+    )
 
 
 def out_of_range(system: System, normal_force: Any, sliding_velocity: Any) -> tuple[str, ...]:

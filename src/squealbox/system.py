@@ -43,9 +43,8 @@ class System(DataSheet):
     M, C, K : shape (..., n, n), mass [kg], damping [N s/m], stiffness [N/m]; C and K may be non-symmetric
     load : f, shape (..., n) [N], or a schedule whose value has that shape
     contacts : the contacts, one by one or as a table :class:`Contacts`
-    names : names of the degrees of freedom
+    names, angles : of the degrees of freedom; of those that are rotations [rad], as what ends in ``_turn`` is anyway
     loops : controllers that sense and act (`squealbox.loops`)
-    angles : names of those that are rotations [rad]; a name that ends in ``_turn`` is one without being listed
 
     M, C and K may be SciPy sparse arrays, of one system: steady sliding, linearisation, complex modes and their energy
     then stay sparse, and every other analysis says in one sentence that it wants a reduced system.
@@ -363,8 +362,7 @@ def _sliding(system: System, time: float) -> tuple[Any, Any, Any]:
     shape, count = system.shape, len(system.contacts)
     force, speed = np.zeros((*shape, count)), np.zeros((*shape, count))
     for i, contact in enumerate(system.contacts):
-        force[..., i] = value_at(contact.N0, time)
-        speed[..., i] = value_at(contact.V, time)
+        force[..., i], speed[..., i] = value_at(contact.N0, time), value_at(contact.V, time)
     return force, speed, _by_law(system, lambda law, speed: law.mu(speed), speed)
 
 
@@ -373,9 +371,8 @@ def _by_law(system: System, ask: Callable[[Any, Any], Any], speed: Any) -> Any:
     found = np.zeros(np.shape(speed))
     for law, contacts in system.alike:
         single = len(contacts) == 1 or any(np.ndim(value) for value in law.coefficients())
-        for some in [[i] for i in contacts] if single else [list(contacts)]:
-            at = speed[..., some[0]] if single else speed[..., some]
-            found[..., some[0] if single else some] = ask(law, at)
+        for some in contacts if single else (list(contacts),):
+            found[..., some] = ask(law, speed[..., some])
     return found
 
 
@@ -399,7 +396,5 @@ def _residual(system: System, time: float, q: Any, force: Any, speed: Any, mu: A
 def _normal_forces(system: System, time: float, q: Any) -> Any:
     if not system.contacts:
         return np.zeros((*system.shape, 0))
-    force, _, _ = _sliding(system, time)
-    normal = force + felt(system.rows[0], q)
-    lifts = np.array([contact.unilateral for contact in system.contacts])
-    return np.where(lifts, np.maximum(normal, 0.0), normal)
+    normal = _sliding(system, time)[0] + felt(system.rows[0], q)
+    return np.where([contact.unilateral for contact in system.contacts], np.maximum(normal, 0.0), normal)

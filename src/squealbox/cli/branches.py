@@ -118,8 +118,9 @@ def _said(name: str, one: Branch, design: "Design", varied: "Axis") -> str:
         number, unit = readable(design, varied, value)
         return f"{float(number):.7g} {unit}".rstrip()
 
-    dofs = one.inputs["system"].names
-    sizes = [f"{dof} {np.min(a):.3g} to {np.max(a):.3g} m" for dof, a in zip(dofs, one.amplitude.T, strict=True)]
+    system = one.inputs["system"]
+    about = zip(system.names, one.amplitude.T, system.units, strict=True)
+    sizes = [f"{dof} {np.min(a):.3g} to {np.max(a):.3g} {unit}" for dof, a, unit in about]
     over = f"{varied.name} {shown(np.min(one.value))} to {shown(np.max(one.value))}"
     pitch = f"{1.0 / np.max(one.period):.5g} to {1.0 / np.min(one.period):.5g} Hz"
     lines = [f"{name}: {len(one.value)} cycles, {over}, {pitch}, amplitude {', '.join(sizes)}"]
@@ -128,6 +129,7 @@ def _said(name: str, one: Branch, design: "Design", varied: "Axis") -> str:
     for kind, value in zip(one.special_kind, one.special_value, strict=True):
         lines.append(f"  {str(kind).replace('_', ' ')} at {shown(value)}")
     lines.append(f"  ends: {one.outcome.message or one.outcome}")
+    lines += [f"  Caution: {one.caution}"] if one.caution else []
     return "\n".join(lines)
 
 

@@ -163,6 +163,7 @@ def _said(result: BifurcationDiagram, design: "Design", varied: "Axis") -> str:
     both = result.value[result.coexist]
     if both.size:
         lines.append(f"Rest and vibration coexist at {both.size} values, {shown(both.min())} to {shown(both.max())}.")
+    lines += [f"Caution: {result.caution}"] if result.caution else []
     if not result.outcome.ok:
         lines.append(f"Note: {result.outcome.message}")
     return "\n".join(lines)

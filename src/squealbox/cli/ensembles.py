@@ -103,6 +103,7 @@ def _summary(many: Ensemble, plane: Plane) -> str:
     amplitude, frequency, which, unit = _largest(many, plane.design)
     ended = ", ".join(f"{np.count_nonzero(many.ended == name)} {name}" for name in np.unique(many.ended))
     lines = [f"{many.ended.size} transients of {many.settings['duration']:g} s from rest: {ended}; {many.rate:.0f}/s"]
+    lines += [f"Caution: {many.caution}"] if many.caution else []
     if np.all(np.isnan(amplitude)):
         return "\n".join(lines)
     column, row = np.unravel_index(np.nanargmax(amplitude), amplitude.shape)

@@ -10,7 +10,18 @@ from squealbox.limit_cycles.estimates.curves import AVERAGED, DESCRIBING
 from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import plot
 from squealbox.plots.facts import read_of, unit_at
-from squealbox.plots.style import WIDTH, drawing, figure_of, line, note, number, panels, quantity_label, scaled
+from squealbox.plots.style import (
+    WIDTH,
+    cautioned,
+    drawing,
+    figure_of,
+    line,
+    note,
+    number,
+    panels,
+    quantity_label,
+    scaled,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -128,6 +139,7 @@ def branch_diagram(
         panel.set_ylim(bottom=0.0)
         panel.margins(x=0.05)
         _legend(panel, alone=axes is None)
+        cautioned(panel, [one.caution for one in several], axes is None)
         return figure_of(panel)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from squealbox.limit_cycles import BifurcationDiagram, Branch, Coexistence
 from squealbox.plots.dispatch import plot
 from squealbox.plots.facts import unit_at, unit_of
-from squealbox.plots.style import WIDTH, drawing, figure_of, note, panels, quantity_label, scaled, styled
+from squealbox.plots.style import WIDTH, cautioned, drawing, figure_of, note, panels, quantity_label, scaled, styled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -72,6 +72,7 @@ def bifurcation_diagram(
         panel.set_xlim(*(diagram.value[[0, -1]] / scale) if len(diagram.value) > 1 else (None, None))
         panel.margins(y=0.08)
         panel.legend(loc="best")
+        cautioned(panel, [diagram.caution, *(one.caution for one in several)], axes is None)
         return figure_of(panel)
 
 
@@ -93,6 +94,8 @@ def amplitude_and_section(
         panel.get_legend().remove()
     with styled():
         figure.legend(handles, texts, loc="outside lower center", ncols=4)
+        given = [branches] if isinstance(branches, Branch) else branches
+        cautioned(above, [diagram.caution, *(one.caution for one in given)], True)
     return figure
 
 

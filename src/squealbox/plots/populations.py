@@ -8,7 +8,7 @@ from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import plot
 from squealbox.plots.facts import unit_of
 from squealbox.plots.maps import amplitude_map
-from squealbox.plots.style import LINES, drawing, figure_of, quantity_label, scaled
+from squealbox.plots.style import LINES, cautioned, drawing, figure_of, quantity_label, scaled
 from squealbox.system import as_system
 from squealbox.transient import Ensemble
 
@@ -40,8 +40,10 @@ def ensemble_overview(found: Ensemble, *, observer: str | None = None, title: st
     if len(found.shape) == 2 and len(found.parameters) == 2:
         (x_name, x), (y_name, y) = found.parameters.items()
         x, y = (np.broadcast_to(each, found.shape) for each in (x, y))
-        return amplitude_map(x[:, 0], y[0], values.T, x_name=x_name, x_unit=unit_of(found, x_name), y_name=y_name,
+        figure = amplitude_map(x[:, 0], y[0], values.T, x_name=x_name, x_unit=unit_of(found, x_name), y_name=y_name,
                              y_unit=unit_of(found, y_name), unit=unit, name=label, title=title, axes=axes)  # fmt: skip
+        cautioned(figure.axes[0], [found.caution], axes is None)
+        return figure
     if len(found.parameters) == 1:
         key, across = next(iter(found.parameters.items()))
         along, across = quantity_label(key, unit_of(found, key)), np.broadcast_to(across, found.shape).ravel()
@@ -52,4 +54,5 @@ def ensemble_overview(found: Ensemble, *, observer: str | None = None, title: st
     with drawing(axes, height=2.6) as panel:
         panel.plot(across, values / factor, ".", color=LINES[0][0], markersize=3.0)
         panel.set(xlabel=along, ylabel=quantity_label(label, read), title=title)
+        cautioned(panel, [found.caution], axes is None)
         return figure_of(panel)

@@ -6,6 +6,7 @@ matplotlib's objects, never with pyplot, so none is left open and no display is 
 
 import io
 import os
+import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -23,6 +24,7 @@ MINUS = "\N{MINUS SIGN}"
 WIDTH = 7.0  # inches: the text width of a journal page
 COLUMN = 3.4  # one column of two
 ROW = 2.1  # height of a row of panels
+CHARACTERS = 19.0  # of a caution, in an inch
 
 # The colours of Okabe and Ito, in an order whose greys also differ; each with its own dash and marker.
 LINES: tuple[tuple[str, Any, str], ...] = (
@@ -238,6 +240,16 @@ def _laid_out(figure: "Figure") -> Iterator[None]:
         yield
     finally:
         figure.set_layout_engine(engine)
+
+
+def cautioned(panel: "Axes", cautions: Sequence[str], alone: bool) -> None:
+    """Under a figure of one's own, what its results warn of, in at most four lines; nothing where there is none."""
+    said = "; ".join(dict.fromkeys(filter(None, cautions)))
+    if not said or not alone:
+        return
+    figure = figure_of(panel)
+    width = max(int(figure.get_size_inches()[0] * CHARACTERS), 40)
+    figure.supxlabel(textwrap.fill(f"Caution: {said}", width, max_lines=4, placeholder=" ..."), fontsize=6.5)
 
 
 def note(axes: "Axes", text: str, where: str = "upper right") -> None:

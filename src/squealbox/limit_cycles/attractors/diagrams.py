@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.cautions import along
 from squealbox.limit_cycles.attractors.sections import Section, passages
 from squealbox.limit_cycles.attractors.settling import (
     FAILED,
@@ -35,6 +36,7 @@ SWEEPS = ("up", "down", "rest")
 NUDGE = 1e-3  # of V, on every velocity
 STRETCHES = 4
 FINE = 128  # samples of the fastest period, of the run behind a section
+SEEN = 3  # returns of the largest motion that are looked at for cautions
 LONGEST = 20.0  # slowest periods: of one return at most, by which that run is measured
 AT_ONCE = 2_000_000  # samples
 
@@ -57,6 +59,7 @@ class BifurcationDiagram(Result):
     dofs: tuple[str, ...] = ()
     read: str = ""
     section: str = ""
+    caution: str = ""
 
     @property
     def amplitude(self) -> Any:
@@ -78,6 +81,7 @@ class BifurcationDiagram(Result):
         here = self.value[self.coexist]
         if here.size:
             lines.append(f"rest and vibration coexist at {here.size} values, {here.min():.5g} to {here.max():.5g}")
+        lines += [f"Caution: {self.caution}"] if self.caution else []
         return "\n".join(lines)
 
 
@@ -160,8 +164,26 @@ def bifurcation_diagram(
         state=np.array([np.concatenate([each.q, each.qd], axis=-1) for each in ends]),
         crossings=np.array(read),
         dofs=tuple(batch.system.names), read="" if section is None else section.read,
-        section="" if section is None else str(section),
+        section="" if section is None else str(section), caution=_caution(batch, ends, parameter, values, threads),
     )  # fmt: skip
+
+
+def _caution(batch: Batch, ends: list[Settled], parameter: str, values: Any, threads: Any) -> str:
+    """Where the motions leave the range of their model: the largest of each sweep, over some of its periods."""
+    largest: dict[int, Settled] = {}
+    for each in ends:
+        size = np.max(each.high - each.low, axis=-1)
+        size = np.where((each.kind == FAILED) | ~np.isfinite(size), -1.0, size)
+        if np.max(size) >= 0.0:
+            largest.setdefault(int(np.argmax(size)), each)
+    said: dict[str, None] = {}
+    for i, each in largest.items():
+        part, at = batch.take([i]), np.array([i])
+        times = _instants(each.take(at), part.system, SEEN)
+        _, q, qd = part.sampled(each.q[at], each.qd[at], times, threads)
+        for one in along(part.one, q[0], qd[0]):
+            said[f"at {parameter} = {values[i]:.6g} {one}"] = None
+    return "; ".join(said)
 
 
 def _drawn(batch: Batch, scales: Scales, starts: int, seed: int) -> list[Any]:

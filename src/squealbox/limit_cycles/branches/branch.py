@@ -8,11 +8,12 @@ Where a path could not be corrected between two points, the value is their middl
 such cycle.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
+from squealbox.cautions import along
 from squealbox.continuation import PathPoint, StepControl, follow
 from squealbox.limit_cycles.branches.doubling import doubled
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
@@ -56,6 +57,7 @@ class Branch(Result):
     special_uncertainty: Any = quantity("special", "", "of the value; NaN where it lies midway between two points")
     special_test: Any = quantity("special", "", "what is left of the test function")
     parameter: str = ""
+    caution: str = ""
     points: tuple[BranchPoint, ...] = field(default=(), metadata={"transient": True})
     family: Any = field(default=None, metadata={"transient": True})
 
@@ -82,6 +84,7 @@ class Branch(Result):
         ended = f"{self.outcome} {self.outcome.message}".rstrip()
         lines = [f"{walked}, {int(np.sum(self.stable))} stable; ended: {ended}"]
         lines += [f"{kind} at {value:.8g}" for kind, value in zip(self.special_kind, self.special_value, strict=True)]
+        lines += [f"Caution: {self.caution}"] if self.caution else []
         return "\n".join(lines)
 
 
@@ -168,7 +171,23 @@ def branch(
     if ends_at_grazing and done.outcome == "grazing" and len(done.visited) > 1:
         done.drop_last()
         done.outcome = _grazing_outcome(specials, done.visited[-1].p)
-    return _collect(done.visited, done.seen, specials, done.outcome, parameter, settings, make(middle), design)
+    found = _collect(done.visited, done.seen, specials, done.outcome, parameter, settings, make(middle), design)
+    return replace(found, caution=_caution(path, done.visited, found))
+
+
+def _caution(path: Any, visited: list[PathPoint], found: Branch) -> str:
+    """Where the cycles leave the range of their model: at both ends of the branch and where they are largest."""
+    if not visited:
+        return ""
+    units = np.array(found.inputs["system"].units)
+    ranks = found.amplitude / np.max(found.amplitude, axis=0, where=np.isfinite(found.amplitude), initial=1e-300)
+    places = {0, len(visited) - 1, *(int(np.argmax(ranks[:, i])) for i in range(units.size))}
+    said: dict[str, str] = {}  # the contact or freedom, and what is said of the largest cycle first
+    for i in sorted(places, key=lambda i: -float(np.max(ranks[i]))):
+        cycle = path.cycle(visited[i].x, visited[i].p)
+        for each in along(cycle.system, cycle.q, cycle.qd):
+            said.setdefault(each.split(":")[0] + each[-20:], f"at {found.parameter} = {visited[i].p:.6g} {each}")
+    return "; ".join(said.values())
 
 
 def _chosen(make: Any, start: Any, value: float, contact: str) -> tuple[str, Any]:

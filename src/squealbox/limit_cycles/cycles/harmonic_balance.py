@@ -17,6 +17,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from squealbox.cautions import along
 from squealbox.limit_cycles.cycles.cycle import Cycle, extremes
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.shooting import CONTACTS
@@ -326,4 +327,5 @@ def cycle_of(
         t=t, q=states[:, :n], qd=states[:, n:], sliding_velocity=field.contact_state(states)[1],
         mode=balance.modes(states).astype(np.int8), multipliers=multipliers, lowest=low, highest=high,
         event_time=none, event_contact=none.astype(np.int64), event_mode=none.astype(np.int8), error=float(error),
+        caution="; ".join(along(field.system, states[:, :n], states[:, n:])) if outcome.ok else "",
     )  # fmt: skip

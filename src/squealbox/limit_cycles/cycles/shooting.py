@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.cautions import out_of_range
+from squealbox.cautions import out_of_range, turned
 from squealbox.limit_cycles.cycles.cycle import Cycle, extremes
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.rounds import rounds
@@ -130,7 +130,8 @@ def cycle_through(
         lowest=low, highest=high, event_time=run.event_time, event_contact=run.event_contact,
         event_mode=run.event_mode, error=float(error),
         caution="; ".join([*filter(None, [_caution(flights or [])]),
-                           *out_of_range(field.system, run.normal_force, run.sliding_velocity)]),
+                           *out_of_range(field.system, run.normal_force, run.sliding_velocity),
+                           *turned(field.system, run.q)]),
     )  # fmt: skip
 
 
