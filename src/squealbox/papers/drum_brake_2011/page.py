@@ -85,6 +85,7 @@ def page(
                 Section(page_claims.shown_name(name), _reading(name, studies[name], found, folder / name), folded=True)
                 for name in (*others, RECONSTRUCTED)
             )),
+            Section("Every number, its tolerance and why", page_claims.every_number(found)),
             Section("Assumptions and contradictions", _assumptions()),
             Section("Model and friction law", (_picture(folder, "fig1"), _picture(folder, "fig2"))),
             *_choices(folder, searched),

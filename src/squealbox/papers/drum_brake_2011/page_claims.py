@@ -30,11 +30,16 @@ def blocks(found: Records) -> tuple[Any, ...]:
             Tiles(_tiles(found, once)),
             _table(once),
             Section("By reading, with both measures of amplitude", (_by_reading(found),), folded=True),
-            Section("Every number, its tolerance and why, claim by claim", tuple(
-                Section(f"{each['id']}: {each['statement']}", _details(each["id"], found), folded=True) for each in once
-            ), folded=True),
         )),
     )  # fmt: skip
+
+
+def every_number(found: Records) -> tuple[Section, ...]:
+    """Each claim with all its numbers, folded; near the end of the page, because print unfolds them."""
+    return tuple(
+        Section(f"{each['id']}: {each['statement']}", _details(each["id"], found), folded=True)
+        for each in record.overall(found)
+    )
 
 
 def tally(found: Records, once: Records) -> str:
@@ -154,7 +159,10 @@ def _table(once: Records) -> Table:
         told = f"computed {what}{measure}; {why}"
         claim = Cell(f"{each['id']}: {each['published']}", each["statement"])
         rows.append((claim, Cell(state, told, AGREE if met else "")))
-    caption = "By the best reading of each claim. A claim is met when all of its parts that count are."
+    caption = (
+        "By the best reading of each claim. A claim is met when all of its parts that count are. Every number, its "
+        "tolerance and the reason of the tolerance stand claim by claim below the readings."
+    )
     return Table(("claim", "what became of it"), tuple(rows), caption)
 
 
