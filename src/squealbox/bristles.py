@@ -81,9 +81,9 @@ class LuGre(BristleLaw):
         F = N (s0 z + s1 z' + s2 v),   z' = v - s0 |v| z/g(v),   g = kinetic + (static - kinetic) exp(-(v/speed)^2)
 
     with s0 = stiffness, s1 = damping, s2 = viscous; steady sliding has mu = g(|v|) + s2 |v|, and a contact at rest the
-    stiffness N s0. It only takes energy out while s1 |v| <= 4 g(|v|); a run that went beyond says so. Stiff: z settles at
-    s0 |v|/g, so 50 ms of the drum at s0 = 1e5/m take 1,300 Taylor steps at 0.5 m/s and 13,000 at 5 m/s, and in proportion
-    to s0.
+    stiffness N s0. It only takes energy out while s1 |v| <= 4 g(|v|); a run that went beyond says so. Stiff: z settles
+    at s0 |v|/g, so 50 ms of the drum at s0 = 1e5/m take 1,300 Taylor steps at 0.5 m/s and 13,000 at 5 m/s, and in
+    proportion to s0.
 
     Source: Canudas de Wit, Olsson, Astrom and Lischinsky 1995, IEEE Transactions on Automatic Control 40, 419-425.
 

@@ -7,7 +7,16 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from squealbox import (
-    PID, ActiveForce, Contact, Controlled, Coulomb, DrumBrake, System, complex_modes, simulate, simulate_ensemble,
+    PID,
+    ActiveForce,
+    Contact,
+    Controlled,
+    Coulomb,
+    DrumBrake,
+    System,
+    complex_modes,
+    simulate,
+    simulate_ensemble,
 )  # fmt: skip
 from squealbox.limit_cycles import shooting
 from squealbox.system import InvalidSystem, as_system, equilibrium

@@ -37,8 +37,8 @@ def of_a_run(system: System, lowest: Any, fastest: Any) -> list[str]:
             )
         if contact.law.has_memory and np.any(contact.law.feeds(np.linspace(0.0, float(fastest[c]), SPEEDS))):
             said.append(
-                f"{title(system, c)}: at sliding speeds up to {fastest[c]:.4g} m/s the damping of its bristles is above "
-                "4 g/|v|, where they may feed energy in"
+                f"{title(system, c)}: at sliding speeds up to {fastest[c]:.4g} m/s the damping of its bristles is "
+                "above 4 g/|v|, where they may feed energy in"
             )
     return said
 
