@@ -117,7 +117,8 @@ def simulate(
     if contact == TIME_STEPPING:
         return moreau.time_stepping(system, duration, q, qd, start_time, requested, step)
     if chosen.tableau == TAYLOR:
-        check_series(system, contact)
+        if method is not None:
+            check_series(system, contact)
         return _by_series(system, chosen, contact, width, q, qd, start_time, duration, requested, progress)
     run = _Run(system, chosen, SCHEMES[contact], width, q, qd, start_time, requested)
     outcome = run.to(start_time + duration, duration, progress)
