@@ -2,5 +2,5 @@
 
 `translation` turns plain functions over numbers, arrays and records into LLVM's text, one pass, no inference but that
 of the arguments; `arithmetic` writes their operations, `kinds` says what a value is; `machine` optimises the text,
-keeps the machine code on disk and calls it. Depends on: parameters.
+keeps the machine code on disk and calls it. Depends on: no room.
 """

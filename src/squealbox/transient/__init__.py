@@ -1,4 +1,4 @@
-"""What happens in time? Depends on: system, signals, friction, schedules, result; numba only when a kernel is needed.
+"""What happens in time? Depends on: compiled, system, signals, friction, schedules, result; llvmlite when a kernel is made.
 
 The names are listed in ``__init__.pyi``; each is loaded when it is first used.
 """

@@ -1,4 +1,4 @@
-"""Many transients at once: sixteen trajectories in the lanes of each group, groups on all cores."""
+"""Many transients at once: eight trajectories in the lanes of each group, groups on all cores."""
 
 import os
 import time

@@ -23,6 +23,7 @@ from squealbox.transient.widened import base_of, parted, start_of
 SCHEMES = {"exact": EXACT, "raw": RAW, "tanh": TANH, "smooth": ARCTAN, "arctan": ARCTAN}
 TIME_STEPPING = "time-stepping"
 ROWS = 32_768  # room for steps at first; memory is touched only as rows are written
+OTHER = "dormand-prince-8"  # where the usual method cannot go on
 BUDGET = (5_000, 50_000)  # least and most steps between two looks at the keyboard
 LOOK = 0.02  # s that should pass between them
 Progress = Callable[[float, float, float], None]
@@ -117,8 +118,12 @@ def simulate(
     if contact == TIME_STEPPING:
         return moreau.time_stepping(system, duration, q, qd, start_time, requested, step)
     if chosen.tableau == TAYLOR:
-        check_series(system, contact)
-        return _by_series(system, chosen, contact, width, q, qd, start_time, duration, requested, progress)
+        if method is not None:
+            check_series(system, contact)
+        motion = _by_series(system, chosen, contact, width, q, qd, start_time, duration, requested, progress)
+        if motion.outcome != "step_underflow" or method is not None:
+            return motion
+        chosen = chosen_method(OTHER, rtol, atol)  # a law without a series at zero speed, such as one with sqrt(v)
     run = _Run(system, chosen, SCHEMES[contact], width, q, qd, start_time, requested)
     outcome = run.to(start_time + duration, duration, progress)
     settings = {

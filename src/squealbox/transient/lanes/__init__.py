@@ -1,4 +1,4 @@
-"""The engine of ensembles: sixteen trajectories side by side in packed registers.
+"""The engine of ensembles: eight trajectories side by side in packed registers, or one alone.
 
 `table` makes jobs of a batch of systems and `shape` says what a kernel is compiled for. `equation_text` writes the
 equation of motion with the `formulas` of laws and schedules, `step_text` and `event_text` a Runge-Kutta step along it,

@@ -8,7 +8,7 @@ from squealbox.transient._motion import EXACT
 from squealbox.transient.methods import TAYLOR
 from squealbox.transient.rows import FIRST_ORDER, WITH_MASS
 
-LANES = 16  # trajectories side by side in an ensemble
+LANES = 8  # trajectories side by side in an ensemble: a register of 512 bits, or two or four smaller ones
 ORDER = 16  # of the velocities in a Taylor step; 14 to 20 cost the same at relative errors from 1e-5 to 1e-12
 PARTS = 3  # in which a Taylor step is looked at; each is at most a sixth of the shortest period, as other steps are
 UNIT_OF_WINDOW = 1e3 / (2.0 * math.pi)  # the series count in 1 / (highest angular frequency), 1e-3 / (2 pi) windows

@@ -12,15 +12,15 @@ from squealbox.transient import packing
 from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.kernel import lane_kernel
 from squealbox.transient.lanes.shape import Rows, layout, parameter_rows
-from squealbox.transient.lanes.table import Jobs, tabulate
+from squealbox.transient.lanes.table import Jobs, limits, tabulate
 from squealbox.transient.latest import Latest
-from squealbox.transient.methods import Method
+from squealbox.transient.methods import TAYLOR, Method
 
 RUNNING = -1.0  # in the row of results of a run that has not ended
 FIRST = 2_000  # trials between the first two looks at the keyboard
 MOST = 200_000
 LOOK = 0.02  # s that should pass between two
-ROWS = 4_096  # room for rows of output at first
+ROWS, EVENTS = 4_096, 1_024  # room for rows of output and for events at first
 
 
 @dataclass(frozen=True)
@@ -34,25 +34,33 @@ class Prepared:
     kernel: Any
 
 
-KEPT = Latest()
+KEPT, NUMBERS = Latest(), Latest()
+LONG = 1e9  # s that no run takes: nothing of what runs share depends on their length
 
 
-def prepared(system: System, method: Method, duration: float, begin: float) -> Prepared:
+def prepared(system: System) -> Prepared:
     """The table of one job, the places of its rows, its record and its kernel."""
-    atol = None if method.atol is None else np.asarray(method.atol, dtype=float).tobytes()
-    how = method.tableau, method.rtol, atol, method.first_step, method.largest_step, method.most_steps, duration, begin
-    found: Prepared = KEPT.of(system, how, lambda: _prepared(system, method, duration, begin))
+    found: Prepared = KEPT.of(system, (), lambda: _prepared(system))
     return found
 
 
-def _prepared(system: System, method: Method, duration: float, begin: float) -> Prepared:
-    rest = np.zeros(system.size)
-    jobs = tabulate(system, method, EXACT, 1e-3, (rest, rest), duration, begin, (), (), False, recorded=True)
+def _prepared(system: System) -> Prepared:
+    rest, method = np.zeros(system.size), Method(TAYLOR)
+    jobs = tabulate(system, method, EXACT, 1e-3, (rest, rest), LONG, 0.0, (), (), False, recorded=True)
     names = {name: 3 + row for row, name in enumerate(parameter_rows(jobs.shape))}
     packed = packing.pack(system, method, EXACT, 1e-3, False)
     record = np.zeros(1, dtype=packed.dtype)
     record[0] = packed
     return Prepared(jobs, layout(jobs.shape), names, record, lane_kernel(jobs.shape))
+
+
+def numbers(system: System, made: Prepared, method: Method, duration: float, begin: float) -> Any:
+    """The fixed numbers of a run: those of the system, and the tolerances, limits and times of this run."""
+    fixed = made.jobs.fixed.copy()
+    fixed[:3] = begin + duration, begin, method.most_steps
+    for name, value in limits(system, method, made.jobs.own, len(system.contacts) > 0, duration).items():
+        fixed[made.names[name]] = value
+    return fixed
 
 
 class Single:
@@ -62,16 +70,18 @@ class Single:
         self, system: System, method: Method, q: Any, qd: Any, begin: float, duration: float, times: Any
     ) -> None:
         self.system, self.method, self.begin = system, method, begin
-        made = self.made = prepared(system, method, duration, begin)
+        made = self.made = prepared(system)
         n, m = system.size, len(system.contacts)
-        self.fixed = made.jobs.fixed.copy()
+        atol = None if method.atol is None else np.asarray(method.atol, dtype=float).tobytes()
+        how = method.rtol, atol, method.first_step, method.largest_step, method.most_steps, duration, begin
+        self.fixed = NUMBERS.of(system, how, lambda: numbers(system, made, method, duration, begin)).copy()
         first = made.names["start0"] if n else 0
         self.fixed[first : first + n], self.fixed[first + n : first + 2 * n] = q, qd
         self.lanes = np.zeros(len(made.rows))
         self.lanes[made.rows.places["alive"]] = -1.0
         self.times = np.zeros(0) if times is None else times
         self.rows = np.empty((ROWS if times is None else len(times), 6 + 2 * n + 5 * m))
-        self.events = np.empty((256 + m, 3))
+        self.events = np.empty((EVENTS + m, 3))
         self.count = np.zeros(2, dtype=np.int64)
         self.out = np.full((1, 5 + 2 * n + m), RUNNING)
         spare = np.zeros((1, 1, 1))

@@ -1,4 +1,4 @@
-"""The step of a lane engine as text: one trial step of sixteen trajectories, without a branch on any of them.
+"""The step of a lane engine as text: one trial step of several trajectories, without a branch on any of them.
 
 Friction in the exact scheme. s is +1 or -1 while a contact slips and 0 otherwise, so ``s mu(s v) N`` vanishes when it
 does not; `equation_text` tells how contacts stick.

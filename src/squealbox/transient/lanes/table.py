@@ -25,7 +25,8 @@ class Jobs:
     """The table of a batch.
 
     A row of parameters that differs between jobs is a column of `table` (jobs, columns), one that does not is a number
-    in `fixed`; varies[row] is the column or -1. `template` is one system of the batch.
+    in `fixed`; varies[row] is the column or -1. `template` is one system of the batch, `own` the highest angular
+    frequency [rad/s] of each.
     """
 
     shape: Shape
@@ -33,6 +34,7 @@ class Jobs:
     varies: Any
     fixed: Any
     template: System
+    own: Any
 
 
 def tabulate(
@@ -54,7 +56,8 @@ def tabulate(
     q = consistent(system, rows, q, np.asarray(value_at(system.load, begin), dtype=float))
     for k in range(n):
         values[f"start{k}"], values[f"start{n + k}"] = q[..., k], qd[..., k]
-    values |= _tolerances(system, method, values, rows, scheme == EXACT and m > 0, duration)
+    own = _highest_frequency(values, n) if rows.all_have_mass else fastest_rate(system, rows)
+    values |= limits(system, method, own, scheme == EXACT and m > 0, duration)
     values |= {f"break{k}": instant for k, instant in enumerate(breaks)} | {"width": np.asarray(width)}
     kinds = law_kinds(system.contacts)
     laws = tuple((int(kind), len(c.law.coefficients())) for kind, c in zip(kinds, system.contacts, strict=True))
@@ -98,7 +101,7 @@ def tabulate(
             varies[row] = len(columns)
             columns.append(np.broadcast_to(value, batch).ravel())
     table = np.stack(columns, axis=1) if columns else np.zeros((count, 1))
-    return Jobs(shape, np.ascontiguousarray(table), varies, fixed, template)
+    return Jobs(shape, np.ascontiguousarray(table), varies, fixed, template, own)
 
 
 def _equation(system: System, rows: Rows, recorded: bool = False) -> tuple[dict[str, Any], Any, list[Any]]:
@@ -173,12 +176,9 @@ def _terms(value: Any) -> list[tuple[Any, Schedule]]:
     return list(value.terms()) if isinstance(value, Schedule) else [(np.asarray(1.0), Constant(value))]
 
 
-def _tolerances(
-    system: System, method: Method, values: dict[str, Any], rows: Rows, exact: bool, duration: float
-) -> dict[str, Any]:
-    """Tolerances and limits of the steps, as `packing` and `simulate` choose them, one for each job."""
+def limits(system: System, method: Method, own: Any, exact: bool, duration: float) -> dict[str, Any]:
+    """Tolerances and limits of the steps, as `packing` and `simulate` choose them, from each highest frequency."""
     n = system.size
-    own = _highest_frequency(values, n) if rows.all_have_mass else fastest_rate(system, rows)
     highest = np.where(own > 0.0, own, 1.0)
     swing = packing.schedule_frequency(system)
     pace = np.maximum(own, swing)

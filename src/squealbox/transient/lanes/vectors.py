@@ -1,4 +1,4 @@
-"""Several doubles as one number, sixteen or one: plain Python run once on such numbers writes packed code.
+"""Several doubles as one number, eight or one: plain Python run once on such numbers writes packed code.
 
 A loop over lanes leaves it to the optimiser whether registers are packed, and it fails silently. Here a number is an
 LLVM vector, so the operations on it are packed whatever surrounds them: 512 bits wide where the processor has them,
@@ -59,7 +59,7 @@ def packed_type() -> Any:
 
 def alignment() -> int:
     """Bytes at whose multiples rows begin: those of a single run just so, those of a group on a line of the cache."""
-    return ALIGNED if WIDTH.get() == LANES else 8
+    return 8 if WIDTH.get() == 1 else ALIGNED
 
 
 def wide_type() -> Any:

@@ -12,7 +12,7 @@ from squealbox.parameters import ParameterError
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
 from squealbox.transient import packing
 from squealbox.transient.lanes.batch import stacked
-from squealbox.transient.lanes.shape import LANES, layout
+from squealbox.transient.lanes.shape import layout
 from squealbox.transient.lanes.table import Jobs, tabulate
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR, Method
@@ -20,7 +20,7 @@ from squealbox.transient.observers import Observer
 from squealbox.transient.widened import base_of, parted, start_of
 
 BLOCK = 65_536  # trajectories whose parameters lie in memory together
-GROUPS = 2  # groups of sixteen lanes that a thread advances in turn: one hides the latency of the other
+GROUPS = 2  # groups of lanes that a thread advances in turn: one hides the latency of the other
 EVERY = 2_000  # trials of each group between two looks at the stop flag, some milliseconds
 HEAD = 5  # numbers of a row of results before its state: how it ended, time, accepted, tried, events
 Progress = Callable[[int, int, float], None]
@@ -97,18 +97,19 @@ class Work:
         rule = packing.rule("dormand-prince-8" if self.method.tableau == TAYLOR else self.method.tableau)
         counter, stop = np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64)
         rows = layout(jobs.shape)
-        size = len(rows) * LANES
-        workers = max(1, min(self.threads, -(-count // LANES)))
+        lanes = jobs.shape.lanes
+        size = len(rows) * lanes
+        workers = max(1, min(self.threads, -(-count // lanes)))
         failures: list[BaseException] = []
 
         def work() -> None:
             try:
-                lanes, live = _on_a_line(GROUPS * size), np.zeros(GROUPS, dtype=np.int64)
-                lanes[rows.places["alive"] * LANES] = -1.0
+                groups, live = _on_a_line(GROUPS * size), np.zeros(GROUPS, dtype=np.int64)
+                groups[rows.places["alive"] * lanes] = -1.0
                 n = jobs.shape.n
                 scratch = packing.scratch(record, np.zeros(n), np.zeros(n), self.begin, 0.0)
                 kernel(
-                    lanes, live, jobs.table, jobs.varies, jobs.fixed, self.times, samples, counter, count, out,
+                    groups, live, jobs.table, jobs.varies, jobs.fixed, self.times, samples, counter, count, out,
                     record.copy(), rule, scratch, stop, EVERY, np.zeros((1, 1)), np.zeros((1, 1)), counter,
                 )  # fmt: skip
             except BaseException as error:  # handed to the caller below
