@@ -273,7 +273,7 @@ def folded(system: Any, *, limited: bool = False) -> Any:
     for row in rows:
         m = slice(at, at + row.memory)
         at += row.memory
-        size = np.where(np.abs(row.S) > 0.0, np.abs(row.S), 1.0)
+        size = force_per_state(row, rate)
         unit = spring[..., None] / size  # z = unit * (a displacement)
         P, R, S = (np.broadcast_to(x, (*lead, np.shape(x)[-1])) for x in (row.P, row.R, row.S))
         C[..., :n, :n] -= row.b[:, None] * R[..., None, :]
@@ -285,6 +285,15 @@ def folded(system: Any, *, limited: bool = False) -> Any:
         C[..., m, m] = (spring / rate)[..., None, None] * np.eye(row.memory)
         K[..., m, m] = -scale * (row.A + row.G[..., :, None] * S[..., None, :]) * unit[..., None, :]
     return _wider(system, M, C, K, more, tuple(loop for loop in system.loops if loop not in chosen))
+
+
+def force_per_state(row: Rows, rate: Any) -> Any:
+    """How much force a unit of each state makes within 1/rate, (..., m): directly, or through other states; 1 if none."""
+    size = np.abs(row.S) + 0.0 * np.asarray(rate)[..., None]
+    for _ in range(row.memory):
+        through = np.max(np.abs(row.A) * size[..., :, None], axis=-2, initial=0.0) / np.asarray(rate)[..., None]
+        size = np.where(size > 0.0, size, through)
+    return np.where(size > 0.0, size, 1.0)
 
 
 def near_sliding(system: Any) -> Any:

@@ -14,6 +14,7 @@ from squealbox import (
     Coulomb,
     DrumBrake,
     System,
+    closed_loop,
     complex_modes,
     simulate,
     simulate_ensemble,
@@ -47,6 +48,21 @@ def test_a_linear_closed_loop_in_time_is_its_pole(loop: Any) -> None:
         return
     many = simulate_ensemble(brake, None, 0.01, "taylor", start=start, times=times, atol=1e-16, rtol=1e-12)
     assert np.max(np.abs(many.sample_q - steady - exact)) < 1e-8 * size + 1e-15 * np.max(np.abs(steady))
+
+
+@pytest.mark.parametrize("loop", [
+    PID(on="y", integral=3e8, derivative=100.0),
+    PID(on="y", integral=3e8, derivative=100.0, bandwidth=5000.0),
+    ActiveForce(0.1, 1e-4, PID(on="y", integral=1e7, proportional=1e5), bandwidth=3e3),
+], ids=repr)  # fmt: skip
+def test_a_slow_pole_of_an_integral_is_not_lost(loop: Any) -> None:
+    """States that push through others only are scaled by what they push: each pole to 1e-8 of itself."""
+    brake = Controlled(DRUM, [loop])
+    found = complex_modes(brake).eigenvalues
+    found, poles = found[np.isfinite(found)], closed_loop(brake).poles
+    assert len(found) == len(poles)
+    assert all(np.min(np.abs(found - pole)) < 1e-8 * np.abs(pole) for pole in poles)
+    assert np.min(np.abs(poles)) < 1e-3 * np.max(np.abs(poles))
 
 
 def test_active_force_is_its_pid_in_time_with_stick_slip() -> None:

@@ -7,7 +7,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from squealbox import Contact, Coulomb, DrumBrake, System, complex_modes, fit_friction, simulate, simulate_ensemble
+from squealbox import (
+    PID, Contact, Controlled, Coulomb, DrumBrake, System, closed_loop, complex_modes, fit_friction, simulate,
+    simulate_ensemble,
+)  # fmt: skip
 from squealbox.friction import Averaged, Dahl, ElastoPlastic, FrictionLaw, LuGre
 from squealbox.limit_cycles import shooting
 from squealbox.parameters import ParameterError
@@ -173,6 +176,16 @@ def test_modes_of_the_drum_are_those_of_its_vector_field(law: Any) -> None:
     found = np.sort_complex(found[np.isfinite(found)])
     assert len(found) == 6
     assert np.max(np.abs(found - exact) / np.abs(exact)) < 1e-6
+
+
+def test_poles_of_a_controlled_brake_are_its_modes() -> None:
+    """closed_loop and the pencil in which the loop is folded, with bristles and an integral."""
+    brake = DrumBrake(friction=LuGre(0.45, 0.3, 0.4, 3e4, 1e-3, 0.02), sliding_speed=0.5)
+    controlled = Controlled(brake, [PID(on="y", proportional=1e6, integral=3e8, derivative=100.0)])
+    poles, found = closed_loop(controlled).poles, complex_modes(controlled).eigenvalues
+    found = found[np.isfinite(found)]
+    assert len(poles) == len(found) == 7
+    assert all(np.min(np.abs(found - pole)) < 1e-8 * np.max(np.abs(found)) for pole in poles)
 
 
 def test_motion_along_a_mode_is_its_pole() -> None:

@@ -70,6 +70,8 @@ def plant(design_or_system: Any, time: float = 0.0) -> Plant:
         about = _about(system, steady, time)
     outcome = steady.outcome
     A, displacement, velocity, into = _first_order(about.M, about.C, about.K)
+    n = system.size  # loops sense and push the brake's own rows, not the bristles of its contacts
+    displacement, velocity, into = displacement[:n], velocity[:n], into[:, :n]
     d, memory = len(A), [row.memory for row in rows]
     total = d + sum(memory)
     wide = np.zeros((total, total))
@@ -101,13 +103,13 @@ def _about(system: System, steady: Any, time: float) -> Any:
         for i, contact in enumerate(system.contacts)
     )
     found = linearise(system.replace(loops=(), contacts=shifted, load=np.zeros(system.size)), time)
-    stiffness = np.array(found.K)
+    stiffness, n = np.array(found.K), system.size
     for i, contact in enumerate(system.contacts):
         closed = not contact.unilateral or steady.normal_force[i] > 0.0
         factor = steady.friction[i] * np.sign(steady.sliding_speed[i]) if closed else 0.0
-        stiffness -= factor * np.outer(contact.d, contact.n)
+        stiffness[:n, :n] -= factor * np.outer(contact.d, contact.n)
         if not closed:
-            stiffness -= np.outer(contact.normal, contact.n)
+            stiffness[:n, :n] -= np.outer(contact.normal, contact.n)
     return type(found)(found.M, found.C, stiffness, steady)
 
 

@@ -72,7 +72,8 @@ def candidates_for(brake: Design, friction: Any) -> list[Candidate]:
     found += _shims(brake, rate)
     found.append(_feedback(brake, names, 3.0 * max(masses[n] for n in names) * rate))
     found.append(_active(brake, names, masses))
-    if brake.system().contacts:
+    contacts = brake.system().contacts
+    if contacts and not any(contact.law.has_memory for contact in contacts):  # bristles are not averaged over dither
         found.append(_dither(brake))
     return found
 

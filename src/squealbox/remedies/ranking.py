@@ -281,7 +281,8 @@ def _pushed(cured: Design, brake: Design, push: float) -> float:
     from squealbox.stability import complex_modes
 
     worst = complex_modes(brake).most_unstable
-    moving = np.real(worst.shape) / np.max(np.abs(worst.shape))
+    moving = np.real(worst.shape)[: brake.system().size]  # what a law with memory bends is not pushed
+    moving = moving / np.max(np.abs(worst.shape[: moving.size]))
     duration = PERIODS / max(worst.frequency, 1e-12)
     try:
         steady = equilibrium(cured.system()).q

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.loops import padded, padded_load
+from squealbox.loops import force_per_state, padded, padded_load
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Schedule, value_at
 from squealbox.system import Contact, InvalidSystem, System
@@ -128,8 +128,8 @@ def _with_limited_loops(system: System) -> System:
         fields, _ = _appended(system, m + 1, "loop state")
         z, w = slice(n, n + m), n + m
         spring, mass = (float(np.max(np.abs(x), initial=0.0)) or 1.0 for x in (system.K, system.M))
-        time = spring / np.sqrt(spring / mass)
-        unit = spring / np.where(np.abs(row.S) > 0.0, np.abs(row.S), 1.0)  # z = unit times a displacement
+        rate = np.sqrt(spring / mass)
+        time, unit = spring / rate, spring / force_per_state(row, rate)  # z = unit times a displacement
         scale = time / unit[:, None]
         C, K = fields["C"], fields["K"]
         C[..., z, :n], K[..., z, :n] = -scale * row.F, -scale * row.E

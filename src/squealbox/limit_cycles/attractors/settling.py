@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.cycles.field import check_autonomous
+from squealbox.limit_cycles.cycles.field import check_autonomous, check_states
 from squealbox.parameters import ParameterError
 from squealbox.schedules import value_at
 from squealbox.stability import complex_modes
@@ -67,6 +67,7 @@ class Batch:
                 raise ParameterError("limit_cycles", "parameters", list(given), "one, for a function of one value")
             return cls([as_system(design(float(value))) for value in next(iter(given.values()))], {})
         batch = cls(design if given else as_system(design), given)
+        check_states(first_of(batch.system))
         check_autonomous(first_of(batch.system))
         return batch
 
