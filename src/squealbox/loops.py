@@ -288,7 +288,7 @@ def folded(system: Any, *, limited: bool = False) -> Any:
 
 
 def force_per_state(row: Rows, rate: Any) -> Any:
-    """How much force a unit of each state makes within 1/rate, (..., m): directly, or through other states; 1 if none."""
+    """How much force a unit of each state makes within 1/rate, (..., m): directly or through others; 1 if none."""
     size = np.abs(row.S) + 0.0 * np.asarray(rate)[..., None]
     for _ in range(row.memory):
         through = np.max(np.abs(row.A) * size[..., :, None], axis=-2, initial=0.0) / np.asarray(rate)[..., None]

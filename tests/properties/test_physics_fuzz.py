@@ -32,17 +32,20 @@ def test_against_a_slow_integrator(seed):
 
 @pytest.mark.parametrize("seed", sorted({*WIDE, *range(LONG)}))
 def test_every_kind_of_system_against_a_slow_integrator(seed):
-    """Laws that rise, fall, are tables or nothing; speeds, loads and forces in time; springs that lift off, rigid stops.
+    """Laws that rise, fall, are tables or nothing; what moves in time; springs that lift off, rigid stops.
 
     A kind that the program does not integrate is refused in a sentence. Contacts whose friction rises from zero pass
     through it without a jump: what the program counts there are no events to the slow integrator. Rebounds are endless
     in truth, and how many of them are counted is a convention; where they end is not.
     """
     system, start, duration, words = wide_system(seed)
+    refused = None
     try:
         motion = simulate(system, duration, start)
-    except InvalidSystem as refused:
-        assert "massless" in words and "mass" in str(refused)
+    except InvalidSystem as error:
+        refused = error
+    if refused is not None:
+        assert "massless" in words, refused
         return
     truth = slow(system, duration, *start)
     sharp = np.array([float(contact.law.static_limit) > 1e-100 for contact in system.contacts])

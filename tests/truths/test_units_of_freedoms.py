@@ -1,4 +1,4 @@
-"""A degree of freedom may be a rotation: figures, tables and words give each its own unit, and never compare the two."""
+"""A degree of freedom may be a rotation: figures, tables and words give each its own unit and never compare the two."""
 
 import numpy as np
 import pytest

@@ -11,11 +11,14 @@ from squealbox.stability.deflation import vibrating
 from squealbox.stability.eigenvalues import OneEigenvalue, modes_of
 from squealbox.stability.family import Family, entry
 from squealbox.stability.mechanism import Mechanism, mechanism_at
+from squealbox.stability.polishing import Polished, polished
 from squealbox.stability.scan import Scan, merging, scan
 from squealbox.stability.state_matrix import spectrum
 
 ASIDE = 1e-13  # share of the range by which a singular point is stepped aside
 POINT = 1e-9  # share of the range up to which a stretch without an answer is a single value
+SPLIT = 1e-4  # share of the largest |lambda|: a mode that grows or decays by more does not cross
+FUNCTION = 1e-12  # round-off of a scanned function, as a share of its scale
 ROUND_OFF = 1e-14  # share of |lambda| below which a term of the growth rate is none
 BESIDE = 1e-6  # share of the range by which the mechanism of a neutral system is looked at beyond its onset
 
@@ -25,7 +28,8 @@ class CriticalValue(OneEigenvalue, Result):
     """One value of a parameter at which a mode crosses zero growth, as :func:`critical_value` returns it.
 
     direction is "destabilising" (the mode grows above) or "stabilising" (it grows below); mechanism is flutter,
-    negative_slope, divergence or mixed, with base, circulation and slope [1/s] the terms behind the name.
+    negative_slope, divergence or mixed, with base, circulation and slope [1/s] the terms behind the name. uncertainty
+    bounds the error of the value by round-off, in its unit (`stability.polishing`).
     """
 
     value: Any = quantity("", "", "critical value of the parameter, in its own unit; NaN when there is none")
@@ -39,6 +43,7 @@ class CriticalValue(OneEigenvalue, Result):
     slope: float = float("nan")
     unstable_below: int = 0
     unstable_above: int = 0
+    uncertainty: float = float("nan")
 
     swept: ClassVar = {
         "value": ("", "", "critical value of the parameter, in its own unit"),
@@ -81,13 +86,15 @@ class CriticalValues(Result):
     slope: Any = quantity("crossing", "1/s", "brought by the damping part of friction")
     unstable_below: Any = quantity("crossing", "1", "unstable modes just below")
     unstable_above: Any = quantity("crossing", "1", "unstable modes just above")
+    uncertainty: Any = quantity("crossing", "", "bound on the error of the value, in the parameter's own unit")
     parameter: str = ""
 
     def __len__(self) -> int:
         return len(self.value)
 
     def __iter__(self) -> Iterator[CriticalValue]:
-        names = ("value", "eigenvalue", "shape", "base", "circulation", "slope", "unstable_below", "unstable_above")
+        names = ("value", "eigenvalue", "shape", "base", "circulation", "slope", "unstable_below", "unstable_above",
+                 "uncertainty")  # fmt: skip
         for i in range(len(self)):
             arrays = {name: getattr(self, name)[i] for name in names}
             labels: dict[str, Any] = {name: str(getattr(self, name)[i]) for name in ("direction", "mechanism")}
@@ -120,7 +127,8 @@ def critical_value(
     points : number of values scanned before narrow windows are looked for
     time : instant of schedules [s]
 
-    Returns a `CriticalValue`, good to 1e-12 relative. Without a change the outcome is "no_onset", with the growth rates
+    Returns a `CriticalValue`, good to its `uncertainty`: 1e-13 of the value, more where the growth rate hardly
+    changes with the parameter. Without a change the outcome is "no_onset", with the growth rates
     at both ends as evidence; "hidden_onset" when it lies in a stretch without steady sliding;
     "no_equilibrium" when steady sliding exists nowhere in the range. Bad bounds are a
     `ValueError`.
@@ -150,7 +158,10 @@ def _crossings(family: Family, bounds: tuple[float, float], points: int, *, firs
     for i, k in found.brackets():
         if first and k > 0:
             continue
-        rows.append(_crossing(found, i, k, high - low))
+        row = _crossing(found, i, k, high - low)
+        if not found.neutral and abs(row["eigenvalue"].real) > SPLIT * row["fastest"]:
+            continue  # a growing pair became two real eigenvalues: one mode more grows, and none crossed
+        rows.append(row)
         if first:
             break
     wide = []
@@ -173,7 +184,7 @@ def _crossings(family: Family, bounds: tuple[float, float], points: int, *, firs
         outcome = Outcome("completed", _gaps(found), **evidence) if rows else _no_onset(family, found, low, high)
     size = rows[0]["shape"].size if rows else 0
     empty = {"value": 0.0, "eigenvalue": 0j, "shape": np.zeros(size), "direction": "", "mechanism": "", "base": 0.0}
-    empty |= {"circulation": 0.0, "slope": 0.0, "unstable_below": 0, "unstable_above": 0}
+    empty |= {"circulation": 0.0, "slope": 0.0, "unstable_below": 0, "unstable_above": 0, "uncertainty": 0.0}
     columns: dict[str, Any] = {
         name: np.array([row[name] for row in rows]) if rows else np.array([like])[:0] for name, like in empty.items()
     }
@@ -233,18 +244,39 @@ def _described(found: Scan, value: float, beside: float, k: int, rising: bool, i
             if further.equilibrium.exists[0]:
                 why = mechanism_at(entry(further, (0,)), eigenvalue.imag, rank=rank)
         counts = (k, k + 1) if rising else (k + 1, k)
+    exact = _exact(found, value, beside, eigenvalue, k, i)
     return {
-        "value": value,
-        "eigenvalue": eigenvalue,
+        "value": exact.value,
+        "uncertainty": exact.uncertainty,
+        "eigenvalue": exact.eigenvalue,
         "shape": modes.right[0, :, place],
         "direction": "destabilising" if rising else "stabilising",
         "mechanism": why.name,
         "base": why.base,
         "circulation": why.circulation,
         "slope": why.slope,
+        "fastest": float(np.nanmax(np.abs(modes.eigenvalues[0]), initial=0.0)),
         "unstable_below": counts[0],
         "unstable_above": counts[1],
     }
+
+
+def _exact(found: Scan, value: float, beside: float, eigenvalue: complex, k: int, i: int) -> Polished:
+    """The crossing polished, with its bound; where it is no simple eigenvalue, a bound from the scanned function."""
+    low, high = float(found.values[i]), float(found.values[min(i + 1, len(found.values) - 1)])
+    if beside != value:  # a jump at a single value without an answer: known to lie between its neighbours
+        return Polished(value, eigenvalue, abs(beside - value))
+    if not found.neutral:
+        exact = polished(found.family, value, eigenvalue, low, high)
+        if np.isfinite(exact.uncertainty):
+            return exact
+    ends = found.functions[i, k], found.functions[min(i + 1, len(found.values) - 1), k]
+    step = 1e-3 * (high - low)
+    near = [found.at(x)[k] for x in (value - step, value + step)]
+    slope = min(abs(near[1] - near[0]) / (2.0 * step), abs(ends[1] - ends[0]) / (high - low) if high > low else np.inf)
+    noise = FUNCTION if found.neutral else FUNCTION * max(abs(eigenvalue), 1e-300)
+    root_finder = 1e-12 * max(abs(low), abs(high))
+    return Polished(value, eigenvalue, noise / slope + root_finder if slope > 0.0 else high - low)
 
 
 def _checked(bounds: tuple[float, float], points: int) -> tuple[float, float]:

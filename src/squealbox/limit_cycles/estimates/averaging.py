@@ -139,7 +139,7 @@ def averaged_limit(law: FrictionLaw, normal_force: float, damping: float) -> flo
     from scipy.optimize import brentq
     from scipy.special import ive
 
-    if not np.isclose(float(law.mu(0.0)), float(law.static_limit), rtol=1e-12, atol=0.0):
+    if not np.isclose(float(law.mu(0.0)), float(law.static_limit), rtol=1e-12, atol=1e-100):
         expected = "a law whose coefficient at v = 0 is its static limit; stick_slip cycles of others come by shooting"
         raise ParameterError("averaged_limit", "law", law, expected)
     if isinstance(law, Cubic):

@@ -20,6 +20,7 @@ from squealbox.friction import FrictionLaw
 from squealbox.parameters import ParameterError
 
 TURNS = 1.5  # periods of the free block in which the swing comes back to its largest velocity
+REACH, LOOKS = 3.0, 1025  # of the largest belt speed: sliding speeds at which a law is looked at, and how many
 RTOL = 1e-13
 
 
@@ -64,7 +65,8 @@ def stick_slip_limit(
     bounds : (low, high) of the belt speed [m/s]
     normal_force, damping, mass, stiffness : N [N], c [N s/m], m [kg], k [N/m] of the block
 
-    Accuracy: 1e-12 of the speed, that of the orbit. Raises `ParameterError` unless 0 < low < high.
+    Accuracy: 1e-12 of the speed, that of the orbit. Raises `ParameterError` unless 0 < low < high, and for what the
+    condition does not cover: friction above its static limit somewhere, a law with memory, damping below 0.
     Source: as this module.
 
     >>> from squealbox import Stribeck
@@ -76,6 +78,15 @@ def stick_slip_limit(
     low, high = (float(x) for x in bounds)
     if not 0.0 < low < high:
         raise ParameterError("stick_slip_limit", "bounds", bounds, "two speeds with 0 < low < high")
+
+    if law.has_memory:
+        raise ParameterError("stick_slip_limit", "law", law, "a law without memory: bristles do not stick")
+    if not damping >= 0.0:
+        raise ParameterError("stick_slip_limit", "damping", damping, "a number of at least 0 N s/m")
+    most = float(np.max(law.mu(np.linspace(0.0, REACH * high, LOOKS))))
+    if most > float(law.static_limit) * (1.0 + 1e-12):
+        expected = f"a law that is nowhere above its static limit (mu reaches {most:.4g}): its slip begins elsewhere"
+        raise ParameterError("stick_slip_limit", "law", law, expected)
 
     def gap(speed: float) -> float:
         return return_gap(law, speed, normal_force, damping, mass, stiffness)
