@@ -1,5 +1,6 @@
 """The arrays of a system: what is wrong with one, and sums over its contacts as products of matrices."""
 
+from collections import Counter
 from typing import Any
 
 import numpy as np
@@ -52,9 +53,9 @@ def checked_names(names: Any, size: int) -> tuple[str, ...]:
     names = tuple(names) or tuple(f"q{i + 1}" for i in range(size))
     if len(names) != size:
         raise InvalidSystem(f"names = {names}: {len(names)} names, expected {size}, one for each degree of freedom")
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise InvalidSystem(f"names = {names}: {twice[0]!r} stands more than once, expected names of their own")
+    if len(set(names)) < len(names):
+        twice = [name for name, times in Counter(names).items() if times > 1]
+        raise InvalidSystem(f"names = {names}: {min(twice)!r} stands more than once, expected names of their own")
     return names
 
 

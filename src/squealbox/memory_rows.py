@@ -18,6 +18,10 @@ from squealbox.matrices import InvalidSystem
 
 def remembering(contacts: Sequence[Contact] | Contacts) -> list[int]:
     """The contacts whose law has memory."""
+    if isinstance(contacts, Contacts) and not isinstance(contacts.law, tuple):
+        return list(range(len(contacts))) if contacts.law.has_memory else []
+    if isinstance(contacts, Contacts):
+        return [c for c, law in enumerate(contacts.law) if law.has_memory]
     return [c for c, contact in enumerate(contacts) if contact.law.has_memory]
 
 

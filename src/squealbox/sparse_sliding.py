@@ -23,6 +23,13 @@ ROUGH, FINE = 1e-4, 1e-11  # residual of a step solved by GMRES: while the set o
 KRYLOV = 200  # vectors GMRES may keep; more, and a factorisation is the quicker way
 
 
+class Start(NamedTuple):
+    """Steady sliding q (n,) of a similar brake and the factor of a similar stiffness, to begin a search with."""
+
+    q: Any
+    base: Factor
+
+
 class SlidingState(NamedTuple):
     """Displacement q (n,), the contacts' N, V and mu (contacts,), and how the search ended."""
 
@@ -34,16 +41,15 @@ class SlidingState(NamedTuple):
     settled: bool
 
 
-def sliding_state(stiffness: Any, load: Any, contacts: Contacts, time: float) -> SlidingState:
-    """Steady sliding at `time` [s]."""
+def sliding_state(
+    stiffness: Any, load: Any, contacts: Contacts, time: float, start: Start | None = None
+) -> SlidingState:
+    """Steady sliding at `time` [s], looked for from that of a similar brake where it is known."""
     speed, preload = contacts.at("V", time), contacts.at("N0", time)
     mu, _ = contacts.friction(speed)
-    q = np.zeros(stiffness.shape[0])
+    q = np.zeros(stiffness.shape[0]) if start is None else start.q
     closed = np.ones(len(contacts), dtype=bool)
-    try:
-        base = factor(stiffness)
-    except SingularMatrix:
-        base = None
+    base = _factored(stiffness) if start is None else start.base
     exactly = not np.any(contacts.unilateral)
     for _ in range(3 + 2 * len(contacts)):
         normal = preload + contacts.n @ q
@@ -65,6 +71,13 @@ def sliding_state(stiffness: Any, load: Any, contacts: Contacts, time: float) ->
             return SlidingState(q, _pressing(after, closed), speed, mu, False, True)
         exactly = same  # the last step, with the set it has settled on
     return SlidingState(q, _pressing(preload + contacts.n @ q, closed), speed, mu, False, False)
+
+
+def _factored(stiffness: Any) -> Factor | None:
+    try:
+        return factor(stiffness)
+    except SingularMatrix:
+        return None
 
 
 def _pressing(normal: Any, closed: Any) -> Any:

@@ -226,16 +226,17 @@ def _checked_contact(contact: Any, i: int, size: int) -> Contact:
     return contact
 
 
-def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
+def equilibrium(system: System, time: float = 0.0, start: sparse_sliding.Start | None = None) -> Equilibrium:
     """Steady sliding q0 at the load, speeds and normal forces of `time` [s].
 
     Newton on r(q) = K q - f - sum mu sgn(V) d N(q) [- normal min(N, 0) for unilateral contacts]. Without unilateral
     contacts r is linear in q, because mu depends on V alone, and one step is exact; with them r is piecewise linear and
-    each step changes the set of open contacts, so the number of steps is bounded by that of the contacts' states.
+    each step changes the set of open contacts, so the number of steps is bounded by that of the contacts' states. A
+    sparse search may begin at the `start` of a similar brake.
     """
     system = near_sliding(system)
     if system.is_sparse:
-        return _sparse_equilibrium(system, time)
+        return _sparse_equilibrium(system, time, start)
     no_rigid_contact(system, "steady sliding")
     shape, size = system.shape, system.size
     force, speed, mu = _sliding(system, time)
@@ -269,10 +270,10 @@ def equilibrium(system: System, time: float = 0.0) -> Equilibrium:
     return Equilibrium(q, normal, speed, mu, exists, outcome, np.where(exists, floating, 0))
 
 
-def linearise(system: System, time: float = 0.0) -> Linearised:
+def linearise(system: System, time: float = 0.0, start: sparse_sliding.Start | None = None) -> Linearised:
     """K_eff and C_eff about steady sliding at `time` [s]; an open contact only takes its stiffness out."""
     system = near_sliding(system)
-    state = equilibrium(system, time)
+    state = equilibrium(system, time, start)
     if system.is_sparse:
         return Linearised(system.M, *_sparse_linearised(system, state), state)
     shape, size = system.shape, system.size
@@ -334,8 +335,8 @@ def contact_state(system: System, time: Any, q: Any, qd: Any) -> tuple[Any, Any,
     return tuple(np.stack(x, axis=-1) if x else empty for x in (normals, speeds, forces))  # type: ignore[return-value]
 
 
-def _sparse_equilibrium(system: System, time: float) -> Equilibrium:
-    found = sparse_sliding.sliding_state(system.K, value_at(system.load, time), system.contacts, time)
+def _sparse_equilibrium(system: System, time: float, start: sparse_sliding.Start | None) -> Equilibrium:
+    found = sparse_sliding.sliding_state(system.K, value_at(system.load, time), system.contacts, time, start)
     sliding, singular, settled = np.all(found.speed != 0.0), np.array(found.singular), np.array(found.settled)
     exists = settled & ~singular & sliding
     outcome = ended(singular, sliding, settled, found.speed)

@@ -39,16 +39,22 @@ def strongest(pencil: Pencil, modes: RealModes, vectors: Any, count: int) -> Any
 
 def joined(pencil: Pencil, basis: Any, vectors: Any) -> Any:
     """`basis` with the part of `vectors` that is new, V' M V = I; what is not new to round-off is left out."""
-    lengths = np.sqrt(np.maximum(np.einsum("ij,ij->j", vectors, pencil.M @ vectors), 0.0))
+    fresh = fresh_directions(pencil.M, basis, pencil.M @ basis, vectors)
+    return np.concatenate([basis, fresh], axis=1)
+
+
+def fresh_directions(mass: Any, basis: Any, weighted: Any, vectors: Any) -> Any:
+    """What of `vectors` is new to `basis` (n, m), with M V in `weighted`: columns W, W' M W = I and W' M V = 0."""
+    lengths = np.sqrt(np.maximum(np.einsum("ij,ij->j", vectors, mass @ vectors), 0.0))
     vectors = vectors[:, lengths > 0.0] / lengths[lengths > 0.0]
     for _ in range(2):
-        vectors = vectors - basis @ (basis.T @ (pencil.M @ vectors))
-    gram = vectors.T @ (pencil.M @ vectors)
+        vectors = vectors - basis @ (weighted.T @ vectors)
+    gram = vectors.T @ (mass @ vectors)
     values, turns = np.linalg.eigh(0.5 * (gram + gram.T))
     keep = values > NEGLIGIBLE
     fresh = vectors @ (turns[:, keep] / np.sqrt(values[keep]))
     for _ in range(2):  # what the small directions lost of their right angle
-        fresh = fresh - basis @ (basis.T @ (pencil.M @ fresh))
-        gram = fresh.T @ (pencil.M @ fresh)
+        fresh = fresh - basis @ (weighted.T @ fresh)
+        gram = fresh.T @ (mass @ fresh)
         fresh = np.linalg.solve(np.linalg.cholesky(gram), fresh.T).T
-    return np.concatenate([basis, fresh], axis=1)
+    return fresh

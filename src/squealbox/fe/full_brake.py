@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 
 from squealbox.factorisation import Factor
+from squealbox.fe.growing_basis import ROWS, GrowingBasis
 from squealbox.fe.pencil import Pencil, pencil_of
 from squealbox.fe.projection import Projected, modes_on
+from squealbox.sparse_sliding import Start
 from squealbox.system import InvalidSystem, System, as_system
 
 
@@ -30,19 +32,21 @@ class FullBrake:
 
     def pencil(self, values: Mapping[str, Any]) -> Pencil:
         """The full matrices about steady sliding at other parameters."""
-        return pencil_of(self.system(values), self.time)
+        return pencil_of(self.system(values), self.time, start=Start(self.steady, self.base))
 
     def checked(self, values: Mapping[str, Any], band: tuple[float, float]) -> Projected:
         """Modes on the basis, with the error against the full brake."""
-        return modes_on(self.pencil(values), self.base, self.basis, band)
+        return modes_on(GrowingBasis([self.pencil(values)], self.basis), 0, self.base, band)
 
-    def projected_arrays(self, system: System) -> dict[str, Any]:
-        """Every field of a system on the basis, measured from q0."""
+    def projected_arrays(self, system: System, known: Mapping[str, Any] | None = None) -> dict[str, Any]:
+        """Every field of a system on the basis, measured from q0; what is `known` of it is not computed again."""
         basis, table = self.basis, system.contacts
         load = np.asarray(system.load if not hasattr(system.load, "value") else system.load.value(self.time))
-        rows = {f: getattr(table, f) for f in ("n", "d", "t", "normal", "across")}
-        arrays: dict[str, Any] = {f: None if r is None else np.asarray(r @ basis) for f, r in rows.items()}
-        for field in ("M", "C", "K"):
+        arrays: dict[str, Any] = dict(known or {})
+        for field in ROWS if known is None else ():
+            rows = getattr(table, field)
+            arrays[field] = None if rows is None else np.asarray(rows @ basis)
+        for field in ("M", "C", "K") if known is None else ():
             arrays[field] = basis.T @ (getattr(system, field) @ basis)
         arrays["load"] = basis.T @ (load - system.K @ self.steady)
         arrays["N0"] = table.at("N0", self.time) + table.n @ self.steady

@@ -6,10 +6,23 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from squealbox.sparse_sliding import damping_across, friction_stiffness
+from squealbox.sparse_sliding import Start, damping_across, friction_stiffness
 from squealbox.system import InvalidSystem, Linearised, System, linearise
 
 MOST_DAMPED = 0.1  # damping ratio above which a pair is no candidate for squeal and is not shown
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """A system and what its contacts add about steady sliding, each (contacts,): mu sgn V of closed ones, 1 where one
+    has lifted off, N mu' along the sliding direction and mu N / |V| across it.
+    """
+
+    system: System
+    coupling: Any
+    lifted: Any
+    along: Any
+    across: Any
 
 
 @dataclass(frozen=True)
@@ -17,7 +30,7 @@ class Pencil:
     """M, C_eff, K_eff, all (n, n) sparse, and elastic: K0, symmetric, without friction and without open contacts.
 
     across is the damping of friction across the sliding direction, which is a part of C_eff. about is the linearised
-    system behind it, None where bare matrices were given.
+    system behind it and sliding what its contacts add, None where bare matrices were given.
     """
 
     M: Any
@@ -26,6 +39,14 @@ class Pencil:
     elastic: Any
     across: Any = None
     about: Linearised | None = None
+    sliding: Sliding | None = None
+
+    @property
+    def structural(self) -> tuple[Any, Any, Any]:
+        """M, C and K that `sliding` adds to: those of the system, or the bare matrices themselves."""
+        if self.sliding is None:
+            return self.M, self.C, self.K
+        return self.sliding.system.M, self.sliding.system.C, self.sliding.system.K
 
     @property
     def size(self) -> int:
@@ -53,12 +74,13 @@ class Pencil:
         return missed / (scale * np.linalg.norm(shapes, axis=0))
 
 
-def pencil_of(system: System, time: float = 0.0, about: Linearised | None = None) -> Pencil:
+def pencil_of(system: System, time: float = 0.0, about: Linearised | None = None, start: Start | None = None) -> Pencil:
     """The matrices of a sparse system about steady sliding at `time` [s], or as they were linearised before.
 
-    Raises `InvalidSystem` where there is no steady sliding, with the reason.
+    `start` is steady sliding of a similar brake, from which the search for this one's begins. Raises `InvalidSystem`
+    where there is no steady sliding, with the reason.
     """
-    about = linearise(system, time) if about is None else about
+    about = linearise(system, time, start) if about is None else about
     state = about.equilibrium
     if not state.exists:
         raise InvalidSystem(f"no steady sliding to linearise about: {state.outcome} ({state.outcome.message})")
@@ -67,8 +89,10 @@ def pencil_of(system: System, time: float = 0.0, about: Linearised | None = None
     coupling = np.where(closed, state.friction * np.sign(state.sliding_speed), 0.0)
     stiffness = about.K + friction_stiffness(table, coupling)
     pressing = np.where(closed, state.normal_force, 0.0)
-    across = damping_across(table, pressing * state.friction / np.abs(state.sliding_speed))
-    return Pencil(about.M, about.C, about.K, symmetric_part(stiffness), across, about)
+    turning = pressing * state.friction / np.abs(state.sliding_speed)
+    _, slope = table.friction(state.sliding_speed)
+    sliding = Sliding(system, coupling, np.where(closed, 0.0, 1.0), pressing * slope, turning)
+    return Pencil(about.M, about.C, about.K, symmetric_part(stiffness), damping_across(table, turning), about, sliding)
 
 
 def symmetric_part(matrix: Any) -> Any:

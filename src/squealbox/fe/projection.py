@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.linalg import eig
 
 from squealbox.factorisation import Factor
-from squealbox.fe.basis import enriched_basis, joined
+from squealbox.fe.basis import enriched_basis
+from squealbox.fe.growing_basis import GrowingBasis, times
 from squealbox.fe.pencil import Pencil, vibrating
 from squealbox.fe.real_modes import RealModes, real_modes
 
@@ -29,8 +29,8 @@ LEFT_OUT = 0.3  # of the tolerance: what a round of growing may leave out
 class Projected:
     """Modes on a basis: eigenvalues (k,) with Im > 0, right and left (n, k), error (k,): the complex estimate delta.
 
-    condition (k,) is the condition number of each eigenvalue on the basis;
-    every holds all eigenvalues of the small problem, also those outside the band.
+    condition (k,) is the condition number of each eigenvalue on the basis; every holds all eigenvalues of the small
+    problem, also those outside the band. missed and missed_left (n, k) are the residuals r and s, moved is K0^-1 r.
     """
 
     eigenvalues: Any
@@ -39,45 +39,9 @@ class Projected:
     error: Any
     condition: Any
     every: Any
-
-
-@dataclass(frozen=True)
-class Small:
-    """The projected matrices V'MV, V'CV, V'KV, each (m, m)."""
-
-    M: Any
-    C: Any
-    K: Any
-
-    def eigenvalues(self) -> Any:
-        """Eigenvalues (2m,) alone."""
-        state, rate, _ = self._state()
-        return np.linalg.eigvals(state).astype(complex) * rate
-
-    def eigen(self) -> tuple[Any, Any, Any, Any]:
-        """Eigenvalues (2m,), right x and left y (m, 2m) of the quadratic problem, and the condition numbers (2m,)."""
-        size = len(self.M)
-        state, rate, inverse = self._state()
-        values, left, right = eig(state, left=True, right=True)
-        with np.errstate(divide="ignore"):
-            condition = 1.0 / np.abs(np.sum(left.conj() * right, axis=0))
-        return values * rate, right[:size], inverse.T @ left[size:], condition
-
-    def _state(self) -> tuple[Any, float, Any]:
-        size = len(self.M)
-        inverse = np.linalg.inv(self.M)
-        stiffness, damping = inverse @ self.K, inverse @ self.C
-        rate = float(np.sqrt(np.max(np.abs(stiffness)))) or 1.0
-        return (
-            np.block([[np.zeros((size, size)), np.eye(size)], [-stiffness / rate**2, -damping / rate]]),
-            rate,
-            inverse,
-        )
-
-
-def projected(pencil: Pencil, basis: Any) -> Small:
-    """The matrices on a basis V (n, m)."""
-    return Small(*(basis.T @ (matrix @ basis) for matrix in (pencil.M, pencil.C, pencil.K)))
+    missed: Any = None
+    missed_left: Any = None
+    moved: Any = None
 
 
 def basis_for(pencil: Pencil, band: tuple[float, float]) -> tuple[RealModes, Any]:
@@ -90,38 +54,33 @@ def basis_for(pencil: Pencil, band: tuple[float, float]) -> tuple[RealModes, Any
     return modes, enriched_basis(pencil, modes)
 
 
-def modes_on(pencil: Pencil, base: Factor, basis: Any, band: tuple[float, float]) -> Projected:
-    """The modes in the band (f1, f2) [Hz] on a basis, with their estimates."""
-    values, x, y, condition = projected(pencil, basis).eigen()
+def modes_on(onto: GrowingBasis, i: int, base: Factor, band: tuple[float, float]) -> Projected:
+    """The modes of the i-th pencil in the band (f1, f2) [Hz], with their estimates: one solve for each."""
+    values, x, y, condition = onto.small(i).eigen()
     low, high = (2.0 * np.pi * f for f in band)
     inside = np.flatnonzero((values.imag >= low) & (values.imag <= high) & vibrating(values))
     inside = inside[np.argsort(values[inside].imag, kind="stable")]
-    right, left = basis @ x[:, inside], basis @ y[:, inside]
-    chosen = values[inside]
-    right = right / np.linalg.norm(right, axis=0)
-    slope = 2.0 * chosen * (pencil.M @ right) + pencil.C @ right
-    left = left / np.conj(np.sum(np.conj(left) * slope, axis=0))
-    error = estimates(pencil, base, chosen, right, left)
-    return Projected(chosen, right, left, error, condition[inside], values)
-
-
-def estimates(pencil: Pencil, base: Factor, values: Any, right: Any, left: Any) -> Any:
-    """delta (k,) [1/s] for shapes with w^H Q'(lambda) u = 1."""
-    missed, missed_left = pencil.residual(values, right), pencil.left_residual(values, left)
+    chosen, x, y = values[inside], x[:, inside], y[:, inside]
+    small = onto.small(i)
+    y = y / np.conj(np.sum(np.conj(y) * (2.0 * chosen * (small.M @ x) + small.C @ x), axis=0))
+    right = times(onto.basis, x)
+    length = np.linalg.norm(right, axis=0)
+    x, y, right = x / length, y * length, right / length
+    left = times(onto.basis, y)
+    missed, missed_left = onto.residual(i, chosen, x), onto.left_residual(i, chosen, y)
     moved = base.solve_many(missed)
-    return np.sum(np.conj(missed_left) * moved, axis=0) - np.sum(np.conj(left) * missed, axis=0)
+    error = np.sum(np.conj(missed_left) * moved, axis=0) - np.sum(np.conj(left) * missed, axis=0)
+    return Projected(chosen, right, left, error, condition[inside], values, missed, missed_left, moved)
 
 
-def residual_vectors(pencil: Pencil, base: Factor, found: Projected, worst: Any) -> Any:
+def residual_vectors(base: Factor, found: Projected, worst: Any) -> Any:
     """Real and imaginary parts of du = K0^-1 r and dw = K0^-1 s of the modes marked in `worst`, (n, 4k).
 
     The estimate is <dw, du> in the energy of K0. Each pair is scaled so that both have the same energy, |dw| |du|: what
     a direction holds of them is then what leaving it out may cost, in 1/s.
     """
-    values = found.eigenvalues[worst]
-    right = pencil.residual(values, found.right[:, worst])
-    left = pencil.left_residual(values, found.left[:, worst])
-    moved, moved_left = base.solve_many(right), base.solve_many(left)
+    right, left, moved = found.missed[:, worst], found.missed_left[:, worst], found.moved[:, worst]
+    moved_left = base.solve_many(left)
     sizes = [
         np.sqrt(np.maximum(np.sum(np.conj(m) * r, axis=0).real, 1e-300))
         for m, r in ((moved, right), (moved_left, left))
@@ -131,27 +90,26 @@ def residual_vectors(pencil: Pencil, base: Factor, found: Projected, worst: Any)
     return np.concatenate([moved.real, moved.imag, moved_left.real, moved_left.imag], axis=1)
 
 
-def main_directions(pencil: Pencil, basis: Any, vectors: Any, allowed: float) -> Any:
+def main_directions(onto: GrowingBasis, vectors: Any, allowed: float) -> Any:
     """The directions of scaled residual vectors that together hold all but `allowed` [1/s] of their energies."""
-    for _ in range(2):
-        vectors = vectors - basis @ (basis.T @ (pencil.M @ vectors))
-    energy = vectors.T @ (pencil.elastic @ vectors)
+    vectors = onto.without(vectors)
+    energy = vectors.T @ (onto.pencils[0].elastic @ vectors)
     values, turns = np.linalg.eigh(0.5 * (energy + energy.T))
     values = np.maximum(values, 0.0)
     keep = np.cumsum(values) > allowed
     return vectors @ (turns[:, keep] / np.sqrt(values[keep]))
 
 
-def refined_modes(
-    pencil: Pencil, modes: RealModes, basis: Any, band: tuple[float, float], tolerance: float
-) -> tuple[Projected, Any]:
-    """The modes in the band and the basis, grown by residual vectors until every estimate is below `tolerance`."""
-    found = modes_on(pencil, modes.base, basis, band)
-    for _ in range(ROUNDS):
-        worst = np.abs(found.error) > tolerance
-        if not np.any(worst):
+def refined(
+    onto: GrowingBasis, base: Factor, band: tuple[float, float], tolerance: float, rounds: int = ROUNDS
+) -> list[Projected]:
+    """The modes in the band of every pencil; the basis grows until every estimate is below `tolerance` [1/s]."""
+    for left in reversed(range(rounds + 1)):
+        found = [modes_on(onto, i, base, band) for i in range(len(onto.pencils))]
+        worst = [np.abs(one.error) > tolerance for one in found]
+        if left == 0 or not any(np.any(marks) for marks in worst):
             break
-        vectors = residual_vectors(pencil, modes.base, found, worst)
-        basis = joined(pencil, basis, main_directions(pencil, basis, vectors, LEFT_OUT * tolerance))
-        found = modes_on(pencil, modes.base, basis, band)
-    return found, basis
+        pairs = zip(found, worst, strict=True)
+        vectors = [residual_vectors(base, one, marks) for one, marks in pairs if np.any(marks)]
+        onto.add(main_directions(onto, np.concatenate(vectors, axis=1), LEFT_OUT * tolerance))
+    return found

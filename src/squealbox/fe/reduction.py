@@ -15,20 +15,14 @@ import numpy as np
 from squealbox.fe.basis import joined
 from squealbox.fe.craig_bampton import craig_bampton_basis
 from squealbox.fe.full_brake import FullBrake, full_system
+from squealbox.fe.growing_basis import GrowingBasis
 from squealbox.fe.pencil import Pencil, pencil_of
-from squealbox.fe.projection import (
-    HEADROOM,
-    LEFT_OUT,
-    Small,
-    basis_for,
-    main_directions,
-    modes_on,
-    projected,
-    residual_vectors,
-)
+from squealbox.fe.projection import HEADROOM, Projected, basis_for, refined
 from squealbox.fe.quadratic import full_modes
 from squealbox.fe.real_modes import real_modes
 from squealbox.fe.reduced_brake import FIELDS, Axis, ReducedBrake, Reduction, chebyshev_points
+from squealbox.fe.small import Small
+from squealbox.sparse_sliding import Start
 from squealbox.system import InvalidSystem, as_system, linearise
 
 Basis = Literal["enriched", "craig-bampton", "pod"]
@@ -72,22 +66,24 @@ def reduce(
     if not system.is_sparse:
         raise InvalidSystem(f"the system is dense, with {system.size} degrees of freedom: it needs no reduction")
     corners = [dict(zip(ranges, values, strict=True)) for values in product(*ranges.values())] if ranges else []
-    pencils = [pencil_of(full_system(design_or_system, corner), time) for corner in corners]
     reference = pencil_of(system, time)
-    modes, basis = _first_basis(method, design_or_system, reference, ranges, (low, high), time)
-    basis = _with_statics(reference, pencils, basis)
-    if method == "enriched":
-        basis = _grown([reference, *pencils], modes, basis, (low, high), tolerance)
     assert reference.about is not None
-    full = FullBrake(design_or_system, basis, reference.about.equilibrium.q, modes.base, time)
-    arrays = full.projected_arrays(system)
+    steady = reference.about.equilibrium.q
+    modes, basis = _first_basis(method, design_or_system, reference, ranges, (low, high), time)
+    near = Start(steady, modes.base)
+    pencils = [pencil_of(full_system(design_or_system, corner), time, start=near) for corner in corners]
+    onto = GrowingBasis([reference, *pencils], _with_statics(reference, pencils, basis))
+    found = refined(onto, modes.base, (low, high), 0.5 * tolerance, ROUNDS if method == "enriched" else 0)
+    full = FullBrake(design_or_system, onto.basis, steady, modes.base, time)
+    arrays = full.projected_arrays(system, onto.structural(0))
     axes, values = [], {}
     for name, (start, end) in ranges.items():
         axis = _axis(full, name, float(start), float(end), arrays)
         if axis is not None:
             axes.append(axis)
             values[name] = float(design_or_system.value_of(name))
-    damping, amount = _damped_above(full, [reference, *pencils], modes.top * HEADROOM)
+    smalls = [onto.small(i) for i in range(1 + len(pencils))]
+    damping, amount = _damped_above(smalls, onto.basis.T @ (reference.elastic @ onto.basis), modes.top * HEADROOM)
     arrays["C"] = arrays["C"] + damping
     law = system.contacts.law
     reduction = Reduction(
@@ -107,8 +103,8 @@ def reduce(
     small = ReducedBrake(
         reduction=reduction, friction=shared if len(system.contacts) else None, values=values, full=full
     )
-    points = [({}, reference), *zip(corners, pencils, strict=True)]
-    errors = [(point, _error(small.replace(point), pencil, full, time)) for point, pencil in points]
+    points = zip([{}, *corners], found, strict=True)
+    errors = [(point, _error(small.replace(point), modes_there, time)) for point, modes_there in points]
     return small.replace({"reduction": reduction.replace(errors=tuple(errors))})
 
 
@@ -169,22 +165,6 @@ def _with_statics(reference: Pencil, pencils: list[Pencil], basis: Any) -> Any:
     return joined(reference, basis, np.stack(columns, axis=1)) if columns else basis
 
 
-def _grown(pencils: list[Pencil], modes: Any, basis: Any, band: tuple[float, float], tolerance: float) -> Any:
-    """The basis with residual vectors of the modes in the band, at every corner."""
-    for _ in range(ROUNDS):
-        vectors = []
-        for pencil in pencils:
-            found = modes_on(pencil, modes.base, basis, band)
-            worst = np.abs(found.error) > 0.5 * tolerance
-            if np.any(worst):
-                vectors.append(residual_vectors(pencil, modes.base, found, worst))
-        if not vectors:
-            break
-        together = np.concatenate(vectors, axis=1)
-        basis = joined(pencils[0], basis, main_directions(pencils[0], basis, together, LEFT_OUT * tolerance))
-    return basis
-
-
 def _axis(full: FullBrake, name: str, low: float, high: float, arrays: dict[str, Any]) -> Axis | None:
     """What changes along one parameter; None for a coefficient of the friction law, which the contacts know."""
     if name.startswith("friction."):
@@ -204,14 +184,13 @@ def _axis(full: FullBrake, name: str, low: float, high: float, arrays: dict[str,
     return Axis(name=name, low=low, high=high, points=points, change=change)
 
 
-def _damped_above(full: FullBrake, pencils: list[Pencil], top: float) -> tuple[Any, float]:
+def _damped_above(smalls: list[Small], elastic: Any, top: float) -> tuple[Any, float]:
     """The least damping with which no mode above `top` [Hz] grows at any corner, and that leaves the band alone.
 
     It acts on the directions that no right shape of a mode below `top`, at any corner, has a part in: C_h u = 0 for
     those u, so their eigenvalues stay exactly what they were.
     """
-    smalls = [projected(pencil, full.basis) for pencil in pencils]
-    mass, elastic = smalls[0].M, full.basis.T @ (pencils[0].elastic @ full.basis)
+    mass = smalls[0].M
     if not any(_grows_above(small, 0.0, 2.0 * np.pi * top) for small in smalls):
         return np.zeros_like(mass), 0.0
     shapes = []
@@ -241,13 +220,12 @@ def _grows_above(small: Small, damping: Any, top: float) -> bool:
     return bool(np.any((np.abs(values.imag) > top) & (values.real > 1e-10 * np.abs(values))))
 
 
-def _error(small: ReducedBrake, pencil: Pencil, full: FullBrake, time: float) -> float:
+def _error(small: ReducedBrake, found: Projected, time: float) -> float:
     """The largest error of an eigenvalue in the band at one point, against the full brake there.
 
     It adds what the basis misses to what else parts the small brake from the projected full one: interpolation over
     parameters, added damping, contacts that its steady sliding would open otherwise.
     """
-    found = modes_on(pencil, full.base, full.basis, small.band)
     about = linearise(small.system(), time)
     if not about.equilibrium.exists:
         return float("inf")

@@ -12,8 +12,9 @@ from typing import Any, Literal
 import numpy as np
 
 from squealbox.fe.certificate import Certificate, certificate
+from squealbox.fe.growing_basis import GrowingBasis
 from squealbox.fe.pencil import Pencil, pencil_of
-from squealbox.fe.projection import Projected, basis_for, refined_modes
+from squealbox.fe.projection import Projected, basis_for, refined
 from squealbox.fe.quadratic import full_modes
 from squealbox.result import Outcome, quantity
 from squealbox.stability.eigenvalues import ComplexModes
@@ -107,7 +108,7 @@ def band_modes(
     if method == "full":
         return _full(pencil, (low, high), count, common)
     modes, basis = basis_for(pencil, (low, high))
-    found, basis = refined_modes(pencil, modes, basis, (low, high), tolerance)
+    (found,) = refined(GrowingBasis([pencil], basis), modes.base, (low, high), tolerance)
     common |= {"real_frequency": modes.frequency, "real_modes_complete": modes.complete}
     if certify:
         proof = certificate(pencil, known_eigenvalues(found), (low, high))
