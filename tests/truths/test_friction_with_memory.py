@@ -8,7 +8,16 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from squealbox import (
-    PID, Contact, Controlled, Coulomb, DrumBrake, System, closed_loop, complex_modes, fit_friction, simulate,
+    PID,
+    Contact,
+    Controlled,
+    Coulomb,
+    DrumBrake,
+    System,
+    closed_loop,
+    complex_modes,
+    fit_friction,
+    simulate,
     simulate_ensemble,
 )  # fmt: skip
 from squealbox.friction import Averaged, Dahl, ElastoPlastic, FrictionLaw, LuGre
