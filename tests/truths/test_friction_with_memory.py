@@ -82,6 +82,21 @@ def test_block_on_a_belt_is_that_of_scipy(law: Any) -> None:
     assert many["amplitude"].shape == (1,)
 
 
+def test_a_lane_of_an_ensemble_is_its_single_run() -> None:
+    """Parameters of the law over an axis, and a sequence of designs; the bits of a single run."""
+    brake = DrumBrake(friction=LuGre(0.4, 0.3, 0.4, 3e4, 1e-3, 0.02), sliding_speed=0.5)
+    values = {"friction.static": [0.35, 0.45], "friction.stiffness": [2e4, 4e4]}
+    many = simulate_ensemble(brake, values, 2e-3, "taylor", start="sliding", rtol=1e-9)
+    kept = [
+        brake.replace({"friction.static": a, "friction.stiffness": b}) for a, b in zip(*values.values(), strict=True)
+    ]
+    row = simulate_ensemble(kept, None, 2e-3, "taylor", start="sliding", rtol=1e-9)
+    for i, one in enumerate(kept):
+        alone = simulate(one, 2e-3, start="sliding", method="taylor", rtol=1e-9)
+        assert np.array_equal(many.q[i], alone.q[-1])
+        assert np.allclose(row.q[i], alone.q[-1], rtol=1e-12, atol=0.0)
+
+
 def test_another_law_is_told_apart() -> None:
     """Negative twin: without the Stribeck fall the motion is another one."""
     times = np.linspace(0.0, 1.0, 11)

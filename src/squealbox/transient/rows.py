@@ -230,7 +230,8 @@ def fastest_rate(system: System, rows: Rows) -> Any:
         contact = system.contacts[c]
         force = np.abs(value_at(contact.N0, 0.0)) + np.abs(np.sum(rows.n[c] * _at_rest(system), axis=-1))
         spring = force * contact.law.grip[0]
-        held = held + np.asarray(spring)[..., None, None] * _solved(rows.inverse, contact.d)[..., :, None] * rows.t[c]
+        push = _solved(rows.inverse, contact.d)[..., :, None] * rows.t[c][..., None, :]
+        held = held + np.asarray(spring)[..., None, None] * push
     n, heavy, first = len(rows.kinds), rows.of(WITH_MASS), rows.of(FIRST_ORDER)
     matrix = np.zeros((*held.shape[:-2], 2 * n, 2 * n))
     speeds = [n + i for i in heavy]

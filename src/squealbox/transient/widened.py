@@ -116,7 +116,9 @@ def _with_limited_loops(system: System) -> System:
     """Loops with a limit that feed back more than a velocity, as rows and a contact without events each."""
     for loop in system.loops:
         row, n = loop.rows(system.names), system.size
-        if any(np.ndim(x) > k for x, k in ((row.P, 1), (row.R, 1), (row.A, 2), (np.asarray(loop.limit), 0))):
+        if any(
+            np.ndim(x) > k for x, k in ((row.P, 1), (row.R, 1), (row.S, 1), (row.A, 2), (np.asarray(loop.limit), 0))
+        ):
             raise InvalidSystem(
                 f"a {type(loop).__name__} with a limit varies in an ensemble: run such loops one by one"
             )

@@ -11,14 +11,24 @@ from squealbox.parameters import DataSheet
 from squealbox.schedules import Sum
 from squealbox.system import InvalidSystem, System, as_system
 from squealbox.transient.limited import in_time
+from squealbox.transient.widened import Widened, base_of
 
 
 def stacked(designs: Sequence[Any]) -> System:
     """Systems of the same structure as one with a leading axis; `InvalidSystem` names one that differs."""
     systems = [in_time(as_system(each)) for each in designs]
+    whole = _joined(systems)
+    if isinstance(whole, Widened):
+        if any(not np.array_equal(each.embedding, whole.embedding) for each in systems[1:]):  # type: ignore[attr-defined]
+            raise InvalidSystem("designs of a sequence have singular mass matrices that differ: run them apart")
+        whole = whole.replace(base=_joined([base_of(each) for each in systems]))
+    return whole
+
+
+def _joined(systems: list[System]) -> System:
     first = systems[0]
     for i, other in enumerate(systems):
-        alike = other.size == first.size and len(other.contacts) == len(first.contacts)
+        alike = type(other) is type(first) and other.size == first.size and len(other.contacts) == len(first.contacts)
         kinds = [(type(c.law), c.unilateral, type(c.V), type(c.N0)) for c in other.contacts]
         if other.shape != () or not alike or kinds != [
             (type(c.law), c.unilateral, type(c.V), type(c.N0)) for c in first.contacts
