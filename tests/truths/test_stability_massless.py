@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from squealbox import Coulomb
 from squealbox.stability import complex_modes, finite_spectrum
 from squealbox.system import System
 
@@ -85,3 +86,21 @@ def test_each_finite_eigenvalue_makes_the_dynamic_stiffness_singular(size: int, 
         largest = max(np.linalg.norm(part) for part in parts)
         # backward error; constraints of nearly parallel rows cost digits
         assert np.linalg.svd(dynamic, compute_uv=False)[-1] <= 1e-7 * largest
+
+
+@pytest.mark.parametrize("ask", ["bifurcation_diagram", "basin", "dangerous_push", "coexistence"])
+def test_what_needs_a_mass_for_each_freedom_says_so(ask):
+    """These settle motions in q and q' alone; a row without mass ended them in "Singular matrix"."""
+    from squealbox import limit_cycles
+    from squealbox.files.own_brake import OwnBrake, OwnContact
+    from squealbox.system import InvalidSystem
+
+    pad = OwnContact(n=[0.0, 0.0], d=[1.0, 0.0])
+    brake = OwnBrake(M=np.diag([1.0, 0.0]), C=np.diag([0.05, 0.3]), K=[[2.0, -1.0], [-1.0, 1.0]], normal_force=1.0,
+                     friction=Coulomb(0.4, 0.25), contacts=(pad,))  # fmt: skip
+    arguments = {
+        "bifurcation_diagram": ("sliding_speed", [0.2, 0.3]),
+        "coexistence": ({"sliding_speed": (0.2, 0.3), "friction.static": (0.3, 0.5)},),
+    }.get(ask, ())
+    with pytest.raises(InvalidSystem, match="M is singular"):
+        getattr(limit_cycles, ask)(brake, *arguments)

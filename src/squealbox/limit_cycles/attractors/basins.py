@@ -33,10 +33,11 @@ from squealbox.limit_cycles.attractors.settling import (
     settle_on,
     together,
 )
+from squealbox.limit_cycles.cycles.field import q_and_qd
 from squealbox.limit_cycles.cycles.pinned import at_rest_together
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome, Result, quantity
-from squealbox.system import System, as_system
+from squealbox.system import System
 
 CONFIDENCE = 0.95
 PILOT = 512  # starts that run until they have settled; those after them until they arrive at what these found
@@ -131,7 +132,7 @@ def basin(
     >>> basin(DrumBrake(friction=LinearSlope(0.3, -0.05)), [1e-6, 1e-6, 0.0, 0.0], 4).share
     array(0.)
     """
-    system = at_rest_together(as_system(design_or_system))
+    system = at_rest_together(q_and_qd(design_or_system))
     batch = Batch.over(system)
     scales = Scales.of(batch, 1)
     n = system.size

@@ -62,9 +62,21 @@ class Coexistence(Result):
             return f"{self.outcome}: {self.outcome.message}"
         x, y = self.parameters
         lines = [f"stable sliding and vibration coexist at {100 * self.share:.1f} % of {self.stable.size} points"]
-        lines += [f"  {y} {b:.5g}: {x} {low:.5g} to {high:.5g}"
-                  for b, low, high in zip(self.y, self.end, self.onset, strict=True)]  # fmt: skip
+        rows = zip(self.y, self.end, self.onset, strict=True)
+        lines += [f"  {y} {b:.5g}: {_edges(x, float(low), float(high))}" for b, low, high in rows]
         return "\n".join(lines)
+
+
+def _edges(name: str, low: float, high: float) -> str:
+    """The lower and the upper edge of a row in words."""
+    if np.isnan(high):
+        return "sliding is unstable from the lower end of the range"
+    above = (
+        f"sliding is stable up to {name} {high:.5g}" if np.isfinite(high) else "sliding is stable in the whole range"
+    )
+    if np.isnan(low):
+        return f"{above}, and no lower edge of the vibration was found"
+    return f"{above}, the vibration is there from {f'{name} {low:.5g}' if np.isfinite(low) else 'below the range'} on"
 
 
 def coexistence(

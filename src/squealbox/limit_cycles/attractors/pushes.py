@@ -22,10 +22,11 @@ from squealbox.limit_cycles.attractors.attractor import Attractor, attractors
 from squealbox.limit_cycles.attractors.basins import interval
 from squealbox.limit_cycles.attractors.sections import state_names
 from squealbox.limit_cycles.attractors.settling import RESTS, Batch, Scales, settle
+from squealbox.limit_cycles.cycles.field import q_and_qd
 from squealbox.limit_cycles.cycles.pinned import at_rest_together
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Outcome, Result, quantity
-from squealbox.system import System, as_system
+from squealbox.system import System
 
 SECTIONS = (12, 8, 8)  # lengths tried at once between two, one round after the other
 FINE = (12, 12, 12, 12)  # of the last search along one direction
@@ -96,7 +97,7 @@ def dangerous_push(
     >>> dangerous_push(drum, (1e-8, 1e-6), directions=4, rounds=1, drawn=4).outcome
     'no_danger'
     """
-    search = _Search(at_rest_together(as_system(design_or_system)), duration, threads)
+    search = _Search(at_rest_together(q_and_qd(design_or_system)), duration, threads)
     low, high = (np.sqrt(2.0 * e) for e in _energies(energies, search))
     if not np.all(np.isfinite(search.rest)):
         return _nothing(search, Outcome("no_sliding", "there is no steady sliding to push"))
@@ -137,7 +138,7 @@ def push_along(
     Seen from below on 16 lengths, then refined between the two it lies between, to 1e-4 of their distance. A part of a
     folded basin narrower than that is missed.
     """
-    search = _Search(at_rest_together(as_system(design_or_system)), duration, threads)
+    search = _Search(at_rest_together(q_and_qd(design_or_system)), duration, threads)
     along = search.unit(np.asarray(direction, dtype=float))
     size = float(np.linalg.norm(along))
     if not size > 0.0:

@@ -19,7 +19,7 @@ from squealbox.limit_cycles.cycles.pinned import pinned
 from squealbox.memory_rows import no_memory
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Schedule, value_at
-from squealbox.system import InvalidSystem, System
+from squealbox.system import InvalidSystem, System, as_system
 from squealbox.transient.limited import in_time
 from squealbox.transient.packing import inverse_mass
 from squealbox.transient.rows import WITH_MASS, row_kinds
@@ -46,6 +46,13 @@ def check_states(system: System) -> None:
             "M is singular, or a loop with a limit remembers: a limit cycle here is one of q and q' alone; simulate() "
             "runs such a system to what it settles on"
         )
+
+
+def q_and_qd(design_or_system: Any) -> System:
+    """The system of a design whose states are q and q' alone; `InvalidSystem` for another."""
+    system = as_system(design_or_system)
+    check_states(system)
+    return system
 
 
 class Field:
