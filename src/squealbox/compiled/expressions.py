@@ -83,11 +83,13 @@ class Expressions(Arithmetic):
         return getattr(self, f"of_{type(node).__name__}", self.unknown)(node)
 
     def of_Constant(self, node: ast.Constant) -> Value:
+        """A number as it stands."""
         if not isinstance(node.value, int | float):
             raise Untranslatable(f"{node.value!r}")
         return node.value
 
     def of_Name(self, node: ast.Name) -> Value:
+        """What a name stands for: a variable, or a name of the text."""
         if node.id in self.local:
             return self.named(node.id)
         if node.id in self.unit.names:
@@ -102,9 +104,11 @@ class Expressions(Arithmetic):
         return tuple(self.named(f"{name}.{k}") for k in range(found.count)) if isinstance(found, Several) else found
 
     def of_Tuple(self, node: ast.Tuple) -> Value:
+        """Several values."""
         return tuple(self.value(each) for each in node.elts)
 
     def of_UnaryOp(self, node: ast.UnaryOp) -> Value:
+        """not, -, + or ~ of a value."""
         value = self.value(node.operand)
         if isinstance(node.op, ast.Not):
             return self.inverted(value)
@@ -113,9 +117,11 @@ class Expressions(Arithmetic):
         return value if isinstance(node.op, ast.UAdd) else self.negated(value)
 
     def of_BinOp(self, node: ast.BinOp) -> Value:
+        """An operation on two values."""
         return self.binary(SIGNS[type(node.op)], self.value(node.left), self.value(node.right))
 
     def of_Compare(self, node: ast.Compare) -> Value:
+        """A chain of comparisons."""
         left, found = self.value(node.left), None
         for sign, right in zip(node.ops, node.comparators, strict=True):
             other = self.value(right)
@@ -154,6 +160,7 @@ class Expressions(Arithmetic):
         return Number(TRUTH, self.put(f"load i1, ptr {room}"))
 
     def of_IfExp(self, node: ast.IfExp) -> Value:
+        """One of two values; the other is not computed."""
         truth = self.truth(self.value(node.test))
         if literal(truth):
             return self.value(node.body if truth else node.orelse)
@@ -184,6 +191,7 @@ class Expressions(Arithmetic):
             self.lines.append(f"store {TEXTS[kind]} {self.numbered(value, kind).text}, ptr {room}")
 
     def of_Attribute(self, node: ast.Attribute) -> Value:
+        """A field of a record, the shape of an array, a constant of NumPy."""
         owner = self.value(node.value)
         if isinstance(owner, Record):
             return self.load(self.place(node))
@@ -196,6 +204,7 @@ class Expressions(Arithmetic):
         raise Untranslatable(f"{ast.unparse(node)}")
 
     def of_Subscript(self, node: ast.Subscript) -> Value:
+        """An element or a row."""
         owner = self.value(node.value)
         if isinstance(owner, tuple):
             return self.of_tuple(owner, self.value(node.slice))
@@ -260,6 +269,7 @@ class Expressions(Arithmetic):
         self.lines.append(f"store {TEXTS[place.element]} {number.text}, ptr {place.pointer}")
 
     def of_Call(self, node: ast.Call) -> Value:
+        """A call of a plain function, of Python's own or of NumPy's."""
         if node.keywords:
             raise Untranslatable("an argument by name")
         values = [self.value(each) for each in node.args]

@@ -132,13 +132,15 @@ class Function(Expressions):
                 ) from error
 
     def do_Pass(self, node: ast.Pass) -> None:
-        pass
+        """Nothing."""
 
     def do_Expr(self, node: ast.Expr) -> None:
+        """A call for what it does; a docstring."""
         if not isinstance(node.value, ast.Constant):
             self.value(node.value)
 
     def do_Return(self, node: ast.Return) -> None:
+        """The end of the function."""
         value = None if node.value is None else self.value(node.value)
         kind = None if value is None else self.plain(kind_of(value))
         if not self.returns:
@@ -169,15 +171,18 @@ class Function(Expressions):
         return f"{whole} {text}"
 
     def do_Assign(self, node: ast.Assign) -> None:
+        """An assignment."""
         value = self.value(node.value)
         for target in node.targets:
             self.put_into(target, value)
 
     def do_AnnAssign(self, node: ast.AnnAssign) -> None:
+        """An assignment with an annotation, which says nothing here."""
         if node.value is not None:
             self.put_into(node.target, self.value(node.value))
 
     def do_AugAssign(self, node: ast.AugAssign) -> None:
+        """An assignment such as +=."""
         if isinstance(node.target, ast.Name):
             old = self.value(ast.Name(node.target.id, ast.Load()))
             self.assign(node.target.id, self.binary(SIGNS[type(node.op)], old, self.value(node.value)))
@@ -222,6 +227,7 @@ class Function(Expressions):
         self.lines.append(f"store {TEXTS[held]} {self.numbered(value, held).text}, ptr %v.{name}")
 
     def do_If(self, node: ast.If) -> None:
+        """A choice; by what is known beforehand only its branch is written."""
         truth = self.truth(self.value(node.test))
         if literal(truth):
             self.body(node.body if truth else node.orelse)
@@ -240,6 +246,7 @@ class Function(Expressions):
             self.label(f"on{k}")
 
     def do_While(self, node: ast.While) -> None:
+        """A loop."""
         k = next(self.labels)
         self.jump(f"test{k}")
         self.label(f"test{k}")
@@ -256,6 +263,7 @@ class Function(Expressions):
         self.label(f"on{k}")
 
     def do_For(self, node: ast.For) -> None:
+        """A loop over a range."""
         if node.orelse or not isinstance(node.target, ast.Name):
             raise Untranslatable("a loop with else, or over tuples")
         if not (
@@ -288,7 +296,9 @@ class Function(Expressions):
         self.label(f"on{k}")
 
     def do_Break(self, node: ast.Break) -> None:
+        """On behind the loop."""
         self.jump(self.loops[-1][1])
 
     def do_Continue(self, node: ast.Continue) -> None:
+        """On with the next turn."""
         self.jump(self.loops[-1][0])
