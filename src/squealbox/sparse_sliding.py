@@ -94,6 +94,17 @@ def _step(base: Factor | None, jacobian: Any, residual: Any, accuracy: float) ->
     return factor(jacobian).solve(residual)
 
 
+def linearised(damping: Any, stiffness: Any, contacts: Contacts, state: Any) -> tuple[Any, Any]:
+    """C_eff and K_eff (n, n) about an `Equilibrium`."""
+    closed = (state.normal_force > 0.0) | ~contacts.unilateral
+    _, slope = contacts.friction(state.sliding_speed)
+    pressing = np.where(closed, state.normal_force, 0.0)
+    found = damping + damping_along(contacts, pressing * slope)
+    found = found + damping_across(contacts, pressing * state.friction / np.abs(state.sliding_speed))
+    coupling = state.friction * np.sign(state.sliding_speed)
+    return sparse.csr_array(found), stiffness_of(stiffness, contacts, coupling, closed)
+
+
 def stiffness_of(stiffness: Any, contacts: Contacts, coupling: Any, closed: Any) -> Any:
     """K less D' diag(mu sgn V) N of the closed contacts, and less R' N of the open ones."""
     found = stiffness - contacts.d.T @ _scaled(contacts.n, np.where(closed, coupling, 0.0))

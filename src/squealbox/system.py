@@ -350,13 +350,7 @@ def _sparse_linearised(system: System, state: Equilibrium) -> tuple[Any, Any]:
     if not state.exists:
         nothing = sparse.diags_array(np.full(system.size, np.nan), format="csr")
         return nothing, nothing
-    closed = (state.normal_force > 0.0) | ~table.unilateral
-    _, slope = table.friction(state.sliding_speed)
-    pressing = np.where(closed, state.normal_force, 0.0)
-    damping = system.C + sparse_sliding.damping_along(table, pressing * slope)
-    damping = damping + sparse_sliding.damping_across(table, pressing * state.friction / np.abs(state.sliding_speed))
-    coupling = state.friction * np.sign(state.sliding_speed)
-    return sparse.csr_array(damping), sparse_sliding.stiffness_of(system.K, table, coupling, closed)
+    return sparse_sliding.linearised(system.C, system.K, table, state)
 
 
 def _sliding(system: System, time: float) -> tuple[Any, Any, Any]:

@@ -20,6 +20,8 @@ from squealbox import (
     sweep,
     tracked_modes,
 )
+from squealbox.stability.eigenvalues import modes_of
+from squealbox.system import linearise
 
 BAND = (3000.0, 7000.0)
 RANGE = {"friction.static": (0.1, 0.5)}
@@ -67,6 +69,22 @@ def test_onset_and_mechanism(small):
     assert float(found.value) == pytest.approx(float(direct.value), rel=2e-3)
     assert found.mechanism == direct.mechanism == "flutter"
     assert mechanism(small.replace({"friction.static": 0.5})).name == "flutter"
+
+
+@pytest.mark.parametrize("mu", [0.1, 0.22, 0.45])
+def test_modes_of_the_band_are_those_of_the_whole_spectrum_of_the_small_brake(small, mu):
+    arrays = small.reduction.arrays
+    bare = {**arrays, "C": arrays["C"] - arrays["high"], "high": 0.0 * arrays["high"]}  # without what was added above
+    brake = small.replace({"friction.static": mu, "reduction": small.reduction.replace(arrays=bare)})
+    pairs, state = brake.band_modes()
+    whole = modes_of(linearise(brake.system())).within(BAND)
+    half = len(whole.eigenvalues) // 2
+    assert len(pairs.values) == half
+    np.testing.assert_allclose(pairs.values, whole.eigenvalues[:half], rtol=1e-10)
+    np.testing.assert_allclose(np.abs(np.sum(pairs.right.conj() * whole.right[:, :half], axis=0)), 1.0, rtol=1e-6)
+    np.testing.assert_allclose(state.q, whole.steady, atol=1e-9 * np.max(np.abs(whole.steady)))
+    np.testing.assert_allclose(state.normal_force, whole.normal_force, atol=1e-9 * np.max(whole.normal_force))
+    assert brake.band_modes((BAND[0], 2.0 * BAND[1])) is None  # beyond the band it was reduced for
 
 
 def test_feed_in_of_every_contact_is_that_of_the_full_brake(small):

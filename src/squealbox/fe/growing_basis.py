@@ -64,6 +64,15 @@ class GrowingBasis:
         mass = self._of[0][0]
         self._extend(fresh_directions(self.pencils[0].M, self.basis, mass.right, vectors))
 
+    def turn(self, turns: Any) -> None:
+        """V becomes V T for a square T (m, m); the products of size n are given up, so it grows no more."""
+        for product in self._products:
+            product.gram = turns.T @ product.gram @ turns
+            product.right = product.left = np.zeros((0, 0))
+        for rows in self._rows:
+            rows.update({name: table @ turns for name, table in rows.items()})
+        self.basis = self.basis @ turns
+
     def without(self, vectors: Any) -> Any:
         """What of `vectors` (n, k) the basis does not hold, orthogonal in M."""
         weighted = self._of[0][0].right

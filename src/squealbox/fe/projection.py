@@ -111,5 +111,7 @@ def refined(
             break
         pairs = zip(found, worst, strict=True)
         vectors = [residual_vectors(base, one, marks) for one, marks in pairs if np.any(marks)]
-        onto.add(main_directions(onto, np.concatenate(vectors, axis=1), LEFT_OUT * tolerance))
+        marked = sum(int(np.sum(marks)) for marks in worst)  # what is left out is spread over that many modes
+        together = np.concatenate(vectors, axis=1)
+        onto.add(main_directions(onto, together, LEFT_OUT * tolerance * np.sqrt(marked)))
     return found

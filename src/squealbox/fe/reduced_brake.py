@@ -14,10 +14,12 @@ import numpy as np
 
 from squealbox.contacts import Contact
 from squealbox.designs.base import Design
+from squealbox.fe.band_spectrum import Pairs, band_pairs
 from squealbox.fe.full_brake import FullBrake
+from squealbox.fe.reduced_sliding import steady_small
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, known_names
-from squealbox.system import InvalidSystem, System
+from squealbox.system import Equilibrium, InvalidSystem, System
 
 FIELDS = ("M", "C", "K", "load", "n", "d", "t", "normal", "across", "N0", "V")
 
@@ -49,7 +51,8 @@ class Axis(DataSheet):
 class Reduction(DataSheet):
     """The projected arrays at the reference, the axes, and how good they are.
 
-    arrays maps the names M, C, K (m, m), load (m,), n, d, t, normal, across (contacts, m), N0, V (contacts,) to values;
+    arrays maps the names M, C, K (m, m), load (m,), n, d, t, normal, across (contacts, m), N0, V (contacts,) to values,
+    and high (m, m) to what of C was added to the directions above the band;
     laws holds one friction law, or one for each contact. errors lists, for each point that was checked against the full
     brake, its parameters and the largest error estimate [1/s] of a mode in the band.
     """
@@ -66,6 +69,7 @@ class Reduction(DataSheet):
     tolerance: float = 0.05
     method: str = "enriched"
     high_damping: float = 0.0
+    high_growth: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -117,6 +121,11 @@ class ReducedBrake(Design):
             lines.append(f"that is more than the {about.tolerance:g} 1/s asked for")
         if about.high_damping:
             lines.append(f"directions above {about.top:.5g} Hz are damped by {100 * about.high_damping:.2g} % more")
+        if about.high_growth:
+            lines.append(
+                f"above {about.top:.5g} Hz it grows by up to {about.high_growth:.3g} 1/s, which the full brake "
+                "need not: onsets and motions there are none of its own"
+            )
         return "\n".join(lines + [f"may vary: {text}" for text in ranges])
 
     @property
@@ -204,6 +213,25 @@ class ReducedBrake(Design):
                 )
             )
         return System(rows["M"], rows["C"], rows["K"], rows["load"], tuple(contacts))
+
+    def band_modes(
+        self, band: tuple[float, float] | None = None, time: float = 0.0
+    ) -> tuple[Pairs, Equilibrium] | None:
+        """The modes in a band, by default its own, and steady sliding, at a small part of the price of a spectrum.
+
+        The damping that was added above the band has no part in them; those whose damping ratio is above 0.1 are left
+        out. None where they are not had this way: several values at once, laws that differ or remember, a band beyond
+        its own, no steady sliding, or modes that did not settle.
+        """
+        low, high = band or self.band
+        shared = self.friction is not None and not any(np.ndim(value) for value in self.values.values())
+        if not shared or not len(self.reduction.contact_names) or high > self.band[1] * (1.0 + 1e-9):
+            return None
+        rows = {field: self.array(field) for field in FIELDS}
+        rows["C"] = rows["C"] - self.reduction.arrays.get("high", 0.0)
+        found = steady_small(rows, self.friction, np.asarray(self.reduction.unilateral))
+        pairs = None if found is None else band_pairs(found[0], (low, high))
+        return None if found is None or pairs is None else (pairs, found[1])
 
     def law_of(self, index: int) -> FrictionLaw:
         """The friction law of one contact."""

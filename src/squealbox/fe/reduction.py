@@ -16,7 +16,7 @@ from squealbox.fe.basis import joined
 from squealbox.fe.craig_bampton import craig_bampton_basis
 from squealbox.fe.full_brake import FullBrake, full_system
 from squealbox.fe.growing_basis import GrowingBasis
-from squealbox.fe.pencil import Pencil, pencil_of
+from squealbox.fe.pencil import Pencil, pencil_of, vibrating
 from squealbox.fe.projection import HEADROOM, Projected, basis_for, refined
 from squealbox.fe.quadratic import full_modes
 from squealbox.fe.real_modes import real_modes
@@ -30,8 +30,9 @@ METHODS = ("enriched", "craig-bampton", "pod")
 POINTS = 7  # Chebyshev points of a parameter that changes matrices
 ROUNDS = 3
 MOST_AXES = 4
-HIGH_DAMPING = (0.01, 0.05, 0.2, 1.0)  # damping ratios that are tried
+HIGH_DAMPING = (0.02, 0.2)  # damping ratios that are tried
 SEEN = 1e-5  # share of the strongest direction from which on the band's modes have a part in a direction
+INSIDE = (0.25, 0.5, 0.75)  # shares of the ranges at which added damping is checked, beside their corners
 HELD = 3.0  # times the band up to which modes with held contacts are taken
 SNAPSHOTS = 3  # values of each parameter at which POD looks
 
@@ -57,8 +58,9 @@ def reduce(
     time : instant of schedules [s]
 
     Returns a `ReducedBrake`; its `error` may be above `tolerance`, and says so. Directions above the band that the
-    small brake would wrongly let grow are given the least modal damping that stops it (`reduction.high_damping`); its
-    effect in the band is part of the error. Raises `InvalidSystem` without steady sliding at a corner.
+    small brake would wrongly let grow are given modal damping (`reduction.high_damping`) as far as it leaves the band
+    alone; what still grows there is `reduction.high_growth`, and the summary says so. Raises `InvalidSystem` without
+    steady sliding at a corner.
     """
     low, high = _checked(band, varying, method)
     ranges = dict(varying or {})
@@ -74,6 +76,8 @@ def reduce(
     pencils = [pencil_of(full_system(design_or_system, corner), time, start=near) for corner in corners]
     onto = GrowingBasis([reference, *pencils], _with_statics(reference, pencils, basis))
     found = refined(onto, modes.base, (low, high), 0.5 * tolerance, ROUNDS if method == "enriched" else 0)
+    _, turns = np.linalg.eigh(onto.basis.T @ (reference.elastic @ onto.basis))
+    onto.turn(turns)  # coordinates are undamped modes on the basis, rising in frequency
     full = FullBrake(design_or_system, onto.basis, steady, modes.base, time)
     arrays = full.projected_arrays(system, onto.structural(0))
     axes, values = [], {}
@@ -82,9 +86,6 @@ def reduce(
         if axis is not None:
             axes.append(axis)
             values[name] = float(design_or_system.value_of(name))
-    smalls = [onto.small(i) for i in range(1 + len(pencils))]
-    damping, amount = _damped_above(smalls, onto.basis.T @ (reference.elastic @ onto.basis), modes.top * HEADROOM)
-    arrays["C"] = arrays["C"] + damping
     law = system.contacts.law
     reduction = Reduction(
         arrays=arrays,
@@ -97,12 +98,18 @@ def reduce(
         axes=tuple(axes),
         tolerance=tolerance,
         method=method,
-        high_damping=amount,
     )
     shared = None if isinstance(law, tuple) or any(np.ndim(c) for c in law.coefficients()) else law
     small = ReducedBrake(
         reduction=reduction, friction=shared if len(system.contacts) else None, values=values, full=full
     )
+    inside = [_small_at(small.replace(point), time) for point in _between(ranges)]
+    smalls = [onto.small(i) for i in range(1 + len(pencils))] + [one for one in inside if one is not None]
+    elastic = onto.basis.T @ (reference.elastic @ onto.basis)
+    damping, amount, growth = _damped_above(smalls, elastic, modes.top * HEADROOM, tolerance)
+    arrays["C"], arrays["high"] = arrays["C"] + damping, damping
+    reduction = reduction.replace(arrays=arrays, high_damping=amount, high_growth=growth)
+    small = small.replace({"reduction": reduction})
     points = zip([{}, *corners], found, strict=True)
     errors = [(point, _error(small.replace(point), modes_there, time)) for point, modes_there in points]
     return small.replace({"reduction": reduction.replace(errors=tuple(errors))})
@@ -184,40 +191,62 @@ def _axis(full: FullBrake, name: str, low: float, high: float, arrays: dict[str,
     return Axis(name=name, low=low, high=high, points=points, change=change)
 
 
-def _damped_above(smalls: list[Small], elastic: Any, top: float) -> tuple[Any, float]:
-    """The least damping with which no mode above `top` [Hz] grows at any corner, and that leaves the band alone.
+def _between(ranges: Mapping[str, tuple[float, float]]) -> list[dict[str, float]]:
+    """Points inside the ranges at which damping added above the band is held against it."""
+    points = [{name: low + share * (high - low) for name, (low, high) in ranges.items()} for share in INSIDE]
+    return points if ranges else []
 
-    It acts on the directions that no right shape of a mode below `top`, at any corner, has a part in: C_h u = 0 for
-    those u, so their eigenvalues stay exactly what they were.
+
+def _small_at(brake: ReducedBrake, time: float) -> Small | None:
+    about = linearise(brake.system(), time)
+    return Small(about.M, about.C, about.K) if about.equilibrium.exists else None
+
+
+def _damped_above(smalls: list[Small], elastic: Any, top: float, allowed: float) -> tuple[Any, float, float]:
+    """The least damping with which no mode above `top` [Hz] grows at any point, as far as it leaves the band alone.
+
+    It acts on the directions that no right shape of a mode below `top`, at any point, has a part in: C_h u = 0 for
+    those u. What still moves a lightly damped mode below `top` by more than `allowed` [1/s] is not added. Returns the
+    matrix, the damping ratio, and the growth rate [1/s] that is left above `top`.
     """
-    mass = smalls[0].M
-    if not any(_grows_above(small, 0.0, 2.0 * np.pi * top) for small in smalls):
-        return np.zeros_like(mass), 0.0
-    shapes = []
+    mass, end = smalls[0].M, 2.0 * np.pi * top
+    nothing = np.zeros_like(mass)
+    growth = max(_growth_above(small.eigenvalues(), end) for small in smalls)
+    if growth == 0.0:
+        return nothing, 0.0, 0.0
+    shapes, light = [], []
     for small in smalls:
         values, right, _, _ = small.eigen()
-        below = (values.imag >= 0.0) & (values.imag <= 2.0 * np.pi * top)
+        below = (values.imag >= 0.0) & (values.imag <= end)
         shapes += [right[:, below].real, right[:, below].imag]
+        light.append(values[below & vibrating(values)])
     half = np.linalg.cholesky(mass).T  # lengths by M
     columns = half @ np.concatenate(shapes, axis=1)
     columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     turned, sizes, _ = np.linalg.svd(columns)
     rest = turned[:, np.sum(sizes > SEEN * sizes[0]) :]
     if rest.shape[1] == 0:
-        return np.zeros_like(mass), 0.0
+        return nothing, 0.0, growth
     free = np.linalg.solve(half, rest)
     squares, turns = np.linalg.eigh(free.T @ elastic @ free)
     directions, rates = mass @ free @ turns, np.sqrt(np.maximum(squares, 0.0))
+    best = nothing, 0.0, growth
     for amount in HIGH_DAMPING:
         damping = (directions * (2.0 * amount * rates)) @ directions.T
-        if not any(_grows_above(small, damping, 2.0 * np.pi * top) for small in smalls):
-            return damping, amount
-    return damping, amount
+        after = [Small(small.M, small.C + damping, small.K).eigenvalues() for small in smalls]
+        moved = [np.min(np.abs(v - old), initial=np.inf) for v, olds in zip(after, light, strict=True) for old in olds]
+        if max(moved, default=0.0) > allowed:
+            break
+        best = damping, amount, max(_growth_above(values, end) for values in after)
+        if best[2] == 0.0:
+            break
+    return best
 
 
-def _grows_above(small: Small, damping: Any, top: float) -> bool:
-    values = Small(small.M, small.C + damping, small.K).eigenvalues()
-    return bool(np.any((np.abs(values.imag) > top) & (values.real > 1e-10 * np.abs(values))))
+def _growth_above(values: Any, top: float) -> float:
+    """The largest growth rate [1/s] of eigenvalues above `top` [rad/s], 0 where none grows."""
+    growing = (np.abs(values.imag) > top) & (values.real > 1e-10 * np.abs(values))
+    return float(np.max(values.real[growing], initial=0.0))
 
 
 def _error(small: ReducedBrake, found: Projected, time: float) -> float:

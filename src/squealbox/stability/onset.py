@@ -127,6 +127,8 @@ def critical_value(
     points : number of values scanned before narrow windows are looked for
     time : instant of schedules [s]
 
+    Of a reduced brake only modes in its band count: above it, it has modes that are none of the full brake.
+
     Returns a `CriticalValue`, good to its `uncertainty`: 1e-13 of the value, more where the growth rate hardly
     changes with the parameter. Without a change the outcome is "no_onset", with the growth rates
     at both ends as evidence; "hidden_onset" when it lies in a stretch without steady sliding;
@@ -155,12 +157,15 @@ def _crossings(family: Family, bounds: tuple[float, float], points: int, *, firs
     low, high = _checked(bounds, points)
     found = scan(family, low, high, points)
     rows, hidden = [], [(i, j) for i, j, k in found.jumps() if k == 0 or not first]
+    band = getattr(family.design, "band", None)
     for i, k in found.brackets():
-        if first and k > 0:
+        if first and k > 0 and band is None:
             continue
         row = _crossing(found, i, k, high - low)
         if not found.neutral and abs(row["eigenvalue"].real) > SPLIT * row["fastest"]:
             continue  # a growing pair became two real eigenvalues: one mode more grows, and none crossed
+        if band is not None and not _inside(row["eigenvalue"], band):
+            continue  # of a reduced brake: above its band it has modes that are none of the full one
         rows.append(row)
         if first:
             break
@@ -192,6 +197,12 @@ def _crossings(family: Family, bounds: tuple[float, float], points: int, *, firs
     return CriticalValues(
         **columns, parameter=family.parameters[0], inputs=family.inputs, settings=settings, outcome=outcome
     )
+
+
+def _inside(eigenvalue: Any, band: tuple[float, float]) -> Any:
+    """True for eigenvalues [1/s] whose frequency is in the band [Hz]."""
+    hertz = np.abs(np.imag(eigenvalue)) / (2.0 * np.pi)
+    return (hertz >= band[0]) & (hertz <= band[1])
 
 
 def _gaps(found: Scan) -> str:
@@ -243,6 +254,9 @@ def _described(found: Scan, value: float, beside: float, k: int, rising: bool, i
             further = found.family.at(np.array([value + (BESIDE if rising else -BESIDE) * width]))
             if further.equilibrium.exists[0]:
                 why = mechanism_at(entry(further, (0,)), eigenvalue.imag, rank=rank)
+        band = getattr(found.family.design, "band", None)
+        if band is not None:
+            k = int(np.sum((growth > growth[place]) & ~rigid & _inside(modes.eigenvalues[0, :half], band)))
         counts = (k, k + 1) if rising else (k + 1, k)
     exact = _exact(found, value, beside, eigenvalue, k, i)
     return {
@@ -293,8 +307,12 @@ def _no_onset(family: Family, found: Scan, low: float, high: float) -> Outcome:
     known = np.isfinite(found.functions)
     if not np.any(known):
         return Outcome("no_equilibrium", f"no steady sliding in the range: {ends.equilibrium.outcome.message}")
-    growth = [float(g) for g in vibrating(spectrum(ends), ends.equilibrium.floating)]
-    state = "unstable" if np.any(found.functions[known] > 0.0) else "stable"
+    values, band = spectrum(ends), getattr(family.design, "band", None)
+    if band is not None:
+        values = np.where(_inside(values, band), values, np.nan)
+    growth = [float(g) for g in vibrating(values, ends.equilibrium.floating)]
+    grows = found.functions[known] if band is None else np.array(growth)  # in the band no mode has crossed
+    state = "unstable" if np.any(grows > 0.0) else "stable"
     where = f"{state} wherever there is steady sliding; {_gaps(found)}" if found.gaps else f"{state} in the whole range"
     evidence: dict[str, Any] = {"without_answer": [list(gap) for gap in found.gaps]} if found.gaps else {}
     return Outcome("no_onset", where, growth_rate_low=growth[0], growth_rate_high=growth[1], **evidence)

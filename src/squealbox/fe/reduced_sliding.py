@@ -1,0 +1,97 @@
+"""Steady sliding of a reduced brake and its linearisation from tables of contacts: no `Contact` is made, none asked.
+
+Sums D' diag(w) N over thousands of contacts are taken once; at other values of friction only the contacts that have
+opened or closed since, or whose weight does not follow the others', are added or taken away.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealbox.fe.small import Small
+from squealbox.static_deflection import ended
+from squealbox.system import Equilibrium
+
+ALIKE = 1e-14  # of the largest weight: two weights are the same to round-off
+STEP = 1e-12  # relative step at which the set of open contacts has settled
+
+
+@dataclass
+class Sum:
+    """left' diag(weight) right of contacts' rows, kept for the last weights asked for."""
+
+    left: Any
+    right: Any
+    weight: Any = None
+    value: Any = None
+
+    def at(self, weight: Any) -> Any:
+        """The sum for weights (contacts,), from the last one where few weights have changed but for a common factor."""
+        if self.value is not None:
+            both = (self.weight != 0.0) & (weight != 0.0)
+            factor = float(np.median(weight[both] / self.weight[both])) if np.any(both) else 1.0
+            change = weight - factor * self.weight
+            rows = np.flatnonzero(np.abs(change) > ALIKE * np.max(np.abs(weight), initial=0.0))
+            if len(rows) < 0.5 * np.count_nonzero(weight):
+                self.value = factor * self.value + self._over(rows, change)
+                self.weight = weight
+                return self.value
+        self.weight, self.value = weight, self._over(np.flatnonzero(weight), weight)
+        return self.value
+
+    def _over(self, rows: Any, weight: Any) -> Any:
+        return (self.left[rows] * weight[rows, None]).T @ self.right[rows]
+
+
+def steady_small(rows: dict[str, Any], law: Any, unilateral: Any) -> tuple[Small, Equilibrium] | None:
+    """M, C_eff, K_eff and steady sliding; None where there is no settled sliding state, or the law has memory.
+
+    rows holds the fields of a `Reduction` at one value of each parameter.
+    """
+    if law.has_memory or any(np.ndim(value) > 1 for value in law.coefficients()):
+        return None
+    speed, preload, n, d, normal_rows = rows["V"], rows["N0"], rows["n"], rows["d"], rows["normal"]
+    mu = np.broadcast_to(law.mu(speed), speed.shape)
+    drag = mu * np.sign(speed)
+    pushing = Sum(d, n)
+    lifting = None if normal_rows is None else Sum(normal_rows, n)
+    q = np.zeros(len(rows["load"]))
+    settled = False
+    for _ in range(2 + 2 * len(speed)):
+        normal = preload + n @ q
+        closed = (normal > 0.0) | ~unilateral
+        residual = rows["K"] @ q - rows["load"] - d.T @ (np.where(closed, drag, 0.0) * normal)
+        stiffness = rows["K"] - pushing.at(np.where(closed, drag, 0.0))
+        if lifting is not None:
+            residual = residual - normal_rows.T @ np.where(closed, 0.0, normal)
+            stiffness = stiffness - lifting.at(np.where(closed, 0.0, 1.0))
+        try:
+            step = np.linalg.solve(stiffness, residual)
+        except np.linalg.LinAlgError:
+            return None
+        q = q - step
+        same = np.array_equal(((preload + n @ q) > 0.0) | ~unilateral, closed)
+        if (same and np.linalg.norm(step) <= STEP * np.linalg.norm(q)) or not np.any(unilateral):
+            settled = True
+            break
+    if not settled or np.any(speed == 0.0):
+        return None
+    force = np.where(closed, preload + n @ q, 0.0)
+    damping = rows["C"]
+    slope = np.broadcast_to(law.direct_slope(speed), speed.shape)
+    if np.any(slope):
+        damping = damping + (d * (force * slope)[:, None]).T @ rows["t"]
+    if rows["across"] is not None:
+        damping = damping + _square(rows["across"], force * mu / np.abs(speed))
+    outcome = ended(np.array(False), np.array(True), np.array(True), speed)
+    state = Equilibrium(q, force, speed, np.array(mu), np.array(True), outcome, np.array(0))
+    return Small(rows["M"], damping, stiffness), state
+
+
+def _square(rows: Any, weight: Any) -> Any:
+    """A' diag(w) A for w >= 0, by a product that knows it is symmetric."""
+    if np.any(weight < 0.0):
+        return (rows * weight[:, None]).T @ rows
+    scaled = rows * np.sqrt(weight)[:, None]
+    return scaled.T @ scaled
