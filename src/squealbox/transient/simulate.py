@@ -79,7 +79,8 @@ def simulate(
         None for every step taken, a long one in parts of at most a sixth of the shortest period. They do not influence
         the steps.
     method : "taylor" (the motion's own series, for exact contact), the name of a tableau, or a `Method` with
-        tolerances; None takes "taylor" wherever the equation has a series, else "dormand-prince-8"
+        tolerances; None takes "taylor" wherever the equation has a series, else "dormand-prince-8", also where the
+        series ends at an instant (a law with a root at zero speed): `settings` say which, and instead of what
     contact : "exact" (stick, slip and lift-off by events), "raw" (plain sgn), "smooth" = "arctan"
         ((2/pi) arctan(v/width)), "tanh" (tanh(v/width)) or "time-stepping" (Moreau, fixed step, for many contacts)
     rtol, atol : override those of `method`
@@ -117,6 +118,7 @@ def simulate(
     q, qd = start_of(system, q, qd, z, isinstance(start, str) and start == "sliding", start_time)
     if contact == TIME_STEPPING:
         return moreau.time_stepping(system, duration, q, qd, start_time, requested, step)
+    instead: dict[str, str] = {}
     if chosen.tableau == TAYLOR:
         if method is not None:
             check_series(system, contact)
@@ -124,11 +126,12 @@ def simulate(
         if motion.outcome != "step_underflow" or method is not None:
             return motion
         chosen = chosen_method(OTHER, rtol, atol)  # a law without a series at zero speed, such as one with sqrt(v)
+        instead = {"instead_of": f"taylor, which ended as step_underflow at {motion.t[-1]:.6g} s"}
     run = _Run(system, chosen, SCHEMES[contact], width, q, qd, start_time, requested)
     outcome = run.to(start_time + duration, duration, progress)
     settings = {
         "duration": duration, "start": [q.tolist(), qd.tolist()], "start_time": start_time, "contact": contact,
-        "width": width, "tableau": chosen.tableau, "rtol": chosen.rtol, "atol": run.atol.tolist(),
+        "width": width, "tableau": chosen.tableau, "rtol": chosen.rtol, "atol": run.atol.tolist(), **instead,
     }  # fmt: skip
     return run.trajectory(settings, outcome)
 
