@@ -11,9 +11,7 @@ import pytest
 from house.rooms import PACKAGE, PROJECT
 
 DOCS = PROJECT / "docs"
-PAGES = sorted(
-    path for path in DOCS.rglob("*.md") if not {"_build", "paper"} & set(path.parts)
-)
+PAGES = sorted(path for path in DOCS.rglob("*.md") if not {"_build", "paper"} & set(path.parts))
 REFERENCE = (DOCS / "api.md").read_text()
 HOUSE = (DOCS / "house.md").read_text()
 ROOMS = sorted({path.stem for path in PACKAGE.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()})

@@ -65,7 +65,11 @@ def uncertain(eigenvalues: Any, condition: Any, scale: Any) -> Any:
 
 def _levels(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, float]:
     """Factors (n,) that bring each freedom to one unit, and a typical angular frequency [rad/s]."""
-    m, c, k = (np.max(np.abs(part), initial=0.0) for part in (mass, damping, stiffness))
+    rows = [np.max(np.abs(part), axis=1, initial=0.0) for part in (mass, damping, stiffness)]
+    both = (rows[0] > 0.0) & (rows[2] > 0.0)  # a heavy free body must not set the rate of a light spring
+    m, c, k = (float(np.max(part, initial=0.0)) for part in rows)
+    if np.any(both):
+        m, k = (float(np.exp(np.mean(np.log(part[both])))) for part in (rows[0], rows[2]))
     rate = np.sqrt(k / m) if m > 0.0 and k > 0.0 else k / c if c > 0.0 and k > 0.0 else c / m if m > 0.0 else 1.0
     rate = float(rate) if np.isfinite(rate) and rate > 0.0 else 1.0
     size = np.maximum(np.max(np.abs(stiffness), axis=1), rate**2 * np.max(np.abs(mass), axis=1))
