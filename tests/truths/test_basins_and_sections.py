@@ -129,8 +129,8 @@ def test_chaos_with_sticking_by_two_roads():
     """Saltation matrices, and two motions side by side brought back to 1e-7 after each period of the drive.
 
     The drive has two exponents 0, sticking forgets one direction, and the largest is positive and the same on both
-    roads. Both see the same 120 periods of one orbit but for the 1e-7, so their means differ by no more than that and
-    what the first directions leave, of order 1/time.
+    roads. Both start from one state, but chaos parts what two methods compute: each road has its own 120 periods,
+    and their means differ as two samples do.
     """
     system, period = driven_dry_friction(), 2.0 * np.pi / 1.25
     settled = simulate(system, 40.0 * period, ([0.3, 1.0], [0.0, 0.0]), rtol=1e-11)
@@ -148,9 +148,7 @@ def test_chaos_with_sticking_by_two_roads():
         x, away = ends[0], ends[1] - ends[0]
         total += np.log(np.linalg.norm(away) / 1e-7)
         away *= 1e-7 / np.linalg.norm(away)
-    assert total / (120.0 * period) == pytest.approx(
-        found[0], abs=0.02
-    )  # chaos parts the orbits: two samples of one mean
+    assert total / (120.0 * period) == pytest.approx(found[0], abs=0.02)
 
 
 def test_exponents_of_a_cycle_are_those_of_its_multipliers():
