@@ -88,6 +88,7 @@ def test_loads_that_vary_in_time_in_a_file(tmp_path):
     file.write_text(OWN.replace("LOAD", "{ ramp = { start = 0, slope = 10 } }"))
     with pytest.raises(DesignFileError, match="2 forces, one for each degree of freedom"):
         read_design(file)
-    one = 'brake = "own"\nM = [[1]]\nK = [[4]]\nload = { ramp = { start = "0 N", slope = "10 N/s", stop = "1 kN" } }\n'
+    ramp = 'load = { ramp = { start = "0 N", slope = "10 N/s", stop = "1 kN" } }'
+    one = f'brake = "own"\ncontacts = []\nM = [[1]]\nK = [[4]]\n{ramp}\n'
     file.write_text(one)
     assert read_design(file).system().load.value(2.0) == pytest.approx([20.0])

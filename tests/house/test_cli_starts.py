@@ -3,7 +3,8 @@
 import pytest
 
 from squealbox.cli import BAD_INPUT, DONE, FAILED, main
-from squealbox.files import DesignFileError, read_text
+from squealbox.files import DesignFileError, read_file, read_text
+from squealbox.report import report
 
 BLOCK = """
 brake = "mass_on_belt"
@@ -56,11 +57,16 @@ def test_a_box_of_starts(block, capsys):
     assert "expected the lower end first" in capsys.readouterr().err
 
 
-def test_a_file_without_contacts_is_asked_about():
-    text = 'brake = "own"\nM = [[1.0]]\nK = [[4.0]]\n'
-    with pytest.raises(DesignFileError, match=r"has no contacts, so nothing in it rubs"):
-        read_text(text)
-    assert read_text(f"{text}contacts = []\n").design.system().contacts == ()
+def test_a_file_that_forgot_its_contacts_is_cautioned_about(tmp_path, capsys):
+    """On every command and in the report; contacts = [] says that nothing shall rub."""
+    for more, said in (("", True), ("contacts = []\n", False)):
+        file = tmp_path / "brake.toml"
+        file.write_text(f'brake = "own"\nM = [[1.0]]\nK = [[4.0]]\n{more}')
+        assert ("nothing in it rubs" in read_file(file).caution) is said
+        assert main(["modes", str(file)]) == DONE
+        assert ("Caution: brake = 'own' has no contacts" in capsys.readouterr().err) is said
+        page = report(file, tmp_path / "page.html").read_text()
+        assert ("has no contacts, so nothing in it rubs" in page) is said
 
 
 def test_an_angle_that_is_no_freedom_is_refused():

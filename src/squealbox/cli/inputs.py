@@ -1,6 +1,7 @@
 """What commands share: a design file with changes from the command line, ranges, and folders for what is written."""
 
 import dataclasses
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -25,6 +26,8 @@ Ends = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="", allow_l
 def read(file: Path, changes: Sequence[str] = (), allow_code: bool = False) -> DesignFile:
     """The design file with ``--set friction.static=0.4`` and the like applied."""
     found = read_file(file, allow_code=allow_code)
+    if found.caution:
+        print(f"Caution: {found.caution}", file=sys.stderr)
     return dataclasses.replace(found, design=changed(found.design, changes))
 
 

@@ -40,6 +40,12 @@ SECTIONS: dict[str, Callable[..., Any]] = {
 }
 
 
+NOTHING_RUBS = (
+    "brake = {!r} has no contacts, so nothing in it rubs and nothing can squeal: give each a table [[contacts]], "
+    "or write contacts = [] for a structure without friction"
+)
+
+
 @dataclass(frozen=True)
 class DesignFile:
     """A design and the sections of its file; a section that is not there is None."""
@@ -57,6 +63,7 @@ class DesignFile:
     recording: Recorded | None = None
     reduce: Reduced | None = None
     study: bool = False  # does it hold a [study], which `study.read_study` reads?
+    caution: str = ""  # what a reader of the results must know of the file
 
 
 def read_design(path: str | os.PathLike[str], *, allow_code: bool = False) -> Design:
@@ -104,7 +111,9 @@ def _file(document: Document) -> DesignFile:
     sections = {name: section_of(document, name, table, design) for name, table in asked.items()}
     if design is None or document.problems:
         raise document.error()
-    return DesignFile(document.path, design, study=study, **sections)
+    forgot = tables.get("brake") in ("own", "mechanism") and "contacts" not in tables
+    caution = NOTHING_RUBS.format(tables["brake"]) if forgot else ""
+    return DesignFile(document.path, design, study=study, caution=caution, **sections)
 
 
 def design_of(document: Document, tables: Mapping[str, Any], beside: tuple[str, ...] = ()) -> Design | None:
@@ -132,10 +141,6 @@ def _design(document: Document, tables: Mapping[str, Any], beside: tuple[str, ..
         return None
     design: Design | None = read_sheet(document, kind, rest, (), beside=(*SECTIONS, STUDY, *beside))
     if design is None:
-        return None
-    if kind in (OwnBrake, OwnMechanism) and "contacts" not in rest:
-        document.problem((), f"brake = {tables['brake']!r} has no contacts, so nothing in it rubs: expected a table "
-                         "[[contacts]] for each, or contacts = [] for a structure without friction")  # fmt: skip
         return None
     try:
         with np.errstate(all="ignore"):  # an overflow is reported by the system as a value that is not finite

@@ -103,7 +103,7 @@ def energy(trajectory: Trajectory, *, unit: str | None = None, title: str = "", 
     terms = [(f"friction, {name}", audit.friction[:, i]) for i, name in enumerate(names)]
     terms += [("load", audit.load), ("circulation", audit.circulation), ("dissipated", -audit.dissipated)]
     terms += [("opening of contacts", audit.opening), ("stored", audit.stored)]
-    terms = [(name, term) for name, term in terms if np.any(term)]
+    terms = [(name, term) for name, term in terms if np.any(term)] or terms[-1:]  # at rest there is none
     factor, read = scaled("J", *(term for _, term in terms), to=unit)
     second, clock = scaled("s", times)
     with drawing(axes, rows=2, width=4.6, height=4.0, sharex=True, height_ratios=[3, 1]) as (above, below):

@@ -201,7 +201,8 @@ class _Work:
 
     def _usual_axis(self) -> Axis:
         known = scalar_parameters(self.design)
-        name = "friction.static" if "friction.static" in known else self._strongest([])
+        rubs = "friction.static" in known and self.system.contacts
+        name = "friction.static" if rubs else self._strongest([])
         return self._about(name, 0.05, 2.5)
 
     def _usual_plane(self) -> Map:

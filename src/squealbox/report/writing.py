@@ -91,7 +91,8 @@ def _file_page(found: DesignFile, progress: Progress) -> Page:
         f"The study in this file is not run for this page: squealbox run {name} --out DIR runs it, and squealbox "
         "report DIR shows what came out. This page is about the design as the file gives it."
     )
-    notes = [note] if found.study else []
+    notes = [f"Caution: {found.caution}."] if found.caution else []
+    notes += [note] if found.study else []
     if isinstance(found.design, ReducedBrake):
         notes.append(promise(found.design))
         if found.design.reduction.arrays["across"] is not None:
