@@ -37,7 +37,8 @@ def test_a_linear_closed_loop_in_time_is_its_pole(loop: Any) -> None:
     modes, steady = complex_modes(brake), equilibrium(as_system(brake)).q
     swings = np.where(np.abs(modes.eigenvalues.imag) > 1.0, modes.growth_rate, -np.inf)
     at = int(np.argmax(np.nan_to_num(swings, nan=-np.inf)))
-    value, shape = modes.eigenvalues[at], modes.right[:, at] * 1e-9
+    value = modes.eigenvalues[at]
+    shape = 1e-9 * modes.right[:, at] / np.max(np.abs(modes.right[:, at]))
     times = np.linspace(0.0, 0.01, 21)
     exact = (np.exp(value * times)[:, None] * shape).real
     start = (steady + shape.real, (value * shape).real)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from squealbox import Coulomb, MassOnBelt, Stribeck, own_law, simulate
+from squealbox.friction import LAWS
 from squealbox.parameters import ParameterError, from_plain
 from squealbox.system import InvalidSystem
 from squealbox.transient import _engine
@@ -28,13 +29,14 @@ def test_the_generated_file_holds_the_source_and_changes_with_it():
     first, second = own_law(TEXT, numbers=NUMBERS, static=0.5), own_law("def mu(v, p): return 0.3 + 0.0 * v")
     contacts = [MassOnBelt(friction=law).system().contacts[0] for law in (first, Coulomb(0.3), second, first)]
     own = own_texts(contacts)
-    assert law_kinds(contacts).tolist() == [6, 0, 7, 6]
+    own_kind = len(LAWS)  # own laws come after those of the house
+    assert law_kinds(contacts).tolist() == [own_kind, 0, own_kind + 1, own_kind]
     plain = _engine.load_module(_engine.source(True, plain=True, own=own))
     p = np.array(first.coefficients())
     for v in (0.0, 0.1, 1.3):
-        assert plain.law_mu(6, v, p) == pytest.approx(float(first.mu(v)), rel=1e-15)
-        assert plain.law_slope(6, v, p) == pytest.approx(float(first.slope_at(v)), rel=1e-12)
-        assert plain.law_mu(7, v, p) == 0.3
+        assert plain.law_mu(own_kind, v, p) == pytest.approx(float(first.mu(v)), rel=1e-15)
+        assert plain.law_slope(own_kind, v, p) == pytest.approx(float(first.slope_at(v)), rel=1e-12)
+        assert plain.law_mu(own_kind + 1, v, p) == 0.3
     assert _engine.source(True, own=own) != _engine.source(True, own=own[:1]) != _engine.source(True)
 
 

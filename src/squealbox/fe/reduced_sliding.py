@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.fe.small import Small
+from squealbox.friction import Table
 from squealbox.static_deflection import ended
 from squealbox.system import Equilibrium
 
@@ -45,14 +46,17 @@ class Sum:
 
 
 def steady_small(rows: dict[str, Any], law: Any, unilateral: Any) -> tuple[Small, Equilibrium] | None:
-    """M, C_eff, K_eff and steady sliding; None where there is no settled sliding state, or the law has memory.
+    """M, C_eff, K_eff and steady sliding; None where there is none that is settled, or the law has memory, is a
+    family of laws, or leaves its range: then the general road answers, and says so.
 
     rows holds the fields of a `Reduction` at one value of each parameter.
     """
-    if law.has_memory or any(np.ndim(value) > 1 for value in law.coefficients()):
+    if law.has_memory or any(np.ndim(value) for value in law.coefficients()):
         return None
     speed, preload, n, d, normal_rows = rows["V"], rows["N0"], rows["n"], rows["d"], rows["normal"]
     mu = np.broadcast_to(law.mu(speed), speed.shape)
+    if np.any(mu < 0.0) or (isinstance(law, Table) and np.max(np.abs(speed)) > np.max(law.speeds)):
+        return None  # the general road says what is wrong with the law
     drag = mu * np.sign(speed)
     pushing = Sum(d, n)
     lifting = None if normal_rows is None else Sum(normal_rows, n)
