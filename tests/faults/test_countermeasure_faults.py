@@ -79,11 +79,6 @@ def test_a_late_loop_is_not_left_out_of_a_motion(run):
         run(LATE)
 
 
-def test_a_limit_on_more_than_velocity_is_refused_in_time():
-    with pytest.raises(InvalidSystem, match="more than a velocity"):
-        simulate(Controlled(ModeCoupling(), PID(on="y", proportional=1.0, limit=1.0)), 1.0)
-
-
 def test_a_system_says_what_is_no_loop():
     with pytest.raises(InvalidSystem, match=r"loops\[0\] = 1.0: expected a loop"):
         System([[1.0]], [[0.0]], [[1.0]], loops=(1.0,))

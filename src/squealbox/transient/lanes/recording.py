@@ -55,13 +55,13 @@ def state(A, b, lane, row):
 
 
 def write_rows(A, b, lane, times, rows, count):
-    """The rows due in the step just taken: no further apart than a sixth of the shortest period, or as asked for."""
+    """The rows due in the step just taken: at most a sixth of the shortest period apart, or as asked for."""
     t0 = A[b + ROW_T_OLD * WIDTH + lane]
     t1 = A[b + ROW_T * WIDTH + lane]
     if times.shape[0] == 0:
         span = A[b + ROW_SPAN * WIDTH + lane]
-        sixth = A[b + ROW_WINDOW * WIDTH + lane] * (1e3 / 6.0)
-        parts = min(max(int(np.ceil(span / sixth - 1e-6)), 1), SHARES)
+        part = A[b + ROW_WINDOW * WIDTH + lane] * (1e3 / 12.0)
+        parts = min(max(int(np.ceil(span / part - 1e-6)), 1), SHARES)
         for k in range(1, parts + 1):
             share = k / parts
             write_row(A, b, lane, t1 if k == parts else t0 + share * span, share * span, rows[count[ROWS_WRITTEN]])
