@@ -188,7 +188,7 @@ def elasto_plastic_creep(v: Any, z: Any, p: Any) -> Any:
     return v * (1.0 - (0.5 - 0.5 * np.cos(3.141592653589793 * share)) * p[3] * along / g)
 
 
-class ElastoPlastic(BristleLaw):
+class ElastoPlastic(LuGre):
     """LuGre's bristles with a purely elastic beginning, so that a contact at rest does not creep under small forces.
 
         F = N (s0 z + s1 z' + s2 v),   z' = v (1 - a(v, z) z/z_s(v)),   z_s = sgn(v) g(|v|)/s0
@@ -202,28 +202,14 @@ class ElastoPlastic(BristleLaw):
     0.336788
     """
 
-    static: float = parameter("-", 0.0, 10.0, low_open=True, meaning="coefficient of slow sliding")
-    kinetic: float = parameter("-", 0.0, 10.0, low_open=True, meaning="coefficient at high sliding speed")
-    speed: float = parameter("m/s", 0.0, low_open=True, meaning="Stribeck speed, of a Gaussian fall")
-    stiffness: float = parameter("1/m", 0.0, low_open=True, default=1e5, meaning="s0 of the bristles over normal force")
-    damping: float = parameter("s/m", 0.0, default=0.0, meaning="s1 of the bristles over normal force")
-    viscous: float = parameter("s/m", 0.0, default=0.0, meaning="s2, viscous friction over normal force")
     breakaway: float = parameter("-", 0.0, 1.0, high_open=True, default=0.7, meaning="elastic share of the deflection")
 
-    formula = staticmethod(lugre)
-    slope_formula = staticmethod(lugre_slope)
     creep_formula = staticmethod(elasto_plastic_creep)
-    grip_formula = staticmethod(lugre_grip)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if np.any(np.asarray(self.static) < np.asarray(self.kinetic)):  # else z_b could lie beyond z_s
             raise ParameterError("ElastoPlastic", "kinetic", self.kinetic, f"at most static = {self.static}")
 
-    @property
-    def grip(self) -> tuple[Any, Any, Any]:
-        """s0 [1/m], s1 [s/m] and s2 [s/m]."""
-        return self.stiffness, self.damping, self.viscous
-
     def coefficients(self) -> tuple[Any, ...]:
-        return (self.static, self.kinetic, self.speed, *self.grip, self.breakaway)
+        return (*super().coefficients(), self.breakaway)
