@@ -45,7 +45,7 @@ class Axis(DataSheet):
         known = self.change.get(field)
         if known is None:
             return 0.0
-        return np.tensordot(_lagrange(np.asarray(self.points), np.asarray(value, dtype=float)), known, axes=1)
+        return np.tensordot(lagrange(np.asarray(self.points), np.asarray(value, dtype=float)), known, axes=1)
 
 
 class Reduction(DataSheet):
@@ -282,12 +282,12 @@ def _in_range(axis: Axis, value: Any) -> Any:
 
 
 def chebyshev_points(low: float, high: float, count: int) -> Any:
-    """Points at which a smooth function of one parameter is best known, in rising order."""
-    angles = np.pi * (np.arange(count) + 0.5) / count
+    """Chebyshev-Lobatto points, both ends among them, in rising order: of 2 n - 1, every other one is one of n."""
+    angles = np.pi * np.arange(count) / (count - 1)
     return 0.5 * (low + high) - 0.5 * (high - low) * np.cos(angles)
 
 
-def _lagrange(points: Any, value: Any) -> Any:
+def lagrange(points: Any, value: Any) -> Any:
     """Weights (..., points) of the interpolating polynomial."""
     gaps = value[..., None] - points
     weights = np.ones(gaps.shape)

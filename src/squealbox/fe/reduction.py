@@ -20,14 +20,15 @@ from squealbox.fe.pencil import Pencil, pencil_of, vibrating
 from squealbox.fe.projection import HEADROOM, Projected, basis_for, refined
 from squealbox.fe.quadratic import full_modes
 from squealbox.fe.real_modes import real_modes
-from squealbox.fe.reduced_brake import FIELDS, Axis, ReducedBrake, Reduction, chebyshev_points
+from squealbox.fe.reduced_brake import FIELDS, Axis, ReducedBrake, Reduction, chebyshev_points, lagrange
 from squealbox.fe.small import Small
 from squealbox.sparse_sliding import Start
 from squealbox.system import InvalidSystem, as_system, linearise
 
 Basis = Literal["enriched", "craig-bampton", "pod"]
 METHODS = ("enriched", "craig-bampton", "pod")
-POINTS = 7  # Chebyshev points of a parameter that changes matrices
+POINTS = (3, 5, 9, 17, 33)  # Chebyshev points of a parameter that changes matrices, until the new ones were foreseen
+FORESEEN = 1e-5  # by so much of the largest entry; what lies between the new ones is then known far better
 ROUNDS = 3
 MOST_AXES = 4
 HIGH_DAMPING = (0.02, 0.2)  # damping ratios that are tried
@@ -176,19 +177,41 @@ def _axis(full: FullBrake, name: str, low: float, high: float, arrays: dict[str,
     """What changes along one parameter; None for a coefficient of the friction law, which the contacts know."""
     if name.startswith("friction."):
         return None
-    points = chebyshev_points(low, high, POINTS)
-    samples = [full.projected_arrays(full.system({name: float(value)})) for value in points]
+    points, samples, missed = np.zeros(0), [], ""
+    for count in POINTS:
+        before, points = points, chebyshev_points(low, high, count)
+        new = points[1::2] if len(before) else points
+        found = [full.projected_arrays(full.system({name: float(value)})) for value in new]
+        if not len(before):
+            samples = found
+            continue
+        missed = _not_foreseen(name, samples, found, lagrange(before, new))
+        samples = [one for pair in zip(samples, [*found, None], strict=True) for one in pair if one is not None]
+        if not missed:
+            break
+    if missed:
+        raise InvalidSystem(f"{name} from {low:g} to {high:g} changes {missed} too abruptly: expected a narrower range")
     change = {}
     for field in FIELDS:
-        known = arrays[field]
-        if known is None:
-            continue
-        if any(np.shape(sample[field]) != np.shape(known) for sample in samples):
-            raise InvalidSystem(f"{name} changes the contacts themselves: expected a parameter that keeps the mesh")
-        difference = np.stack([sample[field] - known for sample in samples])
-        if np.max(np.abs(difference), initial=0.0) > 1e-13 * np.max(np.abs(known), initial=0.0):
-            change[field] = difference
+        if arrays[field] is not None:
+            difference = np.stack([sample[field] for sample in samples]) - arrays[field]
+            if np.max(np.abs(difference), initial=0.0) > 1e-13 * np.max(np.abs(arrays[field]), initial=0.0):
+                change[field] = difference
     return Axis(name=name, low=low, high=high, points=points, change=change)
+
+
+def _not_foreseen(name: str, samples: list[Any], found: list[Any], weights: Any) -> str:
+    """The first field of `found` that the polynomial through `samples` misses; "" for none."""
+    for field in FIELDS:
+        if samples[0][field] is None:
+            continue
+        if any(np.shape(one[field]) != np.shape(samples[0][field]) for one in [*samples, *found]):
+            raise InvalidSystem(f"{name} changes the contacts themselves: expected a parameter that keeps the mesh")
+        there = np.stack([one[field] for one in found])
+        off = there - np.tensordot(weights, np.stack([one[field] for one in samples]), axes=1)
+        if np.max(np.abs(off), initial=0.0) > FORESEEN * np.max(np.abs(there), initial=0.0):
+            return field
+    return ""
 
 
 def _between(ranges: Mapping[str, tuple[float, float]]) -> list[dict[str, float]]:
