@@ -6,7 +6,6 @@ import pytest
 from fe_brakes import PUBLISHED, dense, pad_brake
 from squealbox import (
     Coulomb,
-    InvalidSystem,
     ParameterError,
     PublishedDiscBrake,
     Result,
@@ -21,7 +20,7 @@ from squealbox import (
     tracked_modes,
 )
 from squealbox.stability.eigenvalues import modes_of
-from squealbox.system import linearise
+from squealbox.system import InvalidSystem, linearise
 
 BAND = (3000.0, 7000.0)
 RANGE = {"friction.static": (0.1, 0.5)}
