@@ -57,7 +57,7 @@ def out_of_range(system: System, normal_force: Any, sliding_velocity: Any) -> tu
     speed = np.atleast_2d(np.abs(np.asarray(sliding_velocity, dtype=float)))
     said: list[str] = []
     for i, contact in enumerate(system.contacts):
-        name = contact.name or f"contact {i + 1}"
+        name = system.contact_names[i]
         n, v = normal[..., i].ravel(), speed[..., i].ravel()
         n, v = n[np.isfinite(n)], v[np.isfinite(v)]
         least, most = float(np.min(n, initial=0.0)), float(np.max(np.abs(n), initial=0.0))

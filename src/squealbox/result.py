@@ -264,9 +264,7 @@ class Result:
         system: Any = self.inputs.get("system") if isinstance(self.inputs, Mapping) else None
         if {"dof", "contact"} & set(dataset.sizes):
             system = system.system() if hasattr(system, "system") else system
-            contacts = getattr(system, "contacts", ())
-            names = {"dof": tuple(getattr(system, "names", ())),
-                     "contact": tuple(c.name or f"contact {i}" for i, c in enumerate(contacts))}  # fmt: skip
+            names = {"dof": getattr(system, "names", ()), "contact": getattr(system, "contact_names", ())}
             for dim, known in names.items():
                 if dim in dataset.sizes and len(set(known)) == dataset.sizes[dim]:
                     found[dim] = (dim, np.array(known))

@@ -93,7 +93,9 @@ def ended(singular: Any, sliding: Any, converged: Any, speed: Any, pushed: Any =
         return Outcome("singular", message, entries=int(np.sum(singular)))
     if not np.all(sliding):
         contacts = sorted({int(i) for i in np.nonzero(speed == 0.0)[-1]})
-        message = f"contact {contacts} has V = 0: it may stick, and any force up to its static limit balances"
+        one = len(contacts) == 1
+        said = f"contact{'' if one else 's'} {', '.join(str(i + 1) for i in contacts)} {'has' if one else 'have'} V = 0"
+        message = f"{said}: it may stick, and any force up to its static limit balances"
         return Outcome("no_sliding", message, contacts=contacts, entries=int(np.sum(~sliding)))
     if not np.all(converged):
         return Outcome("no_convergence", "the set of open contacts did not settle", entries=int(np.sum(~converged)))

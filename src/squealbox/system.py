@@ -110,6 +110,11 @@ class System(DataSheet):
         return tuple("rad" if name in self.angles or name.endswith("_turn") else "m" for name in self.names)
 
     @property
+    def contact_names(self) -> tuple[str, ...]:
+        """Name of each contact, "contact 1" and so on where it has none."""
+        return tuple(name or f"contact {i}" for i, name in enumerate((c.name for c in self.contacts), start=1))
+
+    @property
     def size(self) -> int:
         """Number n of degrees of freedom."""
         return int(self.M.shape[-1])

@@ -128,7 +128,7 @@ def _sound(motion: "Trajectory", dof: int, pitch: float, out: Path) -> list[Path
 
 def _columns(motion: "Trajectory") -> dict[str, Any]:
     names = motion.system.names
-    contacts = [contact.name or f"contact {i + 1}" for i, contact in enumerate(motion.system.contacts)]
+    contacts = motion.system.contact_names
     columns = {"t [s]": motion.t}
     named = list(enumerate(zip(names, motion.system.units, strict=True)))
     columns |= {f"{name} [{unit}]": motion.q[:, i] for i, (name, unit) in named}

@@ -99,7 +99,7 @@ def energy(trajectory: Trajectory, *, unit: str | None = None, title: str = "", 
     stored. Below: the residual over the largest energy turned over.
     """
     audit, times = trajectory.energy, trajectory.t
-    names = [contact.name or f"contact {i + 1}" for i, contact in enumerate(trajectory.system.contacts)]
+    names = trajectory.system.contact_names
     terms = [(f"friction, {name}", audit.friction[:, i]) for i, name in enumerate(names)]
     terms += [("load", audit.load), ("circulation", audit.circulation), ("dissipated", -audit.dissipated)]
     terms += [("opening of contacts", audit.opening), ("stored", audit.stored)]

@@ -37,7 +37,7 @@ def contacts(system: System, time: float) -> Table:
             numbers = (force, quantity(speed, "m/s"), number(float(state.friction[i]), 5))
             slope = f"{number(float(contact.law.slope_at(speed)), 4)} s/m"
         kind = "unilateral" if contact.unilateral else "always closed"
-        rows.append((contact.name or f"contact {i + 1}", *numbers, slope, type(contact.law).__name__, kind))
+        rows.append((system.contact_names[i], *numbers, slope, type(contact.law).__name__, kind))
     head = ("contact", "normal force", "sliding speed", "friction coefficient", "its slope", "law", "")
     return Table(head, tuple(rows), "Contacts in steady sliding. A negative normal force pulls: the model then lies.")
 

@@ -177,7 +177,7 @@ def _pulling(found: Examination) -> Iterator[tuple[str, float]]:
         return
     for i, contact in enumerate(found.system.contacts):
         if float(state.normal_force[i]) < 0.0 and not contact.unilateral:
-            yield contact.name or f"contact {i + 1}", float(state.normal_force[i])
+            yield found.system.contact_names[i], float(state.normal_force[i])
 
 
 def _cautions(found: Examination) -> Iterator[tuple[str, str]]:

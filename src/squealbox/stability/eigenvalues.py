@@ -190,7 +190,7 @@ def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None,
         raise ValueError(f"{', '.join(sorted(how))}: for sparse matrices; dense ones need no method")
     about = linearise(system, time)
     inputs = {"system": design_or_system, "time": time}
-    names = tuple(contact.name or f"contact {i + 1}" for i, contact in enumerate(system.contacts))
+    names = system.contact_names
     state = about.equilibrium
     said = out_of_range(system, state.normal_force, state.sliding_speed) if np.any(state.exists) else ()
     modes = replace(modes_of(about, inputs, names), caution="; ".join(said))

@@ -18,9 +18,8 @@ def pulled(contact: Contact, lowest: Any) -> Any:
 
 
 def title(system: System, c: int) -> str:
-    """The contact's number, and its name if it has one."""
-    name = system.contacts[c].name
-    return f"contact {c}" + (f" ({name})" if name else "")
+    """The contact by its name."""
+    return system.contact_names[c]
 
 
 def of_a_run(system: System, lowest: Any, fastest: Any) -> list[str]:

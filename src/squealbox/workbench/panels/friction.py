@@ -27,7 +27,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     steady = linearise(system)
     contacts = [
         {
-            "name": contact.name or f"contact {i + 1}",
+            "name": system.contact_names[i],
             "law": laws.index(contact.law),
             "speed": finite(state.sliding_speed[i]),
             "mu": finite(contact.law.mu(state.sliding_speed[i])),
