@@ -59,15 +59,20 @@ class Contact(DataSheet):
     def __post_init__(self) -> None:
         for field in ROWS:
             if getattr(self, field) is not None:
-                object.__setattr__(self, field, _row(f"contact {self.name}.{field}", getattr(self, field)))
+                object.__setattr__(self, field, _row(f"{self._title}.{field}", getattr(self, field)))
         for field in ("N0", "V"):
             if not isinstance(getattr(self, field), Schedule):
-                object.__setattr__(self, field, array(f"contact {self.name}.{field}", getattr(self, field), 0))
+                object.__setattr__(self, field, array(f"{self._title}.{field}", getattr(self, field), 0))
         if not isinstance(self.law, FrictionLaw):
-            raise InvalidSystem(f"contact {self.name}.law = {self.law!r}: expected a friction law")
+            given = self.law.__name__ if isinstance(self.law, type) else repr(self.law)  # type: ignore[unreachable]
+            raise InvalidSystem(f"{self._title}.law = {given}: expected a friction law, such as Coulomb(0.4)")
         if self.unilateral and self.normal is None:
-            raise InvalidSystem(f"contact {self.name}.normal is missing: a unilateral contact needs its direction")
+            raise InvalidSystem(f"{self._title}.normal is missing: a unilateral contact needs its direction")
         self._check_rigid()
+
+    @property
+    def _title(self) -> str:
+        return f"contact {self.name}" if self.name else "contact"
 
     @classmethod
     def kind(cls) -> str:
@@ -75,7 +80,7 @@ class Contact(DataSheet):
         return f"system.{cls.__name__}"
 
     def _check_rigid(self) -> None:
-        name = f"contact {self.name}"
+        name = self._title
         for field, low, high in (("gap", -np.inf, np.inf), ("restitution", 0.0, 1.0)):
             value = getattr(self, field)
             if np.ndim(value) != 0 or not np.isfinite(value) or not low <= value <= high:

@@ -71,7 +71,8 @@ def array(name: str, value: Any, ndim: int) -> np.ndarray:
     try:
         array = np.array(value).astype(float, casting="same_kind")  # refuses complex numbers and texts
     except (TypeError, ValueError) as error:
-        raise InvalidSystem(f"{name}: expected an array of real numbers") from error
+        given = f" = {value!r}" if isinstance(value, str) or value is None else ""
+        raise InvalidSystem(f"{name}{given}: expected an array of real numbers") from error
     if array.ndim < ndim:
         raise InvalidSystem(f"{name} has shape {array.shape}: expected at least {ndim} axes")
     if not np.all(np.isfinite(array)):

@@ -56,7 +56,8 @@ class ParameterError(ValueError):
 
     def __init__(self, owner: str, name: str, value: object, expected: str) -> None:
         self.owner, self.name, self.value, self.expected = owner, name, value, expected
-        super().__init__(f"{owner}.{name} = {_shown(value)}: {self.expectation}")
+        given = "" if expected.startswith("did you mean") and np.ndim(value) else f" = {_shown(value)}"  # type: ignore[arg-type]
+        super().__init__(f"{owner}.{name}{given}: {self.expectation}")
 
     @property
     def expectation(self) -> str:
@@ -110,6 +111,17 @@ class DataSheet:
     """
 
     aliases: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+
+    def __new__(cls, *_: Any, **given: Any) -> Self:
+        """A sheet not yet filled; a name it does not have is refused with the nearest one."""
+        names = cls.field_names()
+        for name in given:
+            if name in cls.aliases:
+                parts = ", ".join(cls.aliases[name])
+                raise ParameterError(cls.__name__, name, given[name], f"{parts}; replace({name}=...) sets them at once")
+            if name not in names:
+                raise ParameterError(cls.__name__, name, given[name], known_names(name, names))
+        return super().__new__(cls)
 
     def __init_subclass__(cls, **keywords: Any) -> None:
         super().__init_subclass__(**keywords)
@@ -329,5 +341,7 @@ def _brief(value: object) -> str:
 
 
 def _shown(value: object) -> str:
+    if isinstance(value, type):
+        return f"the class {value.__name__}"
     text = repr(value) if not isinstance(value, (float, int)) else f"{value:g}"
     return text if len(text) <= 60 else text[:57] + "..."

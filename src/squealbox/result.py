@@ -234,6 +234,8 @@ class Result:
         """Read a result written by `save`. Raises `ResultFileError` naming the file and what is wrong."""
         import xarray
 
+        if not os.path.exists(path):
+            raise ResultFileError(f"{os.fspath(path)}: there is no such file")
         try:
             with xarray.open_dataset(path, engine="h5netcdf") as dataset:
                 return cls.from_dataset(dataset.load())

@@ -14,7 +14,6 @@ because v = V - t.q' gives d(mu sgn(v))/dq' = -mu' t' at fixed sgn(v). Every arr
 system can be a whole map of systems: M is (..., n, n), n, d and t are (..., n), N0, V and the law's parameters (...).
 """
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -24,6 +23,7 @@ import numpy as np
 from scipy import sparse
 
 from squealbox import sparse_sliding
+from squealbox.arguments import design
 from squealbox.contacts import ROWS, Contact, Contacts, dense_rows, sparse_matrix
 from squealbox.factorisation import is_symmetric
 from squealbox.loops import Loop, check_loops, folded, near_sliding
@@ -89,6 +89,8 @@ class System(DataSheet):
         set_(self, "loops", check_loops(self.loops, self.names, InvalidSystem))
 
     def _dense_contacts(self) -> tuple[Contact, ...]:
+        if not hasattr(self.contacts, "__iter__"):
+            raise InvalidSystem(f"contacts is a {type(self.contacts).__name__}: expected several, (contact,) for one")
         contacts = self.contacts.dense() if isinstance(self.contacts, Contacts) else tuple(self.contacts)
         return tuple(dense_rows(_checked_contact(contact, i, self.size)) for i, contact in enumerate(contacts))
 
@@ -212,12 +214,8 @@ def as_system(design_or_system: Any, *, linear: bool = False) -> System:
 def _system_of(given: Any) -> System:
     if isinstance(given, System):
         return folded(given)
-    if isinstance(given, type):
-        raise InvalidSystem(f"{given.__name__} is a class: expected a design made from it, {given.__name__}(...)")
-    if isinstance(given, (str, os.PathLike)):
-        raise InvalidSystem(f"{os.fspath(given)[:60]!r} is a text: expected a design; read_design(path) reads a file")
-    if not callable(getattr(given, "system", None)):
-        raise InvalidSystem(f"a {type(given).__name__} has no system(): expected a System or a design")
+    if isinstance(given, type) or not callable(getattr(given, "system", None)):
+        raise InvalidSystem(f"{repr(given)[:60]}: expected {design(given) or 'a System or a design'}")
     system: System = given.system()
     return folded(system)
 

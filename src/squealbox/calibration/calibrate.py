@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.calibration.measured import Measured
 from squealbox.calibration.search import WORST, linearised, losses, searched
 from squealbox.parameters import ParameterError
@@ -138,6 +139,7 @@ class Calibration(Result):
         return self.summary()
 
 
+@public()
 def calibrate(
     design: Any,
     parameters: Mapping[str, tuple[float, float]],

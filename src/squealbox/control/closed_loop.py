@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.control import margins, sampled
 from squealbox.control.plant import Plant, plant
 from squealbox.control.poles import Late, late_poles
@@ -150,6 +151,7 @@ class ClosedLoop(Result):
         return self.summary()
 
 
+@public()
 def closed_loop(design_or_system: Any, *, line: float | None = None, time: float = 0.0) -> ClosedLoop:
     """The poles of a brake with loops about steady sliding.
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.countermeasures.loss import at_the_window, first_loss, growth_of
 from squealbox.countermeasures.mechanical import TunedMass
 from squealbox.designs.base import Design
@@ -66,6 +67,7 @@ class BestAbsorber(Result):
         return self.summary()
 
 
+@public(bounds=None)
 def best_absorber(
     brake: Design,
     on: str,

@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from squealbox.arguments import named, public
 from squealbox.fe.basis import joined
 from squealbox.fe.craig_bampton import craig_bampton_basis
 from squealbox.fe.full_brake import FullBrake, full_system
@@ -38,6 +39,7 @@ HELD = 3.0  # times the band up to which modes with held contacts are taken
 SNAPSHOTS = 3  # values of each parameter at which POD looks
 
 
+@public(varying=named)
 def reduce(
     design_or_system: Any,
     band: tuple[float, float],

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.designs import DESIGNS, Design
 from squealbox.fe.disc_brake import DiscBrake
 from squealbox.files import analyses, countermeasures
@@ -66,6 +67,7 @@ class DesignFile:
     caution: str = ""  # what a reader of the results must know of the file
 
 
+@public()
 def read_design(path: str | os.PathLike[str], *, allow_code: bool = False) -> Design:
     """The brake that the file at `path` describes.
 

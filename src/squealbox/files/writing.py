@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
 from squealbox.files.countermeasures import wrapped_text
@@ -42,6 +43,7 @@ class NotWritable(ValueError):
     """A design that a file cannot hold, such as one that stands for a whole map; the message says which part."""
 
 
+@public()
 def write_design(design: Design, path: str | os.PathLike[str], *, sections: str = "") -> Path:
     """Write `design` as a commented TOML file that :func:`read_design` reads back equal; returns the path.
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.control import closed_loop
 from squealbox.countermeasures import Controlled, Dithered
 from squealbox.countermeasures.loss import growth_of
@@ -98,6 +99,7 @@ class Remedies(Result):
         return "\n".join([first, *lines, "", *(missed if not np.all(self.reached) else []), *cautions, *said])
 
 
+@public()
 def silence(
     brake: Design,
     scatter: Scatter | None = None,

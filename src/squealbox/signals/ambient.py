@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.result import Outcome, Result, quantity
 from squealbox.signals.recordings import as_recording
 from squealbox.signals.samples import SignalError
@@ -66,6 +67,7 @@ class OperationalModes(Result):
         return "\n".join([f"{'frequency [Hz]':>19}  {'damping ratio [%]':>20}", *lines, *notes])
 
 
+@public()
 def operational_modes(
     recording: Any,
     rate: float | None = None,

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.result import Outcome, Result, quantity
 from squealbox.signals.event_ends import edges, rate_at, steady_frequency
 from squealbox.signals.radiation import HEARING, a_weighting
@@ -115,6 +116,7 @@ class _Track:
     offsets: list[float]
 
 
+@public()
 def squeal_events(
     recording: Any,
     rate: float | None = None,

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.result import Result, quantity
 from squealbox.signals.exponentials import fit_exponentials
 from squealbox.signals.samples import Samples, SignalError, given, samples
@@ -40,6 +41,7 @@ class GrowthRate(Result):
         return f"{text} (not one rate: {first:.3g} 1/s in its first half, {second:.3g} 1/s in its second)"
 
 
+@public()
 def dominant_frequency(signal: Any, t: Any = None, *, above: float | None = None, **cut: Any) -> float:
     """Frequency [Hz] of the strongest component, much finer than one over the length of the record.
 
@@ -87,6 +89,7 @@ def highest_line(signal: Any, t: Any = None, **cut: Any) -> float:
     return float(best.x)
 
 
+@public()
 def growth_rate(
     signal: Any, t: Any = None, *, frequency: float | None = None, periods: float = 8.0, **cut: Any
 ) -> GrowthRate:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.result import Result, quantity
 from squealbox.signals.recordings import as_recording
 from squealbox.signals.samples import SignalError
@@ -36,6 +37,7 @@ class SoundQuality(Result):
         )
 
 
+@public()
 def sound_quality(
     recording: Any,
     rate: float | None = None,

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.result import Outcome, Result, quantity
 from squealbox.signals.samples import SignalError, column, given
 from squealbox.signals.spectra import peaks, spectrum
@@ -66,6 +67,7 @@ class SoundLevel(Result):
         return f"{float(self.level):.0f} dB, {float(self.weighted):.0f} dB(A), {loudest}. {self.assumption}"
 
 
+@public()
 def sound_level(
     velocity: Any,
     t: Any = None,

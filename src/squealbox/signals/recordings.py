@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.signals.samples import LEAST, SignalError, equal_steps
 
 LARGEST = 2_000_000_000  # bytes of a file
@@ -116,6 +117,7 @@ def as_recording(signal: Any, rate: float | None, unit: str) -> Recording:
     return Recording(signal, rate, tuple(f"channel {i + 1}" for i in range(count)), (unit,) * count)
 
 
+@public()
 def read_recording(
     path: str | os.PathLike[str],
     *,

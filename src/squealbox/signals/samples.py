@@ -73,7 +73,11 @@ def values(signal: Any, t: Any = None, *, dof: int | str = 0, rate: float | None
         t, x = signal.t, np.asarray(signal.q, dtype=float)
         x = x[:, column(signal, dof)] if x.ndim == 2 else x
     else:
-        x = np.asarray(signal, dtype=float)
+        try:
+            x = np.asarray(signal, dtype=float)
+        except (TypeError, ValueError) as error:
+            expected = "a motion, or an array of real numbers with its times t"
+            raise SignalError(f"a {type(signal).__name__} is no signal: expected {expected}") from error
     if t is None:
         if rate is None or not rate > 0.0:
             raise SignalError(f"t is missing and rate = {rate}: expected the times t [s] or a sampling rate > 0 [Hz]")

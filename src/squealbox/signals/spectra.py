@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.result import Result, quantity
 from squealbox.signals.samples import SignalError, given, samples
 
@@ -46,6 +47,7 @@ class Spectrogram(Result):
     resolution: float
 
 
+@public()
 def spectrum(signal: Any, t: Any = None, *, window: str = "hann", pad: int = 4, **cut: Any) -> Spectrum:
     """One-sided amplitude spectrum of a signal about its mean under the window.
 
@@ -145,6 +147,7 @@ def _side_lobes(window: str) -> Any:
     return np.maximum.accumulate(response[::-1])[::-1] / response[0]
 
 
+@public()
 def spectrogram(
     signal: Any, t: Any = None, *, segment: float | None = None, window: str = "hann", overlap: float = 0.9, **cut: Any
 ) -> Spectrogram:

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.signals.samples import SignalError, samples
 
 SAMPLING = 44100  # [Hz]
 
 
+@public()
 def sound(
     signal: Any,
     path: str | os.PathLike[str],

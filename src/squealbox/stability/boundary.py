@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
 from squealbox.result import Outcome, Result, quantity
 from squealbox.stability.cells import Crossing, Samples, crossings
@@ -70,6 +71,7 @@ class Boundary(Result):
         return "\n".join(lines)
 
 
+@public()
 def stability_boundary(
     design: Any, bounds: dict[str, tuple[float, float]], *, cells: int = 32, time: float = 0.0
 ) -> Boundary:

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.cautions import out_of_range
 from squealbox.result import COMPLETED, Outcome, Result, batched, quantity
 from squealbox.stability.deflation import special_modes, uncertain, vibrating
@@ -155,6 +156,7 @@ class ComplexModes(Result):
 
 
 @batched
+@public()
 def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None, **how: Any) -> ComplexModes:
     """Eigenvalues and modes of (lambda^2 M + lambda C_eff + K_eff) u = 0 about steady sliding at `time` [s].
 

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.memory_rows import no_memory
 from squealbox.result import Result, quantity
 from squealbox.stability.eigenvalues import Mode, modes_of
@@ -122,6 +123,7 @@ class ModeEnergy(Result):
         return "\n".join(rows)
 
 
+@public()
 def mode_energy(design_or_system: Any, mode: Mode | int | None = None, time: float = 0.0) -> ModeEnergy:
     """Energies and powers of one mode of one system.
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.result import Outcome, Result, quantity
 from squealbox.stability.family import Family
 from squealbox.stability.onset import critical_value
@@ -34,6 +35,7 @@ class ExceptionalPoints(Result):
         return "\n".join(f"{a} = {x:.10g}, {b} = {y:.10g}: lambda = {v:.8g} 1/s" for x, y, v in rows)
 
 
+@public()
 def exceptional_points(
     design: Any, bounds: dict[str, tuple[float, float]], *, points: int = 41, time: float = 0.0
 ) -> ExceptionalPoints:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.arguments import named, public
 from squealbox.parameters import DataSheet
 from squealbox.result import Outcome, Result, quantity
 from squealbox.stability.eigenvalues import MARGINAL
@@ -89,6 +90,7 @@ class StabilityMap(Result):
         return declared[last].unit if last in declared else ""
 
 
+@public(axes=named)
 def stability_map(
     design: Any,
     axes: Mapping[str, Any],

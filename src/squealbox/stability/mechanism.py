@@ -25,6 +25,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.stability.eigenvalues import MARGINAL
 from squealbox.stability.family import Steady, steady_sliding
 from squealbox.stability.spectra import Engine, compiled, growth_of_parts, largest_growth
@@ -129,6 +130,7 @@ def mechanism_at(steady: Steady, angular_frequency: float, *, rank: int = 0, ste
     return Mechanism(NAMES[int(code)], base, circulation, slope)
 
 
+@public()
 def mechanism(design_or_system: Any, time: float = 0.0) -> Mechanism:
     """Why one system is unstable at `time` [s]; "stable" when it is not, "unknown" without steady sliding.
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.result import Outcome, Result, quantity
 from squealbox.stability.family import Steady, steady_sliding
 
@@ -41,6 +42,7 @@ class TransientGrowth(Result):
         )
 
 
+@public()
 def transient_growth(
     design_or_system: Any, duration: float | None = None, *, points: int = 400, at: float = 0.0
 ) -> TransientGrowth:
@@ -87,6 +89,7 @@ def transient_growth(
     )
 
 
+@public()
 def pseudospectrum(design_or_system: Any, real: Any, imaginary: Any, at: float = 0.0) -> Any:
     """Least singular value of z - A [1/s] on the grid z = real + i imaginary, shape (len(imaginary), len(real)).
 

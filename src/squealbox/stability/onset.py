@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.result import Outcome, Result, quantity
 from squealbox.stability.deflation import vibrating
 from squealbox.stability.eigenvalues import OneEigenvalue, modes_of
@@ -113,6 +114,7 @@ class CriticalValues(Result):
         return "\n".join(crossing.summary() for crossing in self)
 
 
+@public()
 def critical_value(
     design: Any, parameter: str, bounds: tuple[float, float], *, points: int = 401, time: float = 0.0
 ) -> CriticalValue:
@@ -143,6 +145,7 @@ def critical_value(
     return next(iter(every))
 
 
+@public()
 def critical_values(
     design: Any, parameter: str, bounds: tuple[float, float], *, points: int = 401, time: float = 0.0
 ) -> CriticalValues:

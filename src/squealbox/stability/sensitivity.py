@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.result import Result, quantity
 from squealbox.stability.eigenvalues import NEAR_DEFECTIVE, Mode, modes_of
 from squealbox.stability.family import Family, steady_sliding
@@ -74,6 +75,7 @@ class Sensitivity(Result):
         return "\n".join(rows)
 
 
+@public(parameters=None)
 def sensitivity(
     design: Any, parameters: Sequence[str] | None = None, mode: int | Mode | None = None, *, time: float = 0.0
 ) -> Sensitivity:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.result import Result, quantity
 from squealbox.stability.eigenvalues import MARGINAL, ComplexModes, modes_of
 from squealbox.stability.family import Family, Steady
@@ -121,6 +122,7 @@ def track(design: Any, parameter: str, values: Any, *, time: float = 0.0) -> Ite
         yield last.point(criterion, clear)
 
 
+@public()
 def tracked_modes(design: Any, parameter: str, values: Any, *, time: float = 0.0) -> TrackedModes:
     """The whole of :func:`track` as one result, a labelled dataset by ``to_dataset()``."""
     points = list(track(design, parameter, values, time=time))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from squealbox.arguments import named, public
 from squealbox.parameters import DataSheet, from_plain, to_plain
 from squealbox.result import Outcome, Result, ResultFileError, provenance
 from squealbox.studies.analysis import StudyError, Task
@@ -138,6 +139,7 @@ class Memory:
         """Nothing is written."""
 
 
+@public(space=named)
 def sweep(
     design: Any,
     space: Any,

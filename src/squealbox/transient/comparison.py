@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.result import Outcome, Result, quantity
 from squealbox.system import as_system
 from squealbox.transient.simulate import simulate
@@ -46,6 +47,7 @@ class ContactComparison(Result):
         return "\n".join(lines)
 
 
+@public()
 def compare_contact(
     design_or_system: Any,
     duration: float,

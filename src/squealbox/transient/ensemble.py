@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Column, Outcome, Result, batched, quantity
 from squealbox.system import System, as_system
@@ -127,6 +128,7 @@ class Ensemble(Result):
 
 
 @batched
+@public()
 def simulate_ensemble(
     design_or_system: Any,
     parameters: Mapping[str, Any] | None = None,

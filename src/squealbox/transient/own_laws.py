@@ -43,7 +43,7 @@ def law_kinds(contacts: Sequence[Contact]) -> Any:
             known = ", ".join(law.__name__ for law in LAWS)
             given = f"{type(contact.law).__name__}(...)"
             raise InvalidSystem(
-                f"contact {contact.name}.law = {given}: expected a law that can be compiled, "
+                f"{contact.name or 'contact'}.law = {given}: expected a law that can be compiled, "
                 f"one of {known} or an OwnLaw"
             )
         kinds.append(LAWS.index(type(contact.law)) if texts is None else len(LAWS) + own.index(texts))

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import is_real, public
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import InvalidSystem, System, as_system, equilibrium, no_rigid_contact
@@ -51,6 +52,7 @@ MESSAGES = {
 }
 
 
+@public()
 def simulate(
     design_or_system: Any,
     duration: float,
@@ -335,7 +337,7 @@ def _times(times: Any, start_time: float, duration: float) -> Any:
     if times is None:
         return None
     if np.ndim(times) == 0:
-        if int(times) != times or times < 2:
+        if not is_real(times) or int(times) != times or times < 2:
             raise ParameterError("simulate", "times", times, "a whole number of at least 2, or an array of instants")
         return np.linspace(start_time, start_time + duration, int(times))
     return instants_within("simulate", times, start_time, duration)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.result import Outcome, Result, quantity
 from squealbox.signals import LEAST, highest_line, slope, with_error
 from squealbox.transient.envelope import Curve, envelope, repetition, smooth_curve
@@ -50,6 +51,7 @@ class Verdict(Result):
         return self.text
 
 
+@public(band=None)
 def verdict(
     motion: Any,
     t: Any = None,

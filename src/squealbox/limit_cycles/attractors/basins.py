@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.limit_cycles.attractors.attractor import (
     IRREGULAR,
     NO_END,
@@ -95,6 +96,7 @@ class Basin(Result):
         return "\n".join(lines)
 
 
+@public()
 def basin(
     design_or_system: Any,
     spread: Any = None,

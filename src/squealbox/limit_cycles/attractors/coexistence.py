@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.limit_cycles.attractors.attractor import linked
 from squealbox.limit_cycles.attractors.basins import unit_starts
 from squealbox.limit_cycles.attractors.settling import FAILED, LOOSE, REPEATS, RESTS, TIGHT, Batch, Scales, settle
@@ -79,6 +80,7 @@ def _edges(name: str, low: float, high: float) -> str:
     return f"{above}, the vibration is there from {f'{name} {low:.5g}' if np.isfinite(low) else 'below the range'} on"
 
 
+@public()
 def coexistence(
     design: Any,
     bounds: dict[str, tuple[float, float]],

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.cautions import along
 from squealbox.limit_cycles.attractors.sections import Section, passages
 from squealbox.limit_cycles.attractors.settling import (
@@ -85,6 +86,7 @@ class BifurcationDiagram(Result):
         return "\n".join(lines)
 
 
+@public()
 def bifurcation_diagram(
     design: Any,
     parameter: str,

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.starting import state_of
 from squealbox.limit_cycles.cycles.variation import quick_flight
@@ -19,6 +20,7 @@ from squealbox.system import as_system
 LOST = 1e-13  # growth over a span below which a direction is forgotten
 
 
+@public()
 def lyapunov_exponents(
     design_or_system: Any,
     start: Any,

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.limit_cycles.attractors.attractor import Attractor, attractors
 from squealbox.limit_cycles.attractors.basins import interval
 from squealbox.limit_cycles.attractors.sections import state_names
@@ -68,6 +69,7 @@ class DangerousPush(Result):
         )
 
 
+@public()
 def dangerous_push(
     design_or_system: Any,
     energies: tuple[float, float] | None = None,

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.cautions import along
 from squealbox.continuation import PathPoint, StepControl, follow
 from squealbox.limit_cycles.branches.doubling import doubled
@@ -88,6 +89,7 @@ class Branch(Result):
         return "\n".join(lines)
 
 
+@public()
 def branch(
     design: Any,
     parameter: str,

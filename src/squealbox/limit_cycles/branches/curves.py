@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
 from squealbox.limit_cycles.branches.hopf import (
     HopfPoint,
@@ -63,6 +64,7 @@ def two_parameters(design: Any, bounds: Bounds) -> tuple[Callable[[float, float]
     return lambda a, b: as_system(design.replace({names[0]: a, names[1]: b})), names
 
 
+@public()
 def hopf_curve(design: Any, bounds: Bounds, *, value: float | None = None, points: int = 100) -> PointCurve:
     """Hopf points over two parameters, through the first one found in the first parameter.
 

@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.friction import Table
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.starting import steady_state
@@ -83,6 +84,7 @@ def family(design: Any, parameter: str) -> Callable[[float], Any]:
     return lambda value: as_system(design.replace({parameter: value}))
 
 
+@public()
 def hopf_point(design: Any, parameter: str, bounds: tuple[float, float]) -> HopfPoint:
     """The first Hopf point between `bounds` and the kind of cycle born there.
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.limit_cycles.branches.branch import Branch, branch
 from squealbox.limit_cycles.branches.hopf import family
 from squealbox.limit_cycles.branches.joined import joined
@@ -25,6 +26,7 @@ ALIKE = 1e-2  # of the size: extremes and period by which two settled motions ar
 SWINGS = (0.3, 6.0)  # largest speeds of the starts, in sliding speeds
 
 
+@public()
 def settled_cycles(
     design_or_system: Any, starts: Any = 16, *, settle: float | None = None, seed: int = 0
 ) -> tuple[Cycle, ...]:
@@ -104,6 +106,7 @@ def _alike(cycle: Any, period: Any, lowest: Any, highest: Any) -> bool:
     return bool(abs(float(period / cycle.period) / turns - 1.0) < ALIKE and apart < ALIKE)
 
 
+@public()
 def isolated_branches(
     design: Any,
     parameter: str,

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.saltation import surface
 from squealbox.parameters import ParameterError
@@ -112,6 +113,7 @@ class Moving(Field):
         return -np.linalg.lstsq(self.t[stuck] @ self.md[stuck].T, own, rcond=1e-12)[0]
 
 
+@public()
 def forced_cycle(
     design_or_system: Any,
     start: Any = None,

@@ -17,6 +17,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.cautions import along
 from squealbox.limit_cycles.cycles.cycle import Cycle, extremes
 from squealbox.limit_cycles.cycles.field import Field
@@ -34,6 +35,7 @@ ADVICE = "give a start nearer to the cycle, more harmonics, or a wider smoothing
 Guess: TypeAlias = "Callable[[Grid], Any]"
 
 
+@public()
 def harmonic_balance(
     design_or_system: Any,
     start: Any = None,

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.cautions import out_of_range, turned
 from squealbox.limit_cycles.cycles.cycle import Cycle, extremes
 from squealbox.limit_cycles.cycles.field import Field
@@ -28,6 +29,7 @@ CONTACTS = {"exact": "exact", "smooth": "arctan", "arctan": "arctan", "tanh": "t
 TURNS = (1, 2, 4)  # past a doubling, a run settles on the cycle that closes after two turns, past the next after four
 
 
+@public()
 def shooting(
     design_or_system: Any,
     start: Any = None,

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.friction import Cubic, FrictionLaw, Stribeck
 from squealbox.limit_cycles.branches.hopf import family
 from squealbox.limit_cycles.cycles.cycle import Cycle
@@ -28,6 +29,7 @@ SCAN = 400
 FINE = 8192  # of the touching cycle, whose law may fall steeply near v = 0
 
 
+@public()
 def describing_function(design_or_system: Any, start: Any = None, **options: Any) -> Cycle:
     """The cycle with one harmonic and a mean: :func:`harmonic_balance` with ``harmonics=1``.
 
@@ -82,6 +84,7 @@ def averaged_swings(law: FrictionLaw, sliding_speed: float, normal_force: float,
     return np.array([brentq(excess, grid[i], grid[i + 1], xtol=1e-15) for i in places])
 
 
+@public()
 def averaged_curve(design: Any, parameter: str, values: Any) -> tuple[Any, Any]:
     """(values, amplitudes [m]) of the averaged cycles over a parameter, for a figure; empty unless it is one block.
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
 from squealbox.limit_cycles.branches.branch import Branch
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
@@ -47,6 +48,7 @@ class EstimateCurve:
         return f"{self.label}: {self.validity}{beside}"
 
 
+@public()
 def estimate_curves(
     design: Any, parameter: str, bounds: tuple[float, float], branches: Sequence[Branch] = ()
 ) -> tuple[EstimateCurve, ...]:

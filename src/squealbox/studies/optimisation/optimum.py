@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Outcome, Result, quantity
 from squealbox.studies.optimisation.goals import Candidates, Constraint, Goal
@@ -96,6 +97,7 @@ class Optimum(Result):
         return "\n".join(lines)
 
 
+@public()
 def optimise(
     design: Any,
     variables: Mapping[str, tuple[float, float]],

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome, Result, quantity
 from squealbox.studies.quantity import Quantity, as_quantity, evaluate, input_of
@@ -133,6 +134,7 @@ class Surrogate(Result):
         return "\n".join(lines + [f"Caution: {self.caution}"] * bool(self.caution))
 
 
+@public()
 def polynomial_chaos(
     design: Any,
     scatter: Scatter,

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, input_of, unit_of
@@ -83,6 +84,7 @@ class DesignPoint(Result):
         return "\n".join(lines)
 
 
+@public()
 def form(
     design: Any,
     scatter: Scatter,

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
@@ -67,6 +68,7 @@ class IntervalBounds(Result):
         return "\n".join(lines)
 
 
+@public()
 def interval_bounds(
     design: Any, box: Mapping[str, tuple[float, float]], quantity: Any, *, seed: int = 0, runs: int = 3
 ) -> IntervalBounds:

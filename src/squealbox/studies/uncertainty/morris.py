@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
@@ -55,6 +56,7 @@ class MorrisEffects(Result):
         return "\n".join(lines)
 
 
+@public()
 def morris_effects(
     design: Any, scatter: Scatter, quantity: Any, *, trajectories: int = 50, seed: int = 0, level: float = 0.95
 ) -> MorrisEffects:

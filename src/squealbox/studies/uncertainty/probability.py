@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
@@ -67,6 +68,7 @@ class SquealProbability(Result):
         return "\n".join(lines)
 
 
+@public()
 def squeal_probability(
     design: Any,
     scatter: Scatter,

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
@@ -61,6 +62,7 @@ class SobolIndices(Result):
         return "\n".join(lines)
 
 
+@public()
 def sobol_indices(
     design: Any,
     scatter: Scatter,

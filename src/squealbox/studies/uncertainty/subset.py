@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, input_of
@@ -59,6 +60,7 @@ class SubsetProbability(Result):
         return "\n".join(lines)
 
 
+@public()
 def subset_simulation(
     design: Any,
     scatter: Scatter,

@@ -1,0 +1,145 @@
+"""What the arguments of public functions may be: one sentence where one is not, before anything is computed.
+
+An argument's name says what it is, the same in every function (`duration` is a time above zero everywhere), so what it
+may be stands here once. Depends on: parameters.
+"""
+
+import functools
+import inspect
+import os
+from collections.abc import Callable, Mapping
+from typing import Any, ParamSpec, TypeVar
+
+import numpy as np
+
+from squealbox.parameters import DataSheet, Parameter, ParameterError, known_names
+
+P = ParamSpec("P")
+R = TypeVar("R")
+Kind = Callable[[Any], str]  # what is expected, as the end of a sentence, where the value is not that; "" where it is
+
+
+def real(about: Parameter) -> Kind:
+    """A finite number in a range."""
+
+    def expected(value: Any) -> str:
+        good = is_real(value) and about.accepts(np.asarray(value, dtype=float))
+        return "" if good else f"a finite number in {about.range}"
+
+    return expected
+
+
+def whole(least: int) -> Kind:
+    """A whole number of at least `least`."""
+
+    def expected(value: Any) -> str:
+        good = is_real(value) and value == int(value) and value >= least
+        return "" if good else f"a whole number of at least {least}"
+
+    return expected
+
+
+def is_real(value: Any) -> bool:
+    """True for a single finite number, of Python or NumPy, that is no truth value."""
+    number = isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+    alone = isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind in "iuf"
+    return (number or alone) and bool(np.isfinite(value))
+
+
+def interval(value: Any) -> str:
+    """Two finite numbers (low, high) with low < high, or these for each of several names."""
+    if isinstance(value, Mapping):
+        return "" if all(interval(each) == "" for each in value.values()) else "(low, high) with low < high for each"
+    pair = isinstance(value, (tuple, list, np.ndarray)) and len(value) == 2 and all(is_real(each) for each in value)
+    return "" if pair and value[0] < value[1] else "two finite numbers (low, high) with low < high"
+
+
+def band(value: Any) -> str:
+    """Frequencies (f1, f2) in Hz."""
+    good = not isinstance(value, Mapping) and interval(value) == "" and value[0] >= 0.0
+    return "" if good else "(f1, f2) in Hz with 0 <= f1 < f2"
+
+
+def design(value: Any) -> str:
+    """A design or a system, not its class and not its file."""
+    if isinstance(value, type):
+        return f"a design made from it, {value.__name__}(...)"
+    if isinstance(value, (str, os.PathLike)):
+        return "a design; read_design(path) reads a file"
+    good = callable(value) or callable(getattr(value, "system", None)) or hasattr(value, "contacts")
+    return "" if good else "a design or a System"
+
+
+def named(value: Any) -> str:
+    """Values by the names of parameters."""
+    good = isinstance(value, (Mapping, DataSheet)) or hasattr(value, "names")
+    return "" if good else 'a dictionary by parameter, such as {"friction.static": ...}'
+
+
+def path(value: Any) -> str:
+    """A file or folder."""
+    return "" if isinstance(value, (str, os.PathLike)) else "a path"
+
+
+POSITIVE: dict[str, str] = {"duration": "s", "width": "m/s", "step": "s", "tolerance": "", "largest_step": ""}
+KINDS: dict[str, Kind] = {
+    **{name: real(Parameter(unit, 0.0, low_open=True)) for name, unit in POSITIVE.items()},
+    **{name: real(Parameter("s")) for name in ("time", "start_time")},
+    "rtol": real(Parameter("", 1e-15, 1.0, high_open=True)),
+    **{name: whole(1) for name in ("samples", "points", "harmonics", "most_steps", "rounds", "shots", "threads")},
+    **{name: whole(1) for name in ("population", "generations", "replicates", "chunk")},
+    "seed": whole(0),
+    "bounds": interval,
+    "band": band,
+    **dict.fromkeys(("design", "design_or_system", "brake", "system"), design),
+    **dict.fromkeys(("scatter", "variables", "parameters"), named),
+    "path": path,
+}
+
+
+def public(**kinds: Kind | None) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """A function whose arguments are looked at first, by `KINDS` and by `kinds` of its own (None: not this one).
+
+    None passes where it is the default.
+
+    Raises `ParameterError` for an argument that is not what it shall be and, with the nearest name, for one that the
+    function does not have.
+
+    >>> @public()
+    ... def wait(duration: float) -> float:
+    ...     return duration
+    >>> wait("50ms")
+    Traceback (most recent call last):
+    squealbox.parameters.ParameterError: wait.duration = '50ms': expected a finite number in (0, inf) s
+    """
+
+    def decorate(function: Callable[P, R]) -> Callable[P, R]:
+        given = inspect.signature(function).parameters
+        names = [name for name, one in given.items() if one.kind is not one.VAR_KEYWORD]
+        open_ended = len(names) < len(given)
+        looked = {name: kinds.get(name, KINDS.get(name)) for name in names}
+        at = [(i, name, kind, given[name].default) for i, (name, kind) in enumerate(looked.items()) if kind is not None]
+        owner = function.__name__
+
+        @functools.wraps(function)
+        def call(*args: P.args, **keywords: P.kwargs) -> R:
+            for name in keywords:
+                if not open_ended and name not in given:
+                    raise ParameterError(owner, name, keywords[name], known_names(name, names))
+            for i, name, kind, usual in at:
+                if i < len(args):
+                    value: Any = args[i]
+                elif name in keywords:
+                    value = keywords[name]
+                else:
+                    continue
+                if value is usual:
+                    continue
+                if (expected := kind(value)) != "":
+                    raise ParameterError(owner, name, value, expected)
+            return function(*args, **keywords)
+
+        call.looked_at = tuple(name for _, name, _, _ in at)  # type: ignore[attr-defined]
+        return call
+
+    return decorate
