@@ -229,7 +229,7 @@ def _checked_contact(contact: Any, i: int, size: int) -> Contact:
     return contact
 
 
-def equilibrium(system: System, time: float = 0.0, start: sparse_sliding.Start | None = None) -> Equilibrium:
+def equilibrium(system: Any, time: float = 0.0, start: sparse_sliding.Start | None = None) -> Equilibrium:
     """Steady sliding q0 at the load, speeds and normal forces of `time` [s].
 
     Newton on r(q) = K q - f - sum mu sgn(V) d N(q) [- normal min(N, 0) for unilateral contacts]. Without unilateral
@@ -237,7 +237,7 @@ def equilibrium(system: System, time: float = 0.0, start: sparse_sliding.Start |
     each step changes the set of open contacts, so the number of steps is bounded by that of the contacts' states. A
     sparse search may begin at the `start` of a similar brake.
     """
-    system = near_sliding(system)
+    system = near_sliding(system if isinstance(system, System) else as_system(system, linear=True))
     if system.is_sparse:
         return _sparse_equilibrium(system, time, start)
     no_rigid_contact(system, "steady sliding")
@@ -273,9 +273,9 @@ def equilibrium(system: System, time: float = 0.0, start: sparse_sliding.Start |
     return Equilibrium(q, normal, speed, mu, exists, outcome, np.where(exists, floating, 0))
 
 
-def linearise(system: System, time: float = 0.0, start: sparse_sliding.Start | None = None) -> Linearised:
+def linearise(system: Any, time: float = 0.0, start: sparse_sliding.Start | None = None) -> Linearised:
     """K_eff and C_eff about steady sliding at `time` [s]; an open contact only takes its stiffness out."""
-    system = near_sliding(system)
+    system = near_sliding(system if isinstance(system, System) else as_system(system, linear=True))
     state = equilibrium(system, time, start)
     if system.is_sparse:
         return Linearised(system.M, *_sparse_linearised(system, state), state)

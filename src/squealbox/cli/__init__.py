@@ -2,7 +2,7 @@
 
 One table names the commands; it makes the first page of help without loading anything, and a command's module is
 imported only when that command is called. Exit codes: 0 done, 1 the computation failed with a named outcome, 2 bad
-input, 130 stopped by the user.
+input, 3 unstable where --exit-code asks for that, 130 stopped by the user.
 """
 
 import difflib
@@ -70,6 +70,7 @@ COMMANDS = {
     "basin": Command("basins", "basin_", "which starts lead to which motion: shares, a picture, the smallest push"),
     "paper": Command("papers", "paper", "reproduce a published study: figures, claims and one page"),
     "schema": Command("starter", "schema", "the JSON schema of a design file, for editors"),
+    "completion": Command("starter", "completion", "a script that completes commands and options in bash, zsh or fish"),
 }
 
 EXAMPLES = """\
@@ -120,6 +121,11 @@ def overview() -> str:
         *lines,
         "",
         EXAMPLES,
+        "",
+        "for scripts, with every command:",
+        "  --json        one JSON object on standard output: exit code, results with units, and the text",
+        "  --quiet       nothing on standard output",
+        "  --exit-code   exit with 3 where steady sliding is unstable",
         "",
         "squealbox COMMAND --help tells more of one; squealbox --version",
     ])  # fmt: skip

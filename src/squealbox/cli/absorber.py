@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Literal
 
+from squealbox.cli.answers import show
 from squealbox.cli.inputs import AllowCode, Changes, folder, number, read
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import UsageError
@@ -47,7 +48,7 @@ def absorber(
     scatter = found.scatter.scatter if found.scatter else None
     with Progress("tuning the absorber"):
         best = best_absorber(found.design, on, kilograms, aim, scatter)
-    print(f"{found.design.title}, {file}\n{best.summary()}")
+    show(f"{found.design.title}, {file}", best)
     if out is not None:
         from squealbox import plots
 

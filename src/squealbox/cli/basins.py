@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import numpy as np
 from cyclopts import Parameter
 
+from squealbox.cli.answers import show
 from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
@@ -79,9 +80,9 @@ def basin_(
         if push:
             progress("the smallest push")
             smallest = dangerous_push(found.design, seed=seed)
-    print(f"{found.design.title}, {file}\n{result.summary()}")
+    show(f"{found.design.title}, {file}", result)
     if smallest is not None:
-        print(smallest.summary())
+        show("", smallest)
     if out is not None:
         from squealbox import plots
 

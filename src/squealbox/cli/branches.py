@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from squealbox.cli.answers import keep
 from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, in_motion, read, readable, with_points
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed
@@ -72,6 +73,7 @@ def branch(
         born, several = all_branches(found.design, varied, start, runs, at, progress)
     if not several:
         raise ComputationFailed(Outcome("no_cycle", "no cycle was found in the range: try more runs, or another range"))
+    keep(*several)
     print(f"{found.design.title}, {file}")
     if born.outcome.ok:
         value, unit = readable(found.design, varied, born.value)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from squealbox.calibration import Measured, compare, from_events
 from squealbox.calibration import calibrate as fitted
+from squealbox.cli.answers import show
 from squealbox.cli.inputs import AllowCode, Changes, read
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
@@ -48,7 +49,7 @@ def calibrate(
         result = fitted(found.design, found.calibrate.parameters, measured, loss=found.calibrate.loss)
     if result.outcome == "no_fit":
         raise ComputationFailed(result.outcome)
-    print(result.summary())
+    show("", result)
     if out is not None:
         write_design(result.design, out)
         print(f"written: {out}")
@@ -83,11 +84,11 @@ def compare_(
     found = read(file, changes, allow_code)
     events = _events(found, recording, unit, full_scale)
     try:
-        print(f"modes\n{compare(complex_modes(found.design), events).summary()}")
+        show("modes", compare(complex_modes(found.design), events))
         if found.simulate is not None:
             with Progress("simulating"):
                 motion = run_closely(found.design.system(), found.simulate)
-            print(f"motion\n{compare(motion, events).summary()}")
+            show("motion", compare(motion, events))
     except SignalError as error:
         raise UsageError(str(error)) from error
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.cli.answers import show
 from squealbox.cli.inputs import Changes, folder, in_motion, read, time_of
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.states import States, start_from
@@ -68,7 +69,7 @@ def cycle(
         if exponents:
             print(f"{found.design.title}, {file}\n{_of_the_motion(found.design, exponents)}")
         raise ComputationFailed(result.outcome)
-    print(f"{found.design.title}, {file}\n{result.summary()}")
+    show(f"{found.design.title}, {file}", result)
     print("Floquet multipliers: " + ", ".join(f"{value:.6g}" for value in np.abs(result.multipliers)) + " (absolute)")
     if exponents:
         print(_beside_multipliers(result, exponents))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from cyclopts import Parameter
 
+from squealbox.cli.answers import keep
 from squealbox.cli.branches import all_branches
 from squealbox.cli.inputs import (
     RANGE,
@@ -113,6 +114,7 @@ def diagram(
             raise ComputationFailed(result.outcome)
         progress("following the cycles")
         _, several = all_branches(found.design, varied, progress=progress) if branches else (None, ())
+    keep(result)
     print(f"{found.design.title}, {file}\n{_said(result, found.design, varied)}")
     if out is not None:
         print(written(*_files(result, several, found.design, varied, found.path.name, out)))

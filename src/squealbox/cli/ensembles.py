@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.cli.answers import keep
 from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read, time_of
 from squealbox.cli.maps import Plane, Span, axes_of
 from squealbox.cli.progress import Progress
@@ -73,6 +74,7 @@ def ensemble(
             progress=lambda done, total, spent: progress(_pace(done, total, spent)),
         )  # fmt: skip
     plane = Plane(found.design, across, up)
+    keep(many)
     print(f"{found.design.title}, {file}\n{_summary(many, plane)}")
     if out is not None and np.any(many.ended != "not_run"):
         print(written(*_files(many, plane, found.path.name, out)))

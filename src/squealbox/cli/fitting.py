@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from squealbox.cli.answers import show
 from squealbox.cli.inputs import folder
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.tables import write_csv, written
@@ -27,7 +28,7 @@ def fit(file: Path, *, law: tuple[str, ...] = (), level: float = 0.95, out: Path
     found = fit_friction(*read_points(file), law=law or None, level=level)
     if not found.outcome.ok:
         raise ComputationFailed(found.outcome)
-    print(f"{found.speeds.size} points, {file}\n{found.summary()}")
+    show(f"{found.speeds.size} points, {file}", found)
     best = found.law
     numbers = ", ".join(f"{name} = {value:.6g}" for name, _, value in best.leaves() if value is not None)
     print(f'in a design file: friction = {{ law = "{found.names[found.best]}", {numbers} }}')

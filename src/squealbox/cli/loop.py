@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from squealbox.cli.answers import show
 from squealbox.cli.inputs import AllowCode, Changes, folder, read
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -32,7 +33,7 @@ def loop(
     if not found.design.system().loops:
         raise UsageError(f"{file} has no section [[loops]], which says what senses and acts")
     closed = closed_loop(found.design)
-    print(f"{found.design.title}, {file}\n{closed.summary()}")
+    show(f"{found.design.title}, {file}", closed)
     if out is not None:
         from squealbox import plots
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from cyclopts import Parameter
 
+from squealbox.cli.answers import keep
 from squealbox.cli.inputs import AllowCode, Changes, Option, axis, folder, read, readable, small, with_points
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
@@ -67,6 +68,7 @@ def map_(
         progress("following the boundary")
         edge = stability_boundary(found.design, {each.name: (each.low, each.high) for each in (across, up)})
     plane = Plane(found.design, across, up)
+    keep(grid, edge)
     print(f"{found.design.title}, {file}\n{_map_summary(grid, plane)}\n{_edge_summary(edge, plane)}")
     if out is not None:
         figure = _drawn(grid, edge, plane, show, found.path.name)

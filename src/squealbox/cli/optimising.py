@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.cli.answers import show
 from squealbox.cli.inputs import AllowCode, Changes, folder, read, small
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
@@ -62,7 +63,7 @@ def optimise(
             method=effort.method, population=int(effort.population),  # type: ignore[arg-type]
             generations=int(effort.generations), seed=int(effort.seed if seed is None else seed),
         )  # fmt: skip
-    print(f"{found.design.title}, {file}\n{result.summary()}")
+    show(f"{found.design.title}, {file}", result)
     if out is not None:
         print(written(*_files(result, found.path.name, out)))
     if not result.outcome.ok:

@@ -8,6 +8,7 @@ from typing import Annotated
 import cyclopts
 import numpy as np
 
+from squealbox.cli.answers import show
 from squealbox.cli.inputs import number
 from squealbox.cli.running import UsageError
 from squealbox.signals import (
@@ -66,7 +67,7 @@ def events(
         raise UsageError("--out: expected one recording")
     for path in recordings:
         found = _found(path, unit, full_scale, rate, channel, band, least_level)
-        print(f"{path}\n{found.summary()}")
+        show(f"{path}", found)
         if out is not None:
             print(f"written: {found.save(out)}")
 
@@ -123,7 +124,7 @@ def noise(
         print(f"left out: {text}")
     if not stops:
         raise UsageError(f"{folder}: none of {len(paths)} recordings can be read")
-    print(noise_matrix(stops, x=x, y=y).summary())
+    show("", noise_matrix(stops, x=x, y=y))
 
 
 def damping(
@@ -174,7 +175,7 @@ def damping(
         with _named(path):
             sound = _sound(path, unit, full_scale, rate)
             found.append(operational_modes(sound, channel=_place(channel), band=(ends[0], ends[1])))
-            print(f"{path}\n{found[-1].summary()}")
+            show(f"{path}", found[-1])
             if against and against not in sound.braking:
                 known = ", ".join(sound.braking) or f"nothing: {path.with_suffix('.braking.csv').name} is missing"
                 raise SignalError(f"--against {against}: the record has {known}")
@@ -183,7 +184,7 @@ def damping(
         onset = damping_onset(
             found, at, near=None if near is None else number(near, "Hz", f"--near {near[:40]}"), name=against
         )
-        print(onset.summary())
+        show("", onset)
         if out is not None:
             print(f"written: {onset.save(out)}")
 
@@ -221,7 +222,7 @@ def quality(
     for path in recordings:
         with _named(path):
             sound = _sound(path, "Pa", full_scale, rate)
-            print(f"{path}: {sound_quality(sound, channel=_place(channel), begin=ends[0], end=ends[1]).summary()}")
+            show(str(path), sound_quality(sound, channel=_place(channel), begin=ends[0], end=ends[1]))
 
 
 def _found(

@@ -27,19 +27,30 @@ class ComputationFailed(Exception):
 
 def run(name: str, command: Command, words: Sequence[str]) -> int:
     """Read the words of a command, do it, and turn what may go wrong into a sentence and an exit code."""
+    from squealbox.cli.answers import Manner
+
+    manner, left = Manner.of(list(words))
     try:
-        code = _call(name, command, words)
+        with manner.listening():
+            code, error = _done(name, command, left)
+        code = manner.end(name, code, error)
         sys.stdout.flush()
         return code
-    except KeyboardInterrupt:
-        _say(name, "stopped")
-        return STOPPED
     except BrokenPipeError:  # the reader, such as `head`, has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
+
+
+def _done(name: str, command: Command, words: Sequence[str]) -> tuple[int, str]:
+    """The exit code of a command, and what went wrong in a sentence, which has then been said."""
+    try:
+        return _call(name, command, words), ""
+    except KeyboardInterrupt:
+        return _say(name, "stopped", STOPPED)
+    except BrokenPipeError:
+        raise
     except ComputationFailed as error:
-        _say(name, str(error))
-        return STOPPED if error.outcome == "interrupted" else FAILED
+        return _say(name, str(error), STOPPED if error.outcome == "interrupted" else FAILED)
     except Exception as error:
         if os.environ.get(TRACEBACK):
             raise
@@ -100,35 +111,43 @@ def ordered(words: Sequence[str]) -> list[str]:
     return found
 
 
-def _explain(name: str, error: Exception) -> int:
+def _explain(name: str, error: Exception) -> tuple[int, str]:
     """Say what was wrong; only errors of kinds that are about the input are put down to the user."""
     from squealbox.files import DesignFileError, NotWritable
     from squealbox.parameters import ParameterError
+    from squealbox.result import ResultFileError
+    from squealbox.signals import SignalError
     from squealbox.studies import StoreDamaged, StoreError, StoreFull, StudyError
     from squealbox.system import InvalidSystem
 
     if isinstance(error, DesignFileError):
-        print("\n".join(str(problem) for problem in error.problems), file=sys.stderr)
-        return BAD_INPUT
+        text = "\n".join(str(problem) for problem in error.problems)
+        print(text, file=sys.stderr)
+        return BAD_INPUT, text
     if isinstance(error, (StoreDamaged, StoreFull)):
-        _say(name, str(error))
-        return FAILED
-    if isinstance(error, (UsageError, ParameterError, InvalidSystem, NotWritable, StoreError, StudyError)):
-        _say(name, str(error))
-        return BAD_INPUT
-    if isinstance(error, OSError) and error.filename is not None:
-        _say(name, f"{error.filename}: {error.strerror}")
-        return BAD_INPUT
-    _say(
-        name,
-        f"an error inside the program, {type(error).__name__}: {_one_sentence(str(error))}; {TRACEBACK}=1 tells where",
+        return _say(name, str(error), FAILED)
+    asked = (
+        UsageError,
+        ParameterError,
+        InvalidSystem,
+        NotWritable,
+        StoreError,
+        StudyError,
+        ResultFileError,
+        SignalError,
     )
-    return FAILED
+    if isinstance(error, asked):
+        return _say(name, str(error), BAD_INPUT)
+    if isinstance(error, OSError) and error.filename is not None:
+        return _say(name, f"{error.filename}: {error.strerror}", BAD_INPUT)
+    why = f"an error inside the program, {type(error).__name__}: {_one_sentence(str(error))}"
+    return _say(name, f"{why}; {TRACEBACK}=1 tells where", FAILED)
 
 
 def _one_sentence(text: str) -> str:
     return " ".join(text.split())
 
 
-def _say(name: str, text: str) -> None:
+def _say(name: str, text: str, code: int) -> tuple[int, str]:
     print(f"squealbox {name}: {text}", file=sys.stderr)
+    return code, text

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.cli.answers import keep, show
 from squealbox.cli.finite_elements import print_more
 from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, number, read, readable, small
 from squealbox.cli.progress import Progress
@@ -62,7 +63,7 @@ def modes(
     spectrum = complex_modes(found.design, time)
     if not spectrum.outcome.ok:
         raise ComputationFailed(spectrum.outcome)
-    print(f"{found.design.title}, {file}\n{spectrum.summary()}")
+    show(f"{found.design.title}, {file}", spectrum)
     if not spectrum.stable:
         print(f"What drives it: {mechanism(found.design, time)}")
     if out is not None:
@@ -86,7 +87,7 @@ def _modes_in_band(found: "DesignFile", time: float, band: Ends, certify: bool, 
         spectrum = complex_modes(found.design, time, band=(low, high), certify=sure)
     if not spectrum.outcome.ok:
         raise ComputationFailed(spectrum.outcome)
-    print(f"{found.design.title}, {found.path}\n{spectrum.summary()}")
+    show(f"{found.design.title}, {found.path}", spectrum)
     print_more(found, spectrum, (low, high), time, out)
 
 
@@ -125,6 +126,7 @@ def onset(
         crossings = critical_values(found.design, varied.name, (varied.low, varied.high))
     if not crossings.outcome.ok:
         raise ComputationFailed(crossings.outcome)
+    keep(crossings)
     print(f"{found.design.title}, {file}")
     print("\n".join(_crossing(crossing, found.design, varied) for crossing in crossings))
     if out is not None:

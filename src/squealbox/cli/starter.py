@@ -2,10 +2,11 @@
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from squealbox.cli import COMMANDS
 from squealbox.cli.running import UsageError
 from squealbox.parameters import known_names
 
@@ -81,6 +82,24 @@ def schema() -> None:
     print(json.dumps(json_schema(), indent=1))
 
 
+def completion(shell: Literal["bash", "zsh", "fish"]) -> None:
+    """Print what completes commands, options and their words in a shell.
+
+    Put ``eval "$(squealbox completion bash)"`` into ~/.bashrc; zsh and fish want it in a file where they look for such.
+
+    Parameters
+    ----------
+    shell
+        bash, zsh or fish
+    """
+    import cyclopts
+
+    app = cyclopts.App(name="squealbox")
+    for name, command in COMMANDS.items():
+        app.command(f"squealbox.cli.{command.module}:{command.function}", name=name)
+    print(app.generate_completion(shell=shell))
+
+
 def _second_axis(design: "Design") -> tuple[str, str]:
     """What a first map varies beside friction: the speed, by the name the design has for it."""
     if "sliding_speed" in design.field_names():
@@ -109,7 +128,9 @@ def _example(brake: str) -> "Design":
     if brake not in BRAKES:
         raise UsageError(f"--brake {brake[:40]}: {known_names(brake[:40], list(BRAKES))}")
     if BRAKES[brake] is DrumBrake:
-        return DrumBrake(friction=LinearSlope(0.45, -0.05))
+        theta1, theta2 = (float(np.deg2rad(angle)) for angle in (110.0, 10.0))
+        brake_of_2011 = DrumBrake(friction=LinearSlope(0.45, -0.01), theta1=theta1, theta2=theta2)
+        return brake_of_2011.replace(load=4000.0)  # no shoe is pulled, in sliding or squealing, as in 2011 one is
     if BRAKES[brake] is OwnBrake:
         contact = OwnContact(n=[0.0, 3e6, 0.0], d=[1.0, 0.0, 0.0], name="pad", unilateral=True, normal=[0.0, 1.0, 0.0])
         return OwnBrake(

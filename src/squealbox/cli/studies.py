@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import numpy as np
 from cyclopts import Parameter
 
+from squealbox.cli import answers
 from squealbox.cli.inputs import AllowCode, Changes, changed, folder, in_motion, small
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
@@ -86,7 +87,8 @@ def run(
         )
     if table.outcome == "interrupted":
         raise ComputationFailed(table.outcome)
-    print(f"{design.title}, {file}\n{table.summary()}\n{written(out / RESULT, out / LOG)}")
+    answers.show(f"{design.title}, {file}", table)
+    print(written(out / RESULT, out / LOG))
 
 
 def status(directory: Where) -> None:
@@ -125,7 +127,7 @@ def show(directory: Where, *, of: str | None = None, out: Path | None = None) ->
         folder for sweep.png, sweep.svg and sweep.csv
     """
     found = open_sweep(directory)
-    print(found.summary())
+    answers.show("", found)
     print(_rows(found))
     if out is not None:
         from squealbox import plots

@@ -4,6 +4,7 @@ import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from squealbox.cli.answers import keep
 from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read, time_of
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
@@ -89,6 +90,7 @@ def _results(motion: "Trajectory", title: str, out: Path) -> tuple[str, list[Pat
         return "nothing was reached that could be judged or drawn", paths
     try:
         judged = [verdict(motion, dof=i) for i in range(motion.system.size)]
+        keep(motion, *judged)
         drawn = resolved(motion)
     except SignalError as error:
         return f"the motion is too short to be judged or drawn: {error}", paths

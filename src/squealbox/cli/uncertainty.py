@@ -8,6 +8,7 @@ import numpy as np
 from cyclopts import Parameter
 
 from squealbox import studies
+from squealbox.cli.answers import keep
 from squealbox.cli.inputs import AllowCode, Changes, folder, read, small
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
@@ -70,6 +71,7 @@ def scatter(
     for name in wanted:
         with Progress(f"{name}: {section.quantity.name}"):
             result = RUNS[name](found.design, section, sampled)
+        keep(result)
         print(f"\n{name}\n{result}")
         failed = failed or (None if result.outcome.ok else result.outcome)
         if out is not None:
