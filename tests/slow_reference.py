@@ -197,8 +197,8 @@ class Slow:
 
     def functions(self, t, y, modes):
         """Two for each contact, positive while the modes hold."""
-        _, force, normal, speed = self.motion(t, y, modes)
-        gap = self.gap(self.completed(t, y)[0])
+        rates, force, normal, speed = self.motion(t, y, modes)
+        gap, a = self.gap(self.completed(t, y)[0]), rates[self.n :]
         out = np.ones((self.m, 2))
         for c in range(self.m):
             if modes[c] == OPEN:
@@ -206,6 +206,9 @@ class Slow:
                 continue
             if modes[c] == STICK:
                 out[c, 0] = self.static[c] * normal[c] - abs(force[c]) if normal[c] > 1e-12 else 1.0
+                asked = float(self.speed_given[c][1](t))
+                if abs(self.t[c] @ a - asked) > 1e-7 * (abs(asked) + np.sum(np.abs(self.t[c] * a)) + 1e-3):
+                    out[c, 0] = -1.0  # two speeds on one motion do not stick together
             elif self.rubs[c]:
                 out[c, 0] = modes[c] * speed[c]
             if self.unilateral[c]:

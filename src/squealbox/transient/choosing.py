@@ -3,14 +3,13 @@
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from squealbox import friction, schedules
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Schedule
 from squealbox.system import InvalidSystem, System
 from squealbox.transient.latest import Latest
 from squealbox.transient.methods import TAYLOR, Method
+from squealbox.transient.one_motion import shares_vary
 from squealbox.transient.own_laws import texts_of, untraced
 
 USUAL = Latest()
@@ -52,15 +51,6 @@ def no_series(system: System) -> str:
     if system.shape == () and shares_vary(system):
         return "contacts that hold the same motion share its force by limits that vary within a step"
     return next((why for c in contacts if (own := texts_of(c.law)) and (why := untraced(own[0]))), "")
-
-
-def shares_vary(system: System) -> bool:
-    """Whether contacts that hold the same motion share its force by limits that vary: a step holds the shares fixed."""
-    along = [c for c in system.contacts if np.any(c.t) and np.any(c.d)]
-    rows = np.array([c.t for c in along], dtype=float).reshape(-1, system.size)
-    if len(along) < 2 or np.linalg.matrix_rank(rows) == len(along):
-        return False
-    return any(np.any(c.n) or isinstance(c.N0, Schedule) for c in along)
 
 
 def chosen_method(method: str | Method, rtol: float | None, atol: Any) -> Method:

@@ -12,6 +12,7 @@ from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.batch import first_of
 from squealbox.transient.lanes.shape import LANES, PARTS, Shape, audit, entries, parameter_rows
 from squealbox.transient.methods import TAYLOR, Method
+from squealbox.transient.one_motion import lever, shared_motions
 from squealbox.transient.own_laws import law_kinds, own_texts
 from squealbox.transient.rows import Rows, audited, audited_matrix, consistent, fastest_rate, memories, rows_of
 from squealbox.transient.smooth_laws import smooth_kinds
@@ -59,11 +60,15 @@ def tabulate(
     own = _highest_frequency(values, n) if rows.all_have_mass else fastest_rate(system, rows)
     values |= limits(system, method, own, scheme == EXACT and m > 0, duration)
     values |= {f"break{k}": instant for k, instant in enumerate(breaks)} | {"width": np.asarray(width)}
-    kinds = law_kinds(system.contacts)
-    laws = tuple((int(kind), len(c.law.coefficients())) for kind, c in zip(kinds, system.contacts, strict=True))
+    contacts = system.contacts
+    kinds = law_kinds(contacts)
+    laws = tuple((int(kind), len(c.law.coefficients())) for kind, c in zip(kinds, contacts, strict=True))
     names = entries(n, m) + (audit(n) if recorded else [])
     present = frozenset(name for name in names if name in values and np.any(values[name] != 0.0))
     unilateral = tuple(bool(c.unilateral) for c in system.contacts)
+    groups = [] if scheme != EXACT else shared_motions(system)
+    for group in groups:
+        values |= {f"lever{c}": lever(contacts[c].d, contacts[group[0]].d) for c in group}
     if recorded and rows.all_have_mass and n <= FEW and m <= FEW:
         present = _filled(present, [name for name in names if name in values])
     shape = Shape(
@@ -86,6 +91,7 @@ def tabulate(
         smooth_kinds(system.contacts) if any(smooth_kinds(system.contacts)) else (),
         memories(system) if max(memories(system), default=-1) >= 0 else (),
         int(getattr(system, "seen", n)),
+        tuple(tuple(group) for group in groups),
     )
     names = parameter_rows(shape)
     fixed = np.zeros(3 + len(names) + len(coefficients))
