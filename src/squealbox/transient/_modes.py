@@ -248,8 +248,21 @@ def decide(p, t, y, mode, s):
                 changed = True
                 break
         if not changed:
-            return True
+            return not pulled_while_held(p, y, mode, s)
     return enumerate_modes(p, t, y, mode, s)
+
+
+def pulled_while_held(p, y, mode, s):
+    """Whether a contact in tension is held at zero speed by one that sticks: no sense is that of its sliding."""
+    for c in range(p.contacts):
+        slides = s.at_zero[c] != 0 and mode[c] != STICK and mode[c] != OPEN and p.static[c] > RISES
+        if slides and not p.rigid[c] and s.normal[c] < -normal_noise(p, c, y, s):
+            noise = CLEAR * force_noise(p, c, y, s) * abs(p.g[c, c])
+            held = abs(slip_acceleration(p, c, s.dy, s)) <= noise
+            for e in range(p.contacts):
+                if held and mode[e] == STICK and p.g[c, e] != 0.0:
+                    return True
+    return False
 
 
 def first_guess(p, c, y, mode, s):
@@ -319,5 +332,5 @@ def enumerate_modes(p, t, y, mode, s):
             for c in range(p.contacts):
                 consistent = consistent and wanted_mode(p, c, y, mode, s) == mode[c]
             if consistent:
-                return True
+                return not pulled_while_held(p, y, mode, s)
     return False

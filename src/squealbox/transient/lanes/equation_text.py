@@ -160,6 +160,10 @@ class EquationText:
             self.put(f"{a[i]} = {a[i]} + " + " + ".join(parts) if parts else "pass")
         return margins
 
+    def rubbing(self, c: int, value: str, without: str) -> str:
+        """The value where contact c has friction; without any it reverses as if it were not there."""
+        return f"where({self.row(f'law{c}_0')} > 0.0, {value}, {without})" if c in self.shape.slick else value
+
     def share_out(self, k: int, group: tuple[int, ...], normals: list[str]) -> None:
         """What the sticking contacts of one motion carry of its force: F_c over its limit is the same for all."""
         total = " + ".join(f"{self.row(f'lever{c}')} * hold{c}_{k}" for c in group)

@@ -22,7 +22,8 @@ class Shape:
     schedule of each term of V_c, N0_c and M^-1 f_i, in that order; () where it is a constant row. `endless` gives the
     coefficients of laws that are infinite in the whole ensemble, as text. `kinds` are those of `rows`, () where every
     row has mass. `smooth` and `memories` are those of `smooth_laws` and `rows`, () without any; observers see the first
-    `seen` rows. `groups` names contacts on one motion that share its force by limits that vary within a step.
+    `seen` rows. `groups` names contacts on one motion that share its force by limits that vary within a step,
+    `slick` those without any friction in some job.
     """
 
     n: int
@@ -45,6 +46,7 @@ class Shape:
     memories: tuple[int, ...] = ()
     seen: int = -1
     groups: tuple[tuple[int, ...], ...] = ()
+    slick: tuple[int, ...] = ()
 
     @property
     def taylor(self) -> bool:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.schedules import Constant, Schedule, value_at
-from squealbox.system import InvalidSystem, System
+from squealbox.system import Contact, InvalidSystem, System
 from squealbox.transient import packing
 from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.batch import first_of
@@ -92,6 +92,7 @@ def tabulate(
         memories(system) if max(memories(system), default=-1) >= 0 else (),
         int(getattr(system, "seen", n)),
         tuple(tuple(group) for group in groups),
+        tuple(c for c, contact in enumerate(contacts) if without_friction(contact)),
     )
     names = parameter_rows(shape)
     fixed = np.zeros(3 + len(names) + len(coefficients))
@@ -176,6 +177,11 @@ def _filled(present: frozenset[str], names: list[str]) -> frozenset[str]:
         return own if kind in ("md", "mw", "d", "t", "n", "w") else skew if kind == "ka" else True
 
     return frozenset(name for name in names if there(name))
+
+
+def without_friction(contact: Contact) -> bool:
+    """Whether some job's contact has none at all, so its reversals are no events."""
+    return contact.law.grip_formula is None and bool(np.any(np.asarray(contact.law.static_limit) == 0.0))
 
 
 def _terms(value: Any) -> list[tuple[Any, Schedule]]:
