@@ -96,12 +96,10 @@ class Slow:
         self.rubs = np.array(rubs, dtype=bool) & np.any(self.t != 0.0, axis=1)
         self.rising = self.rubs & (self.static == 0.0)  # a force without a jump: no mode, no event
         self.rubs &= ~self.rising
-        self.load = own_schedule(system.load)[0]
-        self.normal_given = [own_schedule(c.N0)[0] for c in system.contacts]
+        self.load, self.normal_given = own_schedule(system.load)[0], [own_schedule(c.N0)[0] for c in system.contacts]
         self.speed_given = [own_schedule(c.V) for c in system.contacts]
         self.massive = np.any(system.M != 0.0, axis=1)
-        self.light = ~self.massive
-        self.some_light = bool(np.any(self.light))
+        self.light, self.some_light = ~self.massive, not np.all(self.massive)
         self.inverse = np.zeros((self.n, self.n))
         self.inverse[np.ix_(self.massive, self.massive)] = np.linalg.inv(system.M[np.ix_(self.massive, self.massive)])
         self.damped = self.light & np.any(system.C != 0.0, axis=1)
@@ -115,12 +113,11 @@ class Slow:
     def on_one_motion(self, a, b):
         """The sign between the speeds of two contacts that always slide together; 0 where they do not."""
         size = np.linalg.norm(self.t[b]) / max(np.linalg.norm(self.t[a]), 1e-300)
-        if not (self.rubs[a] and self.rubs[b]):
-            return 0
+        both = self.rubs[a] and self.rubs[b]
         for sign in (1, -1):
             one, other = self.system.contacts[a].V, self.system.contacts[b].V
             held = not hasattr(one, "terms") and not hasattr(other, "terms") and np.isclose(sign * size * one, other)
-            if np.allclose(self.t[b], sign * size * self.t[a]) and (held or (one is other and sign * size == 1.0)):
+            if both and np.allclose(self.t[b], sign * size * self.t[a]) and (held or (one is other and sign * size == 1.0)):
                 return sign
         return 0
 
@@ -197,8 +194,8 @@ class Slow:
 
     def functions(self, t, y, modes):
         """Two for each contact, positive while the modes hold."""
-        _, force, normal, speed = self.motion(t, y, modes)
-        gap = self.gap(self.completed(t, y)[0])
+        rates, force, normal, speed = self.motion(t, y, modes)
+        gap, a = self.gap(self.completed(t, y)[0]), rates[self.n :]
         out = np.ones((self.m, 2))
         for c in range(self.m):
             if modes[c] == OPEN:
@@ -206,6 +203,9 @@ class Slow:
                 continue
             if modes[c] == STICK:
                 out[c, 0] = self.static[c] * normal[c] - abs(force[c]) if normal[c] > 1e-12 else 1.0
+                asked, got = float(self.speed_given[c][1](t)), self.t[c] * a
+                parted = abs(np.sum(got) - asked) > 1e-7 * (abs(asked) + np.sum(np.abs(got)) + 1e-3)
+                out[c, 0] = -1.0 if parted else out[c, 0]  # two speeds on one motion do not stick together
             elif self.rubs[c]:
                 out[c, 0] = modes[c] * speed[c]
             if self.unilateral[c]:

@@ -5,8 +5,10 @@ import pytest
 
 from squealbox import (
     Contact,
+    Coulomb,
     DrumBrake,
     LinearSlope,
+    MassOnBelt,
     Method,
     ParameterError,
     Sinusoid,
@@ -15,6 +17,7 @@ from squealbox import (
     simulate,
     simulate_ensemble,
 )
+from squealbox.files.own_law import own_law
 from squealbox.friction import Table
 from squealbox.system import InvalidSystem
 
@@ -142,3 +145,41 @@ def test_what_has_no_series_is_refused_in_one_sentence():
     with pytest.raises(InvalidSystem, match="measured points"):
         simulate(points, 1e-3, method="taylor")
     assert simulate(points, 1e-3).settings["tableau"] == "dormand-prince-8"
+
+
+@pytest.mark.parametrize("law", [Coulomb(0.0), Stribeck(0.0, 0.0, 0.1), LinearSlope(0.0, 0.0), LinearSlope(0.0, 0.1)])
+def test_methods_agree_on_what_is_an_event(law):
+    """Without friction nothing happens at a reversal; friction that rises from zero turns there."""
+    block = System([[1.0]], [[0.0]], [[1.0]], 0.0, (Contact([0.0], [1.0], [1.0], 1.0, 0.1, law),))
+    start = ([1.0], [0.0])
+    counts = [len(simulate(block, 20.0, start, method=name).event_time) for name in ("taylor", "dormand-prince-8")]
+    counts += [int(simulate_ensemble(block, duration=20.0, start=start, method=name).events)
+               for name in ("taylor", "dormand-prince-8")]  # fmt: skip
+    assert counts == [6 if law.static_limit > 0.0 else 0] * 4
+
+
+def test_one_of_a_batch_without_friction():
+    batch = simulate_ensemble(MassOnBelt(), {"friction.static": [0.0, 0.1, 0.3]}, 20.0, start=([1.0], [0.0]))
+    alone = [simulate(MassOnBelt().replace({"friction.static": mu}), 20.0, ([1.0], [0.0])) for mu in (0.0, 0.1, 0.3)]
+    assert batch.events.tolist() == [len(motion.event_time) for motion in alone]
+    assert batch.events[0] == 0
+
+
+def test_a_run_that_went_on_by_another_method_says_so():
+    """Of v sqrt(v) the second derivative at zero speed is infinite: the series ends where sliding begins to stop."""
+    bent = own_law("def mu(v, p): return 0.4 - 0.02 * v * np.sqrt(v)")
+    motion = simulate(MassOnBelt(friction=bent), 5.0)
+    assert motion.outcome == "completed"
+    assert "instead of taylor, which ended as step_underflow" in motion.summary().replace("\n   ", "")
+    named = simulate(MassOnBelt(friction=bent), 5.0, method="dormand-prince-8")
+    assert named.caution == ""
+    assert motion.q[-1, 0] == named.q[-1, 0]
+    rooted = own_law("def mu(v, p): return 0.4 - 0.02 * np.sqrt(v)")  # known before the run
+    assert simulate(MassOnBelt(friction=rooted), 5.0).settings["tableau"] == "dormand-prince-8"
+    assert simulate(MassOnBelt(friction=rooted), 5.0, method="taylor").outcome == "step_underflow"
+
+
+def test_the_audit_of_a_free_motion_closes():
+    free = System([[1.0]], [[0.0]], [[1.0]], 0.0, ())
+    for name in ("taylor", "dormand-prince-8"):
+        assert simulate(free, 20.0, ([3.0], [0.0]), method=name).energy.relative_residual < 1e-9

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq, linprog
 
 from small_systems import block_on_belt
-from squealbox import Contact, Coulomb, Ramp, System, simulate, simulate_ensemble
+from squealbox import Contact, Coulomb, LinearSlope, Ramp, Sinusoid, System, simulate, simulate_ensemble
 
 
 def held(count, *, normal=1.0, law=None, mass=1.0, stiffness=0.0, load=0.0, speed=0.0):
@@ -134,3 +135,84 @@ def test_three_balls_in_a_row():
                       (np.zeros(3), [1.0, 0.0, 0.0]))  # fmt: skip
     assert motion.outcome == "completed"
     assert motion.qd[-1] == pytest.approx([-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0], abs=1e-9)
+
+
+def pads(*given, V=0.05, law=None):
+    """Pads at radii r on one disc, each (r, N0, n): its rim moves at r V."""
+    return tuple(Contact([n], [r], [r], N0, r * V, law or Coulomb(0.4, 0.3)) for r, N0, n in given)
+
+
+ROADS = ["taylor", "dormand-prince-8", "bogacki-shampine"]
+
+
+@pytest.mark.parametrize("method", ROADS)
+@pytest.mark.parametrize(
+    ("given", "angle"),
+    [
+        ([(0.1, 10.0, 0.0), (0.2, 10.0, 0.0)], 0.3),  # 0.4 10 (0.1 + 0.2)/4
+        ([(0.1, 10.0, 0.0), (-0.2, 10.0, 0.0)], 0.3),
+        ([(0.1, 10.0, 4.0), (0.2, 10.0, -1.0)], 1.2 / (4.0 - 0.08)),  # 4 q = 0.4 (3 + 0.2 q)
+        ([(0.1, Sinusoid(10.0, 5.0, 0.25), 0.0), (0.2, 7.5, 0.0)], 0.3),  # at 6 s sin(3 pi) = 0, N = 10: 1 + 1.5 < 3
+    ],
+)
+def test_pads_at_two_radii_let_go_together(given, angle, method):
+    """However the levers and the limits that vary differ: torque 4 q against all of both pads."""
+    disc = System([[0.02]], [[0.0]], [[4.0]], 0.0, pads(*given))
+    first = angle / 0.05
+    if isinstance(given[0][1], Sinusoid):
+        first = brentq(lambda t: 0.2 * t - 0.4 * (0.1 * given[0][1].value(t) + 0.2 * 7.5), 1.0, 6.0)
+    motion = simulate(disc, 12.0, ([0.0], [0.05]), method=method)
+    assert motion.outcome == "completed"
+    assert motion.event_time[:2] == pytest.approx([first, first], rel=1e-6 if method == "bogacki-shampine" else 1e-9)
+    assert sorted(motion.event_contact[:2]) == [0, 1]
+    many = simulate_ensemble(disc, duration=12.0, start=([0.0], [0.05]), method=method)
+    assert (many.ended, many.events) == ("completed", len(motion.event_time))
+    assert many.q[0] == pytest.approx(motion.q[-1, 0], rel=1e-4 if method == "bogacki-shampine" else 1e-8)
+
+
+@pytest.mark.parametrize("method", ROADS[:2])
+@pytest.mark.parametrize("order", [1, -1])
+def test_friction_that_rises_from_zero_is_held_by_what_sticks(method, order):
+    """Both go at 0.4 N; then 0.4 + 0.3 (0.1 - q') = q + q'', which comes to rest at 0.43 m."""
+    laws = (Coulomb(0.4), LinearSlope(0.0, 0.3))[::order]
+    both = System([[1.0]], [[0.0]], [[1.0]], 0.0, tuple(Contact([0.0], [1.0], [1.0], 1.0, 0.1, law) for law in laws))
+    motion = simulate(both, 90.0, ([0.0], [0.1]), method=method)
+    assert motion.outcome == "completed"
+    assert motion.event_time == pytest.approx([4.0, 4.0], rel=1e-9)
+    assert motion.q[-1, 0] == pytest.approx(0.43, abs=1e-5)
+    assert simulate_ensemble(both, duration=90.0, start=([0.0], [0.1]), method=method).events == 2
+
+
+def test_two_belts_on_one_block():
+    """At 1 s the stronger belt's speed passes that of the block the weaker one holds: it takes the block with it."""
+    weak, strong = (
+        Contact([0.0], [1.0], [1.0], N, V, Coulomb(0.5)) for N, V in ((1.0, 0.0), (3.0, Ramp(0.1, -0.1, -9.0)))
+    )
+    motion = simulate(System([[1.0]], [[0.0]], [[0.0]], -1.4, (weak, strong)), 3.0)
+    assert motion.outcome == "completed"
+    assert motion.qd[-1, 0] == pytest.approx(-0.2, abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_body_on_feet_that_hold_its_motions_in_several_ways(seed):
+    """It holds as long as any split of the force does: the linear programme max f.u = 1, least ratio to the limits."""
+    rng, (n, m) = np.random.default_rng(seed), ((2, 3), (2, 4), (3, 5), (2, 5))[seed]
+    stiffness, drift = np.diag(rng.uniform(1.0, 4.0, n)), rng.uniform(-0.2, 0.2, n)
+    feet = []
+    for _ in range(m):
+        row = rng.standard_normal(n)
+        feet.append(Contact(np.zeros(n), row, row, rng.uniform(0.3, 1.0), float(row @ drift), Coulomb(0.4)))
+    body = System(np.diag(rng.uniform(0.5, 2.0, n)), 0.05 * stiffness, stiffness, 0.0, tuple(feet))
+    rows, limits = np.array([c.t for c in feet]), np.array([0.4 * c.N0 for c in feet])
+    above = np.hstack([np.vstack([np.eye(m), -np.eye(m)]), -np.tile(limits, 2)[:, None]])
+
+    def least_ratio(t):
+        force = stiffness @ drift * t + body.C @ drift
+        return linprog([0.0] * m + [1.0], above, np.zeros(2 * m), np.hstack([rows.T, np.zeros((n, 1))]), force,
+                       bounds=[(None, None)] * (m + 1)).fun  # fmt: skip
+
+    first = brentq(lambda t: least_ratio(t) - 1.0, 1e-6, 50.0)
+    for method in ROADS[:2]:
+        motion = simulate(body, first + 1.0, (np.zeros(n), drift), method=method)
+        assert motion.outcome == "completed"
+        assert motion.event_time[0] == pytest.approx(first, rel=1e-9)

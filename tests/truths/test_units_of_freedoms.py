@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squealbox import Contact, Coulomb, System, WobblingDisc, plots, simulate, simulate_ensemble
+from squealbox import Contact, Coulomb, System, WobblingDisc, plots, simulate, simulate_ensemble, verdict
 from squealbox.matrices import liveliest
 from squealbox.plots.facts import facts
 from squealbox.signals import SignalError
@@ -42,6 +42,15 @@ def test_what_moves_most_is_not_sought_among_radians():
     many = simulate_ensemble(system, None, 10.0, start=(np.zeros((3, 2)), np.zeros((3, 2))), observe=("amplitude",))
     figure = plots.plot(many)
     assert figure.axes[0].get_ylabel().startswith("amplitude x [")
+
+
+def test_a_verdict_is_that_of_the_freedom_in_metres():
+    mass, stiffness = np.diag([1.0, 1e-4]), np.diag([100.0, 1e-2])
+    motion = simulate(System(mass, 0.0 * mass, stiffness, 0.0, (), names=("x", "a"), angles=("a",)), 20.0,
+                      ([1e-3, 0.1], [0.0, 0.0]))  # fmt: skip
+    assert "half peak to peak of x 1 mm" in verdict(motion).text
+    assert "half peak to peak of a 100 mrad" in verdict(motion, dof="a").text
+    assert verdict(motion, dof=1).text == verdict(motion, dof="a").text
 
 
 def test_a_disc_that_wobbles_turns():

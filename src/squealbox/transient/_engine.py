@@ -17,7 +17,17 @@ from typing import Any
 from squealbox.compiled.machine import Compiled
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
-from squealbox.transient import _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta, _time_stepping
+from squealbox.transient import (
+    _events,
+    _impacts,
+    _march,
+    _modes,
+    _motion,
+    _rigid,
+    _runge_kutta,
+    _sharing,
+    _time_stepping,
+)
 from squealbox.transient.smooth_laws import SMOOTH
 
 COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
@@ -68,7 +78,7 @@ def source(
     """The text of the generated file."""
     fixed = {"WITH_EVENTS": events, **dict(counts)}
     parts = head(inline=not events, plain=plain, own=own)
-    for module in (_motion, _runge_kutta, *((_rigid, _impacts, _modes, _events) if events else ()), _march):
+    for module in (_motion, _runge_kutta, *((_rigid, _sharing, _impacts, _modes, _events) if events else ()), _march):
         parts += definitions(module, fixed)
     return "\n\n".join(parts) + "\n"
 

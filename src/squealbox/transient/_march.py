@@ -139,7 +139,7 @@ def accept(p, r, s, times, rows, events, t, h, t_new, error, last):
     next_step = h * step_factor(r, s, error)
     if WITH_EVENTS:
         theta, which = first_event(p, r, t, h, s.state, s.state_new, s.mode, s, s.stage)
-        soon = 0.0 < theta < SOON and which < p.contacts and s.fresh[which] != 0
+        soon = 0.0 < theta < SOON and which < p.contacts and s.fresh[which] != 0 and theta * h > 1e-6 * p.window
         if theta < 0.0 or soon:
             s.count[REJECTED] += 1
             s.clock[STEP] = 4.0 * theta * h if soon else 0.25 * h

@@ -6,25 +6,29 @@ together: each sticks with |force| <= static N, or slips with the acceleration o
 
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
+import numpy as np
+
 from squealbox.transient._impacts import gap_rate, impact, project, touches
 from squealbox.transient._motion import (
     OPEN,
     STICK,
     contact_kinematics,
-    contact_matrix,
     derivative,
     evaluate_signals,
     force_noise,
     list_sticking,
     normal_noise,
     rate_terms,
-    share_out,
     slip_acceleration,
 )
 from squealbox.transient._rigid import solve
+from squealbox.transient._sharing import contact_matrix, share_out
 
 CLEAR = 50.0  # times the round-off of a force: what a mode that does not hold exceeds
 LEAVE = 1e-8  # share of its terms below which the acceleration of a contact that leaves zero speed counts as zero
+RISES = 1e-100  # static limit up to which a contact never holds anything: its friction rises from zero
+EVENED = 400  # turns of the rule that evens out what contacts carry
+NEARLY = 1e-10  # of 1
 SWING = 160.0  # windows of time make one over the highest angular frequency
 
 
@@ -59,6 +63,8 @@ def event_tolerance(p, c, y, s, reference):
 def apply_event(p, t, y, mode, s, j):
     """Change modes at an event of function j; False when no consistent set of modes exists."""
     m = p.contacts
+    for c in range(m):
+        s.bias[c] = 1.0
     derivative(p, t, y, mode, s, s.dy)
     reference = s.speed[j] if j < m and mode[j] != OPEN else 0.0
     for c in range(m):
@@ -79,6 +85,8 @@ def apply_event(p, t, y, mode, s, j):
     elif mode[c] == OPEN:
         s.at_zero[c] = abs(s.speed[c]) <= slip_tolerance(p, c, y, s)
         mode[c] = 1 if s.speed[c] >= 0.0 else -1
+    elif mode[c] == STICK and s.spare[0] and even_out(p, t, y, mode, s) < 1.0 - NEARLY:
+        s.at_zero[c] = 1  # other shares of the force still hold
     elif mode[c] == STICK:
         force_releases(p, mode, s, c)
     else:
@@ -108,11 +116,56 @@ def land(p, t, y, mode, s, which):
 
 
 def force_releases(p, mode, s, which):
-    """Release contact `which`, and with it every other one that sticks at its limit to round-off."""
+    """Release contact `which`, and with it every other one that sticks at its limit to round-off.
+
+    One whose friction rises from zero was held by the others: it goes with them, in the sense in which they move it.
+    """
+    sense = 1 if s.force[which] > 0.0 else -1
+    least = 1.0 - (1e-6 if s.spare[0] else 1e-9)
     for c in range(p.contacts):
         limit = p.static[c] * s.normal[c]
-        if c == which or (mode[c] == STICK and abs(s.force[c]) >= limit * (1.0 - 1e-9)):
+        if c == which or (mode[c] == STICK and abs(s.force[c]) >= limit * least and p.static[c] > RISES):
             s.forced[c] = 1 if s.force[c] > 0.0 else -1
+        elif mode[c] == STICK and p.static[c] <= RISES and p.g[c, which] != 0.0:
+            s.forced[c] = sense if p.g[c, which] > 0.0 else -sense
+
+
+def even_out(p, t, y, mode, s):
+    """Shares of the force that keep sticking contacts furthest below their limits; returns the largest |F|/limit.
+
+    Contacts that do not hold motions of their own leave the split open, and they hold as long as any split does. The
+    least largest ratio, by Lawson's multiplicative rule on the weights 1/L of `share_out`: the mean of the squared
+    ratios so weighted is never above the square sought, their largest never below.
+    """
+    worst = 0.0
+    for _ in range(EVENED):
+        worst, weights, mean = 0.0, 0.0, 0.0
+        sticking = list_sticking(p, mode, s)
+        for a in range(sticking):
+            limit = p.static[s.stuck[a]] * s.normal[s.stuck[a]]
+            if limit > 0.0 and p.static[s.stuck[a]] > RISES and s.share[a] > 0.0:
+                worst = max(worst, abs(s.force[s.stuck[a]]) / limit)
+                weights += limit**2 / s.share[a]
+                mean += s.force[s.stuck[a]] ** 2 / s.share[a]
+        if not worst > 0.0 or weights * worst**2 <= mean * (1.0 + NEARLY):
+            return worst
+        for a in range(sticking):
+            c = s.stuck[a]
+            limit = p.static[c] * s.normal[c]
+            if limit > 0.0 and p.static[c] > RISES and s.share[a] > 0.0:
+                ratio = max(abs(s.force[c]) / (limit * worst), 0.1)
+                s.bias[c] = min(s.bias[c] / (ratio * np.sqrt(ratio)), 1e6)  # twice 3/4 of a turn would overshoot
+        if not derivative(p, t, y, mode, s, s.dy):
+            return np.inf
+    return worst
+
+
+def overloaded(p, mode, s):
+    """Whether a sticking contact carries more than its limit."""
+    over = False
+    for c in range(p.contacts):
+        over = over or (mode[c] == STICK and abs(s.force[c]) > p.static[c] * s.normal[c])
+    return over
 
 
 def start_modes(p, t, y, mode, s):
@@ -184,7 +237,9 @@ def decide(p, t, y, mode, s):
             mode[c] = first_guess(p, c, y, mode, s)
     for _ in range(20 + 10 * p.contacts * p.contacts):
         if not derivative(p, t, y, mode, s, s.dy):
-            return p.rigid_count > 0 and enumerate_modes(p, t, y, mode, s)
+            return enumerate_modes(p, t, y, mode, s)  # contacts on one motion whose speeds part, or rigid ones
+        if s.spare[0] and overloaded(p, mode, s):
+            even_out(p, t, y, mode, s)
         changed = False
         for c in range(p.contacts):
             wanted = wanted_mode(p, c, y, mode, s)
@@ -193,8 +248,21 @@ def decide(p, t, y, mode, s):
                 changed = True
                 break
         if not changed:
-            return True
+            return not pulled_while_held(p, y, mode, s)
     return enumerate_modes(p, t, y, mode, s)
+
+
+def pulled_while_held(p, y, mode, s):
+    """Whether a contact in tension is held at zero speed by one that sticks: no sense is that of its sliding."""
+    for c in range(p.contacts):
+        slides = s.at_zero[c] != 0 and mode[c] != STICK and mode[c] != OPEN and p.static[c] > RISES
+        if slides and not p.rigid[c] and s.normal[c] < -normal_noise(p, c, y, s):
+            noise = CLEAR * force_noise(p, c, y, s) * abs(p.g[c, c])
+            held = abs(slip_acceleration(p, c, s.dy, s)) <= noise
+            for e in range(p.contacts):
+                if held and mode[e] == STICK and p.g[c, e] != 0.0:
+                    return True
+    return False
 
 
 def first_guess(p, c, y, mode, s):
@@ -264,5 +332,5 @@ def enumerate_modes(p, t, y, mode, s):
             for c in range(p.contacts):
                 consistent = consistent and wanted_mode(p, c, y, mode, s) == mode[c]
             if consistent:
-                return True
+                return not pulled_while_held(p, y, mode, s)
     return False

@@ -15,6 +15,7 @@ scheme uses it. A rigid contact has -gap in the place of N while it is open; clo
 import numpy as np
 
 from squealbox.transient._rigid import constrain, solve
+from squealbox.transient._sharing import all_held, contact_matrix, share_out
 
 RAW, EXACT, TANH, ARCTAN = 0, 1, 2, 3  # WITH_EVENTS is true in the file compiled for EXACT
 STICK, OPEN = 0, 2
@@ -238,104 +239,17 @@ def hold(p, s, sticking, dy):
         s.right[a] = slip_acceleration(p, s.stuck[a], dy, s)
     contact_matrix(p, s, sticking)
     solved = solve(s.matrix, s.right, sticking)
+    s.spare[0] = not solved
     if not solved:
         for a in range(sticking):
             s.wanted[a] = slip_acceleration(p, s.stuck[a], dy, s)
-        solved = share_out(p, s, sticking)
+        solved = share_out(p, s, sticking) and all_held(p, s, sticking)
     for a in range(sticking):
         c = s.stuck[a]
         s.force[c] = s.right[a]
         for i in range(n):
             dy[n + i] += p.md[c, i] * s.force[c]
     return solved
-
-
-def contact_matrix(p, s, sticking):
-    """t . M^-1 d of the sticking contacts."""
-    for a in range(sticking):
-        for b in range(sticking):
-            s.matrix[a, b] = p.g[s.stuck[a], s.stuck[b]]
-
-
-def share_out(p, s, sticking):
-    """Forces of sticking contacts, into s.right, that give s.wanted where contacts hold the same motion.
-
-    Of all forces that do, those with the least sum of F^2 over the static limits: parallel contacts share in proportion
-    to their limits, so they reach them together, and one that is not pressed carries nothing. With G_r the independent
-    rows of t . M^-1 d and L the limits, F = L G_r' (G_r L G_r')^-1 a_r. False when the rest then does not hold.
-    """
-    largest = 0.0
-    for a in range(sticking):
-        largest = max(largest, p.static[s.stuck[a]] * s.normal[s.stuck[a]])
-    kept = independent_rows(p, s, sticking, largest)
-    for i in range(kept):
-        for j in range(kept):
-            total = 0.0
-            for e in range(sticking):
-                other = s.stuck[e]
-                total += p.g[s.stuck[s.basis_row[i]], other] * s.share[e] * p.g[s.stuck[s.basis_row[j]], other]
-            s.matrix[i, j] = total
-        s.right[i] = s.wanted[s.basis_row[i]]
-    if not solve(s.matrix, s.right, kept):
-        return False
-    for i in range(kept):
-        s.multiplier[i] = s.right[i]
-    for e in range(sticking):
-        total = 0.0
-        for i in range(kept):
-            total += p.g[s.stuck[s.basis_row[i]], s.stuck[e]] * s.multiplier[i]
-        s.right[e] = s.share[e] * total
-    for a in range(sticking):
-        rest = s.wanted[a]
-        size = abs(rest)
-        for e in range(sticking):
-            term = p.g[s.stuck[a], s.stuck[e]] * s.right[e]
-            rest -= term
-            size += abs(term)
-        if not abs(rest) <= 1e-6 * size + 1e-300:
-            return False
-    return True
-
-
-def independent_rows(p, s, sticking, largest):
-    """Which sticking contacts hold motions of their own, into s.basis_row, those that are pressed first; how many.
-
-    By Gram and Schmidt's process on the rows of t . M^-1 d. Sets s.share too: the static limit over the largest one; of
-    a contact that is not pressed 1 if it alone holds a motion, else 0.
-    """
-    kept = 0
-    for turn in range(2):
-        for a in range(sticking):
-            limit = p.static[s.stuck[a]] * s.normal[s.stuck[a]]
-            pressed = limit > 1e-13 * largest
-            if pressed:
-                s.share[a] = limit / largest
-            if pressed != (turn == 0):
-                continue
-            if turn == 1:
-                s.share[a] = 0.0
-            before = 0.0
-            for e in range(sticking):
-                s.basis[kept, e] = p.g[s.stuck[a], s.stuck[e]]
-                before += s.basis[kept, e] ** 2
-            for _ in range(2):
-                for k in range(kept):
-                    along = 0.0
-                    for e in range(sticking):
-                        along += s.basis[k, e] * s.basis[kept, e]
-                    for e in range(sticking):
-                        s.basis[kept, e] -= along * s.basis[k, e]
-            after = 0.0
-            for e in range(sticking):
-                after += s.basis[kept, e] ** 2
-            if after > 1e-18 * before:
-                for e in range(sticking):
-                    s.basis[kept, e] /= np.sqrt(after)
-                s.basis_row[kept] = a
-                kept += 1
-                if turn == 1:
-                    s.share[a] = 1.0
-    return kept
 
 
 def normal_noise(p, c, y, s):

@@ -6,11 +6,13 @@ from typing import Any
 import numpy as np
 
 from squealbox import friction, schedules
+from squealbox.friction import FrictionLaw
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Schedule
 from squealbox.system import InvalidSystem, System
 from squealbox.transient.latest import Latest
 from squealbox.transient.methods import TAYLOR, Method
+from squealbox.transient.one_motion import shares_vary
 from squealbox.transient.own_laws import texts_of, untraced
 
 USUAL = Latest()
@@ -35,7 +37,14 @@ def usual_method(system: System, contact: str) -> str:
 def _usual_method(system: System, contact: str) -> str:
     n, m = system.size, len(system.contacts)
     small = n * (2 * n + 4 * m) + m * m <= LARGE
-    return TAYLOR if contact == "exact" and small and not no_series(system) else "dormand-prince-8"
+    rooted = any(texts_of(c.law) and has_root_at_rest(c.law) for c in system.contacts)
+    return TAYLOR if contact == "exact" and small and not rooted and not no_series(system) else "dormand-prince-8"
+
+
+def has_root_at_rest(law: FrictionLaw) -> bool:
+    """Whether mu(v) leaves zero speed like a root of v, which has no series there: its quotients grow without bound."""
+    near, far = (np.max(np.abs(np.asarray(law.mu(v)) - law.mu(0.0))) / v for v in (1e-12, 1e-6))
+    return bool(near > 10.0 * far and near > 1e-2)
 
 
 def no_series(system: System) -> str:
@@ -52,15 +61,6 @@ def no_series(system: System) -> str:
     if system.shape == () and shares_vary(system):
         return "contacts that hold the same motion share its force by limits that vary within a step"
     return next((why for c in contacts if (own := texts_of(c.law)) and (why := untraced(own[0]))), "")
-
-
-def shares_vary(system: System) -> bool:
-    """Whether contacts that hold the same motion share its force by limits that vary: a step holds the shares fixed."""
-    along = [c for c in system.contacts if np.any(c.t) and np.any(c.d)]
-    rows = np.array([c.t for c in along], dtype=float).reshape(-1, system.size)
-    if len(along) < 2 or np.linalg.matrix_rank(rows) == len(along):
-        return False
-    return any(np.any(c.n) or isinstance(c.N0, Schedule) for c in along)
 
 
 def chosen_method(method: str | Method, rtol: float | None, atol: Any) -> Method:

@@ -156,7 +156,7 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
     floats: dict[str, tuple[int, ...]] = {
         "signal": (2 * (m + n) + m,), "normal": (m,), "speed": (m,), "force": (m,), "right": (2 * m,),
         "matrix": (2 * m, 2 * m), "basis": (m + 1, m),
-        "share": (m,), "leave": (m,), "lowest": (m,), "fastest": (m,), "wanted": (m,), "multiplier": (m,),
+        "share": (m,), "bias": (m,), "leave": (m,), "lowest": (m,), "fastest": (m,), "wanted": (m,), "multiplier": (m,),
         "creep": (m,),
         "state": (width,), "state_new": (width,), "y": (width,), "y_dense": (width,), "dy": (width,),
         "stage": (STAGES, width), "phi": (2 * m,), "phi0": (2 * m,), "phi1": (2 * m,), "nodes": (5, 2 * m),
@@ -175,9 +175,8 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
         "leaving",
         "hit",
         "noisy",
-        "basis_row",
     )
-    integers = dict.fromkeys(names, m) | {"row_contact": 2 * m, "row_kind": 2 * m, "count": 11}
+    integers = dict.fromkeys(names, m) | {"spare": 1, "row_contact": 2 * m, "row_kind": 2 * m, "count": 11}
     kinds = tuple((name, "f8", shape) for name, shape in floats.items())
     kinds += tuple((name, "i8", (size,)) for name, size in integers.items())
     state = np.zeros(2 * n)
@@ -185,7 +184,12 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
     lowest = np.full(m, np.inf)
     return _record(
         _dtype(kinds),
-        {"state": state, "lowest": lowest, "clock": np.array([time, first_step, 0.0, 0.0, time, np.inf, 0.0])},
+        {
+            "state": state,
+            "lowest": lowest,
+            "bias": np.ones(m),
+            "clock": np.array([time, first_step, 0.0, 0.0, time, np.inf, 0.0]),
+        },
     )
 
 

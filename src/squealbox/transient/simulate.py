@@ -82,7 +82,7 @@ def simulate(
         the steps.
     method : "taylor" (the motion's own series, for exact contact), the name of a tableau, or a `Method` with
         tolerances; None takes "taylor" wherever the equation has a series, else "dormand-prince-8", also where the
-        series ends at an instant (a law with a root at zero speed): `settings` say which, and instead of what
+        series ends at an instant: `caution` and `settings` then say so
     contact : "exact" (stick, slip and lift-off by events), "raw" (plain sgn), "smooth" = "arctan"
         ((2/pi) arctan(v/width)), "tanh" (tanh(v/width)) or "time-stepping" (Moreau, fixed step, for many contacts)
     rtol, atol : override those of `method`
@@ -128,7 +128,8 @@ def simulate(
         if motion.outcome != "step_underflow" or method is not None:
             return motion
         chosen = chosen_method(OTHER, rtol, atol)  # a law without a series at zero speed, such as one with sqrt(v)
-        instead = {"instead_of": f"taylor, which ended as step_underflow at {motion.t[-1]:.6g} s"}
+        reached = f"{motion.outcome.evidence['time']:.6g} s"
+        instead = {"instead_of": f"taylor, which ended as step_underflow at {reached}"}
     run = _Run(system, chosen, SCHEMES[contact], width, q, qd, start_time, requested)
     outcome = run.to(start_time + duration, duration, progress)
     settings = {
@@ -226,7 +227,7 @@ class _Run:
         count = [int(x) for x in self.scratch["count"]]
         reversals = count[_motion.REVERSALS]
         said = cautions.of_a_run(self.system, self.scratch["lowest"][:m], self.scratch["fastest"][:m])
-        caution = "; ".join(each for each in (_caution(settings, reversals), *said) if each)
+        caution = "; ".join(each for each in (_instead(settings), _caution(settings, reversals), *said) if each)
         steps = count[_motion.ACCEPTED], count[_motion.REJECTED], count[_motion.EVALUATIONS]
         rows, events = self.rows[: count[_motion.ROWS]], self.events[: count[_motion.EVENTS]]
         return told(self.system, rows, events, settings, outcome, caution, steps)
@@ -320,6 +321,12 @@ def exact_call(system: System) -> tuple[Any, tuple[Any, ...]]:
 
         return Single(system, method, rest, rest, 0.0, 1.0, np.array([0.0, 1.0])).call()
     return _Run(system, method, EXACT, 1e-3, rest, rest, 0.0, np.array([0.0, 1.0])).call(1.0, 1.0)
+
+
+def _instead(settings: dict[str, Any]) -> str:
+    """That a run was made by another method than the usual one, and why."""
+    other = settings.get("instead_of")
+    return f"run by {settings['tableau']} from the start, instead of {other}" if other else ""
 
 
 def _caution(settings: dict[str, Any], reversals: int) -> str:

@@ -19,7 +19,7 @@ class EnergyAudit:
     stored (k,) change of kinetic plus strain energy; friction (k, contacts) work of each contact's friction on the
     motion; load (k,), circulation (k,) work of f(t) and of the skew part of K; opening (k,) work of taking an open
     contact's reaction out of K; impact (k,) work of the normal impulses of rigid contacts, negative where a landing
-    loses energy; dissipated (k,) taken out by C;
+    loses energy; dissipated (k,) taken out by C; turnover the largest kinetic energy;
     residual (k,) = stored - friction - load - circulation - opening - impact + dissipated.
     """
 
@@ -31,13 +31,14 @@ class EnergyAudit:
     opening: Any
     impact: Any
     residual: Any
+    turnover: float = 0.0
 
     @property
     def relative_residual(self) -> float:
-        """Largest |residual| over the largest energy turned over by any term [-]."""
+        """Largest |residual| over the largest energy turned over, by any term or as kinetic energy [-]."""
         terms = [self.stored, self.load, self.circulation, self.dissipated, self.opening, self.impact]
         terms += list(np.moveaxis(self.friction, -1, 0))
-        scale = max(float(np.max(np.abs(term), initial=0.0)) for term in terms)
+        scale = max(self.turnover, *(float(np.max(np.abs(term), initial=0.0)) for term in terms))
         worst = float(np.max(np.abs(self.residual), initial=0.0))
         return worst / scale if scale > 0.0 else worst
 
@@ -106,4 +107,5 @@ class Trajectory(Result):
             opening=self.work_opening,
             impact=self.work_impact,
             residual=stored - given + self.work_dissipated,
+            turnover=float(np.max(mechanical_energy(self.system, 0.0 * self.q, self.qd), initial=0.0)),
         )

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.matrices import liveliest
 from squealbox.result import Outcome, Result, quantity
 from squealbox.signals import LEAST, highest_line, slope, with_error
 from squealbox.transient.envelope import Curve, envelope, repetition, smooth_curve
@@ -100,7 +101,7 @@ def verdict(
         closer = resolved(motion)
         if end is None or np.count_nonzero(closer.t <= end) >= LEAST:  # else only the last part was run again
             motion = closer
-    dof, name = _judged_dof(motion, dof)
+    dof, name, unit = _judged_dof(motion, dof)
     if not outcome.ok and np.size(motion.t) < LEAST:
         course = _nothing(motion)
     else:
@@ -121,20 +122,21 @@ def verdict(
         envelope=course.envelope,
         envelope_centre=course.centre,
         fate=kind,
-        text=_sentence(kind, why, course, settled, name),
+        text=_sentence(kind, why, course, settled, name, unit),
         outcome=outcome,
         settings={"dof": dof, "part": part, "steady": steady, "band": band, "gone": gone, "periods": least_periods},
     )
 
 
-def _judged_dof(motion: Any, dof: int | str | None) -> tuple[int | str, str]:
-    """The degree of freedom that is judged, and its name where the motion has names."""
+def _judged_dof(motion: Any, dof: int | str | None) -> tuple[int | str, str, str]:
+    """The degree of freedom that is judged, its name where the motion has names, and its unit."""
     names = motion.system.names if isinstance(motion, Trajectory) else ()
     if dof is None:
         late = motion.q[len(motion.q) // 2 :] if isinstance(motion, Trajectory) else np.zeros((0, 1))
-        dof = int(np.argmax(np.ptp(late, axis=0))) if len(late) else 0
+        dof = liveliest(np.ptp(late, axis=0), motion.system.units) if len(late) else 0
     known = isinstance(dof, (int, np.integer)) and -len(names) <= dof < len(names)
-    return dof, dof if isinstance(dof, str) else names[dof] if known else ""
+    name = dof if isinstance(dof, str) else names[dof] if known else ""
+    return dof, name, motion.system.units[names.index(name)] if name in names else "m"
 
 
 @dataclass(frozen=True)
@@ -325,7 +327,7 @@ def _settled_at(course: _Course, kind: str, band: float) -> float:
     return float(course.time[after]) if after < course.time.size else np.nan
 
 
-def _sentence(kind: str, why: str, course: _Course, settled: float, name: str) -> str:
+def _sentence(kind: str, why: str, course: _Course, settled: float, name: str, unit: str) -> str:
     words = {DECAYS: "Decays", GROWS: "Grows", SETTLES_ON_CYCLE: "Settles on a cycle", NOT_DECIDED: "Not decided"}
     text = words[kind] + (f" ({why})" if why else "")
     if np.isfinite(course.rate) and kind != SETTLES_ON_CYCLE:
@@ -333,7 +335,7 @@ def _sentence(kind: str, why: str, course: _Course, settled: float, name: str) -
     if np.isnan(course.amplitude) or np.isfinite(course.rest):
         return text + "."
     last = _read(course.end - course.late, "s")
-    text += f"; half peak to peak{f' of {name}' if name else ''} {_read(course.amplitude, 'm')} over the last {last}"
+    text += f"; half peak to peak{f' of {name}' if name else ''} {_read(course.amplitude, unit)} over the last {last}"
     if np.isfinite(course.frequency):
         text += f" at {course.frequency:.5g} Hz"
     if np.isfinite(settled):

@@ -150,12 +150,30 @@ class EquationText:
         margins = []
         for c in range(m):
             self.put(f"hold{c}_{k} = " + " + ".join(f"{self.row(f'h{c}_{x}')} * r{x}_{k}" for x in range(m)))
+        for group in shape.groups:
+            self.share_out(k, group, normals)
+        for c in range(m):
             self.put(f"{forces[c]} = {forces[c]} + hold{c}_{k}")
             margins.append(self.margin(c, k, normals[c]))
         for i in range(shape.n):
             parts = [f"{push} * hold{c}_{k}" for c in range(m) if (push := self.entry(f"md{c}_{i}"))]
             self.put(f"{a[i]} = {a[i]} + " + " + ".join(parts) if parts else "pass")
         return margins
+
+    def rubbing(self, c: int, value: str, without: str) -> str:
+        """The value where contact c has friction; without any it reverses as if it were not there."""
+        return f"where({self.row(f'law{c}_0')} > 0.0, {value}, {without})" if c in self.shape.slick else value
+
+    def share_out(self, k: int, group: tuple[int, ...], normals: list[str]) -> None:
+        """What the sticking contacts of one motion carry of its force: F_c over its limit is the same for all."""
+        total = " + ".join(f"{self.row(f'lever{c}')} * hold{c}_{k}" for c in group)
+        idle = " * ".join(f"(1.0 - {self.sticks(c)})" for c in group)
+        for c in group:
+            self.put(f"part{c}_{k} = {self.row(f'law{c}_0')} * {normals[c]} * {self.sticks(c)}")
+        limit = " + ".join(f"abs(lever{c}_) * part{c}_{k}" for c in group)
+        self.put(f"ratio{group[0]}_{k} = ({total}) / ({limit} + {idle} + 1e-300)")
+        for c in group:
+            self.put(f"hold{c}_{k} = where(lever{c}_ > 0.0, 1.0, -1.0) * part{c}_{k} * ratio{group[0]}_{k}")
 
     def flag(self, code: str, any_of: str) -> None:
         """`flags`: the lanes that need service; what each needs is written down only when one does."""

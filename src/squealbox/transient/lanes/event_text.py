@@ -147,7 +147,9 @@ class EventText(EquationText):
             rates = ("0.0 * t_", "0.0 * t_")
         else:
             noise = self.row(f"noise{c}")
-            value = f"{self.row(f's{c}')} * {end['speed'][c]} + {stick} * ({end['margin'][c]} + {noise})"
+            s = self.row(f"s{c}")
+            slides = self.rubbing(c, f"{s} * {end['speed'][c]}", f"{s} * {s}")
+            value = f"{slides} + {stick} * ({end['margin'][c]} + {noise})"
             inner = end["margin"][c]
             for part in self.inside_margins(c, contact):
                 inner = f"minimum({inner}, {part})"
@@ -178,6 +180,7 @@ class EventText(EquationText):
         """Slope of the function of a contact's mode; that of a margin is not at hand."""
         parts = self.signal(c, f"V{c}", time, rate=True) + minus(self.product(f"t{c}", a))
         rate = f"{self.row(f's{c}')} * ({' + '.join(parts) if parts else '0.0 * t_'})".replace("+ -", "- ")
+        rate = self.rubbing(c, rate, "0.0 * t_")
         if not self.shape.unilateral[c]:
             return rate
         return f"{rate} - {self.row(f'open{c}')} * {self.normal_rate(c, v, time)}"

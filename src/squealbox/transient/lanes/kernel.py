@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta
+from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta, _sharing
 from squealbox.transient.lanes import alone, crossing, recording, roots, samples, service
 from squealbox.transient.lanes.formulas import formulas
 from squealbox.transient.lanes.shape import PARTS, Shape, layout, parameter_rows
@@ -98,7 +98,7 @@ def source(shape: Shape) -> str:
     }  # fmt: skip
     parts += [_gather(shape, rows.places), _observers(shape, rows.places)]
     parts += _one_contact(shape, rows.places) if shape.simple else []
-    for module in (_motion, *((_rigid, _impacts, _modes, _events) if shape.exact else ())):
+    for module in (_motion, *((_rigid, _sharing, _impacts, _modes, _events) if shape.exact else ())):
         parts += _engine.definitions(module, fixed)
     kept = ("COMPLETED", "TENSION", "@inner\ndef pulled(")
     parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith(kept)]

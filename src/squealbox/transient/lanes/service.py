@@ -26,13 +26,12 @@ from squealbox.transient._motion import (
     INSIDE,
     OPEN,
     STICK,
-    contact_matrix,
     derivative,
     force_noise,
     list_sticking,
-    share_out,
 )
 from squealbox.transient._rigid import solve
+from squealbox.transient._sharing import contact_matrix, share_out
 from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
 from squealbox.transient.lanes.recording import first_row, log_event, room_left, write_rows
@@ -212,6 +211,7 @@ def load_state(A, b, lane, p, s):
         s.state[room + i] = A[b + (ROW_V + i) * WIDTH + lane]
     if EXACT_CONTACT:
         for c in range(CONTACTS):
+            s.bias[c] = 1.0
             s.mode[c] = (
                 OPEN if A[b + (ROW_OPENED + c) * WIDTH + lane] > 0.0 else int(A[b + (ROW_SLIPS + c) * WIDTH + lane])
             )

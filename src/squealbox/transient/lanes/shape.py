@@ -22,7 +22,8 @@ class Shape:
     schedule of each term of V_c, N0_c and M^-1 f_i, in that order; () where it is a constant row. `endless` gives the
     coefficients of laws that are infinite in the whole ensemble, as text. `kinds` are those of `rows`, () where every
     row has mass. `smooth` and `memories` are those of `smooth_laws` and `rows`, () without any; observers see the first
-    `seen` rows.
+    `seen` rows. `groups` names contacts on one motion that share its force by limits that vary within a step,
+    `slick` those without any friction in some job.
     """
 
     n: int
@@ -44,6 +45,8 @@ class Shape:
     smooth: tuple[int, ...] = ()
     memories: tuple[int, ...] = ()
     seen: int = -1
+    groups: tuple[tuple[int, ...], ...] = ()
+    slick: tuple[int, ...] = ()
 
     @property
     def taylor(self) -> bool:
@@ -155,6 +158,7 @@ def parameter_rows(shape: Shape) -> list[str]:
     for index, terms in enumerate(shape.signals):
         for k, (_, count) in enumerate(terms):
             names += [f"weight{index}_{k}"] + [f"given{index}_{k}_{i}" for i in range(count)]
+    names += [f"lever{c}" for group in shape.groups for c in group]
     if shape.simple:
         names += [f"zero{c}" for c in range(m)] + [f"own_g{c}" for c in range(m)]
     names += [f"start{k}" for k in range(2 * n)] + [f"atol{k}" for k in range(2 * n)]

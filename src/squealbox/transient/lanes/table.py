@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 
 from squealbox.schedules import Constant, Schedule, value_at
-from squealbox.system import InvalidSystem, System
+from squealbox.system import Contact, InvalidSystem, System
 from squealbox.transient import packing
 from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.batch import first_of
 from squealbox.transient.lanes.shape import LANES, PARTS, Shape, audit, entries, parameter_rows
 from squealbox.transient.methods import TAYLOR, Method
+from squealbox.transient.one_motion import lever, shared_motions
 from squealbox.transient.own_laws import law_kinds, own_texts
 from squealbox.transient.rows import Rows, audited, audited_matrix, consistent, fastest_rate, memories, rows_of
 from squealbox.transient.smooth_laws import smooth_kinds
@@ -59,11 +60,15 @@ def tabulate(
     own = _highest_frequency(values, n) if rows.all_have_mass else fastest_rate(system, rows)
     values |= limits(system, method, own, scheme == EXACT and m > 0, duration)
     values |= {f"break{k}": instant for k, instant in enumerate(breaks)} | {"width": np.asarray(width)}
-    kinds = law_kinds(system.contacts)
-    laws = tuple((int(kind), len(c.law.coefficients())) for kind, c in zip(kinds, system.contacts, strict=True))
+    contacts = system.contacts
+    kinds = law_kinds(contacts)
+    laws = tuple((int(kind), len(c.law.coefficients())) for kind, c in zip(kinds, contacts, strict=True))
     names = entries(n, m) + (audit(n) if recorded else [])
     present = frozenset(name for name in names if name in values and np.any(values[name] != 0.0))
     unilateral = tuple(bool(c.unilateral) for c in system.contacts)
+    groups = [] if scheme != EXACT else shared_motions(system)
+    for group in groups:
+        values |= {f"lever{c}": lever(contacts[c].d, contacts[group[0]].d) for c in group}
     if recorded and rows.all_have_mass and n <= FEW and m <= FEW:
         present = _filled(present, [name for name in names if name in values])
     shape = Shape(
@@ -86,6 +91,8 @@ def tabulate(
         smooth_kinds(system.contacts) if any(smooth_kinds(system.contacts)) else (),
         memories(system) if max(memories(system), default=-1) >= 0 else (),
         int(getattr(system, "seen", n)),
+        tuple(tuple(group) for group in groups),
+        tuple(c for c, contact in enumerate(contacts) if without_friction(contact)),
     )
     names = parameter_rows(shape)
     fixed = np.zeros(3 + len(names) + len(coefficients))
@@ -170,6 +177,11 @@ def _filled(present: frozenset[str], names: list[str]) -> frozenset[str]:
         return own if kind in ("md", "mw", "d", "t", "n", "w") else skew if kind == "ka" else True
 
     return frozenset(name for name in names if there(name))
+
+
+def without_friction(contact: Contact) -> bool:
+    """Whether some job's contact has none at all, so its reversals are no events."""
+    return contact.law.grip_formula is None and bool(np.any(np.asarray(contact.law.static_limit) == 0.0))
 
 
 def _terms(value: Any) -> list[tuple[Any, Schedule]]:

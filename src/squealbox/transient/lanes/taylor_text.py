@@ -162,8 +162,11 @@ class TaylorStep(EquationText):
         watched = "".join(f"{name}, " for name in (*first, *second))
         largest = f"{self.row('largest')} / unit"
         self.ready(found)
-        safe = [f"surely_slips({self.row(f's{c}')}, {found['speed'][c]}, x, {ORDER})" for c in range(m)
-                if not self.shape.is_smooth(c)]  # fmt: skip
+        safe = []
+        for c in (c for c in range(m) if not self.shape.is_smooth(c)):
+            slips = f"surely_slips({self.row(f's{c}')}, {found['speed'][c]}, x, {ORDER})"
+            without = f" | (({self.row(f'law{c}_0')} <= 0.0) & ({self.row(f's{c}')} != 0.0))"
+            safe.append(f"({slips}{without})" if c in self.shape.slick else slips)
         safe += ["(x < 0.0)"] * any(self.shape.unilateral)
         self.put(f"safe = {' & '.join(safe) or 'x > 0.0'}")
         self.put(f"found = step_end(({watched}), kinks, safe, x, {largest}, {ORDER})")
@@ -186,7 +189,8 @@ class TaylorStep(EquationText):
         wide = f" - {self.row(f'open{c}')} * {normal}" if self.shape.unilateral[c] else ""
         held = "" if self.gliding else f" + {stick} * below{c}"
         if self.shape.along(c):
-            self.put(f"phi{c} = {s} * {found['speed'][c]}{held}{wide}")
+            slides = self.rubbing(c, f"{s} * {found['speed'][c]}", f"{s} * {s}")
+            self.put(f"phi{c} = {slides}{held}{wide}")
         else:
             self.put(f"phi{c} = {s} * {s}{wide}")
         slips = f"where({s} * {s} > 0.5, {normal}, 1.0)" if wide else "1.0"
