@@ -38,9 +38,9 @@ class Curve:
         """Last instant [s]."""
         return float(self.t[-1])
 
-    def mean(self, left: float, right: float) -> float:
-        """Mean over a stretch."""
-        return float(self.total(right) - self.total(left)) / (right - left)
+    def mean(self, left: Any, right: Any) -> Any:
+        """Mean over a stretch, or over many."""
+        return (self.total(right) - self.total(left)) / (right - left)
 
     def even(self, left: float | None = None, right: float | None = None) -> tuple[Any, Any]:
         """Equally spaced samples of a stretch, about four for each turning point and as many as were given."""
@@ -51,16 +51,29 @@ class Curve:
         times = np.linspace(left, right, max(given, 4 * turns, 64))
         return times, self.spline(times)
 
-    def swing(self, left: float, right: float, period: float) -> tuple[float, float]:
-        """Half peak to peak and mid-height in a window, about a line through the means of its first and last period."""
-        inside = slice(*np.searchsorted(self.points, (left, right)))
-        points = np.concatenate([self.points[inside], (left, right)])
-        heights = np.concatenate([self.heights[inside], self.spline((left, right))])
-        if right - left > 1.5 * period:
-            rise = self.mean(right - period, right) - self.mean(left, left + period)
-            heights = heights - rise / (right - left - period) * (points - 0.5 * (left + right))
-        low, high = float(np.min(heights)), float(np.max(heights))
-        return 0.5 * (high - low), 0.5 * (high + low)
+    def swing(self, left: Any, right: Any, period: float) -> tuple[Any, Any]:
+        """Half peak to peak and mid-height in windows, about a line through the means of its first and last period.
+
+        `left` and `right` [s] are of one window, or arrays (k,) of many.
+        """
+        ends = np.stack(np.broadcast_arrays(left, right)).astype(float).reshape(2, -1)
+        first, last = np.searchsorted(self.points, ends)
+        count = last - first
+        inside = np.arange(np.sum(count)) + np.repeat(first - np.cumsum(count) + count, count)
+        window = np.repeat(np.arange(count.size), count)
+        width, middle = ends[1] - ends[0], 0.5 * (ends[0] + ends[1])
+        rises = width > 1.5 * period
+        wide = ends[:, rises]
+        slope = np.zeros(width.size)
+        rise = self.mean(wide[1] - period, wide[1]) - self.mean(wide[0], wide[0] + period)
+        slope[rises] = rise / (width[rises] - period)
+        heights = self.heights[inside] - slope[window] * (self.points[inside] - middle[window])
+        at_ends = self.spline(ends) - slope * (ends - middle)
+        low, high = np.min(at_ends, axis=0), np.max(at_ends, axis=0)
+        np.minimum.at(low, window, heights)
+        np.maximum.at(high, window, heights)
+        shape = np.shape(left)
+        return 0.5 * (high - low).reshape(shape), 0.5 * (high + low).reshape(shape)
 
 
 def smooth_curve(
@@ -124,5 +137,4 @@ def envelope(curve: Curve, frequency: float, repeat: int = 1) -> tuple[Any, Any,
     edges = np.linspace(curve.begin, curve.end, count + 1)
     middle = 0.5 * (edges[1:] + edges[:-1])
     half = 0.5 * min(periods / frequency, length / count)
-    swings = np.array([curve.swing(m - half, m + half, repeat / frequency) for m in middle])
-    return middle, swings[:, 0], swings[:, 1]
+    return middle, *curve.swing(middle - half, middle + half, repeat / frequency)

@@ -198,11 +198,11 @@ def _course(curve: Curve, part: float, gone: float, *, held: float) -> _Course:
         time=time,
         envelope=heights,
         centre=centre,
-        amplitude=curve.swing(late, curve.end, 1.0 / frequency)[0],
+        amplitude=float(curve.swing(late, curve.end, 1.0 / frequency)[0]),
         frequency=frequency,
         rate=rate,
         rate_error=error,
-        offset=curve.mean(late, curve.end),
+        offset=float(curve.mean(late, curve.end)),
         turns=turns,
         misfit=misfit,
     )
@@ -212,7 +212,7 @@ def _stopped(curve: Curve, late: float, turns: int, rest: float, time: Any, heig
     """A motion that friction has stopped: it has no frequency any more, and its envelope ends where it came to rest."""
     none = float("nan")
     return _Course(curve.begin, curve.end, late, time, heights, centre, 0.0, none, none, none,
-                   curve.mean(late, curve.end), turns, none, rest)  # fmt: skip
+                   float(curve.mean(late, curve.end)), turns, none, rest)  # fmt: skip
 
 
 def _nothing(motion: Any) -> _Course:
@@ -244,7 +244,7 @@ def _without_oscillation(curve: Curve, late: float, half: float, turns: int) -> 
         frequency=np.nan,
         rate=rate,
         rate_error=error,
-        offset=curve.mean(late, curve.end),
+        offset=float(curve.mean(late, curve.end)),
         turns=turns,
         misfit=np.nan,
     )

@@ -1,5 +1,8 @@
 """Figs. 3 to 9 of the paper for one reading: what was printed there, computed again, raw and exact together."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -42,6 +45,20 @@ MARK: dict[str, Any] = {
 }
 
 
+_SHEETS: dict[Any, Any] = {}  # a figure and its panels by layout: making panels and ticks takes longer than drawing
+_REUSED: ContextVar[bool] = ContextVar("reused", default=False)
+
+
+@contextmanager
+def on_the_same_sheets() -> Iterator[None]:
+    """Within it, the figures of one layout are one figure: what was drawn in it is wiped when the next one begins."""
+    token = _REUSED.set(True)
+    try:
+        yield
+    finally:
+        _REUSED.reset(token)
+
+
 @dataclass(frozen=True)
 class Margins:
     """Room around the panels and between them [inches]: laid out so a figure is drawn in half the time."""
@@ -55,18 +72,46 @@ class Margins:
 
     def panels(self, rows: int, columns: int, width: float, height: float, **keywords: Any) -> Any:
         """A figure of panels with these margins, and the panels."""
+        layout = (self, rows, columns, width, height, *keywords.items())
+        if _REUSED.get() and layout in _SHEETS:
+            figure, panels = _SHEETS[layout]
+            for panel in np.ravel(panels):
+                _wipe(panel)
+            return figure, panels
         figure, panels = plots.panels(rows, columns, width=width, height=height, **keywords)
-        wide = (width - self.left - self.right - (columns - 1) * self.across) / columns
-        high = (height - self.bottom - self.top - (rows - 1) * self.down) / rows
+        self.set(figure, rows, columns, width, height)
+        wide, high = self._panel(rows, columns, width, height)
+        for panel in np.ravel(panels):
+            panel.yaxis.set_label_coords(-0.42 / wide, 0.5)
+            panel.xaxis.set_label_coords(0.5, -0.24 / high)
+        if _REUSED.get():
+            _SHEETS[layout] = figure, panels
+        return figure, panels
+
+    def set(self, figure: "Figure", rows: int, columns: int, width: float, height: float) -> None:
+        """Give these margins to a figure."""
+        wide, high = self._panel(rows, columns, width, height)
         figure.set_layout_engine(None)
         figure.subplots_adjust(
             left=self.left / width, right=1.0 - self.right / width, bottom=self.bottom / height,
             top=1.0 - self.top / height, wspace=self.across / wide, hspace=self.down / high,
         )  # fmt: skip
-        for panel in np.ravel(panels):
-            panel.yaxis.set_label_coords(-0.42 / wide, 0.5)
-            panel.xaxis.set_label_coords(0.5, -0.24 / high)
-        return figure, panels
+
+    def _panel(self, rows: int, columns: int, width: float, height: float) -> tuple[float, float]:
+        wide = (width - self.left - self.right - (columns - 1) * self.across) / columns
+        return wide, (height - self.bottom - self.top - (rows - 1) * self.down) / rows
+
+
+def _wipe(panel: Any) -> None:
+    """Take off all that was drawn, and let the limits follow what is drawn next."""
+    for artist in (*panel.lines, *panel.patches, *panel.texts, *panel.collections, *panel.images):
+        artist.remove()
+    if panel.get_legend() is not None:
+        panel.get_legend().remove()
+    panel.set(title="", xlabel="", ylabel="")
+    panel.axis("on")
+    panel.relim()
+    panel.autoscale(True)
 
 
 def time_series(runs: tuple[Run, ...], raw: Studies, exact: Studies) -> "Figure":
@@ -128,7 +173,9 @@ def pressure_maps(maps: dict[float, PressureMap]) -> "Figure":
     """Fig. 9: growth over both centres of pressure and its boundary, for some friction coefficients."""
     from matplotlib.patches import Rectangle
 
-    figure, panels = plots.panels(1, len(maps), width=4.4 * len(maps), height=3.6)
+    width, height = 4.4 * len(maps), 3.6
+    figure, panels = plots.panels(1, len(maps), width=width, height=height)
+    Margins(left=0.5, right=0.15, across=0.65, bottom=0.4).set(figure, 1, len(maps), width, height)
     for panel, (mu, found) in zip(np.ravel(panels), maps.items(), strict=True):
         plots.stability_map(
             found.angles, found.angles, found.growth.T, x_name=r"$\theta_1$", x_unit="deg", y_name=r"$\theta_2$",

@@ -5,6 +5,7 @@ starts import the caller's script again, which a user's plain script does not su
 ``python -m squealbox.papers.drum_brake_2011.jobs``: one job a line in, one answer a line out, as JSON.
 """
 
+import gc
 import json
 import os
 import signal
@@ -160,6 +161,7 @@ def _ask(idle: Idle, job: Job) -> Any:
 def _work() -> None:
     """Answer jobs until the input ends. What libraries print goes to standard error, not between the answers."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the caller's: it stops the workers
+    gc.set_threshold(50_000, 20, 50)  # figures are many small things: the usual 700 looks through them over and over
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     for line in sys.stdin:

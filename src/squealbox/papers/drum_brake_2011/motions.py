@@ -115,7 +115,7 @@ class Motion:
 class Studies:
     """The runs of one case with one treatment of contact, each made when it is first asked for.
 
-    `made` holds runs by design and may be shared, so that no run is made twice.
+    `made` holds runs by design and may be shared, so that no run is made twice; `asked` holds them by run.
     """
 
     case: Case
@@ -123,8 +123,14 @@ class Studies:
     method: Method
     samples: int = SAMPLES
     made: dict[Any, Motion] = field(default_factory=dict)
+    asked: dict[Run, Motion] = field(default_factory=dict, repr=False)
 
     def __getitem__(self, run: Run) -> Motion:
+        if run not in self.asked:
+            self.asked[run] = self._of(run)
+        return self.asked[run]
+
+    def _of(self, run: Run) -> Motion:
         if self.case.floor is not None:
             free = self._motion(run.design(self.case.replace(floor=None)))
             if free.completed and free.least_friction >= self.case.floor:
