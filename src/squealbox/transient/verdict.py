@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.matrices import liveliest
 from squealbox.result import Outcome, Result, quantity
 from squealbox.signals import LEAST, highest_line, slope, with_error
 from squealbox.transient.envelope import Curve, envelope, repetition, smooth_curve
@@ -119,7 +120,7 @@ def verdict(
         envelope=course.envelope,
         envelope_centre=course.centre,
         fate=kind,
-        text=_sentence(kind, why, course, settled, name),
+        text=_sentence(kind, why, course, settled, name, _unit(motion, dof)),
         outcome=outcome,
         settings={"dof": dof, "part": part, "steady": steady, "band": band, "gone": gone, "periods": least_periods},
     )
@@ -130,7 +131,7 @@ def _judged_dof(motion: Any, dof: int | str | None) -> tuple[int | str, str]:
     names = motion.system.names if isinstance(motion, Trajectory) else ()
     if dof is None:
         late = motion.q[len(motion.q) // 2 :] if isinstance(motion, Trajectory) else np.zeros((0, 1))
-        dof = int(np.argmax(np.ptp(late, axis=0))) if len(late) else 0
+        dof = liveliest(np.ptp(late, axis=0), motion.system.units) if len(late) else 0
     known = isinstance(dof, (int, np.integer)) and -len(names) <= dof < len(names)
     return dof, dof if isinstance(dof, str) else names[dof] if known else ""
 
@@ -323,7 +324,15 @@ def _settled_at(course: _Course, kind: str, band: float) -> float:
     return float(course.time[after]) if after < course.time.size else np.nan
 
 
-def _sentence(kind: str, why: str, course: _Course, settled: float, name: str) -> str:
+def _unit(motion: Any, dof: int | str) -> str:
+    """The unit of the degree of freedom that is judged; m where a record does not say it."""
+    if not isinstance(motion, Trajectory):
+        return "m"
+    system = motion.system
+    return str(system.units[system.names.index(dof) if isinstance(dof, str) else dof])
+
+
+def _sentence(kind: str, why: str, course: _Course, settled: float, name: str, unit: str) -> str:
     words = {DECAYS: "Decays", GROWS: "Grows", SETTLES_ON_CYCLE: "Settles on a cycle", NOT_DECIDED: "Not decided"}
     text = words[kind] + (f" ({why})" if why else "")
     if np.isfinite(course.rate) and kind != SETTLES_ON_CYCLE:
@@ -331,7 +340,7 @@ def _sentence(kind: str, why: str, course: _Course, settled: float, name: str) -
     if np.isnan(course.amplitude) or np.isfinite(course.rest):
         return text + "."
     last = _read(course.end - course.late, "s")
-    text += f"; half peak to peak{f' of {name}' if name else ''} {_read(course.amplitude, 'm')} over the last {last}"
+    text += f"; half peak to peak{f' of {name}' if name else ''} {_read(course.amplitude, unit)} over the last {last}"
     if np.isfinite(course.frequency):
         text += f" at {course.frequency:.5g} Hz"
     if np.isfinite(settled):
