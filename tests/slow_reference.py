@@ -117,7 +117,11 @@ class Slow:
         for sign in (1, -1):
             one, other = self.system.contacts[a].V, self.system.contacts[b].V
             held = not hasattr(one, "terms") and not hasattr(other, "terms") and np.isclose(sign * size * one, other)
-            if both and np.allclose(self.t[b], sign * size * self.t[a]) and (held or (one is other and sign * size == 1.0)):
+            if (
+                both
+                and np.allclose(self.t[b], sign * size * self.t[a])
+                and (held or (one is other and sign * size == 1.0))
+            ):
                 return sign
         return 0
 

@@ -13,6 +13,8 @@ LINES = """figure => [...figure.querySelectorAll('g.layer')].map(layer => ({
     cls: layer.getAttribute('class'), d: layer.querySelector('path')?.getAttribute('d') ?? '',
     circles: layer.querySelectorAll('circle').length,
 }))"""
+ASK = "panel => import('/static/app.js').then(({ app }) => app.questions.askFor(panel))"
+OPTION = "([panel, changes]) => import('/static/app.js').then(({ app }) => app.store.option(panel, changes))"
 SPEC = """([name, figure]) => import('/static/app.js').then(({ app }) => {
     const { spec } = app.panels.get(name).charts.find(chart => chart.name === figure);
     const numbers = ({ kind, cls, column = '', x, y }) => ({ kind, cls, column, x: Array.from(x), y: Array.from(y) });
@@ -63,12 +65,17 @@ class Page:
     def drawn(self, *panels):
         """Wait until these panels show the present design."""
         for panel in panels:
-            self.page.locator(f"section[data-panel={panel}]").scroll_into_view_if_needed()
+            self.ask(panel)
             self.page.wait_for_selector(f"section[data-panel={panel}][data-state=drawn]", timeout=120_000)
+
+    def ask(self, panel):
+        """Ask the question on whose screen a panel stands."""
+        self.page.evaluate(ASK, panel)
+        self.page.locator(f"section[data-panel={panel}]").scroll_into_view_if_needed()
 
     def settled(self, panel):
         """Wait until a panel has answered the newest question, with a figure or a sentence."""
-        self.page.locator(f"section[data-panel={panel}]").scroll_into_view_if_needed()
+        self.ask(panel)
         self.page.wait_for_selector(f"section[data-panel={panel}]:not([data-state=waiting])", timeout=120_000)
 
     def says(self, panel):
@@ -80,6 +87,10 @@ class Page:
         field = self.page.locator(f"input[data-path='{path}']")
         field.fill(str(value))
         field.press("Enter")
+
+    def option(self, panel, **changes):
+        """Set options of a panel, as its own controls do."""
+        self.page.evaluate(OPTION, [panel, changes])
 
     def slide(self, path, value):
         """Move the slider of a parameter, as dragging it does, and let go."""

@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 
 from squealbox import DrumBrake, LinearSlope, complex_modes, critical_value, hopf_point, simulate
-from squealbox.designs import DESIGNS
 from squealbox.papers.drum_brake_2011.cases import Case
 from squealbox.papers.drum_brake_2011.record import count
 from squealbox.papers.drum_brake_2011.verdicts import verdicts
 from squealbox.signals import dominant_frequency, sound_level
 from squealbox.system import equilibrium
-from squealbox.workbench.panels import OptionError, Options, Stopped, Work, function_of
+from squealbox.workbench.panels import OptionError, Options, Stopped, Work, branch, function_of
 
 FLOAT32 = 1e-5
 
@@ -23,7 +22,7 @@ def brake(**changes):
 
 
 def press(page, panel, text):
-    page.page.locator(f"section[data-panel={panel}]").scroll_into_view_if_needed()
+    page.ask(panel)
     page.page.click(f"section[data-panel={panel}] >> button:text-is('{text}')")
 
 
@@ -36,18 +35,19 @@ def samples(path):
 
 def test_nothing_is_computed_before_it_is_asked(page):
     for panel in ("branch", "listen", "report", "tour"):
-        page.page.locator(f"section[data-panel={panel}]").scroll_into_view_if_needed()
+        page.ask(panel)
         assert page.page.get_attribute(f"section[data-panel={panel}]", "data-state") == "idle"
         assert page.says(panel)
 
 
 def test_limit_cycles_beside_stable_sliding_are_marked(page):
+    page.option("branch", points=60)  # as far as the fold; the page goes round it and back
     press(page, "branch", "Follow")
     page.drawn("branch")
     onset = float(hopf_point(brake(), "friction.static", (0.1, 0.6)).value)
     together = json.loads(page.page.get_attribute("section[data-panel=branch]", "data-together"))
-    # the cycle exists from 0.188 on (docs/limit_cycles.md); stretches are told on 201 values of the axis
-    assert together == [[pytest.approx(0.188, abs=0.005), pytest.approx(onset, abs=0.005)]]
+    # the stable cycle ends in a fold at 0.17749, where shooting with 400 points ends; told on 201 values of the axis
+    assert together == [[pytest.approx(0.17749, abs=0.005), pytest.approx(onset, abs=0.005)]]
     layers = page.numbers("branch", "branch")["layers"]
     born = next(layer for layer in layers if layer["column"] == "onset")
     assert born["x"] == pytest.approx([onset], rel=FLOAT32)
@@ -133,12 +133,9 @@ def test_a_degree_of_freedom_the_design_does_not_have_is_the_first_and_named_so(
     assert found.data["names"][0] == "x"
 
 
-def test_about_a_neutral_centre_nothing_coexists():
-    neutral = DESIGNS["mode_coupling"]()  # undamped: a closed orbit through every point, and none attracts
-    assert function_of("branch")(neutral, Options({}), Work(apart=True)).data["together"] == []
-
-
-def test_the_onset_drawn_is_the_nearest_to_the_present_value():
+def test_the_onset_drawn_is_the_nearest_to_the_present_value(monkeypatch):
+    monkeypatch.setattr(branch, "_cycle", lambda *_: (None, ""))
+    monkeypatch.setattr(branch, "_walks", lambda *_: iter(()))
     at = brake(theta2=np.deg2rad(115.0))
     found = function_of("branch")(at, Options({"parameter": "theta2"}), Work(apart=True))
     said = function_of("verdict")(at, Options({"parameter": "theta2"}), Work())

@@ -11,7 +11,15 @@ from squealbox.workbench.frames import frame, unframed
 from squealbox.workbench.panels import Options, Work, function_of
 from workbench.browsing import Page
 
-VIEWS = {"locus", "drawing", "verdict", "map", "friction", "motion", "energy", "sensitivity", "compare"}
+VIEWS = {
+    "locus",
+    "drawing",
+    "verdict",
+    "moving",
+    "friction",
+    "energy",
+    "motion",
+}  # of the first question, and the words
 PAINTS = """() => import('/static/app.js').then(({ app }) => {
     window.paints = [];
     for (const view of app.views) {
@@ -44,7 +52,7 @@ def counted(browser, server):
             socket.on("framereceived", lambda data: received.append(data)),
         ))  # fmt: skip
         page.goto()
-        page.drawn("map")
+        page.drawn("moving", "friction", "energy")
         page.page.wait_for_selector("#verdict .heard")  # the motion, out of sight, is asked last
         page.page.evaluate(PAINTS)
         sent.clear()

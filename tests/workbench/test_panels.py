@@ -52,8 +52,8 @@ def test_the_motion_is_that_of_the_library(squealing):
     assert f"{judged.frequency:.5g} Hz" in squealing.says("motion")
     strip = squealing.page.locator("#verdict").inner_text()
     assert "In time: Settles on a cycle" in strip
-    level = float(sound_level(motion, dof=0, begin=0.75 * duration).weighted)
-    assert f"about {level:.2g} dB(A) at 1 m, an estimate" in strip
+    level = float(sound_level(motion, dof=1, begin=0.75 * duration).weighted)  # y moves most
+    assert f"about {level:.0f} dB(A) at 1 m, an estimate" in strip
     assert "may be 10 dB louder or quieter" in strip
 
 

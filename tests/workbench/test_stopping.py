@@ -38,8 +38,8 @@ def test_hours_of_motion_are_stopped_within_a_second_and_stay_so(page):
     page.drawn("motion")
     page.page.evaluate(HOURS)
     stop(page, "motion")
-    page.page.locator("section[data-panel=locus]").scroll_into_view_if_needed()
-    page.page.locator("section[data-panel=motion]").scroll_into_view_if_needed()
+    page.ask("locus")
+    page.ask("motion")
     assert page.says("motion") == "stopped", "coming back to a stopped panel does not start it again"
     page.enter("friction.static", 0.31)
     page.drawn("locus")
@@ -50,7 +50,7 @@ def test_hours_of_motion_are_stopped_within_a_second_and_stay_so(page):
 )
 def test_what_runs_apart_is_stopped_within_a_second(page, panel, press):
     page.enter("k4", 111)
-    page.page.locator(f"section[data-panel={panel}]").scroll_into_view_if_needed()
+    page.ask(panel)
     page.page.click(f"section[data-panel={panel}] >> button:text-is('{press}')")
     stop(page, panel)
     page.enter("k4", 112)
@@ -143,7 +143,7 @@ def test_a_cold_machine_says_what_it_does_and_the_page_lives(browser, tmp_path):
     try:
         with Page(browser, server) as page:
             page.goto()
-            page.page.locator("section[data-panel=motion]").scroll_into_view_if_needed()
+            page.ask("motion")
             says = page.page.locator("section[data-panel=motion] .says")
             says.filter(has_text="compiling the kernel for this design, which happens once").wait_for(timeout=60_000)
             says.filter(has_text="s of about 20 s").wait_for(timeout=20_000)

@@ -15,6 +15,7 @@ from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files.analyses import Axis, Map, Simulate, quantity_of, scalar_parameters
 from squealbox.files.runs import run, run_closely
 from squealbox.limit_cycles import hopf_point, shooting
+from squealbox.matrices import liveliest
 from squealbox.parameters import ParameterError
 from squealbox.report.examination import Examination
 from squealbox.schedules import Schedule, value_at
@@ -140,7 +141,7 @@ class _Work:
         if "verdicts" not in self.found:
             return
         with self.part("sound", "sound"):
-            dof = max(range(self.system.size), key=lambda i: float(np.nan_to_num(self.found["verdicts"][i].amplitude)))
+            dof = liveliest([float(one.amplitude) for one in self.found["verdicts"]], self.system.units)
             last = motion.t[-1] - 0.25 * (motion.t[-1] - motion.t[0])
             self.found["loudness"] = sound_level(motion, dof=dof, begin=last)
             pitch = float(self.found["verdicts"][dof].frequency)

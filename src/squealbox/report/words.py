@@ -80,10 +80,8 @@ def _margin(found: Examination) -> Iterator[str]:
         f"A mode of {quantity(critical.frequency, 'Hz')} grows {side} {name} = {value_in_words(found, name, value)} "
         f"by {critical.mechanism.replace('_', ' ')} ({shares})."
     )
-    if value != 0.0:
-        away = "above" if here > value else "below"
-        margin = number(100.0 * abs(here - value) / abs(value), 3)
-        yield f"This design has {name} = {value_in_words(found, name, here)}, {margin} % {away} that value."
+    share = f"{number(100.0 * (value - here) / abs(here), 3)} %" if here else value_in_words(found, name, value - here)
+    yield f"This design has {name} = {value_in_words(found, name, here)}: that value is {share} away."
 
 
 def _motion(found: Examination) -> Iterator[str]:

@@ -32,6 +32,8 @@ from squealbox.workbench.state import StateError, UnknownBase, design_of
 
 LONGEST_TEXT = 1_000_000  # characters of an opened file
 MOST_BASES = 8  # opened files kept for a page; the page sends an older one again
+LARGE = 40  # degrees of freedom from which every answer gets a process of its own: other pages are not held up
+PER_CUBE = 5e-6  # s an answer takes about, times the cube of the degrees of freedom
 SAID = 0.1  # s after which a progress is told again
 LONGEST_ID = 9_007_199_254_740_991  # the largest whole number a page can count to
 
@@ -126,7 +128,7 @@ class Session:
             data = frame({"id": number, "view": name, "kind": "progress", "share": share, "text": text})
             loop.call_soon_threadsafe(lambda: self._start(self.send(data)))
 
-        return Work(report if PANELS[name].slow else None)
+        return Work(report)
 
     async def _answer(self, name: str, message: dict[str, Any], work: Work) -> None:
         loop = asyncio.get_running_loop()
@@ -214,6 +216,9 @@ def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design],
         if work.stopped:
             raise Stopped
         design = design_of(message.get("state"), bases)
+        size = design.system().size
+        if size > LARGE and not (work.apart or PANELS[name].light):
+            raise Elsewhere(f"computing, with {size} degrees of freedom", PER_CUBE * size**3)
         answer: Answer = function_of(name)(design, Options(message.get("options") or {}), work)
         framed = frame({**about, "kind": "answer", "data": answer.data}, answer.arrays)
     except StateError as error:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
 from squealbox.files.analyses import scalar_parameters
 from squealbox.files.sheets import LAW_NAMES, field_type, name_of
@@ -30,15 +31,49 @@ STEPS = 500  # of a slider
 
 def sheet(design: Design) -> dict[str, Any]:
     """The fields of a design in order, the parameters a study can vary, and its aliases."""
-    known = scalar_parameters(design)
+    known, brake = varied(design), getattr(design, "innermost", design)
+    title = brake.title or type(brake).__name__
     return {
-        "title": design.title or type(design).__name__,
-        "source": design.source,
+        "title": title if brake is design else f"{title}, with {', '.join(_layers(design))}",
+        "source": brake.source,
         "about": _first_lines(design),
         "fields": list(_fields(design, "")),
         "varied": list(known),
-        "aliases": {alias: list(names) for alias, names in design.aliases.items() if alias in known},
+        "aliases": {alias: list(names) for alias, names in brake.aliases.items() if alias in known},
     }
+
+
+def varied(design: Design) -> dict[str, Parameter]:
+    """The parameters a study can vary, under the names the page has for them (`page_name`)."""
+    known = {page_name(design, name): about for name, about in scalar_parameters(design).items()}
+    brake = getattr(design, "innermost", design)
+    own = {} if brake is design else scalar_parameters(brake)
+    return known | {alias: own[alias] for alias in brake.aliases if alias in own and alias not in known}
+
+
+def page_name(design: Design, name: str) -> str:
+    """A dotted name without the countermeasures in front of it, as long as it then still means the same.
+
+    >>> from squealbox import AddedMass, DrumBrake
+    >>> page_name(AddedMass(DrumBrake(), "x", 0.1), "brake.friction.static")
+    'friction.static'
+    """
+    held, tail, passed = design, name, []
+    while isinstance(held, Countermeasure) and tail.startswith("brake."):
+        passed.append(held.field_names())
+        held, tail = held.brake, tail.removeprefix("brake.")
+    head = tail.partition(".")[0]
+    kept = max((i + 1 for i, names in enumerate(passed) if head in names), default=0)
+    return "brake." * kept + tail
+
+
+def _layers(design: Design) -> list[str]:
+    """Titles of the countermeasures, from outside in."""
+    found = []
+    while isinstance(design, Countermeasure):
+        found.append(design.title.lower())
+        design = design.brake
+    return found
 
 
 def slider(value: float, about: Parameter, whole: bool = False) -> tuple[float, float]:
@@ -82,6 +117,10 @@ def usual_value(owner: DataSheet, name: str) -> Any:
 
 def _fields(owner: DataSheet, prefix: str) -> Iterator[dict[str, Any]]:
     parameters, words = owner.parameters(), owner.choices()
+    if isinstance(owner, Countermeasure):
+        own = owner.field_names()
+        for field in _fields(owner.brake, ""):
+            yield {**field, "path": f"brake.{field['path']}"} if field["path"] in own else field
     for name in owner.field_names():
         value, path = getattr(owner, name), prefix + name
         if isinstance(value, FrictionLaw):

@@ -21,11 +21,13 @@ class Panel:
     columns: int = 1
     slow: bool = False
     apart: bool = False
+    light: bool = False  # no more work for a large brake than for a small one
     shown: bool = True  # False: it answers the page itself, not a place on it
 
 
 PANELS: dict[str, Panel] = {
-    "drawing": Panel("The brake", shown=False),
+    "moving": Panel("The brake, slowed down"),
+    "drawing": Panel("The brake", light=True, shown=False),
     "verdict": Panel("Verdict", shown=False),
     "locus": Panel("Modes over a parameter", columns=2),
     "map": Panel("Stability map", slow=True),
@@ -34,6 +36,7 @@ PANELS: dict[str, Panel] = {
     "energy": Panel("Energy by contact"),
     "sensitivity": Panel("Which parameter to change"),
     "branch": Panel("Limit cycles over a parameter", slow=True, apart=True),
+    "silence": Panel("Cures", columns=2, slow=True, apart=True),
     "listen": Panel("Listen", slow=True),
     "compare": Panel("Compare two designs", columns=2),
     "report": Panel("Report", slow=True, apart=True),

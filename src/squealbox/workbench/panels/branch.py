@@ -20,13 +20,14 @@ from squealbox.system import System
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, axis_of
 
-POINTS = 30  # of each walk to one side
+POINTS = 200  # of each walk to one side, at most: round two folds and back
 STEP = 0.1  # longest, in shares of the range and of the motion
 EDGE = (
     0.01  # share of the range left out at its lower end, where friction or load may be zero and derivatives are taken
 )
 ROOM = 0.005  # share of the range about an onset in which it is solved for
 NEUTRAL = 1e-6  # of a multiplier from the unit circle within which a cycle neither attracts nor repels
+UPRIGHT = 1e-5  # share of the range within which a walk stands at one value
 GRID = 201  # values at which steady sliding is looked at
 PUSHES = (0.5, 1.0, 3.0)  # of the contacts' velocity over the sliding speed, from which a cycle is looked for
 Make = Callable[[float], System]
@@ -41,15 +42,17 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     at = max(options.number("at", usual, -1e300, 1e300), span[0])
     if at > span[1]:
         raise OptionError(f"at: expected a number in [{span[0]:g}, {span[1]:g}]")
-    dof = options.dof(design)
+    dof, points = options.dof(design), int(options.number("points", POINTS, 5, 1000))
     watched = _Watched(design, parameter, span, at, work)
     try:
         born = _nearest_onset(watched, parameter, span, at)
         cycle, start = _cycle(watched, design.replace({parameter: at}))
-        walks = list(_walks(watched, parameter, span, at, born, cycle))
+        centre = cycle is not None and bool(np.all(np.abs(np.abs(cycle.multipliers[1:]) - 1.0) < NEUTRAL))
+        walks = list(_walks(watched, parameter, span, at, born, None if centre else cycle, points))
     except ParameterError as error:
         raise OptionError(f"no limit cycles here: {error.expectation}") from error
-    return _drawn(design, parameter, span, dof, born, [walk for walk in walks if len(walk.value)], start)
+    kept = [walk for walk in walks if len(walk.value)]
+    return _drawn(design, parameter, span, dof, born, kept, start, centre)
 
 
 class _Watched:
@@ -107,14 +110,20 @@ def _starts(here: Design) -> Iterator[tuple[str, Any]]:
 
 
 def _walks(
-    watched: _Watched, parameter: str, span: tuple[float, float], at: float, born: HopfPoint, cycle: Cycle | None
+    watched: _Watched,
+    parameter: str,
+    span: tuple[float, float],
+    at: float,
+    born: HopfPoint,
+    cycle: Cycle | None,
+    points: int,
 ) -> Iterator[Branch]:
     if born.outcome.ok:
         make = watched.at_part(0.25, "the branch born at the onset", 0.1)
-        yield branch(make, parameter, span, born, points=2 * POINTS)
+        yield branch(make, parameter, span, born, points=points)
     if cycle is None:
         return
-    how: dict[str, Any] = {"value": at, "method": "shooting", "points": POINTS, "largest_step": STEP}
+    how: dict[str, Any] = {"value": at, "method": "shooting", "points": points, "largest_step": STEP}
     for share, way, side in ((0.4, -1.0, "lower"), (0.7, 1.0, "higher")):
         make = watched.at_part(share, f"cycles at {side} values", 0.3)
         yield branch(make, parameter, span, cycle, direction=way, **how)
@@ -128,6 +137,7 @@ def _drawn(
     born: HopfPoint,
     walks: list[Branch],
     start: str,
+    centre: bool,
 ) -> Answer:
     axis, own = axis_of(design, parameter), unit_at(design.system(), dof)
     metre, unit = scaled(own, *(walk.amplitude[:, dof] for walk in walks)) if walks else (1.0, own)
@@ -142,7 +152,8 @@ def _drawn(
         "hopf": finite(born.value / axis["factor"]) if born.outcome.ok else None,
         "kind": born.kind if born.outcome.ok else "",
         "start": start,
-        "walks": [_walk(walk, dof, axis["factor"], metre) for walk in walks],
+        "centre": centre,
+        "walks": [_walk(walk, span, dof, axis["factor"], metre) for walk in walks],
         "quiet": [[a / axis["factor"], b / axis["factor"]] for a, b in _stretches(grid, quiet)],
         "together": [[a / axis["factor"], b / axis["factor"]] for a, b in _together(walks, grid, quiet)],
     }
@@ -153,7 +164,9 @@ def _drawn(
     return Answer(data, arrays)
 
 
-def _walk(walk: Branch, dof: int, factor: float, metre: float) -> dict[str, Any]:
+def _walk(walk: Branch, span: tuple[float, float], dof: int, factor: float, metre: float) -> dict[str, Any]:
+    if np.ptp(walk.value) <= UPRIGHT * (span[1] - span[0]):  # one value: each point looks special, by round-off
+        return {"specials": [], "ended": ""}
     specials = [
         [str(kind).replace("_", " "), float(value) / factor, float(walk.amplitude[int(point), dof]) / metre]
         for kind, value, point in zip(walk.special_kind, walk.special_value, walk.special_point, strict=True)

@@ -8,7 +8,7 @@ from squealbox.signals import SignalError, audible, dominant_frequency
 from squealbox.signals.radiation import AREA, AUDIBLE
 from squealbox.signals.wav import SAMPLING
 from squealbox.workbench.panels.following import followed
-from squealbox.workbench.panels.loudness import loudness
+from squealbox.workbench.panels.loudness import loudest, loudness
 from squealbox.workbench.panels.panel import Answer, Options, Work
 from squealbox.workbench.panels.start import start_and_dof
 
@@ -24,6 +24,8 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     area = options.number("area", AREA, 1e-6, 10.0)
     motion = followed(system, SECONDS, work, 0.8, start=start, times=int(SECONDS * RATE) + 1)
     work.progress(0.8, "listening")
+    if options.given.get("dof") is None and motion.outcome.ok:
+        dof = loudest(motion)
     data = {"names": list(system.names), "dof": dof, "rate": SAMPLING, "outcome": str(motion.outcome)}
     if not motion.outcome.ok:
         return Answer({**data, "silent": f"The run ended early: {motion.outcome.message}."})
@@ -32,9 +34,11 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     except SignalError as error:
         return Answer({**data, "silent": f"Nothing to hear: {error}."})
     if not AUDIBLE[0] <= pitch <= AUDIBLE[1]:
-        return Answer({**data, "silent": f"It moves at {pitch:.4g} Hz, which nobody hears."})
+        slow = pitch < AUDIBLE[0]  # too few periods for a number: the panel of the motion takes longer
+        told = f"below {AUDIBLE[0]:g} Hz" if slow else f"at {pitch:.4g} Hz"
+        return Answer({**data, "silent": f"It moves {told}, which nobody hears."})
     wave = audible(motion, dof=dof, fade=FADE)
-    factor, unit = scaled("m", wave)
+    factor, unit = scaled(system.units[dof], wave)
     data |= {
         "unit": unit,
         "factor": factor,

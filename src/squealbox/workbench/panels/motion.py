@@ -12,12 +12,13 @@ from squealbox.stability import complex_modes
 from squealbox.transient import Trajectory, verdict
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.following import followed
-from squealbox.workbench.panels.loudness import loudness
+from squealbox.workbench.panels.loudness import loudest, loudness
 from squealbox.workbench.panels.panel import Answer, Options, Work
 from squealbox.workbench.panels.start import start_and_dof
 
 SAMPLES = 4096  # instants kept: 40 a period over a hundred periods
 DRAWN = 1024  # pairs of least and largest value along the time axis
+SHOWN = 241  # instants at the end in which the brake is seen to move: six periods of a hundred
 LAST = 0.25  # share of the motion that the verdict and the estimate of the sound level are about
 PERIODS = 100  # followed when nothing is given
 CONTACTS = ("exact", "smooth")
@@ -61,14 +62,14 @@ def _signals(motion: Trajectory, dof: int, data: dict[str, Any]) -> Answer:
     metre, size = scaled(unit_at(motion.system, dof), x)
     second, clock = scaled("s", t)
     speed, rate = scaled(unit_at(motion.system, dof, moves=True), v)
-    data |= {"unit": size, "clock": clock, "speed": rate}
+    data |= {"unit": size, "clock": clock, "speed": rate, "lastFrom": float(t[max(len(t) - SHOWN, 0)] / second)}
     judged = verdict(motion, dof=dof)
     data |= {
         "verdict": judged.text,
         "fate": judged.fate,
         "amplitude": finite(judged.amplitude),
         "frequency": finite(judged.frequency),
-        "loud": loudness(motion, dof, begin=float(t[-1] - LAST * (t[-1] - t[0]))),
+        "loud": loudness(motion, loudest(motion), begin=float(t[-1] - LAST * (t[-1] - t[0]))),
         "sticking": [finite(np.mean(motion.mode[:, i] == 0)) for i in range(motion.mode.shape[1])],
         "speeds": [
             [finite(np.min(column)), finite(np.max(column))] for column in motion.sliding_velocity[len(t) // 2 :].T
@@ -76,7 +77,15 @@ def _signals(motion: Trajectory, dof: int, data: dict[str, Any]) -> Answer:
     }
     low, high, at = _hull(t, x)
     late = len(t) // 2
-    arrays = {
+    last = slice(max(len(t) - SHOWN, 0), None)
+    arrays: dict[str, Any] = {
+        "lastTime": (t[last] - t[last][0]) / second,
+        "lastQ": motion.q[last],
+        "lastX": x[last] / metre,
+        "lastV": v[last] / speed,
+        "lastForce": motion.normal_force[last],
+        "lastFriction": motion.friction_force[last],
+        "lastState": motion.mode[last],
         "time": at / second,
         "low": low / metre,
         "high": high / metre,

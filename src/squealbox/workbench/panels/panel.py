@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
-from squealbox.files.analyses import quantity_of, scalar_parameters
-from squealbox.parameters import Parameter, ParameterError
-from squealbox.workbench.sheet import read_in, slider, usual_value
+from squealbox.parameters import ParameterError
+from squealbox.workbench.sheet import read_in, slider, usual_value, varied
 
 
 class OptionError(ValueError):
@@ -109,7 +109,7 @@ class Options:
 
     def parameter(self, name: str, design: Design, *usual: str) -> str:
         """The name of a parameter a study can vary; left out, the first of `usual` that the design has."""
-        known = scalar_parameters(design)
+        known = varied(design)
         value = self.given.get(name)
         if value is None:
             return next((each for each in usual if each in known), next(iter(known)))
@@ -119,7 +119,7 @@ class Options:
 
     def span(self, name: str, design: Design, parameter: str) -> tuple[float, float]:
         """The ends [SI] of an axis: those given as ``[low, high]`` or where the parameter's slider runs."""
-        about, value = quantity_of(design, parameter), float(design.value_of(parameter) or 0.0)
+        about, value = varied(design)[parameter], float(design.value_of(parameter) or 0.0)
         given = self.given.get(name)
         if given is None:
             low, high = slider(value, about)
@@ -134,9 +134,11 @@ class Options:
 
 def axis_of(design: Design, parameter: str) -> dict[str, Any]:
     """How an axis of this parameter is read: its name, unit and factor to SI."""
-    about: Parameter = quantity_of(design, parameter)
+    about = varied(design)[parameter]
     head, _, name = parameter.rpartition(".")
     owner = design.value_of(head) if head else design
+    while isinstance(owner, Countermeasure) and name not in owner.field_names():
+        owner = owner.brake
     unit, factor = read_in(about, usual_value(owner, owner.aliases.get(name, (name,))[0]))
     return {"parameter": parameter, "unit": unit, "factor": factor, "meaning": about.meaning}
 

@@ -8,6 +8,7 @@ from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
 MOST_BARS = 16
+ROUND_OFF = 1e-12  # of the eigenvalue: smaller changes of its real part are none
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
@@ -21,7 +22,8 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         return Answer({"outcome": "no_derivative", "message": str(error), "bars": []})
     turn = np.sign(np.imag(found.eigenvalue)) / (2.0 * np.pi)
     change = 0.01 * found.values * found.first
-    order = [i for i in np.argsort(-np.abs(change.real), kind="stable") if np.isfinite(change[i])]
+    none = ROUND_OFF * abs(found.eigenvalue)
+    order = [i for i in np.argsort(-np.abs(change.real), kind="stable") if abs(change[i].real) > none]
     bars = [
         {
             "name": found.parameters[i],

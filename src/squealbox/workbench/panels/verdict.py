@@ -6,6 +6,7 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.stability import complex_modes, critical_values, mechanism
+from squealbox.system import equilibrium
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, Options, Work, axis_of, try_value
 
@@ -22,6 +23,9 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     if not bool(modes.exists):
         return Answer({**data, "state": "unknown", "reason": modes.outcome.message})
     worst = modes.most_unstable
+    forces = np.atleast_1d(equilibrium(design.system()).normal_force)
+    names = design.system().contact_names
+    data["pulled"] = [[name, float(force)] for name, force in zip(names, forces, strict=True) if force < 0.0]
     data |= {"growth": worst.growth_rate, "frequency": worst.frequency, "damping": finite(worst.damping_ratio)}
     data["near"] = bool(np.any(modes.near_defective))
     if bool(modes.stable):

@@ -8,6 +8,7 @@ import { typographic } from "./numbers.js";
 import { Opener } from "./opener.js";
 import { Panel } from "./panel.js";
 import { Parameters } from "./parameters.js";
+import { Questions } from "./questions.js";
 import { Store } from "./store.js";
 import { chooseTheme, nextTheme } from "./theme.js";
 import { Verdict } from "./verdict.js";
@@ -33,7 +34,8 @@ class App extends EventTarget {
     this.verdict = new Verdict(this, byId("verdict"));
     this.views.push(this.drawing.view, this.verdict.view);
     this.opener = new Opener(this);
-    this.store.busy = () => this.panels.get(LEADING)?.view.busy ?? false;
+    this.questions = new Questions(this, byId("questions"), byId("panels"));
+    this.store.busy = () => this.#leading()?.busy ?? false;
     this.store.addEventListener("changed", (event) => this.#changed(event.detail?.fields));
     this.store.addEventListener("history", () => this.#history());
     this.connection.addEventListener("hello", (event) => this.#hello(event.detail));
@@ -52,12 +54,18 @@ class App extends EventTarget {
   }
 
   answered(name) {
-    if (name === LEADING) this.store.answered();
+    if (name === this.#leading()?.name) this.store.answered();
+  }
+
+  /** The view that a moving slider waits for: the modes where they are on the screen, else the verdict. */
+  #leading() {
+    const view = this.panels.get(LEADING)?.view;
+    return view?.visible ? view : this.verdict.view;
   }
 
   /** Ask the leading view and the drawing at once, and the others when the slider rests or has moved for long. */
   #update() {
-    const leading = this.panels.get(LEADING)?.view;
+    const leading = this.#leading();
     leading?.update();
     this.drawing.view.update();
     const now = performance.now();
@@ -80,9 +88,9 @@ class App extends EventTarget {
   }
 
   /** What the motion panel found goes into the verdict and onto the friction curve. */
-  heard(data) {
+  heard({ data, arrays }) {
     const text = typographic(data.verdict ?? data.message);
-    this.motion = { design: this.store.design, text, speeds: data.speeds, fate: data.fate, loud: data.loud, of: data.names[data.dof] };
+    this.motion = { design: this.store.design, text, arrays, clock: data.clock, from: data.lastFrom, speeds: data.speeds, fate: data.fate, loud: data.loud };
     this.verdict.amplitude(this.motion);
     this.dispatchEvent(new Event("motion"));
   }
@@ -172,6 +180,7 @@ class App extends EventTarget {
       this.views.push(panel.view);
       byId("panels").append(panel.element);
     });
+    this.questions.show();
     if (hello.text && !address) await this.open(hello.text);
     else if (!(await this.follow(address))) await this.#sheet();
   }
@@ -180,10 +189,11 @@ class App extends EventTarget {
     this.ready = false;
     document.body.dataset.connected = "no";
     byId("link-state").textContent = this.hello ? "the server does not answer; waiting for it" : "no connection";
-    for (const view of this.views) view.forget();
+    for (const view of this.views) view.lost();
   }
 
   async #changed(fields) {
+    for (const view of this.views) view.stale();
     if (fields) await this.#sheet();
     else this.#update();
   }

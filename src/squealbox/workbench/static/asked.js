@@ -1,6 +1,6 @@
 // A panel that computes only when it is asked to: it remembers for which design that was, and says when it is another.
 
-import { make } from "./elements.js";
+import { make, note } from "./elements.js";
 
 export class Asked {
   /** `state()` is what of the design the panel depends on; `words` says what to press. */
@@ -21,6 +21,7 @@ export class Asked {
   }
 
   ask() {
+    if (!this.panel.app.ready) return note("The server does not answer. Press again when it does.");
     this.wanted = this.key;
     this.panel.view.forget();
     this.panel.view.visible = true;
@@ -32,12 +33,6 @@ export class Asked {
     this.panel.element.dataset.state = "stale";
     this.panel.says.textContent = `Of an earlier design. ${this.words}`;
   }
-}
-
-/** A stylesheet beside the page's own, once. */
-export function style(name) {
-  if (document.querySelector(`link[href="/static/${name}"]`)) return;
-  document.head.append(make("link", { rel: "stylesheet", href: `/static/${name}` }));
 }
 
 /** A button of a panel. */

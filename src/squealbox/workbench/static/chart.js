@@ -8,6 +8,7 @@ import { shade } from "./theme.js";
 
 const d3 = window.d3;
 const MARGIN = { top: 8, right: 14, bottom: 42, left: 58 };
+const WAVE = Array.from({ length: 60 }, (_, i) => [i / 59, 0.5 + 0.4 * Math.sin(i / 3) * Math.exp(-i / 60)]);
 const LETTER = 7; // px a digit of the axes is wide
 
 // What can be drawn. Each is { kind, ... }; `cls` chooses the look in workbench.css.
@@ -20,14 +21,16 @@ export const band = (from, to, about = {}) => ({ kind: "band", from, to, cls: "u
 export const text = (x, y, words, about = {}) => ({ kind: "text", x, y, words, cls: "label", ...about });
 export const path = (rings, about = {}) => ({ kind: "path", rings, cls: "boundary", ...about });
 
+export const BENT = [[[0, 0.02], [0.5, 0.02]], [[0.5, 0.02], [0.42, 0.25], [0.28, 0.45], [0.2, 0.6], [0.24, 0.72], [0.5, 0.86], [1, 1]]];
+
 export class Chart {
-  constructor(place, { height = 230, title = "", name = "figure", margin = {} } = {}) {
+  constructor(place, { height = 230, title = "", name = "figure", margin = {}, like = [WAVE], awaited = "being computed" } = {}) {
     this.margin = { ...MARGIN, ...margin };
-    this.height = height;
+    Object.assign(this, { height, like, awaited });
     this.name = name;
     this.figure = d3.select(place).append("figure").attr("class", "chart").attr("data-figure", name);
     if (title) this.figure.append("figcaption").text(title);
-    this.frame = this.figure.append("div").attr("class", "frame").style("height", `${height}px`);
+    this.frame = this.figure.append("div").attr("class", "frame fills").style("height", `${height}px`);
     this.canvas = this.frame.append("canvas").node();
     this.svg = this.frame.append("svg").attr("role", "img").attr("aria-label", title || name).attr("height", height);
     this.clip = `clip-${Math.random().toString(36).slice(2)}`;
@@ -44,11 +47,26 @@ export class Chart {
     this.reader.append("circle").attr("r", 3.5);
     this.reader.append("text").attr("class", "reading");
     this.svg.on("mousemove", () => this.#read(d3.mouse(this.svg.node()))).on("mouseleave", () => this.#silent());
-    new ResizeObserver(() => this.spec && this.draw(this.spec)).observe(this.frame.node());
+    new ResizeObserver(() => (this.spec ? this.draw(this.spec) : this.#sketch())).observe(this.frame.node());
   }
 
-  draw(spec) {
-    this.spec = spec;
+  /** What will stand here, until the first answer: a curve of its kind and a word of what is awaited. */
+  #sketch() {
+    const { clientWidth: width, clientHeight: height } = this.frame.node();
+    if (!width) return;
+    this.svg.attr("width", width).attr("height", height).attr("viewBox", `0 0 ${width} ${height}`);
+    this.sketched ??= this.svg.append("g").attr("class", "sketch");
+    this.sketched.selectAll("*").remove();
+    const place = ([x, y]) => `${(width * (0.08 + 0.86 * x)).toFixed(1)},${(height * (0.86 - 0.72 * y)).toFixed(1)}`;
+    for (const curve of [[[0, 1], [0, 0], [1, 0]], ...this.like]) this.sketched.append("path").attr("d", `M${curve.map(place).join("L")}`);
+    this.sketched.append("text").attr("x", width / 2).attr("y", height * 0.97).text(this.awaited);
+  }
+
+  draw(given) {
+    this.sketched?.remove();
+    this.height = this.frame.node().clientHeight || this.height;
+    this.svg.attr("height", this.height);
+    const spec = (this.spec = { ...given, layers: given.layers.filter(drawable) });
     const { top, right, bottom } = this.margin;
     const left = (this.margin.left = this.#room(spec.y));
     const width = Math.max(this.frame.node().clientWidth, 180);
@@ -155,6 +173,12 @@ export class Chart {
       .text(`${best.name ? `${best.name}: ` : ""}${shown(best.vx)}, ${shown(best.vy)}`);
   }
 
+  /** Where the brake that moves is now. */
+  mark(x, y) {
+    this.cursor ??= this.svg.append("circle").attr("class", "cursor").attr("r", 5);
+    this.cursor.attr("cx", this.x(x)).attr("cy", this.y(y));
+  }
+
   #silent() {
     this.reader.attr("display", "none");
   }
@@ -179,9 +203,14 @@ export class Chart {
   }
 }
 
+const LARGEST = 1e150; // beyond which differences and squares of an axis are no numbers
+
+/** False for a mark whose place is no number: it would be an attribute no browser reads. */
+const drawable = (layer) => ["x", "y", "from", "to"].every((name) => typeof layer[name] !== "number" || Math.abs(layer[name]) < LARGEST);
+
 function scale(axis, range) {
   const made = axis.log ? d3.scaleLog() : d3.scaleLinear();
-  made.domain(axis.domain).range(range);
+  made.domain(axis.domain.every((end) => Math.abs(end) < LARGEST) ? axis.domain : [0, 1]).range(range);
   return axis.nice ? made.nice() : made;
 }
 
@@ -224,11 +253,12 @@ const DRAW = {
     const up = [];
     const down = [];
     for (let i = 0; i < layer.x.length; i++) {
-      const px = x(layer.x[i]).toFixed(1);
-      up.push(`${px},${y(layer.high[i]).toFixed(1)}`);
-      down.push(`${px},${y(layer.low[i]).toFixed(1)}`);
+      const [px, top, foot] = [x(layer.x[i]), y(layer.high[i]), y(layer.low[i])].map((value) => value.toFixed(1));
+      if ([px, top, foot].includes("NaN")) continue;
+      up.push(`${px},${top}`);
+      down.push(`${px},${foot}`);
     }
-    single(group, "path").attr("class", "area").attr("d", `M${up.join("L")}L${down.reverse().join("L")}Z`);
+    single(group, "path").attr("class", "area").attr("d", up.length ? `M${up.join("L")}L${down.reverse().join("L")}Z` : null);
   },
   points(group, layer, { x, y }) {
     const places = Array.from(layer.x, (value, i) => [x(value), y(layer.y[i])]).filter((p) => p.every(Number.isFinite));

@@ -31,9 +31,8 @@ export class Connection extends EventTarget {
   }
 
   start() {
-    const query = new URLSearchParams(location.search);
-    const token = query.get("token");
-    const address = `ws://${location.host}/ws${token ? `?token=${encodeURIComponent(token)}` : ""}`;
+    this.token ??= new URLSearchParams(location.search).get("token");
+    const address = `ws://${location.host}/ws${this.token ? `?token=${encodeURIComponent(this.token)}` : ""}`;
     this.socket = new WebSocket(address);
     this.socket.binaryType = "arraybuffer";
     this.socket.onmessage = (event) => this.#take(unframed(event.data));
@@ -52,6 +51,7 @@ export class Connection extends EventTarget {
 
   #take(frame) {
     if (frame.kind === "hello") {
+      if (location.search) history.replaceState(null, "", location.pathname + location.hash); // a cookie holds the token now
       this.open = true;
       this.pause = 250;
       this.dispatchEvent(new CustomEvent("hello", { detail: frame }));

@@ -4,6 +4,7 @@ import { View } from "./view.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const SIZE = { width: 300, height: 240 };
+const HEAD = 8;
 const GREEK = { "\\Omega": "Ω", "\\theta": "θ" };
 
 export class Drawing {
@@ -12,60 +13,84 @@ export class Drawing {
     this.place = place;
     this.view = new View(app, "drawing", {
       request: () => ({ state: app.store.design, options: {} }),
-      draw: (frame) => this.draw(frame.data),
+      draw: (frame) => this.draw(frame),
       status: (kind, frame) => this.status(kind, frame),
     });
   }
 
   status(kind, frame) {
-    this.place.dataset.state = kind;
+    this.place.dataset.state = kind === "progress" ? "waiting" : kind;
     this.app.problems(kind === "wrong" ? frame.wrong : []);
   }
 
-  draw({ strokes, box }) {
-    this.place.hidden = !strokes.length;
-    const [left, right, bottom, top] = box;
-    const room = 10;
-    const scale = Math.min((SIZE.width - 2 * room) / (right - left || 1), (SIZE.height - 2 * room) / (top - bottom || 1));
-    const dx = (SIZE.width - scale * (right - left)) / 2;
-    const dy = (SIZE.height - scale * (top - bottom)) / 2;
-    const at = ([x, y]) => [dx + scale * (x - left), SIZE.height - dy - scale * (y - bottom)];
-    const svg = element("svg", { viewBox: `0 0 ${SIZE.width} ${SIZE.height}`, role: "img", "aria-label": "Drawing of the brake" });
-    for (const stroke of strokes) svg.append(...DRAW[stroke.kind](stroke, at, scale));
-    this.place.replaceChildren(svg);
+  draw({ data, arrays }) {
+    this.place.replaceChildren(drawn(data, arrays.points, "Drawing of the brake").svg);
   }
 }
 
+/** A drawing as SVG; `parts(read)` puts each of its points where `read(number)` says, `at` is where that is in the picture. */
+export function drawn({ strokes, box }, points, words) {
+  const [left, right, bottom, top] = box;
+  const room = 10;
+  const scale = Math.min((SIZE.width - 2 * room) / (right - left || 1), (SIZE.height - 2 * room) / (top - bottom || 1));
+  const dx = (SIZE.width - scale * (right - left)) / 2;
+  const dy = (SIZE.height - scale * (top - bottom)) / 2;
+  const at = ([x, y]) => [dx + scale * (x - left), SIZE.height - dy - scale * (y - bottom)];
+  const svg = element("svg", { viewBox: `0 0 ${SIZE.width} ${SIZE.height}`, role: "img", "aria-label": words });
+  let next = 0;
+  const pieces = strokes.map((stroke) => {
+    const own = Array.from({ length: stroke.count }, (_, i) => next + i);
+    next += stroke.count;
+    const [nodes, put] = DRAW[stroke.kind](stroke, scale);
+    svg.append(...nodes);
+    return (read) => put(own.map((p) => at(read(p))));
+  });
+  const parts = (read) => pieces.forEach((piece) => piece(read));
+  parts((p) => [points[2 * p], points[2 * p + 1]]);
+  return { svg, parts, at };
+}
+
+const joined = (spots) => spots.map(([x, y]) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ");
+
+// Each gives its nodes, and a function that puts them at the spots of its points.
 const DRAW = {
-  line: (s, at) => [element("polyline", { points: s.points.map((p) => at(p).join(",")).join(" "), class: `stroke ${s.role}`, "stroke-width": 0.5 + 0.8 * s.width, ...(s.dashed ? { "stroke-dasharray": "5 3" } : {}) })],
-  polygon: (s, at) => [element("polygon", { points: s.points.map((p) => at(p).join(",")).join(" "), class: `solid ${s.role} ${tint(s.fill)}` })],
-  circle: (s, at, scale) => {
-    const [cx, cy] = at(s.at);
-    return [element("circle", { cx, cy, r: s.filled ? 3 : s.radius * scale, class: s.filled ? "dot" : `solid ${s.role} ${tint(s.fill)}` })];
+  line(s) {
+    const node = element("polyline", { class: `stroke ${s.role}`, "stroke-width": 0.5 + 0.8 * s.width, ...(s.dashed ? { "stroke-dasharray": "5 3" } : {}) });
+    return [[node], (spots) => node.setAttribute("points", joined(spots))];
   },
-  arrow: (s, at) => {
-    const [a, b] = [at(s.start), at(s.end)];
-    const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
-    const along = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
-    const head = Math.min(8, length);
-    const back = [b[0] - head * along[0], b[1] - head * along[1]];
-    const side = [-along[1] * head * 0.42, along[0] * head * 0.42];
-    const corners = [b, [back[0] + side[0], back[1] + side[1]], [back[0] - side[0], back[1] - side[1]]];
-    return [
-      element("line", { x1: a[0], y1: a[1], x2: back[0], y2: back[1], class: `stroke arrow ${s.role}`, "stroke-width": 2 }),
-      element("polygon", { points: corners.map((p) => p.join(",")).join(" "), class: `head ${s.role}` }),
-    ];
+  polygon(s) {
+    const node = element("polygon", { class: `solid ${s.role} ${tint(s.fill)}` });
+    return [[node], (spots) => node.setAttribute("points", joined(spots))];
   },
-  text: (s, at) => {
-    const [x, y] = at(s.at);
+  circle(s, scale) {
+    const node = element("circle", { r: s.filled ? 3 : s.radius * scale, class: s.filled ? "dot" : `solid ${s.role} ${tint(s.fill)}` });
+    return [[node], ([[x, y]]) => set(node, { cx: x, cy: y })];
+  },
+  arrow(s) {
+    const shaft = element("line", { class: `stroke arrow ${s.role}`, "stroke-width": 2 });
+    const head = element("polygon", { class: `head ${s.role}` });
+    return [[shaft, head], ([a, b]) => arrow(shaft, head, a, b)];
+  },
+  text(s) {
     const anchor = { left: "start", right: "end" }[s.anchor] ?? "middle";
-    return s.text.split("\n").map((words, i) => {
-      const node = element("text", { x, y: y + 4 + 14 * i, "text-anchor": anchor, class: `words ${s.role}` });
+    const nodes = s.text.split("\n").map((words) => {
+      const node = element("text", { "text-anchor": anchor, class: `words ${s.role}` });
       node.append(...symbols(words));
       return node;
     });
+    return [nodes, ([[x, y]]) => nodes.forEach((node, i) => set(node, { x, y: y + 4 + 14 * i }))];
   },
 };
+
+/** A shaft from a to b with a head that is never smaller than can be seen. */
+export function arrow(shaft, head, a, b) {
+  const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
+  const along = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
+  const back = [b[0] - HEAD * along[0], b[1] - HEAD * along[1]];
+  const side = [-along[1] * HEAD * 0.45, along[0] * HEAD * 0.45];
+  set(shaft, { x1: a[0], y1: a[1], x2: back[0], y2: back[1] });
+  head.setAttribute("points", joined([b, [back[0] + side[0], back[1] + side[1]], [back[0] - side[0], back[1] - side[1]]]));
+}
 
 /** `$k_1, c_1$` with its subscripts. */
 function symbols(words) {
@@ -90,8 +115,10 @@ function symbols(words) {
 
 const tint = (fill) => (fill === "#ffffff" ? "hollow" : fill === "#e6c9a8" ? "lining" : "filled");
 
-function element(tag, about) {
+export const set = (node, about) => Object.entries(about).forEach(([name, value]) => node.setAttribute(name, value));
+
+export function element(tag, about) {
   const made = document.createElementNS(SVG, tag);
-  for (const [name, value] of Object.entries(about)) made.setAttribute(name, value);
+  set(made, about);
   return made;
 }

@@ -51,7 +51,7 @@ export function typed(text, field) {
     return { wrong: `“${found[1]}” may mean ${found[1].replace(",", "")} or ${found[1].replace(",", ".")}, write one of these` };
   }
   const value = Number(found[1].replace(",", "."));
-  if (!Number.isFinite(value)) return { wrong: `“${text}” is larger than any number here` };
+  if (!Number.isFinite(value) || (value === 0 && /[1-9]/.test(found[1].split(/e/i)[0]))) return { wrong: `“${text}” is ${value ? "larger" : "smaller"} than any number here` };
   const unit = found[2];
   if (!unit || unit === field.unit || unit === raised(field.unit)) return { value };
   const kind = UNITS.find((each) => field.unit in each && unit in each);

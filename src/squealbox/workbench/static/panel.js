@@ -83,6 +83,12 @@ export class Panel {
     return typeof value === "number" ? [Math.min(low, value), Math.max(high, value)] : [low, high];
   }
 
+  /** On the screen of the question that is asked, or nowhere. */
+  show(shown) {
+    this.element.hidden = !shown;
+    if (!shown) this.view.visible = false;
+  }
+
   request() {
     if (!this.app.store.sheet) return null;
     const options = this.module.options(this);
@@ -98,13 +104,13 @@ export class Panel {
     else if (kind === "waiting") this.#slowly();
     else if (kind === "wrong") this.says.textContent = frame.wrong.map((each) => (each.field ? `${each.field}: ` : "") + each.message).join("; ");
     else this.says.textContent = frame?.message ?? SAYS[kind] ?? kind;
-    this.stopper.hidden = !(this.about.slow && (kind === "waiting" || kind === "progress"));
+    this.stopper.hidden = !(this.view.slow && (kind === "waiting" || kind === "progress"));
   }
 
   #slowly() {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => {
-      if (this.element.dataset.state === "waiting" && !this.says.textContent.includes("%")) this.says.replaceChildren("computing … ", this.stopper);
+      if (this.element.dataset.state === "waiting" && !this.says.textContent.includes("%")) this.says.replaceChildren(...(this.app.ready ? ["computing … ", this.stopper] : ["the server does not answer; this is of an earlier design"]));
     }, 400);
   }
 

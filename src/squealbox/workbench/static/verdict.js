@@ -15,7 +15,7 @@ export class Verdict {
     this.view = new View(app, "verdict", {
       request: () => this.#request(),
       draw: (frame) => this.draw(frame.data),
-      status: (kind) => (place.dataset.state = kind),
+      status: (kind) => (place.dataset.state = kind === "progress" ? "waiting" : kind),
     });
   }
 
@@ -29,9 +29,18 @@ export class Verdict {
   draw(data) {
     this.data = data;
     const place = this.place;
-    place.dataset.verdict = data.state;
-    place.replaceChildren(make("p", { class: "state" }, headline(data)), make("p", { class: "why" }, ...why(data)), make("p", { class: "quiet" }, caveats(data)));
+    const beside = this.#beside();
+    place.dataset.verdict = beside ? "beside" : data.state;
+    place.replaceChildren(make("p", { class: "state" }, headline(data), beside ? ", but a push can start a vibration that stays" : ""), make("p", { class: "why" }, ...why(data)), make("p", { class: "quiet" }, caveats(data)));
     this.amplitude(this.motion);
+  }
+
+  /** Has a limit cycle been found beside the stable sliding of this design? */
+  #beside() {
+    const { beside, store } = this.app;
+    if (!beside?.current() || this.data.state !== "stable") return false;
+    const value = store.value(beside.axis.parameter) / beside.axis.factor;
+    return beside.together.some(([low, high]) => value >= low && value <= high);
   }
 
   /** What the motion panel found, while it belongs to the same design. */
@@ -45,12 +54,12 @@ export class Verdict {
 }
 
 /** The estimate of the sound level with what it rests on; a motion that dies away has none. */
-function loud({ fate, loud: found, of }) {
+function loud({ fate, loud: found }) {
   if (!found || fate === "decays" || fate === "not_decided") return [];
   if (found.level === null || found.level < 0) return ["Nothing of it can be heard."];
-  const level = make("b", {}, `about ${shown(found.weighted, 2)} dB(A) at 1 m`);
+  const level = make("b", {}, `about ${Math.round(found.weighted)} dB(A) at 1 m`);
   const until = fate === "grows" ? " at the end of the run, and rising" : "";
-  return [`Sound of ${of}: `, level, `${until}, an estimate: ${shown(1e4 * found.area)} cm² moving as a whole; a real brake may be 10 dB louder or quieter.`];
+  return [`Sound of ${found.of}: `, level, `${until}, an estimate: ${shown(1e4 * found.area)} cm² moving as a whole; a real brake may be 10 dB louder or quieter.`];
 }
 
 function headline(data) {
@@ -96,7 +105,8 @@ function margin(data) {
 }
 
 function caveats(data) {
-  const words = ["Linear and about steady sliding: it says whether squeal can start, not how loud it gets; stable sliding can still squeal after a push."];
+  const words = data.pulled?.length ? [`${data.pulled.map(([name, force]) => `${name} is pulled (${withUnit(force, "N")})`).join(", ")}: a contact that cannot pull would lift off.`] : [];
+  words.push("Linear and about steady sliding: it says whether squeal can start, not how loud it gets; stable sliding can still squeal after a push.");
   if (data.near) words.push("Two modes nearly merge here: growth rate and shares react strongly to small changes.");
   return words.join(" ");
 }

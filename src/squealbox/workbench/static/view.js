@@ -35,7 +35,7 @@ export class View {
 
   /** What is drawn may be that of an older design: say so until it is asked for. */
   stale() {
-    if (!this.visible || !this.app.ready) return;
+    if (!this.visible) return;
     const question = this.request();
     if (question && JSON.stringify(question) !== this.drawn) this.#tell("waiting");
   }
@@ -50,10 +50,18 @@ export class View {
     this.drawn = null;
   }
 
+  /** The server is gone: what is drawn is kept, and is pale from the first change on. */
+  lost() {
+    this.asked = null;
+  }
+
   #ask(question, key) {
     this.asked = key;
     this.app.connection
-      .ask({ view: this.name, ...question }, (progress) => this.status("progress", progress))
+      .ask({ view: this.name, ...question }, (progress) => {
+        this.slow = true; // a newer question need not wait for it
+        this.status("progress", progress);
+      })
       .then((frame) => this.#answered(frame, key))
       .catch((error) => {
         if (!(error instanceof Disconnected)) throw error;

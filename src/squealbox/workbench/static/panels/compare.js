@@ -1,13 +1,12 @@
 // Two designs beside each other: A is kept, B is the one on the page.
 
-import { button, style } from "../asked.js";
+import { button } from "../asked.js";
 import { Chart, across, line, span, upright } from "../chart.js";
 import { make } from "../elements.js";
 import { label, prefix, shown, withUnit } from "../numbers.js";
 
 export default {
   setup(panel) {
-    style("extras.css");
     panel.parameterChoice("over", "parameter", "friction.static");
     panel.keys = {
       keep: button("Keep this as A", () => keep(panel), { title: "Keep the design on the page as A" }),

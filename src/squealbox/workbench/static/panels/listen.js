@@ -1,10 +1,11 @@
 // The motion as sound at its true frequency, now and before a change, and both as files.
 
-import { Asked, button, style } from "../asked.js";
+import { Asked, button } from "../asked.js";
 import { Chart, line, span } from "../chart.js";
 import { make } from "../elements.js";
 import { download } from "../export.js";
 import { label, shown, withUnit } from "../numbers.js";
+import { fullScale, silence, sound } from "../sound.js";
 import { degrees, startOf } from "../start.js";
 import { wavBlob } from "../wav.js";
 
@@ -13,7 +14,6 @@ const FADED = 0.03; // s at the end that the drawing leaves out
 
 export default {
   setup(panel) {
-    style("extras.css");
     panel.heard = { now: null, kept: null };
     panel.asked = new Asked(panel, "Press Play.");
     const press = (text, what, about) => button(text, what, about);
@@ -21,7 +21,7 @@ export default {
       now: press("Play", () => play(panel, "now"), { title: "Compute and play the motion of this design" }),
       keep: press("Keep as before", () => keep(panel), { disabled: true, title: "Keep this sound, then change the design and play again" }),
       kept: press("Play before", () => play(panel, "kept"), { disabled: true }),
-      still: press("Stop", () => panel.source?.stop()),
+      still: press("Stop", silence),
       wav: press("WAV", () => save(panel), { disabled: true, title: "Save the sound as WAV files" }),
     };
     panel.ratio = make("input", { type: "checkbox", checked: true });
@@ -30,7 +30,7 @@ export default {
     const ratio = make("label", { title: "Both as loud as they are to each other; else each as loud as can be" }, panel.ratio, " true ratio");
     panel.body.append(make("div", { class: "buttons" }, ...Object.values(panel.keys), ratio));
     panel.words = make("div", { class: "quiet" });
-    panel.charts = [new Chart(panel.body, { name: "sound", height: 170, title: "The end of the sound" })];
+    panel.charts = [new Chart(panel.body, { name: "sound", height: 170, title: "The end of the sound", awaited: "the sound: press Play" })];
     panel.body.append(panel.words);
   },
 
@@ -54,8 +54,6 @@ export default {
 
 /** Play what is kept, or the present design: computed first where that has not been done. */
 function play(panel, which) {
-  panel.audio ??= new AudioContext();
-  panel.audio.resume();
   if (which === "kept" || (panel.asked.current && panel.heard.now)) sounding(panel, panel.heard[which]);
   else {
     panel.waiting = true;
@@ -74,22 +72,10 @@ const loudness = (data) => (data.level === null || data.level < 0 ? "and dies aw
 
 const size = (heard) => heard.largest; // in m
 
-/** What full scale stands for [m]: each its own, or quieter by the difference of the estimated levels. */
-function loudest(panel, heard) {
-  const levels = Object.values(panel.heard).filter(Boolean).map((each) => each.weighted ?? -Infinity);
-  const below = panel.ratio.checked && heard.weighted !== null ? Math.max(...levels) - heard.weighted : 0;
-  return size(heard) * 10 ** (below / 20);
-}
+const loudest = (panel, heard) => fullScale(heard, Object.values(panel.heard).filter(Boolean), panel.ratio.checked);
 
 function sounding(panel, heard) {
-  panel.source?.stop();
-  const buffer = panel.audio.createBuffer(1, heard.wave.length, heard.rate);
-  const scale = (0.9 * heard.factor) / loudest(panel, heard);
-  buffer.copyToChannel(heard.wave.map((value) => value * scale), 0);
-  panel.source = panel.audio.createBufferSource();
-  panel.source.buffer = buffer;
-  panel.source.connect(panel.audio.destination);
-  panel.source.start();
+  sound(heard, loudest(panel, heard));
   panel.element.dataset.played = heard.pitch;
 }
 

@@ -18,6 +18,7 @@ export default {
     );
     const place = make("div", { class: "charts two" });
     panel.body.append(place);
+    panel.app.addEventListener("cursor", ({ detail }) => panel.element.dataset.state === "drawn" && panel.cursor?.(detail));
     panel.charts = [
       new Chart(place, { name: "time", title: "Displacement", height: 190 }),
       new Chart(place, { name: "spectrum", title: "Spectrum of the second half", height: 190 }),
@@ -30,7 +31,7 @@ export default {
 
   draw(panel, { data, arrays }) {
     degrees(panel, data);
-    panel.app.heard(data);
+    panel.app.heard({ data, arrays });
     panel.remark = [data.verdict, data.caution, data.outcome === "completed" ? "" : `${data.message}.`].filter(Boolean).map(typographic).join(" ");
     panel.element.dataset.fate = data.fate ?? "";
     panel.element.dataset.frequency = data.peaks?.[0]?.[0] ?? "";
@@ -47,6 +48,10 @@ export default {
       y: { label: label(`d${name}/dt`, data.speed), domain: span([arrays.v]) },
       layers: [line(arrays.x, arrays.v, { cls: "s1 thin" })],
     });
+    panel.cursor = (k) => {
+      phase.mark(arrays.lastX[k], arrays.lastV[k]);
+      time.mark(data.lastFrom + arrays.lastTime[k], arrays.lastX[k]);
+    };
     if (!arrays.hertz) return;
     const [factor, hertz] = prefix("Hz", arrays.hertz.at(-1));
     const f = arrays.hertz.map((each) => each / factor);

@@ -1,12 +1,11 @@
 // The report of the present design: one HTML file, handed over when it is made.
 
-import { Asked, button, style } from "../asked.js";
+import { Asked, button } from "../asked.js";
 import { make } from "../elements.js";
 import { download } from "../export.js";
 
 export default {
   setup(panel) {
-    style("extras.css");
     panel.files.hidden = true;
     panel.asked = new Asked(panel, "Press Make the report; it takes some seconds.");
     panel.body.append(
@@ -27,6 +26,6 @@ export default {
 };
 
 function fromBar(panel) {
-  panel.element.scrollIntoView({ block: "center" });
+  panel.app.questions.askFor("report");
   panel.asked.ask();
 }

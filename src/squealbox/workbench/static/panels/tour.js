@@ -1,6 +1,6 @@
 // A guided tour of the paper of 2011: steps that set the design, what to look at, and the verdicts on its claims.
 
-import { Asked, button, style } from "../asked.js";
+import { Asked, button } from "../asked.js";
 import { make } from "../elements.js";
 
 const SIGNS = { agree: "✓ agree", disagree: "✗ disagree", "not decidable": "? not decidable" };
@@ -8,7 +8,6 @@ const LOOK = { locus: "modes", map: "map", friction: "friction curve", motion: "
 
 export default {
   setup(panel) {
-    style("extras.css");
     panel.files.hidden = true;
     panel.step = null;
     panel.asked = new Asked(panel, "Start the tour, or judge the design that is shown.", () => reading(panel));
@@ -72,7 +71,7 @@ function show(panel) {
   const step = steps[panel.step];
   const said = step.claims.map((id) => claims.find((claim) => claim.id === id));
   const computed = panel.asked.current || panel.asked.wanted === null;
-  panel.card.replaceChildren(
+  panel.card.replaceChildren(...[
     make("h3", {}, `${panel.step + 1} of ${steps.length}: ${step.title}`),
     make("p", {}, step.text),
     said.length ? make("p", { class: "quiet" }, `What the paper claims, for reading ${read}:`) : null,
@@ -83,12 +82,13 @@ function show(panel) {
       button("Next", () => go(panel, panel.step + 1), { disabled: panel.step === steps.length - 1 }),
       button("End the tour", () => end(panel)),
     ),
-  );
+  ].filter(Boolean));
   panel.card.dataset.step = panel.step;
 }
 
 function look(panel, name) {
   const { element } = panel.app.panels.get(name);
+  panel.app.questions.askFor(name);
   element.scrollIntoView({ block: "start", behavior: "smooth" });
   element.classList.add("looked");
   setTimeout(() => element.classList.remove("looked"), 2000);

@@ -1,0 +1,76 @@
+"""What silences it: the ranked table of cures, each with what the page has to change to have it."""
+
+import ast
+import dataclasses
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from squealbox.designs import Design
+from squealbox.files import NotWritable
+from squealbox.files.writing import design_text
+from squealbox.parameters import ParameterError
+from squealbox.remedies import Candidate, Remedies, candidates_for, silence
+from squealbox.remedies.candidates import more_friction
+from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
+from squealbox.workbench.sheet import page_name
+
+SAMPLES = 1024  # brakes of the lot
+READ_IN = {"rad": ("deg", np.pi / 180.0), "N/m": ("kN/mm", 1e6), "m/N": ("mm/kN", 1e-6)}
+CHANGE = "brake.replace("  # how the line of a cure begins that is another value of a parameter
+
+
+def answer(design: Design, options: Options, work: Work) -> Answer:
+    """Rows of cures, the best first: numbers, words, and either other values or the text of the cured brake's file."""
+    margin = options.number("margin", 0.1, 0.0, 2.0)
+    try:
+        chosen = candidates_for(design, more_friction(design, 1.0 + margin))
+        count = len(chosen)
+        watched = [_watched(each, work, i / (count + 1)) for i, each in enumerate(chosen)]
+        table = silence(design, None, watched, margin, samples=int(options.number("samples", SAMPLES, 16, 1e5)))
+    except (ParameterError, ValueError) as error:
+        raise OptionError(f"no cures are known for this brake: {error}") from error
+    data = {
+        "margin": margin,
+        "growth": finite(table.growth_before),
+        "probability": table.before,
+        "amplitude": finite(table.amplitude_before),
+        "assumption": table.assumption,
+        "rows": [_row(table, i) for i in range(len(table))],
+    }
+    return Answer(data)
+
+
+def _watched(each: Candidate, work: Work, share: float) -> Candidate:
+    """A candidate that says when it is tried, and ends the work where nobody waits any more."""
+
+    def make(dose: Any, plain: Callable[[Any], Design] = each.make) -> Design:
+        work.progress(share, f"trying {each.name}")
+        return plain(dose)
+
+    return dataclasses.replace(each, make=make)
+
+
+def _row(table: Remedies, i: int) -> dict[str, Any]:
+    unit, factor = READ_IN.get(str(table.unit[i]), (str(table.unit[i]), 1.0))
+    row: dict[str, Any] = {
+        "name": str(table.name[i]), "dose": float(table.dose[i]) / factor, "unit": unit,
+        "reached": bool(table.reached[i]), "growth": finite(table.growth[i]),
+        "atMargin": finite(table.growth_at_margin[i]), "probability": float(table.probability[i]),
+        "amplitude": finite(table.amplitude[i]), "cost": str(table.cost[i]), "caution": str(table.caution[i]),
+        "python": str(table.line[i]),
+    }  # fmt: skip
+    line = row["python"]
+    if line.startswith(CHANGE):
+        return row | {"values": _page_names(table.inputs["system"], ast.literal_eval(line[len(CHANGE) : -1]))}
+    try:
+        return row | {"text": design_text(table.design(i))}
+    except NotWritable as error:
+        return row | {"refused": str(error)}
+
+
+def _page_names(design: Any, values: dict[str, float]) -> dict[str, float]:
+    """The values under the names the fields of the page have: those of the brake inside its countermeasures."""
+    return {page_name(design, name): value for name, value in values.items()}

@@ -1,0 +1,163 @@
+// The brake in slow motion: a mode with its phases, or the last periods of the motion with stick, slip, lift-off, forces.
+
+import { arrow, drawn, element, set } from "../drawing.js";
+import { choose, make } from "../elements.js";
+import { shown, withUnit } from "../numbers.js";
+
+const SLOW = 2.4; // s that a period of a mode takes, and a sixth of the last periods of a motion
+const REACH = 0.14; // of the drawing's height: the largest movement shown
+const STATES = { 0: "stick", 1: "slip", "-1": "slip", 2: "lifted" };
+const FORCE = 0.28; // of the height: the arrow of the largest force
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+
+export default {
+  setup(panel) {
+    panel.files.hidden = true;
+    panel.pick = make("span");
+    panel.play = make("button", { type: "button", onclick: () => hold(panel), "aria-pressed": "false" }, "Pause");
+    panel.controls.append(panel.pick, panel.play);
+    panel.stage = make("div", { class: "drawing moving" });
+    panel.legend = make("p", { class: "states" }, ...["slip", "stick", "lifted"].flatMap((state) => [make("i", { class: `swatch ${state}` }), `${state} `]));
+    panel.body.append(panel.stage, panel.legend);
+    panel.charts = [];
+    panel.held = still.matches;
+    still.addEventListener("change", () => {
+      panel.held = still.matches;
+      label(panel);
+    });
+    label(panel);
+    panel.app.addEventListener("motion", () => scene(panel));
+    panel.app.store.addEventListener("changed", () => scene(panel));
+    const step = (now) => {
+      requestAnimationFrame(step);
+      if (!panel.element.hidden && panel.view.visible && panel.parts && !panel.held) frame(panel, now);
+    };
+    requestAnimationFrame(step);
+  },
+
+  options: (panel) => ({ mode: panel.chosen.mode ?? 0 }),
+
+  draw(panel, answer) {
+    panel.answer = answer;
+    const { data } = answer;
+    const names = data.modes.map(([hertz, growth], i) => [String(i), `${withUnit(hertz, "Hz")}, ${shown(growth, 3)} 1/s`]);
+    panel.pick.replaceChildren(...(names.length > 1 ? [choose("mode", names, String(data.mode), (mode) => panel.choose({ mode: Number(mode) }))] : []));
+    const { parts, svg, at } = drawn(data, answer.arrays.points, "The brake, moving");
+    panel.stage.replaceChildren(svg);
+    Object.assign(panel, { parts, at });
+    panel.size = data.box[3] - data.box[2];
+    panel.arrows = data.contacts.map((contact) => {
+      const [shaft, head, dot] = [element("line", { class: "stroke force" }), element("polygon", { class: "head force" }), element("circle", { r: 5 })];
+      svg.append(shaft, head, dot);
+      return { contact, shaft, head, dot };
+    });
+    scene(panel);
+  },
+};
+
+function label(panel) {
+  panel.play.textContent = panel.held ? "Move" : "Pause";
+  panel.play.setAttribute("aria-pressed", panel.held);
+}
+
+function hold(panel) {
+  panel.held = !panel.held;
+  label(panel);
+}
+
+/** What is shown: the motion where it is asked what happens and one of this design is known, else the mode. */
+function scene(panel) {
+  if (!panel.answer) return;
+  const { data, arrays } = panel.answer;
+  const { motion } = panel.app;
+  const moves = panel.app.questions.asked === "happens" && motion?.design === panel.app.store.design && motion.arrays?.lastQ;
+  const many = data.names.length;
+  panel.pick.hidden = Boolean(moves);
+  const mean = new Float64Array(many);
+  let at;
+  if (moves) {
+    const q = motion.arrays.lastQ;
+    const rows = q.length / many;
+    for (let i = 0; i < q.length; i++) mean[i % many] += q[i] / rows;
+    at = (share) => {
+      const k = Math.min(Math.floor(share * rows), rows - 1);
+      return { k, q: Array.from(mean, (middle, i) => q[k * many + i] - middle) };
+    };
+    panel.scene = { at, rows, period: 6 * SLOW, motion: motion.arrays, mean };
+    panel.remark = `The last ${shown(motion.arrays.lastTime.at(-1), 3)} ${motion.clock}, over and over; movement enlarged. Arrows: normal forces.`;
+  } else {
+    if (!arrays.re) {
+      panel.remark = `${data.message}.`;
+      return;
+    }
+    at = (share) => ({ k: 0, turn: 2 * Math.PI * share, q: Array.from(arrays.re, (re, i) => re * Math.cos(2 * Math.PI * share) - arrays.im[i] * Math.sin(2 * Math.PI * share)) });
+    panel.scene = { at, rows: 60, period: SLOW, motion: null };
+    panel.remark = data.modes.length ? `${data.mode ? "A mode" : "The mode that grows first"}, ${withUnit(data.modes[data.mode][0], "Hz")}: ${phases(data, arrays)}. Its size is free; growth is left out.` : "";
+  }
+  panel.scale = (REACH * panel.size) / (largest(panel) || 1);
+  panel.legend.hidden = !moves;
+  panel.says.textContent = panel.remark;
+  frame(panel, performance.now());
+}
+
+/** The phase of each freedom that moves much, against the one that moves most. */
+function phases({ names }, { re, im }) {
+  const sizes = Array.from(re, (value, i) => Math.hypot(value, im[i]));
+  const most = sizes.indexOf(Math.max(...sizes));
+  const degree = (i) => Math.round(((Math.atan2(im[i], re[i]) - Math.atan2(im[most], re[most])) * 180) / Math.PI);
+  const others = names.map((name, i) => [name, i]).filter(([, i]) => i !== most && sizes[i] > 0.05 * sizes[most]).slice(0, 3);
+  if (!others.length) return `only ${names[most]} moves`;
+  return others.map(([name, i]) => `${name} ${shown(sizes[i] / sizes[most], 2)} of ${names[most]} and ${Math.abs(((degree(i) + 540) % 360) - 180)}° ${((degree(i) + 540) % 360) - 180 < 0 ? "behind" : "before"}`).join(", ");
+}
+
+/** The largest movement of a point over a period, in units of the drawing. */
+function largest(panel) {
+  const { moves } = panel.answer.arrays;
+  const [many, points] = moves.shape;
+  let found = 0;
+  for (let share = 0; share < 1; share += 1 / 24) {
+    const { q } = panel.scene.at(share);
+    for (let p = 0; p < points; p++) {
+      let x = 0, y = 0;
+      for (let i = 0; i < many; i++) {
+        x += q[i] * moves[2 * (i * points + p)];
+        y += q[i] * moves[2 * (i * points + p) + 1];
+      }
+      found = Math.max(found, Math.hypot(x, y));
+    }
+  }
+  return found;
+}
+
+/** One picture. */
+function frame(panel, now) {
+  if (!panel.scene) return;
+  const { data, arrays } = panel.answer;
+  const share = (now / 1e3 / panel.scene.period) % 1;
+  const { k, q, turn = 0 } = panel.scene.at(share);
+  const { points, moves } = arrays;
+  const [many, count] = moves.shape;
+  const place = (x, y, shift, p, of) => {
+    for (let i = 0; i < many; i++) {
+      x += panel.scale * q[i] * shift[2 * (i * of + p)];
+      y += panel.scale * q[i] * shift[2 * (i * of + p) + 1];
+    }
+    return [x, y];
+  };
+  panel.parts((p) => place(points[2 * p], points[2 * p + 1], moves, p, count));
+  const forces = panel.scene.motion?.lastForce;
+  const many2 = panel.arrows.length;
+  const mean = Math.max(...data.normal.map(Math.abs).filter(Number.isFinite), 1e-12);
+  const swing = Math.max(...(arrays.pressRe ?? []).map((re, i) => Math.hypot(re, arrays.pressIm[i])), 1e-300);
+  panel.arrows.forEach(({ contact, shaft, head, dot }, c) => {
+    const [x, y] = place(contact[0], contact[1], arrays.contactMoves, c, many2);
+    const normal = forces ? forces[k * many2 + c] : data.normal[c] + (0.5 * mean * (arrays.pressRe[c] * Math.cos(turn) - arrays.pressIm[c] * Math.sin(turn))) / swing;
+    const long = (normal * FORCE * panel.size) / (1.5 * mean);
+    const [here, tail] = [panel.at([x, y]), panel.at([x - contact[2] * long, y - contact[3] * long])];
+    arrow(shaft, head, tail, here);
+    const state = forces ? STATES[panel.scene.motion.lastState[k * many2 + c]] : "slip";
+    set(dot, { cx: here[0], cy: here[1], class: `contact ${state}`, "data-state": state });
+  });
+  panel.element.dataset.pictures = (panel.pictures = (panel.pictures ?? 0) + 1);
+  if (forces) panel.app.dispatchEvent(new CustomEvent("cursor", { detail: k }));
+}

@@ -1,0 +1,57 @@
+// The questions the page answers, one screen each: the panels of a question are shown, all others take no place.
+
+import { make } from "./elements.js";
+
+const QUESTIONS = [
+  ["why", "Why does it squeal?", ["locus", "moving", "energy", "friction"]],
+  ["when", "When?", ["map", "branch"]],
+  ["happens", "What happens?", ["moving", "motion", "listen"]],
+  ["silences", "What silences it?", ["silence", "sensitivity", "compare"]],
+  ["matches", "Does it match the test?", ["recording", "calibrate"]],
+  ["tells", "Report, tour", ["report", "tour"]],
+];
+
+export class Questions {
+  constructor(app, bar, place) {
+    Object.assign(this, { app, bar, place });
+    this.tabs = QUESTIONS.map(([name, words]) => make("button", { type: "button", role: "tab", id: `ask-${name}`, "aria-controls": place.id, data: { question: name }, onclick: () => this.ask(name) }, words));
+    bar.append(...this.tabs);
+    bar.addEventListener("keydown", (event) => {
+      const way = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+      if (!way) return;
+      const next = (QUESTIONS.findIndex(([name]) => name === this.asked) + way + QUESTIONS.length) % QUESTIONS.length;
+      this.ask(QUESTIONS[next][0]);
+      this.tabs[next].focus();
+    });
+    app.store.addEventListener("changed", () => this.show());
+  }
+
+  get asked() {
+    const { question } = this.app.store.settings.page ?? {};
+    return QUESTIONS.some(([name]) => name === question) ? question : QUESTIONS[0][0];
+  }
+
+  ask(name) {
+    if (name !== this.asked) this.app.store.option("page", { question: name });
+  }
+
+  /** The question whose screen holds a panel: the present one where it does. */
+  askFor(panel) {
+    const holds = ([, , panels]) => panels.includes(panel);
+    const now = QUESTIONS.find(([name]) => name === this.asked);
+    if (!holds(now)) this.ask(QUESTIONS.find(holds)[0]);
+  }
+
+  show() {
+    const { asked } = this;
+    if (this.place.dataset.question === asked) return;
+    this.place.dataset.question = asked;
+    this.place.setAttribute("aria-labelledby", `ask-${asked}`);
+    for (const tab of this.tabs) {
+      tab.setAttribute("aria-selected", tab.dataset.question === asked);
+      tab.tabIndex = tab.dataset.question === asked ? 0 : -1;
+    }
+    const [, , panels] = QUESTIONS.find(([name]) => name === asked);
+    for (const [name, panel] of this.app.panels) panel.show(panels.includes(name));
+  }
+}
