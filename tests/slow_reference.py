@@ -113,15 +113,12 @@ class Slow:
     def on_one_motion(self, a, b):
         """The sign between the speeds of two contacts that always slide together; 0 where they do not."""
         size = np.linalg.norm(self.t[b]) / max(np.linalg.norm(self.t[a]), 1e-300)
-        both = self.rubs[a] and self.rubs[b]
+        if not (self.rubs[a] and self.rubs[b]):
+            return 0
         for sign in (1, -1):
             one, other = self.system.contacts[a].V, self.system.contacts[b].V
             held = not hasattr(one, "terms") and not hasattr(other, "terms") and np.isclose(sign * size * one, other)
-            if (
-                both
-                and np.allclose(self.t[b], sign * size * self.t[a])
-                and (held or (one is other and sign * size == 1.0))
-            ):
+            if np.allclose(self.t[b], sign * size * self.t[a]) and (held or (one is other and sign * size == 1.0)):
                 return sign
         return 0
 
@@ -208,8 +205,8 @@ class Slow:
             if modes[c] == STICK:
                 out[c, 0] = self.static[c] * normal[c] - abs(force[c]) if normal[c] > 1e-12 else 1.0
                 asked, got = float(self.speed_given[c][1](t)), self.t[c] * a
-                parted = abs(np.sum(got) - asked) > 1e-7 * (abs(asked) + np.sum(np.abs(got)) + 1e-3)
-                out[c, 0] = -1.0 if parted else out[c, 0]  # two speeds on one motion do not stick together
+                if abs(np.sum(got) - asked) > 1e-7 * (abs(asked) + np.sum(np.abs(got)) + 1e-3):
+                    out[c, 0] = -1.0  # two speeds on one motion do not stick together
             elif self.rubs[c]:
                 out[c, 0] = modes[c] * speed[c]
             if self.unilateral[c]:
