@@ -129,7 +129,7 @@ BAD = {
     "csv, a header": ("K.csv", b"x,y\n1,2\n", "row 1: 'x' is not a number"),
     "csv, nan": ("K.csv", b"1,nan\n0,1\n", "row 1: 'nan' is not a number"),
     "csv, a formula": ("K.csv", b"=1+1,2\n0,1\n", "row 1: '=1+1' is not a number"),
-    "csv, semicolons": ("K.csv", b"1;2,5\n0;1\n", "'2,5' has a decimal comma, expected a decimal point"),
+    "csv, semicolons": ("K.csv", b"1.0;2,5\n0;1\n", "'2,5' has a decimal comma, expected a decimal point"),
     "csv, binary": ("K.csv", bytes(range(256)), "is not a .csv file of numbers"),
     "csv, quotes": ("K.csv", b'"1,2\n0,1\n', "is not a .csv file of numbers"),
     "csv, a wide row": ("K.csv", b"1," * 5000 + b"1\n", "expected one or two axes"),

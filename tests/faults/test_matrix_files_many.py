@@ -86,7 +86,13 @@ def test_broken_numbers_get_one_sentence(layout, spelling, tmp_path):
     assert "line 3" in problem.message
 
 
-@pytest.mark.parametrize("spelling", BROKEN)
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_decimal_commas_between_other_marks_are_read_right(mark, tmp_path):
+    rows = [mark.join(BROKEN["comma"](x) for x in row) for row in K]
+    assert np.array_equal(read(tmp_path, "K.csv", "\n".join(rows)), K)
+
+
+@pytest.mark.parametrize("spelling", sorted(set(BROKEN) - {"comma"}))
 @pytest.mark.parametrize("mark", [";", "\t"])
 def test_broken_tables_get_one_sentence(mark, spelling, tmp_path):
     with pytest.raises(DesignFileError) as caught:

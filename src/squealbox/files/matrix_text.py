@@ -6,13 +6,12 @@ Every token is read to its end: a number that stops at an odd character is refus
 (a symmetric header over two different triangles, an entry given twice, a pattern without numbers) is refused as well.
 """
 
-import csv
-import io
 import re
 from typing import Any
 
 import numpy as np
 
+from squealbox.cells import cells
 from squealbox.files.numbers import shown
 
 LONGEST_NUMBER = 60  # characters
@@ -40,11 +39,8 @@ def number(text: str, where: str) -> float:
 def read_csv(raw: bytes, most: int) -> Any:
     """A table of numbers, cells parted by commas, semicolons or tabs; lines that begin with # are comments."""
     try:
-        text = raw.decode("utf-8-sig")
-        lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
-        mark = ";" if ";" in text else "\t" if "\t" in text and "," not in text else ","
-        rows = list(csv.reader(io.StringIO("\n".join(lines)), strict=True, delimiter=mark))
-    except (UnicodeDecodeError, csv.Error) as error:
+        rows = [row for _, row in cells(raw)]
+    except ValueError as error:
         raise ArrayFileError("is not a .csv file of numbers") from error
     check_size((len(rows), max((len(row) for row in rows), default=0)), most)
     widths = sorted({len(row) for row in rows})

@@ -1,7 +1,5 @@
 """Measured points mu(v) from a CSV file."""
 
-import csv
-import io
 import os
 import re
 from pathlib import Path
@@ -9,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.cells import cells
 from squealbox.files.document import DesignFileError, Problem, read_bytes
 from squealbox.files.numbers import shown
 from squealbox.files.units import UnitError, in_si, split
@@ -25,11 +24,10 @@ def read_points(path: str | os.PathLike[str]) -> tuple[Any, Any]:
     """
     path = Path(path)
     try:
-        text = read_bytes(path, LARGEST).decode("utf-8-sig")
-        rows = [(i, row) for i, row in enumerate(csv.reader(io.StringIO(text)), start=1) if row]
+        rows = cells(read_bytes(path, LARGEST))
     except FileNotFoundError as error:
         raise _error(path, 0, "there is no such file") from error
-    except (OSError, UnicodeDecodeError, csv.Error, ValueError) as error:
+    except (OSError, ValueError) as error:
         raise _error(path, 0, f"is not a readable CSV file: {getattr(error, 'strerror', None) or error}") from error
     if rows and all(not cell.strip()[:1].isdigit() and cell.strip()[:1] not in ("-", "+", ".") for cell in rows[0][1]):
         units = [_header_unit(path, rows[0], i, wanted) for i, wanted in enumerate(("m/s", "-")[: len(rows[0][1])])]

@@ -5,8 +5,6 @@ does not say is said: without a calibration levels are re full scale; clipped sa
 unequal steps, values that are not finite, a damaged file, is refused in one sentence.
 """
 
-import csv
-import io
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.cells import cells
 from squealbox.signals.samples import LEAST, SignalError, equal_steps
 
 LARGEST = 2_000_000_000  # bytes of a file
@@ -209,11 +208,8 @@ def _csv(path: Path, size: int, rate: float | None) -> Read:
     if size > LARGEST_TEXT:
         raise SignalError(f"{path.name}: has {size} bytes, expected at most {LARGEST_TEXT} of a text")
     try:
-        text = path.read_bytes().decode("utf-8-sig")
-        lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
-        mark = ";" if lines and ";" in lines[0] else "\t" if lines and "\t" in lines[0] else ","
-        rows = list(csv.reader(io.StringIO("\n".join(lines)), strict=True, delimiter=mark))
-    except (UnicodeDecodeError, csv.Error) as error:
+        rows = [row for _, row in cells(path.read_bytes())]
+    except ValueError as error:
         raise SignalError(f"{path.name}: is not a .csv file of numbers") from error
     if not rows:
         raise SignalError(f"{path.name}: is empty")
