@@ -46,12 +46,13 @@ def absorber(
         raise UsageError(f"{file} has no section [scatter], which --aim probability needs")
     kilograms = number(mass, "kg", f"--mass {mass[:60]}")
     scatter = found.scatter.scatter if found.scatter else None
+    if out is not None:
+        folder(out, "absorber", "with_absorber")
     with Progress("tuning the absorber"):
         best = best_absorber(found.design, on, kilograms, aim, scatter)
     show(f"{found.design.title}, {file}", best)
     if out is not None:
         from squealbox import plots
 
-        folder(out)
         paths = [best.save(out / "absorber.nc"), write_design(best.design, out / "with_absorber.toml")]
         print(written(*paths, *plots.save(plots.plot(best, title=found.path.name), out / "absorber")))

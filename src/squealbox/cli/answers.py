@@ -15,6 +15,7 @@ from squealbox.result import Result
 MOST_NUMBERS = 1000  # of one array; a longer one is told by its shape, and is in the file that --out writes
 UNSTABLE = 3  # the exit code of --exit-code where steady sliding is not stable
 ANSWERS: list[Result] = []  # of the command that runs
+MANNERS: list["Manner"] = []  # of the command that runs
 
 
 @dataclass(frozen=True)
@@ -24,15 +25,17 @@ class Manner:
     as_json: bool = False
     quiet: bool = False
     by_code: bool = False
+    force: bool = False
     stream: io.StringIO = field(default_factory=io.StringIO)
 
     @classmethod
     def of(cls, words: list[str]) -> tuple["Manner", list[str]]:
         """The manner that the words ask for, and the words that are left for the command."""
         ANSWERS.clear()
-        options = ("--json", "--quiet", "--exit-code")
-        manner = cls(as_json="--json" in words, quiet="--quiet" in words, by_code="--exit-code" in words)
-        return manner, [word for word in words if word not in options]
+        options = ("--json", "--quiet", "--exit-code", "--force")
+        as_json, quiet, by_code, force = (option in words for option in options)
+        MANNERS[:] = [cls(as_json, quiet, by_code, force)]
+        return MANNERS[0], [word for word in words if word not in options]
 
     def listening(self) -> redirect_stdout[Any]:
         """What is printed goes to the reader, or is kept for the object, or is dropped."""
@@ -48,6 +51,11 @@ class Manner:
             json.dump({**about, "results": [plain(each) for each in ANSWERS], "text": text}, sys.stdout)
             print()
         return code
+
+
+def manner() -> Manner:
+    """How the command that runs is to answer."""
+    return MANNERS[0] if MANNERS else Manner()
 
 
 def show(title: str, *results: Any) -> None:

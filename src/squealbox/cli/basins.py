@@ -66,7 +66,7 @@ def basin_(
         raise UsageError(f"--starts {starts} --spread {spread:g}: expected at least one start and a spread above 0")
     found = in_motion(read(file, changes, allow_code))
     if out is not None:
-        folder(out)
+        folder(out, "basin", "push")
     half: Any = spread
     through = None
     if box:

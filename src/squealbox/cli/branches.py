@@ -67,7 +67,7 @@ def branch(
     found = read(file, changes, allow_code)
     varied = with_points(axis(found.design, found.branch, parameter, range, RANGE), points)
     if out is not None:
-        folder(out)
+        folder(out, "branch", "special")
     found = in_motion(found, varied)
     with Progress("looking for the onset") as progress:
         born, several = all_branches(found.design, varied, start, runs, at, progress)

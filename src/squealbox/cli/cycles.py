@@ -63,6 +63,8 @@ def cycle(
     for name, value in times.items():
         if not value > 0.0:
             raise UsageError(f"--{name} {value:g}: expected a time above 0 s")
+    if out is not None:
+        folder(out, "cycle")
     guess = begin if period is None or begin is None else (*begin, times["period"])
     result = shooting(found.design, guess, settle=times.get("settle"))
     if not result.outcome.ok:
@@ -76,7 +78,6 @@ def cycle(
     if out is not None:
         from squealbox import plots
 
-        folder(out)
         print(written(result.save(out / "cycle.nc"), *plots.save(plots.plot(result), out / "cycle")))
 
 

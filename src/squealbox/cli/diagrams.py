@@ -104,7 +104,7 @@ def diagram(
     length = None if duration is None else time_of("--duration", duration)
     plane = _section(found.design, section, dof)
     if out is not None:
-        folder(out)
+        folder(out, "diagram", "section")
     with Progress(f"{varied.points} values") as progress:
         result = bifurcation_diagram(
             found.design, varied.name, varied.values, sweeps=sweeps, starts=starts, section=plane, returns=returns,

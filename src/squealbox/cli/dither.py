@@ -49,6 +49,8 @@ def dither(
         raise UsageError(
             f"--velocity {' '.join(velocity)} --points {points}: expected 0 < low < high and 2 points or more"
         )
+    if out is not None:
+        folder(out, "dither")
     hertz = number(frequency, "Hz", f"--frequency {frequency[:60]}")
     amplitudes = np.geomspace(low, high, points)
     cures = [Dithered(found.design, float(w), hertz, along) for w in amplitudes]
@@ -61,4 +63,4 @@ def dither(
     print("\n".join(f"Caution: {text}" for text in said))
     if out is not None:
         columns = {"velocity [m/s]": amplitudes, "growth rate [1/s]": growth, "friction left [-]": left}
-        print(written(write_csv(folder(out) / "dither.csv", columns)))
+        print(written(write_csv(out / "dither.csv", columns)))

@@ -62,7 +62,7 @@ def ensemble(
     if not seconds > 0.0:
         raise UsageError(f"--duration {duration}: expected a time above 0 s")
     if out is not None:
-        folder(out)
+        folder(out, "ensemble")
     found = in_motion(found, across, up)
     start = None
     if isinstance(found.design, ReducedBrake) and found.simulate is not None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.cli.inputs import folder, small
+from squealbox.cli.inputs import small
 from squealbox.cli.progress import Progress
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.assembled import AssembledBrake
@@ -36,7 +36,6 @@ def print_more(found: DesignFile, spectrum: Any, band: tuple[float, float], time
             print(f"Doubt: {doubt}.")
     if out is None:
         return
-    folder(out)
     paths = [spectrum.save(out / "modes.nc"), write_csv(out / "modes.csv", table)]
     paths += _shapes(found, spectrum, out) + _coalescence(found, band, out)
     print(written(*paths))

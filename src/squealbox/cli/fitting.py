@@ -25,6 +25,8 @@ def fit(file: Path, *, law: tuple[str, ...] = (), level: float = 0.95, out: Path
     out
         folder for the figure, the curves and fit.nc
     """
+    if out is not None:
+        folder(out, "fit")
     found = fit_friction(*read_points(file), law=law or None, level=level)
     if not found.outcome.ok:
         raise ComputationFailed(found.outcome)
@@ -35,7 +37,7 @@ def fit(file: Path, *, law: tuple[str, ...] = (), level: float = 0.95, out: Path
     if out is not None:
         from squealbox.plots import plot, save
 
-        figures = save(plot(found), folder(out) / "fit")
+        figures = save(plot(found), out / "fit")
         row = found.best
         columns = {"speed [m/s]": found.curve_speeds, "mu [-]": found.curves[row]}
         columns |= {"low [-]": found.low[row], "high [-]": found.high[row]}

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import cyclopts
 import numpy as np
 
+from squealbox.cli.answers import manner
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import UsageError
 from squealbox.designs import Design
@@ -114,10 +115,19 @@ def time_of(option: str, text: str) -> float:
     return number(text, "s", f"{option} {text[:60]}")
 
 
-def folder(path: Path) -> Path:
-    """The folder, made when it is not there."""
+def folder(path: Path, *stems: str) -> Path:
+    """The folder, made when it is not there; files of these names in it are only overwritten with --force."""
     path.mkdir(parents=True, exist_ok=True)
+    free(*(each for stem in stems for part in (".*", "_*") for each in sorted(path.glob(f"{stem}{part}"))))
     return path
+
+
+def free(*paths: Path) -> None:
+    """Raise `UsageError` where a file is there already and --force was not given."""
+    there = [path for path in paths if path.exists()]
+    if there and not manner().force:
+        more = f" and {len(there) - 1} more files are" if len(there) > 1 else " is"
+        raise UsageError(f"{there[0]}{more} there already: --force overwrites, another --out leaves it")
 
 
 def _changed(design: Design, name: str, text: str, change: str) -> Design:

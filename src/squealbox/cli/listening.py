@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.cli.inputs import AllowCode, Changes, in_motion, read, time_of
+from squealbox.cli.inputs import AllowCode, Changes, free, in_motion, read, time_of
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.files.analyses import Simulate
@@ -45,6 +45,7 @@ def listen(
         run the Python file of a friction law that the design file names
     """
     found = read(file, changes, allow_code)
+    free(out)
     seconds = time_of("--duration", duration)
     if not 0.0 < seconds <= 60.0:
         raise UsageError(f"--duration {duration}: expected more than 0 and at most 60 s")

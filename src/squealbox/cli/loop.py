@@ -32,12 +32,13 @@ def loop(
     found = read(file, changes, allow_code)
     if not found.design.system().loops:
         raise UsageError(f"{file} has no section [[loops]], which says what senses and acts")
+    if out is not None:
+        folder(out, "poles")
     closed = closed_loop(found.design)
     show(f"{found.design.title}, {file}", closed)
     if out is not None:
         from squealbox import plots
 
-        folder(out)
         columns = {"growth rate [1/s]": closed.poles.real, "frequency [Hz]": closed.frequency}
         paths = [closed.save(out / "poles.nc"), write_csv(out / "poles.csv", columns)]
         print(written(*paths, *plots.save(plots.plot(closed, title=found.path.name), out / "poles")))

@@ -59,7 +59,7 @@ def map_(
     found = read(file, changes, allow_code)
     across, up = axes_of(found, x, y, points)
     if out is not None:
-        folder(out)
+        folder(out, "map", "boundary")
     found = small(found, across, up)
     with Progress(f"{int(across.points)} x {int(up.points)} points") as progress:
         grid = stability_map(found.design, {each.name: each.values for each in (across, up)})

@@ -53,7 +53,7 @@ def optimise(
     if seed is not None and seed < 0:
         raise UsageError(f"--seed {seed}: expected a whole number of at least 0")
     if out is not None:
-        folder(out)
+        folder(out, "optimum")
     found = small(found)
     effort = section.effort
     with Progress(f"optimising {', '.join(section.variables)}"):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from squealbox.cli.inputs import AllowCode, Changes, Ends, number, read
+from squealbox.cli.inputs import AllowCode, Changes, Ends, free, number, read
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import UsageError
 from squealbox.cli.tables import written
@@ -45,6 +45,7 @@ def reduce_(file: Path, *, out: Path, band: Ends = None, changes: Changes = (), 
             raise UsageError(f"--band {' '.join(band)}: expected 0 < lowest < highest")
         how = given.how.replace(band=np.array([low, high]))
         found = dataclasses.replace(found, reduce=dataclasses.replace(given, how=how))
+    free(out)
     with Progress("reducing the finite-element brake"):
         small = dense(found).design
     assert isinstance(small, ReducedBrake)

@@ -3,7 +3,7 @@
 import dataclasses
 from pathlib import Path
 
-from squealbox.cli.inputs import AllowCode, Changes, read
+from squealbox.cli.inputs import AllowCode, Changes, free, read
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import UsageError
 from squealbox.report import ReportError
@@ -29,6 +29,7 @@ def report(source: Path, *, out: Path | None = None, changes: Changes = (), allo
         run the Python file of a friction law that the design file names
     """
     target = out if out is not None else Path(f"{source.resolve().name.removesuffix(source.suffix)}.html")
+    free(target)
     if changes and source.suffix.lower() != ".toml":
         raise UsageError(f"--set {changes[0][:60]}: only a design file can be changed, and {source} is none")
     what = read(source, changes, allow_code) if source.suffix.lower() == ".toml" and source.is_file() else source

@@ -50,7 +50,7 @@ def silence(
     if not (np.isfinite(margin) and margin >= 0.0):
         raise UsageError(f"--margin {margin}: expected a finite number of at least 0")
     if out is not None:
-        folder(out)
+        folder(out, "silence")
     brake = in_motion(found).design
     with Progress("looking for what silences it"):
         lot = found.scatter.scatter if found.scatter is not None else None

@@ -55,6 +55,8 @@ def modes(
     """
     found = read(file, changes, allow_code)
     time = found.modes.time if found.modes else 0.0
+    if out is not None:
+        folder(out, "modes", "mode_energy", "coalescence")
     if found.design.system().is_sparse:
         _modes_in_band(found, time, band, certify, out)
         return
@@ -67,7 +69,6 @@ def modes(
     if not spectrum.stable:
         print(f"What drives it: {mechanism(found.design, time)}")
     if out is not None:
-        folder(out)
         print(written(*_mode_files(spectrum, found, time, out)))
 
 
@@ -120,7 +121,7 @@ def onset(
     found = read(file, changes, allow_code)
     varied = axis(found.design, found.onset, parameter, range, RANGE)
     if out is not None:
-        folder(out)
+        folder(out, "onset")
     found = small(found, varied)
     with Progress("looking for the onset"):
         crossings = critical_values(found.design, varied.name, (varied.low, varied.high))

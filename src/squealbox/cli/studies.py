@@ -8,7 +8,7 @@ import numpy as np
 from cyclopts import Parameter
 
 from squealbox.cli import answers
-from squealbox.cli.inputs import AllowCode, Changes, changed, folder, in_motion, small
+from squealbox.cli.inputs import AllowCode, Changes, changed, folder, free, in_motion, small
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.study_analyses import UNITS, analysis_of
@@ -138,7 +138,7 @@ def show(directory: Where, *, of: str | None = None, out: Path | None = None) ->
             figure = plots.sweep_overview(found, answer=of, title=str(directory))
         except ValueError as error:
             raise UsageError(f"no figure: {error}") from error
-        print(written(*plots.save(figure, folder(out) / "sweep"), write_csv(out / "sweep.csv", found.table())))
+        print(written(*plots.save(figure, folder(out, "sweep") / "sweep"), write_csv(out / "sweep.csv", found.table())))
 
 
 def export(directory: Where, *, format: Literal["csv", "nc", "mat"] = "csv", to: Path | None = None) -> None:
@@ -155,9 +155,8 @@ def export(directory: Where, *, format: Literal["csv", "nc", "mat"] = "csv", to:
     """
     found = open_sweep(directory)
     path = to if to is not None else Path(f"sweep.{format}")
-    if path.exists():
-        raise UsageError(f"{path} is there already, and export overwrites nothing: give another name with --to")
     folder(path.parent)
+    free(path)
     if format == "csv":
         write_csv(path, found.table())
     elif format == "nc":

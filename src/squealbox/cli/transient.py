@@ -59,7 +59,7 @@ def simulate(
     settings = found.simulate or settings
     system = found.design.system()
     start_of(system, settings)  # what cannot be started is said before a folder is made
-    folder(out)
+    folder(out, "verdict", "motion", "energy")
     with Progress("simulating (the first run compiles the engine)"):
         motion = run(system, settings)
     with Progress("drawing"):

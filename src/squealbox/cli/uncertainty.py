@@ -63,7 +63,7 @@ def scatter(
     wanted = _wanted(study or section.studies)
     sampled = _sampled(section.sampled, samples, seed)
     if out is not None:
-        folder(out)
+        folder(out, *wanted)
     found = small(found)
     print(f"{found.design.title}, {file}")
     failed = None
