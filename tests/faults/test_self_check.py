@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from squealbox import Contact, Coulomb, DrumBrake, LinearSlope, Sinusoid, System, simulate
+from squealbox import Contact, Coulomb, DrumBrake, LinearSlope, Sinusoid, System, simulate, simulate_ensemble
 from squealbox.transient import packing
 from squealbox.transient.lanes import single
 from squealbox.transient.self_check import checked
@@ -26,9 +26,9 @@ def blind(monkeypatch):
     forget()
 
 
-def shaken():
+def shaken(swing=2.0, rate=20.0):
     """A block on a belt whose speed swings twenty times as fast as the block: 318 events in 50 s."""
-    belt = Sinusoid(0.5, 2.0, 20.0 / (2.0 * np.pi), 0.5 * np.pi)
+    belt = Sinusoid(0.5, swing, rate / (2.0 * np.pi), 0.5 * np.pi)
     return System([[1.0]], [[0.0]], [[1.0]], 0.0, (Contact([0.0], [1.0], [1.0], 1.0, belt, Coulomb(0.4)),))
 
 
@@ -66,3 +66,15 @@ def test_the_audit_begins_where_the_record_does(first):
     motion = simulate(drum, 0.01, times=np.linspace(first, 0.01, 5))
     assert motion.outcome == "completed"
     assert motion.energy.relative_residual < 1e-8
+
+
+def test_one_in_a_thousand_is_run_again(blind):
+    starts = np.linspace(0.0, 0.1, 1000)[:, None], np.zeros((1000, 1))
+    many = simulate_ensemble(shaken(0.52, 60.0), duration=15.0, start=starts, method="dormand-prince-8", rtol=1e-2)
+    assert many.ended[500] == "not_confirmed"
+    assert np.sum(many.ended == "not_confirmed") == 1
+
+
+def test_and_confirmed_with_open_eyes():
+    starts = np.linspace(0.0, 0.1, 1000)[:, None], np.zeros((1000, 1))
+    assert simulate_ensemble(shaken(), duration=15.0, start=starts).outcome == "completed"

@@ -46,7 +46,7 @@ SMALLEST = 1e-300  # a positive number that stands for zero
 SOON = 1e-3  # share of a step: what has just begun and ends before it is searched again in a shorter one
 # how a call of `march` ended
 COMPLETED, RUNNING, UNDERFLOW, NOT_FINITE, CHATTERING, ZENO, INCONSISTENT, STEP_LIMIT = 0, 1, 2, 3, 4, 5, 6, 7
-TENSION, PAINLEVE, MISSED = 8, 9, 10
+TENSION, PAINLEVE, MISSED, NOT_CONFIRMED = 8, 9, 10, 11
 SAMPLED = 16  # every so many steps one is looked at in twice as many places
 
 
