@@ -151,7 +151,7 @@ class Work:
 
 
 def looked_at_closely(jobs: Jobs, chosen: Any) -> Jobs:
-    """Some of the jobs, with half the largest step, and so half the interval of the search, and a tenth of tolerances."""
+    """Some of the jobs, with half the largest step, so half the interval of the search, and a tenth of tolerances."""
     table, fixed = jobs.table[chosen].copy(), jobs.fixed.copy()
     for row, name in enumerate(parameter_rows(jobs.shape)):
         closer = 0.5 if name in ("largest", "first") else 0.1 if name == "rtol" or name.startswith("atol") else 1.0
