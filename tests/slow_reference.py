@@ -113,9 +113,7 @@ class Slow:
     def on_one_motion(self, a, b):
         """The sign between the speeds of two contacts that always slide together; 0 where they do not."""
         size = np.linalg.norm(self.t[b]) / max(np.linalg.norm(self.t[a]), 1e-300)
-        if not (self.rubs[a] and self.rubs[b]):
-            return 0
-        for sign in (1, -1):
+        for sign in (1, -1) if self.rubs[a] and self.rubs[b] else ():
             one, other = self.system.contacts[a].V, self.system.contacts[b].V
             held = not hasattr(one, "terms") and not hasattr(other, "terms") and np.isclose(sign * size * one, other)
             if np.allclose(self.t[b], sign * size * self.t[a]) and (held or (one is other and sign * size == 1.0)):
@@ -178,8 +176,9 @@ class Slow:
         a = self.inverse @ (push + self.d.T @ force)
         if unknown:
             rows, right = np.array([u[1] for u in unknown]), np.array([u[2] for u in unknown])
-            weight = np.array([u[4] for u in unknown])
-            weight = weight / max(weight.max(), 1e-300)
+            floors = np.array([u[5] for u in unknown])  # which carry what they can, friction beside them nothing
+            weight = np.array([u[4] for u in unknown]) * np.where(floors | ~np.any(floors), 1.0, 1e-3)
+            weight /= max(weight.max(), 1e-300)
             columns = self.inverse @ np.array([u[3] for u in unknown]).T * weight
             found = weight * np.linalg.lstsq(rows @ columns, right - rows @ a, rcond=1e-11)[0]
             a = a + self.inverse @ np.array([u[3] for u in unknown]).T @ found
@@ -205,8 +204,8 @@ class Slow:
             if modes[c] == STICK:
                 out[c, 0] = self.static[c] * normal[c] - abs(force[c]) if normal[c] > 1e-12 else 1.0
                 asked, got = float(self.speed_given[c][1](t)), self.t[c] * a
-                if abs(np.sum(got) - asked) > 1e-7 * (abs(asked) + np.sum(np.abs(got)) + 1e-3):
-                    out[c, 0] = -1.0  # two speeds on one motion do not stick together
+                parted = abs(np.sum(got) - asked) > 1e-7 * (abs(asked) + np.sum(np.abs(got)) + 1e-3)
+                out[c, 0] = -1.0 if parted else out[c, 0]  # two speeds on one motion do not stick together
             elif self.rubs[c]:
                 out[c, 0] = modes[c] * speed[c]
             if self.unilateral[c]:

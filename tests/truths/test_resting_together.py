@@ -216,3 +216,18 @@ def test_a_body_on_feet_that_hold_its_motions_in_several_ways(seed):
         motion = simulate(body, first + 1.0, (np.zeros(n), drift), method=method)
         assert motion.outcome == "completed"
         assert motion.event_time[0] == pytest.approx(first, rel=1e-9)
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_a_guide_beside_a_floor(halves):
+    """Weight on the floor, none on the guide; lifted by 2 t - 10 the guide holds 1 N more, from 5.5 s on it slides."""
+    floor = rigid([0.0, -1.0], 2, d=[1.0, 0.0], t=[1.0, 0.0], mu=0.2)
+    guide = Contact([0.0, 0.0], [0.0, 1.0], [0.0, 1.0], 4.0 / halves, 0.0, Coulomb(0.25))
+    body = System(np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), Ramp(-10.0, 2.0, 50.0) * [0.0, 1.0],
+                  (floor, *([guide] * halves)))  # fmt: skip
+    motion = simulate(body, 7.0, ([0.0, 0.05], [1.0, 0.0]), times=[2.0, 4.5, 5.25, 7.0])
+    assert motion.outcome == "completed"
+    assert motion.normal_force[:3, 0] == pytest.approx([6.0, 1.0, 0.0], abs=1e-9)
+    assert motion.friction_force[2, 1:] == pytest.approx(-0.5 / halves, abs=1e-9)
+    assert motion.q[-1, 1] == pytest.approx(1.5**3 / 3.0, rel=1e-6)
+    assert motion.steps + motion.rejected < 1_000

@@ -46,7 +46,8 @@ SMALLEST = 1e-300  # a positive number that stands for zero
 SOON = 1e-3  # share of a step: what has just begun and ends before it is searched again in a shorter one
 # how a call of `march` ended
 COMPLETED, RUNNING, UNDERFLOW, NOT_FINITE, CHATTERING, ZENO, INCONSISTENT, STEP_LIMIT = 0, 1, 2, 3, 4, 5, 6, 7
-TENSION, PAINLEVE = 8, 9
+TENSION, PAINLEVE, MISSED, NOT_CONFIRMED = 8, 9, 10, 11
+SAMPLED = 16  # every so many steps one is looked at in twice as many places
 
 
 def begin(p, r, s, times, rows, limit):
@@ -153,6 +154,8 @@ def accept(p, r, s, times, rows, events, t, h, t_new, error, last):
                 t_new = t
             s.clock[STEP] = max(next_step, s.clock[STEP]) if not last else s.clock[STEP]
             return change_modes(p, s, events, t_new, which, theta > 0.0)
+        if s.count[ACCEPTED] % SAMPLED == 0 and h > p.window and not modes_held(p, r, t, h, s):
+            return MISSED
     else:
         count_flips(p, s)
     finish_step(p, r, s, times, rows, t, h, t_new)
@@ -171,6 +174,20 @@ def accept(p, r, s, times, rows, events, t, h, t_new, error, last):
             if paradox(p, s.mode, s):
                 return PAINLEVE
     return RUNNING
+
+
+def modes_held(p, r, t, h, s):
+    """Whether the modes held at eighths of a step in which no event was found: a look at half the search interval."""
+    s.count[EVALUATIONS] += dense_stages(p, r, t, h, s.state, s.mode, s, s.stage)
+    held = True
+    for i in range(4):
+        at = 0.25 * i + 0.125
+        interpolate(r, at, h, s.state, s.stage, s.y_dense)
+        event_values(p, t + at * h, s.y_dense, s.mode, s, s.phi)
+        for j in range(2 * p.contacts):
+            size = max(abs(s.phi0[j]), abs(s.phi1[j]))
+            held = held and s.phi[j] >= -max(1e-6, 10.0 * p.rtol) * size
+    return held
 
 
 def step_factor(r, s, error):

@@ -107,7 +107,7 @@ def land(p, t, y, mode, s, which):
         slow = abs(s.speed[c]) <= slip_tolerance(p, c, y, s)
         s.at_zero[c] = slow and mode[c] != OPEN
         s.touch[c] = p.rigid[c] != 0 and mode[c] != OPEN
-        if mode[c] != OPEN and not slow:
+        if mode[c] != OPEN and not slow and p.static[c] > 0.0:
             mode[c] = 1 if s.speed[c] >= 0.0 else -1
     if not settle(p, t, y, mode, s):
         return False
@@ -124,7 +124,11 @@ def force_releases(p, mode, s, which):
     least = 1.0 - (1e-6 if s.spare[0] else 1e-9)
     for c in range(p.contacts):
         limit = p.static[c] * s.normal[c]
-        if c == which or (mode[c] == STICK and abs(s.force[c]) >= limit * least and p.static[c] > RISES):
+        if p.rigid[c] and mode[c] != OPEN and s.idle[c] != 0:  # friction alone kept it from lifting off
+            mode[c] = OPEN
+            s.at_zero[c] = 0
+            s.forced[c] = OPEN
+        elif c == which or (mode[c] == STICK and abs(s.force[c]) >= limit * least and p.static[c] > RISES):
             s.forced[c] = 1 if s.force[c] > 0.0 else -1
         elif mode[c] == STICK and p.static[c] <= RISES and p.g[c, which] != 0.0:
             s.forced[c] = sense if p.g[c, which] > 0.0 else -sense

@@ -22,7 +22,9 @@ from squealbox.transient.simulate import MESSAGES, SCHEMES, instants_within
 if TYPE_CHECKING:
     import xarray
 
-CODES = {_march.COMPLETED: COMPLETED} | {code: name for code, (name, _) in MESSAGES.items()}
+CODES = {_march.COMPLETED: COMPLETED, _march.NOT_CONFIRMED: "not_confirmed"} | {
+    code: name for code, (name, _) in MESSAGES.items()
+}
 NOT_RUN = "not_run"
 THREADS = "SQUEALBOX_THREADS"  # in the environment: how many threads where nothing else is said
 
@@ -171,7 +173,9 @@ def simulate_ensemble(
     Returns
     -------
     Ensemble. A trajectory that cannot go on says so in its own `ended`; the others are untouched. Ctrl-C returns what
-    is done. The result of a trajectory does not depend, bit for bit, on the others, on its place or on `threads`.
+    is done. The result of a trajectory does not depend, bit for bit, on the others, on its place or on `threads`. One
+    in a thousand is run again with half the largest step and a tenth of the tolerances, and is "not_confirmed" where
+    events or end state then differ, as of a motion that depends on its start too strongly.
 
     Memory: about 8 (parameters that vary + 2 n + observers' memory + 5) bytes for each trajectory, and as much for the
     tables of 65,536 at a time.
@@ -225,7 +229,7 @@ def _result(
         rest = np.full((total - len(rows), rows.shape[1]), np.nan)
         rest[:, 0] = -1.0
         rows = np.concatenate([rows, rest])
-    names = np.array([CODES.get(code, NOT_RUN) for code in range(-1, 9)])
+    names = np.array([CODES.get(code, NOT_RUN) for code in range(-1, 12)])
     ended = names[rows[:, 0].astype(int) + 1]
     at, observed = HEAD + 2 * n, {}
     for each in work.observers:

@@ -156,6 +156,7 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
     floats: dict[str, tuple[int, ...]] = {
         "signal": (2 * (m + n) + m,), "normal": (m,), "speed": (m,), "force": (m,), "right": (2 * m,),
         "matrix": (2 * m, 2 * m), "basis": (m + 1, m),
+        "before": (n,),
         "share": (m,), "bias": (m,), "leave": (m,), "lowest": (m,), "fastest": (m,), "wanted": (m,), "multiplier": (m,),
         "creep": (m,),
         "state": (width,), "state_new": (width,), "y": (width,), "y_dense": (width,), "dy": (width,),
@@ -175,6 +176,7 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
         "leaving",
         "hit",
         "noisy",
+        "idle",
     )
     integers = dict.fromkeys(names, m) | {"spare": 1, "row_contact": 2 * m, "row_kind": 2 * m, "count": 11}
     kinds = tuple((name, "f8", shape) for name, shape in floats.items())

@@ -17,6 +17,7 @@ from squealbox.transient.latest import Latest
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.own_laws import own_texts
+from squealbox.transient.self_check import checked
 from squealbox.transient.smooth_laws import smooth_kinds
 from squealbox.transient.trajectory import Trajectory
 from squealbox.transient.widened import base_of, parted, start_of
@@ -47,6 +48,11 @@ MESSAGES = {
         "painleve",
         "friction presses a sliding rigid contact together harder than its normal force holds it apart, "
         "w . M^-1 (w - sense mu d) <= 0: no force, or more than one, satisfies the contact laws",
+    ),
+    _march.MISSED: (
+        "missed_event",
+        "a look at half the search interval, on a sample of steps, found a contact against its mode: events were "
+        "passed over, and the motion is not the system's; limit the steps, Method(..., largest_step=...)",
     ),
     _march.STEP_LIMIT: ("step_limit", "the largest number of steps was reached"),
 }
@@ -95,8 +101,8 @@ def simulate(
     Returns
     -------
     Trajectory, whose outcome is "completed" or names why the run could not go on ("step_underflow", "not_finite",
-    "chattering", "zeno", "contact_in_tension", "painleve", "inconsistent_contact", "step_limit", "interrupted"); it
-    then holds what was reached.
+    "chattering", "zeno", "contact_in_tension", "painleve", "inconsistent_contact", "step_limit", "interrupted", or
+    by its self-check "missed_event", "energy_unbalanced"); it then holds what was reached.
 
     Raises `ParameterError` or `InvalidSystem` for input that does not make sense.
 
@@ -252,7 +258,7 @@ def told(
     t, q, qd, friction, load, circulation, dissipated, opening, impact, normal, speed, force, mode = columns
     smooth = np.array(smooth_kinds(system.contacts)) > 0  # no events tell their sense
     mode = np.where(smooth & (mode != OPEN), np.sign(speed), mode)
-    return Trajectory(
+    motion = Trajectory(
         inputs={"system": base},
         settings=settings,
         outcome=outcome,
@@ -277,6 +283,7 @@ def told(
         rejected=steps[1],
         evaluations=steps[2],
     )
+    return checked(motion, rows, n) if settings["contact"] == "exact" else motion
 
 
 def _by_series(

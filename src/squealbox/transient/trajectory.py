@@ -95,17 +95,18 @@ class Trajectory(Result):
     def energy(self) -> EnergyAudit:
         """The energy audit from the start to each instant of `t`."""
         stored = mechanical_energy(self.system, self.q, self.qd)
-        stored = stored - stored[:1]
-        given = np.sum(self.work_friction, axis=-1) + self.work_load + self.work_circulation
-        given = given + self.work_opening + self.work_impact
+        terms = (stored, self.work_friction, self.work_load, self.work_circulation, self.work_dissipated,
+                 self.work_opening, self.work_impact)  # fmt: skip
+        stored, friction, load, circulation, dissipated, opening, impact = (term - term[:1] for term in terms)
+        given = np.sum(friction, axis=-1) + load + circulation + opening + impact
         return EnergyAudit(
             stored=stored,
-            friction=self.work_friction,
-            load=self.work_load,
-            circulation=self.work_circulation,
-            dissipated=self.work_dissipated,
-            opening=self.work_opening,
-            impact=self.work_impact,
-            residual=stored - given + self.work_dissipated,
+            friction=friction,
+            load=load,
+            circulation=circulation,
+            dissipated=dissipated,
+            opening=opening,
+            impact=impact,
+            residual=stored - given + dissipated,
             turnover=float(np.max(mechanical_energy(self.system, 0.0 * self.q, self.qd), initial=0.0)),
         )

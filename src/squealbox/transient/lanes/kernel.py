@@ -100,7 +100,7 @@ def source(shape: Shape) -> str:
     parts += _one_contact(shape, rows.places) if shape.simple else []
     for module in (_motion, *((_rigid, _sharing, _impacts, _modes, _events) if shape.exact else ())):
         parts += _engine.definitions(module, fixed)
-    kept = ("COMPLETED", "TENSION", "@inner\ndef pulled(")
+    kept = ("COMPLETED", "TENSION", "SAMPLED", "@inner\ndef pulled(")
     parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith(kept)]
     needed = {roots: fixed["TRIES"], crossing: fixed["TRIES"], alone: shape.simple}
     needed |= {samples: shape.samples, recording: shape.recorded, _runge_kutta: shape.stepped}

@@ -8,6 +8,8 @@ A step leaves the series of all that is followed, so a row costs no further eval
 
 import numpy as np
 
+from squealbox.transient._march import SAMPLED
+
 ROWS_WRITTEN, EVENTS_WRITTEN = 0, 1  # of `count`
 
 
@@ -95,6 +97,34 @@ def write_row(A, b, lane, t, since, row):
     for c in range(CONTACTS):
         mode = A[b + (ROW_SLIPS + c) * WIDTH + lane]
         row[6 + 2 * DOFS + 4 * CONTACTS + c] = 2.0 if A[b + (ROW_OPENED + c) * WIDTH + lane] > 0.0 else mode
+
+
+def modes_held(A, b, p):
+    """Whether the modes held throughout the step just taken: every so many steps, a look in twice as many places."""
+    span = A[b + ROW_SPAN]
+    if int(A[b + ROW_TAKEN]) % SAMPLED != 0 or not span > A[b + ROW_WINDOW]:
+        return True
+    unit = A[b + ROW_WINDOW] * UNIT_OF_WINDOW
+    first = b + ROW_VALUE + DOFS + CONTACTS + 4
+    held = True
+    for k in range(2 * SHARES):
+        A[b + ROW_SINCE] = (k + 0.5) / (2 * SHARES) * span / unit
+        evaluate(A, b)
+        for c in range(CONTACTS):
+            normal = A[first + c]
+            speed = A[first + CONTACTS + c]
+            force = abs(A[first + 2 * CONTACTS + c])
+            slips = A[b + ROW_SLIPS + c]
+            if p.smooth[c] > 0:
+                continue
+            if A[b + ROW_OPENED + c] > 0.0:
+                held = held and normal <= 1e-6 * abs(A[b + ROW_LOWEST + c])
+            elif p.static[c] > 0.0 and slips != 0.0:
+                held = held and slips * speed >= -1e-6 * A[b + ROW_FASTEST + c]
+            elif p.static[c] > 0.0:
+                limit = p.static[c] * normal
+                held = held and force - limit <= 1e-6 * (force + abs(limit)) + 100.0 * A[b + ROW_NOISE + c]
+    return held
 
 
 def log_event(A, b, lane, c, mode, events, count):

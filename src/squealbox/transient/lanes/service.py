@@ -13,6 +13,7 @@ from squealbox.transient._events import event_values
 from squealbox.transient._march import (
     COMPLETED,
     INCONSISTENT,
+    MISSED,
     NOT_FINITE,
     RUNNING,
     STEP_LIMIT,
@@ -34,7 +35,7 @@ from squealbox.transient._rigid import solve
 from squealbox.transient._sharing import contact_matrix, share_out
 from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
-from squealbox.transient.lanes.recording import first_row, log_event, room_left, write_rows
+from squealbox.transient.lanes.recording import first_row, log_event, modes_held, room_left, write_rows
 from squealbox.transient.lanes.samples import on_end, on_quintic, on_series, on_step
 
 OVERFLOW = 1e200  # a state that large has a series beyond all numbers
@@ -62,6 +63,9 @@ def run(A, live, table, varies, fixed, times, samples, counter, total, out, p, r
                         return False
                     busy += 1
                     flags = step(A, g * size)
+                    if RECORDED and EXACT_CONTACT and not modes_held(A, 0, p):
+                        finish(A, 0, 0, MISSED, out)
+                        return True
                     if flags != 0:
                         live[g] -= serve(
                             A,

@@ -11,8 +11,9 @@ import numpy as np
 from squealbox.parameters import ParameterError
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
 from squealbox.transient import packing
+from squealbox.transient._march import COMPLETED, NOT_CONFIRMED
 from squealbox.transient.lanes.batch import stacked
-from squealbox.transient.lanes.shape import layout
+from squealbox.transient.lanes.shape import layout, parameter_rows
 from squealbox.transient.lanes.table import Jobs, tabulate
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR, Method
@@ -22,6 +23,8 @@ from squealbox.transient.widened import base_of, parted, start_of
 BLOCK = 65_536  # trajectories whose parameters lie in memory together
 GROUPS = 2  # groups of lanes that a thread advances in turn: one hides the latency of the other
 EVERY = 2_000  # trials of each group between two looks at the stop flag, some milliseconds
+ONE_IN = 1_000  # trajectories is run once more, looked at more closely
+SHARE = 1e-3  # of the end state by which the two may differ
 HEAD = 5  # numbers of a row of results before its state: how it ended, time, accepted, tried, events
 Progress = Callable[[int, int, float], None]
 
@@ -102,16 +105,19 @@ class Work:
         workers = max(1, min(self.threads, -(-count // lanes)))
         failures: list[BaseException] = []
 
+        def run(jobs: Jobs, samples: Any, counter: Any, count: int, out: Any) -> None:
+            groups, live = _on_a_line(GROUPS * size), np.zeros(GROUPS, dtype=np.int64)
+            groups[rows.places["alive"] * lanes] = -1.0
+            n = jobs.shape.n
+            scratch = packing.scratch(record, np.zeros(n), np.zeros(n), self.begin, 0.0)
+            kernel(
+                groups, live, jobs.table, jobs.varies, jobs.fixed, self.times, samples, counter, count, out,
+                record.copy(), rule, scratch, stop, EVERY, np.zeros((1, 1)), np.zeros((1, 1)), counter,
+            )  # fmt: skip
+
         def work() -> None:
             try:
-                groups, live = _on_a_line(GROUPS * size), np.zeros(GROUPS, dtype=np.int64)
-                groups[rows.places["alive"] * lanes] = -1.0
-                n = jobs.shape.n
-                scratch = packing.scratch(record, np.zeros(n), np.zeros(n), self.begin, 0.0)
-                kernel(
-                    groups, live, jobs.table, jobs.varies, jobs.fixed, self.times, samples, counter, count, out,
-                    record.copy(), rule, scratch, stop, EVERY, np.zeros((1, 1)), np.zeros((1, 1)), counter,
-                )  # fmt: skip
+                run(jobs, samples, counter, count, out)
             except BaseException as error:  # handed to the caller below
                 failures.append(error)
 
@@ -119,6 +125,12 @@ class Work:
         self._watch(threads, counter, stop, before, total)
         if failures:
             raise failures[0]
+        chosen = np.arange((ONE_IN // 2 - before) % ONE_IN, count, ONE_IN)
+        if len(chosen) and not self.interrupted:
+            again = np.full((len(chosen), out.shape[1]), np.nan)
+            closer = looked_at_closely(jobs, chosen)
+            run(closer, samples[:1].repeat(len(chosen), 0), np.zeros(1, dtype=np.int64), len(chosen), again)
+            out[chosen, 0] = confirmed(closer, out[chosen], again)
 
     def _watch(self, threads: list[threading.Thread], counter: Any, stop: Any, before: int, total: int) -> None:
         for thread in threads:
@@ -136,6 +148,34 @@ class Work:
             if not isinstance(error, KeyboardInterrupt):
                 raise
             self.interrupted = True
+
+
+def looked_at_closely(jobs: Jobs, chosen: Any) -> Jobs:
+    """Some of the jobs, with half the largest step, so half the interval of the search, and a tenth of tolerances."""
+    table, fixed = jobs.table[chosen].copy(), jobs.fixed.copy()
+    for row, name in enumerate(parameter_rows(jobs.shape)):
+        closer = 0.5 if name in ("largest", "first") else 0.1 if name == "rtol" or name.startswith("atol") else 1.0
+        if jobs.varies[row] >= 0:
+            table[:, jobs.varies[row]] *= closer
+        else:
+            fixed[3 + row] *= closer
+    return replace(jobs, table=table, fixed=fixed)
+
+
+def confirmed(jobs: Jobs, first: Any, again: Any) -> Any:
+    """How runs ended: as before, or NOT_CONFIRMED where one that completed differs from its closer repetition.
+
+    Different are events that number more than one apart, as one may lie at the very end, and an end state off by more
+    than a thousandth: of a motion that depends so strongly on its start the engine knows no end state.
+    """
+    n = jobs.shape.n
+    q, other = first[:, HEAD : HEAD + n], again[:, HEAD : HEAD + n]
+    row = parameter_rows(jobs.shape).index("atol0") if n else 0
+    least = jobs.table[:, jobs.varies[row]] if jobs.varies[row] >= 0 else jobs.fixed[3 + row]
+    size = np.max(np.abs(np.concatenate([q, other], axis=1)), axis=1, initial=0.0)
+    off = np.max(np.abs(q - other), axis=1, initial=0.0) > SHARE * size + 1e6 * least
+    differs = off | (np.abs(first[:, 4] - again[:, 4]) > 1.0) | (again[:, 0] != COMPLETED)
+    return np.where((first[:, 0] == COMPLETED) & differs, NOT_CONFIRMED, first[:, 0])
 
 
 def _on_a_line(count: int) -> Any:

@@ -1,0 +1,51 @@
+"""What a finished run is asked before it says `completed`: does its energy audit close?
+
+The other question, whether events were passed over, is asked on the way: every sixteenth step is looked at in twice as
+many places (`_march.modes_held`, `lanes.recording.modes_held`).
+"""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from squealbox.result import Outcome
+from squealbox.system import System
+from squealbox.transient.trajectory import Trajectory
+
+CLOSES = 1e-4  # share of the energy turned over that no run at a usual tolerance comes near
+LOOSE = 1e3  # times rtol, where that is larger
+
+
+def checked(motion: Trajectory, rows: Any, size: int) -> Trajectory:
+    """The motion; with the outcome "energy_unbalanced" where it completed and its energy audit does not close.
+
+    `rows` are those the motion was told in, `size` their freedoms. The first and the last tell most, at a small share
+    of the cost of the audit; it is asked only where they do not close.
+    """
+    if not motion.outcome.ok or motion.system.is_sparse or len(rows) < 2:
+        return motion
+    limit = max(CLOSES, LOOSE * float(motion.settings["rtol"]))
+    if _unclosed(motion.system, rows[0], rows[-1], size) <= limit:
+        return motion
+    residual = motion.energy.relative_residual
+    if residual <= limit:
+        return motion
+    why = f"the energy audit closes to {residual:.2g} of what was turned over, not to {limit:.2g}"
+    return replace(motion, outcome=Outcome("energy_unbalanced", why, residual=residual, time=float(motion.t[-1])))
+
+
+def _unclosed(system: System, first: Any, last: Any, size: int) -> float:
+    """What is missing from one row to another, in parts of the largest term."""
+    n, m = system.size, len(system.contacts)
+    stored = []
+    for row in (first, last):
+        q, qd = row[1 : 1 + n], row[1 + size : 1 + size + n]
+        stored.append((0.5 * float(qd @ system.M @ qd), 0.5 * float(q @ system.K @ q)))
+    works = (last - first)[1 + 2 * size : 6 + 2 * size + m]
+    given, dissipated = works.copy(), works[m + 2]
+    given[m + 2] = 0.0
+    change = sum(stored[1]) - sum(stored[0])
+    size_of_all = max(stored[0][0], stored[1][0], abs(change), float(np.max(np.abs(works))))
+    missing = abs(change - float(np.sum(given)) + dissipated)
+    return missing / size_of_all if size_of_all > 0.0 else missing
