@@ -33,17 +33,22 @@ def reproduce(
 
     Source: Journal of Vibroengineering 13(2), paper 632, June 2011.
     """
-    from squealbox.papers.drum_brake_2011 import beside, jobs, page, record, search_results
+    from squealbox.papers.drum_brake_2011 import jobs
     from squealbox.papers.drum_brake_2011.cases import ALL_READINGS
-    from squealbox.papers.drum_brake_2011.reading import save
-    from squealbox.papers.drum_brake_2011.reconstruction import reconstruct
-    from squealbox.report import write_page
 
     folder = Path(out)
     figures = folder / "figures"
     figures.mkdir(parents=True, exist_ok=True)
-    whole = reconstruct(folder / "search", jobs.processors(), progress) if search else None
-    studies, searched, told = jobs.everything(ALL_READINGS, figures, progress, fine, search)
+    whole = None
+    if search:
+        from squealbox.papers.drum_brake_2011.reconstruction import reconstruct
+
+        whole = reconstruct(folder / "search", jobs.processors(), progress)
+    studies, searched, told = jobs.everything(ALL_READINGS, figures, progress, fine, search, _prepare)
+    from squealbox.papers.drum_brake_2011 import beside, page, record, search_results
+    from squealbox.papers.drum_brake_2011.reading import save
+    from squealbox.report import write_page
+
     extras = beside.extras(told, whole)
     found = record.records(studies)
     record.write_json(folder / "claims.json", found, searched, extras)
@@ -52,3 +57,8 @@ def reproduce(
         save(search_results.draw(searched), figures / "search")
         search_results.write_csv(folder / "search.csv", searched)
     return write_page(page.page(figures, studies, found, searched, extras), folder / "index.html")
+
+
+def _prepare() -> None:
+    """Import what the page is made with, a second while the workers already work."""
+    from squealbox.papers.drum_brake_2011 import page  # noqa: F401

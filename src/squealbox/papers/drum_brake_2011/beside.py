@@ -16,13 +16,14 @@ class Extras:
     """What the page shows beside the readings.
 
     `short` is the search's short form, `signs` and `by_chance` what stiffness alone decides, `whole` the whole search
-    where it was made; `decays` and `onsets` are of the solver of 2011, the decays without their curves.
+    where it was made; `decays`, `added` and `onsets` are of the solver of 2011, the decays without their curves.
     """
 
     short: family_search.Searched
     signs: list[int]
     by_chance: float
     decays: list[solver_2011.Decay]
+    added: dict[float, list[tuple[float, float]]]
     onsets: dict[str, tuple[float, float]]
     whole: Any = None
 
@@ -51,7 +52,8 @@ def solver(figures: Path) -> dict[str, Any]:
     save(theorem_figures.solver(decays), figures / "solver")
     names = ("setting", "steps", "early", "late")
     plain = [{name: getattr(each, name) for name in names} for each in decays]
-    return {"decays": plain, "onsets": solver_2011.onsets(case)}
+    added = list(solver_2011.added(case).items())  # as pairs: keys of JSON are no numbers
+    return {"decays": plain, "added": added, "onsets": solver_2011.onsets(case)}
 
 
 def extras(told: dict[str, Any], whole: Any = None) -> Extras:
@@ -63,6 +65,7 @@ def extras(told: dict[str, Any], whole: Any = None) -> Extras:
         signs=family["signs"],
         by_chance=family["by_chance"],
         decays=[solver_2011.Decay(**each, t=np.empty(0), x=np.empty(0)) for each in solver["decays"]],
+        added={alpha: [(lower, upper) for lower, upper in rates] for alpha, rates in solver["added"]},
         onsets={name: (load, mu) for name, (load, mu) in solver["onsets"].items()},
         whole=whole,
     )

@@ -6,6 +6,7 @@ import numpy as np
 
 from squealbox import plots
 from squealbox.papers.drum_brake_2011.cases import Case
+from squealbox.papers.drum_brake_2011.figures import Margins
 from squealbox.plots.style import drawing, figure_of, number
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ def model(case: Case) -> "Figure":
     from matplotlib.patches import Circle
 
     brake = case.design()
-    with drawing(None, width=5.2, height=4.6) as axes:
+    with drawing(Margins(0.02, 0.02, 0.02, 0.02).panel(5.2, 4.6)) as axes:
         axes.add_patch(Circle((0.0, 0.0), DRUM, facecolor="#efefef", edgecolor=INK, linewidth=1.0))
         axes.text(-0.5, -0.15, f"m = {brake.m:g} kg", ha="center", va="center")
         _supports(axes, brake)
@@ -36,7 +37,7 @@ def model(case: Case) -> "Figure":
 def friction(case: Case) -> "Figure":
     """Fig. 2: the friction coefficient over sliding speed for three coefficients at rest."""
     laws = {f"$\\mu_0$ = {mu:.2f}": case.design(mu=mu).friction for mu in (0.10, 0.30, 0.50)}
-    with drawing(None, width=4.6, height=3.0) as axes:
+    with drawing(Margins(bottom=0.4).panel(4.6, 3.0)) as axes:
         plots.friction_curve(laws, upto=1.0, axes=axes)
         axes.axvline(
             case.speed, color="#808080", linewidth=0.6, label=f"sliding speed of the table, {case.speed:g} m/s"

@@ -8,6 +8,7 @@ from squealbox import plots
 from squealbox.papers.drum_brake_2011.by_eigenvalues import ZONE
 from squealbox.papers.drum_brake_2011.cases import Case
 from squealbox.papers.drum_brake_2011.ensembles import MEANS, Maxima, SquealMap
+from squealbox.papers.drum_brake_2011.figures import Margins
 from squealbox.plots.style import drawing, figure_of, quantity_label
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ ANGLES = ((r"$\theta_1$", "deg", np.pi / 180.0), (r"$\theta_2$", "deg", np.pi / 
 LOAD = ("load", "kN", 1e3)
 SPEED = ("sliding speed", "m/s", 1.0)
 Axis = tuple[str, str, float]
+MARGINS = Margins(left=0.55, right=0.1, bottom=0.72, across=0.3, down=0.7)  # below: the legend
 
 
 def pressure(found: SquealMap) -> "Figure":
@@ -26,6 +28,7 @@ def pressure(found: SquealMap) -> "Figure":
     from matplotlib.patches import Rectangle
 
     figure, (left, right) = plots.panels(1, 2, width=9.0, height=4.0, sharey=True)
+    MARGINS.set(figure, 1, 2, 9.0, 4.0)
     _eigenvalues(left, found, *ANGLES)
     _transients(right, found, *ANGLES)
     for panel in (left, right):
@@ -39,6 +42,7 @@ def pressure(found: SquealMap) -> "Figure":
 def planes(load: SquealMap, speed: SquealMap) -> "Figure":
     """Friction with load above, with sliding speed below; eigenvalues left, transients right."""
     figure, rows = plots.panels(2, 2, width=9.0, height=7.4, sharey="row")
+    MARGINS.set(figure, 2, 2, 9.0, 7.4)
     for (left, right), found, axis in zip(rows, (load, speed), (LOAD, SPEED), strict=True):
         _eigenvalues(left, found, MU, axis)
         _transients(right, found, MU, axis)
@@ -48,7 +52,7 @@ def planes(load: SquealMap, speed: SquealMap) -> "Figure":
 
 def maxima(case: Case, found: Maxima, onset: float) -> "Figure":
     """The last eight maxima of x, less steady sliding, over friction; from rest and from beside steady sliding."""
-    with drawing(None, width=6.4, height=3.4) as panel:
+    with drawing(Margins(bottom=0.4).panel(6.4, 3.4)) as panel:
         panel.axhline(0.0, color="#808080", linewidth=0.8)
         for values, mark, colour, size, name in (
             (found.from_rest, "o", "#D55E00", 3.0, "from rest"),
@@ -109,4 +113,4 @@ def _legend(figure: Any, maps: list[SquealMap]) -> None:
             for kind, (name, colour) in enumerate(zip(MEANS, COLOURS, strict=True))
             if any(np.any(found.kind == kind) for found in maps)
         ]
-        figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), handlelength=1.6)
+        figure.legend(handles=handles, loc="lower center", ncols=len(handles), handlelength=1.6)

@@ -88,6 +88,10 @@ class Margins:
             _SHEETS[layout] = figure, panels
         return figure, panels
 
+    def panel(self, width: float, height: float) -> Any:
+        """One panel with these margins."""
+        return self.panels(1, 1, width, height)[1]
+
     def set(self, figure: "Figure", rows: int, columns: int, width: float, height: float) -> None:
         """Give these margins to a figure."""
         wide, high = self._panel(rows, columns, width, height)

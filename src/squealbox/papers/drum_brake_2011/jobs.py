@@ -36,8 +36,10 @@ class JobFailed(RuntimeError):
     """A worker could not finish a job; the message names the job."""
 
 
-def run(jobs: list[Job], progress: Progress | None = None) -> list[Any]:
+def run(jobs: list[Job], progress: Progress | None = None, meanwhile: Callable[[], object] | None = None) -> list[Any]:
     """The answers to all jobs, in their order; `progress` hears what was done and the share of jobs done.
+
+    `meanwhile` is called once, when the first jobs have been handed out.
 
     A job begins in its turn, once those whose labels it has in `after` are done. Raises `JobFailed` with the first job
     that fails.
@@ -51,6 +53,9 @@ def run(jobs: list[Job], progress: Progress | None = None) -> list[Any]:
             while len(running) < count and (i := next(ready, None)) is not None:
                 running[threads.submit(_ask, idle, jobs[i])] = i
             waiting = [i for i in waiting if i not in running.values()]
+            if meanwhile is not None:
+                meanwhile()
+                meanwhile = None
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 i = running.pop(future)
                 answers[i] = future.result()
@@ -66,11 +71,12 @@ def everything(
     progress: Progress | None = None,
     fine: bool = False,
     search: bool = False,
+    meanwhile: Callable[[], object] | None = None,
 ) -> tuple[dict[str, Any], dict[str, Any], dict[str, Any]]:
     """Study of every reading; where asked, the search over its choices, by reading; and what stands beside them.
 
     The default reading's figures go to `figures` itself. Without `search` the second answer is empty. The third has the
-    answers of "family" and "solver", see `do`.
+    answers of "family" and "solver", see `do`. `meanwhile` is called when the workers have begun.
 
     What the transients need is compiled first, once: two workers that start on transients would each compile the same.
     """
@@ -82,7 +88,10 @@ def everything(
     beside = [{"kind": kind, "folder": str(figures), "label": label} for kind, label in BESIDE.items()]
     solver = {"kind": "solver", "folder": str(figures), "label": "the solver of 2011", "after": compiled}
     jobs = [*compiling, *beside, *tasks, solver]
-    found = {(job["kind"], job.get("reading")): answer for job, answer in zip(jobs, run(jobs, progress), strict=True)}
+    found = {
+        (job["kind"], job.get("reading")): answer
+        for job, answer in zip(jobs, run(jobs, progress, meanwhile), strict=True)
+    }
     searched = {name: found["search", name] for name in readings} if search else {}
     told = {kind: found[kind, None] for kind in ("family", "solver")}
     return {name: found["study", name] for name in readings}, searched, told

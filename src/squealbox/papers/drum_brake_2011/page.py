@@ -75,7 +75,7 @@ def page(
                 more, record.met_by_reading(found)[RECONSTRUCTED], redrawn
             )),
             Section("What the solver of 2011 did", (
-                *page_why.solver(folder, more.decays, more.onsets),
+                *page_why.solver(folder, more),
                 Section("Raw and exact runs of this study", _raw_and_exact(studies, found), folded=True),
             )),
             Section("The readings", (_readings(list(studies), found),)),

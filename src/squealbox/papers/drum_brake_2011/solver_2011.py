@@ -10,20 +10,19 @@ for w h small: at 1,000 steps in 0.05 s, w h is 0.6 and the method adds about as
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from operator import mul
 from typing import Any
 
 import numpy as np
 
 from squealbox.designs import DrumBrake
-from squealbox.papers.drum_brake_2011 import steady
 from squealbox.papers.drum_brake_2011.cases import DURATION, Case
 from squealbox.papers.drum_brake_2011.claims import EXACT, RAW
 from squealbox.papers.drum_brake_2011.motions import METHODS, SAMPLES, judged
-from squealbox.signals import growth_rate
-from squealbox.system import as_system
+from squealbox.signals import slope
+from squealbox.stability import complex_modes
+from squealbox.system import as_system, linearise
 from squealbox.transient import simulate
 from squealbox.transient.verdict import verdict
 
@@ -35,20 +34,22 @@ SETTINGS = {
     "ode23": "usual settings: relative tolerance 1e-3, absolute tolerance 1e-3 of the largest value so far",
 }
 EARLY, LATE = (0.0, 0.0125), (0.0125, 0.025)  # s; after that nothing is left but the error allowed
+UPTO = (0.010, 0.0125, 0.015)  # s: what is added grows while the motion dies, because the error allowed stays
+MU = 0.30
 LOADS = tuple(500.0 * i for i in range(16, 27))  # N: 8 to 13 kN
 FRICTIONS = tuple(round(0.38 + 0.005 * i, 3) for i in range(6))
 
 
 @dataclass(frozen=True)
 class Decay:
-    """A run that decays: its time and x, the steps it took, and its decay rate [1/s] early and late."""
+    """A run that decays: its time and x, its steps, and the decay rates [1/s] of both modes, early and late."""
 
     setting: str
     t: Any
     x: Any
     steps: int
-    early: float
-    late: float
+    early: tuple[float, float]
+    late: tuple[float, float]
 
 
 def added_damping(angular_frequency: float, step: float) -> float:
@@ -89,94 +90,71 @@ def ode23(design: Any, duration: float = DURATION, rtol: float = RELATIVE) -> Pl
     begins at 1e-6 and rises to rtol times the largest value so far; the next step is 0.8 (rtol/error)^(1/3) times the
     last, at most five times, and never longer than a fiftieth of the run.
     """
-    rate, size = _rate(as_system(design))
-    time, y, step, largest = 0.0, [0.0] * (2 * size), 1e-6, [1e-6 / rtol] * (2 * size)
-    first, failed = rate(y), False
-    times, states = [time], [y]
-    while time < duration:
-        step = min(step, duration / 50.0, duration - time)
-        half, three, ninth = 0.5 * step, 0.75 * step, step / 9.0
-        second = rate([a + half * k for a, k in zip(y, first, strict=True)])
-        third = rate([a + three * k for a, k in zip(y, second, strict=True)])
-        slopes = zip(y, first, second, third, strict=True)
-        new = [a + ninth * (2.0 * k1 + 3.0 * k2 + 4.0 * k3) for a, k1, k2, k3 in slopes]
-        fourth = rate(new)
-        worst = step * max(
-            abs(-5.0 * k1 / 72.0 + k2 / 12.0 + k3 / 9.0 - k4 / 8.0) / max(abs(a), abs(b), most)
-            for k1, k2, k3, k4, a, b, most in zip(first, second, third, fourth, y, new, largest, strict=True)
-        )
-        if worst > rtol and step > SHORTEST:
-            step *= 0.5 if failed else max(0.5, 0.8 * (rtol / worst) ** (1.0 / 3.0))
-            failed = True
-            continue
-        time, y, first, failed = time + step, new, fourth, False
-        largest = [max(most, abs(a)) for most, a in zip(largest, y, strict=True)]
-        times.append(time)
-        states.append(y)
-        step *= min(5.0, 0.8 * (rtol / max(worst, 1e-12)) ** (1.0 / 3.0))
-    found = np.array(states)
-    return Plain(np.array(times), found[:, :size], found[:, size:])
+    from squealbox.papers.drum_brake_2011.marching import march
+
+    system = as_system(design)
+    inverse, size, contacts = np.linalg.inv(system.M), system.size, system.contacts
+    linear = np.hstack([-inverse @ system.K, -inverse @ system.C])
+    sensed = np.array([np.concatenate([each.n, each.t]) for each in contacts])
+    pushed = np.array([inverse @ each.d for each in contacts])
+    laws = np.array([[each.N0, each.V, each.law.static, each.law.slope] for each in contacts], dtype=float)
+    t, y = march(linear, inverse @ system.load, sensed, pushed, laws, duration, rtol, SHORTEST)
+    return Plain(t, y[:, :size], y[:, size:])
 
 
-def _rate(system: Any) -> tuple[Callable[[list[float]], list[float]], int]:
-    """The rate of change of (q, q') in plain numbers, several times as quick as arrays of two; and the freedoms."""
-    inverse, size = np.linalg.inv(system.M), system.size
-    linear = np.hstack([-inverse @ system.K, -inverse @ system.C]).tolist()
-    force = (inverse @ system.load).tolist()
-    contacts = [
-        (np.concatenate([c.n, 0.0 * c.t]).tolist(), np.concatenate([0.0 * c.n, c.t]).tolist(),
-         (inverse @ c.d).tolist(), float(c.N0), float(c.V), float(c.law.static), float(c.law.slope))
-        for c in system.contacts
-    ]  # fmt: skip
-
-    def rate(y: list[float]) -> list[float]:
-        change = [f + sum(map(mul, row, y)) for f, row in zip(force, linear, strict=True)]
-        for n, t, d, preload, speed, static, slope in contacts:
-            v = speed - sum(map(mul, t, y))
-            if v:
-                mu = static + slope * abs(v)  # Eq. (2)
-                pull = (mu if v > 0.0 else -mu) * (preload + sum(map(mul, n, y)))
-                change = [a + pull * b for a, b in zip(change, d, strict=True)]
-        return y[size:] + change
-
-    return rate, size
+def run(designs: Sequence[Any], setting: str) -> Iterator[Any]:
+    """Motions from rest by one of `SETTINGS`, one after the other: simulated ones at the sample times of the study."""
+    if setting == "ode23":
+        yield from (ode23(design) for design in designs)
+    else:
+        road = EXACT if setting == "exact" else RAW
+        yield from (simulate(design, DURATION, "rest", SAMPLES, METHODS[road], road) for design in designs)
 
 
-def run(design: Any, setting: str) -> Any:
-    """A motion from rest by one of `SETTINGS`, at the sample times of the study."""
-    if setting == "exact":
-        return simulate(design, DURATION, "rest", SAMPLES, METHODS[EXACT], EXACT)
-    if setting == "raw":
-        return simulate(design, DURATION, "rest", SAMPLES, METHODS[RAW], RAW)
-    return ode23(design)
-
-
-def decays(case: Case, mu: float = 0.30) -> list[Decay]:
-    """The motion at `mu` by every setting, with the decay rate of its lower mode."""
+def decays(case: Case, mu: float = MU) -> list[Decay]:
+    """The motion at `mu` by every setting, with the decay rates of its two modes."""
     design = case.design(mu=mu)
-    lower = float(steady.frequencies(steady.modes(case, mu=mu))[0]) / (2.0 * np.pi)
     found = []
     for setting in SETTINGS:
-        motion = run(design, setting)
-        steps = int(motion.steps)
-        if isinstance(motion, Plain):
-            motion = motion.at(np.linspace(0.0, DURATION, SAMPLES))
-        x = motion.q[:, 0]
-        rates = []
-        for low, high in (EARLY, LATE):
-            inside = (motion.t >= low) & (motion.t <= high)
-            rates.append(-float(growth_rate(x[inside], motion.t[inside], frequency=lower).rate))
-        found.append(Decay(setting, motion.t, x, steps, *rates))
+        (motion,) = run([design], setting)
+        rates = [decay_of_modes(design, motion, *part) for part in (EARLY, LATE)]
+        shown = motion.at(np.linspace(0.0, DURATION, SAMPLES)) if isinstance(motion, Plain) else motion
+        found.append(Decay(setting, shown.t, shown.q[:, 0], int(motion.steps), *rates))
+    return found
+
+
+def decay_of_modes(design: Any, motion: Any, begin: float, end: float) -> tuple[float, float]:
+    """Decay rates [1/s] of the lower and the upper mode in a motion about steady sliding, from `begin` to `end` [s].
+
+    The share of mode j is w_j^H ((lambda_j M + C) (q - q0) + M q'), with its left mode w_j: while nothing reverses it
+    goes as exp(lambda_j t), whatever the other mode does.
+    """
+    modes, linear = complex_modes(design), linearise(as_system(design))
+    inside = (motion.t >= begin) & (motion.t <= end)
+    q, qd = motion.q[inside] - modes.steady, motion.qd[inside]
+    rates = []
+    for eigenvalue, left in zip(modes.eigenvalues[:2], np.conj(modes.left[:, :2].T), strict=True):
+        share = q @ (left @ (eigenvalue * linear.M + linear.C)) + qd @ (left @ linear.M)
+        rates.append(-float(slope(motion.t[inside], np.log(np.abs(share)))[0]))
+    return rates[0], rates[1]
+
+
+def added(case: Case, mu: float = MU) -> dict[float, list[tuple[float, float]]]:
+    """What ode23 adds to the decay of both modes [1/s] up to the times `UPTO` [s], for the slope of `case` and none."""
+    found: dict[float, list[tuple[float, float]]] = {}
+    for each in (case, case.replace(alpha=0.0)):
+        design = each.design(mu=mu)
+        motion, true = ode23(design), -complex_modes(design).growth_rate[:2]
+        rates = [np.array(decay_of_modes(design, motion, 0.0, end)) - true for end in UPTO]
+        found[each.alpha] = [(float(lower), float(upper)) for lower, upper in rates]
     return found
 
 
 def onsets(case: Case) -> dict[str, tuple[float, float]]:
     """The least load [N] and friction coefficient from which on every motion tried persists, by setting."""
+    loads, frictions = ([case.design(load=load) for load in LOADS], [case.design(mu=mu) for mu in FRICTIONS])
     return {
-        setting: (
-            _least([(load, case.design(load=load)) for load in LOADS], setting),
-            _least([(mu, case.design(mu=mu)) for mu in FRICTIONS], setting),
-        )
+        setting: (_least(LOADS, run(loads[::-1], setting)), _least(FRICTIONS, run(frictions[::-1], setting)))
         for setting in SETTINGS
     }
 
@@ -200,11 +178,11 @@ def _persists(motion: Any) -> bool | None:
     return {"decays": False, "grows": True, "settles_on_cycle": True}.get(found.kind)
 
 
-def _least(tried: list[tuple[float, Any]], setting: str) -> float:
-    """The least value from which on all designs persist, tried from the last down; infinite where the last does not."""
+def _least(values: Sequence[float], motions: Iterator[Any]) -> float:
+    """The least value from which on all persist, by their motions from the last down; infinite where the last dies."""
     least = math.inf
-    for value, design in reversed(tried):
-        if _persists(run(design, setting)) is not True:
+    for value, motion in zip(reversed(values), motions, strict=True):
+        if _persists(motion) is not True:
             break
         least = value
     return least

@@ -6,6 +6,7 @@ import numpy as np
 
 from squealbox.papers.drum_brake_2011 import steady, theorems
 from squealbox.papers.drum_brake_2011.cases import PRINTED, RECONSTRUCTED, RESOLUTION, Case
+from squealbox.papers.drum_brake_2011.figures import Margins
 from squealbox.plots.style import drawing, figure_of
 
 if TYPE_CHECKING:
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
 
 BLUE, RED, GREY, INK = "#0072B2", "#D55E00", "#808080", "#000000"
 WIDTH, HEIGHT = 5.6, 3.1
+MARGINS = Margins(bottom=0.4)
 MARK: dict[str, Any] = {"marker": "o", "linestyle": "none", "capsize": 3.0, "markersize": 4.0, "color": INK}
 
 
@@ -21,7 +23,7 @@ def trace() -> "Figure":
     mu = np.linspace(0.0, 0.55, 56)
     known = {each: theorems.published_trace(each) for each in (0.10, 0.30)}
     bands = [theorems.trace_line(known, float(each)) for each in mu]
-    with drawing(None, width=WIDTH, height=HEIGHT) as axes:
+    with drawing(MARGINS.panel(WIDTH, HEIGHT)) as axes:
         low, high = (_mean(np.array([getattr(band, end) for band in bands])) for end in ("low", "high"))
         axes.fill_between(mu, low, high, color=BLUE, alpha=0.2, linewidth=0.0)
         axes.text(0.02, 12.55, "all that is linear in mu\nand meets mu-3 and N-2", color=BLUE)
@@ -39,7 +41,7 @@ def trace() -> "Figure":
 def damping() -> "Figure":
     """C22 - c11 over the load: what mu-5 asks for at 1 kN and N-2 at 15 kN is on no line from the table's value."""
     load = np.linspace(0.0, 17e3, 18)
-    with drawing(None, width=WIDTH, height=HEIGHT) as axes:
+    with drawing(MARGINS.panel(WIDTH, HEIGHT)) as axes:
         for at_low in (0.0, 4.0, 10.0):
             axes.plot(1e-3 * load, theorems.damping_difference(at_low, load), color=BLUE, linewidth=1.0)
         axes.text(4.2, 190.0, "all lines from the table's -6 N s/m\nthat are positive at 1 kN", color=BLUE)
@@ -61,7 +63,7 @@ def damping() -> "Figure":
 def load_and_speed() -> "Figure":
     """Decay rates at 1 kN while the speed falls, beside what V-1 asks for."""
     speed = np.linspace(0.05, 0.2, 31)
-    with drawing(None, width=WIDTH, height=HEIGHT) as axes:
+    with drawing(MARGINS.panel(WIDTH, HEIGHT)) as axes:
         for name, colour in ((PRINTED, INK), (RECONSTRUCTED, BLUE)):
             decay = [
                 -steady.growth(Case(name, alpha).design(speed=speed)) for alpha in (0.053, 0.080)
@@ -83,7 +85,7 @@ def onset() -> "Figure":
     mu = np.linspace(0.0, 0.46, 93)
     values = [theorems.table_split(), theorems.squared_split(0.10), theorems.squared_split(0.30)]
     curve = np.polyval(np.polyfit([0.0, 0.10, 0.30], values, 2), mu)
-    with drawing(None, width=WIDTH, height=HEIGHT) as axes:
+    with drawing(MARGINS.panel(WIDTH, HEIGHT)) as axes:
         axes.plot(mu, 1e-15 * curve, color=BLUE, linewidth=1.2, label="the one parabola through them")
         axes.plot([0.0, 0.10, 0.30], 1e-15 * np.array(values), "o", color=INK, markersize=4.0)
         for where, value, name in zip((0.0, 0.10, 0.30), values, ("table", "mu-3", "N-2"), strict=True):
@@ -117,7 +119,7 @@ ALL = {"theorem_trace": trace, "theorem_damping": damping, "theorem_speed": load
 
 def solver(found: Any) -> "Figure":
     """Envelopes of a decay, exact and by the solver of 2011, on a logarithmic scale."""
-    with drawing(None, width=WIDTH, height=HEIGHT) as axes:
+    with drawing(MARGINS.panel(WIDTH, HEIGHT)) as axes:
         for each, colour, dash in zip(found, (INK, BLUE, RED), ("-", (0, (4, 2)), "-"), strict=True):
             middle = np.median(each.x[-200:])
             pieces = np.array_split(np.abs(each.x - middle), 50)

@@ -1,0 +1,74 @@
+"""The march of `solver_2011.ode23` as machine code. Importing this module loads numba, as maps do anyway."""
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True, error_model="numpy")
+def march(
+    linear: Any, force: Any, sensed: Any, pushed: Any, laws: Any, duration: float, rtol: float, shortest: float
+) -> Any:
+    """Times (k,) and states (k, 2n) of the accepted steps of Bogacki and Shampine's method, from rest.
+
+    `linear` (n, 2n) and `force` (n,) give q'' without contacts, `sensed` (contacts, 2n) the rows n and t of each,
+    `pushed` (contacts, n) what its force adds to q'', `laws` its N0, V, mu0 and slope.
+    """
+    size = len(force)
+    times, states = np.empty(1024), np.empty((1024, 2 * size))
+    y, new = np.zeros(2 * size), np.zeros(2 * size)
+    largest = np.full(2 * size, 1e-6 / rtol)
+    slopes = np.zeros((4, 2 * size))
+    _rate(linear, force, sensed, pushed, laws, y, slopes[0])
+    time, step, failed, count = 0.0, 1e-6, False, 1
+    times[0], states[0] = time, y
+    while time < duration:
+        step = min(step, duration / 50.0, duration - time)
+        for i in range(2 * size):
+            new[i] = y[i] + 0.5 * step * slopes[0, i]
+        _rate(linear, force, sensed, pushed, laws, new, slopes[1])
+        for i in range(2 * size):
+            new[i] = y[i] + 0.75 * step * slopes[1, i]
+        _rate(linear, force, sensed, pushed, laws, new, slopes[2])
+        for i in range(2 * size):
+            new[i] = y[i] + step / 9.0 * (2.0 * slopes[0, i] + 3.0 * slopes[1, i] + 4.0 * slopes[2, i])
+        _rate(linear, force, sensed, pushed, laws, new, slopes[3])
+        worst = 0.0
+        for i in range(2 * size):
+            error = -5.0 * slopes[0, i] / 72.0 + slopes[1, i] / 12.0 + slopes[2, i] / 9.0 - slopes[3, i] / 8.0
+            worst = max(worst, step * abs(error) / max(abs(y[i]), abs(new[i]), largest[i]))
+        wanted = 0.8 * (rtol / max(worst, 1e-12)) ** (1.0 / 3.0)
+        if worst > rtol and step > shortest:
+            step *= 0.5 if failed else max(0.5, wanted)
+            failed = True
+            continue
+        time, failed = time + step, False
+        for i in range(2 * size):
+            y[i], slopes[0, i] = new[i], slopes[3, i]
+            largest[i] = max(largest[i], abs(y[i]))
+        if count == len(times):
+            times, states = np.concatenate((times, times)), np.concatenate((states, states))
+        times[count], states[count] = time, y
+        count += 1
+        step *= min(5.0, wanted)
+    return times[:count], states[:count]
+
+
+@njit(cache=True, error_model="numpy")
+def _rate(linear: Any, force: Any, sensed: Any, pushed: Any, laws: Any, y: Any, out: Any) -> None:
+    """The rate of change of (q, q')."""
+    size = len(force)
+    for i in range(size):
+        out[i] = y[size + i]
+        out[size + i] = force[i]
+        for j in range(2 * size):
+            out[size + i] += linear[i, j] * y[j]
+    for c in range(len(laws)):
+        pressed, v = laws[c, 0], laws[c, 1]
+        for j in range(size):
+            pressed += sensed[c, j] * y[j]
+            v -= sensed[c, size + j] * y[size + j]
+        mu = laws[c, 2] + laws[c, 3] * abs(v)  # Eq. (2)
+        for i in range(size):
+            out[size + i] += np.sign(v) * mu * pressed * pushed[c, i]
