@@ -60,7 +60,7 @@ def heard(options: Options, work: Work) -> tuple[Recording, SquealEvents]:
     scale = options.number("full_scale", 1.0, 1e-12, 1e12)
     work.progress(0.05, "reading")
     try:
-        recording = read_recording(path, **({} if unit == "FS" else {"unit": unit, "full_scale": scale}))
+        recording = read_recording(path) if unit == "FS" else read_recording(path, unit=unit, full_scale=scale)
         work.progress(0.2, "looking for squeal")
         low = options.number("lowest", 1000.0, 20.0, 16e3)
         return recording, squeal_events(recording, band=(low, min(TOP, 0.49 * recording.rate)))

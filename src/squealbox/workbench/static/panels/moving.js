@@ -14,18 +14,14 @@ export default {
   setup(panel) {
     panel.files.hidden = true;
     panel.pick = make("span");
-    panel.play = make("button", { type: "button", onclick: () => hold(panel), "aria-pressed": "false" }, "Pause");
+    panel.play = make("button", { type: "button", onclick: () => hold(panel) }, "Pause");
     panel.controls.append(panel.pick, panel.play);
     panel.stage = make("div", { class: "drawing moving" });
     panel.legend = make("p", { class: "states" }, ...["slip", "stick", "lifted"].flatMap((state) => [make("i", { class: `swatch ${state}` }), `${state} `]));
     panel.body.append(panel.stage, panel.legend);
     panel.charts = [];
-    panel.held = still.matches;
-    still.addEventListener("change", () => {
-      panel.held = still.matches;
-      label(panel);
-    });
-    label(panel);
+    hold(panel, still.matches);
+    still.addEventListener("change", () => hold(panel, still.matches));
     panel.app.addEventListener("motion", () => scene(panel));
     panel.app.store.addEventListener("changed", () => scene(panel));
     const step = (now) => {
@@ -55,14 +51,9 @@ export default {
   },
 };
 
-function label(panel) {
-  panel.play.textContent = panel.held ? "Move" : "Pause";
-  panel.play.setAttribute("aria-pressed", panel.held);
-}
-
-function hold(panel) {
-  panel.held = !panel.held;
-  label(panel);
+function hold(panel, held = !panel.held) {
+  panel.held = held;
+  panel.play.textContent = held ? "Move" : "Pause";
 }
 
 /** What is shown: the motion where it is asked what happens and one of this design is known, else the mode. */
