@@ -79,6 +79,14 @@ def shown(name: str, times: list[float], asked: str) -> None:
     )
 
 
+ASK = "panel => import('/static/app.js').then(({ app }) => app.questions.askFor(panel))"
+PICTURES = """() => new Promise(done => {
+    const section = document.querySelector('section[data-panel=moving]');
+    const before = Number(section.dataset.pictures);
+    setTimeout(() => done((Number(section.dataset.pictures) - before) / 3), 3000);
+})"""
+
+
 def page(folder: Path) -> None:
     """From the command to the first page and to the first figure."""
     first, figure = [], []
@@ -107,19 +115,22 @@ def figures(folder: Path) -> None:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
         opened = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
         opened.goto(address)
-        opened.wait_for_selector("section[data-panel=map][data-state=drawn]", timeout=120_000)
+        opened.wait_for_selector("section[data-panel=locus][data-state=drawn]", timeout=120_000)
         for name, path, low, high, count, asked in (
             ("locus", "k3", 120.0, 260.0, 60, "80 / 150 ms"),
             ("map", "k3", 120.0, 260.0, 20, "300 ms"),
             ("motion", "friction.static", 0.35, 0.5, 20, "300 ms"),
         ):
-            opened.locator(f"section[data-panel={name}]").scroll_into_view_if_needed()
+            opened.evaluate(ASK, name)
             opened.wait_for_selector(f"section[data-panel={name}][data-state=drawn]", timeout=120_000)
             opened.wait_for_timeout(1500)
             digits = 0 if path == "k3" else 3  # what a slider's step leaves
             values = [round(low + (high - low) * ((7 * i) % count) / count, digits) for i in range(count)]
             opened.evaluate(MOVES, [name, path, values[:5]])
             shown(f"slider to {name} painted", opened.evaluate(MOVES, [name, path, values]), asked)
+        opened.evaluate(ASK, "moving")
+        opened.wait_for_timeout(1500)
+        print(f"the brake moves with {opened.evaluate(PICTURES):.0f} pictures a second; asked 30")
         browser.close()
     stop(server)
 
@@ -147,7 +158,7 @@ def stops(folder: Path) -> None:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
         opened = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
         opened.goto(address)
-        opened.locator("section[data-panel=motion]").scroll_into_view_if_needed()
+        opened.evaluate(ASK, "motion")
         opened.wait_for_selector("section[data-panel=motion][data-state=drawn]", timeout=120_000)
         opened.evaluate(HOURS)
         begins = {
@@ -155,7 +166,7 @@ def stops(folder: Path) -> None:
             "branch": "document.querySelector('section[data-panel=branch] .body button').click()",
         }
         for panel, begin in begins.items():
-            opened.locator(f"section[data-panel={panel}]").scroll_into_view_if_needed()
+            opened.evaluate(ASK, panel)
             times = []
             for _ in range(5):
                 opened.evaluate(begin)
@@ -221,6 +232,16 @@ def soak(folder: Path, count: int = SOAK) -> None:
                 await socket.send("{" if i % 100 == 1 else json.dumps(question))
                 await socket.recv()
 
+    async def warm() -> None:
+        """Numba and the first map are loaded, as for any page that is open for a while: 111 MB, and no leak."""
+        async with connect(place, max_size=None) as socket:
+            await socket.recv()
+            for view in ("locus", "map", "verdict", "sensitivity", "motion"):
+                await socket.send(json.dumps({"id": 0, "view": view, "state": STATE, "options": {}}))
+                while unframed(await socket.recv())[0]["kind"] == "progress":
+                    pass
+
+    asyncio.run(warm())
     asyncio.run(messages(0, 3000))
     before, begin = process.memory_info().rss, time.perf_counter()
     for part in range(10):  # ten visits of a page

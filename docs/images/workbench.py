@@ -39,7 +39,7 @@ def taken(browser: Browser, address: str, scheme: str, path: Path) -> None:
     """The page in a colour scheme, in 256 colours, which a page of few colours hardly misses."""
     page = browser.new_context(viewport=SIZE, color_scheme=scheme, reduced_motion="reduce").new_page()
     page.goto(address)
-    for panel in ("locus", "map", "friction"):
+    for panel in ("locus", "moving", "energy", "friction"):
         page.wait_for_selector(TELLING.format(panel), timeout=120_000)
     page.wait_for_selector("#verdict .heard b", timeout=120_000)
     page.wait_for_timeout(500)

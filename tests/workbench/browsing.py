@@ -13,6 +13,16 @@ LINES = """figure => [...figure.querySelectorAll('g.layer')].map(layer => ({
     cls: layer.getAttribute('class'), d: layer.querySelector('path')?.getAttribute('d') ?? '',
     circles: layer.querySelectorAll('circle').length,
 }))"""
+AGAIN = """() => import('/static/app.js').then(({ app }) => {
+    const { store } = app;
+    store.settings = {};
+    store.replace({ base: null, brake: 'drum_brake', laws: {}, values: {} });
+    store.past.length = store.future.length = 0;
+    store.dispatchEvent(new Event('history'));
+})"""
+BEGUN = """() => document.querySelector('[data-path="friction.static"]')?.value === '0.3'
+    && document.querySelector('[data-path=theta2]').value === '115'
+    && document.querySelector('#panels').dataset.question === 'why'"""
 ASK = "panel => import('/static/app.js').then(({ app }) => app.questions.askFor(panel))"
 OPTION = "([panel, changes]) => import('/static/app.js').then(({ app }) => app.store.option(panel, changes))"
 SPEC = """([name, figure]) => import('/static/app.js').then(({ app }) => {
@@ -37,9 +47,10 @@ def launched():
 class Page:
     """A page of the workbench. Leaving it fails on script errors and on requests to anything but the server itself."""
 
-    def __init__(self, browser, server, *, scheme="light", size=(1280, 800)):
+    def __init__(self, browser, server, *, scheme="light", size=(1280, 800), motion="no-preference"):
         self.server = server
-        self.context = browser.new_context(viewport={"width": size[0], "height": size[1]}, color_scheme=scheme)
+        view = {"width": size[0], "height": size[1]}
+        self.context = browser.new_context(viewport=view, color_scheme=scheme, reduced_motion=motion)
         self.page = self.context.new_page()
         self.errors: list[str] = []
         self.expected: tuple[str, ...] = ()  # parts of messages a test provokes
@@ -57,6 +68,12 @@ class Page:
         unexpected = [each for each in self.errors if not any(part in each for part in self.expected)]
         assert kind is not None or not unexpected, unexpected
 
+    def again(self):
+        """Back to the usual design, no option chosen and nothing to undo."""
+        self.page.evaluate(AGAIN)
+        self.page.wait_for_function(BEGUN)
+        self.drawn("locus")
+
     def goto(self, fragment=""):
         """Open the start address and wait until the first figure is there."""
         self.page.goto(self.server.address + fragment)
@@ -66,7 +83,7 @@ class Page:
         """Wait until these panels show the present design."""
         for panel in panels:
             self.ask(panel)
-            self.page.wait_for_selector(f"section[data-panel={panel}][data-state=drawn]", timeout=120_000)
+            self.page.wait_for_selector(f"section[data-panel={panel}][data-state=drawn]", timeout=300_000)
 
     def ask(self, panel):
         """Ask the question on whose screen a panel stands."""
@@ -76,7 +93,7 @@ class Page:
     def settled(self, panel):
         """Wait until a panel has answered the newest question, with a figure or a sentence."""
         self.ask(panel)
-        self.page.wait_for_selector(f"section[data-panel={panel}]:not([data-state=waiting])", timeout=120_000)
+        self.page.wait_for_selector(f"section[data-panel={panel}]:not([data-state=waiting])", timeout=300_000)
 
     def says(self, panel):
         """The sentence below a panel."""

@@ -47,6 +47,22 @@ def browser():
         yield running
 
 
+@pytest.fixture(scope="session")
+def standing(server, browser):
+    with Page(browser, server) as opened:
+        opened.goto()
+        yield opened
+
+
+@pytest.fixture
+def same_page(standing):
+    """One page for many tests: each begins with the usual design and the first question, and may leave no error."""
+    before = len(standing.errors)
+    standing.again()
+    yield standing
+    assert standing.errors[before:] == []
+
+
 @pytest.fixture
 def page(server, browser):
     with Page(browser, server) as opened:

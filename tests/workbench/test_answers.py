@@ -7,6 +7,8 @@ import pytest
 
 from squealbox import ComplexModes, DrumBrake, LinearSlope, simulate, sound_level
 from squealbox.designs import DESIGNS
+from squealbox.files import read_text
+from squealbox.report import examine
 from squealbox.system import equilibrium
 from squealbox.transient import verdict
 from squealbox.workbench import session
@@ -114,3 +116,17 @@ def test_the_same_margin_in_verdict_comparison_and_report():
     margin = (near - said["value"]) / abs(said["value"])
     assert asked("compare", brake)["margin"] == pytest.approx(margin, rel=1e-9)
     assert panel.try_value(brake, "friction.static") == said["value"]
+
+
+def test_a_report_ends_also_where_the_boundary_has_many_corners():
+    found = examine(DESIGNS["sprag_slip"]())
+    assert "map" not in found.missing
+    growth = found.boundary.growth_rate[np.isfinite(found.boundary.growth_rate)]  # NaN at the edge of steady sliding
+    assert growth.size > 10
+    assert np.max(np.abs(growth)) < 1e-6 * np.max(np.abs(found.modes.eigenvalues))
+
+
+def test_a_brake_of_matrices_has_a_report():
+    text = 'brake = "own"\nM = [[1.0, 0.0], [0.0, 1.0]]\nC = [[0.01, 0], [0, 0.01]]\nK = [[2.0, -0.5], [0.5, 2.0]]\n'
+    found = examine(read_text(text, "own", beside=False).design)
+    assert not bool(found.modes.stable)

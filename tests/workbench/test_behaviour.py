@@ -31,6 +31,12 @@ SMALL = """() => [...document.querySelectorAll('body *')].filter(e => [...e.chil
     && parseFloat(getComputedStyle(e).fontSize) < 12).map(e => e.tagName + ': ' + e.textContent.slice(0, 40))"""
 
 
+@pytest.fixture
+def page(same_page):
+    """None of these needs a page of its own."""
+    return same_page
+
+
 def value(page, path):
     return page.page.locator(f"input[data-path='{path}']").input_value()
 

@@ -8,6 +8,12 @@ from squealbox import DrumBrake, LinearSlope, complex_modes, critical_value, sta
 FLOAT32 = 1e-5  # numbers travel with seven digits, and the page shows six of them
 
 
+@pytest.fixture
+def page(same_page):
+    """None of these needs a page of its own."""
+    return same_page
+
+
 def brake(**changes):
     return DrumBrake(friction=LinearSlope(0.30, -0.05)).replace(changes)
 

@@ -13,6 +13,12 @@ UNSTABLE = DrumBrake(friction=LinearSlope(0.45, -0.05))
 
 
 @pytest.fixture
+def page(same_page):
+    """None of these needs a page of its own."""
+    return same_page
+
+
+@pytest.fixture
 def squealing(page):
     """The page with a brake that squeals."""
     page.enter("friction.static", 0.45)

@@ -24,10 +24,10 @@ from squealbox.stability import (
     Sensitivity,
     complex_modes,
     critical_values,
+    map_boundary,
     mechanism,
     mode_energy,
     sensitivity,
-    stability_boundary,
     stability_map,
 )
 from squealbox.system import InvalidSystem
@@ -127,8 +127,7 @@ class _Work:
             points = [np.linspace(a.low, a.high, min(int(a.points), MOST_MAP_POINTS)) for a in (chosen.x, chosen.y)]
             names = (chosen.x.name, chosen.y.name)
             self.found["map"] = stability_map(self.design, dict(zip(names, points, strict=True)), time=self.time)
-            bounds = {axis.name: (axis.low, axis.high) for axis in (chosen.x, chosen.y)}
-            self.found["boundary"] = stability_boundary(self.design, bounds, time=self.time)
+            self.found["boundary"] = map_boundary(self.found["map"])  # ends for every design; tracing corners may not
 
     def transient(self, simulate: Simulate | None) -> None:
         with self.part("transient", "transient (the first run compiles the engine)"):

@@ -67,8 +67,7 @@ def map_of_two(found: Examination) -> Iterator[Any]:
         figure.axes[0].plot(*here, "x", color="#000000", markersize=7, markeredgewidth=2.0)
         labels = [quantity_label(name, unit) for name, unit in zip(names, units, strict=True)]
         caption = (
-            f"Growth rate over {names[0]} and {names[1]}, with the boundary of stability as traced; the cross is this "
-            "design."
+            f"Growth rate over {names[0]} and {names[1]}, its boundary exact on the grid; the cross is this design."
         )
         moving = charts.map_over_two(x, y, grid.growth_rate.T, grid.frequency.T, labels, curves, (here[0], here[1]))
         yield Chart(picture(figure, caption), moving)

@@ -14,7 +14,7 @@ from starlette.applications import Starlette
 from starlette.middleware import Middleware
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 from starlette.requests import Request
-from starlette.responses import FileResponse, HTMLResponse, Response
+from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
@@ -22,6 +22,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from squealbox.workbench.apart import Processes
 from squealbox.workbench.frames import frame
 from squealbox.workbench.guard import Headers, SameOrigin, Token
+from squealbox.workbench.recorded import Recordings
 
 STATIC = Path(__file__).parent / "static"
 HOSTS = ["127.0.0.1", "localhost"]
@@ -41,6 +42,7 @@ class Workbench:
         self.token, self.text, self.design = token, text, design
         sys.setswitchinterval(SWITCH)
         self.pools = {"quick": ThreadPoolExecutor(2, "quick"), "warming": ThreadPoolExecutor(1, "warming")}
+        self.recordings = Recordings()
         self.processes = Processes()
         self.first = threading.Event()  # a page has its first figure
         self.pages = 0
@@ -51,6 +53,7 @@ class Workbench:
             Route("/", self.page),
             Route("/favicon.ico", _file(STATIC / "favicon.svg", "image/svg+xml")),
             Route("/vendor/d3.js", _file(chart_library(), "text/javascript")),
+            Route("/recording", self.record, methods=["POST"]),
             WebSocketRoute("/ws", self.talk),
             Mount("/static", StaticFiles(directory=STATIC)),
         ]
@@ -70,6 +73,7 @@ class Workbench:
             warming.cancel()
             self.first.set()
             self.processes.close()
+            self.recordings.close()
             for pool in self.pools.values():
                 pool.shutdown(wait=False, cancel_futures=True)
 
@@ -82,6 +86,16 @@ class Workbench:
             about: dict[str, Any] = {"httponly": True, "samesite": "strict", "path": "/", "max_age": 30 * 86400}
             response.set_cookie(self.token.cookie, self.token.token, **about)
         return response
+
+    async def record(self, request: Request) -> Response:
+        """Take a recording that was dropped onto the page into the folder of this server, under a name it makes."""
+        if not self.token.known(request.scope):
+            return JSONResponse({"message": "this address needs its token"}, status_code=403)
+        try:
+            kept = await self.recordings.take(request.query_params.get("name", ""), request.stream())
+        except ValueError as error:
+            return JSONResponse({"message": str(error)}, status_code=400)
+        return JSONResponse({"id": kept})
 
     async def talk(self, socket: WebSocket) -> None:
         """One page's connection from its start to its end."""

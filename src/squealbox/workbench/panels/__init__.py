@@ -39,6 +39,8 @@ PANELS: dict[str, Panel] = {
     "silence": Panel("Cures", columns=2, slow=True, apart=True),
     "listen": Panel("Listen", slow=True),
     "compare": Panel("Compare two designs", columns=2),
+    "recording": Panel("Recording", columns=2, slow=True),
+    "calibrate": Panel("Calibrate", columns=2, slow=True, apart=True),
     "report": Panel("Report", slow=True, apart=True),
     "tour": Panel("Tour: the drum-brake paper of 2011", slow=True, apart=True),
 }

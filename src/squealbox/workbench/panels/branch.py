@@ -29,7 +29,7 @@ ROOM = 0.005  # share of the range about an onset in which it is solved for
 NEUTRAL = 1e-6  # of a multiplier from the unit circle within which a cycle neither attracts nor repels
 UPRIGHT = 1e-5  # share of the range within which a walk stands at one value
 GRID = 201  # values at which steady sliding is looked at
-PUSHES = (0.5, 1.0, 3.0)  # of the contacts' velocity over the sliding speed, from which a cycle is looked for
+PUSHES = (0.5, 1.0, 3.0, 10.0)  # of the contacts' velocity over the sliding speed, from which a cycle is looked for
 Make = Callable[[float], System]
 
 
@@ -165,12 +165,12 @@ def _drawn(
 
 
 def _walk(walk: Branch, span: tuple[float, float], dof: int, factor: float, metre: float) -> dict[str, Any]:
-    if np.ptp(walk.value) <= UPRIGHT * (span[1] - span[0]):  # one value: each point looks special, by round-off
-        return {"specials": [], "ended": ""}
     specials = [
         [str(kind).replace("_", " "), float(value) / factor, float(walk.amplitude[int(point), dof]) / metre]
         for kind, value, point in zip(walk.special_kind, walk.special_value, walk.special_point, strict=True)
     ]
+    if np.ptp(walk.value) <= UPRIGHT * (span[1] - span[0]):
+        specials = []  # it stands at one value: each of its points looks special, by round-off
     return {"specials": specials, "ended": f"{walk.outcome} {walk.outcome.message}".strip()}
 
 

@@ -9,6 +9,7 @@ from squealbox.stability import complex_modes, tracked_modes
 from squealbox.workbench.panels.panel import Answer, Options, Work, axis_of, try_value
 
 POINTS = 97  # values along the axis; about 15 ms for two degrees of freedom
+NONE = 1e-7  # growth rates up to this, or this share of themselves, are round-off
 FEWER = 61  # for designs of more degrees of freedom
 
 
@@ -28,6 +29,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "outcome": str(here.outcome),
         "message": here.outcome.message,
         "stable": bool(here.stable),
+        "unstable": _unstable(values / axis["factor"], upper.real),
     }
     arrays = {
         "value": values / axis["factor"],
@@ -37,6 +39,22 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "hereGrowth": here.growth_rate[:half],
     }
     return Answer(data, arrays)
+
+
+def _unstable(values: Any, growth: Any) -> list[list[float]]:
+    """Stretches of the axis on which a mode grows, their ends where the largest growth rate passes zero."""
+    known = np.any(np.isfinite(growth), axis=1)
+    largest = np.nanmax(np.where(known[:, None], growth, 0.0), axis=1)
+    grows = known & (largest > NONE * np.maximum(1.0, np.abs(largest)))
+    edges = []
+    for i in np.nonzero(np.diff(np.r_[False, grows, False].astype(int)))[0]:
+        if i in (0, len(values)):
+            edges.append(float(values[min(i, len(values) - 1)]))
+            continue
+        a, b = largest[i - 1], largest[i]
+        share = np.clip(a / (a - b), 0.0, 1.0) if known[i - 1] and known[i] and a != b else 0.5
+        edges.append(float(values[i - 1] + share * (values[i] - values[i - 1])))
+    return [list(pair) for pair in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def _one_of_each_pair(eigenvalues: Any) -> Any:

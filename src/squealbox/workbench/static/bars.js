@@ -18,6 +18,7 @@ export class Bars {
     this.rows = this.svg.append("g");
     this.label = this.svg.append("text").attr("class", "axis-label").attr("text-anchor", "middle");
     this.legend = this.svg.append("g").attr("class", "legend");
+    this.draw({ label: "being computed", bars: [3, 2, 1].map((size) => ({ name: "…", parts: [["like", size]], sum: NaN })) });
     new ResizeObserver(() => this.spec && this.draw(this.spec)).observe(this.frame.node());
   }
 

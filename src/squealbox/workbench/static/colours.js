@@ -1,10 +1,12 @@
 // Colours of the pictures, as pixels and as CSS; safe for colour-blind readers, for light and for dark pages.
 
+import { shade } from "./theme.js";
+
 const NONE = [136, 136, 136];
 const MECHANISMS = [[222, 235, 247], [213, 94, 0], [0, 158, 115], [120, 60, 150], [230, 159, 0]];
 const MECHANISMS_DARK = [[32, 44, 58], [224, 110, 20], [0, 158, 115], [150, 96, 190], [230, 170, 30]];
 
-export const dark = () => getComputedStyle(document.documentElement).getPropertyValue("--dark").trim() === "1";
+const dark = () => shade() === "dark";
 const pack = ([r, g, b]) => (0xff000000 | (b << 16) | (g << 8) | r) >>> 0;
 const css = ([r, g, b]) => `rgb(${r},${g},${b})`;
 const mix = (a, b, t) => a.map((x, i) => Math.round(x + (b[i] - x) * t));

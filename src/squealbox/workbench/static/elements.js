@@ -22,6 +22,13 @@ export function choose(text, choices, value, onchange) {
   return make("label", { class: "choice" }, `${text} `, select);
 }
 
+/** A table: the words of its head, and rows whose first cell names them; a cell may be an element. */
+export function table(heads, rows, about = {}) {
+  const cells = (tag, row) => row.map((cell, i) => make(i ? "td" : tag, tag === "th" && !i ? { scope: "row" } : {}, cell));
+  const head = heads.map((words) => (words ? make("th", { scope: "col" }, words) : make("td")));
+  return make("table", about, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...rows.map((row) => (Array.isArray(row) ? make("tr", {}, ...cells("th", row)) : row))));
+}
+
 let hiding = 0;
 
 /** A sentence at the foot of the page that goes away. */

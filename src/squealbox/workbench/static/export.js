@@ -1,6 +1,7 @@
 // Figures as files for paper, light also where the page is dark: PNG, SVG with its look written into it, and CSV of the
 // numbers drawn.
 
+import { element } from "./drawing.js";
 import { onPaper } from "./theme.js";
 
 const FINER = 3; // pixels of a PNG for one of the page: 300 dots per inch at the size of the page
@@ -42,12 +43,6 @@ function keyed(copy, keys, left) {
     text.textContent = words;
     copy.append(text);
   });
-}
-
-function element(tag, about) {
-  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(about)) made.setAttribute(name, value);
-  return made;
 }
 
 const box = (chart) => ({ x: chart.margin.left, y: chart.margin.top, width: chart.inner.width, height: chart.inner.height });

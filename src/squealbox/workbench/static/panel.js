@@ -24,6 +24,7 @@ export class Panel {
       this.body,
       this.says,
     );
+    this.element.style.gridArea = about.name;
     this.stopper = make("button", { type: "button", class: "stop", hidden: true, onclick: () => this.view.stop() }, "Stop");
     this.view = new View(app, about.name, {
       slow: about.slow,

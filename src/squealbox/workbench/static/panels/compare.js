@@ -2,7 +2,7 @@
 
 import { button } from "../asked.js";
 import { Chart, across, line, span, upright } from "../chart.js";
-import { make } from "../elements.js";
+import { make, table } from "../elements.js";
 import { label, prefix, shown, withUnit } from "../numbers.js";
 
 export default {
@@ -88,7 +88,7 @@ function picture(panel) {
   frequency.draw({ x, y: { label: label("frequency", hertz), domain: span(curves.map((each) => each.y), { room: 0.2 }) }, layers: [...curves, ...here] });
   const rates = both.map(([{ arrays }, name, cls]) => line(arrays.values, arrays.growth, { cls, name }));
   growth.draw({ x, y: { label: label("growth rate", "1/s"), domain: span(rates.map((each) => each.y), { room: 0.2 }) }, layers: [across(0), ...rates, ...here], legend: "top left" });
-  panel.table.replaceChildren(table(a?.data ?? null, b.data));
+  panel.table.replaceChildren(numbers(a?.data ?? null, b.data));
   panel.element.dataset.compared = a ? "yes" : "no";
   const kept = Boolean(panel.chosen.a);
   if (a) panel.remark = "";
@@ -97,7 +97,7 @@ function picture(panel) {
   panel.says.textContent = panel.remark;
 }
 
-function table(a, b) {
+function numbers(a, b) {
   const unit = b.axis.unit ? ` ${b.axis.unit}` : "";
   const percent = (share) => (share === null ? "–" : `${shown(100 * share, 3)} %`);
   const rows = [
@@ -114,7 +114,7 @@ function table(a, b) {
     if (a && before.get(name) !== after.get(name)) body.push(row(name, before.get(name) ?? "–", after.get(name) ?? "–"));
   }
   const heads = ["", a ? "A (kept)" : null, "B (this page)"].filter((head) => head !== null);
-  return make("table", {}, make("thead", {}, make("tr", {}, ...heads.map((head) => make("th", { scope: "col" }, head)))), make("tbody", {}, ...body));
+  return table(heads, body);
 }
 
 function row(name, a, b, sense = 0) {

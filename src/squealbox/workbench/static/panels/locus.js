@@ -32,7 +32,7 @@ export default {
     const frequency = rows(arrays.frequency).map((each) => each.map((f) => f / factor));
     const growth = rows(arrays.growth);
     const here = { x: data.value === null ? null : data.value / axis.factor, f: arrays.hereFrequency.map((f) => f / factor), g: arrays.hereGrowth };
-    const bands = unstable(arrays.value, growth).map(([a, b]) => band(a, b));
+    const bands = data.unstable.map(([a, b]) => band(a, b));
     const present = here.x === null ? [] : [upright(here.x)];
     const dots = (ys) => (here.x === null ? [] : [points(Array(ys.length).fill(here.x), ys, { column: "present design" })]);
     const names = (i) => ({ cls: `s${i % 7}`, column: `mode ${i + 1}`, ...(modes <= 4 ? { name: `mode ${i + 1}` } : {}) });
@@ -68,28 +68,4 @@ export default {
 function ends(growth, frequency) {
   const begins = growth.map((g, i) => [g[0], frequency[i][0]]).filter((p) => p.every(Number.isFinite));
   return [points(begins.map((p) => p[0]), begins.map((p) => p[1]), { cls: "begin", r: 3, column: "first value" })];
-}
-
-/** Stretches of the axis on which a mode grows. */
-function unstable(value, growth) {
-  const stretches = [];
-  let from = null;
-  for (let i = 0; i < value.length; i++) {
-    const grows = growth.some((g) => g[i] > 1e-7 * Math.max(1, Math.abs(g[i])));
-    if (grows && from === null) from = i ? zero(value, growth, i) : value[0];
-    if (!grows && from !== null) {
-      stretches.push([from, zero(value, growth, i)]);
-      from = null;
-    }
-  }
-  if (from !== null) stretches.push([from, value.at(-1)]);
-  return stretches;
-}
-
-/** Where the largest growth rate passes zero between i - 1 and i. */
-function zero(value, growth, i) {
-  const largest = (k) => Math.max(...growth.map((g) => g[k]).filter(Number.isFinite));
-  const [a, b] = [largest(i - 1), largest(i)];
-  const share = Number.isFinite(a) && Number.isFinite(b) && a !== b ? Math.min(1, Math.max(0, a / (a - b))) : 0.5;
-  return value[i - 1] + share * (value[i] - value[i - 1]);
 }

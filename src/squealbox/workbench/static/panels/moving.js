@@ -14,18 +14,14 @@ export default {
   setup(panel) {
     panel.files.hidden = true;
     panel.pick = make("span");
-    panel.play = make("button", { type: "button", onclick: () => hold(panel), "aria-pressed": "false" }, "Pause");
+    panel.play = make("button", { type: "button", onclick: () => hold(panel) }, "Pause");
     panel.controls.append(panel.pick, panel.play);
     panel.stage = make("div", { class: "drawing moving" });
     panel.legend = make("p", { class: "states" }, ...["slip", "stick", "lifted"].flatMap((state) => [make("i", { class: `swatch ${state}` }), `${state} `]));
     panel.body.append(panel.stage, panel.legend);
     panel.charts = [];
-    panel.held = still.matches;
-    still.addEventListener("change", () => {
-      panel.held = still.matches;
-      label(panel);
-    });
-    label(panel);
+    hold(panel, still.matches);
+    still.addEventListener("change", () => hold(panel, still.matches));
     panel.app.addEventListener("motion", () => scene(panel));
     panel.app.store.addEventListener("changed", () => scene(panel));
     const step = (now) => {
@@ -55,14 +51,9 @@ export default {
   },
 };
 
-function label(panel) {
-  panel.play.textContent = panel.held ? "Move" : "Pause";
-  panel.play.setAttribute("aria-pressed", panel.held);
-}
-
-function hold(panel) {
-  panel.held = !panel.held;
-  label(panel);
+function hold(panel, held = !panel.held) {
+  panel.held = held;
+  panel.play.textContent = held ? "Move" : "Pause";
 }
 
 /** What is shown: the motion where it is asked what happens and one of this design is known, else the mode. */
@@ -110,21 +101,24 @@ function phases({ names }, { re, im }) {
   return others.map(([name, i]) => `${name} ${shown(sizes[i] / sizes[most], 2)} of ${names[most]} and ${Math.abs(((degree(i) + 540) % 360) - 180)}° ${((degree(i) + 540) % 360) - 180 < 0 ? "behind" : "before"}`).join(", ");
 }
 
+/** What displacements q add to a point, of the points whose moves (freedoms, points, 2) these are. */
+function shift(moves, q, p) {
+  const [many, count] = moves.shape;
+  let x = 0, y = 0;
+  for (let i = 0; i < many; i++) {
+    x += q[i] * moves[2 * (i * count + p)];
+    y += q[i] * moves[2 * (i * count + p) + 1];
+  }
+  return [x, y];
+}
+
 /** The largest movement of a point over a period, in units of the drawing. */
 function largest(panel) {
   const { moves } = panel.answer.arrays;
-  const [many, points] = moves.shape;
   let found = 0;
   for (let share = 0; share < 1; share += 1 / 24) {
     const { q } = panel.scene.at(share);
-    for (let p = 0; p < points; p++) {
-      let x = 0, y = 0;
-      for (let i = 0; i < many; i++) {
-        x += q[i] * moves[2 * (i * points + p)];
-        y += q[i] * moves[2 * (i * points + p) + 1];
-      }
-      found = Math.max(found, Math.hypot(x, y));
-    }
+    for (let p = 0; p < moves.shape[1]; p++) found = Math.max(found, Math.hypot(...shift(moves, q, p)));
   }
   return found;
 }
@@ -136,26 +130,22 @@ function frame(panel, now) {
   const share = (now / 1e3 / panel.scene.period) % 1;
   const { k, q, turn = 0 } = panel.scene.at(share);
   const { points, moves } = arrays;
-  const [many, count] = moves.shape;
-  const place = (x, y, shift, p, of) => {
-    for (let i = 0; i < many; i++) {
-      x += panel.scale * q[i] * shift[2 * (i * of + p)];
-      y += panel.scale * q[i] * shift[2 * (i * of + p) + 1];
-    }
-    return [x, y];
+  const place = (x, y, by, p) => {
+    const [dx, dy] = shift(by, q, p);
+    return [x + panel.scale * dx, y + panel.scale * dy];
   };
-  panel.parts((p) => place(points[2 * p], points[2 * p + 1], moves, p, count));
+  panel.parts((p) => place(points[2 * p], points[2 * p + 1], moves, p));
   const forces = panel.scene.motion?.lastForce;
-  const many2 = panel.arrows.length;
+  const contacts = panel.arrows.length;
   const mean = Math.max(...data.normal.map(Math.abs).filter(Number.isFinite), 1e-12);
   const swing = Math.max(...(arrays.pressRe ?? []).map((re, i) => Math.hypot(re, arrays.pressIm[i])), 1e-300);
   panel.arrows.forEach(({ contact, shaft, head, dot }, c) => {
-    const [x, y] = place(contact[0], contact[1], arrays.contactMoves, c, many2);
-    const normal = forces ? forces[k * many2 + c] : data.normal[c] + (0.5 * mean * (arrays.pressRe[c] * Math.cos(turn) - arrays.pressIm[c] * Math.sin(turn))) / swing;
+    const [x, y] = place(contact[0], contact[1], arrays.contactMoves, c);
+    const normal = forces ? forces[k * contacts + c] : data.normal[c] + (0.5 * mean * (arrays.pressRe[c] * Math.cos(turn) - arrays.pressIm[c] * Math.sin(turn))) / swing;
     const long = (normal * FORCE * panel.size) / (1.5 * mean);
     const [here, tail] = [panel.at([x, y]), panel.at([x - contact[2] * long, y - contact[3] * long])];
     arrow(shaft, head, tail, here);
-    const state = forces ? STATES[panel.scene.motion.lastState[k * many2 + c]] : "slip";
+    const state = forces ? STATES[panel.scene.motion.lastState[k * contacts + c]] : "slip";
     set(dot, { cx: here[0], cy: here[1], class: `contact ${state}`, "data-state": state });
   });
   panel.element.dataset.pictures = (panel.pictures = (panel.pictures ?? 0) + 1);

@@ -1,12 +1,12 @@
 // The cures, the best first: a click applies one, another takes it back, and one key plays before and after.
 
 import { Asked, button } from "../asked.js";
-import { choose, make, note } from "../elements.js";
+import { choose, make, note, table } from "../elements.js";
 import { shown, withUnit } from "../numbers.js";
 import { fullScale, sound } from "../sound.js";
 import { same } from "../store.js";
 
-const HEADS = ["", "cure", "dose", "growth [1/s]", "with the margin", "lot that squeals", "after a push", "cost", "to know before"];
+const HEADS = ["", "cure", "dose", "growth 1/s", "at margin", "lot squeals", "after push", "cost", "caution"];
 const KEY = "b";
 
 export default {
@@ -24,7 +24,7 @@ export default {
     };
     panel.list = make("div", { class: "scroller", tabindex: 0, "aria-label": "Cures, the best first" });
     panel.body.append(make("div", { class: "buttons" }, ...Object.values(panel.keys)), panel.list);
-    table(panel, ["absorber on y", "dampers on x and y", "theta2", "shim at shoe 1"].map((name) => ({ name })));
+    list(panel, ["absorber on y", "dampers on x and y", "theta2", "shim at shoe 1"].map((name) => ({ name })));
     panel.app.store.addEventListener("changed", () => mark(panel));
     document.addEventListener("keydown", (event) => {
       if (event.key.toLowerCase() !== KEY || event.ctrlKey || event.metaKey || event.altKey || event.target.matches("input[type=text], textarea, select")) return;
@@ -41,7 +41,7 @@ export default {
     panel.heard.clear();
     panel.rows = data.rows;
     panel.element.dataset.cures = data.rows.length;
-    table(panel, data.rows);
+    list(panel, data.rows);
     panel.remark = `Without: growth ${shown(data.growth, 3)} 1/s, ${shown(100 * data.probability, 3)} % of the lot squeals, ${withUnit(data.amplitude, "m", 2)} after a push. ${data.assumption}`;
     mark(panel);
   },
@@ -50,7 +50,7 @@ export default {
 /** The design cures are sought for: while one of them is applied, the one without it. */
 const of = (panel) => (panel.applied && same(panel.applied.design, panel.app.store.design) ? panel.base : panel.app.store.design);
 
-function table(panel, rows) {
+function list(panel, rows) {
   const percent = (share) => `${shown(100 * share, 3)} %`;
   const cells = (row) => [row.name, `${shown(row.dose, 3)} ${row.unit}`, shown(row.growth, 3), shown(row.atMargin, 3), percent(row.probability), row.amplitude === null ? "–" : withUnit(row.amplitude, "m", 2), row.cost, row.caution];
   const body = rows.map((row) => {
@@ -58,7 +58,7 @@ function table(panel, rows) {
     const key = button("Apply", () => apply(panel, row), { disabled: !known || Boolean(row.refused), title: row.refused ?? row.python, "aria-label": `Apply ${row.name}` });
     return make("tr", { data: { cure: row.name }, class: known ? null : "like" }, make("td", {}, key), ...(known ? cells(row) : [row.name, ...Array(7).fill("…")]).map((text, i) => make(i ? "td" : "th", i ? { title: text } : { scope: "row" }, text)));
   });
-  panel.list.replaceChildren(make("table", { class: "cures" }, make("thead", {}, make("tr", {}, ...HEADS.map((head) => (head ? make("th", { scope: "col" }, head) : make("td"))))), make("tbody", {}, ...body)));
+  panel.list.replaceChildren(table(HEADS, body, { class: "cures" }));
 }
 
 /** Put the brake with a cure on the page, or the one without; one step of undo each. */
@@ -67,14 +67,18 @@ async function apply(panel, row) {
   const text = app.store.texts.get(base.base) ?? null;
   if (!row || row.values) {
     const design = row ? { ...base, values: { ...base.values, ...row.values } } : base;
-    panel.applied = row && { row, design };
-    return app.store.replace(design, text);
+    return put(panel, row, design, text);
   }
   const frame = await app.connection.ask({ ask: "open", text: row.text }).catch(() => null);
   if (frame?.kind !== "opened") return note("The cure was not applied: the server does not answer.");
   const design = { base: frame.base, brake: frame.brake, laws: {}, values: {} };
-  panel.applied = { row, design };
-  app.store.replace(design, row.text);
+  put(panel, row, design, row.text);
+}
+
+function put(panel, row, design, text) {
+  panel.applied = row && { row, design };
+  panel.app.store.option("compare", { a: row ? panel.base : null });
+  panel.app.store.replace(design, text);
 }
 
 function mark(panel) {

@@ -1,0 +1,80 @@
+"""Does it match the test? A recording with its squeal events, and what the model says beside the loudest of them."""
+
+from typing import Any
+
+import numpy as np
+
+from squealbox import read_recording, squeal_events
+from squealbox.calibration import compare
+from squealbox.designs import Design
+from squealbox.signals import SignalError, spectrogram
+from squealbox.signals.events import SquealEvents
+from squealbox.signals.recordings import Recording
+from squealbox.stability import complex_modes
+from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
+from squealbox.workbench.recorded import path_of
+
+UNITS = ("FS", "Pa", "g", "m/s^2")
+PIECE = 0.04  # s of sound behind a column of the spectrogram
+COLUMNS, ROWS = 400, 240  # of it, at most
+TOP = 16e3  # Hz
+MOST_EVENTS = 50
+
+
+def answer(design: Design, options: Options, work: Work) -> Answer:
+    """Events, spectrogram and notes of the recording, and simulated beside measured numbers."""
+    recording, events = heard(options, work)
+    data: dict[str, Any] = {
+        "duration": recording.duration, "rate": recording.rate, "names": list(recording.names),
+        "notes": list(recording.notes), "unit": events.settings["unit"], "outcome": str(events.outcome),
+        "message": events.outcome.message,
+        "events": [_event(events, i) for i in range(min(events.count, MOST_EVENTS))],
+        "count": events.count, "occurrence": events.occurrence, "compared": [],
+    }  # fmt: skip
+    modes = complex_modes(design)
+    if events.count and bool(modes.exists):
+        chosen = min(int(options.number("event", int(np.argmax(events.level)), 0, 1e6)), events.count - 1)
+        found = compare(modes, events, event=chosen)
+        rows = zip(found.names, found.simulated, found.measured, found.error, found.away, strict=True)
+        data |= {"event": chosen, "compared": [[name, *map(finite, row)] for name, *row in rows if name != "level"]}
+    work.progress(0.7, "spectrogram")
+    sound = recording.channel(0)
+    piece = min(PIECE, recording.duration / 4.0)
+    overlap = float(np.clip(1.0 - recording.duration / (COLUMNS * piece), 0.0, 0.9))
+    grid = spectrogram(sound, recording.t, segment=piece, overlap=overlap)
+    top = min(TOP, max(0.25 * TOP, 2.5 * float(np.max(events.frequency, initial=0.0))))
+    seen = np.nonzero(grid.frequency <= top)[0]
+    rows_, columns = -(-len(seen) // ROWS), -(-len(grid.time) // COLUMNS)
+    picture = _coarser(grid.amplitude[seen], rows_, columns)
+    data |= {"gridTime": [float(grid.time[0]), float(grid.time[-1])], "gridTop": float(grid.frequency[seen[-1]])}
+    return Answer(data, {"grid": picture})
+
+
+def heard(options: Options, work: Work) -> tuple[Recording, SquealEvents]:
+    """The recording that the options name and the squeal events in it."""
+    path = path_of(options.given.get("id"))
+    if path is None:
+        raise OptionError("the recording is not here any more: drop it again")
+    unit = options.word("unit", UNITS)
+    scale = options.number("full_scale", 1.0, 1e-12, 1e12)
+    work.progress(0.05, "reading")
+    try:
+        recording = read_recording(path) if unit == "FS" else read_recording(path, unit=unit, full_scale=scale)
+        work.progress(0.2, "looking for squeal")
+        low = options.number("lowest", 1000.0, 20.0, 16e3)
+        return recording, squeal_events(recording, band=(low, min(TOP, 0.49 * recording.rate)))
+    except (SignalError, ModuleNotFoundError) as error:
+        raise OptionError(str(error).replace(f"{path.name}: ", "")) from error
+
+
+def _event(events: SquealEvents, i: int) -> dict[str, float | None]:
+    names = ("onset", "end", "frequency", "frequency_error", "level", "growth_rate", "growth_error", "decay_rate")
+    return {name: finite(getattr(events, name)[i]) for name in names}
+
+
+def _coarser(values: Any, rows: int, columns: int) -> Any:
+    """The largest of each block of rows and columns: a short squeal stays in sight."""
+    fit = np.pad(values, [(0, -values.shape[0] % rows), (0, -values.shape[1] % columns)], mode="edge")
+    blocks = fit.reshape(fit.shape[0] // rows, rows, fit.shape[1] // columns, columns)
+    return blocks.max(axis=(1, 3))
