@@ -70,6 +70,12 @@ def design(value: Any) -> str:
     return "" if good else "a design or a System"
 
 
+def designs(value: Any) -> str:
+    """A design or a system, or a list of them."""
+    each = value if isinstance(value, (list, tuple)) else [value]
+    return next((expected for one in each if (expected := design(one))), "")
+
+
 def named(value: Any) -> str:
     """Values by the names of parameters."""
     good = isinstance(value, (Mapping, DataSheet)) or hasattr(value, "names")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from squealbox.arguments import public
+from squealbox.arguments import designs, public
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Column, Outcome, Result, batched, quantity
 from squealbox.system import System, as_system
@@ -130,7 +130,7 @@ class Ensemble(Result):
 
 
 @batched
-@public()
+@public(design_or_system=designs)
 def simulate_ensemble(
     design_or_system: Any,
     parameters: Mapping[str, Any] | None = None,
