@@ -245,7 +245,8 @@ def test_the_page_shows_the_claims_first_and_holds_every_figure(folder) -> None:
 def test_the_page_opens_with_findings_and_has_no_wall_of_red(folder) -> None:
     text = (folder / "index.html").read_text(encoding="utf-8")
     body = text[text.index("<main>") :]
-    assert body.index("finding of the paper") < body.index("excluded by theorem") < body.index("mu-1")
+    assert body.index("finding of the paper") < body.index("15 numbers by one reading") < body.index("mu-1: ")
+    assert "numbers by one reading" not in text[: text.index("finding of the paper")]
     assert 'class="disagree"' not in body
     assert "half peak to peak" in body
     assert "inferred" in body

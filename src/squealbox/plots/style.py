@@ -221,6 +221,10 @@ def save(
     `dots` an inch, 200 by default. The files hold no date and no version, so equal figures give equal files. The figure
     is laid out once for all formats, where `Figure.savefig` alone would draw it twice for each.
     """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    if not isinstance(figure.canvas, FigureCanvasAgg):
+        FigureCanvasAgg(figure)  # one that stays knows the size of every text when the figure is drawn again
     stem = Path(path)
     stem = stem.with_suffix("") if stem.suffix.lstrip(".") in formats else stem
     written = []

@@ -20,7 +20,7 @@ ANGLES = ((r"$\theta_1$", "deg", np.pi / 180.0), (r"$\theta_2$", "deg", np.pi / 
 LOAD = ("load", "kN", 1e3)
 SPEED = ("sliding speed", "m/s", 1.0)
 Axis = tuple[str, str, float]
-MARGINS = Margins(left=0.55, right=0.1, bottom=0.72, across=0.3, down=0.7)  # below: the legend
+MARGINS = Margins(left=0.55, right=0.1, bottom=0.72, across=0.34, down=0.7)  # below: the legend
 
 
 def pressure(found: SquealMap) -> "Figure":

@@ -58,10 +58,10 @@ def page(
 ) -> Page:
     """The page of the study whose figures are in `folder`: findings first, then claims, why, figures, the rest."""
     default = studies[DEFAULT_READING]
-    once = record.overall(found)
     lead = (
         f"What the paper shows and whether this program shows it, for {len(studies)} readings of its contradictory "
-        f"equations. {page_claims.tally(found, once)} Nothing was tuned to agree."
+        "equations; then its numbers, each beside what is computed, and why some cannot be met. Nothing was tuned to "
+        "agree."
     )
     others = [name for name in studies if name not in (DEFAULT_READING, RECONSTRUCTED)]
     redrawn = _pictures(folder / RECONSTRUCTED, studies[RECONSTRUCTED]["figures"])
@@ -69,7 +69,7 @@ def page(
         title=paper()["title"],
         lead=f"{paper()['source']}. {lead}",
         sections=(
-            Section("What the paper says", page_claims.blocks(found)),
+            Section("What the paper says", page_claims.blocks(found, more.short.chance)),
             Section("What no reading can meet", page_why.excluded(folder)),
             Section("The reconstruction", page_why.reconstruction(
                 more, record.met_by_reading(found)[RECONSTRUCTED], redrawn
