@@ -52,6 +52,7 @@ class Page:
         view = {"width": size[0], "height": size[1]}
         self.context = browser.new_context(viewport=view, color_scheme=scheme, reduced_motion=motion)
         self.page = self.context.new_page()
+        self.page.set_default_timeout(300_000)  # a machine ten times slower, with much else to do
         self.errors: list[str] = []
         self.expected: tuple[str, ...] = ()  # parts of messages a test provokes
         own = (f"http://127.0.0.1:{server.port}/", f"ws://127.0.0.1:{server.port}/", "blob:", "data:")

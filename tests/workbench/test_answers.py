@@ -7,7 +7,7 @@ import pytest
 
 from squealbox import ComplexModes, DrumBrake, LinearSlope, simulate, sound_level
 from squealbox.designs import DESIGNS
-from squealbox.files import read_text
+from squealbox.files import DesignFileError, read_text
 from squealbox.report import examine
 from squealbox.system import equilibrium
 from squealbox.transient import verdict
@@ -130,3 +130,13 @@ def test_a_brake_of_matrices_has_a_report():
     text = 'brake = "own"\nM = [[1.0, 0.0], [0.0, 1.0]]\nC = [[0.01, 0], [0, 0.01]]\nK = [[2.0, -0.5], [0.5, 2.0]]\n'
     found = examine(read_text(text, "own", beside=False).design)
     assert not bool(found.modes.stable)
+
+
+@pytest.mark.parametrize(
+    ("line", "hint"), [("load1 = 1 kN", 'load1 = "1 kN"'), ("m = 2.5kg", 'm = "2.5kg"'), ("m = [1", None)]
+)
+def test_a_unit_without_quotes_is_told_how(line, hint):
+    with pytest.raises(DesignFileError) as said:
+        read_text(f'brake = "drum_brake"\n{line}\n', "the file", beside=False)
+    assert (hint or "not TOML") in str(said.value)
+    assert ("stands in quotes" in str(said.value)) is (hint is not None)

@@ -42,7 +42,7 @@ def test_nothing_is_computed_before_it_is_asked(page):
 
 def test_limit_cycles_beside_stable_sliding_are_marked(page):
     page.enter("friction.static", 0.2)  # where a large push alone finds the cycle
-    page.option("branch", points=24)  # as far as the fold below; the page goes round it and back
+    page.option("branch", points=30)  # as far as the fold below; the page goes round it and back
     press(page, "branch", "Follow")
     page.drawn("branch")
     onset = float(hopf_point(brake(), "friction.static", (0.1, 0.6)).value)

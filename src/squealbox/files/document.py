@@ -14,6 +14,9 @@ from squealbox.files.lines import Key, dotted, key_lines, line_of
 LARGEST = 1_000_000  # bytes of a design file; matrices larger than this stand in files of their own
 MOST = 100  # problems said in full; a file with more has one cause
 _LINE = re.compile(r" \(at line (\d+), column (\d+)\)$| \(at end of document\)$")
+_BARE = re.compile(
+    r"\s*([\w.]+)\s*=\s*([-+]?[\d.]+(?:e[-+]?\d+)?\s*[^\W\d_][\w/^ ]*?)\s*(?:#|$)"
+)  # a number and letters, without quotes
 
 
 @dataclass(frozen=True)
@@ -121,7 +124,10 @@ def _syntax_error(path: Path, text: str, message: str) -> DesignFileError:
     if place is None or place[1] is None:
         line = text.count("\n") + 1 if place else 0
         return _error(path, f"not TOML: {_sentence(what)}", line)
-    return _error(path, f"not TOML: {_sentence(what)} (column {place[2]})", int(place[1]))
+    line = int(place[1])
+    bare = _BARE.match(text.split("\n")[line - 1])
+    hint = f'; a value with a unit stands in quotes: {bare[1]} = "{bare[2]}"' if bare else ""
+    return _error(path, f"not TOML: {_sentence(what)} (column {place[2]}){hint}", line)
 
 
 def _sentence(text: str) -> str:

@@ -7,7 +7,7 @@ from squealbox.transient import Trajectory, needs_compiling, simulate
 from squealbox.workbench.panels.panel import Elsewhere, Work
 
 COMPILING = "compiling the kernel for this design, which happens once"
-SECONDS = 20.0  # of an idle processor of 2020 and later, for the kernel with exact contacts
+SECONDS = 4.0  # of an idle processor of 2020 and later, for the kernel with exact contacts
 
 
 def followed(system: System, duration: float, work: Work, share: float, **how: Any) -> Trajectory:

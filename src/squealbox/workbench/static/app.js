@@ -9,7 +9,7 @@ import { Opener } from "./opener.js";
 import { Panel } from "./panel.js";
 import { Parameters } from "./parameters.js";
 import { Questions } from "./questions.js";
-import { Store } from "./store.js";
+import { Store, same } from "./store.js";
 import { chooseTheme, nextTheme } from "./theme.js";
 import { Verdict } from "./verdict.js";
 
@@ -28,7 +28,7 @@ class App extends EventTarget {
     this.panels = new Map();
     this.views = [];
     this.ready = false;
-    this.motion = null;
+    this.lastMotion = null;
     this.parameters = new Parameters(this, byId("fields"));
     this.drawing = new Drawing(this, byId("drawing"));
     this.verdict = new Verdict(this, byId("verdict"));
@@ -87,11 +87,16 @@ class App extends EventTarget {
     this.resting = setTimeout(() => this.panels.get(TOLD)?.view.update(true), REST);
   }
 
+  /** What the motion panel found last, while it is of the design on the page. */
+  get motion() {
+    return this.lastMotion && same(this.lastMotion.design, this.store.design) ? this.lastMotion : null;
+  }
+
   /** What the motion panel found goes into the verdict and onto the friction curve. */
   heard({ data, arrays }) {
     const text = typographic(data.verdict ?? data.message);
-    this.motion = { design: this.store.design, text, arrays, clock: data.clock, from: data.lastFrom, speeds: data.speeds, fate: data.fate, loud: data.loud };
-    this.verdict.amplitude(this.motion);
+    this.lastMotion = { design: this.store.design, text, arrays, clock: data.clock, from: data.lastFrom, speeds: data.speeds, fate: data.fate, loud: data.loud };
+    this.verdict.amplitude();
     this.dispatchEvent(new Event("motion"));
   }
 

@@ -59,7 +59,7 @@ export function typed(text, field) {
 }
 
 /** Signs of plain text as they are printed. */
-export const typographic = (text) => text.replaceAll("+-", "±").replaceAll(" -", " −").replaceAll(" um ", " µm ");
+export const typographic = (text) => text.replaceAll("+-", "±").replaceAll(" -", " −").replace(/ u(m|s|rad)\b/g, " µ$1");
 
 /** As many digits as a field needs to hold the number. */
 export const plain = (value) => (value === null || value === undefined ? "" : String(Number(value.toPrecision(7))));

@@ -3,8 +3,6 @@
 import { make, note } from "./elements.js";
 import { Store } from "./store.js";
 
-const SOUNDS = /\.(wav|flac|ogg|csv|npy|uff|unv)$/i;
-
 export class Opener {
   constructor(app) {
     this.app = app;
@@ -20,7 +18,7 @@ export class Opener {
       event.preventDefault();
       const [file] = event.dataTransfer.files;
       if (!file) return;
-      if (SOUNDS.test(file.name)) return this.app.panels.get("recording")?.take(file);
+      if (/\.(wav|flac|ogg|csv|npy|uff|unv)$/i.test(file.name)) return this.app.panels.get("recording")?.take(file);
       this.show();
       this.#read(file);
     });

@@ -11,7 +11,7 @@ const UNDAMPED = 1e-9; // damping ratio below which what is left is round-off
 
 export class Verdict {
   constructor(app, place) {
-    Object.assign(this, { app, place, motion: null });
+    Object.assign(this, { app, place });
     this.view = new View(app, "verdict", {
       request: () => this.#request(),
       draw: (frame) => this.draw(frame.data),
@@ -32,7 +32,7 @@ export class Verdict {
     const beside = this.#beside();
     place.dataset.verdict = beside ? "beside" : data.state;
     place.replaceChildren(make("p", { class: "state" }, headline(data), beside ? ", but a push can start a vibration that stays" : ""), make("p", { class: "why" }, ...why(data)), make("p", { class: "quiet" }, caveats(data)));
-    this.amplitude(this.motion);
+    this.amplitude();
   }
 
   /** Has a limit cycle been found beside the stable sliding of this design? */
@@ -44,10 +44,10 @@ export class Verdict {
   }
 
   /** What the motion panel found, while it belongs to the same design. */
-  amplitude(motion) {
-    this.motion = motion;
+  amplitude() {
+    const { motion } = this.app;
     this.place.querySelector(".heard")?.remove();
-    if (!motion || motion.design !== this.app.store.design || !this.data) return;
+    if (!motion || !this.data) return;
     const words = make("p", { class: "heard", title: motion.loud?.assumption ?? "" }, `In time: ${motion.text} `, ...loud(motion));
     this.place.insertBefore(words, this.place.lastChild);
   }

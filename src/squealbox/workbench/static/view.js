@@ -20,6 +20,7 @@ export class View {
 
   /** Something may have changed: ask if what is drawn is no longer right; out of sight only where `unseen` says so. */
   update(unseen = false) {
+    this.unseen = unseen; // asked out of sight: so is what follows it
     if (!(this.visible || unseen) || !this.app.ready) return;
     const question = this.request();
     if (!question) return;
@@ -91,7 +92,7 @@ export class View {
       this.#tell(frame.kind, frame);
     }
     this.app.answered(this.name);
-    if (this.drawn !== key) this.update(); // a newer question, or this one again where it was stopped for another
+    if (this.drawn !== key) this.update(this.unseen); // a newer question, or this one again where it was stopped for another
   }
 
   #tell(kind, frame = null) {

@@ -53,7 +53,7 @@ function tangents(contacts, top) {
 /** The sliding speeds the last motion passed, while it belongs to this design. */
 function operating(panel, top) {
   const { motion } = panel.app;
-  if (!motion || motion.design !== panel.app.store.design || !motion.speeds?.length) return null;
+  if (!motion?.speeds?.length) return null;
   const ends = motion.speeds.map(([low, high]) => [low <= 0 && high >= 0 ? 0 : Math.min(Math.abs(low), Math.abs(high)), Math.max(Math.abs(low), Math.abs(high))]);
   return [Math.min(...ends.map((e) => e[0])), Math.min(top, Math.max(...ends.map((e) => e[1])))];
 }

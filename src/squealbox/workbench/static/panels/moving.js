@@ -61,20 +61,19 @@ function scene(panel) {
   if (!panel.answer) return;
   const { data, arrays } = panel.answer;
   const { motion } = panel.app;
-  const moves = panel.app.questions.asked === "happens" && motion?.design === panel.app.store.design && motion.arrays?.lastQ;
-  const many = data.names.length;
+  const moves = panel.app.questions.asked === "happens" && motion?.arrays?.lastQ;
   panel.pick.hidden = Boolean(moves);
-  const mean = new Float64Array(many);
   let at;
   if (moves) {
-    const q = motion.arrays.lastQ;
+    const [q, many] = [motion.arrays.lastQ, data.names.length];
     const rows = q.length / many;
+    const mean = new Float64Array(many);
     for (let i = 0; i < q.length; i++) mean[i % many] += q[i] / rows;
     at = (share) => {
       const k = Math.min(Math.floor(share * rows), rows - 1);
       return { k, q: Array.from(mean, (middle, i) => q[k * many + i] - middle) };
     };
-    panel.scene = { at, rows, period: 6 * SLOW, motion: motion.arrays, mean };
+    panel.scene = { at, period: 6 * SLOW, motion: motion.arrays };
     panel.remark = `The last ${shown(motion.arrays.lastTime.at(-1), 3)} ${motion.clock}, over and over; movement enlarged. Arrows: normal forces.`;
   } else {
     if (!arrays.re) {
@@ -82,7 +81,7 @@ function scene(panel) {
       return;
     }
     at = (share) => ({ k: 0, turn: 2 * Math.PI * share, q: Array.from(arrays.re, (re, i) => re * Math.cos(2 * Math.PI * share) - arrays.im[i] * Math.sin(2 * Math.PI * share)) });
-    panel.scene = { at, rows: 60, period: SLOW, motion: null };
+    panel.scene = { at, period: SLOW, motion: null };
     panel.remark = data.modes.length ? `${data.mode ? "A mode" : "The mode that grows first"}, ${withUnit(data.modes[data.mode][0], "Hz")}: ${phases(data, arrays)}. Its size is free; growth is left out.` : "";
   }
   panel.scale = (REACH * panel.size) / (largest(panel) || 1);
