@@ -1,5 +1,6 @@
 """Where a motion leaves the range of its model: friction that drives, contacts that pull, laws beyond their data."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,22 @@ def turned(system: System, q: Any) -> tuple[str, ...]:
     )
 
 
+PULLS = "{name}: N falls to {least:.4g} N: it would have to pull, where a unilateral contact lifts off"
+
+
+def pulling(names: Sequence[str], unilateral: Any, normal_force: Any) -> tuple[str, ...]:
+    """A sentence for each bilateral contact that pulls in steady sliding, from tables (contacts,) of N [N].
+
+    >>> pulling(("pad", "shoe"), [False, True], [-2.0, 0.0])
+    ('pad: N falls to -2 N: it would have to pull, where a unilateral contact lifts off',)
+    """
+    force = np.asarray(normal_force, dtype=float)
+    return tuple(
+        PULLS.format(name=names[i] or f"contact {i + 1}", least=force[i])
+        for i in map(int, np.flatnonzero((force < 0.0) & ~np.asarray(unilateral, dtype=bool)))
+    )
+
+
 def out_of_range(system: System, normal_force: Any, sliding_velocity: Any) -> tuple[str, ...]:
     """Sentences on what a motion asks of its contacts that their model does not promise.
 
@@ -62,9 +79,7 @@ def out_of_range(system: System, normal_force: Any, sliding_velocity: Any) -> tu
         n, v = n[np.isfinite(n)], v[np.isfinite(v)]
         least, most = float(np.min(n, initial=0.0)), float(np.max(np.abs(n), initial=0.0))
         if not contact.unilateral and least < -PULL * most:
-            said.append(
-                f"{name}: N falls to {least:.4g} N: it would have to pull, where a unilateral contact lifts off"
-            )
+            said.append(PULLS.format(name=name, least=least))
         if v.size == 0:
             continue
         fastest = float(np.max(v))

@@ -5,22 +5,25 @@ With the rows of all contacts as tables N, D, T, A (across) and R (normal reacti
     K q - f - D' diag(mu sgn V) N+ - R' min(N0 + N q, 0) = 0        N+ = max(N0 + N q, 0) where unilateral
 
 by Newton steps, each of which changes the set of open contacts. The matrix K with every contact closed is factored
-once; a step is solved by GMRES with that factor as preconditioner, because the set of open contacts and friction change
-K by rows of the contacts alone. Where this does not settle, the matrix of the step is factored itself.
+once; a step is solved by generalised conjugate residuals with that factor as preconditioner, because the set of open
+contacts and friction change K by rows of the contacts alone. Directions tried in one step are tried first in the next.
+Where this does not settle, the matrix of the step is factored itself.
 """
 
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import LinearOperator, gmres
 
 from squealbox.contacts import Contacts
 from squealbox.factorisation import Factor, SingularMatrix, factor
 
-STEP = 1e-12  # size of a step, relative to the displacement, at which the set of open contacts has settled
-ROUGH, FINE = 1e-4, 1e-11  # residual of a step solved by GMRES: while the set of open contacts changes, and the last
-KRYLOV = 200  # vectors GMRES may keep; more, and a factorisation is the quicker way
+ROUGH, FINE = 1e-2, 1e-11  # of a step's residual: what is left of it while the set of open contacts changes, and after
+LAST = 1e-6  # size of a fine step, relative to the displacement, after which no other is needed
+BALANCED = 1e-10  # of the largest residual met: what is left of it in balance
+EXACT_STEPS = 60  # of a search that factors every step
+DIRECTIONS = 100  # that a step may try; more, and a factorisation is the quicker way
+DEPENDENT = 1e-8  # share of the largest square length below which a remembered direction is no new one
 
 
 class Start(NamedTuple):
@@ -44,33 +47,47 @@ class SlidingState(NamedTuple):
 def sliding_state(
     stiffness: Any, load: Any, contacts: Contacts, time: float, start: Start | None = None
 ) -> SlidingState:
-    """Steady sliding at `time` [s], looked for from that of a similar brake where it is known."""
+    """Steady sliding at `time` [s], looked for from that of a similar brake where it is known.
+
+    Where rough steps lead astray, as they may where the brake is all but rigid, exact ones begin anew.
+    """
+    base = _factored(stiffness) if start is None else start.base
+    begin = np.zeros(stiffness.shape[0]) if start is None else start.q
+    steps = 3 + 2 * len(contacts)
+    found = _search(_Steps(stiffness, contacts, base), begin, load, time, steps)
+    if not found.settled and base is not None and np.any(contacts.unilateral):
+        exact = _Steps(stiffness, contacts, None)
+        found = _search(exact, np.zeros(stiffness.shape[0]), load, time, min(steps, EXACT_STEPS))
+    return found
+
+
+def _search(steps: "_Steps", q: Any, load: Any, time: float, most: int) -> SlidingState:
+    stiffness, contacts = steps.stiffness, steps.contacts
     speed, preload = contacts.at("V", time), contacts.at("N0", time)
     mu, _ = contacts.friction(speed)
-    q = np.zeros(stiffness.shape[0]) if start is None else start.q
+    exactly, largest, step = not np.any(contacts.unilateral), 0.0, None
     closed = np.ones(len(contacts), dtype=bool)
-    base = _factored(stiffness) if start is None else start.base
-    exactly = not np.any(contacts.unilateral)
-    for _ in range(3 + 2 * len(contacts)):
-        normal = preload + contacts.n @ q
-        closed = (normal > 0.0) | ~contacts.unilateral
-        residual = stiffness @ q - load - contacts.d.T @ (np.where(closed, mu * np.sign(speed), 0.0) * normal)
+    normal = preload + contacts.n @ q
+    for _ in range(most):
+        before, closed = closed, (normal > 0.0) | ~contacts.unilateral
+        drag = np.where(closed, mu * np.sign(speed), 0.0)
+        residual = stiffness @ q - load - contacts.d.T @ (drag * normal)
         if contacts.normal is not None:
             residual -= contacts.normal.T @ np.where(closed, 0.0, normal)
-        if np.linalg.norm(residual) == 0.0:
+        size = float(np.linalg.norm(residual))
+        largest = max(largest, size)
+        same = step is not None and np.array_equal(before, closed)
+        small = step is not None and float(np.linalg.norm(step)) <= LAST * float(np.linalg.norm(q))
+        if size == 0.0 or (same and exactly and (small or size <= BALANCED * largest)):
             return SlidingState(q, _pressing(normal, closed), speed, mu, False, True)
+        exactly = same or not np.any(contacts.unilateral)
         try:
-            jacobian = stiffness_of(stiffness, contacts, mu * np.sign(speed), closed)
-            step = _step(base, jacobian, residual, FINE if exactly else ROUGH)
+            step = steps.solved(drag, closed, residual, FINE if exactly else ROUGH)
         except SingularMatrix:
             return SlidingState(q, _pressing(normal, closed), speed, mu, True, False)
         q = q - step
-        after = preload + contacts.n @ q
-        same = np.array_equal((after > 0.0) | ~contacts.unilateral, closed)
-        if same and (exactly or np.linalg.norm(step) <= STEP * np.linalg.norm(q)):
-            return SlidingState(q, _pressing(after, closed), speed, mu, False, True)
-        exactly = same  # the last step, with the set it has settled on
-    return SlidingState(q, _pressing(preload + contacts.n @ q, closed), speed, mu, False, False)
+        normal = preload + contacts.n @ q
+    return SlidingState(q, _pressing(normal, closed), speed, mu, False, False)
 
 
 def _factored(stiffness: Any) -> Factor | None:
@@ -84,14 +101,68 @@ def _pressing(normal: Any, closed: Any) -> Any:
     return np.where(closed, normal, 0.0)
 
 
-def _step(base: Factor | None, jacobian: Any, residual: Any, accuracy: float) -> Any:
-    if base is not None:
-        nearly_one = LinearOperator(jacobian.shape, matvec=lambda y: jacobian @ base.solve(y), dtype=float)
-        found, missed = gmres(nearly_one, residual, rtol=accuracy, atol=0.0, restart=KRYLOV, maxiter=1)
-        step = base.solve(found)
-        if missed == 0 and np.linalg.norm(jacobian @ step - residual) <= 10.0 * accuracy * np.linalg.norm(residual):
-            return step
-    return factor(jacobian).solve(residual)
+class _Steps:
+    """Newton's steps J y = r of one search, J = K - D' diag(drag) N - R' diag(open) N, never formed.
+
+    Every direction z = B^-1 r that was tried is kept with K z and N z: for other contacts J z is had from these.
+    """
+
+    def __init__(self, stiffness: Any, contacts: Contacts, base: Factor | None) -> None:
+        self.stiffness, self.contacts, self.base = stiffness, contacts, base
+        self.tried: list[tuple[Any, Any, Any]] = []
+
+    def solved(self, drag: Any, closed: Any, residual: Any, accuracy: float) -> Any:
+        found = None if self.base is None else self._iterated(self.base, drag, closed, residual, accuracy)
+        if found is not None:
+            return found
+        self.base = None  # it will not settle at the next step either
+        return factor(stiffness_of(self.stiffness, self.contacts, drag, closed)).solve(residual)
+
+    def _iterated(self, base: Factor, drag: Any, closed: Any, residual: Any, accuracy: float) -> Any:
+        """By conjugate residuals; None where they do not become small."""
+        small = accuracy * np.linalg.norm(residual)
+        known, images = self._remembered(drag, closed)
+        count = known.shape[1]
+        room = [np.empty((len(residual), count + DIRECTIONS), order="F") for _ in range(2)]
+        room[0][:, :count], room[1][:, :count] = known, images
+        part = images.T @ residual
+        step, left = known @ part, residual - images @ part
+        for made in range(count, count + DIRECTIONS):
+            if np.linalg.norm(left) <= small:
+                return step
+            z = base.solve(left)
+            self.tried.append((z, self.stiffness @ z, self.contacts.n @ z))
+            image = self._image(*self.tried[-1][1:], drag, closed)
+            length = np.linalg.norm(image)
+            for _ in range(2):
+                part = room[1][:, :made].T @ image
+                image, z = image - room[1][:, :made] @ part, z - room[0][:, :made] @ part
+            rest = np.linalg.norm(image)
+            if not rest > 1e-12 * length:
+                return None
+            room[0][:, made], room[1][:, made] = z / rest, image / rest
+            share = float(room[1][:, made] @ left)
+            step, left = step + share * room[0][:, made], left - share * room[1][:, made]
+        return None
+
+    def _remembered(self, drag: Any, closed: Any) -> tuple[Any, Any]:
+        """Combinations of the directions tried before, whose images J z are orthonormal, and those images."""
+        if not self.tried:
+            return np.zeros((self.stiffness.shape[0], 0)), np.zeros((self.stiffness.shape[0], 0))
+        z, pushed, felt = (np.stack(columns, axis=1) for columns in zip(*self.tried, strict=True))
+        images = self._image(pushed, felt, drag[:, None], closed[:, None])
+        lengths = np.linalg.norm(images, axis=0)
+        gram = images.T @ images / (lengths[:, None] * lengths)
+        values, turns = np.linalg.eigh(gram)
+        keep = values > DEPENDENT * values[-1]
+        turns = turns[:, keep] / np.sqrt(values[keep]) / lengths[:, None]
+        return z @ turns, images @ turns
+
+    def _image(self, pushed: Any, felt: Any, drag: Any, closed: Any) -> Any:
+        found = pushed - self.contacts.d.T @ (drag * felt)
+        if self.contacts.normal is not None and not np.all(closed):
+            found -= self.contacts.normal.T @ np.where(closed, 0.0, felt)
+        return found
 
 
 def linearised(damping: Any, stiffness: Any, contacts: Contacts, state: Any) -> tuple[Any, Any]:
@@ -107,15 +178,12 @@ def linearised(damping: Any, stiffness: Any, contacts: Contacts, state: Any) -> 
 
 def stiffness_of(stiffness: Any, contacts: Contacts, coupling: Any, closed: Any) -> Any:
     """K less D' diag(mu sgn V) N of the closed contacts, and less R' N of the open ones."""
-    found = stiffness - contacts.d.T @ _scaled(contacts.n, np.where(closed, coupling, 0.0))
+    found, sliding = stiffness, np.where(closed, coupling, 0.0)
+    if np.any(sliding):
+        found = found - contacts.d.T @ _scaled(contacts.n, sliding)
     if contacts.normal is not None and not np.all(closed):
         found = found - contacts.normal.T @ _scaled(contacts.n, np.where(closed, 0.0, 1.0))
     return sparse.csr_array(found)
-
-
-def friction_stiffness(contacts: Contacts, coupling: Any) -> Any:
-    """D' diag(mu sgn V) N: what friction takes from the stiffness."""
-    return sparse.csr_array(contacts.d.T @ _scaled(contacts.n, coupling))
 
 
 def damping_along(contacts: Contacts, weight: Any) -> Any:

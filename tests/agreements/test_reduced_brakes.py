@@ -22,12 +22,13 @@ from squealbox import (
 from squealbox.stability.eigenvalues import modes_of
 from squealbox.system import InvalidSystem, linearise
 
+NODES = (6, 8)
 BAND = (3000.0, 7000.0)
 RANGE = {"friction.static": (0.1, 0.5)}
 
 
 def full_at(mu: float, **how):
-    return dense(pad_brake(friction=Coulomb(mu), **how))
+    return dense(pad_brake(*NODES, friction=Coulomb(mu), **how))
 
 
 def in_band(values):
@@ -40,7 +41,7 @@ def farthest(values, every):
 
 @pytest.fixture(scope="module")
 def small():
-    return reduce(pad_brake(friction=Coulomb(0.3), across=False, unilateral=True), BAND, varying=RANGE)
+    return reduce(pad_brake(*NODES, friction=Coulomb(0.3), across=False, unilateral=True), BAND, varying=RANGE)
 
 
 @pytest.mark.parametrize("mu", [0.1, 0.22, 0.3, 0.41, 0.5])
@@ -90,7 +91,7 @@ def test_feed_in_of_every_contact_is_that_of_the_full_brake(small):
     brake = small.replace({"friction.static": 0.45})
     mode = complex_modes(brake).most_unstable
     energy = mode_energy(brake, mode)
-    system = pad_brake(friction=Coulomb(0.45), across=False, unilateral=True)
+    system = pad_brake(*NODES, friction=Coulomb(0.45), across=False, unilateral=True)
     full = complex_modes(system, band=BAND, method="full")
     same = full.mode(int(np.argmin(np.abs(full.eigenvalues - mode.eigenvalue))))
     expected = mode_energy(system, same)
@@ -125,12 +126,23 @@ def test_a_small_perturbation_grows_in_time_as_the_eigenvalue_says(small):
 
 @pytest.mark.parametrize("method", ["craig-bampton", "pod"])
 def test_the_other_bases_know_their_error(method):
-    system = pad_brake(friction=Coulomb(0.3))
+    system = pad_brake(*NODES, friction=Coulomb(0.3))
     brake = reduce(system, BAND, varying=RANGE, method=method)
     every = complex_modes(full_at(0.5)).eigenvalues
     found = in_band(complex_modes(brake.replace({"friction.static": 0.5})).eigenvalues)
     assert farthest(found, every) < 2.0 * brake.error + 1e-3
     assert brake.reduction.method == method
+
+
+def test_a_bilateral_contact_that_pulls_is_named_on_the_quick_road_too():
+    system = pad_brake(4, 5, friction=Coulomb(0.3))
+    assert complex_modes(reduce(system, BAND)).caution == ""
+    force = np.array(system.contacts.N0)
+    force[3] = -8.0
+    pulled = system.replace(contacts=system.contacts.replace(N0=force))
+    modes = complex_modes(reduce(pulled, BAND))
+    assert modes.caution.startswith("contact 4: N falls to -")
+    assert modes.caution == complex_modes(dense(pulled)).caution
 
 
 def test_what_it_was_not_reduced_for_is_refused(small):

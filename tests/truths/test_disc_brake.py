@@ -10,7 +10,7 @@ pytest.importorskip("skfem")
 from squealbox import Coulomb, ParameterError, complex_modes, reduce
 from squealbox.fe import Disc, DiscBrake, Material, Pads, Springs, free_disc_modes
 
-RIGID = Material(young=1e16, poisson=0.0, density=1.0, damping=0.0)
+RIGID = Material(young=1e15, poisson=0.0, density=1.0, damping=0.0)
 SOFT = Material(young=4e9, poisson=0.0, density=2500.0)
 
 
@@ -59,7 +59,9 @@ def test_patch_a_pad_pressed_all_over_presses_evenly():
 def test_a_dragged_pad_digs_in_at_its_leading_end_by_its_lever():
     """Moments about the contact plane: the centre of pressure moves by mu times the height of the abutment."""
     pads = Pads(angle=0.3, inner_radius=0.108, outer_radius=0.116, thickness=0.002)
-    brake = small(pads=pads, piston_radius=0.0039, springs=Springs(caliper=0.0, abutment=8e7), element_size=0.01)
+    disc = Disc(inner_radius=0.104, outer_radius=0.12, thickness=0.004)
+    springs = Springs(caliper=0.0, abutment=8e7)
+    brake = small(disc=disc, pads=pads, piston_radius=0.0039, springs=springs, element_size=0.0125)
     brake = brake.replace({"disc.material": RIGID, "pads.material": RIGID, "backplates.material": RIGID})
     height = 0.002 + 0.0025
     for mu in (0.0, 0.3):
@@ -103,7 +105,7 @@ def test_modes_shares_and_reduction():
     shares = brake.shares(mode.shape)
     assert sum(kinetic for kinetic, _ in shares.values()) == pytest.approx(1.0)
     assert set(shares) == {"disc", "linings", "backplates", "springs", "contact"}
-    reduced = reduce(brake, (1000.0, 3000.0), varying={"pads.material.young": (3.5e9, 4.5e9)})
+    reduced = reduce(brake, (1000.0, 3000.0), varying={"pads.material.young": (3.9e9, 4.3e9)})
     same = complex_modes(reduced).eigenvalues
     half = len(modes.eigenvalues) // 2
     off = [np.min(np.abs(same - value)) for value in modes.eigenvalues[:half]]

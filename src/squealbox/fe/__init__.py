@@ -3,18 +3,10 @@
 from squealbox.factorisation import Factor, SingularMatrix, factor
 from squealbox.fe.assembled import AssembledBrake, StructureFiles
 from squealbox.fe.certificate import Certificate, certificate
-from squealbox.fe.disc_brake import (
-    Backplates,
-    Disc,
-    DiscBrake,
-    Material,
-    Pads,
-    Preload,
-    Springs,
-    free_disc_modes,
-)
+from squealbox.fe.disc_brake import Backplates, Disc, DiscBrake, Pads, Springs, free_disc_modes
 from squealbox.fe.export import write_shape
 from squealbox.fe.interfaces import CoordinateSystem, Interface, Rotation
+from squealbox.fe.meshed import Material, MeshedBrake, Preload
 from squealbox.fe.pencil import Pencil, pencil_of
 from squealbox.fe.published import PublishedDiscBrake
 from squealbox.fe.quadratic import FullModes, full_modes
@@ -38,6 +30,7 @@ __all__ = [
     "Interface",
     "Material",
     "MatrixFileError",
+    "MeshedBrake",
     "Pads",
     "Pencil",
     "Preload",

@@ -3,11 +3,12 @@
 In coordinates that are undamped modes, the slow ones l carry the modes of the band; the fast ones h follow nearly
 statically. Two-sided static condensation gives a problem in l alone, with eigenvalues lambda_j and modes u_j, w_j, and
 
-    x_h = -K_hh^-1 [K_hl x_l + lambda C x + lambda^2 M x]_h
-    x_l -= sum_{j != k} u_j w_j^H [Q x]_l / (lambda - lambda_j)
+    x_h -= K_hh^-1 [Q x]_h
+    x -= R sum_{j != k} u_j w_j^H L' Q x / (lambda - lambda_j)
 
-with lambda the two-sided Rayleigh quotient leads from it to the modes of the whole, all of the band at once. What does
-not settle to round-off is not given out: the whole spectrum is then computed.
+with R and L the columns of the condensation and lambda the two-sided Rayleigh quotient leads from it to the modes of
+the whole, all of the band at once. What does not settle to round-off is not given out: the whole spectrum is then
+computed.
 """
 
 from typing import Any, NamedTuple
@@ -19,8 +20,7 @@ from squealbox.fe.pencil import MOST_DAMPED, vibrating
 from squealbox.fe.small import Small
 
 SLOW = 2.2  # times the end of the band: coordinates above it are fast
-PASSES = 12
-INNER = 2  # static solves for the fast coordinates in each pass
+PASSES = 40
 SETTLED = 1e-11  # of |lambda|: change of an eigenvalue at which it has settled
 RESIDUAL = 1e-5  # of |K x|: residual of a shape; its eigenvalue is better by the same factor again
 
@@ -56,29 +56,29 @@ def band_pairs(small: Small, band: tuple[float, float]) -> Pairs | None:
     values, x, y = every[kept], right @ u[:, kept], left @ w[:, kept]
     near = every[:, None] - values  # (2 l, k); its zeros are the modes themselves
     near[kept, np.arange(len(kept))] = np.inf
-    over = Small(*(matrix[h] for matrix in (mass, damping, stiffness)))
-    under = Small(*(matrix[:, h] for matrix in (mass, damping, stiffness)))
+    both, back = np.concatenate([stiffness, damping]), np.concatenate([stiffness.T, damping.T])
+    unit = bool(np.max(np.abs(mass - np.eye(len(mass)))) < 1e-9)
     settled = False
-    for _pass in range(PASSES):
-        for _ in range(INNER):
-            x[h] -= lu_solve(hold, _applied(over, values, x))
-            y[h] -= lu_solve(hold, _back(under, values, y), trans=1)
-        missed, missed_left = _applied(small, values, x), _back(small, values, y)
-        x[l] += u @ ((np.conj(w).T @ missed[l]) / near)
-        y[l] += w @ ((np.conj(u).T @ missed_left[l]) / np.conj(near))
-        slope = np.sum(np.conj(y) * (2.0 * values * (mass @ x) + damping @ x), axis=0)
-        step = np.sum(np.conj(y) * _applied(small, values, x), axis=0) / slope
-        values = values - step
+    for _ in range(PASSES):
+        missed = _applied(both, None if unit else mass, values, x)
+        missed_left = _applied(back, None if unit else mass.T, np.conj(values), y)
+        slope = np.sum(np.conj(y) * (2.0 * values * (x if unit else mass @ x) + damping @ x), axis=0)
+        step = np.sum(np.conj(y) * missed, axis=0) / slope
         moved = np.abs(step) / np.abs(values)
         if not np.all(np.isfinite(moved)):
             return None
-        off = (
-            np.linalg.norm(missed, axis=0) / _size(stiffness, x),
-            np.linalg.norm(missed_left, axis=0) / _size(stiffness.T, y),
+        off = max(
+            float(np.max(np.linalg.norm(rest, axis=0) / _size(matrix, shapes), initial=0.0))
+            for rest, matrix, shapes in ((missed, stiffness, x), (missed_left, stiffness.T, y))
         )
-        settled = bool(np.all(moved <= SETTLED) and np.max(off, initial=0.0) <= RESIDUAL)
+        values = values - step
+        settled = bool(np.all(moved <= SETTLED) and off <= RESIDUAL)
         if settled:
             break
+        x[h] -= lu_solve(hold, missed[h])
+        y[h] -= lu_solve(hold, missed_left[h], trans=1)
+        x += right @ (u @ ((np.conj(w).T @ (left.T @ missed)) / near))
+        y += left @ (w @ ((np.conj(u).T @ (right.T @ missed_left)) / np.conj(near)))
     if not settled:
         return None
     inside = np.flatnonzero((values.imag >= low) & (values.imag <= high) & vibrating(values))
@@ -94,13 +94,11 @@ def band_pairs(small: Small, band: tuple[float, float]) -> Pairs | None:
     return Pairs(values, x, y, length * dual)
 
 
-def _applied(small: Small, values: Any, x: Any) -> Any:
-    return _times(small.K, x) + _times(small.C, x) * values + _times(small.M, x) * values**2
-
-
-def _back(small: Small, values: Any, y: Any) -> Any:
-    back = np.conj(values)
-    return _times(small.K.T, y) + _times(small.C.T, y) * back + _times(small.M.T, y) * back**2
+def _applied(both: Any, mass: Any, values: Any, x: Any) -> Any:
+    """Q(lambda) x from K and C stacked and M, None for the unit matrix."""
+    product = _times(both, x)
+    size = len(x)
+    return product[:size] + product[size:] * values + (x if mass is None else _times(mass, x)) * values**2
 
 
 def _size(matrix: Any, x: Any) -> Any:

@@ -5,6 +5,7 @@ K0^-1 Kf Phi, left shapes towards K0^-1 Kf' Phi and damping towards K0^-1 C Phi.
 what right and left shapes miss, so all three are added; of their span the directions with most strain energy are kept.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,8 @@ def enriched_basis(pencil: Pencil, modes: RealModes, extra: int | None = None) -
     shapes = modes.shapes
     extra = shapes.shape[1] if extra is None else extra
     rates = 2.0 * np.pi * np.maximum(modes.frequency, 1e-3 * modes.top)
-    friction = pencil.K - pencil.elastic
-    parts = [friction @ shapes / rates, friction.T @ shapes / rates, pencil.C @ shapes]
+    held = pencil.elastic @ shapes
+    parts = [*((part - held) / rates for part in pencil.stiffness_on(shapes)), pencil.damping_on(shapes)]
     right = np.concatenate([part for part in parts if np.any(part)] or [np.zeros((pencil.size, 0))], axis=1)
     return joined(pencil, shapes, strongest(pencil, modes, modes.base.solve_many(right), extra))
 
@@ -39,22 +40,26 @@ def strongest(pencil: Pencil, modes: RealModes, vectors: Any, count: int) -> Any
 
 def joined(pencil: Pencil, basis: Any, vectors: Any) -> Any:
     """`basis` with the part of `vectors` that is new, V' M V = I; what is not new to round-off is left out."""
-    fresh = fresh_directions(pencil.M, basis, pencil.M @ basis, vectors)
+    fresh = fresh_directions(pencil.M, [basis], [pencil.M @ basis], vectors)
     return np.concatenate([basis, fresh], axis=1)
 
 
-def fresh_directions(mass: Any, basis: Any, weighted: Any, vectors: Any) -> Any:
-    """What of `vectors` is new to `basis` (n, m), with M V in `weighted`: columns W, W' M W = I and W' M V = 0."""
+def fresh_directions(mass: Any, basis: Sequence[Any], weighted: Sequence[Any], vectors: Any) -> Any:
+    """What of `vectors` is new to a basis V in blocks (n, m), with M V in `weighted`: W, W' M W = I and W' M V = 0."""
     lengths = np.sqrt(np.maximum(np.einsum("ij,ij->j", vectors, mass @ vectors), 0.0))
-    vectors = vectors[:, lengths > 0.0] / lengths[lengths > 0.0]
-    for _ in range(2):
-        vectors = vectors - basis @ (weighted.T @ vectors)
+    vectors = _without(vectors[:, lengths > 0.0] / lengths[lengths > 0.0], basis, weighted)
     gram = vectors.T @ (mass @ vectors)
     values, turns = np.linalg.eigh(0.5 * (gram + gram.T))
     keep = values > NEGLIGIBLE
     fresh = vectors @ (turns[:, keep] / np.sqrt(values[keep]))
     for _ in range(2):  # what the small directions lost of their right angle
-        fresh = fresh - basis @ (weighted.T @ fresh)
+        fresh = _without(fresh, basis, weighted)
         gram = fresh.T @ (mass @ fresh)
         fresh = np.linalg.solve(np.linalg.cholesky(gram), fresh.T).T
     return fresh
+
+
+def _without(vectors: Any, basis: Sequence[Any], weighted: Sequence[Any]) -> Any:
+    for block, heavy in zip(basis, weighted, strict=True):
+        vectors = vectors - block @ (heavy.T @ vectors)
+    return vectors

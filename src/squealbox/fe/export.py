@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.fe.disc_brake import DiscBrake
 from squealbox.fe.grids import Body
+from squealbox.fe.meshed import MeshedBrake
 
 FORMATS = (".vtu", ".uff")
 
 
-def write_shape(brake: DiscBrake, shape: Any, eigenvalue: complex, path: str | os.PathLike[str]) -> Path:
+def write_shape(brake: MeshedBrake, shape: Any, eigenvalue: complex, path: str | os.PathLike[str]) -> Path:
     """Write one complex mode on the corners of the elements to `path`, which ends in .vtu or .uff.
 
     Parameters
@@ -54,12 +54,11 @@ def write_shape(brake: DiscBrake, shape: Any, eigenvalue: complex, path: str | o
 
 def _corners(body: Body, values: Any) -> tuple[Any, Any, Any]:
     """Places (k, 3), displacements (k, 3) and corners of the elements (cells, 8) in the order of VTK."""
-    basis = body.basis
-    corner = basis.nodal_dofs  # (3, corners): the freedoms of each corner of the open grid
-    places = basis.doflocs[:, corner[0]].T
-    cells = basis.mesh.t.T
-    local = np.asarray(basis.elem.elem.refdom.p).T.astype(int)  # the corners of the reference brick
-    order = [int(np.flatnonzero((local == corner_at).all(axis=1))[0]) for corner_at in VTK]
+    corner, cells = body.corners
+    r, theta, z = body.grid_points
+    local = np.asarray(body.reference_corners).T.astype(int)
+    order = [int(np.flatnonzero((local == at).all(axis=1))[0]) for at in VTK]
+    places = np.stack([r * np.cos(theta), r * np.sin(theta), z], axis=1)
     return places, values[body.freedoms[corner]].T, cells[:, order]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from squealbox.factorisation import Factor
 from squealbox.fe.growing_basis import ROWS, GrowingBasis
 from squealbox.fe.pencil import Pencil, pencil_of
-from squealbox.fe.projection import Projected, modes_on
+from squealbox.fe.projection import Projected, modes_on, with_shapes
 from squealbox.sparse_sliding import Start
 from squealbox.system import InvalidSystem, System, as_system
 
@@ -36,7 +36,8 @@ class FullBrake:
 
     def checked(self, values: Mapping[str, Any], band: tuple[float, float]) -> Projected:
         """Modes on the basis, with the error against the full brake."""
-        return modes_on(GrowingBasis([self.pencil(values)], self.basis), 0, self.base, band)
+        onto = GrowingBasis([self.pencil(values)], self.basis)
+        return with_shapes(onto, modes_on(onto, 0, self.base, band)[0])
 
     def projected_arrays(self, system: System, known: Mapping[str, Any] | None = None) -> dict[str, Any]:
         """Every field of a system on the basis, measured from q0; what is `known` of it is not computed again."""

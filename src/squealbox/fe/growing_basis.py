@@ -23,72 +23,79 @@ ROWS = ("n", "d", "t", "normal", "across")
 
 
 class _Product:
-    """A V, A' V and V' A V of one sparse matrix A, for a basis V that grows."""
+    """A V, A' V and V' A V of one sparse matrix A, for a basis V that grows by blocks of columns."""
 
     def __init__(self, matrix: Any) -> None:
         self.matrix, self.symmetric = matrix, is_symmetric(matrix)
-        size = matrix.shape[0]
-        self.right, self.gram = np.zeros((size, 0)), np.zeros((0, 0))
-        self.left = self.right
+        self.right: list[Any] = []
+        self.left: list[Any] = self.right if self.symmetric else []
+        self.gram = np.zeros((0, 0))
 
-    def extend(self, basis: Any, fresh: Any) -> None:
+    def extend(self, basis: Sequence[Any], fresh: Any) -> None:
         new = self.matrix @ fresh
-        above = basis.T @ new
-        below = above.T if self.symmetric else fresh.T @ self.right
+        above = np.concatenate([np.zeros((0, fresh.shape[1])), *(block.T @ new for block in basis)])
+        below = above.T
+        if not self.symmetric:
+            below = np.concatenate([np.zeros((fresh.shape[1], 0)), *(fresh.T @ old for old in self.right)], axis=1)
+            self.left.append(self.matrix.T @ fresh)
         self.gram = np.block([[self.gram, above], [below, fresh.T @ new]])
-        self.right = np.concatenate([self.right, new], axis=1)
-        if self.symmetric:
-            self.left = self.right
-        else:
-            self.left = np.concatenate([self.left, self.matrix.T @ fresh], axis=1)
+        self.right.append(new)
+
+
+class _Rows:
+    """A V of one sparse table A (contacts, n)."""
+
+    def __init__(self, matrix: Any) -> None:
+        self.matrix, self.dense = matrix, np.zeros((matrix.shape[0], 0))
 
 
 class GrowingBasis:
-    """Columns V (n, m), V' M V = I for the M of the first pencil, and all `pencils` on them."""
+    """Columns V (n, m), V' M V = I for the M of the first pencil, in `blocks`, and all `pencils` on them."""
 
     def __init__(self, pencils: Sequence[Pencil], basis: Any) -> None:
         self.pencils = list(pencils)
         self._products: list[_Product] = []
-        self._of = [[self._known(matrix) for matrix in pencil.structural] for pencil in self.pencils]
-        self._rows: list[dict[str, Any]] = [{} for _ in self.pencils]
-        self.basis = np.zeros((self.pencils[0].size, 0))
+        self._tables: list[_Rows] = []
+        self._of = [[self._known(self._products, _Product, part) for part in p.structural] for p in self.pencils]
+        self._rows = [self._rows_of(pencil) for pencil in self.pencils]
+        self.blocks: list[Any] = []
         self._extend(basis)
 
     @property
     def size(self) -> int:
         """Number of columns."""
-        return int(self.basis.shape[1])
+        return sum(int(block.shape[1]) for block in self.blocks)
 
     def add(self, vectors: Any) -> None:
         """Take in what is new of the columns of `vectors` (n, k)."""
-        mass = self._of[0][0]
-        self._extend(fresh_directions(self.pencils[0].M, self.basis, mass.right, vectors))
+        self._extend(fresh_directions(self.pencils[0].M, self.blocks, self._of[0][0].right, vectors))
 
     def turn(self, turns: Any) -> None:
         """V becomes V T for a square T (m, m); the products of size n are given up, so it grows no more."""
         for product in self._products:
             product.gram = turns.T @ product.gram @ turns
-            product.right = product.left = np.zeros((0, 0))
-        for rows in self._rows:
-            rows.update({name: table @ turns for name, table in rows.items()})
-        self.basis = self.basis @ turns
-
-    def without(self, vectors: Any) -> Any:
-        """What of `vectors` (n, k) the basis does not hold, orthogonal in M."""
-        weighted = self._of[0][0].right
-        for _ in range(2):
-            vectors = vectors - self.basis @ (weighted.T @ vectors)
-        return vectors
+            product.right = product.left = []
+        for table in self._tables:
+            table.dense = table.dense @ turns
+        self.blocks = [times(self.blocks, turns)]
 
     def structural(self, i: int) -> dict[str, Any]:
         """M, C, K of the structure (m, m) and the contacts' rows (contacts, m) of one pencil."""
         grams = {name: product.gram for name, product in zip("MCK", self._of[i], strict=True)}
-        return {**grams, **{name: self._rows[i].get(name) for name in ROWS}}
+        return {**grams, **{name: self._rows[i][name].dense if name in self._rows[i] else None for name in ROWS}}
+
+    def elastic(self, i: int) -> Any:
+        """K0 of one pencil on the basis, (m, m): symmetric, without friction and without open contacts."""
+        found, sliding = self._of[i][2].gram, self.pencils[i].sliding
+        if sliding is not None and np.any(sliding.lifted):
+            lifted, rows = np.flatnonzero(sliding.lifted), self._rows[i]
+            found = found - rows["normal"].dense[lifted].T @ rows["n"].dense[lifted]
+        return 0.5 * (found + found.T)
 
     def small(self, i: int) -> Small:
         """M, C_eff and K_eff of one pencil on the basis."""
         mass, damping, stiffness = (product.gram for product in self._of[i])
-        sliding, rows = self.pencils[i].sliding, self._rows[i]
+        sliding, rows = self.pencils[i].sliding, {name: table.dense for name, table in self._rows[i].items()}
         if sliding is None:
             return Small(mass, damping, stiffness)
         stiffness = stiffness - rows["d"].T @ (sliding.coupling[:, None] * rows["n"])
@@ -102,68 +109,81 @@ class GrowingBasis:
 
     def residual(self, i: int, values: Any, x: Any) -> Any:
         """Q(lambda_k) V x_k (n, k)."""
-        mass, damping, stiffness = (product.right for product in self._of[i])
-        found = times(mass, x * values**2) + times(damping, x * values) + times(stiffness, x)
-        sliding, rows, table = self.pencils[i].sliding, self._rows[i], self._table(i)
+        found = self._summed([product.right for product in self._of[i]], (x * values**2, x * values, x))
+        sliding, rows = self.pencils[i].sliding, self._rows[i]
         if sliding is None:
             return found
-        felt = rows["n"] @ x
-        found -= table.d.T @ (sliding.coupling[:, None] * felt)
-        if table.normal is not None:
-            found -= table.normal.T @ (sliding.lifted[:, None] * felt)
+        felt = rows["n"].dense @ x
+        weight = -sliding.coupling[:, None] * felt
         if np.any(sliding.along):
-            found += table.d.T @ (sliding.along[:, None] * (rows["t"] @ (x * values)))
+            weight = weight + sliding.along[:, None] * (rows["t"].dense @ (x * values))
+        found += rows["d"].matrix.T @ weight
+        if "normal" in rows and np.any(sliding.lifted):
+            found -= rows["normal"].matrix.T @ (sliding.lifted[:, None] * felt)
         if "across" in rows:
-            found += table.across.T @ (sliding.across[:, None] * (rows["across"] @ (x * values)))
+            found += rows["across"].matrix.T @ (sliding.across[:, None] * (rows["across"].dense @ (x * values)))
         return found
 
     def left_residual(self, i: int, values: Any, y: Any) -> Any:
         """Q(lambda_k)^H V y_k (n, k)."""
-        mass, damping, stiffness = (product.left for product in self._of[i])
         back = np.conj(values)
-        found = times(mass, y * back**2) + times(damping, y * back) + times(stiffness, y)
-        sliding, rows, table = self.pencils[i].sliding, self._rows[i], self._table(i)
+        found = self._summed([product.left for product in self._of[i]], (y * back**2, y * back, y))
+        sliding, rows = self.pencils[i].sliding, self._rows[i]
         if sliding is None:
             return found
-        weight = sliding.coupling[:, None] * (rows["d"] @ y)
-        if "normal" in rows:
-            weight = weight + sliding.lifted[:, None] * (rows["normal"] @ y)
-        found -= table.n.T @ weight
+        weight = sliding.coupling[:, None] * (rows["d"].dense @ y)
+        if "normal" in rows and np.any(sliding.lifted):
+            weight = weight + sliding.lifted[:, None] * (rows["normal"].dense @ y)
+        found -= rows["n"].matrix.T @ weight
         if np.any(sliding.along):
-            found += table.t.T @ (sliding.along[:, None] * (rows["d"] @ (y * back)))
+            found += rows["t"].matrix.T @ (sliding.along[:, None] * (rows["d"].dense @ (y * back)))
         if "across" in rows:
-            found += table.across.T @ (sliding.across[:, None] * (rows["across"] @ (y * back)))
+            found += rows["across"].matrix.T @ (sliding.across[:, None] * (rows["across"].dense @ (y * back)))
+        return found
+
+    def _summed(self, products: list[list[Any]], factors: Any) -> Any:
+        """Sum of A V x over the products and factors."""
+        found = times(products[0], factors[0])
+        for blocks, factor in zip(products[1:], factors[1:], strict=True):
+            times(blocks, factor, found)
         return found
 
     def _extend(self, fresh: Any) -> None:
         fresh = np.ascontiguousarray(fresh)
         for product in self._products:
-            product.extend(self.basis, fresh)
-        for i, rows in enumerate(self._rows):
-            for name in ROWS if self.pencils[i].sliding is not None else ():
-                table = getattr(self._table(i), name)
-                if table is not None:
-                    new = np.asarray(table @ fresh)
-                    rows[name] = np.concatenate([rows[name], new], axis=1) if name in rows else new
-        self.basis = np.concatenate([self.basis, fresh], axis=1)
+            product.extend(self.blocks, fresh)
+        for table in self._tables:
+            table.dense = np.concatenate([table.dense, np.asarray(table.matrix @ fresh)], axis=1)
+        self.blocks.append(fresh)
 
-    def _table(self, i: int) -> Any:
-        sliding = self.pencils[i].sliding
-        return None if sliding is None else sliding.system.contacts
+    def _rows_of(self, pencil: Pencil) -> dict[str, _Rows]:
+        contacts = None if pencil.sliding is None else pencil.sliding.system.contacts
+        tables = {name: getattr(contacts, name, None) for name in ROWS}
+        return {n: self._known(self._tables, _Rows, table) for n, table in tables.items() if table is not None}
 
-    def _known(self, matrix: Any) -> _Product:
-        for product in self._products:
-            if equal(product.matrix, matrix):
-                return product
-        self._products.append(_Product(matrix))
-        return self._products[-1]
+    def _known(self, among: list[Any], kind: type, matrix: Any) -> Any:
+        for one in among:
+            if equal(one.matrix, matrix):
+                return one
+        among.append(kind(matrix))
+        return among[-1]
 
 
-def times(columns: Any, x: Any) -> Any:
-    """V x for a real V and a complex x, without a complex copy of V."""
-    if not np.iscomplexobj(x):
-        return columns @ x
-    return columns @ np.ascontiguousarray(x.real) + 1j * (columns @ np.ascontiguousarray(x.imag))
+def times(blocks: Sequence[Any], x: Any, onto: Any = None) -> Any:
+    """V x for a real V in blocks of columns and a real or complex x (m, k), added to `onto` where it is given."""
+    columns = np.concatenate([x.real, x.imag], axis=1) if np.iscomplexobj(x) else x
+    size, count = blocks[0].shape[0], x.shape[1]
+    found = np.zeros((size, count), dtype=x.dtype) if onto is None else onto
+    start = 0
+    for block in blocks:
+        part = block @ columns[start : start + block.shape[1]]
+        start += block.shape[1]
+        if np.iscomplexobj(x):
+            found.real += part[:, :count]
+            found.imag += part[:, count:]
+        else:
+            found += part
+    return found
 
 
 def equal(one: Any, other: Any) -> bool:

@@ -1,13 +1,16 @@
 """The sparse matrices of one linearised brake, Q(lambda) = lambda^2 M + lambda C + K, beside its elastic part K0."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from scipy import sparse
 
-from squealbox.sparse_sliding import Start, damping_across, friction_stiffness
-from squealbox.system import InvalidSystem, Linearised, System, linearise
+from squealbox.loops import near_sliding
+from squealbox.memory_rows import no_memory
+from squealbox.sparse_sliding import Start, damping_across, damping_along, stiffness_of
+from squealbox.system import Equilibrium, InvalidSystem, System, equilibrium
 
 MOST_DAMPED = 0.1  # damping ratio above which a pair is no candidate for squeal and is not shown
 
@@ -25,28 +28,18 @@ class Sliding:
     across: Any
 
 
-@dataclass(frozen=True)
 class Pencil:
-    """M, C_eff, K_eff, all (n, n) sparse, and elastic: K0, symmetric, without friction and without open contacts.
+    """M, C_eff, K_eff, all (n, n) sparse, and elastic: K0, symmetric, without friction and without open contacts."""
 
-    across is the damping of friction across the sliding direction, which is a part of C_eff. about is the linearised
-    system behind it and sliding what its contacts add, None where bare matrices were given.
-    """
-
-    M: Any
-    C: Any
-    K: Any
-    elastic: Any
-    across: Any = None
-    about: Linearised | None = None
     sliding: Sliding | None = None
+
+    def __init__(self, M: Any, C: Any, K: Any, elastic: Any) -> None:
+        self.M, self.C, self.K, self.elastic = M, C, K, elastic
 
     @property
     def structural(self) -> tuple[Any, Any, Any]:
-        """M, C and K that `sliding` adds to: those of the system, or the bare matrices themselves."""
-        if self.sliding is None:
-            return self.M, self.C, self.K
-        return self.sliding.system.M, self.sliding.system.C, self.sliding.system.K
+        """M, C and K that contacts add to; of bare matrices these themselves."""
+        return self.M, self.C, self.K
 
     @property
     def size(self) -> int:
@@ -57,14 +50,17 @@ class Pencil:
         """Q(lambda), sparse and complex."""
         return sparse.csc_array(value**2 * self.M + value * self.C + self.K)
 
+    def stiffness_on(self, shapes: Any) -> tuple[Any, Any]:
+        """K_eff V and K_eff' V of columns V (n, k)."""
+        return self.K @ shapes, self.K.T @ shapes
+
+    def damping_on(self, shapes: Any) -> Any:
+        """C_eff V of columns V (n, k)."""
+        return self.C @ shapes
+
     def residual(self, values: Any, shapes: Any) -> Any:
         """Q(lambda_k) u_k for each column u_k of `shapes` (n, k)."""
         return self.K @ shapes + (self.C @ shapes) * values + (self.M @ shapes) * values**2
-
-    def left_residual(self, values: Any, shapes: Any) -> Any:
-        """Q(lambda_k)^H w_k for each column w_k of `shapes` (n, k)."""
-        back = np.conj(values)
-        return self.K.T @ shapes + (self.C.T @ shapes) * back + (self.M @ shapes) * back**2
 
     def backward_error(self, values: Any, shapes: Any) -> Any:
         """|Q(lambda) u| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |u|) of each mode, norms by the largest row sum."""
@@ -74,25 +70,80 @@ class Pencil:
         return missed / (scale * np.linalg.norm(shapes, axis=0))
 
 
-def pencil_of(system: System, time: float = 0.0, about: Linearised | None = None, start: Start | None = None) -> Pencil:
-    """The matrices of a sparse system about steady sliding at `time` [s], or as they were linearised before.
+class SlidingPencil(Pencil):
+    """The matrices of a system about steady sliding; C_eff, K_eff and K0 are summed up when one is asked for.
+
+    state is steady sliding and sliding what its contacts add.
+    """
+
+    sliding: Sliding
+
+    def __init__(self, sliding: Sliding, state: Equilibrium) -> None:
+        self.sliding, self.state, self.M = sliding, state, sliding.system.M
+
+    @property
+    def structural(self) -> tuple[Any, Any, Any]:
+        return self.sliding.system.M, self.sliding.system.C, self.sliding.system.K
+
+    @cached_property
+    def C(self) -> Any:
+        """C + D' diag(N mu') T + A' diag(mu N / |V|) A."""
+        table, along = self.sliding.system.contacts, self.sliding.along
+        found = self.sliding.system.C + damping_across(table, self.sliding.across)
+        return sparse.csr_array(found + damping_along(table, along) if np.any(along) else found)
+
+    @cached_property
+    def K(self) -> Any:
+        """K - D' diag(mu sgn V) N - R' diag(open) N."""
+        closed = self.sliding.lifted == 0.0
+        return stiffness_of(self.sliding.system.K, self.sliding.system.contacts, self.sliding.coupling, closed)
+
+    @cached_property
+    def elastic(self) -> Any:
+        """The symmetric part of K - R' diag(open) N."""
+        lifted, system = self.sliding.lifted, self.sliding.system
+        return symmetric_part(stiffness_of(system.K, system.contacts, 0.0 * lifted, lifted == 0.0))
+
+    def stiffness_on(self, shapes: Any) -> tuple[Any, Any]:
+        system, coupling, lifted = self.sliding.system, self.sliding.coupling[:, None], self.sliding.lifted[:, None]
+        table = system.contacts
+        felt = table.n @ shapes
+        right = system.K @ shapes - table.d.T @ (coupling * felt)
+        weight = coupling * (table.d @ shapes)
+        if table.normal is not None:
+            right -= table.normal.T @ (lifted * felt)
+            weight = weight + lifted * (table.normal @ shapes)
+        return right, system.K.T @ shapes - table.n.T @ weight
+
+    def damping_on(self, shapes: Any) -> Any:
+        table = self.sliding.system.contacts
+        found = self.sliding.system.C @ shapes + table.d.T @ (self.sliding.along[:, None] * (table.t @ shapes))
+        if table.across is not None:
+            found += table.across.T @ (self.sliding.across[:, None] * (table.across @ shapes))
+        return found
+
+
+def pencil_of(
+    system: System, time: float = 0.0, state: Equilibrium | None = None, start: Start | None = None
+) -> SlidingPencil:
+    """The matrices of a sparse system about steady sliding at `time` [s], or about a `state` that is known.
 
     `start` is steady sliding of a similar brake, from which the search for this one's begins. Raises `InvalidSystem`
     where there is no steady sliding, with the reason.
     """
-    about = linearise(system, time, start) if about is None else about
-    state = about.equilibrium
+    system = near_sliding(system)
+    state = equilibrium(system, time, start) if state is None else state
     if not state.exists:
         raise InvalidSystem(f"no steady sliding to linearise about: {state.outcome} ({state.outcome.message})")
     table = system.contacts
+    no_memory(table, "a sparse system")
     closed = (state.normal_force > 0.0) | ~table.unilateral
     coupling = np.where(closed, state.friction * np.sign(state.sliding_speed), 0.0)
-    stiffness = about.K + friction_stiffness(table, coupling)
     pressing = np.where(closed, state.normal_force, 0.0)
     turning = pressing * state.friction / np.abs(state.sliding_speed)
     _, slope = table.friction(state.sliding_speed)
     sliding = Sliding(system, coupling, np.where(closed, 0.0, 1.0), pressing * slope, turning)
-    return Pencil(about.M, about.C, about.K, symmetric_part(stiffness), damping_across(table, turning), about, sliding)
+    return SlidingPencil(sliding, state)
 
 
 def symmetric_part(matrix: Any) -> Any:

@@ -5,12 +5,17 @@ from typing import Any
 
 import numpy as np
 from scipy.linalg import eigh
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
 from squealbox.factorisation import Factor, SingularMatrix, factor
 
 DENSE = 400  # rows up to which LAPACK finds all modes at once
 MOST = 3000  # modes that are looked for at once
+BLOCK = 8  # columns that are solved for together, at a fraction of the price of one by one
+RIGID = 1e-8  # (w / w_top)^2 of a motion that is rigid but for round-off
+CLOSE = 1e-9  # residual of a shape; its frequency is good to the square of that
+DEPENDENT = (
+    1e-20  # share of its square length that is left of a column without the others, below which it is no new one
+)
 
 
 @dataclass(frozen=True)
@@ -39,7 +44,7 @@ def count_below(stiffness: Any, mass: Any, frequency: float) -> int:
 
 
 def real_modes(stiffness: Any, mass: Any, top: float) -> RealModes:
-    """All undamped modes below `top` [Hz], by shift-invert Lanczos about 0.
+    """All undamped modes below `top` [Hz], by shift-invert Lanczos about 0 with blocks of columns.
 
     A body that is free to move makes K0 singular; it is then shifted by a small share of (2 pi top)^2 M.
 
@@ -55,12 +60,8 @@ def real_modes(stiffness: Any, mass: Any, top: float) -> RealModes:
     elif count == 0:
         values, shapes = np.zeros(0), np.zeros((size, 0))
     else:
-        back = LinearOperator((size, size), matvec=base.solve, dtype=float)
-        start = np.random.default_rng(7).standard_normal(size)
-        try:
-            values, shapes = eigsh(stiffness, k=count, M=mass, sigma=-shift, OPinv=back, v0=start, tol=1e-13)
-        except ArpackNoConvergence as error:
-            values, shapes = error.eigenvalues, error.eigenvectors
+        inverse, shapes = _slowest(base, mass, count)
+        values = 1.0 / inverse - shift
     order = np.argsort(values)
     values, shapes = values[order], shapes[:, order]
     inside = values < (2.0 * np.pi * top) ** 2
@@ -70,11 +71,74 @@ def real_modes(stiffness: Any, mass: Any, top: float) -> RealModes:
 
 
 def _base(stiffness: Any, mass: Any, top: float) -> tuple[Factor, float]:
+    """The factor of K0, or of K0 + shift M where K0 is singular or so nearly that its rigid motions drown all else."""
+    rate = (2.0 * np.pi * top) ** 2
     try:
-        return factor(stiffness, symmetric=True), 0.0
+        base = factor(stiffness, symmetric=True)
+        slow = base.solve(mass @ np.random.default_rng(5).standard_normal(mass.shape[0]))
+        slower = base.solve(mass @ slow)
+        if slower @ (mass @ slower) * RIGID**2 < rate**-2 * (slow @ (mass @ slow)):
+            return base, 0.0
     except SingularMatrix:
-        shift = 1e-4 * (2.0 * np.pi * top) ** 2
-        return factor(stiffness + shift * mass, symmetric=True), shift
+        pass
+    return factor(stiffness + 1e-4 * rate * mass, symmetric=True), 1e-4 * rate
+
+
+def _slowest(base: Factor, mass: Any, count: int) -> tuple[Any, Any]:
+    """The `count` largest eigenvalues of A^-1 M and their shapes, A that of the factor: block Lanczos, lengths by M."""
+    size = mass.shape[0]
+    start = np.random.default_rng(7).standard_normal((size, BLOCK))
+    fresh = base.solve_many(mass @ start)
+    columns: list[Any] = []
+    weighted: list[Any] = []
+    small = np.zeros((0, 0))
+    values, turns = np.zeros(0), np.zeros((0, 0))
+    for _ in range(4 + 8 * count // BLOCK):
+        coupling = np.zeros((len(small), fresh.shape[1]))
+        for _ in range(2):  # once more for what the first pass lost to round-off
+            for i, (old, heavy) in enumerate(zip(columns, weighted, strict=True)):
+                part = heavy.T @ fresh
+                fresh = fresh - old @ part
+                coupling[_place(columns, i)] += part
+        fresh, heavy, length = _orthonormal(fresh, mass)
+        if len(small):  # `fresh` was A^-1 M of the last block: its parts are the next column of the projection
+            last = _place(columns, len(columns) - 1)
+            small[:, last] = coupling
+            small[last, :] = coupling.T
+            values, turns = np.linalg.eigh(small)
+            order = np.argsort(-values)[:count]
+            off = np.linalg.norm(length @ turns[last][:, order], axis=0)
+            if len(order) == count and np.all(off <= CLOSE * values[order]):
+                break
+        if fresh.shape[1] == 0:
+            break
+        columns.append(fresh)
+        weighted.append(heavy)
+        small = np.pad(small, (0, fresh.shape[1]))
+        fresh = base.solve_many(heavy)
+    order = np.argsort(-values)[:count]
+    shapes = sum(old @ turns[_place(columns, i)][:, order] for i, old in enumerate(columns))
+    return values[order], shapes
+
+
+def _place(columns: list[Any], i: int) -> slice:
+    """Where the i-th block stands among all columns."""
+    before = sum(block.shape[1] for block in columns[:i])
+    return slice(before, before + columns[i].shape[1])
+
+
+def _orthonormal(vectors: Any, mass: Any) -> tuple[Any, Any, Any]:
+    """Columns W with W' M W = I, M W, and L with W L = `vectors`; columns that depend on others are left out."""
+    whole: Any = None
+    for _ in range(2):
+        heavy = mass @ vectors
+        values, turns = np.linalg.eigh(vectors.T @ heavy)
+        keep = values > DEPENDENT * max(values[-1], 1e-300)
+        scale = np.sqrt(values[keep])
+        length = scale[:, None] * turns[:, keep].T
+        vectors, heavy = vectors @ (turns[:, keep] / scale), heavy @ (turns[:, keep] / scale)
+        whole = length if whole is None else length @ whole
+    return vectors, heavy, whole
 
 
 def _dense(stiffness: Any, mass: Any, count: int) -> tuple[Any, Any]:

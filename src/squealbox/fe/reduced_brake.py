@@ -17,9 +17,10 @@ from squealbox.designs.base import Design
 from squealbox.fe.band_spectrum import Pairs, band_pairs
 from squealbox.fe.full_brake import FullBrake
 from squealbox.fe.reduced_sliding import steady_small
+from squealbox.fe.small import Small
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, known_names
-from squealbox.system import Equilibrium, InvalidSystem, System
+from squealbox.system import Equilibrium, InvalidSystem, System, linearise
 
 FIELDS = ("M", "C", "K", "load", "n", "d", "t", "normal", "across", "N0", "V")
 
@@ -224,14 +225,26 @@ class ReducedBrake(Design):
         its own, no steady sliding, or modes that did not settle.
         """
         low, high = band or self.band
-        shared = self.friction is not None and not any(np.ndim(value) for value in self.values.values())
-        if not shared or not len(self.reduction.contact_names) or high > self.band[1] * (1.0 + 1e-9):
-            return None
-        rows = {field: self.array(field) for field in FIELDS}
-        rows["C"] = rows["C"] - self.reduction.arrays.get("high", 0.0)
-        found = steady_small(rows, self.friction, np.asarray(self.reduction.unilateral))
+        found = None if high > self.band[1] * (1.0 + 1e-9) else self._quickly(self.reduction.arrays.get("high", 0.0))
         pairs = None if found is None else band_pairs(found[0], (low, high))
         return None if found is None or pairs is None else (pairs, found[1])
+
+    def linearised(self, time: float = 0.0) -> Small | None:
+        """M, C_eff and K_eff about steady sliding; None where there is none."""
+        found = self._quickly(0.0)
+        if found is not None:
+            return found[0]
+        about = linearise(self.system(), time)
+        return Small(about.M, about.C, about.K) if about.equilibrium.exists else None
+
+    def _quickly(self, without: Any) -> tuple[Small, Equilibrium] | None:
+        """Linearised from tables of contacts, less some damping; None where that road does not go."""
+        shared = self.friction is not None and not any(np.ndim(value) for value in self.values.values())
+        if not shared or not len(self.reduction.contact_names):
+            return None
+        rows = {field: self.array(field) for field in FIELDS}
+        rows["C"] = rows["C"] - without
+        return steady_small(rows, self.friction, np.asarray(self.reduction.unilateral))
 
     def law_of(self, index: int) -> FrictionLaw:
         """The friction law of one contact."""

@@ -15,7 +15,7 @@ from squealbox.static_deflection import ended
 from squealbox.system import Equilibrium
 
 ALIKE = 1e-14  # of the largest weight: two weights are the same to round-off
-STEP = 1e-12  # relative step at which the set of open contacts has settled
+STEP = 1e-12  # change of the normal forces, relative to them, at which the set of open contacts has settled
 
 
 @dataclass
@@ -75,8 +75,9 @@ def steady_small(rows: dict[str, Any], law: Any, unilateral: Any) -> tuple[Small
         except np.linalg.LinAlgError:
             return None
         q = q - step
-        same = np.array_equal(((preload + n @ q) > 0.0) | ~unilateral, closed)
-        if (same and np.linalg.norm(step) <= STEP * np.linalg.norm(q)) or not np.any(unilateral):
+        after = preload + n @ q
+        same = np.array_equal((after > 0.0) | ~unilateral, closed)
+        if (same and np.linalg.norm(n @ step) <= STEP * np.linalg.norm(after)) or not np.any(unilateral):
             settled = True
             break
     if not settled or np.any(speed == 0.0):

@@ -17,20 +17,19 @@ from squealbox.fe.basis import joined
 from squealbox.fe.craig_bampton import craig_bampton_basis
 from squealbox.fe.full_brake import FullBrake, full_system
 from squealbox.fe.growing_basis import GrowingBasis
-from squealbox.fe.pencil import Pencil, pencil_of, vibrating
-from squealbox.fe.projection import HEADROOM, Projected, basis_for, refined
+from squealbox.fe.pencil import Pencil, SlidingPencil, pencil_of, vibrating
+from squealbox.fe.projection import HEADROOM, ROUNDS, Projected, basis_for, refined
 from squealbox.fe.quadratic import full_modes
-from squealbox.fe.real_modes import real_modes
+from squealbox.fe.real_modes import RealModes, real_modes
 from squealbox.fe.reduced_brake import FIELDS, Axis, ReducedBrake, Reduction, chebyshev_points, lagrange
 from squealbox.fe.small import Small
 from squealbox.sparse_sliding import Start
-from squealbox.system import InvalidSystem, as_system, linearise
+from squealbox.system import InvalidSystem, as_system
 
 Basis = Literal["enriched", "craig-bampton", "pod"]
 METHODS = ("enriched", "craig-bampton", "pod")
 POINTS = (3, 5, 9, 17, 33)  # Chebyshev points of a parameter that changes matrices, until the new ones were foreseen
 FORESEEN = 1e-5  # by so much of the largest entry; what lies between the new ones is then known far better
-ROUNDS = 3
 MOST_AXES = 4
 HIGH_DAMPING = (0.02, 0.2)  # damping ratios that are tried
 SEEN = 1e-5  # share of the strongest direction from which on the band's modes have a part in a direction
@@ -71,17 +70,19 @@ def reduce(
     if not system.is_sparse:
         raise InvalidSystem(f"the system is dense, with {system.size} degrees of freedom: it needs no reduction")
     corners = [dict(zip(ranges, values, strict=True)) for values in product(*ranges.values())] if ranges else []
+    corners += [{name: 0.5 * (start + end) for name, (start, end) in ranges.items()}] if ranges else []
     reference = pencil_of(system, time)
-    assert reference.about is not None
-    steady = reference.about.equilibrium.q
+    steady = reference.state.q
     modes, basis = _first_basis(method, design_or_system, reference, ranges, (low, high), time)
     near = Start(steady, modes.base)
     pencils = [pencil_of(full_system(design_or_system, corner), time, start=near) for corner in corners]
-    onto = GrowingBasis([reference, *pencils], _with_statics(reference, pencils, basis))
+    basis = _with_statics(reference, pencils, basis)
+    if method == "enriched":
+        basis = joined(reference, basis, _contact_directions(modes, [reference, *pencils], 0.5 * tolerance))
+    onto = GrowingBasis([reference, *pencils], basis)
     found = refined(onto, modes.base, (low, high), 0.5 * tolerance, ROUNDS if method == "enriched" else 0)
-    _, turns = np.linalg.eigh(onto.basis.T @ (reference.elastic @ onto.basis))
-    onto.turn(turns)  # coordinates are undamped modes on the basis, rising in frequency
-    full = FullBrake(design_or_system, onto.basis, steady, modes.base, time)
+    onto.turn(np.linalg.eigh(onto.elastic(0))[1])  # coordinates are undamped modes on the basis, rising in frequency
+    full = FullBrake(design_or_system, onto.blocks[0], steady, modes.base, time)
     arrays = full.projected_arrays(system, onto.structural(0))
     axes, values = [], {}
     for name, (start, end) in ranges.items():
@@ -106,10 +107,9 @@ def reduce(
     small = ReducedBrake(
         reduction=reduction, friction=shared if len(system.contacts) else None, values=values, full=full
     )
-    inside = [_small_at(small.replace(point), time) for point in _between(ranges)]
+    inside = [small.replace(point).linearised(time) for point in _between(ranges)]
     smalls = [onto.small(i) for i in range(1 + len(pencils))] + [one for one in inside if one is not None]
-    elastic = onto.basis.T @ (reference.elastic @ onto.basis)
-    damping, amount, growth = _damped_above(smalls, elastic, modes.top * HEADROOM, tolerance)
+    damping, amount, growth = _damped_above(smalls, onto.elastic(0), modes.top * HEADROOM, tolerance)
     arrays["C"], arrays["high"] = arrays["C"] + damping, damping
     reduction = reduction.replace(arrays=arrays, high_damping=amount, high_growth=growth)
     small = small.replace({"reduction": reduction})
@@ -166,13 +166,32 @@ def _touched(design: Any) -> Any:
     return np.flatnonzero(used)
 
 
-def _with_statics(reference: Pencil, pencils: list[Pencil], basis: Any) -> Any:
+def _with_statics(reference: SlidingPencil, pencils: list[SlidingPencil], basis: Any) -> Any:
     """The basis with the differences of steady sliding between the corners and the reference."""
-    assert reference.about is not None
-    origin = reference.about.equilibrium.q
-    moved = [p.about.equilibrium.q - origin for p in pencils if p.about is not None]
+    moved = [pencil.state.q - reference.state.q for pencil in pencils]
     columns = [q for q in moved if np.any(q)]
     return joined(reference, basis, np.stack(columns, axis=1)) if columns else basis
+
+
+def _contact_directions(modes: RealModes, pencils: list[SlidingPencil], tolerance: float) -> Any:
+    """Static shapes K0^-1 r_c of the contacts c that open or close between the pencils, as far as modes feel them.
+
+    An open contact changes K by -k_c r_c' r_c. To second order that moves the eigenvalue of a mode u of angular
+    frequency w by a' G a, with G_cd = r_c K0^-1 r_d' and a_c = k_c (r_c u) / sqrt(2 w), over the contacts that differ.
+    """
+    open_ = np.stack([pencil.sliding.lifted > 0.0 for pencil in pencils])
+    changing = np.flatnonzero(np.any(open_ != open_[0], axis=0))
+    table = pencils[0].sliding.system.contacts
+    if not len(changing):
+        return np.zeros((pencils[0].size, 0))
+    rows, springs = table.normal[changing], table.n[changing]
+    moved = modes.base.solve_many(rows.T.toarray())
+    rates = 2.0 * np.pi * np.maximum(modes.frequency, 1e-3 * modes.top)
+    felt = np.max(np.abs(springs @ modes.shapes) / np.sqrt(2.0 * rates), axis=1)
+    energy = felt[:, None] * (rows @ moved) * felt
+    values, turns = np.linalg.eigh(0.5 * (energy + energy.T))
+    keep = np.cumsum(np.maximum(values, 0.0)) > tolerance
+    return moved @ (felt[:, None] * turns[:, keep] / np.sqrt(values[keep]))
 
 
 def _axis(full: FullBrake, name: str, low: float, high: float, arrays: dict[str, Any]) -> Axis | None:
@@ -222,11 +241,6 @@ def _between(ranges: Mapping[str, tuple[float, float]]) -> list[dict[str, float]
     return points if ranges else []
 
 
-def _small_at(brake: ReducedBrake, time: float) -> Small | None:
-    about = linearise(brake.system(), time)
-    return Small(about.M, about.C, about.K) if about.equilibrium.exists else None
-
-
 def _damped_above(smalls: list[Small], elastic: Any, top: float, allowed: float) -> tuple[Any, float, float]:
     """The least damping with which no mode above `top` [Hz] grows at any point, as far as it leaves the band alone.
 
@@ -236,15 +250,16 @@ def _damped_above(smalls: list[Small], elastic: Any, top: float, allowed: float)
     """
     mass, end = smalls[0].M, 2.0 * np.pi * top
     nothing = np.zeros_like(mass)
-    growth = max(_growth_above(small.eigenvalues(), end) for small in smalls)
-    if growth == 0.0:
-        return nothing, 0.0, 0.0
-    shapes, light = [], []
+    shapes, light, rising = [], [], []
     for small in smalls:
         values, right, _, _ = small.eigen()
+        rising.append(_growth_above(values, end))
         below = (values.imag >= 0.0) & (values.imag <= end)
         shapes += [right[:, below].real, right[:, below].imag]
         light.append(values[below & vibrating(values)])
+    growth = max(rising)
+    if growth == 0.0:
+        return nothing, 0.0, 0.0
     half = np.linalg.cholesky(mass).T  # lengths by M
     columns = half @ np.concatenate(shapes, axis=1)
     columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
@@ -258,7 +273,10 @@ def _damped_above(smalls: list[Small], elastic: Any, top: float, allowed: float)
     best = nothing, 0.0, growth
     for amount in HIGH_DAMPING:
         damping = (directions * (2.0 * amount * rates)) @ directions.T
-        after = [Small(small.M, small.C + damping, small.K).eigenvalues() for small in smalls]
+        worst = smalls[int(np.argmax(rising))]
+        if amount != HIGH_DAMPING[-1] and _growth_above(_damped(worst, damping).eigenvalues(), end) > 0.0:
+            continue  # too little
+        after = [_damped(small, damping).eigenvalues() for small in smalls]
         moved = [np.min(np.abs(v - old), initial=np.inf) for v, olds in zip(after, light, strict=True) for old in olds]
         if max(moved, default=0.0) > allowed:
             break
@@ -266,6 +284,10 @@ def _damped_above(smalls: list[Small], elastic: Any, top: float, allowed: float)
         if best[2] == 0.0:
             break
     return best
+
+
+def _damped(small: Small, damping: Any) -> Small:
+    return Small(small.M, small.C + damping, small.K)
 
 
 def _growth_above(values: Any, top: float) -> float:
@@ -280,9 +302,9 @@ def _error(small: ReducedBrake, found: Projected, time: float) -> float:
     It adds what the basis misses to what else parts the small brake from the projected full one: interpolation over
     parameters, added damping, contacts that its steady sliding would open otherwise.
     """
-    about = linearise(small.system(), time)
-    if not about.equilibrium.exists:
+    there = small.linearised(time)
+    if there is None:
         return float("inf")
-    values = Small(about.M, about.C, about.K).eigenvalues()
+    values = there.eigenvalues()
     beside = np.array([np.min(np.abs(values - value)) for value in found.eigenvalues])
     return float(np.max(np.abs(found.error) + beside, initial=0.0))

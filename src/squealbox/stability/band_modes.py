@@ -14,11 +14,11 @@ import numpy as np
 from squealbox.fe.certificate import Certificate, certificate
 from squealbox.fe.growing_basis import GrowingBasis
 from squealbox.fe.pencil import Pencil, pencil_of
-from squealbox.fe.projection import Projected, basis_for, refined
+from squealbox.fe.projection import Projected, basis_for, refined, with_shapes
 from squealbox.fe.quadratic import full_modes
 from squealbox.result import Outcome, quantity
 from squealbox.stability.eigenvalues import ComplexModes
-from squealbox.system import InvalidSystem, System, as_system, linearise
+from squealbox.system import InvalidSystem, System, as_system, equilibrium
 
 Way = Literal["projection", "full"]
 TOLERANCE = 0.05  # [1/s]
@@ -96,19 +96,20 @@ def band_modes(
     if method not in ("projection", "full"):
         raise ValueError(f"method = {method!r}: expected 'projection' or 'full'")
     system = as_system(design_or_system, linear=True)
-    about = linearise(system, time)
-    if not about.equilibrium.exists:
-        return _nothing(design_or_system, system, about.equilibrium, (low, high), time)
-    pencil = pencil_of(system, time, about)
+    state = equilibrium(system, time)
+    if not state.exists:
+        return _nothing(design_or_system, system, state, (low, high), time)
+    pencil = pencil_of(system, time, state)
     common: dict[str, Any] = {"band": (low, high), "method": method, "size": system.size}
-    common |= {"steady": about.equilibrium.q, "exists": np.array(True), "contacts": system.contacts.names}
-    common |= {"normal_force": about.equilibrium.normal_force, "inputs": _inputs(design_or_system, time)}
+    common |= {"steady": state.q, "exists": np.array(True), "contacts": system.contacts.names}
+    common |= {"normal_force": state.normal_force, "inputs": _inputs(design_or_system, time)}
     common["floating"] = np.array(0)  # a body that is free to move has no mode in a band above 0
     common["settings"] = {"band": [low, high], "method": method, "tolerance": tolerance, "certify": certify}
     if method == "full":
         return _full(pencil, (low, high), count, common)
     modes, basis = basis_for(pencil, (low, high))
-    (found,) = refined(GrowingBasis([pencil], basis), modes.base, (low, high), tolerance)
+    onto = GrowingBasis([pencil], basis)
+    found = with_shapes(onto, refined(onto, modes.base, (low, high), tolerance)[0])
     common |= {"real_frequency": modes.frequency, "real_modes_complete": modes.complete}
     if certify:
         proof = certificate(pencil, known_eigenvalues(found), (low, high))

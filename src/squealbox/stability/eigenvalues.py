@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.cautions import out_of_range
+from squealbox.cautions import out_of_range, pulling
 from squealbox.result import COMPLETED, Outcome, Result, batched, quantity
 from squealbox.stability.deflation import special_modes, uncertain, vibrating
 from squealbox.stability.mode import Mode, OneEigenvalue, damping_ratio
@@ -207,6 +207,7 @@ def _of_reduced(design: Any, time: float, band: Any) -> ComplexModes | None:
         return None
     pairs, state = found
     both = np.concatenate
+    said = pulling(design.reduction.contact_names, design.reduction.unilateral, state.normal_force)
     return ComplexModes(
         eigenvalues=both([pairs.values, pairs.values.conj()]),
         right=both([pairs.right, pairs.right.conj()], axis=1),
@@ -218,6 +219,7 @@ def _of_reduced(design: Any, time: float, band: Any) -> ComplexModes | None:
         floating=np.array(0),
         contacts=design.reduction.contact_names,
         inputs={"system": design, "time": time},
+        caution="; ".join(said),
     )
 
 

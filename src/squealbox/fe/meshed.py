@@ -1,0 +1,225 @@
+"""What brakes meshed here have in common: bodies to matrices per unit of each parameter, and these to a system.
+
+Contact is at quadrature points of the linings' faces, where a point of area A has the spring k A between the lining and
+the body below it. With u the lining's displacement less that body's and e_n from the lining into it, there
+
+    N = k A (u . e_n),   sliding V = r O,   t = d = e_t . u,   across = e_a . u
+
+so each point may lift off; how many do, and what friction adds to the pressure distribution, steady sliding says.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+
+from squealbox.contacts import Contacts
+from squealbox.designs.base import Design
+from squealbox.fe.grids import Body, FacePoints
+from squealbox.parameters import DataSheet, ParameterError, parameter
+from squealbox.system import Equilibrium, System, equilibrium
+
+OWN = "chosen here"
+
+
+class Material(DataSheet):
+    """An elastic material with damping proportional to its stiffness."""
+
+    young: float = parameter("Pa", 0.0, low_open=True, default=210e9, meaning="Young's modulus")
+    poisson: float = parameter("-", -1.0, 0.5, low_open=True, high_open=True, default=0.3, meaning="Poisson's ratio")
+    density: float = parameter("kg/m^3", 0.0, low_open=True, default=7850.0, meaning="density")
+    damping: float = parameter("s", 0.0, default=2e-8, meaning="damping per stiffness")
+
+
+STEEL = Material()
+IRON = Material(young=110e9, poisson=0.26, density=7200.0)
+LINING = Material(young=4e9, poisson=0.25, density=2500.0, damping=1e-7)
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """A meshed brake per unit of each modulus, density, spring and load, on all n freedoms, and its contact points.
+
+    mass, stiffness and springs are matrices (n, n) by name, loads vectors (n,) by name; normal, along and across are
+    rows (k, n) at the contact points, with their area, place (3, k), radius of sliding, side (which lining) and name,
+    and for each the angle from the middle of its lining. kept lists what of the bodies' freedoms is not held.
+    """
+
+    size: int
+    mass: dict[str, Any]
+    stiffness: dict[str, Any]
+    springs: dict[str, Any]
+    loads: dict[str, Any]
+    normal: Any
+    along: Any
+    across: Any
+    area: Any
+    place: Any
+    radius: Any
+    angle: Any
+    side: Any
+    names: tuple[str, ...]
+    bodies: tuple[Body, ...]
+    kept: Any
+
+
+class MeshedBrake(Design):
+    """A brake that meshes itself; a subclass says of what it is made.
+
+    It has the parameters `friction`, `angular_speed` and `contact_stiffness`.
+    """
+
+    def structure(self) -> Structure:
+        """Matrices per unit of modulus and density, contact points and faces; the same for all that shares a mesh."""
+        raise NotImplementedError
+
+    def materials(self) -> dict[str, Material]:
+        """The material of each meshed component, by its name."""
+        raise NotImplementedError
+
+    def held_by(self) -> dict[str, float]:
+        """The stiffness of each kind of spring [N/m], by its name."""
+        raise NotImplementedError
+
+    def pressed_by(self) -> dict[str, float]:
+        """How much of each load acts, by its name."""
+        raise NotImplementedError
+
+    def touching(self, made: Structure) -> Any:
+        """Contact points that touch, as numbers."""
+        return np.arange(len(made.area))
+
+    def one_system(self) -> None:
+        """Raise `ParameterError` where a parameter is an array."""
+        for name, _, value in self.leaves():
+            if np.ndim(value) and not name.startswith("friction"):
+                raise ParameterError(
+                    type(self).__name__, name, value, "one number: one system at a time; reduce() makes a sweep"
+                )
+
+    def components(self) -> dict[str, tuple[Any, Any]]:
+        """Mass and stiffness of each component on all freedoms, the springs and the contact among them."""
+        made = self.structure()
+        parts = self.materials()
+        found = {name: (m.density * made.mass[name], m.young * made.stiffness[name]) for name, m in parts.items()}
+        nothing = sparse.csr_array((made.size, made.size))
+        springs = sum(value * made.springs[name] for name, value in self.held_by().items())
+        touching = self.touching(made)
+        rows = made.normal[touching]
+        contact = rows.T @ sparse.diags_array(self.value_of("contact_stiffness") * made.area[touching]) @ rows
+        return {**found, "springs": (nothing, sparse.csr_array(springs)), "contact": (nothing, contact)}
+
+    def system(self) -> System:
+        """M, C, K with every contact closed, what presses as load, and a unilateral contact at every point."""
+        self.one_system()
+        made = self.structure()
+        touching = self.touching(made)
+        stiffness = float(self.value_of("contact_stiffness"))
+        elastic = tuple((name, *(float(x) for x in vars_of(part))) for name, part in self.materials().items())
+        springs = tuple((name, float(value)) for name, value in self.held_by().items())
+        matrices = summed(made, elastic, springs, stiffness, touching.tobytes())
+        normal = made.normal[touching]
+        contacts = Contacts(
+            n=sparse.diags_array(stiffness * made.area[touching]) @ normal,
+            d=made.along[touching],
+            t=made.along[touching],
+            N0=0.0,
+            V=self.value_of("angular_speed") * made.radius[touching],
+            law=self.value_of("friction"),
+            names=tuple(np.array(made.names)[touching]),
+            unilateral=True,
+            normal=normal,
+            across=made.across[touching],
+        )
+        load = sum(value * made.loads[name] for name, value in self.pressed_by().items())
+        return System(*matrices, load, contacts)
+
+    def preload(self) -> "Preload":
+        """Steady sliding under what presses: which points lift off, how unevenly the others press."""
+        made, system = self.structure(), self.system()
+        touching = self.touching(made)
+        return Preload(equilibrium(system), made.area[touching], made.place[:, touching], made.side[touching])
+
+    def shares(self, shape: Any) -> dict[str, tuple[float, float]]:
+        """Each component's share of a mode's kinetic and of its strain energy, for a shape (n,)."""
+        energies = {
+            name: tuple(float(np.real(np.vdot(shape, matrix @ shape))) for matrix in pair)
+            for name, pair in self.components().items()
+        }
+        kinetic, strain = (sum(pair[i] for pair in energies.values()) for i in (0, 1))
+        return {name: (pair[0] / kinetic, pair[1] / strain) for name, pair in energies.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class Preload:
+    """Steady sliding of a brake, and of each contact point its area [m^2], place (3, k) [m] and lining, 0 or 1."""
+
+    equilibrium: Equilibrium
+    area: Any
+    place: Any
+    side: Any
+
+    @property
+    def lifted(self) -> Any:
+        """True where a point has lifted off, (k,)."""
+        return self.equilibrium.normal_force <= 0.0
+
+    @property
+    def pressure(self) -> Any:
+        """Contact pressure [Pa] at each point, (k,)."""
+        return self.equilibrium.normal_force / self.area
+
+    def force(self, side: int) -> float:
+        """Normal force of one lining [N]."""
+        return float(np.sum(self.equilibrium.normal_force[self.side == side]))
+
+
+def vars_of(material: Material) -> tuple[float, float, float]:
+    """Density, Young's modulus and damping."""
+    return material.density, material.young, material.damping
+
+
+@lru_cache(maxsize=2)
+def summed(made: Structure, elastic: Any, springs: Any, contact: float, touching: bytes) -> tuple[Any, Any, Any]:
+    """M, C and K of a structure; kept, because friction, pressure and speed change none of them."""
+    mass = sum(density * made.mass[name] for name, density, _, _ in elastic)
+    damping = sum(young * share * made.stiffness[name] for name, _, young, share in elastic)
+    rows = made.normal[np.frombuffer(touching, dtype=np.int64)]
+    area = made.area[np.frombuffer(touching, dtype=np.int64)]
+    light = rows.T @ sparse.diags_array(contact * area) @ rows + sum(k * made.springs[name] for name, k in springs)
+    stiffness = sum(young * made.stiffness[name] for name, _, young, _ in elastic) + light
+    return mass, damping, sparse.csr_array(stiffness)
+
+
+class Frame:
+    """Where the freedoms of several bodies stand among all, without those that are held."""
+
+    def __init__(self, bodies: Sequence[Body], held: Sequence[Any]) -> None:
+        self.inner = [np.flatnonzero(~at) for at in held]
+        self.starts = np.cumsum([0, *(len(inner) for inner in self.inner)])
+        self.size = int(self.starts[-1])
+        whole = np.cumsum([0, *(body.size for body in bodies)])
+        self.kept = np.concatenate([start + inner for start, inner in zip(whole, self.inner, strict=False)])
+
+    def square(self, matrix: Any, body: int) -> Any:
+        """A body's matrix on all freedoms."""
+        inside = self.rows(sparse.csr_array(matrix)[self.inner[body]], body)
+        before, after = self.starts[body], self.size - self.starts[body + 1]
+        ends = np.concatenate([np.zeros(before), inside.indptr, np.full(after, inside.indptr[-1])]).astype(np.int32)
+        return sparse.csr_array((inside.data, inside.indices, ends), shape=(self.size, self.size))
+
+    def rows(self, table: Any, body: int) -> Any:
+        """Rows (k, n of the body) on all freedoms."""
+        inside = sparse.csr_array(table)
+        if len(self.inner[body]) < inside.shape[1]:
+            inside = inside[:, self.inner[body]]
+        where = (inside.indices + self.starts[body]).astype(np.int32)
+        return sparse.csr_array((inside.data, where, inside.indptr), shape=(inside.shape[0], self.size))
+
+    def spring(self, face: FacePoints, body: int, *directions: Any) -> Any:
+        """A spring of 1 N/m over a face along each of the directions (3, k), spread by area."""
+        rows = [self.rows(face.along(direction), body) for direction in directions]
+        return sum(row.T @ sparse.diags_array(face.area / np.sum(face.area)) @ row for row in rows)
