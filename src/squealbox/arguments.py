@@ -93,7 +93,7 @@ KINDS: dict[str, Kind] = {
     **{name: real(Parameter("s")) for name in ("time", "start_time")},
     "rtol": real(Parameter("", 1e-15, 1.0, high_open=True)),
     **{name: whole(1) for name in ("samples", "points", "harmonics", "most_steps", "rounds", "shots", "threads")},
-    **{name: whole(1) for name in ("population", "generations", "replicates", "chunk")},
+    **{name: whole(1) for name in ("population", "generations", "replicates")},
     "seed": whole(0),
     "bounds": interval,
     "band": band,

@@ -58,7 +58,7 @@ def test_a_whole_session(tmp_path, capsys, monkeypatch):
         np.testing.assert_array_equal(raw["largest_growth_rate"].values, growth)
     capsys.readouterr()
     assert main(["export", "study", "--format", "csv"]) == 2
-    assert "overwrites nothing" in capsys.readouterr().err
+    assert "--force overwrites" in capsys.readouterr().err
     assert main(["run", str(example), "--out", "study"]) == 2
     assert "design.friction.slope was -0.01 and is -0.05" in capsys.readouterr().err
     assert main(["show", "study", "--of", "nonsense", "--out", "figures"]) == 2

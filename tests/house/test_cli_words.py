@@ -17,9 +17,9 @@ def test_changes_may_stand_before_the_file_and_ranges_may_be_negative(said, brak
     _, after, _ = said("modes", brake, "--set", "load=2 kN", "theta1=20 deg")
     code, before, _ = said("modes", "--set", "load=2 kN", "theta1=20 deg", brake)
     assert (code, before) == (0, after)
-    code, out, _ = said("onset", brake, "--parameter", "theta1", "--range", "-20deg", "20deg")
+    code, out, _ = said("onset", brake, "--parameter", "theta2", "--range", "-20deg", "20deg")
     assert code == 0
-    assert "theta1" in out
+    assert "theta2" in out
 
 
 def test_what_is_missing_is_called_as_the_usage_line_calls_it(said):

@@ -99,7 +99,7 @@ class Remedies(Result):
         return "\n".join([first, *lines, "", *(missed if not np.all(self.reached) else []), *cautions, *said])
 
 
-@public()
+@public(scatter=None)
 def silence(
     brake: Design,
     scatter: Scatter | None = None,

@@ -139,7 +139,7 @@ class Memory:
         """Nothing is written."""
 
 
-@public(space=named)
+@public(space=named, design=None)
 def sweep(
     design: Any,
     space: Any,

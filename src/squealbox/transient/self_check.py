@@ -15,6 +15,7 @@ from squealbox.transient.trajectory import Trajectory
 
 CLOSES = 1e-4  # share of the energy turned over that no run at a usual tolerance comes near
 LOOSE = 1e3  # times rtol, where that is larger
+LARGEST = 1e140  # of a row, whose square is an energy
 
 
 def checked(motion: Trajectory, rows: Any, size: int) -> Trajectory:
@@ -25,8 +26,12 @@ def checked(motion: Trajectory, rows: Any, size: int) -> Trajectory:
     """
     if not motion.outcome.ok or motion.system.is_sparse or len(rows) < 2:
         return motion
-    limit = max(CLOSES, LOOSE * float(motion.settings["rtol"]))
-    if _unclosed(motion.system, rows[0], rows[-1], size) <= limit:
+    rtol = float(motion.settings["rtol"])
+    limit = max(CLOSES, LOOSE * rtol)
+    if not np.all(np.abs(rows[[0, -1]]) < LARGEST):  # a motion beyond all numbers, or a work that nobody counted
+        return motion
+    missing, turned_over, held = _unclosed(motion.system, rows[0], rows[-1], size)
+    if missing <= limit * turned_over + LOOSE * max(rtol, np.finfo(float).eps) * held:
         return motion
     residual = motion.energy.relative_residual
     if residual <= limit:
@@ -35,8 +40,11 @@ def checked(motion: Trajectory, rows: Any, size: int) -> Trajectory:
     return replace(motion, outcome=Outcome("energy_unbalanced", why, residual=residual, time=float(motion.t[-1])))
 
 
-def _unclosed(system: System, first: Any, last: Any, size: int) -> float:
-    """What is missing from one row to another, in parts of the largest term."""
+def _unclosed(system: System, first: Any, last: Any, size: int) -> tuple[float, float, float]:
+    """What is missing from one row to another, the largest term, and the energy that the springs hold throughout [J].
+
+    Where a motion is small about a large deflection, the springs' energy tells its change to rtol of itself only.
+    """
     n, m = system.size, len(system.contacts)
     stored = []
     for row in (first, last):
@@ -48,4 +56,4 @@ def _unclosed(system: System, first: Any, last: Any, size: int) -> float:
     change = sum(stored[1]) - sum(stored[0])
     size_of_all = max(stored[0][0], stored[1][0], abs(change), float(np.max(np.abs(works))))
     missing = abs(change - float(np.sum(given)) + dissipated)
-    return missing / size_of_all if size_of_all > 0.0 else missing
+    return missing, size_of_all, max(abs(stored[0][1]), abs(stored[1][1]))

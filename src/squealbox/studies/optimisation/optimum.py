@@ -97,7 +97,7 @@ class Optimum(Result):
         return "\n".join(lines)
 
 
-@public()
+@public(design=None)
 def optimise(
     design: Any,
     variables: Mapping[str, tuple[float, float]],

@@ -134,7 +134,7 @@ class Surrogate(Result):
         return "\n".join(lines + [f"Caution: {self.caution}"] * bool(self.caution))
 
 
-@public()
+@public(design=None)
 def polynomial_chaos(
     design: Any,
     scatter: Scatter,

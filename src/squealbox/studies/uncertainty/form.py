@@ -84,7 +84,7 @@ class DesignPoint(Result):
         return "\n".join(lines)
 
 
-@public()
+@public(design=None)
 def form(
     design: Any,
     scatter: Scatter,

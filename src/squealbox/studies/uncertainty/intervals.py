@@ -68,7 +68,7 @@ class IntervalBounds(Result):
         return "\n".join(lines)
 
 
-@public()
+@public(design=None)
 def interval_bounds(
     design: Any, box: Mapping[str, tuple[float, float]], quantity: Any, *, seed: int = 0, runs: int = 3
 ) -> IntervalBounds:

@@ -56,7 +56,7 @@ class MorrisEffects(Result):
         return "\n".join(lines)
 
 
-@public()
+@public(design=None)
 def morris_effects(
     design: Any, scatter: Scatter, quantity: Any, *, trajectories: int = 50, seed: int = 0, level: float = 0.95
 ) -> MorrisEffects:

@@ -68,7 +68,7 @@ class SquealProbability(Result):
         return "\n".join(lines)
 
 
-@public()
+@public(design=None)
 def squeal_probability(
     design: Any,
     scatter: Scatter,

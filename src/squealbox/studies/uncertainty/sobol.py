@@ -62,7 +62,7 @@ class SobolIndices(Result):
         return "\n".join(lines)
 
 
-@public()
+@public(design=None)
 def sobol_indices(
     design: Any,
     scatter: Scatter,

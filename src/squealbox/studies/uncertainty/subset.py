@@ -60,7 +60,7 @@ class SubsetProbability(Result):
         return "\n".join(lines)
 
 
-@public()
+@public(design=None)
 def subset_simulation(
     design: Any,
     scatter: Scatter,
