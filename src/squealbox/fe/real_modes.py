@@ -106,9 +106,9 @@ def _slowest(base: Factor, mass: Any, count: int) -> tuple[Any, Any]:
             small[:, last] = coupling
             small[last, :] = coupling.T
             values, turns = np.linalg.eigh(small)
-            order = np.argsort(-values)[:count]
+            order = np.argsort(-np.abs(values))[:count]  # K0 may have negative ones, which Sturm counts too
             off = np.linalg.norm(length @ turns[last][:, order], axis=0)
-            if len(order) == count and np.all(off <= CLOSE * values[order]):
+            if len(order) == count and np.all(off <= CLOSE * np.abs(values[order])):
                 break
         if fresh.shape[1] == 0:
             break
@@ -116,7 +116,7 @@ def _slowest(base: Factor, mass: Any, count: int) -> tuple[Any, Any]:
         weighted.append(heavy)
         small = np.pad(small, (0, fresh.shape[1]))
         fresh = base.solve_many(heavy)
-    order = np.argsort(-values)[:count]
+    order = np.argsort(-np.abs(values))[:count]
     shapes = sum(old @ turns[_place(columns, i)][:, order] for i, old in enumerate(columns))
     return values[order], shapes
 
