@@ -75,12 +75,13 @@ def _base(stiffness: Any, mass: Any, top: float) -> tuple[Factor, float]:
     rate = (2.0 * np.pi * top) ** 2
     try:
         base = factor(stiffness, symmetric=True)
+    except SingularMatrix:
+        base = None
+    if base is not None:
         slow = base.solve(mass @ np.random.default_rng(5).standard_normal(mass.shape[0]))
         slower = base.solve(mass @ slow)
         if slower @ (mass @ slower) * RIGID**2 < rate**-2 * (slow @ (mass @ slow)):
             return base, 0.0
-    except SingularMatrix:
-        pass
     return factor(stiffness + 1e-4 * rate * mass, symmetric=True), 1e-4 * rate
 
 
