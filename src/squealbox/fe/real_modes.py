@@ -75,12 +75,13 @@ def _base(stiffness: Any, mass: Any, top: float) -> tuple[Factor, float]:
     rate = (2.0 * np.pi * top) ** 2
     try:
         base = factor(stiffness, symmetric=True)
+    except SingularMatrix:
+        base = None
+    if base is not None:
         slow = base.solve(mass @ np.random.default_rng(5).standard_normal(mass.shape[0]))
         slower = base.solve(mass @ slow)
         if slower @ (mass @ slower) * RIGID**2 < rate**-2 * (slow @ (mass @ slow)):
             return base, 0.0
-    except SingularMatrix:
-        pass
     return factor(stiffness + 1e-4 * rate * mass, symmetric=True), 1e-4 * rate
 
 
@@ -106,9 +107,9 @@ def _slowest(base: Factor, mass: Any, count: int) -> tuple[Any, Any]:
             small[:, last] = coupling
             small[last, :] = coupling.T
             values, turns = np.linalg.eigh(small)
-            order = np.argsort(-values)[:count]
+            order = np.argsort(-np.abs(values))[:count]  # K0 may have negative ones, which Sturm counts too
             off = np.linalg.norm(length @ turns[last][:, order], axis=0)
-            if len(order) == count and np.all(off <= CLOSE * values[order]):
+            if len(order) == count and np.all(off <= CLOSE * np.abs(values[order])):
                 break
         if fresh.shape[1] == 0:
             break
@@ -116,7 +117,7 @@ def _slowest(base: Factor, mass: Any, count: int) -> tuple[Any, Any]:
         weighted.append(heavy)
         small = np.pad(small, (0, fresh.shape[1]))
         fresh = base.solve_many(heavy)
-    order = np.argsort(-values)[:count]
+    order = np.argsort(-np.abs(values))[:count]
     shapes = sum(old @ turns[_place(columns, i)][:, order] for i, old in enumerate(columns))
     return values[order], shapes
 
