@@ -47,7 +47,16 @@ def wait_for_value(page, path, text):
     )
 
 
-def test_an_old_answer_is_never_drawn_under_a_new_design(page):
+@pytest.fixture
+def own_page(server, browser):
+    """A page for a test that changes the page itself, which others would then meet."""
+    with Page(browser, server) as opened:
+        opened.goto()
+        yield opened
+
+
+def test_an_old_answer_is_never_drawn_under_a_new_design(own_page):
+    page = own_page
     page.page.evaluate(DRAWN_WHEN)
     for i in range(12):  # each change comes while the answer to the last is under way
         page.page.evaluate(
@@ -199,7 +208,8 @@ def test_names_of_bars_and_curves_of_the_boundary_are_in_the_tables(page, tmp_pa
     assert '"boundary: friction.static [-]","boundary: load [N]"' in heads["map"][0]
 
 
-def test_no_text_is_smaller_than_twelve_pixels(page):
+def test_no_text_is_smaller_than_twelve_pixels(own_page):
+    page = own_page
     for panel in ("locus", "map", "friction", "motion", "energy", "sensitivity"):
         page.drawn(panel)
     assert page.page.evaluate(SMALL) == []
@@ -240,7 +250,8 @@ def test_dark_is_dark_and_light_is_light(browser, server):
     assert shades["light"] > 600 > 150 > shades["dark"]
 
 
-def test_a_slow_panel_does_not_hold_up_the_others_and_can_be_stopped(page):
+def test_a_slow_panel_does_not_hold_up_the_others_and_can_be_stopped(own_page):
+    page = own_page
     page.drawn("motion")
     page.page.evaluate("""() => import('/static/app.js').then(({ app }) => {
         const view = app.panels.get('motion').view;
