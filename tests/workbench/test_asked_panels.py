@@ -204,7 +204,7 @@ def test_the_tour_sets_the_design_and_judges_the_claims(page, records):
     page.page.click("#tour")
     page.page.wait_for_selector(".tour[data-step='0']", timeout=120_000)
     numbers, records = count(records), {each["id"]: each for each in records}
-    page.page.wait_for_selector("section[data-panel=tour][data-state=drawn]")
+    page.drawn("tour")
     assert ", ".join(f"{many} {verdict}" for verdict, many in numbers.items()) in page.says("tour")
     for step, static, ids in ((1, "0.1", ["mu-3"]), (2, "0.39", ["mu-1", "mu-4"]), (3, "0.4", ["mu-2", "mu-5"])):
         page.page.click(".tour >> text=Next")
