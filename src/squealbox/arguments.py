@@ -24,7 +24,7 @@ def real(about: Parameter) -> Kind:
 
     def expected(value: Any) -> str:
         good = is_real(value) and about.accepts(np.asarray(value, dtype=float))
-        return "" if good else f"a finite number in {about.range}"
+        return "" if good else about.expected
 
     return expected
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.contacts import numbered
 from squealbox.friction import Table
 from squealbox.schedules import value_at
 from squealbox.system import System
@@ -41,17 +42,24 @@ def turned(system: System, q: Any) -> tuple[str, ...]:
 PULLS = "{name}: N falls to {least:.4g} N: it would have to pull, where a unilateral contact lifts off"
 
 
+def pulled(names: Sequence[str], unilateral: Any, normal_force: Any) -> tuple[tuple[str, float], ...]:
+    """Name and N [N] of each bilateral contact that pulls in steady sliding, from tables (contacts,).
+
+    >>> pulled(("pad", "shoe"), [False, True], [-2.0, 0.0])
+    (('pad', -2.0),)
+    """
+    force = np.atleast_1d(np.asarray(normal_force, dtype=float))
+    which = np.flatnonzero((force < 0.0) & ~np.asarray(unilateral, dtype=bool))
+    return tuple((numbered(names)[i], float(force[i])) for i in which)
+
+
 def pulling(names: Sequence[str], unilateral: Any, normal_force: Any) -> tuple[str, ...]:
-    """A sentence for each bilateral contact that pulls in steady sliding, from tables (contacts,) of N [N].
+    """A sentence for each contact that is `pulled`.
 
     >>> pulling(("pad", "shoe"), [False, True], [-2.0, 0.0])
     ('pad: N falls to -2 N: it would have to pull, where a unilateral contact lifts off',)
     """
-    force = np.asarray(normal_force, dtype=float)
-    return tuple(
-        PULLS.format(name=names[i] or f"contact {i + 1}", least=force[i])
-        for i in map(int, np.flatnonzero((force < 0.0) & ~np.asarray(unilateral, dtype=bool)))
-    )
+    return tuple(PULLS.format(name=name, least=least) for name, least in pulled(names, unilateral, normal_force))
 
 
 def out_of_range(system: System, normal_force: Any, sliding_velocity: Any) -> tuple[str, ...]:

@@ -19,6 +19,11 @@ from squealbox.schedules import Schedule, value_at
 ROWS = ("n", "d", "t", "normal", "across")  # of these, normal and across may be missing
 
 
+def numbered(names: Sequence[str]) -> tuple[str, ...]:
+    """The names of contacts, "contact 1" and so on where there is none."""
+    return tuple(name or f"contact {i}" for i, name in enumerate(names, start=1))
+
+
 class Contact(DataSheet):
     """One frictional contact: a row of the table above.
 
@@ -154,7 +159,7 @@ class Contacts(DataSheet):
         set_(self, "unilateral", unilateral)
         if np.any(unilateral) and self.normal is None:
             raise InvalidSystem("contacts.normal is missing: unilateral contacts need their directions")
-        names = tuple(self.names) or tuple(f"contact {i + 1}" for i in range(shape[0]))
+        names = tuple(self.names) or numbered([""] * shape[0])
         if len(names) != shape[0]:
             raise InvalidSystem(f"contacts.names holds {len(names)} names: expected {shape[0]}")
         set_(self, "names", names)
@@ -194,7 +199,7 @@ class Contacts(DataSheet):
             N0=[contact.N0 for contact in contacts],
             V=[contact.V for contact in contacts],
             law=laws[0] if laws and all(law is laws[0] for law in laws) else laws,
-            names=tuple(contact.name or f"contact {i + 1}" for i, contact in enumerate(contacts)),
+            names=numbered([contact.name for contact in contacts]),
             unilateral=np.array([contact.unilateral for contact in contacts], dtype=bool),
             normal=rows["normal"],
             across=rows["across"],

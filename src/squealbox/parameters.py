@@ -41,6 +41,11 @@ class Parameter:
         unit = "" if self.unit in ("", "-") else f" {self.unit}"
         return f"{left}{self.low:g}, {self.high:g}{right}{unit}"
 
+    @property
+    def expected(self) -> str:
+        """What a value must be, as the end of a sentence."""
+        return f"a finite number in {self.range}"
+
     def accepts(self, value: np.ndarray) -> bool:
         """True when every entry of `value` is finite and inside the range."""
         above = value > self.low if self.low_open else value >= self.low
@@ -292,7 +297,7 @@ def _checked(sheet: DataSheet, name: str, about: Parameter) -> Any:
         return value
     if value is None and about.optional:
         return None
-    expected = f"a finite number in {about.range}"
+    expected = about.expected
     if isinstance(value, (bool, np.bool_, str)) or value is None:
         raise ParameterError(owner, name, value, expected)
     try:

@@ -24,7 +24,7 @@ from scipy import sparse
 
 from squealbox import sparse_sliding
 from squealbox.arguments import design
-from squealbox.contacts import ROWS, Contact, Contacts, dense_rows, sparse_matrix
+from squealbox.contacts import ROWS, Contact, Contacts, dense_rows, numbered, sparse_matrix
 from squealbox.factorisation import is_symmetric
 from squealbox.loops import Loop, check_loops, folded, near_sliding
 from squealbox.matrices import InvalidSystem, array, check_mass, check_width, checked_names, coupled, felt
@@ -114,7 +114,7 @@ class System(DataSheet):
     @property
     def contact_names(self) -> tuple[str, ...]:
         """Name of each contact, "contact 1" and so on where it has none."""
-        return tuple(name or f"contact {i}" for i, name in enumerate((c.name for c in self.contacts), start=1))
+        return numbered([contact.name for contact in self.contacts])
 
     @property
     def size(self) -> int:

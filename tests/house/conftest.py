@@ -16,3 +16,11 @@ def said(capsys):
         return code, out, err
 
     return run
+
+
+@pytest.fixture
+def brake(tmp_path, capsys):
+    """The file that `init` writes."""
+    assert main(["init", str(tmp_path / "brake")]) == 0
+    capsys.readouterr()
+    return tmp_path / "brake" / "brake.toml"

@@ -13,14 +13,6 @@ from squealbox.result import Outcome, Result
 
 
 @pytest.fixture
-def brake(tmp_path, capsys):
-    """The file that `init` writes."""
-    assert main(["init", str(tmp_path / "brake")]) == 0
-    capsys.readouterr()
-    return tmp_path / "brake" / "brake.toml"
-
-
-@pytest.fixture
 def undrawn(monkeypatch):
     """No figures, for tests of something else."""
     monkeypatch.setattr("squealbox.plots.save", lambda figure, path: [])

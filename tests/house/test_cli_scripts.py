@@ -7,16 +7,8 @@ import subprocess
 import pytest
 
 from squealbox import complex_modes, equilibrium, read_design, simulate
-from squealbox.cli import COMMANDS, main
+from squealbox.cli import COMMANDS
 from squealbox.cli.answers import UNSTABLE
-
-
-@pytest.fixture
-def brake(tmp_path, capsys):
-    """The file that `init` writes."""
-    assert main(["init", str(tmp_path / "brake")]) == 0
-    capsys.readouterr()
-    return tmp_path / "brake" / "brake.toml"
 
 
 def test_json_holds_what_python_finds(said, brake):

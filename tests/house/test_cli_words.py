@@ -1,17 +1,5 @@
 """The words of a command line: their order, ranges below zero, what is missing, files with a byte order mark."""
 
-import pytest
-
-from squealbox.cli import main
-
-
-@pytest.fixture
-def brake(tmp_path, capsys):
-    """The file that `init` writes."""
-    assert main(["init", str(tmp_path / "brake")]) == 0
-    capsys.readouterr()
-    return tmp_path / "brake" / "brake.toml"
-
 
 def test_changes_may_stand_before_the_file_and_ranges_may_be_negative(said, brake):
     _, after, _ = said("modes", brake, "--set", "load=2 kN", "theta1=20 deg")

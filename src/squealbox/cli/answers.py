@@ -5,6 +5,7 @@ import json
 import math
 import sys
 from contextlib import redirect_stdout
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,8 +15,6 @@ from squealbox.result import Result
 
 MOST_NUMBERS = 1000  # of one array; a longer one is told by its shape, and is in the file that --out writes
 UNSTABLE = 3  # the exit code of --exit-code where steady sliding is not stable
-ANSWERS: list[Result] = []  # of the command that runs
-MANNERS: list["Manner"] = []  # of the command that runs
 
 
 @dataclass(frozen=True)
@@ -27,15 +26,16 @@ class Manner:
     by_code: bool = False
     force: bool = False
     stream: io.StringIO = field(default_factory=io.StringIO)
+    results: list[Result] = field(default_factory=list)
 
     @classmethod
     def of(cls, words: list[str]) -> tuple["Manner", list[str]]:
         """The manner that the words ask for, and the words that are left for the command."""
-        ANSWERS.clear()
         options = ("--json", "--quiet", "--exit-code", "--force")
         as_json, quiet, by_code, force = (option in words for option in options)
-        MANNERS[:] = [cls(as_json, quiet, by_code, force)]
-        return MANNERS[0], [word for word in words if word not in options]
+        found = cls(as_json, quiet, by_code, force)
+        _NOW.set(found)
+        return found, [word for word in words if word not in options]
 
     def listening(self) -> redirect_stdout[Any]:
         """What is printed goes to the reader, or is kept for the object, or is dropped."""
@@ -43,19 +43,22 @@ class Manner:
 
     def end(self, name: str, code: int, error: str = "") -> int:
         """Print the object that was asked for; the exit code, which says "unstable" where that was asked for."""
-        if self.by_code and code == 0 and any(map(_unstable, ANSWERS)):
+        if self.by_code and code == 0 and any(map(_unstable, self.results)):
             code = UNSTABLE
         if self.as_json:
             about = {"command": name, "exit_code": code, "error": error or None}
             text = self.stream.getvalue().splitlines()
-            json.dump({**about, "results": [plain(each) for each in ANSWERS], "text": text}, sys.stdout)
+            json.dump({**about, "results": [plain(each) for each in self.results], "text": text}, sys.stdout)
             print()
         return code
 
 
+_NOW: ContextVar[Manner] = ContextVar("manner")
+
+
 def manner() -> Manner:
     """How the command that runs is to answer."""
-    return MANNERS[0] if MANNERS else Manner()
+    return _NOW.get(Manner())
 
 
 def show(title: str, *results: Any) -> None:
@@ -66,7 +69,7 @@ def show(title: str, *results: Any) -> None:
 
 def keep(*results: Any) -> None:
     """Keep results for scripts that have been printed in other words."""
-    ANSWERS.extend(each for each in results if isinstance(each, Result))
+    manner().results.extend(each for each in results if isinstance(each, Result))
 
 
 def plain(result: Result) -> dict[str, Any]:

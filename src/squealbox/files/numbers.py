@@ -16,7 +16,7 @@ LONGEST = 60  # characters of a value shown in a sentence
 
 def read_number(document: Document, value: Any, about: Parameter, key: Key) -> Any:
     """One number, or `WRONG`."""
-    expected = f"a finite number in {about.range}"
+    expected = about.expected
     if isinstance(value, str):
         try:
             number = in_si(value, about.unit)

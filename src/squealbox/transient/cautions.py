@@ -17,26 +17,21 @@ def pulled(contact: Contact, lowest: Any) -> Any:
     return np.isfinite(lowest) & (np.asarray(lowest) < -1e-12 * size)
 
 
-def title(system: System, c: int) -> str:
-    """The contact by its name."""
-    return system.contact_names[c]
-
-
 def of_a_run(system: System, lowest: Any, fastest: Any) -> list[str]:
     """Of one run, from the least normal force [N] and the largest sliding speed [m/s] of each contact."""
     said = []
-    for c, contact in enumerate(system.contacts):
+    for c, (name, contact) in enumerate(zip(system.contact_names, system.contacts, strict=True)):
         if pulled(contact, lowest[c]):
-            said.append(f"{title(system, c)} is pulled, N down to {lowest[c]:.4g} N: {PULLED}")
+            said.append(f"{name} is pulled, N down to {lowest[c]:.4g} N: {PULLED}")
         mu = float(np.min(contact.law.mu(np.linspace(0.0, float(fastest[c]), SPEEDS))))
         if mu < 0.0:
             said.append(
-                f"{title(system, c)} leaves the range of its friction law: mu down to {mu:.4g} at sliding speeds up to "
+                f"{name} leaves the range of its friction law: mu down to {mu:.4g} at sliding speeds up to "
                 f"{fastest[c]:.4g} m/s"
             )
         if contact.law.has_memory and np.any(contact.law.feeds(np.linspace(0.0, float(fastest[c]), SPEEDS))):
             said.append(
-                f"{title(system, c)}: at sliding speeds up to {fastest[c]:.4g} m/s the damping of its bristles is "
+                f"{name}: at sliding speeds up to {fastest[c]:.4g} m/s the damping of its bristles is "
                 "above 4 g/|v|, where they may feed energy in"
             )
     return said
@@ -45,10 +40,10 @@ def of_a_run(system: System, lowest: Any, fastest: Any) -> list[str]:
 def of_an_ensemble(system: System, lowest: Any) -> str:
     """Of many runs, from the least normal forces [N], shape (runs, contacts), NaN where there was no run."""
     said = []
-    for c, contact in enumerate(system.contacts):
+    for c, (name, contact) in enumerate(zip(system.contact_names, system.contacts, strict=True)):
         which = pulled(contact, lowest[:, c])
         if np.any(which):
             least = float(np.min(lowest[which, c]))
             count = f"{int(np.sum(which))} of {len(which)} trajectories"
-            said.append(f"{title(system, c)} is pulled in {count}, N down to {least:.4g} N: {PULLED}")
+            said.append(f"{name} is pulled in {count}, N down to {least:.4g} N: {PULLED}")
     return "; ".join(said)

@@ -189,9 +189,6 @@ def simulate_ensemble(
     """
     if contact not in SCHEMES:
         raise ParameterError("simulate_ensemble", "contact", contact, known_names(str(contact), list(SCHEMES)))
-    for name, value, low in (("duration", duration, 0.0), ("width", width, 0.0), ("start_time", start_time, -np.inf)):
-        if not (np.isfinite(value) and value > low):
-            raise ParameterError("simulate_ensemble", name, value, f"a finite number in ({low:g}, inf)")
     instants = np.zeros(0)
     if times is not None:
         instants = instants_within("simulate_ensemble", np.atleast_1d(times), start_time, duration)
@@ -229,7 +226,7 @@ def _result(
         rest = np.full((total - len(rows), rows.shape[1]), np.nan)
         rest[:, 0] = -1.0
         rows = np.concatenate([rows, rest])
-    names = np.array([CODES.get(code, NOT_RUN) for code in range(-1, 12)])
+    names = np.array([CODES.get(code, NOT_RUN) for code in range(-1, max(CODES) + 1)])
     ended = names[rows[:, 0].astype(int) + 1]
     at, observed = HEAD + 2 * n, {}
     for each in work.observers:
@@ -293,8 +290,6 @@ def _threads(threads: int | None) -> int:
         return max(1, int(os.environ[THREADS]))  # set for processes that share a machine
     if threads is None:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    if int(threads) != threads or threads < 1:
-        raise ParameterError("simulate_ensemble", "threads", threads, "a whole number of at least 1")
     return int(threads)
 
 

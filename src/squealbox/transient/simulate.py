@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.arguments import is_real, public
+from squealbox.arguments import public, whole
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import InvalidSystem, System, as_system, equilibrium, no_rigid_contact
@@ -113,9 +113,6 @@ def simulate(
     system = system_of(design_or_system)
     if contact not in (*SCHEMES, TIME_STEPPING):
         raise ParameterError("simulate", "contact", contact, known_names(str(contact), [*SCHEMES, TIME_STEPPING]))
-    for name, value, low in (("duration", duration, 0.0), ("width", width, 0.0), ("start_time", start_time, -np.inf)):
-        if not (np.isfinite(value) and value > low):
-            raise ParameterError("simulate", name, value, f"a finite number in ({low:g}, inf)")
     chosen = chosen_method(method or usual_method(system, contact), rtol, atol)
     requested = _times(times, start_time, duration)
     if contact != "exact":
@@ -351,8 +348,8 @@ def _times(times: Any, start_time: float, duration: float) -> Any:
     if times is None:
         return None
     if np.ndim(times) == 0:
-        if not is_real(times) or int(times) != times or times < 2:
-            raise ParameterError("simulate", "times", times, "a whole number of at least 2, or an array of instants")
+        if expected := whole(2)(times):
+            raise ParameterError("simulate", "times", times, f"{expected}, or an array of instants")
         return np.linspace(start_time, start_time + duration, int(times))
     return instants_within("simulate", times, start_time, duration)
 

@@ -137,8 +137,6 @@ def branch(
     """
     if method not in (*METHODS, "auto"):
         raise ParameterError("branch", "method", method, known_names(str(method), [*METHODS, "auto"]))
-    if len(bounds) != 2 or not np.all(np.isfinite(bounds)) or not bounds[0] < bounds[1]:
-        raise ParameterError("branch", "bounds", bounds, "two finite numbers (low, high) with low < high")
     span = float(bounds[1] - bounds[0])
     make = family(design, parameter)
     middle = 0.5 * (bounds[0] + bounds[1]) if value is None else value

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.cautions import pulled
 from squealbox.designs import Design
 from squealbox.stability import complex_modes, critical_values, mechanism
 from squealbox.system import equilibrium
@@ -23,9 +24,9 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     if not bool(modes.exists):
         return Answer({**data, "state": "unknown", "reason": modes.outcome.message})
     worst = modes.most_unstable
-    forces = np.atleast_1d(equilibrium(design.system()).normal_force)
-    names = design.system().contact_names
-    data["pulled"] = [[name, float(force)] for name, force in zip(names, forces, strict=True) if force < 0.0]
+    system = design.system()
+    bilateral = np.zeros(len(system.contacts), dtype=bool)  # an open unilateral contact has N = 0
+    data["pulled"] = [list(each) for each in pulled(system.contact_names, bilateral, equilibrium(system).normal_force)]
     data |= {"growth": worst.growth_rate, "frequency": worst.frequency, "damping": finite(worst.damping_ratio)}
     data["near"] = bool(np.any(modes.near_defective))
     if bool(modes.stable):
