@@ -105,6 +105,8 @@ def test_the_brake_moves_and_stands_still_for_those_who_want_that(shared, browse
     still = spots(shared)
     shared.page.wait_for_timeout(300)
     assert spots(shared) == still
+    shared.page.evaluate("import('/static/app.js').then(({ app }) => app.dispatchEvent(new CustomEvent('motion')))")
+    assert spots(shared) == still, "news of a motion do not move what is held"
     shared.page.click("section[data-panel=moving] >> text=Move")
     with Page(browser, server, motion="reduce") as calm:
         calm.goto()

@@ -87,7 +87,7 @@ function scene(panel) {
   panel.scale = (REACH * panel.size) / (largest(panel) || 1);
   panel.legend.hidden = !moves;
   panel.says.textContent = panel.remark;
-  frame(panel, performance.now());
+  frame(panel, panel.held ? (panel.since ?? 0) : performance.now()); // held, the same instant again
 }
 
 /** The phase of each freedom that moves much, against the one that moves most. */
@@ -126,7 +126,7 @@ function largest(panel) {
 function frame(panel, now) {
   if (!panel.scene) return;
   const { data, arrays } = panel.answer;
-  const share = (now / 1e3 / panel.scene.period) % 1;
+  const share = ((panel.since = now) / 1e3 / panel.scene.period) % 1;
   const { k, q, turn = 0 } = panel.scene.at(share);
   const { points, moves } = arrays;
   const place = (x, y, by, p) => {
