@@ -183,3 +183,11 @@ def test_the_audit_of_a_free_motion_closes():
     free = System([[1.0]], [[0.0]], [[1.0]], 0.0, ())
     for name in ("taylor", "dormand-prince-8"):
         assert simulate(free, 20.0, ([3.0], [0.0]), method=name).energy.relative_residual < 1e-9
+
+
+def test_the_audit_of_a_damped_motion_is_as_exact_as_the_motion():
+    """Works are integrals of products, whose series falls off later than that of the motion."""
+    damped = System([[1.0]], [[0.02]], [[1.0]], 0.0, ())
+    for rtol in (1e-6, 1e-8, 1e-10, 1e-12):
+        motion = simulate(damped, 300.0, ([1.0], [0.0]), method="taylor", rtol=rtol)
+        assert motion.energy.relative_residual < 30.0 * rtol

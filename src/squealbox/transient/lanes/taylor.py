@@ -22,6 +22,8 @@ def grow(
             displacement.known.append(times(at(velocity, k), share))
         for velocity, acceleration in zip(grown, a, strict=True) if k < order else ():
             velocity.known.append(times(at(acceleration, k), share))
+    for series in (*q, *grown):  # polynomials from here on, whose products have twice as many terms
+        series.rule = lambda k: None
 
 
 def reach(v: tuple[Any, ...], sizes: tuple[Any, ...], unit: Lanes, order: int) -> tuple[Lanes, Truth]:

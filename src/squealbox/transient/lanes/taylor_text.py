@@ -12,7 +12,7 @@ from squealbox.schedules import SCHEDULES
 from squealbox.system import InvalidSystem
 from squealbox.transient.lanes.equation_text import CALLED, EquationText
 from squealbox.transient.lanes.formulas import is_table
-from squealbox.transient.lanes.shape import ORDER, PARTS, UNIT_OF_WINDOW, Shape
+from squealbox.transient.lanes.shape import ORDER, PARTS, UNIT_OF_WINDOW, WORK_ORDER, Shape
 from squealbox.transient.rows import ALGEBRAIC, FIRST_ORDER, WITH_MASS
 
 CALLED_BY_MODE = """
@@ -181,7 +181,8 @@ class TaylorStep(EquationText):
         """All that both the branch of the events and the rest read."""
         names = [*found["speed"], *found["normal"]]
         names += [] if self.gliding else [f"hold{c}_{self.tag}" for c in range(self.shape.m)]
-        self.put(f"ready({ORDER}, {', '.join(names)})" if names else "pass")
+        names += found["force"]  # their works are integrated outside the branch
+        self.put(f"ready({WORK_ORDER}, {', '.join(names)})" if names else "pass")
 
     def functions_of(self, c: int, found: dict[str, list[str]]) -> tuple[str, str]:
         """Names of both event functions of a contact, which stay positive as long as its mode holds."""
@@ -239,7 +240,7 @@ class TaylorStep(EquationText):
             for c in range(self.shape.m):
                 self.put(f"speed{c}p{part} = value({found['speed'][c]}, at{part}, {ORDER})")
                 self.put(f"normal{c}p{part} = value({found['normal'][c]}, at{part}, {ORDER})")
-                self.put(f"work{c}p{part} = {self.row(f'work{c}')} + unit * value(power{c}, at{part}, {ORDER})")
+                self.put(f"work{c}p{part} = {self.row(f'work{c}')} + unit * value(power{c}, at{part}, {WORK_ORDER})")
 
     def view(self, of: str, i: int, part: int) -> str:
         """What an observer of a degree of freedom, of a contact or of the whole sees there."""
@@ -272,8 +273,8 @@ class TaylorStep(EquationText):
             self.put(f"works{k} = integral({rate}) * unit" if rate else f"works{k} = 0.0")
             done = self.row(f"done{k}")
             if rate:
-                self.keep(f"done{k}", f"where(moved, {done} + value(works{k}, end, {ORDER}), {done})")
-        told = [(each, ORDER + 1) for each in q] + [(f"works{k}", ORDER) for k in range(m + 4)]
+                self.keep(f"done{k}", f"where(moved, {done} + value(works{k}, end, {WORK_ORDER}), {done})")
+        told = [(each, ORDER + 1) for each in q] + [(f"works{k}", ORDER + 1) for k in range(m + 4)]
         told += [(each, ORDER) for name in ("normal", "speed") for each in found[name]]
         told += [(each, ORDER - 1) for each in found["force"]]
         for name, (series, order) in zip(shape.followed, told, strict=True):
