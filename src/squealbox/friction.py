@@ -17,6 +17,8 @@ from squealbox.parameters import ParameterError, parameter
 
 def _limit(static: Any, beyond: Any) -> Any:
     """The static limit; of a law that rises from 0 the one that is not mistaken for no friction at all."""
+    if isinstance(static, float) and isinstance(beyond, float):  # a tenth of the time, where laws are asked most
+        return NEVER_STICKS if static == 0.0 < beyond else static
     rises = (np.asarray(static) == 0.0) & (np.asarray(beyond) > 0.0)
     return np.where(rises, NEVER_STICKS, static)[()] if np.any(rises) else static
 

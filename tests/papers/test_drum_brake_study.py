@@ -186,7 +186,7 @@ def folder(tmp_path_factory) -> Iterator[object]:
 
     def two_only(readings, figures, progress, fine, wanted, meanwhile):
         printed = reading.study(Case(PRINTED), figures / PRINTED)
-        default = reading.study(Case(DEFAULT_READING), figures, ensembles.Sizes(5, 5, 7))
+        default = reading.study(Case(DEFAULT_READING), figures, ensembles.Sizes(5, 5, 7, vector=True))
         found = {name: default if name == DEFAULT_READING else printed for name in readings}
         assert wanted is False
         jobs.do({"kind": "drawings", "folder": str(figures)})

@@ -11,7 +11,7 @@ from squealbox.workbench.frames import unframed
 from workbench.conftest import Server
 
 PAGES, MOVES = 20, 12
-MESSAGES = 4000
+MESSAGES = 1200
 STATE = {"brake": "drum_brake", "laws": {}, "values": {}}
 
 
@@ -49,8 +49,8 @@ def test_twenty_pages_move_their_sliders_at_once(server):
 
 
 def test_memory_does_not_grow_with_messages(tmp_path):
-    """A leak of 200 bytes a message would pass 1e5 messages with 20 MB; here it would be 0.8 MB. The limit is 4 MB,
-    ten times what the allocator of a fresh process still takes; `benchmarks/workbench.py soak` runs 1e5 messages."""
+    """A leak of an answer, some 10 kB each, would be 12 MB here. The limit is 4 MB, ten times what the allocator of a
+    fresh process still takes; `benchmarks/workbench.py soak` runs 1e5 messages, to see a leak of 200 bytes in each."""
     server = Server(tmp_path)
     process = psutil.Process(server.process.pid)
 

@@ -35,7 +35,8 @@ def paper(name: str, *, out: Path | None = None, fine: bool = False, search: boo
     out
         folder for the figures, claims.json, claims.md and one HTML page; the paper's name when left out
     fine
-        maps by transients at 561 x 561 points in the place of 141 x 141, and more of them; takes some minutes more
+        maps by transients at 561 x 561 points in the place of 141 x 141, and more of them, and every figure as SVG
+        too; takes some minutes more
     search
         go through the whole family of equations for what was run in 2011, and not only its short form; takes some
         minutes, and goes on where it was stopped when run again with the same folder

@@ -138,7 +138,7 @@ def definitions(module: ModuleType, fixed: Mapping[str, float], entries: tuple[s
         if isinstance(node, ast.Assign):
             parts.append(ast.unparse(node))
         elif isinstance(node, ast.FunctionDef):
-            chosen = ast.unparse(ast.fix_missing_locations(_Fixed(fixed).visit(node)))
+            chosen = ast.unparse(_Fixed(fixed).visit(node))
             parts.append(("@entry\n" if node.name in entries else "@inner\n") + chosen)
     return parts
 
@@ -155,13 +155,13 @@ class _Fixed(ast.NodeTransformer):
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
         """A fixed attribute such as p.contacts becomes its value."""
-        name = ast.unparse(node)
+        name = _dotted(node)
         return ast.Constant(self.fixed[name]) if name in self.fixed else node
 
     def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
         """Every element of a fixed array, named such as ``p.rigid[]``, becomes its value."""
         self.generic_visit(node)
-        name = f"{ast.unparse(node.value)}[]"
+        name = f"{_dotted(node.value)}[]"
         return ast.Constant(self.fixed[name]) if name in self.fixed and isinstance(node.ctx, ast.Load) else node
 
     def visit_Compare(self, node: ast.Compare) -> ast.expr:
@@ -213,6 +213,13 @@ class _Fixed(ast.NodeTransformer):
         if isinstance(node.test, ast.Constant):
             return node.body if node.test.value else node.orelse
         return node
+
+
+def _dotted(node: ast.expr) -> str:
+    """``p.contacts`` of the expression that says so, in a hundredth of the time `ast.unparse` takes; "" of others."""
+    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+        return f"{node.value.id}.{node.attr}"
+    return node.id if isinstance(node, ast.Name) else ""
 
 
 def load_module(text: str) -> Any:

@@ -4,6 +4,7 @@ A record is one element of a structured array: the compiler passes it by its add
 attributes. The room of each field is a power of two, so that few sizes are ever compiled; the loops run to the counts.
 """
 
+import math
 from functools import cache, lru_cache
 from typing import Any
 
@@ -243,10 +244,8 @@ def absolute_tolerances(system: System, method: Method, highest: float) -> Any:
 
 def bernstein_matrix() -> Any:
     """Bernstein coefficients of the quartic through values at 0, 1/4, 1/2, 3/4, 1, shape (5, 5)."""
-    from scipy.special import comb
-
     nodes = np.arange(5) / 4.0
-    values = np.array([[comb(4, k) * x**k * (1.0 - x) ** (4 - k) for k in range(5)] for x in nodes])
+    values = np.array([[math.comb(4, k) * x**k * (1.0 - x) ** (4 - k) for k in range(5)] for x in nodes])
     return np.linalg.inv(values)
 
 

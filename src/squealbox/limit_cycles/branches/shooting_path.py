@@ -151,7 +151,7 @@ class ShootingPath:
         return float(self.describe(x, p)["least_slip"])
 
     def cycle(self, x: Any, p: float) -> Cycle:
-        """The cycle at a point, its multipliers integrated anew to 1e-13; error is the scaled residual there."""
+        """The cycle at a point, its multipliers computed anew to 1e-12; error is the scaled residual there."""
         start = self.start(x)
         flown = flight(self.field(p), start, float(x[-1]))
         error = float(np.max(np.abs(self.residual(x, p))))

@@ -1,6 +1,6 @@
 """Newton's method on the shots of a cycle: motions first, their derivatives only where a step is taken from.
 
-In states scaled to velocities; far from the cycle a derivative to 1e-8 by Magnus steps is as good as the exact one.
+In states scaled to velocities.
 """
 
 from dataclasses import dataclass
@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 
 from squealbox.limit_cycles.cycles.field import Field
-from squealbox.limit_cycles.cycles.variation import Flight, flight, fly, quick_flight
+from squealbox.limit_cycles.cycles.variation import Flight, flight, fly
 from squealbox.result import COMPLETED, Outcome
 from squealbox.transient import Trajectory
 
-COARSE = 1e-5  # residual above which a derivative to 1e-8 is as good as the exact one
 HALVINGS = 6
 ADVICE = "give a start nearer to the cycle, a longer `settle`, or more `shots`"
 
@@ -36,7 +35,6 @@ class Newton:
     def __init__(self, field: Field, nodes: Any, period: float, rtol: float) -> None:
         self.field, self.nodes, self.period, self.rtol, self.size = field, nodes, period, rtol, 1.0
         self.reference = nodes[0].copy()
-        self.coarse = field.contact == "exact"
         self.history: list[float] = []
         self.flights: list[Flight] = []
         self.flown, self.derived = 0, 0
@@ -50,16 +48,14 @@ class Newton:
         normal = self._phase(now.motions[0])
         following: Shots | None = now
         for _ in range(most):
-            if following is None and not self.coarse:
+            if following is None:
                 break
-            if following is not None:
-                self.history.append(now.norm)
-            self.coarse = self.coarse and following is not None and now.norm >= COARSE
+            self.history.append(now.norm)
             self.flights = self._derivatives(now)
             step = self._step(now, normal)
             following = self._damped(now, step, most_halvings=0 if now.norm < tolerance else HALVINGS)
             now = now if following is None else following
-        self.nodes, self.period, self.size, self.coarse = now.nodes, now.period, now.size, False
+        self.nodes, self.period, self.size = now.nodes, now.period, now.size
         if not self.flights or any(f.motion is not m for f, m in zip(self.flights, now.motions, strict=True)):
             self.flights = self._derivatives(now)
         self.monodromy = _product([f.phi for f in self.flights])
@@ -82,11 +78,10 @@ class Newton:
         return Shots(nodes, period, motions, residual, size, float(np.max(np.abs(residual * scale))) / size)
 
     def _derivatives(self, now: Shots) -> list[Flight]:
-        by = quick_flight if self.coarse else flight
         self.derived += len(now.nodes)
         duration = now.period / len(now.nodes)
         pairs = zip(now.nodes, now.motions, strict=True)
-        return [by(self.field, node, duration, self.rtol, motion=motion) for node, motion in pairs]
+        return [flight(self.field, node, duration, self.rtol, motion=motion) for node, motion in pairs]
 
     def _phase(self, motion: Trajectory) -> Any:
         normal = self.field.rate(self.reference, motion.mode[0]) * self.field.scale

@@ -26,7 +26,6 @@ from squealbox.papers.drum_brake_2011.cases import (
     INFERRED,
     MAP_ANGLES,
     PRINTED,
-    RECONSTRUCTED,
     Case,
 )
 from squealbox.stability import stability_map
@@ -59,19 +58,19 @@ class Sizes:
     """How many values each axis has: of the centres of pressure, of friction with load or speed, of friction alone.
 
     `planes` are the readings whose friction is varied together with load and speed, `mapped` those whose centres of
-    pressure are mapped by transients, `vector` those whose figures are written as SVG as well as PNG.
+    pressure are mapped by transients, `vector` says whether figures are written as SVG as well as PNG.
     """
 
     pressure: int = 141
     plane: int = 101
     friction: int = 201
     planes: tuple[str, ...] = (DEFAULT_READING,)
-    mapped: tuple[str, ...] = (DEFAULT_READING, "eq1_printed", "eq3")
-    vector: tuple[str, ...] = (DEFAULT_READING, RECONSTRUCTED)
+    mapped: tuple[str, ...] = (DEFAULT_READING, "eq1_printed")
+    vector: bool = False
 
 
 PRINTED_READINGS = tuple(name for name in ALL_READINGS if name not in (*INFERRED, PRINTED))
-USUAL, FINE = Sizes(), Sizes(561, planes=(DEFAULT_READING, "eq3"), mapped=PRINTED_READINGS, vector=ALL_READINGS)
+USUAL, FINE = Sizes(), Sizes(561, planes=(DEFAULT_READING, "eq3"), mapped=PRINTED_READINGS, vector=True)
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,7 @@ def study(case: Case, folder: Path, sizes: ensembles.Sizes = ensembles.USUAL) ->
         found |= {RAW: by_transients.without_contacts(), EXACT: by_transients.without_contacts()}
     with style.styled(), figures.on_the_same_sheets():
         for name, draw in sorted(drawn.items()):
-            save(draw(), folder / name, ("png", "svg") if case.reading in sizes.vector else ("png",))
+            save(draw(), folder / name, ("png", "svg") if sizes.vector else ("png",))
     plain = {road: _plain(each) for road, each in found.items()}
     return {"findings": plain, "amplitude": case.amplitude, "runs": runs, "shares": shares, "figures": sorted(drawn)}
 
