@@ -36,10 +36,11 @@ def carries(motion: Trajectory) -> bool:
         return True
     h = np.diff(t)[:, None]
     moved, speed = np.diff(q, axis=0), 0.5 * h * (qd[1:] + qd[:-1])
-    late = t[1:] > t[-1] - 0.25 * (t[-1] - t[0])
+    late, went = t[1:] > t[-1] - 0.25 * (t[-1] - t[0]), h * np.abs(qd[1:])
+    unit = np.max(went, axis=0) + np.max(np.abs(moved), axis=0) + 1e-300  # a motion that blows up has no squares
     for stretch in (late, np.ones(len(late), dtype=bool)):
-        missed = np.sqrt(np.sum((moved - speed)[stretch] ** 2, axis=0))
-        size = np.sqrt(np.sum((h * np.abs(qd[1:]))[stretch] ** 2, axis=0)) + 1e-9 * np.ptp(q, axis=0) + 1e-300
+        missed = np.sqrt(np.sum(((moved - speed) / unit)[stretch] ** 2, axis=0))
+        size = np.sqrt(np.sum((went / unit)[stretch] ** 2, axis=0)) + 1e-9 * np.ptp(q, axis=0) / unit + 1e-300
         if np.any(missed > COARSE * size):
             return False
     return True
