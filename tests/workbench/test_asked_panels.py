@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from squealbox import DrumBrake, LinearSlope, complex_modes, critical_value, hopf_point, simulate
-from squealbox.papers.drum_brake_2011.cases import Case
+from squealbox.papers.drum_brake_2011.cases import RECONSTRUCTED, Case
 from squealbox.papers.drum_brake_2011.record import count
 from squealbox.papers.drum_brake_2011.verdicts import verdicts
 from squealbox.signals import dominant_frequency, sound_level
@@ -196,8 +196,8 @@ def test_the_report_button_hands_over_a_file(page, browser, tmp_path):
 
 @pytest.fixture(scope="module")
 def records():
-    """The verdicts on the paper's claims for the usual case, as the library finds them."""
-    return verdicts(Case("consistent"))
+    """The verdicts on the paper's claims for the reading of the tour, as the library finds them."""
+    return verdicts(Case(RECONSTRUCTED))
 
 
 def test_the_tour_sets_the_design_and_judges_the_claims(page, records):
@@ -213,6 +213,12 @@ def test_the_tour_sets_the_design_and_judges_the_claims(page, records):
         marks = page.page.locator(".tour .claim").all_inner_texts()
         assert [mark[2:] for mark in marks] == [records[each]["verdict"] for each in ids]
     page.drawn("locus")
+    shown = {
+        name: page.page.locator(f"input[data-path='{name}']").input_value()
+        for name in ("friction.slope", "sliding_speed")
+    }
+    own = DrumBrake(reading=RECONSTRUCTED)
+    assert [float(value) for value in shown.values()] == [own.friction.slope, own.sliding_speed]
     page.page.click(".tour >> text=Look at energy")
     page.page.wait_for_selector("section[data-panel=energy].looked")
     page.page.click(".tour >> text=End the tour")

@@ -37,7 +37,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     found = _READY[case]
     claims = [
         {"id": each["id"], "statement": each["statement"], "published": each["published"], "verdict": each["verdict"],
-         "computed": each["computed"]} for each in found
+         "computed": each["computed"].replace("_", " ")} for each in found
     ]  # fmt: skip
     return Answer({
         "reading": design.reading,

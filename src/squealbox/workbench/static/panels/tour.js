@@ -4,6 +4,7 @@ import { Asked, button } from "../asked.js";
 import { make } from "../elements.js";
 
 const SIGNS = { agree: "✓ agree", disagree: "✗ disagree", "not decidable": "? not decidable" };
+const READING = { reading: "reconstructed", "friction.slope": -0.0653, sliding_speed: 1.48 }; // with what it was found with
 const LOOK = { locus: "modes", map: "map", friction: "friction curve", motion: "motion", energy: "energy", sensitivity: "ranking", branch: "limit cycles" };
 
 export default {
@@ -49,7 +50,7 @@ function mark(claim) {
 
 async function start(panel) {
   panel.step = 0;
-  panel.app.store.replace({ base: null, brake: "drum_brake", laws: {}, values: {} }, null);
+  panel.app.store.replace({ base: null, brake: "drum_brake", laws: {}, values: READING }, null);
   panel.card.hidden = false;
   panel.card.replaceChildren(make("p", {}, "Computing what the paper claims …"));
   panel.asked.ask();
@@ -59,7 +60,7 @@ function go(panel, step) {
   panel.step = step;
   const { table, steps } = panel.data;
   const { values, map } = steps[step];
-  panel.app.store.replace({ base: null, brake: "drum_brake", laws: {}, values: { ...table, ...values } }, null);
+  panel.app.store.replace({ base: null, brake: "drum_brake", laws: {}, values: { ...READING, ...table, ...values } }, null);
   if (map) panel.app.store.option("map", map);
   else if (panel.app.store.settings.map?.x === "theta1") panel.app.store.option("map", { x: "friction.static", y: "load" });
   if (!panel.asked.current) panel.asked.ask();
@@ -70,12 +71,12 @@ function show(panel) {
   const { steps, claims, reading: read } = panel.data;
   const step = steps[panel.step];
   const said = step.claims.map((id) => claims.find((claim) => claim.id === id));
-  const computed = panel.asked.current || panel.asked.wanted === null;
+  const computed = (panel.asked.current || panel.asked.wanted === null) && read === (panel.app.store.design.values.reading ?? read);
   panel.card.replaceChildren(...[
     make("h3", {}, `${panel.step + 1} of ${steps.length}: ${step.title}`),
     make("p", {}, step.text),
-    said.length ? make("p", { class: "quiet" }, `What the paper claims, for reading ${read}:`) : null,
-    said.length ? make("ul", {}, ...said.map((claim) => make("li", {}, computed ? mark(claim) : null, ` ${claim.statement} Here: ${claim.computed}.`))) : null,
+    said.length ? make("p", { class: "quiet" }, computed ? `What the paper claims, for reading ${read}:` : "What the paper claims; being judged …") : null,
+    said.length ? make("ul", {}, ...said.map((claim) => make("li", {}, computed ? mark(claim) : null, ` ${claim.statement}${computed ? ` Here: ${claim.computed}.` : ""}`))) : null,
     make("div", { class: "buttons" }, ...step.look.map((name) => button(`Look at ${LOOK[name]}`, () => look(panel, name)))),
     make("div", { class: "buttons" },
       button("Back", () => go(panel, panel.step - 1), { disabled: panel.step === 0 }),
