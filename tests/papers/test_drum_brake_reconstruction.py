@@ -111,3 +111,13 @@ def test_the_preloads_give_the_damping_of_eq3_with_minus_and_plus() -> None:
         brake.c2 + alpha * (load * (s1**2 - s2**2) - compression[2] - compression[3]),
     )
     assert np.diag(linear.C) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["reconstructed", "reconstructed_simple"])
+def test_its_source_says_what_is_inferred_and_when_it_is_not_run_as_found(name: str) -> None:
+    own = DrumBrake(reading=name)
+    assert "inferred from its numbers, not printed" in own.source
+    assert "found with" not in own.replace({"friction.static": 0.1}).source
+    for other in (DrumBrake().replace(reading=name), own.replace(sliding_speed=np.array([0.2, 1.0]))):
+        assert "found with a slope of" in other.source
+    assert own.replace(reading="eq3").source == DrumBrake.source

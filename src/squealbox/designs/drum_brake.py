@@ -17,7 +17,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.designs.base import Design
-from squealbox.designs.drum_brake_readings import ASSUMED_SLOPE, READINGS, TABLE_SPEED
+from squealbox.designs.drum_brake_readings import ASSUMED_SLOPE, READINGS, TABLE_SPEED, Reading
 from squealbox.designs.rows import matrix, vector
 from squealbox.friction import FrictionLaw, LinearSlope
 from squealbox.parameters import ParameterError, choice, parameter
@@ -96,6 +96,19 @@ class DrumBrake(Design):
             if self.friction is USUAL_FRICTION:
                 object.__setattr__(self, "friction", LinearSlope(USUAL_FRICTION.static, own.slope))
         super().__post_init__()
+        if own is not None and own.inferred:
+            object.__setattr__(self, "source", f"{type(self).source}; {self._inferred(own)}")
+
+    def _inferred(self, own: Reading) -> str:
+        """What to know of a reading that is not printed, and of one that is not run as it was found."""
+        said = (
+            f"its reading {self.reading} is inferred from its numbers, not printed, and scrambled numbers are met as "
+            "well by one search in seven"
+        )
+        slope, speed = getattr(self.friction, "slope", None), self.sliding_speed
+        if all(isinstance(x, float) for x in (slope, speed)) and (slope, speed) == (own.slope, own.sliding_speed):
+            return said
+        return f"{said}; it was found with a slope of {own.slope:g} s/m at {own.sliding_speed:g} m/s"
 
     def system(self) -> System:
         """The equation of motion in the chosen reading; leading axes of the parameters are kept."""
