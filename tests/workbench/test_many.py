@@ -74,7 +74,7 @@ def test_memory_does_not_grow_with_messages(tmp_path):
 
     try:
         run(kernels())
-        run(messages(1500))
+        run(messages(600))
         before = process.memory_info().rss
         for _ in range(4):
             run(messages(MESSAGES // 4))
