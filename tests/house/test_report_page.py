@@ -71,7 +71,7 @@ class Opened:
 @pytest.fixture
 def opened(browser, written):
     reading = Opened(browser, written)
-    reading.page.wait_for_function("document.documentElement.dataset.charts")
+    reading.page.wait_for_selector("html[data-charts]")
     yield reading
     reading.page.close()
 

@@ -2,6 +2,7 @@
 
 import contextlib
 import shutil
+import time
 
 from playwright.sync_api import sync_playwright
 
@@ -69,10 +70,17 @@ class Page:
         unexpected = [each for each in self.errors if not any(part in each for part in self.expected)]
         assert kind is not None or not unexpected, unexpected
 
+    def until(self, expression, arg=None, timeout=120.0):
+        """Wait until an expression is true; Playwright's own wait evaluates it in the page, whose policy forbids that."""
+        end = time.monotonic() + timeout
+        while not self.page.evaluate(expression, arg):
+            assert time.monotonic() < end, f"not within {timeout:g} s: {expression}"
+            self.page.wait_for_timeout(50)
+
     def again(self):
         """Back to the usual design, no option chosen and nothing to undo."""
         self.page.evaluate(AGAIN)
-        self.page.wait_for_function(BEGUN)
+        self.until(BEGUN)
         self.drawn("locus")
 
     def goto(self, fragment=""):

@@ -187,7 +187,7 @@ def test_the_report_button_hands_over_a_file(page, browser, tmp_path):
     opened.on("pageerror", lambda error: errors.append(str(error)))
     opened.on("requestfailed", lambda request: errors.append(request.url[:80]))
     opened.goto(file.as_uri())
-    opened.wait_for_function("document.documentElement.dataset.charts")
+    opened.wait_for_selector("html[data-charts]")
     assert opened.evaluate("document.documentElement.dataset.charts") == "drawn"
     assert "grows above friction.static = 0.33269" in opened.inner_text("main")
     assert errors == []

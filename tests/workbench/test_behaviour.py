@@ -42,9 +42,7 @@ def value(page, path):
 
 
 def wait_for_value(page, path, text):
-    page.page.wait_for_function(
-        "([p, t]) => document.querySelector(`[data-path='${p}']`)?.value === t", arg=[path, text]
-    )
+    page.until("([p, t]) => document.querySelector(`[data-path='${p}']`)?.value === t", arg=[path, text])
 
 
 @pytest.fixture
@@ -66,7 +64,7 @@ def test_an_old_answer_is_never_drawn_under_a_new_design(own_page):
             0.3 + 0.01 * i,
         )
         page.page.wait_for_timeout(70)
-    page.page.wait_for_function("() => window.drawings.some(([name]) => name === 'verdict')")
+    page.until("() => window.drawings.some(([name]) => name === 'verdict')")
     page.drawn("locus")
     drawings = page.page.evaluate("window.drawings")
     assert all(current for _, current in drawings)

@@ -62,7 +62,7 @@ def counted(browser, server):
 
 def rested(page):
     """Wait until nothing is asked any more: the motion comes last, and is part of the verdict."""
-    page.page.wait_for_function("""() => import('/static/app.js').then(({ app }) =>
+    page.until("""() => import('/static/app.js').then(({ app }) =>
         app.motion && app.views.every(view => !view.busy))""")
     page.page.wait_for_timeout(300)
 
@@ -100,7 +100,7 @@ def test_a_drag_asks_as_fast_as_it_is_answered_and_no_faster(counted):
     page, sent, received = counted
     moves = 60  # about a second
     page.page.evaluate(DRAG, ["k3", list(np.linspace(120.0, 260.0, moves))])
-    page.page.wait_for_function("document.querySelector('[data-path=k3]').value === '260'")
+    page.until("document.querySelector('[data-path=k3]').value === '260'")
     rested(page)
     asked = views(sent)
     assert 2 <= asked["locus"] <= moves

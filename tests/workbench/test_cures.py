@@ -24,6 +24,8 @@ def test_a_click_applies_a_cure_another_takes_it_back_and_one_key_plays_both(pag
     page.page.click("text=Find cures")
     page.page.wait_for_selector("section[data-panel=silence][data-state=drawn]", timeout=240_000)
     assert int(page.page.get_attribute("section[data-panel=silence]", "data-cures")) >= 15
+    whole = "e => e.scrollWidth <= e.clientWidth"
+    assert page.page.locator("section[data-panel=silence] .scroller").evaluate(whole), "costs and cautions are in sight"
     before = page.page.locator("input[data-path=theta2]").input_value()
     page.page.click("button[aria-label='Apply theta2 down']")
     page.page.wait_for_selector("#verdict[data-verdict=stable]")
@@ -31,6 +33,8 @@ def test_a_click_applies_a_cure_another_takes_it_back_and_one_key_plays_both(pag
     cured = complex_modes(BRAKE.replace({"theta2": changed * 3.141592653589793 / 180.0}))
     assert bool(cured.stable)
     assert page.page.get_attribute("tr[data-cure='theta2 down']", "aria-current") == "true"
+    page.page.wait_for_selector("section[data-panel=compare][data-compared=yes]")
+    assert page.page.locator("section[data-panel=compare] .scroller").evaluate(whole), "and both brakes compared"
     page.page.locator("#verdict").click()
     for turn in ("before", "after"):
         page.page.keyboard.press("b")
@@ -38,7 +42,7 @@ def test_a_click_applies_a_cure_another_takes_it_back_and_one_key_plays_both(pag
     assert "nothing is left to hear" in page.says("silence")
     page.page.click("button[aria-label='Apply stiffness on y']")  # a design that holds the brake: instead of the first
     page.page.wait_for_selector("section[data-panel=silence][data-applied='stiffness on y']")
-    page.page.wait_for_function("document.getElementById('title').textContent.endsWith('with added stiffness')")
+    page.until("document.getElementById('title').textContent.endsWith('with added stiffness')")
     page.page.wait_for_selector("#verdict[data-verdict=stable]")
     assert page.page.locator("input[data-path=theta2]").input_value() == before
     page.page.click("text=Take it back")

@@ -46,7 +46,7 @@ def test_every_mode_is_a_line_over_the_parameter(page):
 
 def test_a_slider_moves_the_design_and_everything_drawn(page):
     page.slide("theta1", 60.0)
-    page.page.wait_for_function("document.querySelector('[data-path=theta1]').value === '60'")
+    page.until("document.querySelector('[data-path=theta1]').value === '60'")
     page.drawn("locus")
     expected = complex_modes(brake(theta1=np.deg2rad(60.0)))
     _, hertz = points(page, "frequency", "present design")
@@ -105,11 +105,11 @@ def test_undo_takes_back_one_gesture(page):
     page.enter("friction.static", 0.5)
     page.page.click("#undo")
     field = page.page.locator("input[data-path='friction.static']")
-    page.page.wait_for_function("document.querySelector(\"[data-path='friction.static']\").value === '0.4'")
+    page.until("document.querySelector(\"[data-path='friction.static']\").value === '0.4'")
     page.page.click("#undo")
-    page.page.wait_for_function("document.querySelector(\"[data-path='friction.static']\").value === '0.3'")
+    page.until("document.querySelector(\"[data-path='friction.static']\").value === '0.3'")
     page.page.click("#redo")
-    page.page.wait_for_function("document.querySelector(\"[data-path='friction.static']\").value === '0.4'")
+    page.until("document.querySelector(\"[data-path='friction.static']\").value === '0.4'")
     assert field.input_value() == "0.4"
 
 

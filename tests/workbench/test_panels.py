@@ -64,9 +64,8 @@ def test_the_motion_is_that_of_the_library(squealing):
 
 
 def test_a_motion_that_dies_away_has_no_level_and_the_verdict_knows_the_motion_unseen(page):
-    heard = page.page.locator("#verdict .heard")
+    heard = page.page.locator("#verdict .heard:has-text('Decays')")
     heard.wait_for()  # asked at rest, though the panel of the motion has not been looked at
-    assert "Decays" in heard.inner_text()
     assert "dB" not in heard.inner_text()
 
 
@@ -117,9 +116,7 @@ def test_the_map_shows_why(squealing):
 @pytest.mark.parametrize("name", sorted(set(DESIGNS) - {"drum_brake"}))
 def test_every_design_is_shown(page, name):
     page.page.select_option("#brake", name)
-    page.page.wait_for_function(
-        "title => document.getElementById('title').textContent === title", arg=DESIGNS[name].title
-    )
+    page.until("title => document.getElementById('title').textContent === title", arg=DESIGNS[name].title)
     for panel in ("locus", "map", "friction", "energy", "sensitivity"):
         page.drawn(panel)
     modes = complex_modes(DESIGNS[name]())

@@ -49,7 +49,7 @@ def test_each_question_is_one_screen_without_an_empty_box(shared, question):
 @pytest.mark.parametrize("question", QUESTIONS)
 def test_everything_has_a_name_and_can_be_read(shared, question):
     ask(shared, question)
-    shared.page.wait_for_function(RESTED, timeout=120_000)
+    shared.until(RESTED)
     for check in ("nameless", "dangling", "twice", "small", "faint"):
         assert wrong(shared, check) == []
 
@@ -123,7 +123,7 @@ def test_stick_and_slip_have_their_colours_and_a_dot_goes_along(page):
     page.page.wait_for_selector(".contact[data-state=slip]", timeout=30_000)
     before = page.page.evaluate(DOTS)
     assert before
-    page.page.wait_for_function(f"before => {DOTS} !== before", arg=before)
+    page.until(f"before => {DOTS} !== before", arg=before)
 
 
 @pytest.mark.parametrize("name", sorted(DESIGNS))
