@@ -71,7 +71,7 @@ class Page:
         assert kind is not None or not unexpected, unexpected
 
     def until(self, expression, arg=None, timeout=120.0):
-        """Wait until an expression is true; Playwright's own wait evaluates text in the page, which the page forbids."""
+        """Wait until an expression is true; Playwright's own wait evaluates text in the page, which forbids that."""
         end = time.monotonic() + timeout
         while not self.page.evaluate(expression, arg):
             assert time.monotonic() < end, f"not within {timeout:g} s: {expression}"
