@@ -64,8 +64,10 @@ def test_the_motion_is_that_of_the_library(squealing):
 
 
 def test_a_motion_that_dies_away_has_no_level_and_the_verdict_knows_the_motion_unseen(page):
-    heard = page.page.locator("#verdict .heard:has-text('Decays')")
+    page.until("import('/static/app.js').then(({ app }) => app.motion !== null)")  # of the design on the page
+    heard = page.page.locator("#verdict .heard")
     heard.wait_for()  # asked at rest, though the panel of the motion has not been looked at
+    assert "Decays" in heard.inner_text()
     assert "dB" not in heard.inner_text()
 
 
