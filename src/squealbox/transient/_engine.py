@@ -216,7 +216,7 @@ class _Fixed(ast.NodeTransformer):
 
 
 def _dotted(node: ast.expr) -> str:
-    """``p.contacts`` of the expression that says so, in a hundredth of the time `ast.unparse` takes; "" of others."""
+    """``p.contacts`` of the expression that says so, "" of others; asked often, where `ast.unparse` is slow."""
     if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
         return f"{node.value.id}.{node.attr}"
     return node.id if isinstance(node, ast.Name) else ""

@@ -22,6 +22,7 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.saltation import surface
+from squealbox.limit_cycles.cycles.variation import smooth_rows
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Outcome, Result, quantity
 from squealbox.schedules import Constant, Schedule, Sinusoid, value_at
@@ -217,13 +218,13 @@ def _flight(system: System, x: Any, period: float, rtol: float) -> tuple[Traject
         return motion, x, phi, 0
     states = np.hstack([motion.q, motion.qd])
     field = Moving(system, 0.0)
-    changed = [int(i) for i in np.flatnonzero(np.any(motion.mode[1:] != motion.mode[:-1], axis=1)) if i > 0]
-    for piece, (i, k) in enumerate(itertools.pairwise([0, *changed, len(motion.t) - 1])):
+    rows = smooth_rows(field, motion)
+    for piece, (i, k) in enumerate(itertools.pairwise(rows)):
         if piece > 0:
             phi = _jump(field, states[i], motion.mode[i], motion.mode[i + 1], float(motion.t[i]), period) @ phi
         if k > i:
             phi = _piece(field, states[i], motion.mode[k], float(motion.t[i]), float(motion.t[k]), rtol) @ phi
-    return motion, states[-1], phi, len(changed)
+    return motion, states[-1], phi, len(rows) - 2
 
 
 def _jump(field: Moving, x: Any, before: Any, after: Any, time: float, period: float) -> Any:

@@ -144,5 +144,5 @@ def _caution(flights: list[Flight]) -> str:
     if any(f.together for f in flights):
         return "contacts change their modes together: the multipliers take the first for the cause of the others"
     if any(f.mismatch > 1e-8 for f in flights):
-        return "the motion behind the multipliers and the integral of its equation differ by more than 1e-8"
+        return "the two integrations behind the multipliers differ by more than 1e-8"
     return ""

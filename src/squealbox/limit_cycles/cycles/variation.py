@@ -1,8 +1,8 @@
 """The motion over a given time and its derivative by the start, exact across events.
 
 Between events Phi' = A(t) Phi along the motion; at an event Phi is multiplied by the saltation matrix. The motion and
-its events come from `simulate`, A and f along it from `Field`. How well the integral of f meets the motion is kept as
-`mismatch`.
+its events come from `simulate`, A and f along it from `Field`. How well the integral of f meets the motion, and what
+the last halving of the steps still changed of Phi, whichever is more, is kept as `mismatch`.
 """
 
 import itertools
@@ -56,8 +56,9 @@ def flight(
     """The motion from x over `duration` [s] and its derivative by x: to about 1e-12, 1e-9 with a smoothed law's kink.
 
     Phi by Magnus steps of order 4, `PARTS` and twice as many to each step of the simulated motion; the two are
-    extrapolated. So are the integrals of f along the motion over each smooth piece, whose distance from what the motion
-    went is the mismatch: the compiled engine and `Field` are two programs of one equation.
+    extrapolated, and what that adds to the finer one is more than is left. So are the integrals of f along the motion
+    over each smooth piece, to be compared with where the motion went: the compiled engine and `Field` are two programs
+    of one equation.
 
     motion : that of `fly`, where it is known
     """
@@ -65,8 +66,9 @@ def flight(
     size = 2 * field.size
     if not motion.outcome.ok:
         return Flight(np.full(size, np.nan), np.full(size, np.nan), np.full((size, size), np.nan), motion)
-    states, rows = np.hstack([motion.q, motion.qd]), _rows(field, motion)
+    states, rows = np.hstack([motion.q, motion.qd]), smooth_rows(field, motion)
     pieces = list(itertools.pairwise(rows))
+    half = len(pieces)
     edges = [_edges(motion.t[i : k + 1], parts) for parts in (PARTS, 2 * PARTS) for i, k in pieces]
     along = _states(field, x, duration, rtol, edges)
     phis, paths = [], []
@@ -74,18 +76,19 @@ def flight(
         dt, matrices, rates = np.diff(times), field.jacobians(inside, mode), field.rates(inside, mode)
         phis.append(magnus(matrices[::2], matrices[1::2], dt, field.scale))
         paths.append(0.5 * dt @ (rates[::2] + rates[1::2]))
-    phi, coarse, mismatch, least, together = np.eye(size), np.eye(size), 0.0, 1.0, False
-    for piece, (i, k) in enumerate(pieces):
+    fine, coarse, mismatch, least, together = np.eye(size), np.eye(size), 0.0, 1.0, False
+    halves = phis[:half], phis[half:], paths[:half], paths[half:]
+    for piece, ((i, k), wide, narrow, path, finer) in enumerate(zip(pieces, *halves, strict=True)):
         if piece > 0:
             before, after = motion.mode[i], motion.mode[i + 1]
             jump, rate, _ = saltation(field, states[i], before, after)
-            phi, coarse, least = jump @ phi, jump @ coarse, min(least, abs(rate))
+            fine, coarse, least = jump @ fine, jump @ coarse, min(least, abs(rate))
             together = together or int(np.sum(before != after)) > 1
-        fine = len(pieces) + piece
-        gone = extrapolated(paths[piece], paths[fine])
-        mismatch = max(mismatch, _relative(field, states[k] - states[i] - gone, states))
-        phi, coarse = phis[fine] @ phi, phis[piece] @ coarse
-    phi = extrapolated(coarse, phi)
+        fine, coarse = narrow @ fine, wide @ coarse
+        missed = states[k] - states[i] - extrapolated(path, finer)
+        mismatch = max(mismatch, _relative(field, missed, states))
+    phi, ratio = extrapolated(coarse, fine), field.scale[:, None] / field.scale
+    mismatch = max(mismatch, float(np.max(np.abs((phi - fine) * ratio)) / np.max(np.abs(phi * ratio))))
     return Flight(states[-1], field.rate(states[-1], motion.mode[-1]), phi, motion, mismatch, least, together)
 
 
@@ -102,7 +105,7 @@ def quick_flight(
     motion = fly(field, x, duration, rtol) if motion is None else motion
     if not motion.outcome.ok:
         return flight(field, x, duration, rtol, motion=motion)
-    states, rows = np.hstack([motion.q, motion.qd]), _rows(field, motion)
+    states, rows = np.hstack([motion.q, motion.qd]), smooth_rows(field, motion)
     counts = [max(8, int(np.ceil(steps * (motion.t[k] - motion.t[i]) / duration))) for i, k in itertools.pairwise(rows)]
     edges = [_edges(motion.t[[i, k]], n) for i, k, n in zip(rows[:-1], rows[1:], counts, strict=True)]
     inside = _states(field, x, duration, rtol, edges)
@@ -137,7 +140,7 @@ def _with_parameter(
     return full, largest / (field.frequency or 1.0) or 1.0
 
 
-def _rows(field: Field, motion: Trajectory) -> list[int]:
+def smooth_rows(field: Field, motion: Trajectory) -> list[int]:
     """Rows of the motion between which it is smooth: the first, those of the events, the last."""
     changed = np.any(motion.mode[1:] != motion.mode[:-1], axis=1)
     cuts = [int(i) for i in np.flatnonzero(changed) if i > 0] if field.contact == "exact" else []

@@ -26,10 +26,9 @@ def reproduce(
     reading, the other readings' in folders of their names, as PNG. `progress` is called with what was done and the
     share that is done. `fine` draws the maps of the centres of pressure by transients at 561 x 561 points in the place
     of 141 x 141 and for every printed reading, those of friction with load and speed for reading eq3 as well, and all
-    figures as SVG too. `search` goes through the whole family of equations in the place
-    of its short form, in the folder ``out/search``, where a search that was stopped goes on; and over alpha, speed and
-    floor in every reading, into search.csv. Takes under a minute on 2 processors from nothing, and several minutes
-    more with `fine` or `search`.
+    figures as SVG too. `search` goes through the whole family of equations in the place of its short form, in the
+    folder ``out/search``, where a search that was stopped goes on; and over alpha, speed and floor in every reading,
+    into search.csv. Takes under a minute on 2 processors from nothing, several minutes more with `fine` or `search`.
 
     Source: Journal of Vibroengineering 13(2), paper 632, June 2011.
     """
