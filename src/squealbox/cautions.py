@@ -8,8 +8,9 @@ import numpy as np
 from squealbox.contacts import numbered
 from squealbox.friction import Table
 from squealbox.schedules import value_at
-from squealbox.system import System
+from squealbox.system import Contact, System
 
+SPEEDS = 65  # at which a law is looked at between rest and the fastest sliding
 SMALL = 0.25  # rad: beyond it sin differs from its angle by more than 1 %, and the equation knows only the angle
 PULL = 1e-9  # of the largest normal force: less is round-off
 
@@ -39,6 +40,12 @@ def turned(system: System, q: Any) -> tuple[str, ...]:
     )
 
 
+DRIVES = "{name}: friction is negative at {speed:.4g} m/s (mu = {mu:.4g}) and drives the sliding: give the law a floor"
+BEYOND = "{name}: it slides at {speed:.4g} m/s, beyond the law's data, which end at {known:.4g} m/s"
+FEEDS = (
+    "{name}: at sliding speeds up to {speed:.4g} m/s the damping of its bristles is above 4 g/|v|, where they may feed "
+    "energy in"
+)
 PULLS = "{name}: N falls to {least:.4g} N: it would have to pull, where a unilateral contact lifts off"
 
 
@@ -71,7 +78,8 @@ def out_of_range(system: System, normal_force: Any, sliding_velocity: Any) -> tu
     normal_force, sliding_velocity : shape (..., contacts) [N], [m/s], of steady sliding or along a motion
 
     A bilateral contact whose N falls below 0 pulls, a coefficient below 0 drives the sliding and does not oppose it; a
-    table is constant beyond its last point, which nobody measured. Source: the equation in `squealbox.system`.
+    table is constant beyond its last point, which nobody measured; bristles with too much damping may feed energy in.
+    Source: the equation in `squealbox.system`.
 
     >>> from squealbox import Contact, LinearSlope, System
     >>> pad = Contact(n=[0.0], d=[1.0], t=[1.0], N0=1.0, V=20.0, law=LinearSlope(0.45, -0.03))
@@ -82,26 +90,80 @@ def out_of_range(system: System, normal_force: Any, sliding_velocity: Any) -> tu
     speed = np.atleast_2d(np.abs(np.asarray(sliding_velocity, dtype=float)))
     said: list[str] = []
     for i, contact in enumerate(system.contacts):
-        name = system.contact_names[i]
         n, v = normal[..., i].ravel(), speed[..., i].ravel()
         n, v = n[np.isfinite(n)], v[np.isfinite(v)]
         least, most = float(np.min(n, initial=0.0)), float(np.max(np.abs(n), initial=0.0))
-        if not contact.unilateral and least < -PULL * most:
-            said.append(PULLS.format(name=name, least=least))
+        name = system.contact_names[i]
+        said += _pulls(name, contact, least, PULL * most)
         if v.size == 0:
             continue
         fastest = float(np.max(v))
         if any(np.ndim(x) for x in contact.law.coefficients()):  # a family of laws, each at its own speed
             looked = np.abs(np.asarray(sliding_velocity, dtype=float)[..., i])
         else:
-            looked = np.linspace(0.0, fastest, 65) if v.size > 1 else v
-        mu = np.asarray(contact.law.mu(looked), dtype=float)
-        least_mu = float(np.nanmin(mu))
-        if least_mu < 0.0:
-            at = float(np.broadcast_to(looked, mu.shape).flat[int(np.nanargmin(mu))])
-            said.append(f"{name}: friction is negative at {at:.4g} m/s (mu = {least_mu:.4g}) and drives the sliding: "
-                        "give the law a floor")  # fmt: skip
-        if isinstance(contact.law, Table) and fastest > float(np.max(contact.law.speeds)) * (1.0 + 1e-12):
-            known = float(np.max(contact.law.speeds))
-            said.append(f"{name}: it slides at {fastest:.4g} m/s, beyond the law's data, which end at {known:.4g} m/s")
+            looked = np.linspace(0.0, fastest, SPEEDS) if v.size > 1 else v
+        said += _leaves(name, contact, looked, fastest)
     return tuple(said)
+
+
+def of_a_run(system: System, lowest: Any, fastest: Any) -> tuple[str, ...]:
+    """As :func:`out_of_range`, from the least normal force [N] and the fastest sliding [m/s] of each contact."""
+    said: list[str] = []
+    for name, contact, least, most in zip(system.contact_names, system.contacts, lowest, fastest, strict=True):
+        if np.isfinite(least):
+            said += _pulls(name, contact, float(least), _round_off(contact))
+        said += _leaves(name, contact, np.linspace(0.0, float(most), SPEEDS), float(most))
+    return tuple(said)
+
+
+def of_many_runs(system: System, lowest: Any, fastest: Any, least_mu: Any) -> str:
+    """As :func:`of_a_run`, of runs told in the rows of three tables (runs, contacts), NaN where there was no run."""
+    said: list[str] = []
+    for c, (name, contact) in enumerate(zip(system.contact_names, system.contacts, strict=True)):
+        low, mu, fast, count = lowest[:, c], least_mu[:, c], fastest[:, c], len(lowest)
+        if np.any(which := np.isfinite(low) & (low < -_round_off(contact))):
+            said += _pulls(_in(name, which, count), contact, float(np.min(low[which])), 0.0)
+        if np.any(which := mu < 0.0):
+            worst = int(np.nanargmin(mu))
+            said.append(DRIVES.format(name=_in(name, which, count), speed=fast[worst], mu=mu[worst]))
+        if isinstance(contact.law, Table) and np.any(which := fast > _known(contact.law)):
+            said.append(
+                BEYOND.format(name=_in(name, which, count), speed=np.max(fast[which]), known=_known(contact.law))
+            )
+    return "; ".join(said)
+
+
+def least_coefficient(contact: Contact, fastest: Any) -> Any:
+    """The least mu between rest and the fastest sliding [m/s] of each run (runs,); the law may be a family (runs,)."""
+    return np.min(contact.law.mu(np.linspace(0.0, 1.0, 17)[:, None] * np.asarray(fastest)), axis=0)
+
+
+def _in(name: str, which: Any, count: int) -> str:
+    return f"{name} in {int(np.sum(which))} of {count} trajectories"
+
+
+def _round_off(contact: Contact) -> float:
+    """A normal force [N] below which nothing is said."""
+    return 1e-12 * float(np.max(np.abs(value_at(contact.N0, 0.0))) + np.max(np.abs(contact.n), initial=0.0))
+
+
+def _known(law: Table) -> float:
+    return float(np.max(law.speeds)) * (1.0 + 1e-12)
+
+
+def _pulls(name: str, contact: Contact, least: float, round_off: float) -> list[str]:
+    return [PULLS.format(name=name, least=least)] if not contact.unilateral and least < -round_off else []
+
+
+def _leaves(name: str, contact: Contact, looked: Any, fastest: float) -> list[str]:
+    """What is to be said of the law of a contact at the speeds `looked` at, up to the fastest [m/s]."""
+    said, mu = [], np.asarray(contact.law.mu(looked), dtype=float)
+    least = float(np.nanmin(mu))
+    if least < 0.0:
+        at = float(np.broadcast_to(looked, mu.shape).flat[int(np.nanargmin(mu))])
+        said.append(DRIVES.format(name=name, speed=at, mu=least))
+    if isinstance(contact.law, Table) and fastest > _known(contact.law):
+        said.append(BEYOND.format(name=name, speed=fastest, known=_known(contact.law)))
+    if contact.law.has_memory and np.any(contact.law.feeds(looked)):  # type: ignore[attr-defined]
+        said.append(FEEDS.format(name=name, speed=fastest))
+    return said

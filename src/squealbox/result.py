@@ -72,6 +72,13 @@ def quantity(dims: str, unit: str, meaning: str = "") -> Any:
     return dataclasses.field(metadata={"dims": tuple(dims.split()), "unit": unit, "meaning": meaning})
 
 
+def optional(dims: str, unit: str, meaning: str = "") -> Any:
+    """As `quantity`, of an array that is empty where nobody gives it, as in files of before it was there."""
+    about = {"dims": tuple(dims.split()), "unit": unit, "meaning": meaning}
+    shape = (0,) * len(about["dims"])
+    return dataclasses.field(default_factory=lambda: np.zeros(shape), metadata=about)
+
+
 class Column(NamedTuple):
     """What a study keeps of a result under one name; dims are those that come after the leading axes."""
 

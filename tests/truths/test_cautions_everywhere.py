@@ -3,7 +3,17 @@
 import numpy as np
 import pytest
 
-from squealbox import Contact, Coulomb, LinearSlope, MassOnBelt, System, plots
+from squealbox import (
+    Contact,
+    Coulomb,
+    LinearSlope,
+    MassOnBelt,
+    System,
+    friction,
+    plots,
+    simulate,
+    simulate_ensemble,
+)
 from squealbox.cautions import along
 from squealbox.limit_cycles import bifurcation_diagram, branch, harmonic_balance, shooting
 
@@ -65,3 +75,19 @@ def test_a_bilateral_contact_that_pulls_along_a_cycle_by_harmonic_balance():
     assert "contact 1: N falls to -1 N" in said[0]
     pytest.importorskip("matplotlib")
     assert harmonic_balance(family(0.2), contact="smooth", width=1e-2).outcome is not None
+
+
+@pytest.mark.parametrize("method", ["taylor", "dormand-prince"])
+def test_an_ensemble_says_it_with_how_many(method):
+    """Least mu from |v| at most 0.8 + the swing of a single run; none of the run that is damped."""
+    found = simulate_ensemble([family(0.1), family(0.2), family(2.0)], duration=20.0, method=method)
+    assert found.caution.startswith("belt in 2 of 3 trajectories: friction is negative at ")
+    assert NEGATIVE in simulate(family(0.1), 20.0).caution
+    assert simulate_ensemble([family(2.0)], duration=20.0, method=method).caution == ""
+
+
+def test_an_ensemble_beyond_the_data_of_its_law():
+    law = friction.Table([0.0, 0.1, 0.2], [0.4, 0.3, 0.2])
+    found = simulate_ensemble(MassOnBelt(friction=law), {"sliding_speed": [0.1, 0.3]}, duration=2.0)
+    assert found.caution.startswith("belt in 1 of 2 trajectories: it slides at")
+    assert found.caution.endswith("beyond the law's data, which end at 0.2 m/s")

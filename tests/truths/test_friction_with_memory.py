@@ -21,7 +21,7 @@ from squealbox import (
     simulate_ensemble,
 )  # fmt: skip
 from squealbox.friction import Averaged, Dahl, ElastoPlastic, FrictionLaw, LuGre
-from squealbox.limit_cycles import shooting
+from squealbox.limit_cycles import basin, bifurcation_diagram, harmonic_balance
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Sinusoid
 from squealbox.stability import mode_energy
@@ -263,7 +263,9 @@ def test_open_contact_has_no_force() -> None:
 
 
 @pytest.mark.parametrize(("ask", "error"), [
-    (lambda s: shooting(s), InvalidSystem),
+    (lambda s: harmonic_balance(s), InvalidSystem),
+    (lambda s: basin(s), InvalidSystem),
+    (lambda s: bifurcation_diagram(lambda v: s, "V", [0.1, 0.2]), InvalidSystem),
     (lambda s: mode_energy(s), InvalidSystem),
     (lambda s: simulate(s, 0.1, contact="time-stepping"), InvalidSystem),
     (lambda s: Averaged(s.contacts[0].law, 1.0), ParameterError),

@@ -35,10 +35,18 @@ def usual_method(system: System, contact: str) -> str:
 
 
 def _usual_method(system: System, contact: str) -> str:
-    n, m = system.size, len(system.contacts)
-    small = n * (2 * n + 4 * m) + m * m <= LARGE
     rooted = any(texts_of(c.law) and has_root_at_rest(c.law) for c in system.contacts)
-    return TAYLOR if contact == "exact" and small and not rooted and not no_series(system) else "dormand-prince-8"
+    return (
+        TAYLOR
+        if contact == "exact" and is_small(system) and not rooted and not no_series(system)
+        else "dormand-prince-8"
+    )
+
+
+def is_small(system: System) -> bool:
+    """Whether a generated step of the system is written out, and so compiled in a second or two."""
+    n, m = system.size, len(system.contacts)
+    return n * (2 * n + 4 * m) + m * m <= LARGE
 
 
 def has_root_at_rest(law: FrictionLaw) -> bool:

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from squealbox.arguments import designs, public
+from squealbox.cautions import of_many_runs
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Column, Outcome, Result, batched, quantity
 from squealbox.system import System, as_system
-from squealbox.transient import _march, cautions
+from squealbox.transient import _march
 from squealbox.transient.choosing import chosen_method, usual_method
 from squealbox.transient.lanes.work import HEAD, Progress, Work
 from squealbox.transient.methods import TAYLOR, Method
@@ -36,7 +37,8 @@ class Ensemble(Result):
     ended names the outcome of each trajectory ("completed", or as in `simulate`; "not_run" after an interruption).
     observed maps each observer's name to its values, (..., n), (..., contacts) or (...), with k values each where it
     returns several; parameters maps dotted names to what varied, (...). sample_q and sample_qd are (..., instants, n),
-    empty when no instants were asked for. caution names contacts that were pulled though they cannot open.
+    empty when no instants were asked for. caution names contacts that left the range of their model, as at the ends of
+    steps (and in the middle of Taylor's), and in how many trajectories.
     """
 
     ended: Any = quantity("...", "", "how each trajectory ended")
@@ -257,7 +259,7 @@ def _result(
         sample_qd=samples[..., n:],
         parameters=parameters,
         observed=observed,
-        caution=cautions.of_an_ensemble(work.system, rows[:, at:]),
+        caution=of_many_runs(work.system, *np.split(rows[:, at:], 3, axis=1)),
         seconds=time.monotonic() - work.began,
     )
 

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public, whole
+from squealbox.cautions import of_a_run
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import InvalidSystem, System, as_system, equilibrium, no_rigid_contact
-from squealbox.transient import _march, _motion, cautions, moreau, packing
+from squealbox.transient import _march, _motion, moreau, packing
 from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
 from squealbox.transient.choosing import check_series, chosen_method, usual_method
 from squealbox.transient.latest import Latest
@@ -229,7 +230,7 @@ class _Run:
         m = len(self.system.contacts)
         count = [int(x) for x in self.scratch["count"]]
         reversals = count[_motion.REVERSALS]
-        said = cautions.of_a_run(self.system, self.scratch["lowest"][:m], self.scratch["fastest"][:m])
+        said = of_a_run(self.system, self.scratch["lowest"][:m], self.scratch["fastest"][:m])
         caution = "; ".join(each for each in (_instead(settings), _caution(settings, reversals), *said) if each)
         steps = count[_motion.ACCEPTED], count[_motion.REJECTED], count[_motion.EVALUATIONS]
         rows, events = self.rows[: count[_motion.ROWS]], self.events[: count[_motion.EVENTS]]
@@ -311,7 +312,7 @@ def _by_series(
         "width": width, "tableau": method.tableau, "rtol": method.rtol, "atol": run.atol.tolist(),
     }  # fmt: skip
     lowest, fastest = ([run.at(f"{name}{c}") for c in range(m)] for name in ("lowest", "fastest"))
-    said = "; ".join(cautions.of_a_run(system, lowest, fastest))
+    said = "; ".join(of_a_run(system, lowest, fastest))
     taken, tried = int(reached[1]), int(reached[2])
     return told(system, *run.columns(), settings, outcome, said, (taken, tried - taken, tried))
 

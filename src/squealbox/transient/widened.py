@@ -37,13 +37,29 @@ class Widened(System):
 
 
 def widened(system: System) -> System:
-    """The system with rows for all it remembers; itself where that is nothing."""
+    """The system with rows for all it remembers; itself where that is nothing or they are there."""
+    if isinstance(system, Widened):
+        return system
     return _with_memory(_in_coordinates(_with_limited_loops(system)))
 
 
 def base_of(system: System) -> System:
     """The system that results know."""
     return system.base if isinstance(system, Widened) else system
+
+
+def laid_open(system: System) -> System:
+    """A widened system as one whose rows are all its own: results leave out nothing of what it remembers.
+
+    What they know of it still has the masses and springs of its bodies alone, so that energies are theirs.
+    """
+    if not isinstance(system, Widened):
+        return system
+    base, more = system.base, system.size - system.base.size
+    plain: dict[str, Any] = {key: np.pad(getattr(base, key), (0, more)) for key in ("M", "C", "K")}
+    load, contacts = padded_load(base.load, more), _padded(base.contacts, more)
+    told = System(**plain, load=load, contacts=contacts, names=system.names, angles=base.angles)
+    return system.replace(seen=system.size, base=told, embedding=np.eye(system.size))
 
 
 def parted(function: str, start: Any, system: System) -> tuple[Any, Any]:
@@ -81,11 +97,8 @@ def _appended(system: System, more: int, name: str) -> tuple[dict[str, Any], Any
     fields: dict[str, Any] = {key: np.zeros((*lead, n + more, n + more)) for key in ("M", "C", "K")}
     for key in fields:
         fields[key][..., :n, :n] = getattr(system, key)
-    contacts = []
-    for contact in system.contacts:
-        given = {key: getattr(contact, key) for key in ("n", "d", "t", "normal")}
-        contacts.append(contact.replace({key: padded(row, more) for key, row in given.items() if row is not None}))
-    fields |= {"contacts": tuple(contacts), "load": padded_load(system.load, more), "loops": system.loops}
+    fields |= {"contacts": _padded(system.contacts, more), "load": padded_load(system.load, more)}
+    fields["loops"] = system.loops
     fields["names"] = (*system.names, *(f"{name} {i + 1}" for i in range(more)))
     old = system if isinstance(system, Widened) else None
     fields["seen"], fields["base"] = (old.seen, old.base) if old else (n, system)
@@ -94,6 +107,15 @@ def _appended(system: System, more: int, name: str) -> tuple[dict[str, Any], Any
     embedding = np.eye(n) if old is None else old.embedding
     fields["embedding"] = np.vstack([embedding, np.zeros((more, embedding.shape[1]))])
     return fields, lead
+
+
+def _padded(contacts: tuple[Contact, ...], more: int) -> tuple[Contact, ...]:
+    """Contacts that neither sense nor act along `more` further rows."""
+    out = []
+    for contact in contacts:
+        given = {key: getattr(contact, key) for key in ("n", "d", "t", "normal")}
+        out.append(contact.replace({key: padded(row, more) for key, row in given.items() if row is not None}))
+    return tuple(out)
 
 
 def _with_memory(system: System) -> System:

@@ -34,12 +34,13 @@ from squealbox.limit_cycles.attractors.settling import (
     settle_on,
     together,
 )
-from squealbox.limit_cycles.cycles.field import q_and_qd
+from squealbox.limit_cycles.cycles.field import remembers_nothing
 from squealbox.limit_cycles.cycles.pinned import at_rest_together
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome, Result, quantity
-from squealbox.system import System
+from squealbox.system import System, as_system
 
+MOST_LINES = 12  # of a summary, the largest shares
 CONFIDENCE = 0.95
 PILOT = 512  # starts that run until they have settled; those after them until they arrive at what these found
 
@@ -87,10 +88,14 @@ class Basin(Result):
         low, high = self.interval
         lines = [f"{100 * float(self.share):.1f} % of {len(self.attractor)} starts vibrate "
                  f"({100 * low:.1f} to {100 * high:.1f} %)"]  # fmt: skip
-        for i, kind in enumerate(self.kind):
+        shown = np.sort(np.argsort(-np.asarray(self.shares), kind="stable")[:MOST_LINES])
+        for i in shown:
+            kind = self.kind[i]
             about = self.attractors[i].summary() if self.attractors else str(kind)
             low, high = self.intervals[i]
             lines.append(f"  {100 * self.shares[i]:5.1f} % ({100 * low:.1f} to {100 * high:.1f} %) {about}")
+        if len(self.kind) > MOST_LINES:
+            lines.append(f"  and {len(self.kind) - MOST_LINES} smaller ones, in `attractors`: a continuum of motions?")
         if not self.outcome.ok:
             lines.append(f"  {self.outcome}: {self.outcome.message}")
         return "\n".join(lines)
@@ -134,7 +139,9 @@ def basin(
     >>> basin(DrumBrake(friction=LinearSlope(0.3, -0.05)), [1e-6, 1e-6, 0.0, 0.0], 4).share
     array(0.)
     """
-    system = at_rest_together(q_and_qd(design_or_system))
+    system = as_system(design_or_system)
+    remembers_nothing(system)
+    system = at_rest_together(system)
     batch = Batch.over(system)
     scales = Scales.of(batch, 1)
     n = system.size

@@ -28,7 +28,7 @@ from squealbox.limit_cycles.attractors.settling import (
     settle,
 )
 from squealbox.limit_cycles.branches.isolated import drawn_states
-from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.remembering import field_of
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome, Result, quantity
 from squealbox.stability import complex_modes
@@ -192,7 +192,7 @@ def _drawn(batch: Batch, scales: Scales, starts: int, seed: int) -> list[Any]:
     """States (k, 2n) of each drawn start: the same beside steady sliding at every value."""
     if starts == 0:
         return []
-    first = Field(batch.take([0]).one)
+    first = field_of(batch.take([0]).one)
     own = np.r_[np.nan_to_num(scales.rest[0]), np.zeros(first.size)]
     beside = drawn_states(first, starts, seed) - own
     sliding = np.concatenate([np.nan_to_num(scales.rest), np.zeros_like(scales.rest)], axis=1)

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.cycles.field import check_autonomous, check_states
+from squealbox.limit_cycles.cycles.field import check_autonomous, remembers_nothing
 from squealbox.parameters import ParameterError
 from squealbox.schedules import value_at
 from squealbox.stability import complex_modes
@@ -28,6 +28,7 @@ from squealbox.system import System, as_system, equilibrium
 from squealbox.transient import Method, Observer, simulate_ensemble
 from squealbox.transient.lanes.batch import first_of, stacked
 from squealbox.transient.observers import amplitude_update, frequency, poincare
+from squealbox.transient.rows import fastest_rate, rows_of
 
 STRETCH = 60.0  # periods of the slowest mode, of the first stretch
 WINDOWS = 5  # in a stretch
@@ -65,10 +66,12 @@ class Batch:
         if callable(design) and not hasattr(design, "replace"):
             if len(given) != 1:
                 raise ParameterError("limit_cycles", "parameters", list(given), "one, for a function of one value")
-            return cls([as_system(design(float(value))) for value in next(iter(given.values()))], {})
-        batch = cls(design if given else as_system(design), given)
-        check_states(first_of(batch.system))
-        check_autonomous(first_of(batch.system))
+            batch = cls([as_system(design(float(value))) for value in next(iter(given.values()))], {})
+        else:
+            batch = cls(design if given else as_system(design), given)
+        one = batch.design[0] if isinstance(batch.design, list) else first_of(batch.system)
+        remembers_nothing(one)
+        check_autonomous(one)
         return batch
 
     @property
@@ -119,7 +122,7 @@ class Scales:
         growth = modes.largest_growth_rate
         frequency = np.where(modes.angular_frequency > 0.0, modes.angular_frequency, np.inf)
         slowest = np.min(frequency, axis=-1)
-        own = np.sqrt(np.abs(np.max(np.abs(np.linalg.eigvals(np.linalg.solve(system.M, system.K))), axis=-1)))
+        own = fastest_rate(system, rows_of(system))
         slowest = np.where(np.isfinite(slowest), slowest, np.where(own > 0.0, own, 1.0))
         speeds = [np.abs(np.asarray(value_at(c.V, 0.0), dtype=float)) for c in system.contacts]
         speed = np.max(np.stack(np.broadcast_arrays(*speeds)), axis=0) if speeds else np.zeros(())

@@ -15,12 +15,12 @@ from squealbox.limit_cycles.branches.branch import Branch, branch
 from squealbox.limit_cycles.branches.hopf import family
 from squealbox.limit_cycles.branches.joined import joined
 from squealbox.limit_cycles.cycles.cycle import Cycle
-from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.field import Autonomous
+from squealbox.limit_cycles.cycles.remembering import Remembering, field_of
 from squealbox.limit_cycles.cycles.shooting import shooting
 from squealbox.limit_cycles.cycles.starting import first_guess, steady_state
 from squealbox.limit_cycles.cycles.variation import fly
 from squealbox.parameters import ParameterError
-from squealbox.system import as_system
 
 ALIKE = 1e-2  # of the size: extremes and period by which two settled motions are one cycle
 SWINGS = (0.3, 6.0)  # largest speeds of the starts, in sliding speeds
@@ -51,11 +51,11 @@ def settled_cycles(
     >>> [cycle.stable for cycle in settled_cycles(drum, 8)]
     [True]
     """
-    field = Field(as_system(design_or_system))
+    field = field_of(design_or_system)
     states = drawn_states(field, int(starts), seed) if np.ndim(starts) == 0 else np.asarray(starts, dtype=float)
-    if states.ndim != 2 or states.shape[1] != 2 * field.size or not np.all(np.isfinite(states)):
+    if states.ndim != 2 or states.shape[1] != 2 * field.system.size or not np.all(np.isfinite(states)):
         raise ParameterError(
-            "settled_cycles", "starts", np.shape(starts), f"finite states, shape (k, {2 * field.size})"
+            "settled_cycles", "starts", np.shape(starts), f"finite states, shape (k, {2 * field.system.size})"
         )
     found: list[Cycle] = []
     for state in states:
@@ -65,16 +65,16 @@ def settled_cycles(
     return tuple(sorted(found, key=lambda cycle: -float(np.max(cycle.amplitude))))
 
 
-def drawn_states(field: Field, count: int, seed: int = 0) -> Any:
+def drawn_states(field: Autonomous, count: int, seed: int = 0) -> Any:
     """`count` states about steady sliding (or about rest, where there is none), shape (count, 2 dof)."""
     if count < 1:
         raise ParameterError("settled_cycles", "starts", count, "at least 1")
     rng = np.random.default_rng(seed)
     steady = np.nan_to_num(steady_state(field))
-    half = field.size
-    values, shapes = np.linalg.eig(field.mk)  # modes without contacts and dampers
-    vectors = np.vstack([shapes, shapes * 1j * np.sqrt(np.abs(values))])
-    weights = rng.normal(size=(count, half)) * np.exp(2j * np.pi * rng.random((count, half)))
+    half = field.system.size
+    rates, shapes = field.own_modes()
+    vectors = np.vstack([shapes, shapes * 1j * rates])
+    weights = rng.normal(size=(count, len(rates))) * np.exp(2j * np.pi * rng.random((count, len(rates))))
     states = np.real(weights @ vectors.T)
     speed = np.max(np.abs(states[:, half:]), axis=1, keepdims=True)
     sliding = float(np.max(np.abs(field.V), initial=0.0)) or 1.0
@@ -83,16 +83,18 @@ def drawn_states(field: Field, count: int, seed: int = 0) -> Any:
     return steady + states * wanted / np.where(speed > 0.0, speed, 1.0)
 
 
-def _settled(field: Field, state: Any, settle: float | None, known: list[Cycle]) -> Cycle | None:
+def _settled(field: Autonomous, state: Any, settle: float | None, known: list[Cycle]) -> Cycle | None:
     """The cycle a run from `state` settles to, unless it is a known one or none."""
-    half = field.size
+    half = field.system.size
     x, period, outcome = first_guess(field, (state[:half], state[half:]), settle)
     if not outcome.ok:
         return None
     run = fly(field, x, period, 1e-9, np.linspace(0.0, period, 257))
-    if not run.outcome.ok or any(_alike(cycle, period, run.q.min(axis=0), run.q.max(axis=0)) for cycle in known):
+    if not run.outcome.ok or any(_alike(cycle, period, run.q.min(axis=0)[:half], run.q.max(axis=0)[:half])
+                                 for cycle in known):  # fmt: skip
         return None
-    cycle = shooting(field.system, (x[:half], x[half:], period))
+    known_start = (state[:half], state[half:]) if isinstance(field, Remembering) else (x[:half], x[half:], period)
+    cycle = shooting(field.asked, known_start, settle=settle)
     if not cycle.stable or any(_alike(other, cycle.period, cycle.lowest, cycle.highest) for other in known):
         return None
     return cycle

@@ -10,6 +10,7 @@ import numpy as np
 
 from squealbox.limit_cycles.branches.shooting_path import ShootingPath
 from squealbox.limit_cycles.cycles.cycle import Cycle
+from squealbox.limit_cycles.cycles.field import Autonomous
 from squealbox.limit_cycles.cycles.variation import fly
 
 CLEAR = 0.02  # of the period: an event farther from the beginning is no matter
@@ -51,7 +52,7 @@ def turned(path: ShootingPath, cycle: Cycle, p: float, row: int, dof: int) -> An
     A start off by a part of a sample may lead Newton's method from an unstable cycle, or one near a jump, to another.
     """
     field, before = path.field(p), row - 1 if row > 0 else len(cycle.t) - 2
-    start = np.concatenate([cycle.q[before], cycle.qd[before]])
+    start = _state(field, cycle, before, path.rtol)
     gap = float(cycle.t[before + 1] - cycle.t[before])
     after = gap * cycle.qd[before, dof] / (cycle.qd[before, dof] - cycle.qd[row, dof])
     state = start
@@ -64,6 +65,14 @@ def turned(path: ShootingPath, cycle: Cycle, p: float, row: int, dof: int) -> An
     return state
 
 
+def _state(field: Autonomous, cycle: Cycle, row: int, rtol: float) -> Any:
+    """The state at a row of a cycle; what is remembered is known at its beginning alone."""
+    if not np.size(cycle.memory) or row == 0:
+        return field.state(cycle.q[row], cycle.qd[row], cycle.memory)
+    run = fly(field, field.state(cycle.q[0], cycle.qd[0], cycle.memory), float(cycle.t[row]), rtol)
+    return np.concatenate([run.q[-1], run.qd[-1]])
+
+
 def touches_event(path: ShootingPath, x: Any, p: float) -> bool:
     """True when an event lies next to the beginning of the period."""
     times = path.run(x, p).event_time / float(x[-1])
@@ -73,6 +82,8 @@ def touches_event(path: ShootingPath, x: Any, p: float) -> bool:
 def taken_up(path: ShootingPath, last: tuple[Any, float], earlier: tuple[Any, float]) -> tuple[Any, ...] | None:
     """(path, x, p, tangent) through the same cycle from another turning point; the tangent leads on from `earlier`."""
     cycle, before = path.cycle(*last), path.cycle(*earlier)
+    if np.size(cycle.memory):  # known at one instant alone, not at another turning point
+        return None
     other = ShootingPath(path.make, path.rtol, path.span)
     x, p = begun(other, cycle, last[1]), last[1]
     if touches_event(other, x, p):

@@ -4,12 +4,15 @@ At a largest or least displacement of one degree of freedom its velocity is zero
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from squealbox.limit_cycles.cycles.cycle import Cycle, extremes
-from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.differences import by_differences, change
+from squealbox.limit_cycles.cycles.field import Autonomous, Field
+from squealbox.limit_cycles.cycles.remembering import field_of
 from squealbox.limit_cycles.cycles.shooting import cycle_through
 from squealbox.limit_cycles.cycles.variation import Flight, flight, fly, quick_flight
 from squealbox.parameters import ParameterError
@@ -31,7 +34,7 @@ class ShootingPath:
 
     def __init__(self, make: Callable[[float], System], rtol: float, span: float) -> None:
         self.make, self.rtol, self.span = make, rtol, span
-        self.fields: dict[float, Field] = {}
+        self.fields: dict[float, Autonomous] = {}
         self.runs: dict[bytes, Trajectory] = {}
         self.flights: dict[bytes, Flight] = {}
         self.column, self.scale = 0, np.ones(1)
@@ -44,10 +47,10 @@ class ShootingPath:
         self.scale = np.delete(sizes, self.column)
         return np.append(np.delete(x, self.column), period)
 
-    def field(self, p: float) -> Field:
+    def field(self, p: float) -> Autonomous:
         """The equation at a parameter value."""
         if p not in self.fields:
-            self.fields[p] = Field(self.make(p))
+            self.fields[p] = field_of(self.make(p))
             _trim(self.fields)
         return self.fields[p]
 
@@ -68,10 +71,15 @@ class ShootingPath:
         key = np.append(x, p).tobytes()
         start = self.start(x)
         if key not in self.flights:
-            self.flights[key] = quick_flight(self.field(p), start, float(x[-1]), self.rtol, motion=self.run(x, p),
-                                             beside=self.beside(p))  # fmt: skip
+            self.flights[key] = self._derived(self.field(p), start, float(x[-1]), self.run(x, p), self.beside(p))
             _trim(self.flights)
         return start, self.flights[key]
+
+    def _derived(self, field: Any, x: Any, period: float, motion: Trajectory, beside: tuple[Any, Any, float]) -> Flight:
+        if isinstance(field, Field):
+            return quick_flight(field, x, period, self.rtol, motion=motion, beside=beside)
+        flown = by_differences(field, x, period, self.rtol, motion=motion)
+        return replace(flown, by_p=change(x, period, self.rtol, beside))
 
     def sequence(self, x: Any, p: float) -> tuple[tuple[int, int], ...] | None:
         """(contact, new mode) of the events of a period, from a fixed first one on; None where there is no motion."""
@@ -108,12 +116,12 @@ class ShootingPath:
         """The frequency by which a velocity is a displacement [rad/s]."""
         return next(iter(self.fields.values())).frequency
 
-    def beside(self, p: float) -> tuple[Field, Field, float]:
+    def beside(self, p: float) -> tuple[Any, Any, float]:
         """The equation on both sides of a parameter value, or on the one side its range allows, and their distance."""
         step, ends = STEP * self.span, []
         for value in (p - step, p + step):
             try:
-                ends.append((value, Field(self.make(value))))
+                ends.append((value, field_of(self.make(value))))
             except ParameterError:
                 ends.append((p, self.field(p)))
         (low, first), (high, second) = ends
@@ -133,14 +141,15 @@ class ShootingPath:
         """Period, extremes, multipliers, least sliding speed and longest sticking of the cycle at a point."""
         _, flown = self.fly(x, p)
         motion = flown.motion
-        low, high = extremes(motion.t, motion.q, motion.qd)
+        n = self.field(p).system.size
+        low, high = extremes(motion.t, motion.q[:, :n], motion.qd[:, :n])
         slip = motion.sliding_velocity * np.sign(self.field(p).V)
         sticking = np.sum((motion.mode[1:] == 0) * np.diff(motion.t)[:, None], axis=0)
         return {"period": float(x[-1]), "lowest": low, "highest": high,
                 "multipliers": self.multipliers(x, p),
                 "least_slip": float(np.min(slip, initial=np.inf)),
                 "sticking": float(np.max(sticking, initial=0.0)),
-                "begin": np.concatenate([motion.q[0], motion.qd[0]])}  # fmt: skip
+                "begin": np.concatenate([motion.q[0, :n], motion.qd[0, :n]])}  # fmt: skip
 
     def multipliers(self, x: Any, p: float) -> Any:
         """Floquet multipliers of the cycle at a point."""
@@ -153,8 +162,12 @@ class ShootingPath:
     def cycle(self, x: Any, p: float) -> Cycle:
         """The cycle at a point, its multipliers computed anew to 1e-12; error is the scaled residual there."""
         start = self.start(x)
-        flown = flight(self.field(p), start, float(x[-1]))
+        field = self.field(p)
+        if not isinstance(field, Field):
+            flown = by_differences(field, start, float(x[-1]), motion=fly(field, start, float(x[-1]), 1e-13))
+        else:
+            flown = flight(field, start, float(x[-1]))
         error = float(np.max(np.abs(self.residual(x, p))))
         settings = {"contact": "exact", "width": 0.0, "shots": 1, "rtol": 1e-13}
-        return cycle_through(self.field(p), start, float(x[-1]), flown.phi, Outcome(COMPLETED), settings, 2049, error,
+        return cycle_through(field, start, float(x[-1]), flown.phi, Outcome(COMPLETED), settings, 2049, error,
                              [flown])  # fmt: skip

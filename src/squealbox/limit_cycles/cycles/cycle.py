@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.result import Result, quantity
+from squealbox.result import Result, optional, quantity
 from squealbox.system import System
 
 
@@ -38,6 +38,9 @@ class Cycle(Result):
     event_time: Any = quantity("event", "s", "instants of stick, slip and reversal")
     event_contact: Any = quantity("event", "1", "contact of each event")
     event_mode: Any = quantity("event", "1", "mode the contact takes at the event")
+    memory: Any = optional(  # noqa: RUF009
+        "state", "m", "what is remembered beside q and q' at the beginning: bristles, loops' states"
+    )
     error: float = float("nan")
     caution: str = ""
 
@@ -84,9 +87,10 @@ class Cycle(Result):
         return np.sum((self.mode[1:] == 0) * np.diff(self.t)[:, None], axis=0)
 
     @property
-    def start(self) -> tuple[Any, Any]:
-        """(q, qd) at the beginning of the period, for `simulate`."""
-        return self.q[0], self.qd[0]
+    def start(self) -> tuple[Any, ...]:
+        """(q, qd) at the beginning of the period, for `simulate`; (q, qd, z) with contacts whose law has memory."""
+        count = sum(contact.law.has_memory for contact in self.system.contacts)
+        return (self.q[0], self.qd[0], self.memory[-count:]) if count else (self.q[0], self.qd[0])
 
     def summary(self) -> str:
         """One line: period, frequency, amplitudes, stability."""

@@ -10,6 +10,7 @@ F = s mu(s v) N, one that sticks the force that keeps t.q'' = 0, an open one not
 because dv = -t.dq'. Smoothed laws put tanh(v/width) or (2/pi) arctan(v/width) for sgn(v) and have no modes.
 """
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,9 +21,13 @@ from squealbox.memory_rows import no_memory
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Schedule, value_at
 from squealbox.system import InvalidSystem, System, as_system
+from squealbox.transient import Method
+from squealbox.transient.choosing import usual_method
+from squealbox.transient.lanes.flows import Flows
 from squealbox.transient.limited import in_time
 from squealbox.transient.packing import inverse_mass
 from squealbox.transient.rows import WITH_MASS, row_kinds
+from squealbox.transient.simulate import SCHEMES
 from squealbox.transient.widened import Widened
 
 OPEN = 2
@@ -38,13 +43,25 @@ def smoothed_sign(v: Any, width: float, kind: str) -> tuple[Any, Any]:
     return 2.0 / np.pi * np.arctan(r), 2.0 / (np.pi * width * (1.0 + r * r))
 
 
+OTHERWISE = 'shooting() and branch(method="shooting") find the cycles of such a system, simulate() its motion'
+
+
 def check_states(system: System) -> None:
     """Raise `InvalidSystem` for a system that has other states than q and q'."""
-    no_memory(system.contacts, "a limit cycle in q and q'")
-    if isinstance(system, Widened) or any(kind != WITH_MASS for kind in row_kinds(system)):
+    remembers_nothing(system)
+    if any(kind != WITH_MASS for kind in row_kinds(system)):
         raise InvalidSystem(
-            "M is singular, or a loop with a limit remembers: a limit cycle here is one of q and q' alone; simulate() "
-            "runs such a system to what it settles on"
+            f"M has rows without mass: expected a mass for every freedom, as q and q' are the states here; {OTHERWISE}"
+        )
+
+
+def remembers_nothing(system: System) -> None:
+    """Raise `InvalidSystem` where something beside the rows of a system is remembered."""
+    no_memory(system.contacts, "this analysis")
+    if isinstance(in_time(system), Widened):
+        raise InvalidSystem(
+            "M is singular otherwise than by rows without mass, or a loop remembers: expected displacements and "
+            f"velocities as the only states here; {OTHERWISE}"
         )
 
 
@@ -55,35 +72,84 @@ def q_and_qd(design_or_system: Any) -> System:
     return system
 
 
-class Field:
-    """f(x, mode) and df/dx of an autonomous system without leading axes.
+class Autonomous:
+    """An autonomous system without leading axes as a search for cycles sees it: a start, a motion, a rate.
 
-    contact is "exact" (modes), "tanh" or "arctan" (smoothed over `width`, m/s). Raises `ParameterError` for a system
-    that varies with time, whose motion has no period of its own, or that has leading axes.
+    system is what results know, asked the one given, held_fast what moves; a state is the displacements and velocities
+    (2 size,) of all its rows, scale what makes velocities of them. Raises `ParameterError` for a system that varies
+    with time, whose motion has no period of its own, or that has leading axes.
+    """
+
+    def __init__(
+        self, asked: System, system: System, moves: System, contact: str, width: float, frequency: float
+    ) -> None:  # fmt: skip
+        check_autonomous(moves)
+        self.asked, self.system, self.held_fast, self.contact, self.width = asked, system, moves, contact, width
+        n, rows = moves.size, moves.contacts
+        self.size = n
+        self.n, self.t, self.d = (np.array([getattr(c, x) for c in rows]).reshape(-1, n) for x in ("n", "t", "d"))
+        self.N0, self.V = (np.array([float(value_at(getattr(c, x), 0.0)) for c in rows]) for x in ("N0", "V"))
+        self.unilateral = np.array([c.unilateral for c in rows], dtype=bool)
+        self.static = np.array([float(c.law.static_limit) for c in rows])
+        self.frequency = frequency
+        self.scale = np.r_[np.full(n, frequency or 1.0), np.ones(n)]
+        self._flows: dict[Method, Flows] = {}
+
+    def flows(self, method: Method, duration: float) -> Flows:
+        """Many motions at once, by the series of the equation where it has one."""
+        if method not in self._flows:
+            taken = replace(method, tableau=usual_method(self.held_fast, self.contact))
+            self._flows[method] = Flows([self.held_fast], taken, SCHEMES[self.contact], self.width, duration)
+        return self._flows[method]
+
+    def contact_state(self, x: Any) -> tuple[Any, Any]:
+        """Normal force [N] and sliding velocity [m/s] of each contact."""
+        return self.N0 + x[..., : self.size] @ self.n.T, self.V - x[..., self.size :] @ self.t.T
+
+    def state(self, q: Any, qd: Any, memory: Any = None) -> Any:
+        """State of displacements and velocities (n,), with what is remembered beside them where that is known."""
+        raise NotImplementedError
+
+    def rate(self, x: Any, mode: Any) -> Any:
+        """x' at a state, with the contacts in the modes (contacts,)."""
+        raise NotImplementedError
+
+    def own_modes(self) -> tuple[Any, Any]:
+        """Angular frequencies [rad/s] and shapes (n, modes) of the system without contacts."""
+        raise NotImplementedError
+
+    def multipliers(self, monodromy: Any) -> Any:
+        """Floquet multipliers, as `ordered` puts them; NaN where unknown."""
+        raise NotImplementedError
+
+
+class Field(Autonomous):
+    """f(x, mode) and df/dx of a system whose states are q and q'.
+
+    contact is "exact" (modes), "tanh" or "arctan" (smoothed over `width`, m/s).
     """
 
     def __init__(self, system: System, contact: str = "exact", width: float = 1e-3) -> None:
         system = in_time(system)
         check_states(system)
         check_autonomous(system)
-        self.system, self.contact, self.width = system, contact, width
-        n, rows = system.size, system.contacts
         inverse = inverse_mass(system.M)
-        self.size = n
-        self.frequency = float(np.sqrt(np.max(np.abs(np.linalg.eigvals(inverse @ system.K)))))
-        self.held_fast, self.rest = pinned(system, self.frequency)  # what moves, but for a common motion of bodies
-        self.mk, self.mc = (inverse @ matrix for matrix in (self.held_fast.K, self.held_fast.C))
-        self.mf = inverse @ value_at(system.load, 0.0)
-        self.n, self.t, d = (np.array([getattr(c, name) for c in rows]).reshape(-1, n) for name in ("n", "t", "d"))
-        self.d, self.md = d, d @ inverse.T
-        normal = [np.zeros(n) if c.normal is None else c.normal for c in rows]
-        self.mw = np.array(normal).reshape(-1, n) @ inverse.T
-        self.N0, self.V = (np.array([float(value_at(getattr(c, x), 0.0)) for c in rows]) for x in ("N0", "V"))
-        self.unilateral = np.array([c.unilateral for c in rows], dtype=bool)
-        self.static = np.array([float(c.law.static_limit) for c in rows])
-        self.laws = [c.law for c in rows]
-        self.same = bool(rows) and all(law == self.laws[0] for law in self.laws)
-        self.scale = np.r_[np.full(n, self.frequency or 1.0), np.ones(n)]
+        frequency = float(np.sqrt(np.max(np.abs(np.linalg.eigvals(inverse @ system.K)))))
+        moves, self.rest = pinned(system, frequency)  # all that moves, but for a common motion of bodies
+        super().__init__(system, system, moves, contact, width, frequency)
+        self.mk, self.mc = (inverse @ matrix for matrix in (moves.K, moves.C))
+        self.mf, self.md = inverse @ value_at(system.load, 0.0), self.d @ inverse.T
+        normal = [np.zeros(self.size) if c.normal is None else c.normal for c in system.contacts]
+        self.mw = np.array(normal).reshape(-1, self.size) @ inverse.T
+        self.laws = [c.law for c in system.contacts]
+        self.same = bool(self.laws) and all(law == self.laws[0] for law in self.laws)
+
+    def state(self, q: Any, qd: Any, memory: Any = None) -> Any:
+        return np.concatenate([q, qd])
+
+    def own_modes(self) -> tuple[Any, Any]:
+        values, shapes = np.linalg.eig(self.mk)
+        return np.sqrt(np.abs(values)), shapes
 
     @property
     def beside(self) -> Any:
@@ -106,10 +172,6 @@ class Field:
         slope = [law.slope_at(v[..., i]) for i, law in enumerate(self.laws)]
         empty = np.zeros(np.shape(v))
         return (np.stack(mu, -1), np.stack(slope, -1)) if mu else (empty, empty)
-
-    def contact_state(self, x: Any) -> tuple[Any, Any]:
-        """Normal force [N] and sliding velocity [m/s] of each contact."""
-        return self.N0 + x[..., : self.size] @ self.n.T, self.V - x[..., self.size :] @ self.t.T
 
     def forces(self, x: Any, mode: Any) -> tuple[Any, Any, Any, Any]:
         """F, dF/dN, dF/dv of the contacts that slip and the mask of open ones; F of a sticking contact is 0 here."""

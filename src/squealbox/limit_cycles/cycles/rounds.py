@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.field import Autonomous
 from squealbox.limit_cycles.cycles.variation import fly
 
 MOST = 64  # rounds looked for
 
 
-def rounds(field: Field, x: Any, period: float, size: float, rtol: float, tolerance: float) -> int:
+def rounds(field: Autonomous, x: Any, period: float, size: float, rtol: float, tolerance: float) -> int:
     """The largest m up to 64 for which the cycle from x closes after period/m; `size` is that of its scaled states."""
     parts = np.arange(MOST, 0, -1)
     run = fly(field, x, period, rtol, np.r_[0.0, period / parts])

@@ -16,14 +16,14 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.cautions import out_of_range, turned
 from squealbox.limit_cycles.cycles.cycle import Cycle, extremes
-from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.field import Autonomous
+from squealbox.limit_cycles.cycles.remembering import field_of
 from squealbox.limit_cycles.cycles.rounds import rounds
 from squealbox.limit_cycles.cycles.shots import Newton, nodes_along
 from squealbox.limit_cycles.cycles.starting import first_guess
 from squealbox.limit_cycles.cycles.variation import Flight, fly
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Outcome
-from squealbox.system import as_system
 
 CONTACTS = {"exact": "exact", "smooth": "arctan", "arctan": "arctan", "tanh": "tanh"}
 TURNS = (1, 2, 4)  # past a doubling, a run settles on the cycle that closes after two turns, past the next after four
@@ -76,7 +76,7 @@ def shooting(
         raise ParameterError("shooting", "contact", contact, known_names(str(contact), list(CONTACTS)))
     if int(shots) != shots or shots < 1:
         raise ParameterError("shooting", "shots", shots, "a whole number of at least 1")
-    field = Field(as_system(design_or_system), CONTACTS[contact], width)
+    field = field_of(design_or_system, CONTACTS[contact], width)
     x, period, found = first_guess(field, start, settle)
     settings = {"contact": contact, "width": width, "shots": shots, "rtol": rtol, "tolerance": tolerance}
     if not found.ok:
@@ -97,7 +97,7 @@ def shooting(
 
 
 def _solved(
-    field: Field, x: Any, period: float, shots: int, rtol: float, tolerance: float, most: int
+    field: Autonomous, x: Any, period: float, shots: int, rtol: float, tolerance: float, most: int
 ) -> tuple[Newton, Outcome]:
     """Newton's method from x; where it converged on a cycle wound several times, again for one round of it."""
     for _ in range(2):
@@ -117,23 +117,25 @@ def _flips(cycle: Cycle) -> bool:
 
 
 def cycle_through(
-    field: Field, x: Any, period: float, monodromy: Any, outcome: Outcome, settings: dict[str, Any], samples: int,
+    field: Autonomous, x: Any, period: float, monodromy: Any, outcome: Outcome, settings: dict[str, Any], samples: int,
     error: float, flights: list[Flight] | None = None,
 ) -> Cycle:  # fmt: skip
     """The cycle through x, sampled at equal instants and at its events."""
     rough = fly(field, x, period, settings["rtol"])
     instants = np.unique(np.r_[np.linspace(0.0, period, samples), rough.event_time])
     run = fly(field, x, period, settings["rtol"], np.minimum(instants, period))
-    low, high = extremes(run.t, run.q, run.qd)
+    n = field.system.size
+    q, qd = run.q[:, :n], run.qd[:, :n]
+    low, high = extremes(run.t, q, qd)
     multipliers = field.multipliers(monodromy)
     return Cycle(
         inputs={"system": field.system}, settings=settings, outcome=outcome, period=np.asarray(period), t=run.t,
-        q=run.q, qd=run.qd, sliding_velocity=run.sliding_velocity, mode=run.mode, multipliers=multipliers,
+        q=q, qd=qd, memory=run.q[0, n:], sliding_velocity=run.sliding_velocity, mode=run.mode, multipliers=multipliers,
         lowest=low, highest=high, event_time=run.event_time, event_contact=run.event_contact,
         event_mode=run.event_mode, error=float(error),
         caution="; ".join([*filter(None, [_caution(flights or [])]),
                            *out_of_range(field.system, run.normal_force, run.sliding_velocity),
-                           *turned(field.system, run.q)]),
+                           *turned(field.system, q)]),
     )  # fmt: skip
 
 

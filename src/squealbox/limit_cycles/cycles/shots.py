@@ -8,12 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.differences import by_differences
+from squealbox.limit_cycles.cycles.field import Autonomous, Field
 from squealbox.limit_cycles.cycles.variation import Flight, flight, fly
 from squealbox.result import COMPLETED, Outcome
 from squealbox.transient import Trajectory
+from squealbox.transient.choosing import is_small
 
 HALVINGS = 6
+CLOSE = 1e-6  # mismatch of a derivative that Newton's method may take
 ADVICE = "give a start nearer to the cycle, a longer `settle`, or more `shots`"
 
 
@@ -32,7 +35,7 @@ class Shots:
 class Newton:
     """Newton's method on the shots; keeps the history of the scaled residual and counts motions and derivatives."""
 
-    def __init__(self, field: Field, nodes: Any, period: float, rtol: float) -> None:
+    def __init__(self, field: Autonomous, nodes: Any, period: float, rtol: float) -> None:
         self.field, self.nodes, self.period, self.rtol, self.size = field, nodes, period, rtol, 1.0
         self.reference = nodes[0].copy()
         self.history: list[float] = []
@@ -56,8 +59,7 @@ class Newton:
             following = self._damped(now, step, most_halvings=0 if now.norm < tolerance else HALVINGS)
             now = now if following is None else following
         self.nodes, self.period, self.size = now.nodes, now.period, now.size
-        if not self.flights or any(f.motion is not m for f, m in zip(self.flights, now.motions, strict=True)):
-            self.flights = self._derivatives(now)
+        self.flights = self._derivatives(now, last=True)
         self.monodromy = _product([f.phi for f in self.flights])
         if now.norm > tolerance or not np.isfinite(now.norm):
             message = f"Newton's method stopped at a scaled residual of {now.norm:.3g}: {ADVICE}"
@@ -77,11 +79,21 @@ class Newton:
         size = float(np.max(np.ptp(np.vstack(states), axis=0) * scale)) or 1.0
         return Shots(nodes, period, motions, residual, size, float(np.max(np.abs(residual * scale))) / size)
 
-    def _derivatives(self, now: Shots) -> list[Flight]:
+    def _derivatives(self, now: Shots, last: bool = False) -> list[Flight]:
         self.derived += len(now.nodes)
         duration = now.period / len(now.nodes)
         pairs = zip(now.nodes, now.motions, strict=True)
-        return [flight(self.field, node, duration, self.rtol, motion=motion) for node, motion in pairs]
+        return [self._derivative(node, duration, motion, last) for node, motion in pairs]
+
+    def _derivative(self, x: Any, duration: float, motion: Trajectory, last: bool) -> Flight:
+        """By differences where there is no equation to differentiate, and quickly on the way to the cycle."""
+        if not isinstance(self.field, Field):
+            return by_differences(self.field, x, duration, self.rtol, motion=motion)
+        if not last and is_small(self.field.held_fast):
+            near = by_differences(self.field, x, duration, self.rtol, motion=motion)
+            if near.mismatch < CLOSE:
+                return near
+        return flight(self.field, x, duration, self.rtol, motion=motion)
 
     def _phase(self, motion: Trajectory) -> Any:
         normal = self.field.rate(self.reference, motion.mode[0]) * self.field.scale
@@ -132,7 +144,7 @@ def _product(matrices: Any) -> Any:
     return total
 
 
-def nodes_along(field: Field, x: Any, period: float, shots: int, rtol: float) -> Any:
+def nodes_along(field: Autonomous, x: Any, period: float, shots: int, rtol: float) -> Any:
     """Starts of the shots, along the motion from x."""
     if shots == 1:
         return x[None].copy()

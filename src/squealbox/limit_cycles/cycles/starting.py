@@ -5,10 +5,12 @@ from typing import Any
 import numpy as np
 
 from squealbox.limit_cycles.cycles.cycle import Cycle
-from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.field import Autonomous
+from squealbox.limit_cycles.cycles.remembering import Remembering
 from squealbox.limit_cycles.cycles.variation import PERIOD_STEPS, fly
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Outcome
+from squealbox.schedules import value_at
 from squealbox.stability import Mode, complex_modes
 from squealbox.system import equilibrium
 from squealbox.transient import Trajectory
@@ -21,7 +23,7 @@ STIFF = "one period of the slowest mode takes too many steps: damping, or what i
 STILL = 1e-5  # share of the sliding speed; a run that swings less has settled on steady sliding
 
 
-def first_guess(field: Field, start: Any, settle: float | None) -> tuple[Any, float, Outcome]:
+def first_guess(field: Autonomous, start: Any, settle: float | None) -> tuple[Any, float, Outcome]:
     """State x (2n,), period [s] and outcome, from `start`.
 
     start : None (the most unstable mode, or rest), a `Mode`, (q, qd), a `Trajectory` whose end is taken, (q, qd,
@@ -29,9 +31,9 @@ def first_guess(field: Field, start: Any, settle: float | None) -> tuple[Any, fl
     settle : [s] of the run before a return is looked for; None takes 300 periods of the slowest mode
     """
     if isinstance(start, Cycle):
-        return np.concatenate(start.start), float(start.period), Outcome(COMPLETED)
+        return field.state(start.q[0], start.qd[0], start.memory), float(start.period), Outcome(COMPLETED)
     if isinstance(start, (tuple, list)) and len(start) == 3:
-        return np.concatenate([_vector(field, x) for x in start[:2]]), float(start[2]), Outcome(COMPLETED)
+        return field.state(*(_vector(field, x) for x in start[:2])), float(start[2]), Outcome(COMPLETED)
     x = state_of(field, start)
     slowest = _slowest_period(field)
     duration = PERIODS * slowest if settle is None else settle
@@ -47,7 +49,7 @@ def first_guess(field: Field, start: Any, settle: float | None) -> tuple[Any, fl
     return first_return(field, x, slowest)
 
 
-def first_return(field: Field, x: Any, period: float) -> tuple[Any, float, Outcome]:
+def first_return(field: Autonomous, x: Any, period: float) -> tuple[Any, float, Outcome]:
     """A state in fast slip on the motion from x, and the time after which the motion comes back to it."""
     run = fly(field, x, 12.0 * period, GUESS_RTOL, most=12 * PERIOD_STEPS)
     if run.outcome.ok and _inside_a_stick(run):  # the belt is slow: look for as long as contacts may stick
@@ -87,11 +89,11 @@ def _inside_a_stick(run: Trajectory) -> bool:
     )
 
 
-def _longest_stick(field: Field) -> float:
+def _longest_stick(field: Autonomous) -> float:
     """Estimate of the longest stick [s]: the spring's force runs through twice the static limit, 2 mu N / (k V)."""
-    inverse = np.linalg.pinv(field.system.K)
+    inverse = np.linalg.pinv(field.held_fast.K)
     normal = np.abs(field.N0)
-    state = equilibrium(field.system)
+    state = equilibrium(field.asked)
     if np.all(state.exists):
         normal = np.maximum(normal, np.abs(state.normal_force))
     soft = np.abs(np.einsum("ci,ij,cj->c", field.t, inverse, field.d))
@@ -109,53 +111,55 @@ def _fast_slip(run: Trajectory) -> int:
     return int(np.argmax(np.min(np.abs(run.sliding_velocity[:half]), axis=1)))
 
 
-def state_of(field: Field, start: Any) -> Any:
+def state_of(field: Autonomous, start: Any) -> Any:
     """The state (q, qd) in one row, (2n,), that a start means: the end of a run, (q, qd), or None near a mode."""
     if isinstance(start, Trajectory):
-        return np.concatenate([start.q[-1], start.qd[-1]])
+        return field.state(start.q[-1], start.qd[-1])
     if start is None:
-        modes = complex_modes(field.system)
+        modes = complex_modes(field.asked)
         start = modes.most_unstable if np.any(modes.exists & np.isfinite(modes.eigenvalues[..., 0])) else "rest"
         if isinstance(start, Mode) and start.growth_rate <= 0.0:
             start = "rest"
     if isinstance(start, Mode):
-        start = start.start(visible_amplitude(field, start))
+        n = field.asked.size
+        start = [x[:n] for x in start.start(visible_amplitude(field, start))[:2]]
     if isinstance(start, str):
         if start == "rest":
-            return np.zeros(2 * field.size)
+            return field.state(*np.zeros((2, field.system.size)))
         raise ParameterError("limit_cycles", "start", start, '"rest", a mode, (q, qd), a trajectory or a cycle')
     try:
         q, qd = start
     except (TypeError, ValueError) as error:
         expected = '"rest", a mode, (q, qd), (q, qd, period), a trajectory or a cycle'
         raise ParameterError("limit_cycles", "start", start, expected) from error
-    return np.concatenate([_vector(field, q), _vector(field, qd)])
+    return field.state(_vector(field, q), _vector(field, qd))
 
 
-def _vector(field: Field, value: Any) -> Any:
+def _vector(field: Autonomous, value: Any) -> Any:
     array = np.asarray(value, dtype=float)
-    if array.shape != (field.size,) or not np.all(np.isfinite(array)):
-        raise ParameterError("limit_cycles", "start", value, f"{field.size} finite numbers")
+    if array.shape != (field.system.size,) or not np.all(np.isfinite(array)):
+        raise ParameterError("limit_cycles", "start", value, f"{field.system.size} finite numbers")
     return array
 
 
-def visible_amplitude(field: Field, mode: Mode, share: float = 0.5) -> float:
+def visible_amplitude(field: Autonomous, mode: Mode, share: float = 0.5) -> float:
     """Amplitude [m] of a mode at which some contact's speed swings by `share` of its sliding speed."""
-    swing = np.abs(field.t @ (mode.eigenvalue * mode.shape))
-    speed = np.abs(field.V)
+    along = np.array([c.t for c in field.asked.contacts]).reshape(-1, field.asked.size)
+    swing = np.abs(along @ (mode.eigenvalue * mode.shape[: field.asked.size]))
+    speed = np.abs([float(value_at(c.V, 0.0)) for c in field.asked.contacts])
     ratios = speed[swing > 0.0] / swing[swing > 0.0]
     return share * float(np.min(ratios)) if ratios.size and np.min(ratios) > 0.0 else 1e-6
 
 
-def _slowest_period(field: Field) -> float:
-    modes = complex_modes(field.system)
-    rates = np.abs(np.imag(modes.eigenvalues)) if np.any(modes.exists) else np.sqrt(np.abs(np.linalg.eigvals(field.mk)))
+def _slowest_period(field: Autonomous) -> float:
+    modes = complex_modes(field.asked)
+    rates = np.abs(np.imag(modes.eigenvalues)) if np.any(modes.exists) else field.own_modes()[0]
     moving = rates[rates > 1e-9 * field.frequency]
     return 2.0 * np.pi / float(np.min(moving)) if moving.size else 2.0 * np.pi / (field.frequency or 1.0)
 
 
-def steady_state(field: Field) -> Any:
-    """Steady sliding x (2n,), or NaN where there is none."""
-    state = equilibrium(field.held_fast)
-    q = state.q if np.all(state.exists) else np.full(field.size, np.nan)
-    return np.concatenate([q, np.zeros(field.size)])
+def steady_state(field: Autonomous) -> Any:
+    """Steady sliding (q, q') (2n,), or NaN where there is none."""
+    state, n = equilibrium(field.asked if isinstance(field, Remembering) else field.held_fast), field.system.size
+    q = state.q if np.all(state.exists) else np.full(n, np.nan)
+    return np.concatenate([q, np.zeros(n)])

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.cycles.field import Field
+from squealbox.limit_cycles.cycles.field import Autonomous, Field
 from squealbox.limit_cycles.cycles.saltation import saltation
 from squealbox.result import Outcome
 from squealbox.transient import Method, Trajectory, simulate
@@ -40,14 +40,17 @@ class Flight:
 
 
 def fly(
-    field: Field, x: Any, duration: float, rtol: float = 1e-13, times: Any = None, most: int = PERIOD_STEPS
+    field: Autonomous, x: Any, duration: float, rtol: float = 1e-13, times: Any = None, most: int = PERIOD_STEPS
 ) -> Trajectory:
     """The motion from x over `duration` [s], with tolerances relative to the speeds in it, in at most `most` steps."""
-    n = field.size
-    speed = max(float(np.max(np.abs(x[n:]), initial=0.0)), float(np.max(np.abs(field.V), initial=0.0)))
-    method = Method("dormand-prince-8", rtol=rtol, atol=1e-2 * rtol * (speed or 1.0), most_steps=most)
-    start = (x[:n], x[n:])
-    return simulate(field.held_fast, duration, start, times, method, field.contact, width=field.width)
+    n, method = field.size, method_of(field, x, rtol, most)
+    return simulate(field.held_fast, duration, (x[:n], x[n:]), times, method, field.contact, width=field.width)
+
+
+def method_of(field: Autonomous, x: Any, rtol: float, most: int = PERIOD_STEPS) -> Method:
+    """How the motion from x is integrated to a relative tolerance."""
+    speed = max(float(np.max(np.abs(x[field.size :]), initial=0.0)), float(np.max(np.abs(field.V), initial=0.0)))
+    return Method("dormand-prince-8", rtol=rtol, atol=1e-2 * rtol * (speed or 1.0), most_steps=most)
 
 
 def flight(

@@ -162,6 +162,7 @@ def begin(A, b, lane, job, fixed, times, p, s):
         A[b + (ROW_V + k) * WIDTH + lane] = A[b + (ROW_START + DOFS + k) * WIDTH + lane]
     for c in range(CONTACTS):
         A[b + (ROW_LOWEST + c) * WIDTH + lane] = np.inf
+        A[b + (ROW_FASTEST + c) * WIDTH + lane] = 0.0
     set_observers(A, b, lane, fixed)
     if SAMPLES:
         A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = times[0]
@@ -320,6 +321,7 @@ def finish(A, b, lane, ended, out):
         out[job, 5 + 2 * DOFS + k] = A[b + (ROW_OBSERVED + k) * WIDTH + lane]
     for c in range(CONTACTS):
         out[job, 5 + 2 * DOFS + MEMORY + c] = A[b + (ROW_LOWEST + c) * WIDTH + lane]
+        out[job, 5 + 2 * DOFS + MEMORY + CONTACTS + c] = A[b + (ROW_FASTEST + c) * WIDTH + lane]
 
 
 def write_samples(A, b, lane, times, samples, p, r, s):

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
+from squealbox.friction import LAWS, Coulomb, Hyperbolic, Stribeck
 from squealbox.transient._motion import EXACT
 from squealbox.transient.methods import TAYLOR
 from squealbox.transient.rows import FIRST_ORDER, WITH_MASS
@@ -107,6 +108,12 @@ class Shape:
         varies = [any(f"n{c}_{i}" in self.present for i in range(self.n)) or self.varying for c in range(self.m)]
         return [c for c in range(self.m) if varies[c] and not self.unilateral[c]]
 
+    @property
+    def ranging(self) -> list[int]:
+        """Contacts whose law may turn negative or end: how fast they slide is kept."""
+        bounded = [LAWS.index(law) for law in (Coulomb, Stribeck, Hyperbolic)]
+        return [c for c in range(self.m) if self.recorded or self.laws[c][0] not in bounded]
+
     def is_smooth(self, c: int) -> bool:
         """Whether contact c has a law without events."""
         return bool(self.smooth) and self.smooth[c] > 0
@@ -186,7 +193,7 @@ def layout(shape: Shape) -> Rows:
     rows.add(*parameter_rows(shape))
     rows.add("job", "alive", "t", "h", "t_end", "tries", "taken", "cautious", "code", "most")
     rows.add(*(f"q{i}" for i in range(n)), *(f"v{i}" for i in range(n)), *(f"a{i}" for i in range(n)))
-    rows.add(*(f"lowest{c}" for c in range(m)))
+    rows.add(*(f"lowest{c}" for c in range(m)), *(f"fastest{c}" for c in range(m)))
     if shape.exact:
         rows.add("target", "tolerance", "trust", "resume", "events", "window_start", "window_events", "turns")
         rows.add("low", "low_phi", "high", "high_phi", "high_rate", "close", "pace")
@@ -205,9 +212,7 @@ def layout(shape: Shape) -> Rows:
         else:
             rows.add(*(f"{x}_old{i}" for x in "qva" for i in range(n)))
     if shape.recorded:
-        rows.add(
-            "next", "sample", "t_old", "span", *(f"done{k}" for k in range(m + 4)), *(f"fastest{c}" for c in range(m))
-        )
+        rows.add("next", "sample", "t_old", "span", *(f"done{k}" for k in range(m + 4)))
         rows.add(
             "since", *(f"value{j}" for j in range(shape.breadth)), *(f"slope_value{j}" for j in range(shape.breadth))
         )

@@ -83,7 +83,7 @@ class Single:
         self.rows = np.empty((ROWS if times is None else len(times), 6 + 2 * n + 5 * m))
         self.events = np.empty((EVENTS + m, 3))
         self.count = np.zeros(2, dtype=np.int64)
-        self.out = np.full((1, 5 + 2 * n + m), RUNNING)
+        self.out = np.full((1, 5 + 2 * n + 2 * m), RUNNING)
         spare = np.zeros((1, 1, 1))
         scratch = packing.scratch(made.record[0], q, qd, begin, 0.0).base
         self.shared = (

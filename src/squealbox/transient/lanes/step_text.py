@@ -211,6 +211,9 @@ class Step(EventText):
         for c in shape.pressed:
             least = self.row(f"lowest{c}")
             self.keep(f"lowest{c}", f"where(accepted, minimum({least}, {self.end['normal'][c]}), {least})")
+        for c in shape.ranging:
+            most, speed = self.row(f"fastest{c}"), f"abs({self.end['speed'][c]})"
+            self.keep(f"fastest{c}", f"where(accepted, maximum({most}, {speed}), {most})")
         self.put("t_now = where(accepted, t1, t_)")
         self.keep("t", "t_now")
         tries, taken = self.row("tries"), self.row("taken")

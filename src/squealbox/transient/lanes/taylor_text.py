@@ -282,11 +282,6 @@ class TaylorStep(EquationText):
                 place = self.rows.places[f"term{k}_{name}"] * shape.lanes
                 value = f"at({series}, {k})" if k or not series.startswith("works") else self.row(f"done{series[5:]}")
                 self.put(f"store_known(A, b + {place}, {value})")
-        for c in range(m):
-            ends = f"maximum(abs(at({found['speed'][c]}, 0)), abs(value({found['speed'][c]}, end, {ORDER})))"
-            self.keep(
-                f"fastest{c}", f"where(fine, maximum({self.row(f'fastest{c}')}, {ends}), {self.row(f'fastest{c}')})"
-            )
         self.keep("t_old", "t_")
         self.keep("span", "end * unit")
 
@@ -301,10 +296,13 @@ class TaylorStep(EquationText):
         for name, series, order in states(q, v, found["a"]):
             self.keep(name, f"where(fine, value({series}, end, {order}), {self.row(name)})")
         for c in shape.pressed:
-            least = self.row(f"lowest{c}")
-            self.keep(
-                f"lowest{c}", f"where(fine, minimum({least}, value({found['normal'][c]}, end, {ORDER})), {least})"
-            )
+            least, normal = self.row(f"lowest{c}"), found["normal"][c]
+            there = f"minimum(value({normal}, 0.5 * end, {ORDER}), value({normal}, end, {ORDER}))"
+            self.keep(f"lowest{c}", f"where(fine, minimum({least}, {there}), {least})")
+        for c in shape.ranging:
+            most, speed = self.row(f"fastest{c}"), found["speed"][c]
+            there = f"maximum(abs(value({speed}, 0.5 * end, {ORDER})), abs(value({speed}, end, {ORDER})))"
+            self.keep(f"fastest{c}", f"where(fine, maximum({most}, {there}), {most})")
         self.put("t_now = where(fine, t1, t_)")
         self.keep("t", "t_now")
         self.keep("taken", f"{self.row('taken')} + 1.0 * moved")

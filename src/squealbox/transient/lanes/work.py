@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.cautions import least_coefficient
 from squealbox.parameters import ParameterError
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
 from squealbox.transient import packing
@@ -78,7 +79,8 @@ class Work:
             jobs = replace(jobs, table=np.broadcast_to(jobs.table, (count, jobs.table.shape[1])).copy())
         seen = base_of(system).size
         memory = sum(w.copies(seen, len(system.contacts)) * w.width for w in watches)
-        width = HEAD + 2 * system.size + memory + len(system.contacts)
+        m = len(system.contacts)
+        width = HEAD + 2 * system.size + memory + 2 * m
         out = np.full((count, width), np.nan)
         out[:, 0] = -1.0
         samples = np.full((count, max(self.times.size, 1), 2 * system.size) if self.times.size else (1, 1, 1), np.nan)
@@ -88,9 +90,18 @@ class Work:
             self._compute(jobs, out, samples, count, part.start, total)
         finally:
             whole = n == seen
-            self.rows.append(out if whole else out[:, shown])
+            self.rows.append(np.hstack([out if whole else out[:, shown], self._least(system, out[:, width - m :])]))
             keep = [*range(seen), *range(n, n + seen)]
             self.samples.append(samples if whole or not self.times.size else samples[:, :, keep])
+
+    @staticmethod
+    def _least(system: System, fastest: Any) -> Any:
+        """The least coefficient (runs, contacts) that each run can have met."""
+        batch = system.shape or fastest.shape[:1]
+        found = [
+            least_coefficient(c, v.reshape(batch)).ravel() for c, v in zip(system.contacts, fastest.T, strict=True)
+        ]
+        return np.reshape(found, fastest.shape[::-1]).T
 
     def _compute(self, jobs: Jobs, out: Any, samples: Any, count: int, before: int, total: int) -> None:
         from squealbox.transient.lanes.kernel import lane_kernel
@@ -106,7 +117,7 @@ class Work:
         failures: list[BaseException] = []
 
         def run(jobs: Jobs, samples: Any, counter: Any, count: int, out: Any) -> None:
-            groups, live = _on_a_line(GROUPS * size), np.zeros(GROUPS, dtype=np.int64)
+            groups, live = on_a_line(GROUPS * size), np.zeros(GROUPS, dtype=np.int64)
             groups[rows.places["alive"] * lanes] = -1.0
             n = jobs.shape.n
             scratch = packing.scratch(record, np.zeros(n), np.zeros(n), self.begin, 0.0)
@@ -178,7 +189,7 @@ def confirmed(jobs: Jobs, first: Any, again: Any) -> Any:
     return np.where((first[:, 0] == COMPLETED) & differs, NOT_CONFIRMED, first[:, 0])
 
 
-def _on_a_line(count: int) -> Any:
+def on_a_line(count: int) -> Any:
     """Zeros that begin with a line of the cache, as the packed loads and stores of `vectors` expect."""
     room = np.zeros(count + 8)
     return room[-room.ctypes.data // 8 % 8 :][:count]

@@ -1,0 +1,50 @@
+"""The derivative of a motion from motions beside it, all in one call of the compiled step: it asks for no equation.
+
+Central differences over h, 2h and 4h, extrapolated twice (Romberg). h is a share of the motion that falls until the
+last two extrapolations agree, so that all these motions meet the same events; where no h does, beside a corner or a
+grazing, `mismatch` says so.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from squealbox.limit_cycles.cycles.variation import Flight, fly, method_of
+from squealbox.transient import Trajectory
+
+SHARES = (1e-4, 1e-5, 1e-6, 1e-7)  # of the motion
+WAYS = np.array([[1.0], [-1.0], [2.0], [-2.0], [4.0], [-4.0]])
+ALIKE = 1e-9  # two extrapolations, of their largest entry
+
+
+def by_differences(field: Any, x: Any, duration: float, rtol: float = 1e-13, *, motion: Trajectory) -> Flight:
+    """As `variation.flight`, of any field that has `flows`: to some 1e-10 of the largest entry.
+
+    motion : that of `fly`, which reached the end
+    """
+    states = np.hstack([motion.q, motion.qd])
+    size = float(np.max(np.ptp(states, axis=0) * field.scale)) or float(np.max(np.abs(field.V), initial=0.0)) or 1.0
+    flows, count, ratio = field.flows(method_of(field, x, rtol), duration), x.size, field.scale[:, None] / field.scale
+    best, mismatch = np.full((count, count), np.nan), np.inf
+    for share in SHARES:
+        steps = share * size / field.scale
+        there = flows.to(duration, x + np.kron(WAYS, np.diag(steps)))
+        ends = there.states.reshape(3, 2, count, count)
+        slopes = [(ends[k, 0] - ends[k, 1]).T / (2.0 * 2**k * steps) for k in range(3)]
+        once = [(4.0 * slopes[k] - slopes[k + 1]) / 3.0 for k in range(2)]
+        phi = (16.0 * once[0] - once[1]) / 15.0
+        left = np.max(np.abs((phi - once[0]) * ratio)) / np.max(np.abs(phi * ratio)) if np.all(there.ok) else np.inf
+        if left < mismatch:
+            best, mismatch = phi, float(left)
+        if mismatch < ALIKE:
+            break
+    return Flight(states[-1], field.rate(states[-1], motion.mode[-1]), best, motion, mismatch)
+
+
+def change(x: Any, duration: float, rtol: float, beside: tuple[Any, Any, float]) -> Any:
+    """How the end (2n,) changes with a parameter, from fields at two of its values and their distance."""
+    ends = []
+    for each in beside[:2]:
+        run = fly(each, x, duration, rtol, np.array([duration]))
+        ends.append(np.concatenate([run.q[-1], run.qd[-1]]) if run.outcome.ok else np.full(x.size, np.nan))
+    return (ends[1] - ends[0]) / beside[2]

@@ -1,0 +1,72 @@
+"""What a search for cycles asks of a system with other states than q and q', answered by its motion alone.
+
+Rows without mass have displacements of their own or none, a law with memory has its bristles, a loop with a limit its
+states. All are rows of one widened system, so a state is the displacements and velocities of all rows. `independent`
+are those that neither follow from others nor are without any effect, as the integral of a loop's command is.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from squealbox.limit_cycles.cycles.cycle import ordered
+from squealbox.limit_cycles.cycles.field import Autonomous, Field
+from squealbox.stability import complex_modes
+from squealbox.system import System, as_system
+from squealbox.transient import simulate
+from squealbox.transient.limited import in_time
+from squealbox.transient.rows import ALGEBRAIC, WITH_MASS, row_kinds
+from squealbox.transient.widened import Widened, base_of, laid_open, start_of
+
+INSTANT = 1e-5  # of a period over 2 pi: of the differences that give a rate
+
+
+class Remembering(Autonomous):
+    """A system with rows without mass or with memory, as shooting sees it."""
+
+    def __init__(self, asked: System, contact: str = "exact", width: float = 1e-3) -> None:
+        wide = self._wide = in_time(asked)
+        self.asked = asked
+        frequency = float(np.max(self.own_modes()[0], initial=0.0)) or 1.0
+        super().__init__(asked, base_of(wide), laid_open(wide), contact, width, frequency)
+        kinds = np.array(row_kinds(self.held_fast))
+        felt = np.any(self.held_fast.K != 0.0, axis=0) | np.any(self.n != 0.0, axis=0)
+        felt[[row for row in getattr(wide, "memories", ()) if row >= 0]] = True
+        self.independent = np.concatenate([(kinds != ALGEBRAIC) & felt, kinds == WITH_MASS])
+
+    def own_modes(self) -> tuple[Any, Any]:
+        modes = complex_modes(self.asked.replace(contacts=(), loops=()))
+        rates = np.imag(modes.eigenvalues)
+        swings = np.flatnonzero(np.isfinite(rates) & (rates > 0.0))
+        shapes = [modes.mode(int(i)).shape[: self.asked.size] for i in swings]
+        return rates[swings], np.array(shapes).reshape(-1, self.asked.size).T
+
+    def state(self, q: Any, qd: Any, memory: Any = None) -> Any:
+        q, qd = start_of(self._wide, q, qd, None, False, 0.0)
+        if memory is not None and len(memory):
+            q = np.concatenate([q[: len(q) - len(memory)], memory])
+        return np.concatenate([q, qd])
+
+    def rate(self, x: Any, mode: Any) -> Any:
+        """x' from the first instants of the motion, which takes its modes itself."""
+        h, n = INSTANT / self.frequency, self.size
+        times = np.array([0.0, h, 2.0 * h])
+        run = simulate(
+            self.held_fast, 2.0 * h, (x[:n], x[n:]), times, rtol=1e-13, contact=self.contact, width=self.width
+        )
+        early, middle, late = np.hstack([run.q, run.qd])
+        return (4.0 * middle - 3.0 * early - late) / (2.0 * h)
+
+    def multipliers(self, monodromy: Any) -> Any:
+        inside = monodromy[np.ix_(self.independent, self.independent)]
+        if not np.all(np.isfinite(inside)):
+            return np.full(len(inside), np.nan)
+        return ordered(np.linalg.eigvals(inside))
+
+
+def field_of(design_or_system: Any, contact: str = "exact", width: float = 1e-3) -> Autonomous:
+    """The equation of a system whose states are q and q', else what its motion tells."""
+    system = as_system(design_or_system)
+    wide = in_time(system)
+    alone = not isinstance(wide, Widened) and all(kind == WITH_MASS for kind in row_kinds(wide))
+    return Field(system, contact, width) if alone else Remembering(system, contact, width)
