@@ -22,7 +22,6 @@ from squealbox import (
     complex_modes,
     shooting,
     silence,
-    simulate,
     simulate_ensemble,
 )
 from squealbox.files.document import DesignFileError
@@ -75,8 +74,8 @@ def test_bad_input_is_one_sentence(what):
 
 
 @pytest.mark.parametrize("run", [
-    lambda brake: simulate(brake, 1e-4), lambda brake: simulate_ensemble(brake, None, 1e-4), shooting,
-], ids=["simulate", "ensemble", "shooting"])  # fmt: skip
+    lambda brake: simulate_ensemble(brake, None, 1e-4), shooting,
+], ids=["ensemble", "shooting"])  # fmt: skip
 def test_a_late_loop_is_not_left_out_of_a_motion(run):
     with pytest.raises(InvalidSystem, match="has a delay"):
         run(LATE)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.loops import Loop
+from squealbox.loops import Loop, folded
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome
 from squealbox.stability.first_order import first_order_rows
@@ -63,8 +63,6 @@ def plant(design_or_system: Any, time: float = 0.0) -> Plant:
     rows = [loop.controller(system.names) for loop in system.loops]
     if system.shape != () or any(np.ndim(row.P) > 1 for row in rows):
         raise ParameterError("closed_loop", "design", f"leading axes {system.shape}", "one brake, without them")
-    from squealbox.loops import folded
-
     whole = folded(
         system.replace(loops=tuple(loop.replace(delay=0.0, sampling=None, computing=0.0) for loop in system.loops)),
         near=True,

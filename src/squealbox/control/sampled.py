@@ -17,7 +17,6 @@ import numpy as np
 from squealbox.control.plant import Plant
 from squealbox.parameters import ParameterError
 
-
 GRID = 3001  # places on the unit circle looked at between two frequencies, and as many even ones
 MOST_STATES = 300  # forces under way up to which further delays of several loops are looked at
 FEW = 40  # samples of further delay up to which those of one loop are
@@ -143,6 +142,7 @@ def _one_delay_margin(plant: Plant, a: int, known: float) -> float:
         while count + rest < whole + rest + known / step:
             count += 2.0 * np.pi / angle
         for least in (np.floor(count + rest), np.floor(count + rest) - 1.0, np.floor(count + rest) + 1.0):
+
             def off(part: float, angle: float = angle, least: float = least) -> float:
                 _, found = samples(part, angle)
                 turn = 2.0 * np.pi / angle

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.loops import force_per_state, numbered, padded, padded_load
+from squealbox.loops.rows import force_per_state, numbered, padded, padded_load
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Schedule, value_at
 from squealbox.system import Contact, InvalidSystem, System
