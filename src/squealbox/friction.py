@@ -263,16 +263,17 @@ class Averaged(FrictionLaw):
 
     def coefficients(self) -> tuple[Any, ...]:
         """No static limit, the dither's velocity; mu0, a1, a3 where it is mu0 (2/pi) asin(v/w) + a1 v + a3 v^3."""
-        return (NEVER_STICKS + 0.0 * np.asarray(self.velocity), self.velocity, *(self._polynomial() or ()))
+        lead = np.broadcast_shapes(np.shape(self.velocity), *(np.shape(c) for c in self.law.coefficients()))
+        return (np.full(lead, NEVER_STICKS)[()], self.velocity, *(self._polynomial() or ()))
 
     def mu(self, velocity: Any) -> Any:
-        v, w = np.broadcast_arrays(np.abs(velocity), self.velocity)
         base = self.law.mu(0.0)
+        v, w, _ = np.broadcast_arrays(np.abs(velocity), self.velocity, base)
         return base * 2.0 / np.pi * np.arcsin(np.minimum(v / w, 1.0)) + self._rest(v, w, base, slope=False)
 
     def slope_at(self, velocity: Any) -> Any:
-        v, w = np.broadcast_arrays(np.abs(velocity), self.velocity)
         base = self.law.mu(0.0)
+        v, w, _ = np.broadcast_arrays(np.abs(velocity), self.velocity, base)
         with np.errstate(divide="ignore"):
             turning = np.where(v <= w, 2.0 / np.pi / np.sqrt(np.maximum(w * w - v * v, 0.0)), 0.0)
         return base * turning + self._rest(v, w, base, slope=True)

@@ -141,3 +141,16 @@ def test_stick_slip_with_a_viscoelastic_part_is_the_limit_of_small_masses() -> N
     assert errors[0] / errors[1] == pytest.approx(2.0, abs=0.2)
     assert errors[1] / errors[2] == pytest.approx(2.0, abs=0.2)
     assert found.energy.relative_residual < 1e-8
+
+
+def test_several_loops_that_remember_stand_side_by_side() -> None:
+    """Each loop alone on its own block, cut at its limit or not: two together are as each one by itself."""
+    loops = (LIMITED[0], LIMITED[3].replace(on="q2"), PID(on="q2", integral=0.2))
+    one = System([[1.0]], [[0.1]], [[4.0]], names=("q1",), loops=loops[:1])
+    both = System(np.eye(2), 0.1 * np.eye(2), 4.0 * np.eye(2), names=("q1", "q2"), loops=loops)
+    alone = simulate(one, 4.0, start=([0.5], [0.0]), times=9)
+    found = simulate(both, 4.0, start=([0.5, 0.3, 0.0], [0.0, 0.0, 0.0]), times=9)
+    assert np.max(np.abs(found.q[:, 0] - alone.q[:, 0])) < 1e-9
+    assert len(set(found.system.names)) == len(found.system.names)
+    nested = Controlled(Controlled(DRUM, [PID(on="x", integral=1e6)]), [PID(on="y", integral=1e6, limit=3.0)])
+    assert complex_modes(nested).outcome == "completed"

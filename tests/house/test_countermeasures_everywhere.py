@@ -11,11 +11,14 @@ from squealbox import (
     AddedStiffness,
     Asymmetry,
     Controlled,
+    Coulomb,
     DelayedFeedback,
     Dithered,
     DrumBrake,
     LayerDamping,
     LinearSlope,
+    MassOnBelt,
+    ModeCoupling,
     NormalDither,
     Scatter,
     Shim,
@@ -31,10 +34,14 @@ from squealbox import (
 )
 from squealbox.cli import main
 from squealbox.countermeasures import COUNTERMEASURES
+from squealbox.countermeasures.best import quick_tuning
 from squealbox.countermeasures.loss import growth_of
+from squealbox.designs import DESIGNS
 from squealbox.files import json_schema
 from squealbox.loops import LOOPS
 from squealbox.parameters import from_plain, to_plain
+from squealbox.remedies import Candidate, candidates_for
+from squealbox.remedies.candidates import more_friction
 from squealbox.result import Result
 from squealbox.studies import Normal
 
@@ -134,3 +141,47 @@ def test_commands(tmp_path, capsys):
     assert read_design(tmp_path / "absorber" / "with_absorber.toml").mass == 0.05
     assert main(["silence", str(plain), "--samples", "0"]) == 2
     assert "--samples 0" in capsys.readouterr().err
+
+
+def test_cures_that_are_other_values_say_which(table):
+    for row in range(len(table)):
+        if table.values[row]:
+            assert DRUM.replace(table.values[row]) == table.design(row)
+        else:
+            assert not str(table.line[row]).startswith("brake.replace")
+    assert sum(map(bool, table.values)) >= 5
+
+
+@pytest.mark.parametrize("kind", ["block_chain", "pad_on_disc", "drum_brake_shoes"])
+def test_every_kind_of_brake_has_its_table(kind):
+    """Several contacts of one law, a law with a floor, a design whose own rules refuse some doses."""
+    brake = DESIGNS[kind]()
+    chosen = candidates_for(brake, more_friction(brake, 1.1))
+    wanted = ("inertia", "friction", "tangential", "layer")
+    few = [each for each in chosen if each.name.startswith(wanted)][:6]
+    found = silence(brake, None, few, samples=32, push=0.0)
+    assert len(chosen) >= 15
+    assert len(found) >= 2
+    assert np.all(np.isfinite(found.growth))
+
+
+def test_scatter_of_the_brake_is_not_that_of_its_cure():
+    """The brake has a tuned mass, whose mass scatters; a cure that is a mass has a field of that name as well."""
+    brake = TunedMass(ModeCoupling(friction=Coulomb(1.05)), "x", 0.05, np.sqrt(2.0) / (2.0 * np.pi))
+    scatter = Scatter({"mass": Normal(0.05, 0.008)})
+    cure = Candidate(
+        "mass", lambda dose: AddedMass(brake, "y", dose), np.array([0.01]), "kg",
+        lambda dose: f"AddedMass(brake, 'y', {dose!r})", lambda dose: "weight",
+    )  # fmt: skip
+    found = silence(brake, scatter, [cure], margin=0.0, samples=256, push=0.0)
+    lot = scatter.sample(256, seed=0)["mass"]
+    share = np.mean(growth_of(AddedMass(brake.replace({"mass": lot}), "y", 0.01)) > 0.0)
+    wrong = np.mean(growth_of(AddedMass(brake, "y", lot)) > 0.0)
+    assert float(found.probability[0]) == share != wrong
+
+
+def test_a_tuning_to_rank_by_stays_within_its_map():
+    for brake in (MassOnBelt(), ModeCoupling(friction=Coulomb(1.2))):
+        frequency, damping = quick_tuning(brake, "x", 0.05)
+        assert 0.0 < damping <= 0.5
+        assert growth_of(TunedMass(brake, "x", 0.05, frequency, damping)) < growth_of(brake)

@@ -238,3 +238,17 @@ def test_dither_says_where_it_makes_it_worse():
     assert "destabilises" in falling.cautions()[0]
     assert "within 20 %" in falling.cautions()[1]
     assert "pulled" in " ".join(Dithered(DrumBrake(friction=LinearSlope(0.36, -0.05)), 0.3).cautions())
+
+
+@pytest.mark.parametrize("law", [
+    lambda x: Hyperbolic(x, 0.7), lambda x: Stribeck(x, 0.2, 0.3), lambda x: LinearSlope(x, -0.1, 0.1),
+    lambda x: LinearSlope(0.5, -0.1, x), lambda x: Hyperbolic(0.4, x),
+])  # fmt: skip
+@pytest.mark.parametrize("w", [0.2, 0.9])
+def test_an_averaged_law_takes_arrays(law, w):
+    given = np.array([0.3, 0.35, 0.4])
+    found = averaged(law(given), w)
+    alone = [averaged(law(float(x)), w) for x in given]
+    assert found.mu(0.5) == pytest.approx([float(each.mu(0.5)) for each in alone], rel=1e-12)
+    assert found.slope_at(0.5) == pytest.approx([float(each.slope_at(0.5)) for each in alone], rel=1e-12)
+    assert np.shape(found.static_limit) == (3,)

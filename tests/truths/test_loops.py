@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 from scipy.optimize import brentq
 
 from squealbox import (
@@ -110,7 +111,7 @@ def test_no_pole_of_random_delayed_systems_is_missed():
     from squealbox.control.poles import Late, late_poles
 
     rng = np.random.default_rng(7)
-    for _ in range(20):
+    for _ in range(60):
         d = int(rng.integers(1, 5))
         parts = [
             (t, rng.normal(size=(d, 1)) @ rng.normal(size=(1, d))) for t in rng.uniform(0.1, 2.0, rng.integers(1, 3))
@@ -232,3 +233,40 @@ def test_state_feedback_nyquist_and_root_locus():
     plant = found.plant
     s = 2j * np.pi * 0.2
     assert curve == pytest.approx(-(plant.H[0] @ np.linalg.solve(s * np.eye(4) - plant.A, plant.B[:, 0])), rel=1e-12)
+
+
+@pytest.mark.parametrize(("computing", "least", "most"), [
+    (0.0, 0.104291297, 3.917179234), (1.0, 0.142869674, 1.484853056),
+])  # fmt: skip
+def test_margins_of_a_sampled_loop_are_those_of_its_steps(computing, least, most):
+    gain = 0.3
+    found = closed_loop(block(-0.1, PID(on="q1", derivative=gain, sampling=2.0, computing=computing)))
+    assert found.gain_margin == pytest.approx((least / gain, most / gain), rel=1e-8)
+
+    def rate(late):
+        loop = PID(on="q1", derivative=gain, sampling=2.0, computing=computing, delay=late)
+        return closed_loop(block(-0.1, loop)).growth_rate
+
+    margin = found.delay_margin
+    assert rate(margin * (1.0 - 1e-6)) < 0.0 < rate(margin * (1.0 + 1e-6))
+    assert max(rate(late) for late in np.linspace(0.0, 0.999 * margin, 9)) < 0.0
+
+
+def test_margins_of_fast_sampling_come_to_the_continuous_ones():
+    gain, ideal = 0.3, closed_loop(block(-0.1, PID(on="q1", derivative=0.3)))
+    for rate in (100.0, 1000.0):
+        found = closed_loop(block(-0.1, PID(on="q1", derivative=gain, sampling=rate)))
+        assert found.delay_margin == pytest.approx(ideal.delay_margin - 0.5 / rate, abs=0.1 / rate**2)
+        assert found.phase_margin == pytest.approx(ideal.phase_margin, abs=1.0 / rate)
+        assert found.nyquist(0.2)[0] == pytest.approx(ideal.nyquist(0.2)[0], abs=1.0 / rate)
+
+
+def test_an_actuator_follows_the_held_command():
+    """x'' + x = f, f' = r (u - f), u = -g x' held: the discrete matrix by hand."""
+    g, r, h = 0.4, 2.0, 0.5
+    loop = PID(on="q1", derivative=g, bandwidth=r / (2.0 * np.pi), sampling=1.0 / h)
+    A = np.array([[0.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 1.0, 0.0], [0.0, 0.0, -r, r], [0.0, 0.0, 0.0, 0.0]])
+    flow = expm(A * h)
+    exact = np.linalg.eigvals(flow[:3, :3] + np.outer(flow[:3, 3], [0.0, -g, 0.0]))
+    found = closed_loop(block(0.0, loop)).multipliers
+    assert np.allclose(np.sort_complex(found), np.sort_complex(exact), atol=1e-12)

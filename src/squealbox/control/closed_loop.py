@@ -56,21 +56,28 @@ class ClosedLoop(Result):
     @property
     def gain_margins(self) -> tuple[tuple[float, float], ...]:
         """For each loop, the others closed, the factors its gain may lie between; NaN for an unstable brake."""
-        nothing = (float("nan"), float("nan"))
-        found = self.plant
-        return tuple(margins.gain_margin(found, a) if self.stable else nothing for a in range(len(found.loops)))
+        found, of = self.plant, self._margins
+        if not self.stable:
+            return ((float("nan"), float("nan")),) * len(found.loops)
+        return tuple(of.gain_margin(found, a) for a in range(len(found.loops)))
 
     @property
     def phase_margin(self) -> float:
         """The least phase [rad] by which one loop may turn, the others closed; NaN for an unstable brake."""
         found = self.plant
-        angles = [margins.phase_margin(found, a) for a in range(len(found.loops))] if self.stable else [float("nan")]
-        return float(min(angles))
+        if not self.stable:
+            return float("nan")
+        return min(self._margins.phase_margin(found, a) for a in range(len(found.loops)))
 
     @property
     def delay_margin(self) -> float:
         """The further delay of all loops together [s] that takes stability away; inf for none, NaN for unstable."""
-        return margins.delay_margin(self.plant) if self.stable else float("nan")
+        return self._margins.delay_margin(self.plant) if self.stable else float("nan")
+
+    @property
+    def _margins(self) -> Any:
+        """What the margins are of: the steps between samples, or the continuous loops."""
+        return sampled if len(self.multipliers) else margins
 
     def sampling_margin(self, computing: float = 0.0) -> float:
         """The lowest sampling rate [Hz] of all loops, held, from which on the brake is stable at every higher one.
@@ -88,7 +95,7 @@ class ClosedLoop(Result):
         fastest = float(np.max(np.abs(np.linalg.eigvals(found.closed))))
         low, high = 1e-4 / fastest, 1e-3 / fastest
         while growth(high) < 0.0:
-            low, high = high, 1.05 * high
+            low, high = high, (1.05 if high * fastest > 0.1 else 1.2) * high
             if high > 1e4 / fastest:
                 return 0.0
         from scipy.optimize import brentq
@@ -106,11 +113,15 @@ class ClosedLoop(Result):
         return np.take_along_axis(values, np.argsort(-values.real, axis=-1), axis=-1)
 
     def nyquist(self, frequencies: Any, loop: int = 0) -> Any:
-        """The open loop -L(i w) of one loop, the others closed, at frequencies [Hz]; it is unstable to encircle -1."""
+        """The open loop -L(i w), sampled -L(exp(i w h)), of one loop, the others closed, at frequencies [Hz].
+
+        -1 is the critical point.
+        """
         found = self.plant
-        A, B, H = margins._broken(found, loop)
-        late = float(found.delay[loop])
-        return np.array([-margins._loop(A, B, H, 2.0 * np.pi * float(f), late) for f in np.atleast_1d(frequencies)])
+        hertz = np.atleast_1d(np.asarray(frequencies, dtype=float))
+        if len(self.multipliers):
+            return -sampled.loop_gain(found, loop, hertz)
+        return -margins.loop_gain(*margins.broken(found, loop), 2.0 * np.pi * hertz, float(found.delay[loop]))
 
     @property
     def spillover(self) -> Any:

@@ -55,8 +55,8 @@ def real_gain(A: Any, B: Any, H: Any) -> Any:
 
 def gain_margin(plant: Plant, a: int) -> tuple[float, float]:
     """Between which factors the gain of loop a may lie (0 and inf where it has no bound)."""
-    A, B, H = _broken(plant, a)
-    w = real_gain(A, B, H) if plant.delay[a] == 0.0 else _grid_roots(plant, a, A, B, H, "real")
+    A, B, H = broken(plant, a)
+    w = real_gain(A, B, H) if plant.delay[a] == 0.0 else _grid_roots(plant, a, A, B, H)
     values = np.array([_loop(A, B, H, x, float(plant.delay[a])) for x in w])
     still = _loop(A, B, H, 0.0) if np.linalg.cond(A) < 1e15 else np.nan
     factors = np.array([1.0 / v.real for v in np.append(values, still) if np.isfinite(v) and v.real > 0.0])
@@ -65,7 +65,7 @@ def gain_margin(plant: Plant, a: int) -> tuple[float, float]:
 
 def phase_margin(plant: Plant, a: int) -> float:
     """The least angle [rad] by which loop a may turn; pi where its gain is nowhere 1."""
-    A, B, H = _broken(plant, a)
+    A, B, H = broken(plant, a)
     w = unit_gain(A, B, H)
     return float(min((abs(np.angle(_loop(A, B, H, x, float(plant.delay[a])))) for x in w), default=np.pi))
 
@@ -167,22 +167,29 @@ def _common_by_grid(plant: Plant) -> float:
     return found
 
 
-def _broken(plant: Plant, a: int) -> tuple[Any, Any, Any]:
+def broken(plant: Plant, a: int) -> tuple[Any, Any, Any]:
+    """A, B, H of loop a alone, the others closed."""
     others = [b for b in range(len(plant.loops)) if b != a]
     return plant.A + plant.B[:, others] @ plant.H[others], plant.B[:, a], plant.H[a]
 
 
+def loop_gain(A: Any, B: Any, H: Any, w: Any, delay: float = 0.0) -> Any:
+    """exp(-i w T) H (i w - A)^-1 B at angular frequencies w (...)."""
+    w = np.asarray(w, dtype=float)
+    state = np.linalg.solve(1j * w[..., None, None] * np.eye(len(A)) - A, B.astype(complex)[:, None])
+    return (H @ state)[..., 0] * np.exp(-1j * w * delay)
+
+
 def _loop(A: Any, B: Any, H: Any, w: float, delay: float = 0.0) -> complex:
-    value = H @ np.linalg.solve(1j * w * np.eye(len(A)) - A, B.astype(complex))
-    return complex(value * np.exp(-1j * w * delay))
+    return complex(loop_gain(A, B, H, w, delay))
 
 
-def _grid_roots(plant: Plant, a: int, A: Any, B: Any, H: Any, what: str) -> Any:
+def _grid_roots(plant: Plant, a: int, A: Any, B: Any, H: Any) -> Any:
     delay = float(plant.delay[a])
     own = np.abs(np.linalg.eigvals(A))
     w = np.geomspace(1e-3 * float(np.min(own[own > 0.0], initial=1.0)), 30.0 * float(np.max(own)), GRID)
     own_w = np.sort(np.concatenate([w, np.linspace(w[0], w[-1], GRID)]))
-    values = np.array([_loop(A, B, H, x, delay).imag for x in own_w])
+    values = loop_gain(A, B, H, own_w, delay).imag
     places = np.flatnonzero(np.sign(values[1:]) != np.sign(values[:-1]))
     from scipy.optimize import brentq
 

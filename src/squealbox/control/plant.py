@@ -1,15 +1,16 @@
 """A brake under control as x' = A x + sum_a B_a u_a(t - T_a), u_a = H_a x: the linear form poles and margins are of.
 
-x = (q, q' of what has mass, loop states), about steady sliding. B_a holds where the force of loop a acts, on the brake
-and in the loop's own memory (G); loops without delay and sampling are still apart from A, so that each can be broken.
+x = (q, q' of what has mass, loop states), about steady sliding. u_a is the command of loop a; B_a holds what it drives:
+an actuator of finite bandwidth, a state of A, or the brake and the loop's own memory (G) at once. Loops without delay
+and sampling are still apart from A, so that each can be broken.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from squealbox.loops import Loop
+from squealbox.loops import Loop, folded
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome
 from squealbox.stability.first_order import first_order_rows
@@ -39,6 +40,10 @@ class Plant:
         """A + B H: every loop closed at once, without its delay and sampling."""
         return self.A + self.B @ self.H
 
+    def replaced(self, delay: Any) -> "Plant":
+        """The same with other delays (a,) [s]."""
+        return replace(self, delay=delay)
+
 
 def with_loops(design_or_system: Any) -> System:
     """The system with its loops still apart."""
@@ -55,14 +60,12 @@ def plant(design_or_system: Any, time: float = 0.0) -> Plant:
             type(design_or_system).__name__,
             "a brake with loops: Controlled(brake, [PID(on='y')])",
         )
-    rows = [loop.rows(system.names) for loop in system.loops]
+    rows = [loop.controller(system.names) for loop in system.loops]
     if system.shape != () or any(np.ndim(row.P) > 1 for row in rows):
         raise ParameterError("closed_loop", "design", f"leading axes {system.shape}", "one brake, without them")
-    from squealbox.loops import folded
-
     whole = folded(
         system.replace(loops=tuple(loop.replace(delay=0.0, sampling=None, computing=0.0) for loop in system.loops)),
-        limited=True,
+        near=True,
     )
     steady = linearise(whole, time).equilibrium
     about = linearise(system.replace(loops=()), time)
@@ -72,18 +75,26 @@ def plant(design_or_system: Any, time: float = 0.0) -> Plant:
     A, displacement, velocity, into = _first_order(about.M, about.C, about.K)
     n = system.size  # loops sense and push the brake's own rows, not the bristles of its contacts
     displacement, velocity, into = displacement[:n], velocity[:n], into[:, :n]
-    d, memory = len(A), [row.memory for row in rows]
-    total = d + sum(memory)
+    d, lags = len(A), [loop.rate is not None for loop in system.loops]
+    total = d + sum(row.memory + lag for row, lag in zip(rows, lags, strict=True))
     wide = np.zeros((total, total))
     wide[:d, :d] = A
     B, H = np.zeros((total, len(rows))), np.zeros((len(rows), total))
     at = d
     for a, row in enumerate(rows):
-        m = slice(at, at + row.memory)
-        at += row.memory
+        m, f = slice(at, at + row.memory), at + row.memory
+        at = f + lags[a]
         wide[m, :d] = row.E @ displacement + row.F @ velocity
         wide[m, m] = row.A
-        B[:d, a], B[m, a] = into @ row.b, row.G
+        force = np.zeros(total)  # what a unit of force does
+        force[:d], force[m] = into @ row.b, row.G
+        if lags[a]:
+            rate = float(system.loops[a].rate)
+            wide[:, f] += force
+            wide[f, f] -= rate
+            B[f, a] = rate
+        else:
+            B[:, a] = force
         H[a, :d], H[a, m] = row.P @ displacement + row.R @ velocity, row.S
     pad = ((0, 0), (0, total - d))
     return Plant(

@@ -6,15 +6,18 @@ method on s and its vector exactly; the argument principle counts how many there
 
     (1/2 pi i) contour of (det D)'/det D ds
 
-around the rectangle that holds every pole to the right of the line: |s| <= |A| + sum |B_a H_a| exp(-line T_a).
+around the rectangle that holds every pole to the right of the line: |s| <= |A| + sum |B_a H_a| exp(-line T_a). Only its
+side on the line is walked; beyond that reach det D = s^d det(I - X/s) with |X/s| < 1, whose argument is known.
 """
 
-import itertools
 from typing import Any
 
 import numpy as np
 
-FIRST_ORDER, USUAL_ORDER = 16, 36  # Chebyshev points of the discretisation
+from squealbox.loops.rows import chebyshev
+
+FIRST_ORDER, LAST_ORDER = 16, 72  # Chebyshev points of the discretisation
+LARGEST = 160  # rows of a discretisation, unless `FIRST_ORDER` points make more
 GRIDS = (0.6, 0.25, 0.1)  # steps of the grid, over the longest delay, on which poles are looked for that it missed
 SAME = 1e-8  # relative distance below which two refined poles are one
 MOST_POINTS = 400_000  # of a contour
@@ -30,6 +33,7 @@ class Late:
         _, (scale, _) = matrix_balance(size, permute=False, separate=True)
         self.A = A * scale / scale[:, None]
         self.parts = [(delay, part * scale / scale[:, None]) for delay, part in parts]
+        self.own, self.sizes = _norm(self.A), [_norm(part) for _, part in self.parts]
 
     def matrix(self, s: Any) -> Any:
         """D(s) for s (...), shape (..., d, d)."""
@@ -46,17 +50,17 @@ class Late:
         )
         return np.eye(len(self.A)) + sum(late)
 
-    def reach(self, line: float) -> float:
+    def reach(self, line: Any) -> Any:
         """No pole with Re s >= line is farther from 0 than this."""
-        return float(_norm(self.A) + sum(_norm(part) * np.exp(-line * delay) for delay, part in self.parts))
+        late = (size * np.exp(-line * delay) for size, (delay, _) in zip(self.sizes, self.parts, strict=True))
+        return self.own + sum(late)
 
 
 def late_poles(late: Late, line: float) -> tuple[Any, int]:
     """All poles with Re s > line, by falling growth, and the number the argument principle gives."""
     reach = late.reach(line)
     longest = max(delay for delay, _ in late.parts)
-    order = int(np.clip(FIRST_ORDER + 0.5 * reach * longest, FIRST_ORDER, USUAL_ORDER))
-    found = refined(late, discretised(late, order, longest), line)
+    found = refined(late, discretised(late, reach), line)
     counted = count(late, _beside(line, found, reach), reach)
     for step in GRIDS:
         if len(found) == counted:
@@ -74,7 +78,7 @@ def in_cells(late: Late, line: float, step: float) -> Any:
     step = max(step, np.sqrt((right - line + 2.0 * step) * height / MOST_POINTS))
     x = np.arange(line - step, right + 2.0 * step, step)
     y = np.arange(-0.5 * step, height + 2.0 * step, step)
-    reach = np.array([late.reach(value - 2.0 * step) for value in x]) + 2.0 * step
+    reach = late.reach(x - 2.0 * step) + 2.0 * step
     inside = np.abs(x[:, None] + 1j * y) <= reach[:, None]
     phase = np.ones(inside.shape, dtype=complex)
     phase[inside] = _phase(late, (x[:, None] + 1j * y)[inside])
@@ -84,16 +88,26 @@ def in_cells(late: Late, line: float, step: float) -> Any:
     return x[i] + 0.5 * step + 1j * np.maximum(y[k] + 0.5 * step, 0.0)
 
 
-def discretised(late: Late, order: int, longest: float) -> Any:
-    """Eigenvalues of the generator on Chebyshev points of [-longest, 0]."""
-    d = len(late.A)
-    points, derivative = _chebyshev(order)
-    big = np.zeros(((order + 1) * d, (order + 1) * d))
-    big[d:, :] = np.kron(derivative[1:] * 2.0 / longest, np.eye(d))
-    big[:d, :d] = late.A
+def discretised(late: Late, reach: float) -> Any:
+    """Eigenvalues with what is under way in each delay on Chebyshev points: x' = A x + sum U w(-T), w(0) = V x."""
+    split = []
     for delay, part in late.parts:
-        row = _barycentric(points, 1.0 - 2.0 * delay / longest)
-        big[:d, :] += np.kron(row[None], part)
+        left, sizes, right = np.linalg.svd(part)
+        kept = sizes > 1e-14 * sizes[0] if sizes.size else sizes > 0.0
+        split.append((delay, left[:, kept] * sizes[kept], right[kept]))
+    d, width = len(late.A), sum(len(right) for _, _, right in split)
+    most = max(FIRST_ORDER, min(LAST_ORDER, LARGEST // max(width, 1)))
+    orders = [int(np.clip(FIRST_ORDER + 0.7 * reach * delay, FIRST_ORDER, most)) for delay, _, _ in split]
+    size = d + sum(order * len(right) for order, (_, _, right) in zip(orders, split, strict=True))
+    big, at = np.zeros((size, size)), d
+    big[:d, :d] = late.A
+    for order, (delay, left, right) in zip(orders, split, strict=True):
+        derivative, rank = chebyshev(order)[1] * 2.0 / delay, len(right)
+        line = slice(at, at + order * rank)
+        big[line, line] = np.kron(derivative[1:, 1:], np.eye(rank))
+        big[line, :d] = np.kron(derivative[1:, :1], right)
+        at += order * rank
+        big[:d, at - rank : at] = left
     values: Any = np.linalg.eigvals(big)
     return values
 
@@ -129,9 +143,13 @@ def newton(late: Late, guesses: Any, most: int = 16) -> Any:
             [np.einsum("kij,kj->ki", matrix, v), np.sum(c * v, axis=1, keepdims=True) - 1.0], axis=1
         )
         usable = np.all(np.isfinite(big), axis=(1, 2)) & np.all(np.isfinite(defect), axis=1)
-        usable[usable] = np.linalg.cond(big[usable]) < 1e15
         s, v, c, last, big, defect = (each[usable] for each in (s, v, c, last, big, defect))
-        step = np.linalg.solve(big, -defect[..., None])[..., 0]
+        try:
+            step = np.linalg.solve(big, -defect[..., None])[..., 0]
+        except np.linalg.LinAlgError:  # one of them is singular: it is left out
+            usable = np.linalg.cond(big) < 1e15
+            s, v, c, last, big, defect = (each[usable] for each in (s, v, c, last, big, defect))
+            step = np.linalg.solve(big, -defect[..., None])[..., 0]
         v, s, last = v + step[:, :d], s + step[:, d], np.abs(step[:, d])
         if len(s) == 0 or np.all(last <= 4e-16 * np.abs(s) + 1e-16 * scale):
             break
@@ -139,15 +157,14 @@ def newton(late: Late, guesses: Any, most: int = 16) -> Any:
 
 
 def count(late: Late, line: float, reach: float) -> int:
-    """Number of poles with Re s > line, by the argument of det D around their rectangle."""
+    """Number of poles with Re s > line, by the argument of det D along the line up to beyond their reach."""
     top = 1.01 * reach + 1e-300
+    corner = complex(line, top)
+    ratios = np.linalg.eigvals(np.eye(len(late.A)) - late.matrix(corner) / corner)
+    around = len(late.A) * np.angle(corner) + float(np.sum(np.angle(1.0 - ratios)))
     longest = max(delay for delay, _ in late.parts)
-    corners = [top, top + 1j * top, line + 1j * top, complex(line)]
-    pieces = []
-    for begin, end in itertools.pairwise(corners):
-        points = int(np.clip(64 + 8.0 * abs(end - begin) * longest, 64, MOST_POINTS // 8))
-        pieces.append(begin + (end - begin) * np.linspace(0.0, 1.0, points)[:-1])
-    path = np.append(np.concatenate(pieces), corners[-1])
+    points = int(np.clip(64 + 8.0 * top * longest, 64, MOST_POINTS // 8))
+    path = line + 1j * np.linspace(top, 0.0, points)
     phase = _phase(late, path)
     for _ in range(40):
         turns = np.angle(phase[1:] / phase[:-1])
@@ -156,7 +173,7 @@ def count(late: Late, line: float, reach: float) -> int:
             break
         middle = 0.5 * (path[wide] + path[wide + 1])
         path, phase = np.insert(path, wide + 1, middle), np.insert(phase, wide + 1, _phase(late, middle))
-    return int(np.rint(np.sum(np.angle(phase[1:] / phase[:-1])) / np.pi))
+    return int(np.rint((around + np.sum(np.angle(phase[1:] / phase[:-1]))) / np.pi))
 
 
 def _phase(late: Late, s: Any) -> Any:
@@ -170,23 +187,3 @@ def _beside(line: float, poles: Any, reach: float) -> float:
 
 def _norm(matrix: Any) -> float:
     return float(np.linalg.norm(matrix, 2))
-
-
-def _chebyshev(order: int) -> tuple[Any, Any]:
-    """Points cos(pi j/order) and the differentiation matrix on them (Trefethen 2000, Spectral Methods, ch. 6)."""
-    points = np.cos(np.pi * np.arange(order + 1) / order)
-    c = np.r_[2.0, np.ones(order - 1), 2.0] * (-1.0) ** np.arange(order + 1)
-    apart = points[:, None] - points[None, :] + np.eye(order + 1)
-    matrix = np.outer(c, 1.0 / c) / apart
-    return points, matrix - np.diag(np.sum(matrix, axis=1))
-
-
-def _barycentric(points: Any, x: float) -> Any:
-    """The row that interpolates values on Chebyshev points at x."""
-    at = np.flatnonzero(np.abs(points - x) < 1e-15)
-    if at.size:
-        return np.eye(len(points))[at[0]]
-    weights = (-1.0) ** np.arange(len(points))
-    weights[[0, -1]] *= 0.5
-    row = weights / (x - points)
-    return row / np.sum(row)

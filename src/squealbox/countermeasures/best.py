@@ -25,6 +25,8 @@ from squealbox.studies.uncertainty.scatter import Scatter
 
 AIMS = ("decay", "margin", "probability")
 FREQUENCIES, DAMPINGS = 21, 14  # of the detuning map
+BEYOND, HEAVIEST = 2.0, 5.0  # times the ends of the map, and the largest damping ratio, that are looked at
+ZOOMS, ZOOMED = 5, 9  # maps of a quick tuning, and points of each but the first along both axes
 POLISHED = 3  # best points of the map from which the search goes on
 
 
@@ -139,17 +141,22 @@ def best_absorber(
 
 
 def quick_tuning(brake: Design, on: str, mass: float) -> tuple[float, float]:
-    """Frequency [Hz] and damping ratio with the least growth, by a map and a short search: near enough to rank by."""
+    """Frequency [Hz] and damping ratio with the least growth, by maps around the best of the last: to rank by."""
     modes = complex_modes(brake)
     centre = float(modes.most_unstable.frequency) or float(np.max(modes.frequency))
     start = TunedMass(brake, on, mass, centre, 0.1)
     frequencies = centre * np.exp(np.linspace(-1.0, 1.0, FREQUENCIES) ** 3 * np.log(1.6))
     dampings = np.geomspace(2e-3, 0.5, DAMPINGS)
-    f, z = (part.ravel() for part in np.meshgrid(frequencies, dampings, indexing="ij"))
-    grid = growth_of(start.replace(frequency=f, damping=z)).reshape(FREQUENCIES, DAMPINGS)
-    judge = _judge(start, "decay", None, "", None, 0, 0)
-    best = _searched(judge, frequencies, dampings, grid, 40, 1)
-    return best[1], best[2]
+    for _ in range(ZOOMS):
+        f, z = np.meshgrid(frequencies, dampings, indexing="ij")
+        growth = growth_of(start.replace(frequency=f.ravel(), damping=z.ravel()))
+        i, k = divmod(int(np.argmin(growth)), len(dampings))
+        best = float(f[i, k]), float(z[i, k])
+        frequencies, dampings = (
+            np.geomspace(each[max(at - 1, 0)], each[min(at + 1, len(each) - 1)], ZOOMED)
+            for each, at in ((frequencies, i), (dampings, k))
+        )
+    return best
 
 
 Judge = Callable[[Any, Any], Any]
@@ -190,22 +197,26 @@ def _limits(start: Any, parameter: str, bounds: Any) -> tuple[float, float]:
     return 0.0, 2.0 * value if value > 0.0 else 1.0
 
 
-def _searched(
-    judge: Judge, frequencies: Any, dampings: Any, grid: Any, most: int, starts: int = POLISHED
-) -> tuple[float, float, float]:
+def _searched(judge: Judge, frequencies: Any, dampings: Any, grid: Any, most: int) -> tuple[float, float, float]:
     """The best (value, frequency, damping), by Nelder and Mead in logarithms from the best points of the map."""
     from scipy.optimize import minimize
+
+    def judged(x: Any) -> float:
+        frequency, damping = np.exp(x)
+        if not (frequencies[0] / BEYOND < frequency < BEYOND * frequencies[-1] and damping < HEAVIEST):
+            return float("inf")
+        return float(np.ravel(judge(np.exp(x[:1]), np.exp(x[1:])))[0])
 
     around = np.pad(grid, 1, constant_values=np.inf)
     neighbours = [around[i : i + grid.shape[0], k : k + grid.shape[1]] for i in range(3) for k in range(3)]
     valleys = np.argwhere(grid <= np.min(neighbours, axis=0))
-    valleys = valleys[np.argsort(grid[tuple(valleys.T)])][:starts]
+    valleys = valleys[np.argsort(grid[tuple(valleys.T)])][:POLISHED]
     best = (np.inf, 0.0, 0.0)
     for i, k in valleys:
         simplex = np.log([frequencies[i], dampings[k]]) + np.array([[0.0, 0.0], [0.02, 0.0], [0.0, 0.3]])
         for _ in range(2):  # begun again from where it ended: it may have become flat
             found = minimize(
-                lambda x: float(np.ravel(judge(np.exp(x[:1]), np.exp(x[1:])))[0]), simplex[0], method="Nelder-Mead",
+                judged, simplex[0], method="Nelder-Mead",
                 options={"initial_simplex": simplex, "xatol": 1e-10, "fatol": 1e-14, "maxfev": most},
             )  # fmt: skip
             simplex = found.x + np.array([[0.0, 0.0], [1e-3, 0.0], [0.0, 1e-2]])

@@ -1,4 +1,4 @@
-"""What might silence a brake: candidates their doses and costs, and the line of Python that says them."""
+"""What might silence a brake: candidates, their doses and costs, and the line of Python that says them."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -13,6 +13,7 @@ from squealbox.countermeasures import (
     Asymmetry,
     Controlled,
     Dithered,
+    LayerDamping,
     Shim,
     TunedMass,
 )
@@ -27,7 +28,7 @@ LARGEST_CHANGE = 0.5  # of a parameter, up or down
 LARGEST_TURN = np.deg2rad(15.0)
 SHARES = (0.02, 0.05)  # masses of absorbers, of the mass they stand on
 MOST_FREEDOMS = 3  # degrees of freedom looked at, those that move most in the worst mode
-BANDWIDTH = 20e3  # Hz of the actuators
+BANDWIDTH, FASTER = 20e3, 10.0  # Hz of the actuators, and times the worst mode's frequency that is enough
 DOSES = 33
 
 
@@ -35,7 +36,8 @@ DOSES = 33
 class Candidate:
     """One cure: `make(dose)` is the brake with it, `doses` rise with the effort, `line(dose)` is it in Python.
 
-    `make` takes an array of doses as well. cost says in words what it costs; cautions are known beforehand.
+    `make` takes an array of doses as well. cost says in words what it costs; cautions are known beforehand. `values`
+    are the parameters of the brake that have another value with it, for a cure that is nothing else.
     """
 
     name: str
@@ -45,6 +47,7 @@ class Candidate:
     line: Callable[[float], str]
     cost: Callable[[float], str]
     cautions: tuple[str, ...] = ()
+    values: Callable[[float], dict[str, float]] | None = None
     tuned: str = ""  # the parameter that scatters with production though the brake's data do not know it
 
 
@@ -64,17 +67,20 @@ def candidates_for(brake: Design, friction: Any) -> list[Candidate]:
             ),
             _added(AddedMass, "mass", brake, name, 0.5 * masses[name], "kg", "weight"),
             _added(AddedStiffness, "stiffness", brake, name, 0.5 * springs[name], "N/m", "a stiffer support"),
+            _layer(brake, name, rate / (2.0 * np.pi)),
         ]
-    found.append(_dampers(brake, names, 3.0 * max(masses[n] for n in names) * rate))
+    found.append(_absorber_and_damper(brake, friction, names, masses, rate))
     if len(names) > 1:
+        found.append(_dampers(brake, names, 3.0 * max(masses[n] for n in names) * rate))
         found.append(_asymmetry(brake, names, 0.3 * min(springs[n] for n in names)))
-        found += _both(brake, friction, names, masses, rate)
+        found.append(_two_absorbers(brake, friction, names, masses))
     found += _shims(brake, rate)
-    found.append(_feedback(brake, names, 3.0 * max(masses[n] for n in names) * rate))
-    found.append(_active(brake, names, masses))
+    bandwidth = min(BANDWIDTH, FASTER * rate / (2.0 * np.pi))
+    found.append(_feedback(brake, names, 3.0 * max(masses[n] for n in names) * rate, bandwidth))
+    found.append(_active(brake, names, masses, bandwidth))
     contacts = brake.system().contacts
     if contacts and not any(contact.law.has_memory for contact in contacts):  # bristles are not averaged over dither
-        found.append(_dither(brake))
+        found += [_dither(brake), _dither_and_damper(brake, names[0], 3.0 * masses[names[0]] * rate)]
     return found
 
 
@@ -118,6 +124,7 @@ def _parameter(brake: Design, path: str, about: Any, value: float, sign: float) 
     return Candidate(
         f"{path} {'up' if sign > 0.0 else 'down'}", make, doses, about.unit,
         lambda dose: f"brake.replace({{{path!r}: {value + dose!r}}})", cost,
+        values=lambda dose: {path: value + dose},
     )  # fmt: skip
 
 
@@ -139,7 +146,7 @@ def _absorber(brake: Design, friction: Any, on: str, mass: float) -> Candidate:
         np.array([mass]), "kg",
         lambda dose: f"TunedMass(brake, {on!r}, {float(dose)!r}, {frequency!r}, {damping!r})",
         lambda dose: f"{1e3 * dose:.3g} g, tuned to {frequency:.5g} Hz and {100.0 * damping:.3g} %",
-        ("an absorber is narrow: its tuning must be held in production and over temperature",), "frequency",
+        ("an absorber is narrow: its tuning must be held in production and over temperature",), tuned="frequency",
     )  # fmt: skip
 
 
@@ -172,31 +179,45 @@ def _asymmetry(brake: Design, names: list[str], most: float) -> Candidate:
     )  # fmt: skip
 
 
-def _both(brake: Design, friction: Any, names: list[str], masses: dict[str, float], rate: float) -> Iterator[Candidate]:
-    """Combinations of two: a light absorber with dampers, and with the other absorber."""
+def _layer(brake: Design, on: str, hertz: float) -> Candidate:
+    return Candidate(
+        f"layer on {on}", lambda dose: LayerDamping(brake, on, 1.0, dose, None, hertz),
+        np.geomspace(1e-3, 1.0, DOSES), "",
+        lambda dose: f"LayerDamping(brake, {on!r}, 1.0, {float(dose)!r}, None, {hertz!r})",
+        lambda dose: f"constrained layer, Y = {dose:.3g}",
+        ("a layer's loss is that at one temperature", f"damping on {on} alone can destabilise a flutter pair"),
+    )  # fmt: skip
+
+
+def _absorber_and_damper(
+    brake: Design, friction: Any, names: list[str], masses: dict[str, float], rate: float
+) -> Candidate:
+    """A light absorber on what moves most, with a damper on the other freedom."""
+    on, other = names[0], names[-1 if len(names) == 1 else 1]
+    mass = SHARES[0] * masses[on]
+    frequency, damping = quick_tuning(friction, on, mass)
+    inner = f"TunedMass(brake, {on!r}, {mass!r}, {frequency!r}, {damping!r})"
+    return Candidate(
+        f"absorber on {on} and damper on {other}",
+        lambda dose: AddedDamping(TunedMass(brake, on, mass, frequency, damping), other, dose),
+        np.geomspace(1e-3, 1.0, DOSES) * masses[other] * rate, "N s/m",
+        lambda dose: f"AddedDamping({inner}, {other!r}, {float(dose)!r})",
+        lambda dose: f"{1e3 * mass:.3g} g and {dose:.4g} N s/m", tuned="brake.frequency",
+    )  # fmt: skip
+
+
+def _two_absorbers(brake: Design, friction: Any, names: list[str], masses: dict[str, float]) -> Candidate:
     on, other = names[:2]
     mass, second = SHARES[0] * masses[on], SHARES[0] * masses[other]
     frequency, damping = quick_tuning(friction, on, mass)
-
-    def with_damper(dose: Any) -> Design:
-        return AddedDamping(TunedMass(brake, on, mass, frequency, damping), other, dose)
-
-    yield Candidate(
-        f"absorber on {on} and damper on {other}", with_damper,
-        np.geomspace(1e-3, 1.0, DOSES) * masses[other] * rate, "N s/m",
-        lambda d: f"AddedDamping(TunedMass(brake, {on!r}, {mass!r}, {frequency!r}, {damping!r}), {other!r}, "
-        f"{float(d)!r})",
-        lambda d: f"{1e3 * mass:.3g} g and {d:.4g} N s/m", (), "brake.frequency",
-    )  # fmt: skip
-    first = TunedMass(friction, on, mass, frequency, damping)
-    again, ratio = quick_tuning(first, other, second)
-    yield Candidate(
+    again, ratio = quick_tuning(TunedMass(friction, on, mass, frequency, damping), other, second)
+    inner = f"TunedMass(brake, {on!r}, {mass!r}, {frequency!r}, {damping!r})"
+    return Candidate(
         f"absorbers on {on} and {other}",
-        lambda d: TunedMass(TunedMass(brake, on, mass, frequency, damping), other, d, again, ratio),
+        lambda dose: TunedMass(TunedMass(brake, on, mass, frequency, damping), other, dose, again, ratio),
         np.array([second]), "kg",
-        lambda d: f"TunedMass(TunedMass(brake, {on!r}, {mass!r}, {frequency!r}, {damping!r}), {other!r}, {float(d)!r}, "
-        f"{again!r}, {ratio!r})",
-        lambda d: f"{1e3 * (mass + d):.3g} g in all", ("two absorbers to be tuned",), "frequency",
+        lambda dose: f"TunedMass({inner}, {other!r}, {float(dose)!r}, {again!r}, {ratio!r})",
+        lambda dose: f"{1e3 * (mass + dose):.3g} g in all", ("two absorbers to be tuned",), tuned="frequency",
     )  # fmt: skip
 
 
@@ -220,30 +241,30 @@ def _shim(brake: Design, name: str, spring: float, hertz: float) -> Candidate:
     )  # fmt: skip
 
 
-def _feedback(brake: Design, names: list[str], most: float) -> Candidate:
+def _feedback(brake: Design, names: list[str], most: float, bandwidth: float) -> Candidate:
     def make(dose: Any) -> Design:
-        return Controlled(brake, tuple(PID(on=name, derivative=dose, bandwidth=BANDWIDTH) for name in names))
+        return Controlled(brake, tuple(PID(on=name, derivative=dose, bandwidth=bandwidth) for name in names))
 
     def line(dose: float) -> str:
-        loops = ", ".join(f"PID(on={name!r}, derivative={float(dose)!r}, bandwidth={BANDWIDTH!r})" for name in names)
+        loops = ", ".join(f"PID(on={name!r}, derivative={float(dose)!r}, bandwidth={bandwidth!r})" for name in names)
         return f"Controlled(brake, [{loops}])"
 
     return Candidate(
         f"velocity feedback on {' and '.join(names)}", make, np.geomspace(1e-3, 1.0, DOSES) * most, "N s/m", line,
-        lambda dose: f"actuators of {BANDWIDTH / 1e3:g} kHz, {dose:.4g} N s/m",
+        lambda dose: f"actuators of {bandwidth / 1e3:.3g} kHz, {dose:.4g} N s/m",
     )  # fmt: skip
 
 
-def _active(brake: Design, names: list[str], masses: dict[str, float]) -> Candidate:
+def _active(brake: Design, names: list[str], masses: dict[str, float], bandwidth: float) -> Candidate:
     share = 0.1 * min(masses[name] for name in names)
 
     def make(dose: Any) -> Design:
-        loops = [ActiveForce(share, share / dose, on=name, bandwidth=BANDWIDTH) for name in names]
+        loops = [ActiveForce(share, share / dose, on=name, bandwidth=bandwidth) for name in names]
         return Controlled(brake, tuple(loops))
 
     def line(dose: float) -> str:
         loops = ", ".join(
-            f"ActiveForce({share!r}, {share / float(dose)!r}, on={name!r}, bandwidth={BANDWIDTH!r})" for name in names
+            f"ActiveForce({share!r}, {share / float(dose)!r}, on={name!r}, bandwidth={bandwidth!r})" for name in names
         )
         return f"Controlled(brake, [{loops}])"
 
@@ -251,7 +272,7 @@ def _active(brake: Design, names: list[str], masses: dict[str, float]) -> Candid
     most = 3.0 * share * 10.0 * float(np.sqrt(np.max(np.abs(system.K)) / np.max(system.M)))
     return Candidate(
         f"active force control on {' and '.join(names)}", make, np.geomspace(1e-3, 1.0, DOSES) * most, "N s/m", line,
-        lambda dose: f"actuators of {BANDWIDTH / 1e3:g} kHz with accelerometers, filter {1e6 * share / dose:.3g} us",
+        lambda dose: f"actuators of {bandwidth / 1e3:.3g} kHz with accelerometers, filter {1e6 * share / dose:.3g} us",
     )  # fmt: skip
 
 
@@ -263,6 +284,17 @@ def _dither(brake: Design) -> Candidate:
     )  # fmt: skip
 
 
+def _dither_and_damper(brake: Design, on: str, most: float) -> Candidate:
+    """Dither well beyond the sliding speed, where no contact is near its turning, and a damper."""
+    velocity = 2.0 * max(abs(float(np.max(s))) for s in np.atleast_1d(_speeds(brake)))
+    return Candidate(
+        f"dither and damper on {on}",
+        lambda dose: AddedDamping(Dithered(brake, velocity), on, dose), np.geomspace(1e-3, 1.0, DOSES) * most, "N s/m",
+        lambda dose: f"AddedDamping(Dithered(brake, {velocity!r}), {on!r}, {float(dose)!r})",
+        lambda dose: f"piezo, {velocity:.3g} m/s, brake torque, {dose:.4g} N s/m",
+    )  # fmt: skip
+
+
 def _speeds(brake: Design) -> Any:
     from squealbox.system import equilibrium
 
@@ -270,15 +302,15 @@ def _speeds(brake: Design) -> Any:
 
 
 def more_friction(brake: Design, factor: float) -> Design:
-    """The brake with every friction coefficient times `factor`."""
-    law = next((v for v in _laws(brake)), None)
-    if law is None:
+    """The brake with every friction coefficient of its laws times `factor`."""
+    laws = list(_laws(brake))
+    if not laws:
         raise ParameterError("silence", "brake", type(brake).__name__, "a design with a friction law")
-    path, sheet = law
-    numbers = [
-        name for name, about in sheet.parameters().items() if about.unit == "-" and getattr(sheet, name) is not None
-    ]
-    return brake.replace({f"{path}.{name}": np.asarray(getattr(sheet, name)) * factor for name in numbers})
+    return brake.replace({
+        f"{path}.{name}": np.asarray(getattr(sheet, name)) * factor
+        for path, sheet in laws for name, about in sheet.parameters().items()
+        if about.unit == "-" and getattr(sheet, name) is not None
+    })  # fmt: skip
 
 
 def _laws(design: Any, prefix: str = "") -> Iterator[tuple[str, FrictionLaw]]:

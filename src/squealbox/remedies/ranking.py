@@ -8,7 +8,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.control import closed_loop
-from squealbox.countermeasures import Controlled, Dithered
+from squealbox.countermeasures import Controlled, Countermeasure, Dithered
 from squealbox.countermeasures.loss import growth_of
 from squealbox.designs.base import Design
 from squealbox.parameters import ParameterError
@@ -30,7 +30,8 @@ class Remedies(Result):
     """Cures ranked by the squeal they leave, as :func:`silence` returns them. Rows are along `cure`.
 
     `reached` says whether the dose makes the brake quiet at `margin` more friction; where none does, the dose is that
-    with the least growth. `line` is the Python that makes the cured brake, of the name `brake`.
+    with the least growth. `line` is the Python that makes the cured brake, of the name `brake`; `values` are the
+    parameters a cure gives another value, {} for one that puts something on the brake.
     """
 
     name: Any = quantity("cure", "1", "what is done")
@@ -44,6 +45,7 @@ class Remedies(Result):
     cost: Any = quantity("cure", "1", "what it costs, in words")
     caution: Any = quantity("cure", "1", "what to know before using it")
     line: Any = quantity("cure", "1", "one line of Python that makes the cured brake")
+    values: tuple[dict[str, float], ...] = ()
     before: float = float("nan")
     growth_before: float = float("nan")
     amplitude_before: float = float("nan")
@@ -140,7 +142,7 @@ def silence(
     worse = more_friction(brake, 1.0 + margin)
     chosen = list(candidates_for(brake, worse) if candidates is None else candidates)
     rows = [_row(each, brake, margin, lot, tuning, push) for each in chosen]
-    rows = sorted(_one_side(rows), key=lambda row: (row["probability"], row["growth_at_margin"]))
+    rows = _one_side(rows)
     names = (
         "name",
         "dose",
@@ -157,7 +159,7 @@ def silence(
     columns: dict[str, Any] = {name: np.array([row[name] for row in rows]) for name in names}
     outcome = Outcome() if rows else Outcome("no_candidates", "nothing was given that could be tried")
     return Remedies(
-        **columns, before=_share(brake, lot),
+        **columns, values=tuple(row["values"] for row in rows), before=_share(brake, lot),
         growth_before=float(growth_of(brake)), amplitude_before=_pushed(brake, brake, push), margin=margin,
         inputs={"system": brake}, settings={"samples": samples, "seed": seed, "push": push}, outcome=outcome,
         assumption=ASSUMED if assumed else "",
@@ -168,7 +170,7 @@ def _row(each: Candidate, brake: Design, margin: float, lot: Any, tuning: Any, p
     dose, reached = _dose(each, margin)
     cured = each.make(dose)
     growth, later = float(growth_of(cured)), float(growth_of(more_friction(cured, 1.0 + margin)))
-    share = _share(cured, lot, each, tuning)
+    share = _share_cured(each, cured, brake, lot, tuning)
     cautions = [*each.cautions, *_said(cured, brake)]
     if not reached:
         cautions.insert(
@@ -181,6 +183,7 @@ def _row(each: Candidate, brake: Design, margin: float, lot: Any, tuning: Any, p
         "growth_at_margin": later,
         "probability": share, "amplitude": _pushed(cured, brake, push), "cost": each.cost(dose),
         "caution": "; ".join(cautions), "line": each.line(dose),
+        "values": {} if each.values is None else each.values(dose),
     }  # fmt: skip
 
 
@@ -204,53 +207,54 @@ def _dose(each: Candidate, margin: float) -> tuple[float, bool]:
 
 
 def _growths(each: Candidate, doses: Any, margin: float) -> Any:
-    if len(doses) == 1:
-        return np.atleast_1d(growth_of(more_friction(each.make(float(doses[0])), 1.0 + margin)))
-    return growth_of(more_friction(each.make(doses), 1.0 + margin))
-
-
-def _share(brake: Design, lot: dict[str, Any], each: Candidate | None = None, tuning: Any = None) -> float:
-    """Share of the lot that squeals with the cure; a parameter that is changed scatters about its new value."""
-    values: dict[str, Any] = {}
-    for name, sample in lot.items():
-        here = brake.value_of(name)
-        usual = here if each is None else _innermost(brake).value_of(name)
-        values[name] = sample if each is None else sample + (here - _nominal(brake, each, name, usual))
-    if each is not None and each.tuned:
-        values[each.tuned] = brake.value_of(each.tuned) * tuning
-    growth = growth_of(brake.replace(values))
-    return float(np.mean(growth > 0.0))
-
-
-def _nominal(brake: Design, each: Candidate, name: str, here: Any) -> Any:
-    """The value of a parameter before the cure changed it."""
-    changed = each.name.rpartition(" ")[0]
-    if name != changed and name not in _innermost(brake).aliases:
-        return here
-    return here - float(each_change(each, brake, name))
-
-
-def each_change(each: Candidate, brake: Design, name: str) -> float:
-    """By how much a candidate that moves a parameter of the brake has moved it."""
-    none = each.make(0.0) if each.name.rpartition(" ")[2] in ("up", "down") else brake
-    return float(brake.value_of(name)) - float(none.value_of(name))
-
-
-def _innermost(brake: Design) -> Design:
-    found: Design = getattr(brake, "innermost", brake)
+    """Growth rates (k,) at the margin; inf at doses the brake's own rules refuse."""
+    if len(doses) > 1:
+        try:
+            return growth_of(more_friction(each.make(doses), 1.0 + margin))
+        except (ParameterError, InvalidSystem):
+            pass  # one by one: some of them may be possible
+    found = np.full(len(doses), np.inf)
+    for i, dose in enumerate(doses):
+        try:
+            found[i] = growth_of(more_friction(each.make(float(dose)), 1.0 + margin))
+        except (ParameterError, InvalidSystem):
+            continue
     return found
 
 
+def _share(brake: Design, lot: dict[str, Any]) -> float:
+    """Share of the lot that squeals."""
+    return float(np.mean(growth_of(brake.replace(lot)) > 0.0))
+
+
+def _share_cured(each: Candidate, cured: Design, brake: Design, lot: dict[str, Any], tuning: Any) -> float:
+    """Share of the lot that squeals with a cure; a parameter that it changes scatters about its new value."""
+    values: dict[str, Any] = {}
+    if each.values is None:
+        where = _place(cured, brake)
+        values = {f"{where}{name}": sample for name, sample in lot.items()}
+    else:
+        for name, sample in lot.items():
+            for field in brake.aliases.get(name, (name,)):
+                values[field] = sample + (cured.value_of(field) - brake.value_of(field))
+    if each.tuned:
+        values[each.tuned] = cured.value_of(each.tuned) * tuning
+    return _share(cured, values)
+
+
+def _place(cured: Design, brake: Design) -> str:
+    """How a parameter of the brake begins in the cured one, so that no field of a countermeasure is taken for it."""
+    where, held = "", cured
+    while held is not brake and isinstance(held, Countermeasure):
+        where, held = f"{where}brake.", held.brake
+    return where if held is brake else ""
+
+
 def _one_side(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Of a parameter's two directions the better one."""
-    best: dict[str, dict[str, Any]] = {}
-    for row in rows:
-        stem, _, side = row["name"].rpartition(" ")
-        key = stem if side in ("up", "down") else row["name"]
-        if key not in best or (row["probability"], row["growth_at_margin"]) < (
-            best[key]["probability"], best[key]["growth_at_margin"],
-        ):  # fmt: skip
-            best[key] = row
+    """Of the two directions of a parameter the better one."""
+    best: dict[Any, dict[str, Any]] = {}
+    for row in sorted(rows, key=lambda row: (row["probability"], row["growth_at_margin"])):
+        best.setdefault(tuple(row["values"]) or row["name"], row)
     return list(best.values())
 
 

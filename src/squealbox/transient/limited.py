@@ -51,7 +51,7 @@ def in_time(system: System) -> System:
         rows = loop.rows(system.names)
         if not loop.linear:
             what = "sampling" if loop.sampling is not None else "a delay"
-            raise InvalidSystem(f"loops[{i}] has {what}: expected loops without; control.run_loops() runs it in time")
+            raise InvalidSystem(f"loops[{i}] has {what}: expected loops without; simulate() runs it, piece by piece")
         if rows.memory or np.any(rows.P) or np.ndim(rows.R) > 1:
             others.append(loop)
             continue

@@ -2,6 +2,7 @@
 
 import time as clock
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from squealbox.cautions import of_a_run
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import InvalidSystem, System, as_system, equilibrium, no_rigid_contact
-from squealbox.transient import _march, _motion, moreau, packing
+from squealbox.transient import _march, _motion, moreau, packing, pieces
 from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
 from squealbox.transient.choosing import check_series, chosen_method, usual_method
 from squealbox.transient.latest import Latest
@@ -111,9 +112,14 @@ def simulate(
     >>> simulate(DrumBrake(), duration=1e-3).outcome
     'completed'
     """
-    system = system_of(design_or_system)
     if contact not in (*SCHEMES, TIME_STEPPING):
         raise ParameterError("simulate", "contact", contact, known_names(str(contact), [*SCHEMES, TIME_STEPPING]))
+    late = LATE.of(design_or_system, (), lambda: pieces.late_loops(as_system(design_or_system)))
+    if late is not None:
+        one = partial(simulate, method=method, contact=contact, rtol=rtol, atol=atol, width=width)
+        asked = _times(times, start_time, duration)
+        return pieces.motion_of(late, start, start_time, duration, asked, one, contact, progress)
+    system = system_of(design_or_system)
     chosen = chosen_method(method or usual_method(system, contact), rtol, atol)
     requested = _times(times, start_time, duration)
     if contact != "exact":
@@ -143,7 +149,7 @@ def simulate(
     return run.trajectory(settings, outcome)
 
 
-SYSTEMS = Latest(16)
+SYSTEMS, LATE = Latest(16), Latest(16)
 
 
 def system_of(design_or_system: Any) -> System:
@@ -291,12 +297,8 @@ def _by_series(
     """The run by the generated step of a Taylor series."""
     from squealbox.transient.lanes.single import Single
 
-    run, end, n, m = (
-        Single(system, method, q, qd, begin, duration, times),
-        begin + duration,
-        system.size,
-        len(system.contacts),
-    )
+    run, end = Single(system, method, q, qd, begin, duration, times), begin + duration
+    n, m = system.size, len(system.contacts)
     code, why = run.to(end, progress)
     reached = run.out[0, 1:5] if code is not None else [run.at("t"), run.at("taken"), run.at("tries"), 0.0]
     if code is None:

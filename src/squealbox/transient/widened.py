@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.loops import force_per_state, padded, padded_load
+from squealbox.loops.rows import force_per_state, numbered, padded, padded_load
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Schedule, value_at
 from squealbox.system import Contact, InvalidSystem, System
@@ -99,7 +99,7 @@ def _appended(system: System, more: int, name: str) -> tuple[dict[str, Any], Any
         fields[key][..., :n, :n] = getattr(system, key)
     fields |= {"contacts": _padded(system.contacts, more), "load": padded_load(system.load, more)}
     fields["loops"] = system.loops
-    fields["names"] = (*system.names, *(f"{name} {i + 1}" for i in range(more)))
+    fields["names"] = numbered(system.names, name, more)
     old = system if isinstance(system, Widened) else None
     fields["seen"], fields["base"] = (old.seen, old.base) if old else (n, system)
     fields["memories"] = old.memories if old else ()

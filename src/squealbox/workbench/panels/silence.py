@@ -1,6 +1,5 @@
 """What silences it: the ranked table of cures, each with what the page has to change to have it."""
 
-import ast
 import dataclasses
 from collections.abc import Callable
 from typing import Any
@@ -19,7 +18,6 @@ from squealbox.workbench.sheet import page_name
 
 SAMPLES = 1024  # brakes of the lot
 READ_IN = {"rad": ("deg", np.pi / 180.0), "N/m": ("kN/mm", 1e6), "m/N": ("mm/kN", 1e-6)}
-CHANGE = "brake.replace("  # how the line of a cure begins that is another value of a parameter
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
@@ -62,9 +60,8 @@ def _row(table: Remedies, i: int) -> dict[str, Any]:
         "amplitude": finite(table.amplitude[i]), "cost": str(table.cost[i]), "caution": str(table.caution[i]),
         "python": str(table.line[i]),
     }  # fmt: skip
-    line = row["python"]
-    if line.startswith(CHANGE):
-        return row | {"values": _page_names(table.inputs["system"], ast.literal_eval(line[len(CHANGE) : -1]))}
+    if table.values[i]:
+        return row | {"values": _page_names(table.inputs["system"], table.values[i])}
     try:
         return row | {"text": design_text(table.design(i))}
     except NotWritable as error:

@@ -1,47 +1,27 @@
-"""Loops: what senses a brake and acts on it. Each is a data sheet; its rows stand beside those of the contacts.
+"""The kinds of loops: what senses a brake and acts on it. Each is a data sheet.
 
     M q'' + C q' + K q = ... + sum_a b_a u_a
     z' = A z + E q + F q' + G u            what a loop remembers
     u  = sat(P q + R q' + S z)             its force, held between samples, late by a delay
 
-A loop senses the degree of freedom `sense` and acts on `on` (a name each). A loop without limit, delay and sampling is
-linear: `folded` writes its memory as rows without mass, which every analysis takes. Active force control after Hewit
-and Burdess 1981, Mechanism and Machine Theory 16, 535-542.
-Depends on: parameters.
+A loop senses the degree of freedom `sense` and acts on `on` (a name each). Active force control after Hewit and
+Burdess 1981, Mechanism and Machine Theory 16, 535-542.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from squealbox.loops.rows import Rows, lagging
 from squealbox.parameters import DataSheet, ParameterError, known_names, parameter
-
-
-@dataclass(frozen=True)
-class Rows:
-    """The matrices of one loop; P, R, b (..., n), E, F (..., m, n), A (..., m, m), G, S (..., m)."""
-
-    A: Any
-    E: Any
-    F: Any
-    G: Any
-    P: Any
-    R: Any
-    S: Any
-    b: Any
-
-    @property
-    def memory(self) -> int:
-        """Number m of states."""
-        return int(np.shape(self.S)[-1])
 
 
 class Loop(DataSheet):
     """Base of the loops: `rows(names)`, and what the actuator is.
 
     bandwidth [Hz] of a first-order actuator, limit [N] of its force, delay [s], sampling [Hz] with `computing` samples
-    of computing time, are None or 0 where the actuator is ideal.
+    of computing time, are None or 0 where the actuator is ideal. A command that is sampled or late is cut at the limit,
+    held, and then followed by the actuator.
     """
 
     on: str = ""
@@ -75,7 +55,12 @@ class Loop(DataSheet):
     def rows(self, names: tuple[str, ...]) -> Rows:
         """The rows of controller and actuator for a system with these degrees of freedom."""
         own = self.controller(names)
-        return own if self.bandwidth is None else _lagging(own, 2.0 * np.pi * np.asarray(self.bandwidth))
+        return own if self.bandwidth is None else lagging(own, self.rate)
+
+    @property
+    def rate(self) -> Any:
+        """2 pi bandwidth [1/s] of the actuator; None of an ideal one."""
+        return None if self.bandwidth is None else 2.0 * np.pi * np.asarray(self.bandwidth)
 
     def _unit(self, names: tuple[str, ...], field: str) -> Any:
         field = "sense" if field == "sense" and self.sense else "on"
@@ -223,19 +208,6 @@ LOOPS: dict[str, type[Loop]] = {
 }
 
 
-def _lagging(own: Rows, rate: Any) -> Rows:
-    """Controller and first-order actuator, f' = rate (command - f), u = f."""
-    m, n = own.memory, own.b.size
-    vectors = (np.shape(row)[:-1] for row in (own.P, own.R, own.S))
-    lead = np.broadcast_shapes(np.shape(rate), *vectors, np.shape(own.A)[:-2])
-    A, E, F = np.zeros((*lead, m + 1, m + 1)), np.zeros((*lead, m + 1, n)), np.zeros((*lead, m + 1, n))
-    G, S = np.zeros((*lead, m + 1)), np.zeros((*lead, m + 1))
-    A[..., :m, :m], E[..., :m, :], F[..., :m, :], G[..., :m] = own.A, own.E, own.F, own.G
-    A[..., m, :m], A[..., m, m], S[..., m] = rate[..., None] * own.S, -rate, 1.0
-    E[..., m, :], F[..., m, :] = rate[..., None] * own.P, rate[..., None] * own.R
-    return Rows(A, E, F, G, np.zeros(n), np.zeros(n), S, own.b)
-
-
 def check_loops(loops: Any, names: tuple[str, ...], error: type[Exception]) -> tuple[Loop, ...]:
     """The loops of a system as a tuple; `error` for what is none, a loop's own error for a name that is not there."""
     kept = tuple(loops) if isinstance(loops, (tuple, list)) else (loops,)
@@ -244,95 +216,3 @@ def check_loops(loops: Any, names: tuple[str, ...], error: type[Exception]) -> t
             raise error(f"loops[{i}] = {loop!r}: expected a loop, such as PID(on='y', derivative=0.1)")
         loop.rows(names)
     return kept
-
-
-def folded(system: Any, *, limited: bool = False) -> Any:
-    """The system with its linear loops written as rows of M, C and K; the others stay loops.
-
-    A state z becomes a degree of freedom without mass, scaled to a displacement so that all rows are of one size. With
-    `limited`, loops with a limit are folded too, as linear as they are near steady sliding.
-    """
-    chosen = [loop for loop in system.loops if loop.linear and (loop.limit is None or limited)]
-    if not chosen:
-        return system
-    names = system.names
-    rows = [loop.rows(names) for loop in chosen]
-    n, more = system.size, sum(row.memory for row in rows)
-    vectors = (np.shape(x)[:-1] for row in rows for x in (row.P, row.R, row.S, row.G))
-    lead = np.broadcast_shapes(
-        system.shape, *vectors, *(np.shape(x)[:-2] for row in rows for x in (row.A, row.E, row.F))
-    )
-    M, C, K = (np.zeros((*lead, n + more, n + more)) for _ in range(3))
-    for into, matrix in ((M, system.M), (C, system.C), (K, system.K)):
-        into[..., :n, :n] = matrix
-    spring = np.max(np.abs(system.K), axis=(-1, -2)) + 0.0 * np.zeros(lead)
-    spring = np.where(spring > 0.0, spring, 1.0)
-    mass = np.max(np.abs(system.M), axis=(-1, -2))
-    rate = np.sqrt(spring / np.where(mass > 0.0, mass, 1.0))
-    at = n
-    for row in rows:
-        m = slice(at, at + row.memory)
-        at += row.memory
-        size = force_per_state(row, rate)
-        unit = spring[..., None] / size  # z = unit * (a displacement)
-        P, R, S = (np.broadcast_to(x, (*lead, np.shape(x)[-1])) for x in (row.P, row.R, row.S))
-        C[..., :n, :n] -= row.b[:, None] * R[..., None, :]
-        K[..., :n, :n] -= row.b[:, None] * P[..., None, :]
-        K[..., :n, m] -= row.b[:, None] * (S * unit)[..., None, :]
-        scale = (spring / rate)[..., None, None] / unit[..., :, None]
-        C[..., m, :n] = -scale * (row.F + row.G[..., :, None] * R[..., None, :])
-        K[..., m, :n] = -scale * (row.E + row.G[..., :, None] * P[..., None, :])
-        C[..., m, m] = (spring / rate)[..., None, None] * np.eye(row.memory)
-        K[..., m, m] = -scale * (row.A + row.G[..., :, None] * S[..., None, :]) * unit[..., None, :]
-    return _wider(system, M, C, K, more, tuple(loop for loop in system.loops if loop not in chosen))
-
-
-def force_per_state(row: Rows, rate: Any) -> Any:
-    """How much force a unit of each state makes within 1/rate, (..., m): directly or through others; 1 if none."""
-    size = np.abs(row.S) + 0.0 * np.asarray(rate)[..., None]
-    for _ in range(row.memory):
-        through = np.max(np.abs(row.A) * size[..., :, None], axis=-2, initial=0.0) / np.asarray(rate)[..., None]
-        size = np.where(size > 0.0, size, through)
-    return np.where(size > 0.0, size, 1.0)
-
-
-def near_sliding(system: Any) -> Any:
-    """The system near steady sliding, its loops as rows; `ParameterError` for loops with delay or sampling."""
-    near = folded(system, limited=True)
-    for loop in near.loops:
-        given = f"{type(loop).__name__}(on={loop.on!r}) with {'sampling' if loop.sampling is not None else 'a delay'}"
-        raise ParameterError("system", "loops", given, "loops that are rows of matrices: closed_loop() gives its poles")
-    return near
-
-
-def _wider(system: Any, M: Any, C: Any, K: Any, more: int, loops: tuple[Loop, ...]) -> Any:
-    """The system with these matrices and its contacts and load padded by rows without force."""
-    contacts = []
-    for contact in system.contacts:
-        given = {name: getattr(contact, name) for name in ("n", "d", "t", "normal")}
-        contacts.append(contact.replace({name: padded(row, more) for name, row in given.items() if row is not None}))
-    names = (*system.names, *(f"loop state {i + 1}" for i in range(more)))
-    load = padded_load(system.load, more)
-    return system.replace(M=M, C=C, K=K, load=load, contacts=tuple(contacts), names=names, loops=loops)
-
-
-def padded(row: Any, more: int) -> Any:
-    """A row (..., n) with zeros at its end."""
-    return np.pad(row, [(0, 0)] * (np.ndim(row) - 1) + [(0, more)])
-
-
-def padded_load(load: Any, more: int) -> Any:
-    """A load, numbers (..., n) or a schedule of them, with zeros at its end."""
-    if not hasattr(load, "terms"):
-        return padded(load, more)
-    parts: list[Any] = []
-    for weight, part in load.terms():
-        level = getattr(part, "level", 1.0)
-        if np.ndim(level) > 0:
-            weight, part = np.asarray(weight) * level, part.replace(level=1.0)
-        wide = part * padded(np.asarray(weight, dtype=float), more)
-        parts.append(wide)
-    total = parts[0]
-    for part in parts[1:]:
-        total = total + part
-    return total
