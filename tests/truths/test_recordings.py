@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from squealbox.signals import (
     SignalError,
@@ -182,6 +183,54 @@ def test_noise_is_no_squeal():
     for seed in range(3):
         x = np.random.default_rng(seed).standard_normal(int(20 * RATE))
         assert squeal_events(x, RATE, least_level=None).count == 0
+
+
+@pytest.mark.parametrize(
+    "loudness",
+    [lambda t: 1.0 - 0.98 * t / 6.0, lambda t: np.exp(-t), lambda t: 1.0 + 20.0 * (t % 1.0 < 0.02),
+     lambda t: 1.0 + 3.0 * (t % 2.0 < 0.2), lambda t: 1.0 + 0.9 * np.sin(2 * np.pi * 5.0 * t)],
+    ids=["falls", "dies away", "knocks", "bursts", "beats"],
+)  # fmt: skip
+def test_noise_whose_loudness_changes_is_no_squeal(loudness):
+    """A brake's noise falls with its speed; the tone in it is still found."""
+    t = np.arange(int(6 * RATE)) / RATE
+    noise = loudness(t) * lfilter([1.0], [1.0, -0.7], np.random.default_rng(1).standard_normal(t.size))
+    assert squeal_events(noise, RATE, least_level=None).count == 0
+    found = squeal_events(noise + tone(t, 4321.0, 1.0, 2.5, 4.0), RATE, least_level=None)
+    assert found.frequency == pytest.approx([4321.0], abs=1.0)
+
+
+def test_a_faint_tone_beside_a_loud_one_keeps_its_own_frequency():
+    t = np.arange(int(1.5 * RATE)) / RATE
+    on = (t > 0.4) & (t < 1.1)
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        f, share = rng.uniform(2100.0, 14000.0), rng.uniform(0.1, 0.2)
+        x = on * (np.sin(2 * np.pi * f * t) + share * np.sin(2 * np.pi * (f + 100.0) * t + rng.uniform(0.0, 6.0)))
+        found = squeal_events(x + 0.01 * rng.standard_normal(t.size), RATE, least_level=None)
+        assert np.sort(found.frequency) == pytest.approx([f, f + 100.0], abs=0.5)
+    far = tone(t, 2500.0, 1.0, 0.4, 1.1) + tone(t, 9000.0, 0.01, 0.5, 1.0)  # 40 dB apart
+    found = squeal_events(far + 1e-4 * np.random.default_rng(0).standard_normal(t.size), RATE, least_level=None)
+    assert np.sort(found.frequency) == pytest.approx([2500.0, 9000.0], abs=0.5)
+
+
+def test_a_squeal_from_the_first_sample_to_the_last():
+    t = np.arange(int(1.0 * RATE)) / RATE
+    found = squeal_events(
+        np.sin(2 * np.pi * 3000.0 * t) + 1e-3 * np.random.default_rng(0).standard_normal(t.size), RATE
+    )
+    assert (found.onset[0], found.end[0], found.occurrence) == (0.0, 1.0, 1.0)
+
+
+def test_conditions_of_a_stop_are_means_over_its_own_time():
+    speed = ([-1.0, 0.0, 0.5, 2.0], [20.0, 10.0, 5.0, 5.0])  # from 10 to 5 in half a second, then steady to its end
+    sound = Recording(
+        np.zeros(int(RATE)) + 1e-3, RATE, ("acc",), ("g",), {"speed": speed, "late": ([3.0, 4.0], [1.0, 1.0])}
+    )
+    found = squeal_events(sound)
+    assert found.settings["stop"]["speed"] == pytest.approx(0.5 * 7.5 + 0.5 * 5.0)
+    assert np.isnan(found.settings["stop"]["late"])
+    assert found.settings["unit"] == "dB re 1 g"
 
 
 def test_a_noise_matrix_is_what_a_hand_counts():

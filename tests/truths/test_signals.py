@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.io import wavfile
-from scipy.signal import find_peaks, lfilter
+from scipy.signal import butter, find_peaks, lfilter
 
 from squealbox.signals import (
     SignalError,
@@ -250,3 +250,26 @@ def test_results_are_saved_and_read_back(tmp_path):
         back = type(result).load(result.save(tmp_path / f"{type(result).__name__}.nc"))
         assert back.amplitude.tolist() == result.amplitude.tolist() if hasattr(result, "amplitude") else back.rate
         assert back.settings == result.settings
+
+
+@pytest.mark.parametrize(
+    ("ahead", "back"),
+    [butter(2, 2000.0, fs=48e3), butter(4, 8000.0, fs=48e3), butter(2, 5000.0, "high", fs=48e3),
+     ([1.0], [1.0, -1.8 * np.cos(0.8), 0.81])],
+    ids=["low pass", "steep low pass", "high pass", "resonance"],
+)  # fmt: skip
+def test_errors_in_noise_of_any_colour_are_those_of_its_density_at_the_tone(ahead, back):
+    """sd(g) = sqrt(24/n) s/(A T) with the density of the noise at the tone; a hill of the noise is no component."""
+    rate, count, tone = 48e3, 4800, 3111.7
+    t, turn = np.arange(count) / rate, np.exp(-2j * np.pi * tone / rate)
+    gain = abs(np.polyval(ahead[::-1], turn) / np.polyval(back[::-1], turn))
+    sd = np.sqrt(24.0 / count) * 0.1 / (count / rate)
+    away = []
+    for seed in range(10):
+        noise = lfilter(ahead, back, np.random.default_rng(seed).standard_normal(count + 2000))[2000:]
+        x = np.cos(2 * np.pi * tone * t + seed) + 0.1 / gain * noise
+        found = growth_rate(x, rate=rate)
+        assert found.steady
+        assert found.rate_error == pytest.approx(1.96 * sd, rel=0.25)  # 100 lines tell a density to 10 %
+        away.append(found.rate / sd)
+    assert np.sqrt(np.mean(np.square(away))) < 1.7  # of ten, 2e-4

@@ -12,20 +12,38 @@ QUIET = 0.05  # share of the plateau from which growth is read, if the noise is 
 LOUD = 0.45  # share of the plateau up to which growth is read
 
 
-def edges(middles: Any, amplitude: Any, hop: float) -> tuple[float, float]:
-    """Onset and end: where half of what follows within a frame is reached; of slow growth, where it is seen."""
+def edges(middles: Any, amplitude: Any, noise: Any, hop: float) -> tuple[float, float]:
+    """Onset and end: where half of what follows within a frame is reached, for three frames on end above the noise.
 
-    def first(times: Any, heights: Any) -> float:
-        later = heights[min(4, len(heights) - 1)]
-        above = np.nonzero(heights >= 0.5 * later)[0]
-        k = int(above[0]) if above.size else 0
+    A tone that sets in at once shows the share of the window that holds it; the best such instant is taken.
+    """
+
+    def first(times: Any, heights: Any, quiet: Any) -> float:
+        after = np.append(heights, np.full(4, np.nan))[3:]
+        half = 0.5 * np.nanmedian(np.lib.stride_tricks.sliding_window_view(after, 5), axis=1)
+        lasts = np.min(np.lib.stride_tricks.sliding_window_view(heights, 3), axis=1)[: len(half)]
+        stays = np.nonzero((lasts >= half) & (half >= 1.5 * quiet[: len(half)]))[0]
+        k = int(stays[0]) if stays.size else 0
         if k == 0:
             return float(times[0])
-        share = (0.5 * later - heights[k - 1]) / max(heights[k] - heights[k - 1], 1e-300)
-        return float(times[k - 1] + share * (times[k] - times[k - 1]))
+        near = slice(max(k - 4, 0), k + 6)
+        tried = times[k] + hop * np.arange(-3.0, 2.0, 0.05)
+        misfit = np.minimum(heights[near] / (2.0 * half[k]), 1.2) - _rise((times[near] - tried[:, None]) / (4.0 * hop))
+        return float(tried[np.argmin(np.sum(misfit**2, axis=1))])
 
-    begin, end = first(middles, amplitude), -first(-middles[::-1], amplitude[::-1])
+    begin, end = first(middles, amplitude, noise), -first(-middles[::-1], amplitude[::-1], noise[::-1])
     return begin, max(end, begin + hop)
+
+
+def _rise(after: Any) -> Any:
+    """Amplitude that Hann's window shows of a tone which sets in `after` of its length before the window's middle.
+
+    The middle of what its line holds, 1 - F, and of what all lines hold, sqrt(1 - G); the lines beside it are counted.
+    """
+    s = 2.0 * np.pi * np.clip(0.5 - after, 0.0, 1.0)
+    line = 1.0 - (s - np.sin(s)) / (2.0 * np.pi)
+    every = 1.0 - (s - (8.0 * np.sin(s) - np.sin(2.0 * s)) / 6.0) / (2.0 * np.pi)
+    return 0.5 * (line + np.sqrt(np.clip(every, 0.0, 1.0)))
 
 
 def steady_frequency(
@@ -38,12 +56,19 @@ def steady_frequency(
     if part.size < length // 2:
         return None
     try:
-        found = tones(part, rate, near=near, most=1, colour=False)
+        for most in (1, 4):  # a louder tone beside it is fitted with it
+            found = tones(part, rate, near=near, most=most, colour=False)
+            away = np.abs(found.exponents.imag / (2.0 * np.pi) - near)
+            if away.size and np.min(away) <= 0.5 * rate / length:
+                break
+        else:
+            return None
     except SignalError:
         return None
-    if not found.exponents.size or abs(found.exponents[0].real) * part.size / rate > 1.0:
+    i = int(np.argmin(away))
+    if abs(found.exponents[i].real) * part.size / rate > 1.0:
         return None
-    return float(found.exponents[0].imag / (2.0 * np.pi)), float(1.96 * found.error(0)[1] / (2.0 * np.pi))
+    return float(found.exponents[i].imag / (2.0 * np.pi)), float(1.96 * found.error(i)[1] / (2.0 * np.pi))
 
 
 def rate_at(

@@ -9,7 +9,6 @@ Band and threshold follow SAE J2521 as its public summary states them: a peak of
 (from 1.25 kHz on for full corners).
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,24 +20,23 @@ from squealbox.signals.event_ends import edges, rate_at, steady_frequency
 from squealbox.signals.radiation import HEARING, a_weighting
 from squealbox.signals.recordings import as_recording
 from squealbox.signals.samples import SignalError
+from squealbox.signals.tracks import Frames, Track, lines_of, seen, stands_out, tracks
 
 BAND = (2000.0, 16000.0)  # [Hz]
 LEAST_LEVEL = 70.0  # dB(A)
 FRAME = 0.043  # s
 CHANCE = 1e-3  # that noise passes the threshold in a line of a frame
 SURE = 1e-5  # and the threshold of the mean over the frames of an event
-FRAMES = 6  # on end, at least, three quarters of each over the next
-WANDER = 1.6  # lines a track may move from frame to frame
-GAP = 6  # frames a track may be lost for
-LEAK = 1e-3  # of the power of a line that may be seen beside it
+STEADY = 0.02  # lines an event may wander and still have one frequency
+MOST_TOLD = 10.0  # events a second whose samples are looked at, so that no recording takes for ever
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SquealEvents(Result):
     """Squeal events, in the order of their onsets; rates are NaN where the record cannot tell them.
 
-    Levels are dB(A) re 20 uPa of a calibrated recording, dB re full scale (unweighted) of another; `settings["unit"]`
-    says which. The outcome is "completed" or "no_event".
+    Levels are dB(A) re 20 uPa of a sound pressure, unweighted dB re full scale or re 1 of its unit of another channel;
+    `settings["unit"]` says which. The outcome is "completed" or "no_event".
     """
 
     onset: Any = quantity("event", "s", "when it begins")
@@ -105,17 +103,6 @@ class SquealEvents(Result):
         return self.summary()
 
 
-@dataclass
-class _Track:
-    """Peaks that follow each other: frames, lines (fractional), sums over three lines, heights, distances."""
-
-    frames: list[int]
-    lines: list[float]
-    powers: list[float]
-    heights: list[float]
-    offsets: list[float]
-
-
 @public()
 def squeal_events(
     recording: Any,
@@ -157,21 +144,30 @@ def squeal_events(
     if x.size < length + 3 * hop:
         raise SignalError(f"{x.size} samples at {rate:g} Hz: expected {length + 3 * hop} or more for four frames")
     calibrated = sound.calibrated(channel)
-    power, lines, floor, starts = _frames(x, rate, length, hop, (low, min(high, 0.49 * rate)))
+    high = min(high, 0.49 * rate)
+    frames = Frames(x, rate, length, (low, high))
     weigh = a_weighting if calibrated else np.ones_like
     reference = HEARING if calibrated else 1.0
-    tracks = [track for track in _tracks(power, floor, chance) if _stands_out(track, floor, SURE * chance / CHANCE)]
     events = []
-    for track in tracks:
-        event = _event(x, rate, track, lines, floor, starts, length, hop, weigh, reference)
-        if least_level is None or not calibrated or event["peak_level"] >= least_level:
-            events.append(event)
+    for track in tracks(frames, chance):
+        if stands_out(track, frames, SURE * chance / CHANCE):
+            event = _event(track, frames, weigh, reference)
+            loud = least_level is None or not calibrated or event["peak_level"] >= least_level
+            if loud and low <= event["frequency"] <= high:
+                events.append(event)
+    events.sort(key=lambda event: -event["level"])
+    most = max(MOST_TOLD * sound.duration, MOST_TOLD)
+    told = events[: int(most)]
+    for event in told:
+        _of_samples(event, x, rate, length)
+    untold = f"only of the {len(told)} loudest of {len(events)} events are frequency and rates read from the samples"
+    notes = [*sound.notes, *([untold] if len(told) < len(events) else [])]
     events.sort(key=lambda event: event["onset"])
     names = list(sound.braking)
     settings = {"band": [low, high], "least_level": least_level, "frame": length / rate, "chance": chance}
-    settings |= {"unit": "dB(A)" if calibrated else "dB re full scale", "notes": list(sound.notes)}
+    settings |= {"unit": _level_unit(sound.units[sound.index(channel)]), "notes": notes}
     settings |= {"braking": names, "source": sound.source, "channel": sound.names[sound.index(channel)]}
-    settings["stop"] = {name: float(np.mean(values)) for name, (_, values) in sound.braking.items()}
+    settings["stop"] = {name: sound.mean_of(name) for name in names}
     level = f" of {least_level:g} dB(A) or more" if calibrated and least_level is not None else ""
     outcome = Outcome() if events else Outcome("no_event", f"no squeal{level} between {low:g} and {high:g} Hz")
     longest = max((len(event["track_time"]) for event in events), default=1)
@@ -198,140 +194,71 @@ _NAMES = (
 )  # fmt: skip
 
 
+def _level_unit(unit: str) -> str:
+    return "dB(A)" if unit == "Pa" else "dB re full scale" if unit == "FS" else f"dB re 1 {unit}"
+
+
 def _padded(value: Any, longest: int) -> Any:
     return value if np.ndim(value) == 0 else np.append(value, np.full(longest - len(value), np.nan))
 
 
-def _frames(x: Any, rate: float, length: int, hop: int, band: tuple[float, float]) -> tuple[Any, Any, Any, Any]:
-    """Mean squares (frames, lines) of a line under Hann's window, its frequencies, the noise, the frames' starts."""
-    from scipy.fft import rfft
-
-    weights = np.sin(np.pi * np.arange(length) / length) ** 2
-    starts = np.arange(0, x.size - length + 1, hop)
-    first, last = int(band[0] * length / rate), int(np.ceil(band[1] * length / rate))
-    first, last = max(first - 4, 1), min(last + 5, length // 2)
-    pieces = np.lib.stride_tricks.sliding_window_view(x, length)[::hop]
-    power = np.empty((len(starts), last - first))
-    for begin in range(0, len(starts), 256):
-        part = rfft(pieces[begin : begin + 256] * weights, axis=1)[:, first:last]
-        power[begin : begin + 256] = 2.0 * (part.real**2 + part.imag**2) / np.sum(weights) ** 2
-    return power, np.arange(first, last) * (rate / length), _noise(power), starts
-
-
-def _noise(power: Any) -> Any:
-    """The mean of the noise in each line: its median over time, or over the lines beside it where a tone stays."""
-    from scipy.ndimage import median_filter
-
-    level = np.median(power[:: max(len(power) // 2000, 1)], axis=0) / np.log(2.0)
-    beside = median_filter(level, size=13, mode="nearest")  # a tone takes four lines
-    return np.maximum(np.minimum(level, 1.1 * beside), 1e-300)
-
-
-def _tracks(power: Any, floor: Any, chance: float) -> Iterator[_Track]:
-    """Peaks joined from frame to frame."""
-    limit = -np.log(chance) * floor
-    inner = power[:, 1:-1]
-    peak = (inner >= power[:, :-2]) & (inner > power[:, 2:]) & (inner > limit[1:-1])
-    frames, places = np.nonzero(peak)
-    open_tracks: list[_Track] = []
-    for k in np.unique(frames):
-        found = places[frames == k] + 1
-        heights = power[k, found]
-        reach = np.max(heights) * LEAK
-        still = []
-        for track in open_tracks:
-            if k - track.frames[-1] <= GAP:
-                still.append(track)
-            else:
-                yield track
-        open_tracks = still
-        free = dict.fromkeys(range(len(open_tracks)))
-        for i in np.argsort(-heights):
-            if heights[i] < reach:
-                continue
-            line = _between(power[k], int(found[i]))
-            near = [(abs(open_tracks[j].lines[-1] - line), j) for j in free]
-            away, j = min(near, default=(np.inf, -1))
-            mean_square = float(np.sum(power[k, found[i] - 1 : found[i] + 2]))
-            if away <= WANDER:
-                del free[j]
-                track = open_tracks[j]
-            else:
-                if heights[i] < 4.0 * reach and len(found) > 1 and _is_skirt(found, heights, i):
-                    continue
-                track = _Track([], [], [], [], [])
-                open_tracks.append(track)
-            track.frames.append(int(k))
-            track.lines.append(line)
-            track.offsets.append(line - float(found[i]))
-            track.powers.append(mean_square)
-            track.heights.append(float(heights[i]))
-    yield from open_tracks
-
-
-def _stands_out(track: _Track, floor: Any, chance: float) -> bool:
-    """Whether a track is long and, on the mean of its frames, high enough to be no noise."""
-    places = np.clip(np.round(track.lines).astype(int), 0, len(floor) - 1)
-    return len(track.frames) >= FRAMES and bool(np.mean(track.heights / floor[places]) >= -np.log(chance))
-
-
-def _is_skirt(found: Any, heights: Any, i: int) -> bool:
-    """Whether a peak stands within what Hann's window shows beside a much higher one."""
-    higher = heights > 100.0 * heights[i]
-    return bool(np.any(higher & (np.abs(found - found[i]) < 24)))
-
-
-def _between(row: Any, k: int) -> float:
-    """The place of a peak between lines: a parabola through the logarithms."""
-    left, middle, right = np.log(np.maximum(row[k - 1 : k + 2], 1e-300))
-    bend = left - 2.0 * middle + right
-    return k + (0.5 * (left - right) / bend if bend < 0.0 else 0.0)
-
-
-def _seen(offsets: Any) -> Any:
-    """What Hann's window shows of a tone in the three lines about it, `offsets` lines off the middle one; 1.5 at 0."""
-    x = np.asarray(offsets)[:, None] - np.array([-1.0, 0.0, 1.0])
-    x = np.where(np.abs(np.abs(x) - 1.0) < 1e-6, x + 2e-6, x)
-    return np.sum((np.sinc(x) / (1.0 - x**2)) ** 2, axis=1)
-
-
-def _event(
-    x: Any,
-    rate: float,
-    track: _Track,
-    lines: Any,
-    floor: Any,
-    starts: Any,
-    length: int,
-    hop: int,
-    weigh: Any,
-    reference: float,
-) -> dict[str, Any]:
-    step = lines[1] - lines[0]
-    frames = np.array(track.frames)
-    frequency = lines[0] + step * np.array(track.lines)
-    places = np.clip(np.round(track.lines).astype(int), 0, len(floor) - 1)
-    total = np.array(track.powers) / _seen(track.offsets)
-    square = np.maximum(total - 2.0 * floor[places], 1e-3 * total)
-    middles = (starts[frames] + 0.5 * length) / rate
+def _event(track: Track, frames: Frames, weigh: Any, reference: float) -> dict[str, Any]:
+    """What the frames tell of an event; see `_of_samples`."""
+    numbers, places = np.array(track.frames), lines_of(track)
+    step = frames.frequency[1] - frames.frequency[0]
+    frequency = frames.frequency[0] + step * np.array(track.lines)
+    total = np.array(track.powers) / seen(track.offsets)
+    noise = frames.usual_noise(numbers, places)
+    square = np.maximum(total - 2.0 * noise, 1e-3 * total) * frames.scale
+    middles = frames.middle[numbers]
     weighted = square * weigh(frequency) ** 2
     level = 10.0 * np.log10(weighted / reference**2)
     mean = float(np.average(frequency, weights=square))
-    onset, end = edges(middles, np.sqrt(square), hop / rate)
+    onset, end = edges(*_with_ends(track, frames), frames.hop / frames.rate)
+    onset = 0.0 if onset <= frames.middle[0] else onset
+    end = frames.duration if end >= frames.middle[-1] else end
     spread = float(np.sqrt(np.average((frequency - mean) ** 2, weights=square)))
     inside = (middles >= onset) & (middles <= end)
     loud = weighted[inside] if np.any(inside) else weighted
-    event: dict[str, Any] = {
+    return {
         "onset": onset, "end": end, "frequency": mean, "frequency_error": 1.96 * spread,
         "level": float(10.0 * np.log10(np.mean(_full(loud)) / reference**2)), "peak_level": float(np.max(level)),
+        "growth_rate": np.nan, "growth_error": np.nan, "decay_rate": np.nan, "decay_error": np.nan,
         "track_time": middles, "track_frequency": frequency, "track_level": level,
+        "steady": _is_steady(frequency, step),
     }  # fmt: skip
-    exact = steady_frequency(x, rate, mean, onset, end, length)
-    if exact is not None and exact[1] < event["frequency_error"]:
+
+
+def _is_steady(frequency: Any, step: float) -> bool:
+    """Whether the means of an event's four quarters differ by no more than its frames do among each other."""
+    whole = _full(frequency)
+    if len(whole) < 8:
+        return True
+    apart = float(np.std(whole[3:] - whole[:-3])) / np.sqrt(2.0)  # frames that share little
+    quarters = [float(np.mean(part)) for part in np.array_split(whole, 4)]
+    return float(np.ptp(quarters)) <= STEADY * step + 4.0 * apart / np.sqrt(len(whole) / 9.0)
+
+
+def _with_ends(track: Track, frames: Frames) -> tuple[Any, Any, Any]:
+    """Middles, amplitudes and noise of the frames of a track, and of four before and after it that hide in noise."""
+    first, last = max(track.frames[0] - 4, 0), min(track.frames[-1] + 5, len(frames.middle))
+    numbers = np.arange(first, last)
+    places = np.round(np.interp(numbers, track.frames, lines_of(track))).astype(int)
+    around = np.clip(places[:, None] + np.array([-1, 0, 1]), 0, frames.power.shape[1] - 1)
+    noise = frames.usual_noise(numbers, places)
+    square = np.sum(frames.power[numbers[:, None], around], axis=1) / 1.5 - 2.0 * noise
+    return frames.middle[numbers], np.sqrt(np.maximum(square, 0.0)), np.sqrt(noise)
+
+
+def _of_samples(event: dict[str, Any], x: Any, rate: float, length: int) -> None:
+    """Frequency and rates of an event from the samples themselves, which tell them better than frames."""
+    near, onset, end = event["frequency"], event["onset"], event["end"]
+    exact = steady_frequency(x, rate, near, onset, end, length) if event["steady"] else None
+    if exact is not None:
         event["frequency"], event["frequency_error"] = exact
-    event["growth_rate"], event["growth_error"] = rate_at(x, rate, mean, onset, end, length, backwards=False)
-    event["decay_rate"], event["decay_error"] = rate_at(x, rate, mean, onset, end, length, backwards=True)
-    return event
+    for name, backwards in (("growth", False), ("decay", True)):
+        found = rate_at(x, rate, near, onset, end, length, backwards=backwards)
+        event[f"{name}_rate"], event[f"{name}_error"] = found
 
 
 def _full(weighted: Any) -> Any:

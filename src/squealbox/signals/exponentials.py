@@ -165,20 +165,15 @@ def matched_energy(record: Record, exponents: Any) -> Any:
 def prediction_filter(residual: Any, most: int) -> Any:
     """Coefficients (1, a_1, ..., a_p) that make noise white, p <= `most` by the least BIC; (1,) for white noise.
 
-    Yule and Walker's equations by Levinson's recursion on the record's own correlation; 50 samples or more for each
-    coefficient.
+    Burg's recursion, which sees what is weak beside what is strong; 50 samples or more for each coefficient.
     """
     size = residual.size
-    most = min(most, size // 50)
-    power = _power(residual)
-    if most < 1 or power == 0.0:
-        return np.ones(1)
-    each = [float(np.einsum("i,i->", residual[k:], residual[:-k])) for k in range(1, most + 1)]
-    lags = np.array([power, *each]) / size
-    coefficients, error = np.ones(1), float(lags[0])
-    best, least = coefficients, size * np.log(error)
-    for order in range(1, most + 1):
-        mirror = -float(coefficients @ lags[order:0:-1]) / error
+    ahead, behind = residual[1:], residual[:-1]
+    error = _power(residual) / size
+    best = coefficients = np.ones(1)
+    least = size * np.log(error) if error > 0.0 else -np.inf
+    for order in range(1, min(most, size // 50) + 1):
+        mirror = -2.0 * float(np.einsum("i,i->", ahead, behind)) / max(_power(ahead) + _power(behind), 1e-300)
         coefficients = np.append(coefficients, 0.0) + mirror * np.append(coefficients, 0.0)[::-1]
         error *= 1.0 - mirror**2
         if not error > 0.0:
@@ -186,6 +181,7 @@ def prediction_filter(residual: Any, most: int) -> Any:
         score = size * np.log(error) + order * np.log(size)
         if score < least:
             best, least = coefficients, score
+        ahead, behind = (ahead + mirror * behind)[1:], (behind + mirror * ahead)[:-1]
     return best
 
 

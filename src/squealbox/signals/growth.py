@@ -140,7 +140,7 @@ def growth_rate(
     width = float(ndtri(0.5 + 0.5 * LEVEL))
     errors = [width * error for error in found.error(index)]
     halves, agree = _halves(found, index)
-    steady = bool(agree and not crowded)
+    steady = bool(agree and not crowded and found.sharp[index])
     if not steady:
         errors = [max(errors[0], abs(halves[1].real - halves[0].real)), max(errors[1], abs(halves[1] - halves[0]))]
     middle, envelope = _envelope(data, omega / (2.0 * np.pi), periods)

@@ -22,6 +22,7 @@ LARGEST = 2_000_000_000  # bytes of a file
 LARGEST_TEXT = 200_000_000
 DENSEST = 512  # samples a byte of a file can stand for, at most: FLAC of silence
 BLOCK = 1 << 20  # frames read at once
+HUGE = 1e100  # no unit is so small that a value has to be so large
 CLIPPED = 3  # neighbours at the largest value, from which it is called clipped
 INSTALL = "pip install squealbox[recordings]"
 
@@ -51,12 +52,12 @@ class Recording:
             )
         if not (np.isfinite(self.rate) and self.rate > 0.0):
             raise SignalError(f"{self._where}rate = {self.rate}: expected a sampling rate above 0 Hz")
-        bad = np.argwhere(~np.isfinite(x))
+        bad = np.argwhere(~(np.abs(x) < HUGE))
         if bad.size:
             place, channel = bad[0]
             raise SignalError(
-                f"{self._where}sample {place} of channel {channel + 1} is {x[place, channel]} and {len(bad)} are not "
-                "finite: expected finite values"
+                f"{self._where}sample {place} of channel {channel + 1} is {x[place, channel]:g}, one of {len(bad)}: "
+                f"expected finite values below {HUGE:g}"
             )
         if len(self.names) != x.shape[1] or len(self.units) != x.shape[1]:
             raise SignalError(f"{len(self.names)} names and {len(self.units)} units for {x.shape[1]} channels")
@@ -101,6 +102,15 @@ class Recording:
             return float("nan")
         times, values = self.braking[name]
         return float(np.interp(time, times, values, left=np.nan, right=np.nan))
+
+    def mean_of(self, name: str) -> float:
+        """Mean over time of a quantity of the braking, as far as it was recorded meanwhile; NaN where it was not."""
+        times, values = self.braking[name]
+        begin, end = max(0.0, times[0]), min(self.duration, times[-1])
+        if not begin < end:
+            return float("nan")
+        clock = np.unique(np.clip(np.concatenate([[begin, end], times]), begin, end))
+        return float(np.trapezoid(np.interp(clock, times, values), clock) / (end - begin))
 
 
 def as_recording(signal: Any, rate: float | None, unit: str) -> Recording:

@@ -6,7 +6,7 @@ noise alone reaches once in `CHANCE` records. Coloured noise is then made white 
 exponents as they are, so the same fit on the filtered record is the maximum of the likelihood.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,9 @@ MOST = 8  # components
 WINDOWS = (0.0, -8.0, 8.0, -60.0, 60.0)  # growth over the record of the windows; 0 is Hann's
 TRIED = np.array([0.0, 1.0, 3.0, 8.0, 20.0, 50.0, 120.0, 300.0, 800.0])  # growth over the record, either sign
 ORDER = 24  # of the prediction filter, at most
+AROUND = 50  # resolutions on either side from which the noise at a component is read
+RING = (5, 25)  # resolutions from a line that are its surroundings
+MOST_SEEN = 64  # lines looked at
 SLOW = 2.0  # cycles in the record that a component must go through before its frequency is one
 CANCEL = 4.0  # most energy of the components beside that of the record
 STEEPEST = -3.0  # power of the frequency with which red noise may rise; a line under a window is steeper
@@ -33,6 +36,7 @@ class Tones:
     exponents: Any
     energies: Any
     covariance: Any
+    sharp: Any  # whether each stands above its surroundings: a hill of coloured noise does not
     rate: float
     size: int
     record: Any  # the samples the last fit is of: about their mean, filtered where the noise has a colour
@@ -67,24 +71,26 @@ def tones(x: Any, rate: float, *, near: float | None = None, most: int = MOST, c
     guesses = np.zeros(0, dtype=complex)
     residual = record
     looks = _windows(x.size)
+    sharp: list[bool] = []
     for _ in range(most):
-        seed = _strongest(residual, looks, guesses, None if near is None or len(guesses) else near / rate)
-        if seed is None:
+        seen = _strongest(residual, looks, guesses, None if near is None or len(guesses) else near / rate)
+        if seen is None:
             break
-        alone = fit_exponentials(residual, [seed], offset=False, close=1.0).exponents[0]
-        tried = [
-            fit_exponentials(record, np.append(guesses, each)) for each in (alone, seed)[: 1 + (len(guesses) == 0)]
-        ]
-        tried = [fit for fit in tried if _sound(fit, record.power)]
-        if not tried:
+        seed, narrow = seen
+        if len(guesses):  # near what is left first: many at once find no way from afar
+            seed = fit_exponentials(residual, [seed], offset=False, close=1.0).exponents[0]
+        trial = fit_exponentials(record, np.append(guesses, seed))
+        if not _sound(trial, record.power):
             break
-        found = min(tried, key=lambda fit: float(np.sum(fit.residual**2)))
+        found = trial
         guesses = found.exponents
+        sharp.append(narrow)
         residual = Record(found.residual)
         if residual.power <= ROUNDING * record.power:
             break
     if found is None:
-        return Tones(np.zeros(0, dtype=complex), np.zeros(0), np.zeros((0, 0)), rate, x.size, record.x)
+        none = np.zeros(0)
+        return Tones(none.astype(complex), none, np.zeros((0, 0)), none.astype(bool), rate, x.size, record.x)
     final, used = _whitened(record, found) if colour else (found, record.x)
     order = np.argsort(-found.energies, kind="stable")
     pairs = np.ravel(np.column_stack([2 * order, 2 * order + 1]))
@@ -92,6 +98,7 @@ def tones(x: Any, rate: float, *, near: float | None = None, most: int = MOST, c
         exponents=final.exponents[order] * rate,
         energies=found.energies[order],
         covariance=final.covariance[np.ix_(pairs, pairs)] * rate**2,
+        sharp=np.array(sharp)[order],
         rate=rate,
         size=x.size,
         record=used,
@@ -123,7 +130,21 @@ def _whitened(record: Record, found: Exponentials) -> tuple[Exponentials, Any]:
     moved = np.abs(again.exponents - found.exponents) * record.size
     allowed = np.maximum(3.0, np.abs(found.exponents.real) * record.size)
     good = _sound(again, CANCEL * Record(filtered).power) and np.all(moved < allowed)
-    return (again, filtered) if good else (found, record.x)
+    if not good:
+        return found, record.x
+    left = np.repeat(np.sqrt(_about(again.residual, again.exponents)), 2)
+    return replace(again, covariance=again.covariance * np.outer(left, left)), filtered
+
+
+def _about(residual: Any, exponents: Any) -> Any:
+    """Power of what a filter left about each component, beside its mean: no filter of few coefficients is perfect."""
+    power = np.abs(np.fft.rfft(residual)) ** 2
+    places = np.round(exponents.imag * residual.size / (2.0 * np.pi)).astype(int)
+    away = np.arange(3, min(AROUND, power.size // 4) + 3)
+    lines = np.abs(places[:, None] + np.concatenate([-away, away]))
+    last = power.size - 1
+    lines = last - np.abs(last - lines)
+    return np.mean(power[lines], axis=1) / np.mean(power)
 
 
 def _windows(size: int) -> list[tuple[float, Any]]:
@@ -136,9 +157,12 @@ def _windows(size: int) -> list[tuple[float, Any]]:
     return looks
 
 
-def _strongest(record: Record, looks: list[tuple[float, Any]], taken: Any, near: float | None) -> complex | None:
+def _strongest(
+    record: Record, looks: list[tuple[float, Any]], taken: Any, near: float | None
+) -> tuple[complex, bool] | None:
     """A first guess of the exponent [1/sample] of the strongest line above the noise; None when there is none.
 
+    And whether it stands above its surroundings too, which a hill of the noise does not: other than the first must.
     `near` [cycles/sample] looks at that frequency alone.
     """
     from scipy.fft import next_fast_len, rfft
@@ -148,27 +172,57 @@ def _strongest(record: Record, looks: list[tuple[float, Any]], taken: Any, near:
     x = (record.x / np.max(np.abs(record.x))).astype(np.float32)  # enough to see a line: the fit has all digits
     place = np.arange(length // 2 + 1) * (size / length)  # in resolutions of the record
     floor = _Floor(place)
-    best: tuple[float, complex] | None = None
+    spectra = {}
     for growth, weights in looks:
-        lines = rfft(weights * x, length)
-        power = lines.real**2 + lines.imag**2
-        keep = place >= 0.2
+        lines = rfft(weights * (x - np.average(x, weights=weights)), length)  # the rest of a mean is no line
+        spectra[growth] = lines.real**2 + lines.imag**2
+    limit = -np.log(CHANCE / (len(WINDOWS) * size))
+    tops: list[tuple[int, bool]] = []
+    for growth, power in spectra.items():
+        width = abs(growth) / (2.0 * np.pi)
+        keep = (place >= 0.2) & (power > limit * floor.of(power))
         for exponent in taken:  # what is left of a component is no other one
-            away = np.abs(place - exponent.imag * size / (2.0 * np.pi))
-            keep[away < 1.0 + abs(growth) / (2.0 * np.pi)] = False
+            keep[np.abs(place - exponent.imag * size / (2.0 * np.pi)) < 1.0 + width] = False
         if near is not None:
-            keep &= np.abs(place - near * size) <= max(2.0 + abs(growth) / (2.0 * np.pi), 0.005 * near * size)
-        keep &= power > -np.log(CHANCE / (len(WINDOWS) * size)) * floor.of(power)
-        if not np.any(keep):
+            keep &= np.abs(place - near * size) <= max(2.0 + width, 0.005 * near * size)
+        seen = np.nonzero(keep)[0]
+        seen = seen[np.argsort(-power[seen])][:MOST_SEEN]
+        if not seen.size:
             continue
-        top = int(np.argmax(np.where(keep, power, 0.0)))
-        trial = _best_growth(record, 2.0 * np.pi * top / length, growth)
-        if best is None or trial[0] > best[0]:
-            best = trial
-    return None if best is None else best[1]
+        step = length / size
+        around = _around(power, seen, step) if growth == 0.0 else _beside(spectra[-growth], seen, width, step)
+        narrow = power[seen] > limit * around
+        if len(taken) == 0 or near is not None:
+            tops.append((int(seen[0]), bool(narrow[0])))
+        elif np.any(narrow):
+            tops.append((int(seen[np.argmax(narrow)]), True))
+    best: tuple[float, complex, int] | None = None
+    for top in dict(tops):
+        trial = (*_best_growth(record, 2.0 * np.pi * top / length), top)
+        best = trial if best is None or trial[0] > best[0] else best
+    if best is None:
+        return None
+    return best[1], any(narrow for top, narrow in tops if abs(top - best[2]) <= 2 * length // size)
 
 
-def _best_growth(record: Record, omega: float, growth: float) -> tuple[float, complex]:
+def _around(power: Any, seen: Any, step: float) -> Any:
+    """Median power of the lines to both sides of each place: what is as high there is a hill of the noise."""
+    away = np.unique((np.arange(RING[0], RING[1] + 1) * step).astype(int))
+    places = np.abs(seen[:, None] + np.concatenate([-away, away]))
+    last = power.size - 1
+    places = np.clip(last - np.abs(last - places), 0, last)
+    return np.median(power[places], axis=1) / np.log(2.0)
+
+
+def _beside(other: Any, seen: Any, width: float, step: float) -> Any:
+    """Mean power at each place under the mirrored window, at the record's other end: noise is as high there."""
+    half = max(round((8.0 + 2.0 * width) * step), 1)
+    sums = np.concatenate([[0.0], np.cumsum(other, dtype=float)])
+    low, high = np.maximum(seen - half, 0), np.minimum(seen + half + 1, other.size)
+    return (sums[high] - sums[low]) / (high - low)
+
+
+def _best_growth(record: Record, omega: float) -> tuple[float, complex]:
     """The energy and the exponent of the best match among growth rates and frequencies about a line."""
     rates = np.concatenate([-TRIED[::-1], TRIED[1:]]) / record.size
     rates = rates[np.abs(rates) <= max(0.7 * omega, 1.0 / record.size)]

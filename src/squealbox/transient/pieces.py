@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.cautions import of_a_run
 from squealbox.loops import Loop, folded
 from squealbox.loops.rows import driven, force_per_state, size_and_rate, with_rows
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Schedule, Table
 from squealbox.system import InvalidSystem, System, equilibrium
-from squealbox.transient import cautions
 from squealbox.transient.trajectory import Trajectory
 
 PER_RADIAN = 256  # instants of record in each radian of the brake's motion
@@ -328,7 +328,7 @@ def _joined(motions: list[Trajectory], times: Any, cuts: list[float], base: Syst
     m = len(base.contacts)
     forces, speeds = (np.concatenate([getattr(x, name)[:, :m] for x in motions]) for name in (
         "normal_force", "sliding_velocity"))  # fmt: skip
-    said = cautions.of_a_run(base, np.min(forces, axis=0), np.max(np.abs(speeds), axis=0))
+    said = of_a_run(base, np.min(forces, axis=0), np.max(np.abs(speeds), axis=0))
     texts = (text for motion in motions for text in motion.caution.split("; ") if text)
     said += dict.fromkeys(text for text in texts if not text.startswith(base.contact_names))
     fields |= {name: sum(getattr(motion, name) for motion in motions) for name in ("steps", "rejected", "evaluations")}
