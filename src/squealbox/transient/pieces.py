@@ -328,7 +328,7 @@ def _joined(motions: list[Trajectory], times: Any, cuts: list[float], base: Syst
     m = len(base.contacts)
     forces, speeds = (np.concatenate([getattr(x, name)[:, :m] for x in motions]) for name in (
         "normal_force", "sliding_velocity"))  # fmt: skip
-    said = of_a_run(base, np.min(forces, axis=0), np.max(np.abs(speeds), axis=0))
+    said = [*of_a_run(base, np.min(forces, axis=0), np.max(np.abs(speeds), axis=0))]
     texts = (text for motion in motions for text in motion.caution.split("; ") if text)
     said += dict.fromkeys(text for text in texts if not text.startswith(base.contact_names))
     fields |= {name: sum(getattr(motion, name) for motion in motions) for name in ("steps", "rejected", "evaluations")}
