@@ -19,7 +19,7 @@ from squealbox import (
     simulate,
     simulate_ensemble,
 )  # fmt: skip
-from squealbox.limit_cycles import shooting
+from squealbox.limit_cycles import harmonic_balance
 from squealbox.system import InvalidSystem, as_system, equilibrium
 
 DRUM = DrumBrake(friction=Coulomb(0.3))
@@ -113,14 +113,14 @@ def test_a_loop_cut_at_its_limit_is_that_of_scipy(loop: Any) -> None:
     assert np.max(np.abs(many.sample_q[:, 0] - exact)) < 1e-9
 
 
-def test_without_its_limit_it_is_another_motion_and_a_cycle_is_refused() -> None:
+def test_without_its_limit_it_is_another_motion_and_a_series_is_refused() -> None:
     system = System([[1.0]], [[0.1]], [[4.0]], names=("q1",), loops=(LIMITED[0],))
     free = system.replace(loops=(LIMITED[0].replace(limit=None),))
     one = simulate(system, 4.0, start=([0.5], [0.0]), times=9)
     other = simulate(free, 4.0, start=([0.5, 0.0], [0.0, 0.0]), times=9)
     assert np.max(np.abs(one.q[:, 0] - other.q[:, 0])) > 1e-2
     with pytest.raises(InvalidSystem, match="remembers"):
-        shooting(system)
+        harmonic_balance(system)
 
 
 def test_stick_slip_with_a_viscoelastic_part_is_the_limit_of_small_masses() -> None:
