@@ -15,7 +15,7 @@ from squealbox.parameters import DataSheet, ParameterError, parameter
 Formula = Callable[..., Any]
 MOVES = (
     "{} oscillates, so the brake moves even without vibration and has no steady sliding; the modes of one instant say "
-    "nothing of its stability. Follow its forced motion in time with simulate()"
+    "nothing of its stability. forced_cycle() finds the motion it repeats, with its Floquet multipliers"
 )
 
 

@@ -5,6 +5,7 @@ import pytest
 from scipy.optimize import brentq
 
 from squealbox import (
+    Contact,
     Coulomb,
     Dithered,
     DrumBrake,
@@ -13,9 +14,12 @@ from squealbox import (
     ModeCoupling,
     NormalDither,
     ParameterError,
+    Sinusoid,
+    System,
     complex_modes,
+    shooting,
 )
-from squealbox.limit_cycles import forced_branch, forced_cycle
+from squealbox.limit_cycles import forced_branch, forced_cycle, forced_path
 
 BLOCK = MassOnBelt(c=0.02, k=1.0, sliding_speed=0.5, load=1.0, friction=Coulomb(0.4))
 AVERAGED = 0.02 + 2.0 * 0.4 / (np.pi * np.sqrt(1.0 - 0.25))
@@ -65,9 +69,44 @@ def test_a_branch_over_the_amplitude():
     assert np.all(np.diff([each.damping for each in found]) < 0.0)
 
 
+def stopped(omega):
+    """m = k = 1, c = 0.1 under 0.12 sin(omega t), with a stop of stiffness 4 at q = 0.5."""
+    stop = Contact([4.0], [0.0], [0.0], -2.0, 1.0, Coulomb(0.0), unilateral=True, normal=[1.0])
+    return System([[1.0]], [[0.1]], [[5.0]], Sinusoid(2.0, 0.12, omega / (2.0 * np.pi)) * np.array([1.0]), (stop,))
+
+
+def test_a_path_over_the_frequency_goes_through_its_fold():
+    """Below the stop the motion is linear; where it grazes the path turns back, unstable, beside the linear one."""
+
+    def linear(omega):
+        return 0.12 / (1.0 - omega**2 + 0.1j * omega)
+
+    begin = 1.115
+    start = [linear(begin).imag], [(1j * begin * linear(begin)).imag]
+    found = list(
+        forced_path(stopped, (1.09, begin), begin, start, direction=-1.0, first=0.5, largest=2.0, most_points=20)
+    )
+    below = [(omega, cycle) for omega, cycle in found if cycle.events == 0]
+    assert len(below) >= 2
+    for omega, cycle in below:
+        assert cycle.q[0, 0] == pytest.approx(linear(omega).imag, rel=1e-7)
+        assert cycle.stable
+    lowest = min(omega for omega, _ in found)
+    grazing = brentq(lambda omega: abs(linear(omega)) - 0.5, 1.05, begin)
+    assert lowest == pytest.approx(grazing, abs=1e-3)
+    omega, last = found[-1]
+    assert omega > lowest
+    assert last.events == 2
+    assert not last.stable
+    assert float(last.amplitude[0]) > 1.005 * abs(linear(omega))
+
+
 def test_what_is_not_periodic_is_refused():
     with pytest.raises(ParameterError, match="everything is constant.*shooting"):
         forced_cycle(BLOCK)
+    with pytest.raises(ParameterError, match="forced_cycle.. finds the motion of others"):
+        shooting(dithered(20.0))
+    assert "forced_cycle() finds the motion it repeats" in complex_modes(dithered(20.0)).outcome.message
     two = Dithered(Dithered(BLOCK, 1.0, 1.0, direct=True), 0.5, np.sqrt(2.0), direct=True)
     with pytest.raises(ParameterError, match="whole numbers"):
         forced_cycle(two)

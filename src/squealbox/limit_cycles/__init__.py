@@ -18,7 +18,7 @@ from squealbox.limit_cycles.branches.joined import joined
 from squealbox.limit_cycles.branches.point_curves import point_curve
 from squealbox.limit_cycles.branches.special_points import BranchPoint
 from squealbox.limit_cycles.cycles.cycle import Cycle
-from squealbox.limit_cycles.cycles.forced import ForcedCycle, forced_branch, forced_cycle
+from squealbox.limit_cycles.cycles.forced import ForcedCycle, forced_branch, forced_cycle, forced_path
 from squealbox.limit_cycles.cycles.harmonic_balance import harmonic_balance
 from squealbox.limit_cycles.cycles.shooting import shooting
 from squealbox.limit_cycles.estimates.averaging import (
@@ -57,6 +57,7 @@ __all__ = [
     "estimate_curves",
     "forced_branch",
     "forced_cycle",
+    "forced_path",
     "harmonic_balance",
     "hopf_curve",
     "hopf_point",

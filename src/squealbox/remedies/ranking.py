@@ -208,18 +208,17 @@ def _dose(each: Candidate, margin: float) -> tuple[float, bool]:
 
 def _growths(each: Candidate, doses: Any, margin: float) -> Any:
     """Growth rates (k,) at the margin; inf at doses the brake's own rules refuse."""
-    if len(doses) > 1:
+
+    def growth(some: Any) -> Any:
         try:
-            return growth_of(more_friction(each.make(doses), 1.0 + margin))
+            return growth_of(more_friction(each.make(some), 1.0 + margin))
         except (ParameterError, InvalidSystem):
-            pass  # one by one: some of them may be possible
-    found = np.full(len(doses), np.inf)
-    for i, dose in enumerate(doses):
-        try:
-            found[i] = growth_of(more_friction(each.make(float(dose)), 1.0 + margin))
-        except (ParameterError, InvalidSystem):
-            continue
-    return found
+            return np.inf  # refused: the table says that no such dose is possible
+
+    together = growth(doses) if len(doses) > 1 else np.inf
+    if np.ndim(together):
+        return together
+    return np.array([growth(float(dose)) for dose in doses])  # one by one: some of them may be possible
 
 
 def _share(brake: Design, lot: dict[str, Any]) -> float:

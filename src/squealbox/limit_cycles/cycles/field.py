@@ -273,4 +273,5 @@ def check_autonomous(system: System) -> None:
     varying = [system.load, *(c.N0 for c in system.contacts), *(c.V for c in system.contacts)]
     for value in varying:
         if isinstance(value, Schedule) and not isinstance(value, Constant):
-            raise ParameterError("limit_cycles", "system", value, "constant loads, speeds and normal forces")
+            expected = "constant loads, speeds and normal forces; forced_cycle() finds the motion of others"
+            raise ParameterError("limit_cycles", "system", value, expected)

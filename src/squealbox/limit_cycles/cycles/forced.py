@@ -20,9 +20,10 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.continuation import StepControl, follow
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.saltation import surface
-from squealbox.limit_cycles.cycles.variation import smooth_rows
+from squealbox.limit_cycles.cycles.variation import PARTS, _edges, _gauss, extrapolated, magnus, smooth_rows
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Outcome, Result, quantity
 from squealbox.schedules import Constant, Schedule, Sinusoid, value_at
@@ -101,12 +102,16 @@ class Moving(Field):
         self.inverse = np.linalg.inv(system.M)
         self.at(time)
 
-    def at(self, time: float) -> "Moving":
-        """The same field at another instant [s]."""
-        rows = self.moving.contacts
-        self.N0, self.V = (np.array([float(value_at(getattr(c, x), time)) for c in rows]) for x in ("N0", "V"))
-        self.rising = np.array([float(c.V.rate(time)) if isinstance(c.V, Schedule) else 0.0 for c in rows])
-        self.mf = self.inverse @ np.asarray(value_at(self.moving.load, time))
+    def at(self, time: Any) -> "Moving":
+        """The same field at another instant [s], or for `jacobians` at instants (k,)."""
+        rows, shape = self.moving.contacts, np.shape(time)
+        self.N0, self.V = (
+            np.array([np.broadcast_to(value_at(getattr(c, x), time), shape) for c in rows]).T.reshape(*shape, len(rows))
+            for x in ("N0", "V")
+        )
+        if shape == ():
+            self.rising = np.array([float(c.V.rate(time)) if isinstance(c.V, Schedule) else 0.0 for c in rows])
+            self.mf = self.inverse @ np.asarray(value_at(self.moving.load, time))
         return self
 
     def _holding(self, stuck: Any, a: Any) -> Any:
@@ -184,6 +189,56 @@ def forced_branch(family: Any, values: Any, start: Any = None, **keywords: Any) 
         yield found
 
 
+def forced_path(
+    family: Any, bounds: tuple[float, float], begin: float, start: Any = None, *, direction: float = 1.0,
+    first: float = 0.02, largest: float = 0.1, most_points: int = 500, rtol: float = 1e-10,
+) -> Iterator[tuple[float, ForcedCycle]]:  # fmt: skip
+    """Forced motions along a parameter such as amplitude or frequency, by arclength: through folds.
+
+    `family(value)` is the brake. Walks from `begin` within `bounds`, first upwards, or downwards with `direction` -1;
+    `first` and `largest` are step lengths, a length of 1 from bound to bound or the motion it begins with. Yields
+    (value, motion); unstable motions between two folds are among them.
+
+    >>> from squealbox import Contact, Coulomb, Sinusoid, System
+    >>> def block(force):
+    ...     return System([[1.0]], [[0.2]], [[1.0]], load=Sinusoid(0.0, force, 0.1))
+    >>> points = list(forced_path(block, (0.1, 0.5), 0.1, ([0.0], [0.0]), largest=0.5))
+    >>> points[-1][0]
+    0.5
+    """
+    low, high = bounds
+    if not low <= begin <= high:
+        raise ParameterError("forced_path", "begin", begin, f"a value within the bounds, {low:g} to {high:g}")
+    found = forced_cycle(family(begin), start, rtol=rtol)
+    if not found.outcome.ok:
+        yield begin, found
+        return
+    x = np.concatenate([found.q[0], found.qd[0]])
+    unit = np.max(np.abs(np.hstack([found.q, found.qd])), axis=0)
+    unit = np.where(unit > 0.0, unit, float(np.max(unit)) or 1.0)
+
+    def end(x: Any, p: float) -> Any:
+        system = as_system(family(float(p)))
+        period, n = common_period(system), system.size
+        motion = simulate(system, period, (x[:n], x[n:]), [0.0, period], _method(system, x, period, rtol))
+        return np.concatenate([motion.q[-1], motion.qd[-1]]) if motion.outcome.ok else np.full(x.shape, np.nan)
+
+    def residual(x: Any, p: float) -> Any:
+        return (end(x, p) - x) / unit
+
+    def jacobian(x: Any, p: float) -> tuple[Any, Any]:
+        system, step = as_system(family(float(p))), 1e-5 * (high - low)
+        phi = _flight(system, x, common_period(system), rtol)[2]
+        by_p = (end(x, p + step) - end(x, p - step)) / (2.0 * step)
+        return (phi - np.eye(x.size)) / unit[:, None], by_p / unit
+
+    control = StepControl(first=first, largest=largest, tolerance=1e-8, most_points=most_points)
+    for point in follow(residual, x, begin, jacobian=jacobian, control=control, bounds=bounds, x_scale=unit,
+                        p_scale=high - low, closes=False, direction=direction):  # fmt: skip
+        q, qd = np.split(point.x, 2)
+        yield float(point.p), forced_cycle(family(float(point.p)), (q, qd), rtol=rtol)
+
+
 def common_period(system: System) -> float:
     """The period [s] of everything that moves; `ParameterError` when nothing does, or not with one period."""
     frequencies = []
@@ -206,25 +261,41 @@ def common_period(system: System) -> float:
 
 
 def _flight(system: System, x: Any, period: float, rtol: float) -> tuple[Trajectory, Any, Any, int]:
-    """The motion over one period, its end, its derivative by the start, and the number of events."""
-    n = system.size
-    speed = float(np.max(np.abs(x[n:]), initial=0.0)) + max(
+    """The motion over one period, its end, its derivative by the start, and the number of events.
+
+    The derivative as in `variation.flight`: Magnus steps of order 4 and half as long ones, extrapolated.
+    """
+    n, start = system.size, (x[: system.size], x[system.size :])
+    method = _method(system, x, period, rtol)
+    motion = simulate(system, period, start, None, method)
+    if not motion.outcome.ok:
+        return motion, x, np.eye(2 * n), 0
+    states, field = np.hstack([motion.q, motion.qd]), Moving(system, 0.0)
+    rows = smooth_rows(field, motion)
+    pieces = list(itertools.pairwise(rows))
+    edges = [_edges(motion.t[i : k + 1], parts) for parts in (PARTS, 2 * PARTS) for i, k in pieces]
+    instants = [_gauss(each) for each in edges]
+    wanted, place = np.unique(np.concatenate(instants), return_inverse=True)
+    inner = simulate(system, period, start, wanted, method)
+    along = np.split(np.hstack([inner.q, inner.qd])[place], np.cumsum([len(t) for t in instants])[:-1])
+    phis = []
+    for own, times, inside, (_, k) in zip(edges, instants, along, 2 * pieces, strict=True):
+        matrices = field.at(times).jacobians(inside, motion.mode[k])
+        phis.append(magnus(matrices[::2], matrices[1::2], np.diff(own), field.scale))
+    coarse, fine = np.eye(2 * n), np.eye(2 * n)
+    for piece, ((i, _), wide, narrow) in enumerate(zip(pieces, phis[: len(pieces)], phis[len(pieces) :], strict=True)):
+        if piece > 0:
+            jump = _jump(field, states[i], motion.mode[i], motion.mode[i + 1], float(motion.t[i]), period)
+            coarse, fine = jump @ coarse, jump @ fine
+        coarse, fine = wide @ coarse, narrow @ fine
+    return motion, states[-1], extrapolated(coarse, fine), len(rows) - 2
+
+
+def _method(system: System, x: Any, period: float, rtol: float) -> Method:
+    speed = float(np.max(np.abs(x[system.size :]), initial=0.0)) + max(
         (abs(float(value_at(c.V, 0.0))) for c in system.contacts), default=0.0
     )
-    method = Method("dormand-prince-8", rtol=rtol, atol=1e-2 * rtol * (speed or 1.0), largest_step=period / 20.0)
-    motion = simulate(system, period, (x[:n], x[n:]), None, method)
-    phi = np.eye(2 * n)
-    if not motion.outcome.ok:
-        return motion, x, phi, 0
-    states = np.hstack([motion.q, motion.qd])
-    field = Moving(system, 0.0)
-    rows = smooth_rows(field, motion)
-    for piece, (i, k) in enumerate(itertools.pairwise(rows)):
-        if piece > 0:
-            phi = _jump(field, states[i], motion.mode[i], motion.mode[i + 1], float(motion.t[i]), period) @ phi
-        if k > i:
-            phi = _piece(field, states[i], motion.mode[k], float(motion.t[i]), float(motion.t[k]), rtol) @ phi
-    return motion, states[-1], phi, len(rows) - 2
+    return Method("dormand-prince-8", rtol=rtol, atol=1e-2 * rtol * (speed or 1.0), largest_step=period / 20.0)
 
 
 def _jump(field: Moving, x: Any, before: Any, after: Any, time: float, period: float) -> Any:
@@ -239,27 +310,6 @@ def _jump(field: Moving, x: Any, before: Any, after: Any, time: float, period: f
     late, early = (surface(field.at(time + s), x, before, int(own[cause]))[0] for s in (step, -step))
     rate = float(gradient @ f_before) + (late - early) / (2.0 * step)
     return np.eye(len(x)) + np.outer(f_after - f_before, gradient) / rate
-
-
-def _piece(field: Moving, x: Any, mode: Any, begin: float, end: float, rtol: float) -> Any:
-    """The fundamental matrix of one smooth piece, in states scaled to one unit."""
-    from scipy.integrate import solve_ivp
-
-    size, scale = x.size, field.scale
-    ratio = scale[:, None] / scale
-
-    def rates(t: float, y: Any) -> Any:
-        state = y[:size] / scale
-        field.at(t)
-        a = field.jacobian(state, mode) * ratio
-        return np.concatenate([field.rate(state, mode) * scale, (a @ y[size:].reshape(size, size)).ravel()])
-
-    start = np.concatenate([x * scale, np.eye(size).ravel()])
-    largest = float(np.max(np.abs(start[:size]))) + float(np.max(np.abs(field.V), initial=0.0))
-    atol = np.concatenate([np.full(size, 0.1 * rtol * largest), np.full(size * size, 0.1 * rtol)])
-    done = solve_ivp(rates, (begin, end), start, "DOP853", rtol=max(rtol, 3e-14), atol=atol)
-    last = done.y[:, -1] if done.success else np.full(start.size, np.nan)
-    return last[size:].reshape(size, size) / ratio
 
 
 def _frozen(system: System, time: float) -> System:
