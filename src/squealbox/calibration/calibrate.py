@@ -255,12 +255,14 @@ class _Problem:
     def __call__(self, u: Any) -> Any:
         values = self.low + np.atleast_2d(u) * self.width
         columns = {name: values[:, i] for i, name in enumerate(self.names)}
-        rows, known = [], {}
+        rows: list[Any] = []
+        known: dict[Any, tuple[Any, dict[str, Any]]] = {}
         for each in self.measured:
             key = tuple(sorted(each.at.items()))
             if key not in known:
-                known[key] = _made(self.design, {**columns, **{n: np.full(len(values), v) for n, v in each.at.items()}})
-            found = np.broadcast_to(each.predicted(known[key]), (len(values),))
+                at = {n: np.full(len(values), v) for n, v in each.at.items()}
+                known[key] = (_made(self.design, {**columns, **at}), {})
+            found = np.broadcast_to(each.predicted(*known[key]), (len(values),))
             rows.append((each.value - found) / each.sd)
         r = np.stack(rows, axis=1)
         return np.where(np.isfinite(r), np.clip(r, -WORST, WORST), WORST)

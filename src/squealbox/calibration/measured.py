@@ -12,8 +12,12 @@ from squealbox.signals.growth import LEVEL
 from squealbox.stability import complex_modes, first_crossings
 from squealbox.transient import simulate_ensemble
 
-QUANTITIES = ("growth_rate", "frequency", "damping_ratio", "critical_value", "amplitude", "friction")
-UNITS = {"growth_rate": "1/s", "frequency": "Hz", "damping_ratio": "-", "amplitude": "m", "friction": "-"}
+QUANTITIES = (
+    "growth_rate", "frequency", "damping_ratio", "critical_value", "amplitude", "cycle_frequency", "friction",
+)  # fmt: skip
+UNITS = {"growth_rate": "1/s", "frequency": "Hz", "damping_ratio": "-", "amplitude": "m", "cycle_frequency": "Hz",
+         "friction": "-"}  # fmt: skip
+SURE = 1.96  # standard deviations of the 95 % errors of events
 DURATION = 0.1  # s of the transient an amplitude is taken from
 
 
@@ -29,7 +33,10 @@ class Measured(DataSheet):
     at : the conditions it was measured at, {parameter: value}, where they are not those of the design
     parameter, bounds : of a critical value: what was varied, and within what
     speed : of a friction coefficient: the sliding speed [m/s]
-    duration : of an amplitude: how long the transient from rest is followed [s]
+    duration : of an amplitude (half its range) or a cycle frequency, that of a squeal and not of small motion: how
+        long the transient is followed [s]; both are of the freedom that moves most over its last fifth
+    start, method : of that transient, as in `simulate_ensemble`; left out, from rest by the usual one, whose extremes
+        between steps are right to 1e-7: ``Method("taylor", largest_step=...)`` of a thirtieth period to 1e-11
 
     >>> Measured("frequency", 2078.0, sd=1.0, mode="unstable").name
     'frequency'
@@ -44,6 +51,8 @@ class Measured(DataSheet):
     bounds: tuple[float, float] = (0.0, 2.0)
     speed: float | None = None
     duration: float = DURATION
+    start: Any = None
+    method: Any = None
     label: str = ""
 
     def __post_init__(self) -> None:
@@ -71,19 +80,28 @@ class Measured(DataSheet):
         where = ", ".join(f"{name} = {value:g}" for name, value in self.at.items())
         return self.label or (f"{word} at {where}" if where else word)
 
-    def predicted(self, design: Any) -> Any:
-        """What `design` says, shape of its leading axes; NaN where it has no answer."""
+    def predicted(self, design: Any, kept: dict[str, Any] | None = None) -> Any:
+        """What `design` says, shape of its leading axes; NaN where it has no answer.
+
+        `kept` holds what another measured number has computed of the same design.
+        """
         if not isinstance(self.quantity, str):
             return np.asarray(self.quantity(design), dtype=float)
         if self.quantity == "friction":
             return np.asarray(design.friction.mu(self.speed), dtype=float)
         if self.quantity == "critical_value":
             return np.asarray(first_crossings(design, self.parameter, self.bounds), dtype=float)
-        if self.quantity == "amplitude":
-            many = simulate_ensemble(design, None, self.duration, observe=("amplitude",))
-            found = np.max(many["amplitude"], axis=-1)
+        if self.quantity in ("amplitude", "cycle_frequency"):
+            seen = ("amplitude", "frequency")
+            many = simulate_ensemble(design, None, self.duration, self.method, observe=seen, start=self.start)
+            most = np.argmax(many["amplitude"], axis=-1)[..., None]
+            name = "amplitude" if self.quantity == "amplitude" else "frequency"
+            found = np.take_along_axis(many[name], most, axis=-1)[..., 0]
             return np.where(many.ended == "completed", found, np.nan)
-        return self._of_modes(complex_modes(design))
+        kept = {} if kept is None else kept
+        if "modes" not in kept:
+            kept["modes"] = complex_modes(design)
+        return self._of_modes(kept["modes"])
 
     def _of_modes(self, modes: Any) -> Any:
         growth, frequency = np.asarray(modes.growth_rate), np.asarray(modes.frequency)
@@ -119,15 +137,30 @@ def from_signal(signal: Any, t: Any = None, *, mode: str | int = "unstable", **c
     ]
 
 
-def from_events(events: Any, index: int = 0) -> list[Measured]:
+def from_events(events: Any, index: int = 0, at: Mapping[str, str] | None = None) -> list[Measured]:
     """Frequency and growth rate of one squeal event, as far as the recording tells them.
 
-    Raises `SignalError` when there is no such event.
+    Where its growth is told, frequency and rate are those of the onset, of small motion as of modes; the frequency of
+    the squeal itself, often lower, is that of its limit cycle. `at` says which quantities of the braking are which
+    parameters, {parameter: name}: ``{"sliding_speed": "speed"}``; their values at the onset are the conditions.
+
+    Raises `SignalError` when there is no such event, and for a quantity that was not recorded then.
     """
     if not 0 <= index < events.count:
         raise SignalError(f"event {index}: expected one of {events.count} events")
-    found = [Measured("frequency", float(events.frequency[index]), sd=float(events.frequency_error[index]) / 1.96)]
-    if np.isfinite(events.growth_rate[index]):
-        error = float(events.growth_error[index]) / 1.96
-        found.append(Measured("growth_rate", float(events.growth_rate[index]), sd=error))
-    return found
+    names = list(events.settings["braking"])
+    conditions = {}
+    for parameter, name in (at or {}).items():
+        value = float(events.braking[index, names.index(name)]) if name in names else float("nan")
+        if not np.isfinite(value):
+            raise SignalError(f"{name} was not recorded at the event: there is {', '.join(names) or 'nothing'}")
+        conditions[parameter] = value
+    if not np.isfinite(events.growth_rate[index]):
+        frequency, error = events.frequency[index], events.frequency_error[index]
+        return [Measured("frequency", float(frequency), sd=float(error) / SURE, at=conditions)]
+    frequency, error = events.onset_frequency[index], events.onset_frequency_error[index]
+    growth, spread = events.growth_rate[index], events.growth_error[index]
+    return [
+        Measured("frequency", float(frequency), sd=float(error) / SURE, at=conditions),
+        Measured("growth_rate", float(growth), sd=float(spread) / SURE, at=conditions),
+    ]

@@ -24,32 +24,34 @@ def searched(residuals: Residuals, start: Any, free: Any, robust: bool, steps: i
     damping = np.full(count, 1e-3)
     r, jacobian = linearised(residuals, u)
     cost = losses(r, robust)
-    active = np.ones(count, dtype=bool)
+    left = np.arange(count)  # searches that go on: the others are not asked again
     for _ in range(steps):
-        weight = 1.0 / np.sqrt(1.0 + r**2) if robust else np.ones_like(r)
+        at, slopes, away, lift = u[left], jacobian[left], r[left], damping[left]
+        weight = 1.0 / np.sqrt(1.0 + away**2) if robust else np.ones_like(away)
         moving = (
-            free & ~((u <= 0.0) & _pushes(jacobian, r, weight, -1)) & ~((u >= 1.0) & _pushes(jacobian, r, weight, 1))
+            free[left]
+            & ~((at <= 0.0) & _pushes(slopes, away, weight, -1))
+            & ~((at >= 1.0) & _pushes(slopes, away, weight, 1))
         )
-        weighted = jacobian * weight[:, :, None]
-        gram = np.einsum("bmi,bmj->bij", weighted, jacobian) * (moving[:, :, None] & moving[:, None, :])
-        slope = np.einsum("bmi,bm->bi", weighted, r) * moving
+        weighted = slopes * weight[:, :, None]
+        gram = np.einsum("bmi,bmj->bij", weighted, slopes) * (moving[:, :, None] & moving[:, None, :])
+        slope = np.einsum("bmi,bm->bi", weighted, away) * moving
         diagonal = np.einsum("bii->bi", gram)
-        lift = damping[:, None] * np.maximum(diagonal, 1e-12 * np.max(diagonal, axis=1, keepdims=True))
-        lift = np.where(moving, lift + 1e-300, 1.0)
-        step = -np.linalg.solve(gram + lift[:, :, None] * np.eye(size), slope[..., None])[..., 0]
-        trial = np.clip(u + np.where(np.isfinite(step), step, 0.0), 0.0, 1.0)
-        trial[~active] = u[~active]
-        further, slopes = linearised(residuals, trial)
+        lifted = lift[:, None] * np.maximum(diagonal, 1e-12 * np.max(diagonal, axis=1, keepdims=True))
+        lifted = np.where(moving, lifted + 1e-300, 1.0)
+        step = -np.linalg.solve(gram + lifted[:, :, None] * np.eye(size), slope[..., None])[..., 0]
+        trial = np.clip(at + np.where(np.isfinite(step), step, 0.0), 0.0, 1.0)
+        further, ahead = linearised(residuals, trial)
         lower = losses(further, robust)
-        better = active & (lower <= cost)
-        small = np.max(np.abs(trial - u), axis=1) < 1e-13
-        gained = cost - lower
-        u[better], r[better], jacobian[better] = trial[better], further[better], slopes[better]
-        done = small | (better & (gained <= 1e-14 * np.maximum(cost, 1e-12)) & (damping < 1e-6)) | (damping > 1e10)
-        cost = np.where(better, lower, cost)
-        damping = np.where(better, np.maximum(damping * 0.1, 1e-14), damping * 10.0)
-        active &= ~done
-        if not np.any(active):
+        better = lower <= cost[left]
+        small = np.max(np.abs(trial - at), axis=1) < 1e-13
+        gained = cost[left] - lower
+        done = small | (better & (gained <= 1e-14 * np.maximum(cost[left], 1e-12)) & (lift < 1e-6)) | (lift > 1e10)
+        taken = left[better]
+        u[taken], r[taken], jacobian[taken], cost[taken] = trial[better], further[better], ahead[better], lower[better]
+        damping[left] = np.where(better, np.maximum(lift * 0.1, 1e-14), lift * 10.0)
+        left = left[~done]
+        if not left.size:
             break
     return u, cost
 

@@ -24,8 +24,6 @@ def edges(middles: Any, amplitude: Any, noise: Any, hop: float) -> tuple[float, 
         lasts = np.min(np.lib.stride_tricks.sliding_window_view(heights, 3), axis=1)[: len(half)]
         stays = np.nonzero((lasts >= half) & (half >= 1.5 * quiet[: len(half)]))[0]
         k = int(stays[0]) if stays.size else 0
-        if k == 0:
-            return float(times[0])
         near = slice(max(k - 4, 0), k + 6)
         tried = times[k] + hop * np.arange(-3.0, 2.0, 0.05)
         misfit = np.minimum(heights[near] / (2.0 * half[k]), 1.2) - _rise((times[near] - tried[:, None]) / (4.0 * hop))
@@ -73,11 +71,15 @@ def steady_frequency(
 
 def rate_at(
     x: Any, rate: float, near: float, onset: float, end: float, length: int, *, backwards: bool
-) -> tuple[float, float]:
-    """Growth at the onset or, `backwards`, the rate at the end, with its error; NaN when the record cannot tell."""
+) -> tuple[float, float, float, float]:
+    """Growth at the onset or, `backwards`, the rate at the end, and the frequency there, each followed by its error.
+
+    All are NaN when the record cannot tell them.
+    """
     if backwards:
         other = rate_at(x[::-1], rate, near, x.size / rate - end, x.size / rate - onset, length, backwards=False)
-        return -other[0], other[1]
+        return (-other[0], *other[1:])
+    nothing = (np.nan,) * 4
     a = max(int(onset * rate) - 2 * length, 0)
     b = min(int(min(onset * rate + 2 * length, 0.5 * (onset + end) * rate + length)), x.size)
     width = max(int(8.0 * rate / near), 8)
@@ -85,7 +87,7 @@ def rate_at(
     window = np.sin(np.pi * (np.arange(width) + 0.5) / width) ** 2
     envelope = np.abs(np.convolve(x[a:b] * carrier, window / np.sum(window), mode="valid"))
     if envelope.size < 4:
-        return np.nan, np.nan
+        return nothing
     plateau = float(np.max(envelope))
     noise = float(np.median(envelope[: max(length // 4, 4)])) if a > 0 or onset * rate > length else 0.0
     top = int(np.argmax(envelope >= LOUD * plateau))
@@ -93,9 +95,9 @@ def rate_at(
     first = int(below[-1]) + 1 if below.size else 0
     begin, stop = a + first + width // 2, a + top + width // 2  # samples of which the envelope is the middle
     if stop - begin < max(3.0 * rate / near, 24.0):
-        return np.nan, np.nan
+        return nothing
     try:
         found = growth_rate(x[begin:stop], rate=rate, frequency=near)
     except SignalError:
-        return np.nan, np.nan
-    return found.rate, found.rate_error
+        return nothing
+    return found.rate, found.rate_error, found.frequency, found.frequency_error

@@ -47,6 +47,10 @@ class SquealEvents(Result):
     peak_level: Any = quantity("event", "dB", "level of its loudest frame")
     growth_rate: Any = quantity("event", "1/s", "growth at its onset")
     growth_error: Any = quantity("event", "1/s", "95 % error")
+    onset_frequency: Any = quantity(
+        "event", "Hz", "frequency while it grows: that of small motion, where friction is one"
+    )
+    onset_frequency_error: Any = quantity("event", "Hz", "95 % error")
     decay_rate: Any = quantity("event", "1/s", "rate at its end, below 0 for a decay")
     decay_error: Any = quantity("event", "1/s", "95 % error")
     track_time: Any = quantity("event frame", "s", "middles of its frames; NaN behind the last")
@@ -189,9 +193,13 @@ def squeal_events(
 
 
 _NAMES = (
-    "onset", "end", "frequency", "frequency_error", "level", "peak_level", "growth_rate", "growth_error", "decay_rate",
-    "decay_error", "track_time", "track_frequency", "track_level",
+    "onset", "end", "frequency", "frequency_error", "level", "peak_level", "growth_rate", "growth_error",
+    "onset_frequency", "onset_frequency_error", "decay_rate", "decay_error",
+    "track_time", "track_frequency", "track_level",
 )  # fmt: skip
+
+
+_OF_SAMPLES = _NAMES[6:12]
 
 
 def _level_unit(unit: str) -> str:
@@ -215,15 +223,15 @@ def _event(track: Track, frames: Frames, weigh: Any, reference: float) -> dict[s
     level = 10.0 * np.log10(weighted / reference**2)
     mean = float(np.average(frequency, weights=square))
     onset, end = edges(*_with_ends(track, frames), frames.hop / frames.rate)
-    onset = 0.0 if onset <= frames.middle[0] else onset
-    end = frames.duration if end >= frames.middle[-1] else end
+    near = 0.25 * frames.hop / frames.rate  # of an end of the recording: it may have begun before
+    onset, end = (onset if onset > near else 0.0), (end if end < frames.duration - near else frames.duration)
     spread = float(np.sqrt(np.average((frequency - mean) ** 2, weights=square)))
     inside = (middles >= onset) & (middles <= end)
     loud = weighted[inside] if np.any(inside) else weighted
     return {
+        **dict.fromkeys(_OF_SAMPLES, np.nan),
         "onset": onset, "end": end, "frequency": mean, "frequency_error": 1.96 * spread,
         "level": float(10.0 * np.log10(np.mean(_full(loud)) / reference**2)), "peak_level": float(np.max(level)),
-        "growth_rate": np.nan, "growth_error": np.nan, "decay_rate": np.nan, "decay_error": np.nan,
         "track_time": middles, "track_frequency": frequency, "track_level": level,
         "steady": _is_steady(frequency, step),
     }  # fmt: skip
@@ -256,9 +264,8 @@ def _of_samples(event: dict[str, Any], x: Any, rate: float, length: int) -> None
     exact = steady_frequency(x, rate, near, onset, end, length) if event["steady"] else None
     if exact is not None:
         event["frequency"], event["frequency_error"] = exact
-    for name, backwards in (("growth", False), ("decay", True)):
-        found = rate_at(x, rate, near, onset, end, length, backwards=backwards)
-        event[f"{name}_rate"], event[f"{name}_error"] = found
+    grown = rate_at(x, rate, near, onset, end, length, backwards=False)
+    event.update(zip(_OF_SAMPLES, (*grown, *rate_at(x, rate, near, onset, end, length, backwards=True)), strict=False))
 
 
 def _full(weighted: Any) -> Any:

@@ -52,8 +52,8 @@ class Recording:
             )
         if not (np.isfinite(self.rate) and self.rate > 0.0):
             raise SignalError(f"{self._where}rate = {self.rate}: expected a sampling rate above 0 Hz")
-        bad = np.argwhere(~(np.abs(x) < HUGE))
-        if bad.size:
+        if not (np.min(x) > -HUGE and np.max(x) < HUGE):
+            bad = np.argwhere(~(np.abs(x) < HUGE))
             place, channel = bad[0]
             raise SignalError(
                 f"{self._where}sample {place} of channel {channel + 1} is {x[place, channel]:g}, one of {len(bad)}: "

@@ -4,6 +4,7 @@ Under noise alone the power of a line is distributed as exp(-x/mean), so a thres
 with the probability p. Peaks above it that follow each other are a track.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -62,20 +63,21 @@ class Frames:
         self.scale = top**2
         level = np.median(self.power[:: max(len(starts) // 2000, 1)], axis=0) / np.log(2.0)
         beside = median_filter(level, size=13, mode="nearest")  # a tone takes four lines
-        self.floor = np.maximum(np.minimum(level, 1.1 * beside), 1e-30)
+        self.floor = np.maximum(np.minimum(level, 1.1 * beside), np.float32(1e-30))
         count = max((last - first) // LINES, 1)
         edges = np.linspace(0, last - first, count + 1).astype(int)
-        self.louder, self.least = np.empty((2, len(starts), count))
+        self.louder, self.least = np.empty((2, len(starts), count), dtype=np.float32)
         for j, (a, b) in enumerate(pairwise(edges)):
             part = self.power[:, a:b]
-            self.louder[:, j] = np.median(part / self.floor[a:b].astype(np.float32), axis=1) / np.log(2.0)
+            self.louder[:, j] = np.median(part / self.floor[a:b], axis=1) / np.log(2.0)
             self.least[:, j] = np.median(part, axis=1) / np.log(2.0)
         places, middles = np.arange(last - first), 0.5 * (edges[:-1] + edges[1:])
-        self.between = np.stack([np.interp(places, middles, row) for row in np.eye(count)])
+        self.between = np.stack([np.interp(places, middles, row) for row in np.eye(count)]).astype(np.float32)
 
     def noise(self, frames: Any) -> Any:
         """Mean square of the noise in every line of some frames, shape (frames, lines)."""
-        return np.maximum(self.louder[frames] @ self.between * self.floor, self.least[frames] @ self.between)
+        louder, least = (np.einsum("ij,jk->ik", each[frames], self.between) for each in (self.louder, self.least))
+        return np.maximum(louder * self.floor, least)
 
     def noise_at(self, frames: Any, places: Any) -> Any:
         """Mean square of the noise in one line of each frame."""
@@ -147,15 +149,17 @@ def lines_of(track: Track) -> Any:
 
 def _is_skirt(found: Any, heights: Any, i: int, times: float) -> bool:
     """Whether a peak is what the window, or the onset of a tone within a frame, shows beside one `times` higher."""
+    if heights.max() <= times * heights[i]:
+        return False
     away = np.abs(found - found[i])
     return bool(np.any(heights > times * heights[i] * np.maximum(1.0, (away / SKIRT) ** 2)))
 
 
 def _between(row: Any, k: int) -> float:
     """The place of a peak between lines: of a tone under Hann's window exactly, from its line and the higher beside."""
-    left, middle, right = np.sqrt(row[k - 1 : k + 2])
-    share = max(left, right) / middle
-    return k + float(np.sign(right - left) * np.clip((2.0 * share - 1.0) / (share + 1.0), 0.0, 0.5))
+    left, middle, right = row[k - 1 : k + 2].tolist()
+    share = math.sqrt(max(left, right) / middle)
+    return k + math.copysign(min(max((2.0 * share - 1.0) / (share + 1.0), 0.0), 0.5), right - left)
 
 
 def seen(offsets: Any) -> Any:
