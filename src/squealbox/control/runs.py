@@ -7,7 +7,7 @@ the force is 0. Work of the actuators is the integral of u b.q'.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -33,6 +33,8 @@ class LoopRun(Result):
     work: Any = quantity("time", "J", "work the actuators have put in")
     residual: Any = quantity("", "J", "what the energy audits of the pieces leave, added up")
     saturated: Any = quantity("loop", "1", "share of the time each force was at its limit")
+
+    coordinates: ClassVar = {"time": "t"}
 
     def summary(self) -> str:
         """How it ended, its amplitude, the actuators' work."""

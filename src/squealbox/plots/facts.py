@@ -151,7 +151,8 @@ def read_of(names: Any, dof: int) -> str:
 
 
 def unit_of(result: Any, parameter: str) -> str:
-    """The unit of a dotted parameter of the design a result was computed from; empty where it kept none."""
+    """The unit of a dotted parameter, or of an alias, of the design a result came from; empty where it kept none."""
     design = result.inputs.get("system")
     leaves = design.leaves() if hasattr(design, "leaves") else ()
+    parameter = next(iter(getattr(design, "aliases", {}).get(parameter, ())), parameter)
     return next((plain_unit(about.unit) for name, about, _ in leaves if name == parameter), "")

@@ -11,7 +11,7 @@ import numpy as np
 from squealbox.arguments import designs, public
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Column, Outcome, Result, batched, quantity
-from squealbox.system import System, as_system
+from squealbox.system import as_system
 from squealbox.transient import _march, cautions
 from squealbox.transient.choosing import chosen_method, usual_method
 from squealbox.transient.lanes.work import HEAD, Progress, Work
@@ -93,13 +93,23 @@ class Ensemble(Result):
         dataset = super().to_dataset()
         batch = len(self.shape)
         for name, values in self.parameters.items():
-            dataset[f"parameter_{name}"] = ([f"axis_{i}" for i in range(batch)], np.broadcast_to(values, self.shape))
+            about = {"units": self._unit(name), "long_name": f"value of {name}"}
+            dims = [f"axis_{i}" for i in range(batch)]
+            dataset[f"parameter_{name}"] = (dims, np.broadcast_to(values, self.shape), about)
         for name, values in self.observed.items():
-            of = self.settings["observed"][name][0]
+            of, unit = self.settings["observed"][name]
             first = [of] if of in dataset.sizes else []
             own = [*first, *(f"{name}_{i}" for i in range(np.ndim(values) - batch - len(first)))]
-            dataset[f"observed_{name}"] = ([*(f"axis_{i}" for i in range(batch)), *own], values)
+            about = {"units": unit, "long_name": f"observed {name}"}
+            dataset[f"observed_{name}"] = ([*(f"axis_{i}" for i in range(batch)), *own], values, about)
         return self._along(dataset)
+
+    def _unit(self, name: str) -> str:
+        """Unit of a varied parameter as its design declares it; empty where the systems came one by one."""
+        design: Any = self.inputs.get("system")
+        name = next(iter(getattr(design, "aliases", {}).get(name, ())), name)
+        leaves = design.leaves() if hasattr(design, "leaves") else ()
+        return next((about.unit for each, about, _ in leaves if each == name), "")
 
     def _along(self, dataset: "xarray.Dataset") -> "xarray.Dataset":
         """An axis along which one parameter alone varies bears its name and its values."""
@@ -301,9 +311,9 @@ def _space(
         if isinstance(design, (list, tuple)):
             return (), [], (len(design),)
         return (), [], as_system(design).shape or _shape_of_starts(start)
-    if isinstance(design, (System, list, tuple)):
+    if isinstance(design, (list, tuple)):
         raise ParameterError(
-            "simulate_ensemble", "parameters", list(parameters), "a design: a System has no named parameters to vary"
+            "simulate_ensemble", "parameters", list(parameters), "one design or system: of several each is run as it is"
         )
     arrays = [np.asarray(value, dtype=float) for value in parameters.values()]
     if grid:

@@ -8,7 +8,7 @@ K. Deb et al. 2002, IEEE Trans. Evol. Comput. 6, 182-197.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -40,6 +40,8 @@ class Optimum(Result):
     goals_before: Any = quantity("goal", "", "its goals")
     constraints_before: Any = quantity("constraint", "", "its constrained numbers")
     best: int = 0
+
+    table_over: ClassVar = ("design",)
 
     @property
     def names(self) -> tuple[str, ...]:
