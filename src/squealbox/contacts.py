@@ -25,7 +25,7 @@ def numbered(names: Sequence[str]) -> tuple[str, ...]:
 
 
 class Contact(DataSheet):
-    """One frictional contact: a row of the table above.
+    """One frictional contact: it senses along n and t, and acts along d.
 
     Parameters
     ----------

@@ -80,8 +80,8 @@ class DataSheet:
         >>> from squealbox import Coulomb
         >>> print(Coulomb(0.3).summary())
         Coulomb
-          static         0.3    coefficient of sticking
-          kinetic        None   coefficient while sliding; by default static
+          static         0.3                          static limit; kinetic when that is left out
+          kinetic        None                         coefficient while sliding
         """
         lines = [type(self).__name__, *_told(self)]
         return "\n".join(lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES - 1], "  ..."])
@@ -137,6 +137,12 @@ class DataSheet:
         if rest and not isinstance(value, DataSheet):
             raise ParameterError(type(self).__name__, path, None, f"a name without a part: {name} holds no parameters")
         return value.value_of(rest) if rest else value
+
+    def unit_of(self, path: str) -> str:
+        """Unit of a dotted parameter or of an alias; empty for a pure number and for what has none."""
+        names = (path, *self._paths(path))
+        unit = next((about.unit for name, about, _ in self.leaves() if name in names), "")
+        return "" if unit == "-" else unit
 
     def _paths(self, path: str) -> tuple[str, ...]:
         """The fields that a dotted name stands for: its own, or those of an alias or of what all members share."""

@@ -46,7 +46,7 @@ from squealbox.static_deflection import ended, modulo_rigid_motion, solve
 
 
 class System(DataSheet):
-    """The equation at the head of this module, as arrays.
+    """The equation of a brake as arrays: M q'' + C q' + K q = load + sum of d mu sgn(v) N over contacts.
 
     Parameters
     ----------
@@ -158,7 +158,11 @@ class System(DataSheet):
             shapes += [np.shape(getattr(contact, field))[:-1] for field in ("n", "d", "t")]
             shapes += [np.shape(value_at(value, 0.0)) for value in (contact.N0, contact.V)]
             shapes += [np.shape(value) for value in contact.law.coefficients()]
-        return np.broadcast_shapes(*set(shapes))
+        try:
+            return np.broadcast_shapes(*set(shapes))
+        except ValueError as error:
+            found = ", ".join(str(shape) for shape in sorted(set(shapes)) if shape)
+            raise InvalidSystem(f"parameters of shapes {found}: expected shapes that broadcast, one map") from error
 
     @cached_property
     def rows(self) -> tuple[Any, Any, Any, Any]:

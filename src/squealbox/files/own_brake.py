@@ -52,7 +52,7 @@ class Part(DataSheet):
     load: Vector = parameter("-", default=None, optional=True, meaning="what a value of 1 adds to the load")
 
     @staticmethod
-    def unit_of(given: Mapping[str, Any]) -> str:
+    def unit_for(given: Mapping[str, Any]) -> str:
         """Unit of the value of a part that has these arrays; none where it scales arrays of different units."""
         units = {UNITS[name] for name in UNITS if given.get(name) is not None}
         return units.pop() if len(units) == 1 else ""
@@ -152,7 +152,7 @@ class OwnBrake(Design):
         """Every parameter with its dotted name and value, parts by their names."""
         yield from (leaf for leaf in super().leaves(prefix) if not leaf[0].startswith(f"{prefix}parts."))
         for part in self.parts:
-            unit = part.unit_of({name: getattr(part, name) for name in UNITS})
+            unit = part.unit_for({name: getattr(part, name) for name in UNITS})
             yield prefix + part.name, Parameter(unit, meaning="a part of the matrices"), part.value
 
     def _with_parts(self, name: str, base: Any) -> Any:

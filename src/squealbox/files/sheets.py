@@ -57,7 +57,7 @@ def read_sheet(
     keys that stand in the same table and are read by someone else.
     """
     before = len(document.problems)
-    multiplied = getattr(sheet, "unit_of", None)
+    multiplied = getattr(sheet, "unit_for", None)
     unit = multiplied(table) if multiplied else unit
     values: dict[str, Any] = {}
     for given, value in table.items():
@@ -226,7 +226,7 @@ def unit_in(sheet: type[DataSheet], about: Parameter, unit: str) -> str:
     what it multiplies. In a schedule it is that of the
     quantity it stands for, and ``/s`` is that per second.
     """
-    if issubclass(sheet, Distribution) or hasattr(sheet, "unit_of"):
+    if issubclass(sheet, Distribution) or hasattr(sheet, "unit_for"):
         return about.unit or unit
     if not issubclass(sheet, Schedule):
         return about.unit

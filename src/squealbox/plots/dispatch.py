@@ -38,7 +38,7 @@ def plot(
     ``savefig("x.svg")`` of the figure keeps its text as text.
 
     >>> from squealbox import DrumBrake, complex_modes
-    >>> plot(complex_modes(DrumBrake()), width=3.4, style={"font.family": "serif"}).get_figwidth()
+    >>> float(plot(complex_modes(DrumBrake()), width=3.4, style={"font.family": "serif"}).get_figwidth())
     3.4
     """
     token = LOOK.set(Look(width, height, style))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from squealbox.arguments import designs, public
-from squealbox.parameters import ParameterError, known_names
+from squealbox.parameters import DataSheet, ParameterError, known_names
 from squealbox.result import COMPLETED, Column, Outcome, Result, batched, quantity
 from squealbox.system import as_system
 from squealbox.transient import _march, cautions
@@ -91,9 +91,10 @@ class Ensemble(Result):
     def to_dataset(self) -> "xarray.Dataset":
         """As `Result.to_dataset`, with ``parameter_<name>`` and ``observed_<name>`` for what varied and was seen."""
         dataset = super().to_dataset()
-        batch = len(self.shape)
+        batch, design = len(self.shape), self.inputs.get("system")
         for name, values in self.parameters.items():
-            about = {"units": self._unit(name), "long_name": f"value of {name}"}
+            unit = design.unit_of(name) if isinstance(design, DataSheet) else ""
+            about = {"units": unit, "long_name": f"value of {name}"}
             dims = [f"axis_{i}" for i in range(batch)]
             dataset[f"parameter_{name}"] = (dims, np.broadcast_to(values, self.shape), about)
         for name, values in self.observed.items():
@@ -103,13 +104,6 @@ class Ensemble(Result):
             about = {"units": unit, "long_name": f"observed {name}"}
             dataset[f"observed_{name}"] = ([*(f"axis_{i}" for i in range(batch)), *own], values, about)
         return self._along(dataset)
-
-    def _unit(self, name: str) -> str:
-        """Unit of a varied parameter as its design declares it; empty where the systems came one by one."""
-        design: Any = self.inputs.get("system")
-        name = next(iter(getattr(design, "aliases", {}).get(name, ())), name)
-        leaves = design.leaves() if hasattr(design, "leaves") else ()
-        return next((about.unit for each, about, _ in leaves if each == name), "")
 
     def _along(self, dataset: "xarray.Dataset") -> "xarray.Dataset":
         """An axis along which one parameter alone varies bears its name and its values."""

@@ -138,7 +138,7 @@ def optimise(
     >>> round(found.changes["x"], 5), round(float(found.goals[0, 0]), 9)
     (0.3, 1.0)
     """
-    wanted = [goals] if isinstance(goals, Goal) else list(goals)
+    wanted: list[Any] = list(goals) if isinstance(goals, (list, tuple)) else [goals]
     kept = list(constraints)
     names, box = checked_box(variables, "optimise")
     _check(wanted, kept, scatter, method)
