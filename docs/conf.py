@@ -35,7 +35,9 @@ nb_mime_priority_overrides = [("html", "image/svg+xml", 0)]
 
 default_role = "code"
 autodoc_member_order = "bysource"
-autodoc_typehints = "none"
+autodoc_typehints = "signature"
+autodoc_typehints_format = "short"
+autodoc_preserve_defaults = True
 autodoc_inherit_docstrings = False
 napoleon_google_docstring = False
 suppress_warnings = ["ref.python"]  # the names of attributes, which several results share, are looked for by mistake

@@ -183,3 +183,4 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
         DampingParadox(), {"eta1": (0.001, 0.05)}, studies.Goal(quantities.growth_rate()), generations=5, population=8
     ),
 }
+EXAMPLES = {name: cache(make) for name, make in EXAMPLES.items()}  # made once for all tests of a process

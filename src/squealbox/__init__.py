@@ -6,6 +6,6 @@ what is asked of them, and pictures. Each is loaded when it is first used, so im
 
 import lazy_loader
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

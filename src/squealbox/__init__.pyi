@@ -62,7 +62,19 @@ from .fe import (
     read_structure,
     reduce,
 )
-from .files import Body, OwnBrake, OwnContact, OwnLaw, OwnMechanism, Spring, Touch, own_law, read_design, write_design
+from .files import (
+    Body,
+    OwnBrake,
+    OwnContact,
+    OwnLaw,
+    OwnMechanism,
+    Part,
+    Spring,
+    Touch,
+    own_law,
+    read_design,
+    write_design,
+)
 from .fit import FrictionFit, fit_friction
 from .friction import Coulomb, Cubic, Dahl, ElastoPlastic, FrictionLaw, Hyperbolic, LinearSlope, LuGre, Stribeck
 from .limit_cycles import (
@@ -188,6 +200,7 @@ __all__ = [
     "write_design",
     "OwnBrake",
     "OwnContact",
+    "Part",
     "OwnMechanism",
     "Body",
     "Spring",

@@ -116,7 +116,7 @@ def public(**kinds: Kind | None) -> Callable[[Callable[P, R]], Callable[P, R]]:
     ...     return duration
     >>> wait("50ms")
     Traceback (most recent call last):
-    squealbox.parameters.ParameterError: wait.duration = '50ms': expected a finite number in (0, inf) s
+    squealbox.declarations.ParameterError: wait.duration = '50ms': expected a finite number in (0, inf) s
     """
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:

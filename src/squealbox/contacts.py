@@ -6,7 +6,7 @@ acts along a is -mu N (a . q') / |V|. The row a is `across`; other codes call it
 """
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy import sparse
@@ -25,7 +25,7 @@ def numbered(names: Sequence[str]) -> tuple[str, ...]:
 
 
 class Contact(DataSheet):
-    """One frictional contact: a row of the table above.
+    """One frictional contact: it senses along n and t, and acts along d.
 
     Parameters
     ----------
@@ -46,6 +46,19 @@ class Contact(DataSheet):
     across : shape (..., n), [-] row a of the velocity across the sliding direction, along which friction acts too: it
         turns with the relative velocity, and C_eff gains mu N / |V| a a'. None where sliding has one direction only
     """
+
+    told: ClassVar = {
+        "n": ("N/m", "normal force per displacement"),
+        "d": ("", "where friction acts on the degrees of freedom"),
+        "t": ("", "sliding velocity per velocity"),
+        "N0": ("N", "normal force at q = 0"),
+        "V": ("m/s", "sliding speed at rest"),
+        "unilateral": ("", "opens instead of pulling"),
+        "normal": ("", "direction of the normal reaction"),
+        "gap": ("m", "gap of a rigid contact at q = 0"),
+        "restitution": ("", "rebound speed over landing speed of a rigid contact"),
+        "across": ("", "velocity across the sliding direction"),
+    }
 
     n: Any
     d: Any

@@ -8,7 +8,7 @@ laws are compared by Akaike's criterion AIC = n ln(RSS/n) + 2 (k + 1), k coeffic
 import dataclasses
 import warnings
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -78,6 +78,8 @@ class FrictionFit(Result):
     errors: Any = quantity("law coefficient", "", "standard errors of the fitted numbers")
     aic: Any = quantity("law", "-", "Akaike's criterion")
     rms: Any = quantity("law", "-", "root of the mean squared residual")
+
+    coordinates: ClassVar = {"along": "curve_speeds"}
 
     @property
     def names(self) -> tuple[str, ...]:

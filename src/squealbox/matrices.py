@@ -1,9 +1,12 @@
-"""The arrays of a system: what is wrong with one, and sums over its contacts as products of matrices."""
+"""The arrays of a system: what is wrong with one, steady sliding, and sums over contacts as products of matrices."""
 
 from collections import Counter
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+
+from squealbox.result import Outcome
 
 FEW = 8  # contacts up to which sums are taken one by one, the same for one system as for a map of them
 SYMMETRIC = 1e-8  # of the largest entry: differences beyond it are no round-off of a written file
@@ -96,3 +99,33 @@ def form(a: Any, matrix: Any, b: Any) -> Any:
     """a . matrix b over leading axes; one matrix for all rows goes through one matrix product."""
     product = np.asarray(b) @ matrix.T if np.ndim(matrix) == 2 else np.einsum("...ij,...j->...i", matrix, b)
     return np.sum(np.asarray(a) * product, axis=-1)
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """Steady sliding: displacements and contact states, or why there is none.
+
+    q (..., n) [m]; normal_force, sliding_speed and friction (..., contacts) in N, m/s and -; exists (...) bool;
+    outcome "completed", "singular" (K_eff cannot be solved), "no_sliding" (a contact has V = 0, so any force up to the
+    static limit balances) or "no_convergence"; with leading axes the outcome names the worst entry.
+    floating (...) counts rigid-body freedoms: motions that no spring and no contact feels and no force drives. Steady
+    sliding is known but for them, and q is the one of least length.
+    """
+
+    q: Any
+    normal_force: Any
+    sliding_speed: Any
+    friction: Any
+    exists: Any
+    outcome: Outcome
+    floating: Any = 0
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """M, C_eff, K_eff, each (..., n, n), about an equilibrium; NaN where there is none."""
+
+    M: Any
+    C: Any
+    K: Any
+    equilibrium: Equilibrium

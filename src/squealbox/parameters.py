@@ -6,9 +6,7 @@ A field may hold an array with leading axes, so one sheet can stand for a whole 
 """
 
 import dataclasses
-import difflib
 import importlib
-import math
 import re
 from collections.abc import Iterator, Mapping
 from types import FunctionType
@@ -16,92 +14,15 @@ from typing import Any, ClassVar, Self, dataclass_transform
 
 import numpy as np
 
+from squealbox.declarations import Choice, Parameter, ParameterError, choice, known_names, parameter
+
+__all__ = [
+    "Choice", "DataSheet", "Parameter", "ParameterError", "choice", "from_plain", "known_names", "load_kind", "members",
+    "parameter", "to_plain",
+]  # fmt: skip
+DRAWN_BY = "squealbox.plots"  # by name, when asked: a sheet may know that it can be drawn, but not by whom
+MOST_LINES = 30  # of a summary
 MOST_ENTRIES = 16  # of an array that is printed in full
-
-
-@dataclasses.dataclass(frozen=True)
-class Parameter:
-    """What is known of one field of a data sheet: unit, range, meaning and source."""
-
-    unit: str
-    low: float = -math.inf
-    high: float = math.inf
-    low_open: bool = False
-    high_open: bool = False
-    meaning: str = ""
-    source: str = ""
-    optional: bool = False
-    schedule: bool = False
-
-    @property
-    def range(self) -> str:
-        """The range in interval notation with its unit, such as ``(0, inf) kg``."""
-        left = "(" if self.low_open or math.isinf(self.low) else "["
-        right = ")" if self.high_open or math.isinf(self.high) else "]"
-        unit = "" if self.unit in ("", "-") else f" {self.unit}"
-        return f"{left}{self.low:g}, {self.high:g}{right}{unit}"
-
-    @property
-    def expected(self) -> str:
-        """What a value must be, as the end of a sentence."""
-        return f"a finite number in {self.range}"
-
-    def accepts(self, value: np.ndarray) -> bool:
-        """True when every entry of `value` is finite and inside the range."""
-        above = value > self.low if self.low_open else value >= self.low
-        below = value < self.high if self.high_open else value <= self.high
-        return bool(np.all(np.isfinite(value) & above & below))
-
-
-class ParameterError(ValueError):
-    """A parameter is unknown, not a finite number, or outside its range.
-
-    The attributes carry the evidence: `owner` (class name), `name`, `value`, and `expected` (the range with its unit).
-    """
-
-    def __init__(self, owner: str, name: str, value: object, expected: str) -> None:
-        self.owner, self.name, self.value, self.expected = owner, name, value, expected
-        given = "" if expected.startswith("did you mean") and np.ndim(value) else f" = {_shown(value)}"  # type: ignore[arg-type]
-        super().__init__(f"{owner}.{name}{given}: {self.expectation}")
-
-    @property
-    def expectation(self) -> str:
-        """What was expected, as the end of a sentence."""
-        return self.expected if self.expected.startswith("did you mean") else f"expected {self.expected}"
-
-
-def parameter(
-    unit: str,
-    low: float = -math.inf,
-    high: float = math.inf,
-    *,
-    default: Any = dataclasses.MISSING,
-    default_factory: Any = dataclasses.MISSING,
-    low_open: bool = False,
-    high_open: bool = False,
-    meaning: str = "",
-    source: str = "",
-    optional: bool = False,
-    schedule: bool = False,
-) -> Any:
-    """Declare a field of a data sheet: unit, range, default, meaning, source; may it be None, or a schedule?"""
-    about = Parameter(unit, low, high, low_open, high_open, meaning, source, optional, schedule)
-    if default_factory is not dataclasses.MISSING:
-        return dataclasses.field(default_factory=default_factory, metadata={"parameter": about})
-    return dataclasses.field(default=default, metadata={"parameter": about})
-
-
-@dataclasses.dataclass(frozen=True)
-class Choice:
-    """What is known of a field that holds one of several words."""
-
-    options: tuple[str, ...]
-    meaning: str = ""
-
-
-def choice(*options: str, default: Any = dataclasses.MISSING, meaning: str = "") -> Any:
-    """Declare a field that holds one of the words `options`."""
-    return dataclasses.field(default=default, metadata={"choice": Choice(options, meaning)})
 
 
 _SHEETS: dict[str, type["DataSheet"]] = {}
@@ -116,6 +37,10 @@ class DataSheet:
     """
 
     aliases: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+    shared: ClassVar[Mapping[str, tuple[str, str]]] = {}
+    """A name for a field of all sheets in another field, such as ``{"sliding_speed": ("contacts", "V")}``."""
+    told: ClassVar[Mapping[str, tuple[str, str]]] = {}
+    """Unit and meaning of fields that are no declared parameters, for `summary`."""
 
     def __new__(cls, *_: Any, **given: Any) -> Self:
         """A sheet not yet filled; a name it does not have is refused with the nearest one."""
@@ -149,6 +74,23 @@ class DataSheet:
         fields = ", ".join(f"{name}={_brief(getattr(self, name))}" for name in self.field_names())
         return f"{type(self).__name__}({fields})"
 
+    def summary(self) -> str:
+        """At most a screenful: each field with its value, unit and meaning, the sheets it holds indented.
+
+        >>> from squealbox import Coulomb
+        >>> print(Coulomb(0.3).summary())
+        Coulomb
+          static         0.3                          static limit; kinetic when that is left out
+          kinetic        None                         coefficient while sliding
+        """
+        lines = [type(self).__name__, *_told(self)]
+        return "\n".join(lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES - 1], "  ..."])
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: a drawing where there is one, and the fields with value, unit, range and meaning."""
+        card: str = importlib.import_module(DRAWN_BY).card(self)
+        return card
+
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):
             return NotImplemented
@@ -164,39 +106,75 @@ class DataSheet:
     def replace(self, changes: Mapping[str, Any] | None = None, **keywords: Any) -> Self:
         """A copy with other values; dotted names reach into nested sheets: ``{"friction.static": 0.4}``.
 
+        Of several sheets in one field each has its own name, or its number: ``springs.1.stiffness``, ``bodies.a.mass``.
         Raises `ParameterError` for a name the sheet does not have (with the nearest one) or a value out of range.
         """
         flat: dict[str, Any] = {}
         nested: dict[str, dict[str, Any]] = {}
         for path, value in {**(changes or {}), **keywords}.items():
-            head, _, rest = path.partition(".")
-            for name in self.aliases.get(head, (head,)):
-                self._check_known(path, head, name, value)
+            for full in self._paths(path):
+                name, _, rest = full.partition(".")
+                self._check_known(path, path.partition(".")[0], name, value)
                 if rest:
                     nested.setdefault(name, {})[rest] = value
                 else:
                     flat[name] = value
         for name, inner in nested.items():
             part = flat.get(name, getattr(self, name))
-            if not isinstance(part, DataSheet):
+            if not (isinstance(part, DataSheet) or members(part)):
                 raise ParameterError(type(self).__name__, name, part, f"a data sheet, to set {sorted(inner)} in it")
-            flat[name] = part.replace(inner)
+            flat[name] = part.replace(inner) if isinstance(part, DataSheet) else self._with_members(name, part, inner)
         return dataclasses.replace(self, **flat)  # type: ignore[type-var]
 
     def value_of(self, path: str) -> Any:
         """The value behind a dotted name; an alias gives the value of its first field."""
-        head, _, rest = path.partition(".")
-        name = self.aliases.get(head, (head,))[0]
-        self._check_known(path, head, name, None)
+        name, _, rest = self._paths(path)[0].partition(".")
+        self._check_known(path, path.partition(".")[0], name, None)
         value = getattr(self, name)
+        if rest and members(value):
+            key, _, rest = rest.partition(".")
+            value = value[self._place(name, value, key)]
         if rest and not isinstance(value, DataSheet):
             raise ParameterError(type(self).__name__, path, None, f"a name without a part: {name} holds no parameters")
         return value.value_of(rest) if rest else value
 
+    def unit_of(self, path: str) -> str:
+        """Unit of a dotted parameter or of an alias; empty for a pure number and for what has none."""
+        names = (path, *self._paths(path))
+        unit = next((about.unit for name, about, _ in self.leaves() if name in names), "")
+        return "" if unit == "-" else unit
+
+    def _paths(self, path: str) -> tuple[str, ...]:
+        """The fields that a dotted name stands for: its own, or those of an alias or of what all members share."""
+        head, dot, rest = path.partition(".")
+        if head in self.shared:
+            several, field = self.shared[head]
+            return tuple(f"{several}.{i + 1}.{field}{dot}{rest}" for i in range(len(getattr(self, several)))) or (path,)
+        return tuple(f"{name}{dot}{rest}" for name in self.aliases.get(head, (head,)))
+
+    def _with_members(self, name: str, sheets: Any, changes: Mapping[str, Any]) -> tuple[Any, ...]:
+        """The sheets of one field with changes by ``number.parameter`` or ``name.parameter``."""
+        each: dict[int, dict[str, Any]] = {}
+        for path, value in changes.items():
+            key, _, rest = path.partition(".")
+            each.setdefault(self._place(name, sheets, key), {})[rest] = value
+        return tuple(sheet.replace(each[i]) if i in each else sheet for i, sheet in enumerate(sheets))
+
+    def _place(self, name: str, sheets: Any, key: str) -> int:
+        known = members(sheets)
+        if key.isdigit() and 1 <= int(key) <= len(known):
+            return int(key) - 1
+        if key not in known:
+            raise ParameterError(type(self).__name__, f"{name}.{key}", None, known_names(key, list(known)))
+        return known.index(key)
+
     def _check_known(self, path: str, head: str, name: str, value: Any) -> None:
         names = self.field_names()
         if name not in names:
-            raise ParameterError(type(self).__name__, path, value, known_names(head, [*names, *self.aliases]))
+            raise ParameterError(type(self).__name__, path, value, known_names(head, self._known()))
+
+    def _known(self) -> list[str]:
+        return [*self.field_names(), *self.aliases, *self.shared]
 
     @classmethod
     def kind(cls) -> str:
@@ -221,7 +199,10 @@ class DataSheet:
         return {field.name: field.metadata["choice"] for field in fields if "choice" in field.metadata}
 
     def leaves(self, prefix: str = "") -> Iterator[tuple[str, Parameter, Any]]:
-        """Every declared parameter with its dotted name and value, nested sheets included."""
+        """Every declared parameter with its dotted name and value, nested sheets included.
+
+        Of several sheets in one field what is at its default is left out: nobody asked for the gap of a soft contact.
+        """
         about = self.parameters()
         for name in self.field_names():
             value = getattr(self, name)
@@ -229,6 +210,19 @@ class DataSheet:
                 yield from value.leaves(f"{prefix}{name}.")
             elif name in about:
                 yield prefix + name, about[name], value
+            for key, sheet in zip(members(value), value if members(value) else (), strict=True):
+                usual = {field.name: field.default for field in dataclasses.fields(sheet)}
+                inner = sheet.leaves(f"{prefix}{name}.{key}.")
+                yield from (leaf for leaf in inner if not _same(leaf[2], usual.get(leaf[0].rpartition(".")[2])))
+
+
+def members(value: Any) -> list[str]:
+    """What each of several sheets in a field is called: its name where no other has it, else its number."""
+    if not (isinstance(value, tuple) and value and all(isinstance(each, DataSheet) for each in value)):
+        return []
+    names = [str(getattr(each, "name", "")) for each in value]
+    plain = [bool(re.fullmatch(r"[A-Za-z_]\w*", name)) and names.count(name) == 1 for name in names]
+    return [name if good else str(i) for i, (name, good) in enumerate(zip(names, plain, strict=True), start=1)]
 
 
 def to_plain(value: Any) -> Any:
@@ -283,13 +277,6 @@ def _sheet_class(kind: object) -> type[DataSheet]:
     return _SHEETS[name]
 
 
-def known_names(given: str, names: list[str]) -> str:
-    """A phrase for an error: the nearest known name, and all of them."""
-    near = difflib.get_close_matches(given, names, n=1)
-    hint = f"did you mean {near[0]!r}? " if near else ""
-    return f"{hint}one of {', '.join(names)}"
-
-
 def _checked(sheet: DataSheet, name: str, about: Parameter) -> Any:
     value = getattr(sheet, name)
     owner = type(sheet).__name__
@@ -336,6 +323,31 @@ def _hashable(value: Any) -> Any:
     return tuple(_hashable(item) for item in value) if isinstance(value, tuple) else value
 
 
+def _told(sheet: DataSheet, indent: str = "  ") -> Iterator[str]:
+    declared = sheet.parameters()
+    for name in sheet.field_names():
+        value, about = getattr(sheet, name), declared.get(name)
+        unit, meaning = (about.unit, about.meaning) if about else sheet.told.get(name, ("", ""))
+        inner = {name: value} if isinstance(value, DataSheet) else {}
+        inner |= {
+            f"{name}.{key}": each for key, each in zip(members(value), value if members(value) else (), strict=True)
+        }
+        for title, each in inner.items():
+            yield f"{indent}{title}: {type(each).__name__}"
+            yield from _told(each, indent + "  ")
+        left_out = (value is None and about is None) or (isinstance(value, (str, tuple)) and not value)
+        if not inner and not left_out:
+            unit = "" if unit in ("", "-") else f" {unit}"
+            yield f"{indent}{name:<14s} {_compact(value) + unit:<28s} {meaning}".rstrip()
+
+
+def _compact(value: object) -> str:
+    """A value in a line: a small array as it stands, a larger one by its shape."""
+    if isinstance(value, np.ndarray) and value.size <= MOST_ENTRIES:
+        return np.array2string(value, precision=6, separator=", ", max_line_width=1000).replace("\n", "")
+    return f"{value:.8g}" if isinstance(value, float) else _brief(value)
+
+
 def _brief(value: object) -> str:
     """As `repr`, but what is long is told by its size: a print of a system of a thousand contacts is a line."""
     if isinstance(value, np.ndarray) and value.size > MOST_ENTRIES:
@@ -343,10 +355,3 @@ def _brief(value: object) -> str:
     if isinstance(value, tuple) and len(value) > MOST_ENTRIES // 2:
         return f"<{len(value)} of {type(value[0]).__name__}>"
     return repr(value)
-
-
-def _shown(value: object) -> str:
-    if isinstance(value, type):
-        return f"the class {value.__name__}"
-    text = repr(value) if not isinstance(value, (float, int)) else f"{value:g}"
-    return text if len(text) <= 60 else text[:57] + "..."

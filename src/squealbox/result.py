@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar
 
 import numpy as np
 
-from squealbox.parameters import from_plain, load_kind, to_plain
+from squealbox.parameters import DRAWN_BY, from_plain, load_kind, to_plain
 
 if TYPE_CHECKING:
     import xarray
@@ -28,7 +28,11 @@ if TYPE_CHECKING:
 COMPLETED = "completed"
 MOST_LINES = 20  # of a summary
 MOST_COLUMNS = 100  # that one array gives to a table
-DRAWN_BY = "squealbox.plots"  # by name, when asked: a result may know that it can be drawn, but not by whom
+NAMED_BY = {  # dimension to the attributes that may hold its names
+    "parameter": ("parameters", "names"), "parameter2": ("parameters", "names"), "other": ("parameters", "names"),
+    "scheme": ("schemes",), "law": ("names",), "damper": ("damper_names",), "row": ("names",), "sweep": ("sweeps",),
+    "dof": ("dofs",), "contact": ("contacts",)
+}  # fmt: skip
 Analysis = TypeVar("Analysis", bound=Callable[..., Any])
 
 
@@ -120,7 +124,12 @@ class Result:
 
     kinds: ClassVar[dict[str, type["Result"]]] = {}
     coordinates: ClassVar[Mapping[str, str]] = {}
-    """Dimension to the array that holds its coordinate; those called dof and contact are named by the system."""
+    """Dimension to the attribute that holds its coordinate; those called dof, contact and state are named by the
+    system, others by what has the words of `NAMED_BY`."""
+    derived: ClassVar[Mapping[str, tuple[str, str, str]]] = {}
+    """Attributes that follow from the arrays and stand in the dataset too, with dimensions, unit and meaning."""
+    table_over: ClassVar[tuple[str, ...]] = ()
+    """Dimensions that have a row each in a table; empty means those of the first array."""
     swept: ClassVar[Mapping[str, tuple[str, str, str]]] = {}
     """Attributes a study keeps of each point, with dimensions, unit and meaning; empty means every declared array."""
 
@@ -169,8 +178,8 @@ class Result:
         """The arrays as a labelled `xarray.Dataset`; units, inputs, settings, outcome and versions are attributes.
 
         Degrees of freedom and contacts are coordinates with the names the system gives them, and so is what an array
-        runs over: ``motion.to_dataset()["q"].sel(time=0.01, dof="x", method="nearest")`` works but for the method,
-        which xarray applies to numbers alone, so names are chosen in a ``sel`` of their own.
+        runs over: ``motion.to_dataset()["q"].sel(time=0.01, dof="x")``. Of instants that are not exactly there the
+        nearest are found by ``.sel(dof="x").sel(time=0.01, method="nearest")``; xarray finds no nearest name.
         """
         import xarray
 
@@ -180,6 +189,9 @@ class Result:
             about = {"units": field.metadata["unit"], "long_name": field.metadata["meaning"]}
             variables[field.name] = (_dims(field.metadata["dims"], array.ndim), array, about)
         attributes = {name: json.dumps(to_plain(value)) for name, value in self._plain().items()}
+        for name, (dims, unit, meaning) in self.derived.items():
+            array = np.asarray(getattr(self, name))
+            variables[name] = (_dims(tuple(dims.split()), array.ndim), array, {"units": unit, "long_name": meaning})
         dataset = xarray.Dataset(variables, attrs={"kind": self.kind_name(), **attributes})
         return dataset.assign_coords(self._labels(dataset))
 
@@ -190,12 +202,19 @@ class Result:
         would give more than 100 is left out, and so are those over something else: `to_dataset` has all.
         """
         dataset = self.to_dataset()
-        first = next(iter(dataset[field.name].dims for field in _quantities(type(self))), ())
+        first: tuple[Any, ...] = self.table_over or next(
+            iter(dataset[field.name].dims for field in _quantities(type(self))), ()
+        )
+        first = tuple(dim for dim in first if dim in dataset.dims)
+        twice = {
+            name: f"{name} values" for name in dataset.coords if dataset[name].ndim > 1
+        }  # as a dimension is called
+        dataset = dataset.rename_vars(twice).reset_coords([*twice.values()])
         table = dataset.drop_vars([name for name in dataset.coords if name not in first])
         columns: dict[str, Any] = {}
         for name, variable in table.data_vars.items():
             more = [dim for dim in variable.dims if dim not in first]
-            if tuple(variable.dims[: len(first)]) != first or np.prod([variable.sizes[d] for d in more]) > MOST_COLUMNS:
+            if not set(first) <= set(variable.dims) or np.prod([variable.sizes[d] for d in more]) > MOST_COLUMNS:
                 continue
             for at in np.ndindex(*(variable.sizes[dim] for dim in more)):
                 labels = [str(dataset[d].values[i]) if d in dataset.coords else str(i)
@@ -269,14 +288,20 @@ class Result:
         found: dict[str, Any] = {}
         for dim, name in self.coordinates.items():
             if dim in dataset.sizes and np.shape(getattr(self, name)) == (dataset.sizes[dim],):
-                found[dim] = (dim, np.asarray(getattr(self, name)), dataset[name].attrs)
+                found[dim] = (dim, np.asarray(getattr(self, name)), dataset[name].attrs if name in dataset else {})
         system: Any = self.inputs.get("system") if isinstance(self.inputs, Mapping) else None
-        if {"dof", "contact"} & set(dataset.sizes):
+        if {"dof", "contact", "state"} & set(dataset.sizes):
             system = system.system() if hasattr(system, "system") else system
-            names = {"dof": getattr(system, "names", ()), "contact": getattr(system, "contact_names", ())}
-            for dim, known in names.items():
-                if dim in dataset.sizes and len(set(known)) == dataset.sizes[dim]:
-                    found[dim] = (dim, np.array(known))
+        dofs = tuple(getattr(system, "names", ()))
+        names = {"dof": dofs, "contact": getattr(system, "contact_names", ()),
+                 "state": (*dofs, *(f"{name}'" for name in dofs)), "end": ("low", "high"),
+                 "goal": tuple(each["name"] for each in self.settings.get("goals", ()))}  # fmt: skip
+        for dim in {str(dim) for dim in dataset.sizes} - set(found) - set(dataset.coords):
+            known = names.get(dim, ())
+            for attribute in NAMED_BY.get(dim, ()):
+                known = known or getattr(self, attribute, ())
+            if len(set(known)) == dataset.sizes[dim] and all(isinstance(name, str) for name in known):
+                found[dim] = (dim, np.array(known))
         return found
 
 

@@ -15,9 +15,9 @@ system can be a whole map of systems: M is (..., n, n), n, d and t are (..., n),
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy import sparse
@@ -27,7 +27,17 @@ from squealbox.arguments import design
 from squealbox.contacts import ROWS, Contact, Contacts, dense_rows, numbered, sparse_matrix
 from squealbox.factorisation import is_symmetric
 from squealbox.loops import Loop, check_loops, folded, near_sliding
-from squealbox.matrices import InvalidSystem, array, check_mass, check_width, checked_names, coupled, felt
+from squealbox.matrices import (
+    Equilibrium,
+    InvalidSystem,
+    Linearised,
+    array,
+    check_mass,
+    check_width,
+    checked_names,
+    coupled,
+    felt,
+)
 from squealbox.memory_rows import no_memory, remembering, with_memory
 from squealbox.parameters import DataSheet
 from squealbox.result import Outcome
@@ -36,7 +46,7 @@ from squealbox.static_deflection import ended, modulo_rigid_motion, solve
 
 
 class System(DataSheet):
-    """The equation at the head of this module, as arrays.
+    """The equation of a brake as arrays: M q'' + C q' + K q = load + sum of d mu sgn(v) N over contacts.
 
     Parameters
     ----------
@@ -46,6 +56,9 @@ class System(DataSheet):
     names, angles : of the degrees of freedom; of those that are rotations [rad], as what ends in ``_turn`` is anyway
     loops : controllers that sense and act (`squealbox.loops`)
 
+    Its parameters have names: ``friction.static``, ``sliding_speed`` and ``normal_force`` of all contacts together, and
+    ``contacts.pad.law.static``, ``contacts.2.V`` of one, by its name or number.
+
     M, C and K may be SciPy sparse arrays, of one system: steady sliding, linearisation, complex modes and their energy
     then stay sparse, and every other analysis says in one sentence that it wants a reduced system.
 
@@ -54,6 +67,20 @@ class System(DataSheet):
     >>> System(M=[[1.0]], C=[[0.1]], K=[[4.0]], load=[0.0], contacts=()).size
     1
     """
+
+    shared: ClassVar = {
+        "friction": ("contacts", "law"),
+        "sliding_speed": ("contacts", "V"),
+        "normal_force": ("contacts", "N0"),
+    }
+    told: ClassVar = {
+        "M": ("kg", "mass"),
+        "C": ("N s/m", "damping"),
+        "K": ("N/m", "stiffness"),
+        "load": ("N", "external force"),
+        "names": ("", "degrees of freedom"),
+        "angles": ("", "those that are rotations"),
+    }
 
     M: Any
     C: Any
@@ -131,7 +158,11 @@ class System(DataSheet):
             shapes += [np.shape(getattr(contact, field))[:-1] for field in ("n", "d", "t")]
             shapes += [np.shape(value_at(value, 0.0)) for value in (contact.N0, contact.V)]
             shapes += [np.shape(value) for value in contact.law.coefficients()]
-        return np.broadcast_shapes(*set(shapes))
+        try:
+            return np.broadcast_shapes(*set(shapes))
+        except ValueError as error:
+            found = ", ".join(str(shape) for shape in sorted(set(shapes)) if shape)
+            raise InvalidSystem(f"parameters of shapes {found}: expected shapes that broadcast, one map") from error
 
     @cached_property
     def rows(self) -> tuple[Any, Any, Any, Any]:
@@ -156,36 +187,6 @@ class System(DataSheet):
         for i, contact in enumerate(self.contacts):
             found.setdefault(contact.law, []).append(i)
         return tuple((law, tuple(contacts)) for law, contacts in found.items())
-
-
-@dataclass(frozen=True)
-class Equilibrium:
-    """Steady sliding: displacements and contact states, or why there is none.
-
-    q (..., n) [m]; normal_force, sliding_speed and friction (..., contacts) in N, m/s and -; exists (...) bool;
-    outcome "completed", "singular" (K_eff cannot be solved), "no_sliding" (a contact has V = 0, so any force up to the
-    static limit balances) or "no_convergence"; with leading axes the outcome names the worst entry.
-    floating (...) counts rigid-body freedoms: motions that no spring and no contact feels and no force drives. Steady
-    sliding is known but for them, and q is the one of least length.
-    """
-
-    q: Any
-    normal_force: Any
-    sliding_speed: Any
-    friction: Any
-    exists: Any
-    outcome: Outcome
-    floating: Any = 0
-
-
-@dataclass(frozen=True)
-class Linearised:
-    """M, C_eff, K_eff, each (..., n, n), about an equilibrium; NaN where there is none."""
-
-    M: Any
-    C: Any
-    K: Any
-    equilibrium: Equilibrium
 
 
 def as_system(design_or_system: Any, *, linear: bool = False) -> System:

@@ -45,9 +45,9 @@ def test_senseless_input_gets_one_sentence(change, said):
     assert said in str(caught.value)
 
 
-def test_a_system_has_no_names_to_vary():
-    with pytest.raises(ParameterError, match="no named parameters"):
-        simulate_ensemble(DrumBrake().system(), {"friction.static": [0.1]}, SHORT)
+def test_of_several_systems_none_is_varied():
+    with pytest.raises(ParameterError, match="one design or system"):
+        simulate_ensemble([DrumBrake().system()], {"friction.static": [0.1]}, SHORT)
 
 
 def test_a_lane_at_its_limit_leaves_the_others_untouched():

@@ -14,7 +14,7 @@ PROJECT_TABLE = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project
 # Rooms, or single files, that may use an extra, and which one.
 EXTRAS = {
     "signals": "recordings", "studies": "studies", "workbench": "workbench", "fe": "fe", "factorisation.py": "fe",
-    "control": "control", "signals/quality.py": "sound",
+    "control": "control", "report": "report", "signals/quality.py": "sound",
 }  # fmt: skip
 
 

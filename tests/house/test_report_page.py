@@ -3,6 +3,7 @@
 import base64
 import io
 import re
+import sys
 import tempfile
 import wave
 
@@ -14,6 +15,8 @@ from squealbox import DrumBrake, LinearSlope, Ramp, complex_modes, simulate
 from squealbox.cli import BAD_INPUT, DONE, main
 from squealbox.files import write_design
 from squealbox.report import Examination, ReportError, design_page, examine, report
+from squealbox.report.blocks import Chart, Drawing, Page, Section
+from squealbox.report.page import packed_library, render
 from squealbox.signals import dominant_frequency
 from squealbox.studies import sweep
 
@@ -246,6 +249,20 @@ def test_a_bad_source_is_one_sentence(source, sentence, tmp_path, capsys):
     assert sentence in said
     assert len(said.strip().splitlines()) == 1
     assert not (tmp_path / "out.html").exists()
+
+
+def test_without_plotly_the_figures_stand_still_and_it_says_so(monkeypatch):
+    chart = Chart(Drawing(b"\x89PNG", "a caption"), {"data": [], "layout": {}})
+    page = Page("a page", "a lead", (Section("one", (chart,)),))
+    assert "<script>" in render(page)
+    for name in ("plotly", "plotly.offline"):
+        monkeypatch.setitem(sys.modules, name, None)
+    packed_library.cache_clear()
+    text = render(page)
+    packed_library.cache_clear()
+    assert "pip install &#39;squealbox[report]&#39;" in text.replace("'", "&#39;")
+    assert "<script" not in text
+    assert "data:image/png" in text
 
 
 def test_a_bad_target_or_thing_is_refused(tmp_path):

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 import squealbox
+from house.test_figures_for_papers import crowded
 from result_examples import EXAMPLES
 from squealbox.designs import DESIGNS, DrumBrake
-from squealbox.plots import card, facts, plot
+from squealbox.plots import card, drawn, facts, plot
 from squealbox.plots.cards import MOST_POINTS, parameter_rows
 from squealbox.result import Outcome, Result, quantity
 
@@ -41,6 +42,8 @@ def test_a_result_draws_itself_and_has_a_card(name):
     assert type(result).__name__ == name
     figure = result.plot()
     assert any(axes.has_data() for axes in figure.axes)
+    drawn(figure)
+    assert crowded(figure) == []  # axes whose numbers run into each other
     text = result._repr_html_()
     assert name in text
     assert str(result.outcome) in text

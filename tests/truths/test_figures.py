@@ -221,7 +221,8 @@ def test_settings_of_matplotlib_are_left_as_they_were():
 
 
 def test_plot_finds_the_figure_of_a_result():
-    assert len(plots.plot(trajectory()).axes) == 3
+    assert len(plots.plot(trajectory()).axes) == 4  # a hundred periods: the last of them apart
+    assert len(plots.plot(trajectory(T[: T.size // 20])).axes) == 3
     assert len(plots.plot(spectrum(motion())).axes) == 1
     assert len(plots.plot(verdict(motion())).axes) == 1
     assert len(plots.plot(Coulomb(0.3)).axes) == 1
@@ -232,7 +233,8 @@ def test_plot_finds_the_figure_of_a_result():
 
 def test_unequal_steps_and_failed_runs_are_drawn_and_said():
     uneven = np.sort(np.random.default_rng(0).uniform(0.0, 0.05, 2000))
-    assert "unequal steps" in plots.plot(trajectory(uneven)).axes[2].get_title()
+    notes = [text.get_text() for panel in plots.plot(trajectory(uneven)).axes for text in panel.texts]
+    assert any("through unequal steps" in each for each in notes)
     failed = plots.plot(trajectory(T[:5], Outcome("step_underflow", "no step was small enough")))
     assert len(failed.axes) == 2
     assert "no step was small enough" in failed.get_suptitle()

@@ -15,6 +15,10 @@ from dataclasses import dataclass
 DONE, FAILED, BAD_INPUT, STOPPED = 0, 1, 2, 130
 
 
+class UsageError(ValueError):
+    """An option or argument that does not make sense; the message is one sentence."""
+
+
 @dataclass(frozen=True)
 class Command:
     """A command: the module and function that do it, and one line about it."""
@@ -72,6 +76,14 @@ COMMANDS = {
     "schema": Command("starter", "schema", "the JSON schema of a design file, for editors"),
     "completion": Command("starter", "completion", "a script that completes commands and options in bash, zsh or fish"),
 }
+OPTIONS = {
+    "--force": "overwrite files that are there already",
+    "--json": "one JSON object on standard output: exit code, results with units, and the text",
+    "--quiet": "nothing on standard output",
+    "--exit-code": "exit with 3 where steady sliding is unstable",
+    "--figures": "kinds of file of figures, such as png,pdf; by default png,svg",
+}
+"""What every command takes beside its own options."""
 
 EXAMPLES = """\
 examples:
@@ -86,6 +98,9 @@ examples:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code. Errors go to stderr, one sentence each, without a traceback."""
     words = list(sys.argv[1:] if arguments is None else arguments)
+    if arguments is None and not sys.flags.utf8_mode and any("\udc80" <= c <= "\udcff" for each in words for c in each):
+        # letters that the locale does not know, such as those of a folder under LC_ALL=C: read them as UTF-8
+        os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], {**os.environ, "PYTHONUTF8": "1"})
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal that knows no squared sign shows a question mark
@@ -123,10 +138,7 @@ def overview() -> str:
         EXAMPLES,
         "",
         "with every command:",
-        "  --force       overwrite files that are there already",
-        "  --json        one JSON object on standard output: exit code, results with units, and the text",
-        "  --quiet       nothing on standard output",
-        "  --exit-code   exit with 3 where steady sliding is unstable",
+        *(f"  {option.ljust(12)}  {about}" for option, about in OPTIONS.items()),
         "",
         "squealbox COMMAND --help tells more of one; squealbox --version",
     ])  # fmt: skip

@@ -4,6 +4,7 @@ import io
 import json
 import math
 import sys
+from collections.abc import Iterator, Sequence
 from contextlib import redirect_stdout
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -11,9 +12,11 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.cli import UsageError
 from squealbox.result import Result
 
 MOST_NUMBERS = 1000  # of one array; a longer one is told by its shape, and is in the file that --out writes
+FIGURES = ("png", "svg", "pdf")  # the kinds of file that --figures knows
 UNSTABLE = 3  # the exit code of --exit-code where steady sliding is not stable
 
 
@@ -84,6 +87,22 @@ def plain(result: Result) -> dict[str, Any]:
             for name, column in result.columns().items()
         },
     }
+
+
+def figures(words: Sequence[str]) -> Iterator[str]:
+    """The words without ``--figures png,pdf``, which is done; an unknown kind of file is a `UsageError`."""
+    rest = iter(words)
+    for word in rest:
+        option, equals, given = word.partition("=")
+        if option != "--figures":
+            yield word
+            continue
+        kinds = tuple((given if equals else next(rest, "")).split(","))
+        if not set(kinds) <= set(FIGURES):
+            raise UsageError(f"--figures {','.join(kinds)[:60]}: expected {', '.join(FIGURES)}, or several with commas")
+        from squealbox.plots.style import FORMATS
+
+        FORMATS.set(kinds)
 
 
 def _unstable(result: Result) -> bool:

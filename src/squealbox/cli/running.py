@@ -7,14 +7,10 @@ import re
 import sys
 from collections.abc import Callable, Sequence
 
-from squealbox.cli import BAD_INPUT, DONE, FAILED, STOPPED, Command
+from squealbox.cli import BAD_INPUT, DONE, FAILED, OPTIONS, STOPPED, Command, UsageError
 from squealbox.result import Outcome
 
 TRACEBACK = "SQUEALBOX_TRACEBACK"  # set in the environment, an error inside the program shows where it arose
-
-
-class UsageError(ValueError):
-    """An option or argument that does not make sense; the message is one sentence."""
 
 
 class ComputationFailed(Exception):
@@ -60,10 +56,13 @@ def _done(name: str, command: Command, words: Sequence[str]) -> tuple[int, str]:
 def _call(name: str, command: Command, words: Sequence[str]) -> int:
     import cyclopts
 
+    from squealbox.cli.answers import figures
+
     function = getattr(importlib.import_module(f"squealbox.cli.{command.module}"), command.function)
     app = cyclopts.App(
         name=f"squealbox {name}",
         help_format="plaintext",
+        help_epilogue="With every command: " + "; ".join(f"{option}: {about}" for option, about in OPTIONS.items()),
         version_flags=(),
         result_action="return_value",
         suppress_keyboard_interrupt=False,
@@ -71,7 +70,7 @@ def _call(name: str, command: Command, words: Sequence[str]) -> int:
     app.default(function)
     app["--help"].group = "Parameters"
     try:
-        code = app(ordered(words), exit_on_error=False, print_error=False)
+        code = app(ordered([*figures(words)]), exit_on_error=False, print_error=False)
     except cyclopts.UnusedCliTokensError as error:
         raise UsageError(f"unexpected words: {' '.join(error.unused_tokens or ())[:60]}") from error
     except cyclopts.MissingArgumentError as error:

@@ -1,13 +1,16 @@
 """`squealbox init` and `squealbox schema`: a first file, and help for the editor that changes it."""
 
+import functools
+import importlib
+import inspect
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from squealbox.cli import COMMANDS
-from squealbox.cli.running import UsageError
+from squealbox.cli import COMMANDS, OPTIONS, UsageError
 from squealbox.parameters import known_names
 
 if TYPE_CHECKING:
@@ -96,8 +99,23 @@ def completion(shell: Literal["bash", "zsh", "fish"]) -> None:
 
     app = cyclopts.App(name="squealbox")
     for name, command in COMMANDS.items():
-        app.command(f"squealbox.cli.{command.module}:{command.function}", name=name)
+        function = getattr(importlib.import_module(f"squealbox.cli.{command.module}"), command.function)
+        app.command(_with_options_of_all(function), name=name)
     print(app.generate_completion(shell=shell))
+
+
+def _with_options_of_all(function: Callable[..., object]) -> Callable[..., object]:
+    """The function as the completion sees it: with the options that every command takes beside its own."""
+    own = inspect.signature(function)
+    more = [inspect.Parameter(option.removeprefix("--").replace("-", "_"), inspect.Parameter.KEYWORD_ONLY,
+                              default=False, annotation=bool) for option in OPTIONS]  # fmt: skip
+
+    @functools.wraps(function)
+    def seen(*_: object) -> None: ...
+
+    seen.__signature__ = own.replace(parameters=[*own.parameters.values(), *more])  # type: ignore[attr-defined]
+    seen.__annotations__ = {**function.__annotations__, **{each.name: bool for each in more}}
+    return seen
 
 
 def _second_axis(design: "Design") -> tuple[str, str]:

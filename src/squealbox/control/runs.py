@@ -4,7 +4,7 @@ Work is the integral of force times b.q'; the motion itself is that of `transien
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -28,6 +28,8 @@ class LoopRun(Result):
     work: Any = quantity("time", "J", "work the actuators have put in")
     residual: Any = quantity("", "J", "what the energy audits of the pieces leave, added up")
     saturated: Any = quantity("loop", "1", "share of the time each force was at its limit")
+
+    coordinates: ClassVar = {"time": "t"}
 
     def summary(self) -> str:
         """How it ended, its amplitude, the actuators' work."""

@@ -8,7 +8,7 @@ two pairs meet, (s^2 + a s + g)^2: eigenvalues move there as the root of a detun
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -47,6 +47,9 @@ class BestAbsorber(Result):
     growth_map: Any = quantity("tuning ratio", "", "what was aimed for, over tuning and damping")
     band: tuple[float, float] = (float("nan"), float("nan"))
     aim: str = "decay"
+
+    coordinates: ClassVar = {"tuning": "frequencies", "ratio": "dampings"}
+    table_over: ClassVar = ("tuning", "ratio")
 
     @property
     def design(self) -> TunedMass:

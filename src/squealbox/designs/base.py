@@ -4,8 +4,7 @@ import importlib
 from typing import Any, ClassVar
 
 from squealbox.friction import FrictionLaw
-from squealbox.parameters import DataSheet, ParameterError
-from squealbox.result import DRAWN_BY
+from squealbox.parameters import DRAWN_BY, DataSheet, ParameterError
 from squealbox.system import System
 
 
@@ -40,11 +39,6 @@ class Design(DataSheet):
     def plot(self, **keywords: Any) -> Any:
         """The drawing of this brake, as `squealbox.plots.brake_drawing` makes it."""
         return importlib.import_module(DRAWN_BY).plot(self, **keywords)
-
-    def _repr_html_(self) -> str:
-        """What a notebook shows: the drawing, and the parameters with value, unit, range, meaning and source."""
-        card: str = importlib.import_module(DRAWN_BY).card(self)
-        return card
 
     @classmethod
     def parameter_table(cls) -> Markdown:

@@ -10,7 +10,7 @@ Importing this room loads neither pint nor SciPy.
 from squealbox.files.document import DesignFileError, Problem
 from squealbox.files.measured import read_points
 from squealbox.files.mechanism import Body, OwnMechanism, Spring, Touch
-from squealbox.files.own_brake import OwnBrake, OwnContact
+from squealbox.files.own_brake import OwnBrake, OwnContact, Part
 from squealbox.files.own_law import OwnLaw, law_from_file, own_law
 from squealbox.files.reading import BRAKES, DesignFile, read_design, read_file, read_text
 from squealbox.files.schema import json_schema
@@ -26,6 +26,7 @@ __all__ = [
     "OwnContact",
     "OwnLaw",
     "OwnMechanism",
+    "Part",
     "Problem",
     "Spring",
     "Touch",

@@ -113,22 +113,22 @@ class OwnMechanism(Design):
                     raise ParameterError("OwnMechanism", f"{field}[{i}].to", part.to, "another body than its own")
 
     def system(self) -> System:
-        """The equation of motion; leading axes of the shared parameters are kept."""
+        """The equation of motion; leading axes of every parameter are kept."""
         places = self.places()
         size = len(places)
         damping, stiffness = np.zeros((size, size)), np.zeros((size, size))
         for spring in self.springs:
             row = self.row(spring, spring.angle)
-            stiffness += spring.stiffness * np.outer(row, row)
-            damping += spring.damping * np.outer(row, row)
+            stiffness = stiffness + _times(spring.stiffness, row, row)
+            damping = damping + _times(spring.damping, row, row)
         contacts = []
         for i, touch in enumerate(self.contacts):
             normal, along = self.row(touch, touch.angle), self.row(touch, touch.angle - np.pi / 2)
-            stiffness += touch.stiffness * np.outer(normal, normal)
-            damping += touch.damping * np.outer(normal, normal)
+            stiffness = stiffness + _times(touch.stiffness, normal, normal)
+            damping = damping + _times(touch.damping, normal, normal)
             contacts.append(
                 Contact(
-                    n=touch.stiffness * normal,
+                    n=np.asarray(touch.stiffness)[..., None] * normal,
                     d=along,
                     t=along,
                     N0=self.normal_force if touch.normal_force is None else touch.normal_force,
@@ -156,14 +156,20 @@ class OwnMechanism(Design):
         own = bodies[part.body]
         px = own.x if part.x is None else part.x
         py = own.y if part.y is None else part.y
-        row = np.zeros(len(self.places()))
-        for i, (name, motion) in enumerate(self.places()):
+        row: list[Any] = []
+        for name, motion in self.places():
             sign = 1.0 if name == part.body else -1.0 if name == part.to else 0.0
             body = bodies[name]
             arm = (px - body.x) * np.sin(angle) - (py - body.y) * np.cos(angle)
-            row[i] = sign * {"x": np.cos(angle), "y": np.sin(angle), "turn": arm}[motion]
-        return row
+            row.append(sign * {"x": np.cos(angle), "y": np.sin(angle), "turn": arm}[motion])
+        return np.stack(np.broadcast_arrays(*row), axis=-1)
 
     def _mass(self) -> Any:
         bodies = {body.name: body for body in self.bodies}
-        return np.diag([bodies[n].inertia if motion == "turn" else bodies[n].mass for n, motion in self.places()])
+        masses = [bodies[n].inertia if motion == "turn" else bodies[n].mass for n, motion in self.places()]
+        return np.stack(np.broadcast_arrays(*masses), axis=-1)[..., None] * np.eye(len(masses))
+
+
+def _times(factor: Any, left: Any, right: Any) -> Any:
+    """factor left right', (..., n, n)."""
+    return np.asarray(factor)[..., None, None] * left[..., :, None] * right[..., None, :]

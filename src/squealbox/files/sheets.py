@@ -57,6 +57,8 @@ def read_sheet(
     keys that stand in the same table and are read by someone else.
     """
     before = len(document.problems)
+    multiplied = getattr(sheet, "unit_for", None)
+    unit = multiplied(table) if multiplied else unit
     values: dict[str, Any] = {}
     for given, value in table.items():
         names = sheet.aliases.get(given, (given,))
@@ -220,10 +222,11 @@ def _scheduled(document: Document, value: Any, about: Parameter, key: Key) -> An
 def unit_in(sheet: type[DataSheet], about: Parameter, unit: str) -> str:
     """The unit a field of `sheet` has in a file.
 
-    In a distribution a declared unit of nothing is that of the parameter that scatters. In a schedule it is that of the
+    In a distribution a declared unit of nothing is that of the parameter that scatters, in a part of matrices that of
+    what it multiplies. In a schedule it is that of the
     quantity it stands for, and ``/s`` is that per second.
     """
-    if issubclass(sheet, Distribution):
+    if issubclass(sheet, Distribution) or hasattr(sheet, "unit_for"):
         return about.unit or unit
     if not issubclass(sheet, Schedule):
         return about.unit

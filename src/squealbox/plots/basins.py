@@ -9,7 +9,7 @@ from squealbox.limit_cycles.attractors.attractor import CYCLE, REST, SLIDING
 from squealbox.limit_cycles.attractors.basins import place
 from squealbox.limit_cycles.attractors.sections import state_names
 from squealbox.matrices import liveliest
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import unit_at
 from squealbox.plots.style import drawing, figure_of, number, quantity_label, scaled
 
@@ -25,10 +25,11 @@ LOOKS = (
     ("#eeeeaa", "++++", "#777700"),
 )
 UNKNOWN = ("#999999", "")
+FAR = 6.0  # widths of the box of starts beyond which an orbit is left out of the picture
 SHORT = {"irregular": "irregular motion"}
 
 
-@plot.register(Basin)
+@drawn_by.register(Basin)
 def basin_picture(
     basin: Basin, *, push: DangerousPush | None = None, title: str = "", axes: Any = None
 ) -> "Figure":  # fmt: skip
@@ -44,6 +45,8 @@ def basin_picture(
     """
     if not basin.plane:
         return _shares(basin, title, axes)
+    from matplotlib.patches import Rectangle
+
     x, y = (_axis(basin, name) for name in basin.plane)
     with drawing(axes, width=6.0, height=3.4) as panel:
         _ground(panel, basin, x, y)
@@ -53,7 +56,12 @@ def basin_picture(
             ends = (_seen(state, x, y) for state in (basin.rest + push.push, basin.rest))
             look = {"arrowstyle": "-|>", "color": "#000000", "shrinkA": 0, "shrinkB": 0}
             panel.annotate("", *ends, arrowprops=look, zorder=6)
-        panel.set(xlabel=x.label, ylabel=y.label, title=title, xlim=x.ends, ylim=y.ends)
+        panel.set(xlabel=x.label, ylabel=y.label, title=title, xlim=_reach(basin, x), ylim=_reach(basin, y))
+        if (panel.get_xlim(), panel.get_ylim()) != (x.ends, y.ends):
+            corner, size = (x.ends[0], y.ends[0]), (x.ends[1] - x.ends[0], y.ends[1] - y.ends[0])
+            panel.add_patch(Rectangle(corner, *size, fill=False, edgecolor="#000000", linewidth=0.7, linestyle=":"))
+            panel.set_facecolor("#ebebeb")
+            panel.add_patch(Rectangle(corner, *size, facecolor="white", zorder=0.5))
         panel.legend(handles=_handles(basin, push), loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0,
                      handlelength=2.0, title=_through(basin), title_fontsize=7, alignment="left")  # fmt: skip
         return figure_of(panel)
@@ -69,6 +77,19 @@ class _axis:
         self.factor, unit = scaled(unit_at(basin.system, self.place % (len(basin.rest) // 2), moves=moves), values)
         self.label = quantity_label(f"{name} at t = 0", unit)
         self.ends = (float(np.min(values)) / self.factor, float(np.max(values)) / self.factor)
+
+
+def _reach(basin: Basin, axis: _axis) -> tuple[float, float]:
+    """The ends of the box of starts, or as far as the orbits of the cycles reach, up to `FAR` times its width."""
+    low, high = axis.ends
+    width = high - low
+    for i in _moving(basin):
+        cycle = basin.attractors[i].cycle if basin.attractors else None
+        if cycle is not None and cycle.outcome.ok:
+            along = np.hstack([cycle.q, cycle.qd])[:, axis.place] / axis.factor
+            low, high = min(low, 1.05 * float(np.min(along))), max(high, 1.05 * float(np.max(along)))
+    within = high - low <= FAR * width
+    return (low, high) if within else axis.ends
 
 
 def _seen(states: Any, x: _axis, y: _axis) -> tuple[Any, Any]:

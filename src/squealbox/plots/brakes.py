@@ -18,7 +18,7 @@ from squealbox.designs import (
     SpragSlip,
     WobblingDisc,
 )
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, drawing, figure_of
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ Point = tuple[float, float]
 ARROW = {"arrowstyle": "-|>", "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 9.0}
 
 
-@plot.register(Design)
+@drawn_by.register(Design)
 def brake_drawing(design: Design, *, axes: Any = None) -> "Figure":
     """The brake as its parameters describe it; angles are to scale, lengths where the design has any.
 

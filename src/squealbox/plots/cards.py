@@ -13,17 +13,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.friction import FrictionLaw
 from squealbox.limit_cycles import Branch, PointCurve
 from squealbox.limit_cycles.attractors.basins import Basin
 from squealbox.parameters import DataSheet
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by, plot
 from squealbox.plots.facts import facts, plain_unit
 from squealbox.plots.style import drawn, number
 from squealbox.plots.sweeps import numeric_answers
 from squealbox.result import Result
-from squealbox.stability import ComplexModes
+from squealbox.stability import ComplexModes, finite_spectrum
 from squealbox.stability.modes_text import html as modes_table
 from squealbox.studies import Sweep
+from squealbox.system import System
 from squealbox.transient import Trajectory
 
 if TYPE_CHECKING:
@@ -31,12 +33,34 @@ if TYPE_CHECKING:
 
 DOTS = 90.0  # an inch: small, but sharp enough for a notebook
 WALKED = (Branch, PointCurve, Basin, Trajectory, Sweep)  # what was reached is worth seeing, however it ended
+MOST_MODES = 30  # degrees of freedom of a system whose frequencies a card tells
 MOST_POINTS = 500_000  # more numbers than this are not drawn unasked
 
 
-def card(thing: Result | Design) -> str:
-    """The card of a result or a design as HTML."""
-    return _design_card(thing) if isinstance(thing, Design) else _result_card(thing)
+def card(thing: Result | DataSheet) -> str:
+    """The card of a result, a design, or another data sheet such as a system, a contact or a law, as HTML."""
+    if isinstance(thing, Result):
+        return _result_card(thing)
+    return _design_card(thing) if isinstance(thing, Design) else _sheet_card(thing)
+
+
+def _sheet_card(sheet: DataSheet) -> str:
+    said = (type(sheet).__doc__ or "").strip().partition("\n")[0]
+    parts = [f"<p><b>{escape(type(sheet).__name__)}</b> &middot; {escape(said)}</p>"]
+    if isinstance(sheet, FrictionLaw) and not any(np.ndim(value) for _, _, value in sheet.leaves()):
+        parts.append(inline(plot(sheet)))
+    if isinstance(sheet, System) and sheet.shape == () and sheet.size <= MOST_MODES:
+        parts.append(_frequencies(sheet))
+    return _framed(parts, f'<pre style="white-space: pre-wrap">{escape(sheet.summary())}</pre>')
+
+
+def _frequencies(system: System) -> str:
+    """The frequencies of a system without its friction."""
+    if system.is_sparse:
+        return ""
+    values = finite_spectrum(System(system.M, system.C, system.K)).eigenvalues
+    found = np.sort(np.abs(values.imag[values.imag >= 0.0])) / (2.0 * np.pi)
+    return f"<p>Without friction: {', '.join(number(f, 5) for f in found)} Hz</p>"
 
 
 def inline(figure: "Figure", dots: float = DOTS) -> str:
@@ -79,7 +103,9 @@ def _said(result: Result) -> str:
 
 def has_figure(result: Result) -> bool:
     """True where a figure is known, there is something to draw, and the arrays are small enough to draw unasked."""
-    if plot.dispatch(type(result)) is plot.dispatch(object) or not (result.outcome.ok or isinstance(result, WALKED)):
+    if drawn_by.dispatch(type(result)) is drawn_by.dispatch(object) or not (
+        result.outcome.ok or isinstance(result, WALKED)
+    ):
         return False
     sizes = [np.size(getattr(result, name)) for name, _ in _quantities(result)] or [_points(result)]
     return sizes[0] > 0 and max(sizes) <= MOST_POINTS

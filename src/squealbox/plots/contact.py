@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import unit_at
 from squealbox.plots.style import drawing, figure_of, line, panels, quantity_label, scaled
 from squealbox.transient.comparison import ContactComparison
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@plot.register(ContactComparison)
+@drawn_by.register(ContactComparison)
 def contact_comparison(comparison: ContactComparison, *, periods: float = 3.0, axes: Any = None) -> "Figure":
     """The last `periods` periods of every scheme, and the error of each against its number of evaluations.
 

@@ -1,5 +1,6 @@
 """Figures of limit cycles: one cycle with its multipliers, and branches of cycles over a parameter."""
 
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -8,7 +9,7 @@ import numpy as np
 from squealbox.limit_cycles import Branch, Cycle, EstimateCurve, ForcedCycle, HopfPoint, estimate_curves
 from squealbox.limit_cycles.estimates.curves import AVERAGED, DESCRIBING
 from squealbox.matrices import liveliest
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import read_of, unit_at
 from squealbox.plots.style import (
     WIDTH,
@@ -16,7 +17,6 @@ from squealbox.plots.style import (
     drawing,
     figure_of,
     line,
-    note,
     number,
     panels,
     quantity_label,
@@ -26,6 +26,7 @@ from squealbox.plots.style import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+APART = 10.0  # times as large: branches that differ by more do not share a linear axis
 BESIDE = 4  # entries; a longer legend stands beside the panel
 # Marks of the special points: shape, and what the legend calls them.
 MARKS = {
@@ -40,8 +41,8 @@ MARKS = {
 ESTIMATES = {DESCRIBING: ("#0072B2", ":"), AVERAGED: ("#009E73", "-.")}
 
 
-@plot.register(ForcedCycle)
-@plot.register(Cycle)
+@drawn_by.register(ForcedCycle)
+@drawn_by.register(Cycle)
 def cycle_overview(cycle: Cycle | ForcedCycle, *, dof: int | None = None, title: str = "") -> "Figure":
     """One period in time (sticking shaded), the orbit in the phase plane and the multipliers in the unit circle.
 
@@ -59,8 +60,9 @@ def cycle_overview(cycle: Cycle | ForcedCycle, *, dof: int | None = None, title:
         history.plot(cycle.t / second, cycle.q[:, dof] / factor, **line(0))
         history.fill_between(cycle.t / second, 0.0, 1.0, where=stuck, color="#dddddd", linewidth=0.0,
                              transform=history.get_xaxis_transform())  # fmt: skip
-        if np.any(stuck):
-            note(history, "grey: a contact sticks", "lower left")
+        sticking = [name for i, name in enumerate(cycle.system.contact_names) if np.any(cycle.mode[:, i] == 0)]
+        if sticking:
+            history.set_title(textwrap.shorten(f"grey: {' or '.join(sticking)} sticks", 60), fontsize=7)
         history.set(xlabel=quantity_label("time", time), ylabel=quantity_label(shown, read))
         history.set_xlim(0.0, cycle.t[-1] / second)
         plane.plot(cycle.q[:, dof] / factor, cycle.qd[:, dof] / speed, **line(0))
@@ -84,7 +86,7 @@ def cycle_overview(cycle: Cycle | ForcedCycle, *, dof: int | None = None, title:
     return figure
 
 
-@plot.register(Branch)
+@drawn_by.register(Branch)
 def branch_diagram(
     branches: Branch | Sequence[Branch],
     *,
@@ -127,20 +129,32 @@ def branch_diagram(
             label = labels[i] if i < len(labels) else ""
             _parts(panel, one, one.amplitude[:, dof] / factor, scale, line(i if labels else 0)["color"], label, shown)
             _marks(panel, one, one.amplitude[:, dof] / factor, scale, shown)
+        floor = _floor([size / factor for size in largest])
         if hopf is not None and hopf.outcome.ok:
-            panel.plot(hopf.value / scale, 0.0, "o", color="#000000", label="onset of instability", zorder=4)
+            panel.plot(hopf.value / scale, floor, "o", color="#000000", label="onset of instability", zorder=4,
+                       clip_on=False)  # fmt: skip
+        if floor > 0.0:
+            panel.set_yscale("log")
         ends = panel.get_ylim()
         _estimates(panel, _known(several) if estimates is True else estimates or (), dof, factor, scale)
-        panel.set_ylim(top=max(ends[1], 0.0))  # an estimate far above the cycles leaves the panel
+        panel.set_ylim(top=max(ends[1], floor))  # an estimate far above the cycles leaves the panel
         if runs is not None:
             at, sizes = (np.asarray(x) for x in runs)
             panel.plot(at / scale, sizes / factor, "+", color="#555555", markersize=4.5, label="long run")
         panel.set(xlabel=name or several[0].parameter, ylabel=quantity_label(read_as, read), title=title)
-        panel.set_ylim(bottom=0.0)
+        panel.set_ylim(bottom=floor)
         panel.margins(x=0.05)
         _legend(panel, alone=axes is None)
         cautioned(panel, [one.caution for one in several], axes is None)
         return figure_of(panel)
+
+
+def _floor(sizes: Sequence[Any]) -> float:
+    """Where the axis of amplitudes begins: 0, or where branches lie decades apart and the axis is logarithmic."""
+    usual = [float(np.median(size[size > 0.0])) for size in sizes if np.any(size > 0.0)]
+    if not usual or max(usual) < APART * min(usual):
+        return 0.0
+    return 0.5 * min(float(np.quantile(size[size > 0.0], 0.1)) for size in sizes if np.any(size > 0.0))
 
 
 def _known(several: Sequence[Branch]) -> tuple[EstimateCurve, ...]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.limit_cycles import BifurcationDiagram, Branch, Coexistence
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import unit_at, unit_of
 from squealbox.plots.style import WIDTH, cautioned, drawing, figure_of, note, panels, quantity_label, scaled, styled
 
@@ -23,7 +23,7 @@ SWEPT = {
 SHOWN = ("amplitude", "maxima", "section")
 
 
-@plot.register(BifurcationDiagram)
+@drawn_by.register(BifurcationDiagram)
 def bifurcation_diagram(
     diagram: BifurcationDiagram,
     *,
@@ -66,11 +66,13 @@ def bifurcation_diagram(
             panel.plot(at.ravel(), up.ravel(), mark, color=colour, markersize=size, markerfacecolor="none",
                        markeredgewidth=rim, label=None if kind in told else text)  # fmt: skip
             told.add(kind)
-        unit_x = _unit(diagram, diagram.parameter)
+        unit_x = unit_of(diagram, diagram.parameter)
         panel.set(xlabel=name or quantity_label(diagram.parameter, unit_x), ylabel=quantity_label(words, unit))
         panel.set_title(title)
         panel.set_xlim(*(diagram.value[[0, -1]] / scale) if len(diagram.value) > 1 else (None, None))
         panel.margins(y=0.08)
+        if show == "amplitude":
+            panel.set_ylim(bottom=0.0)
         panel.legend(loc="best")
         cautioned(panel, [diagram.caution, *(one.caution for one in several)], axes is None)
         return figure_of(panel)
@@ -115,12 +117,6 @@ def _marks(diagram: BifurcationDiagram, dof: int, show: str) -> tuple[Any, str, 
     return diagram.crossings, unit_at(system, diagram.read.rstrip("'"), moves=True), diagram.section
 
 
-def _unit(result: Any, parameter: str) -> str:
-    """The unit of a parameter, or of what it stands for: load is load1 and load2."""
-    aliases = getattr(result.inputs.get("system"), "aliases", {})
-    return unit_of(result, next(iter(aliases.get(parameter, ())), parameter))
-
-
 def _height(one: Branch, diagram: BifurcationDiagram, dof: int, show: str) -> Any:
     """What a branch has at the height of the marks; None where it does not say."""
     if show == "amplitude":
@@ -144,7 +140,7 @@ def _branch(panel: Any, one: Branch, height: Any, scale: float) -> None:
                        color="#888888", linewidth=1.6, label=None if told else words, zorder=1)  # fmt: skip
 
 
-@plot.register(Coexistence)
+@drawn_by.register(Coexistence)
 def coexistence_region(
     region: Coexistence,
     *,
@@ -168,7 +164,7 @@ def coexistence_region(
     """
     x, y = region.x / scales[0], region.y / scales[1]
     share = np.where(region.stable, 100.0 * region.vibrates, np.nan).T
-    labels = names or [quantity_label(p, _unit(region, p)) for p in region.parameters]
+    labels = names or [quantity_label(p, unit_of(region, p)) for p in region.parameters]
     with drawing(axes, width=4.6, height=3.3) as panel:
         panel.set_facecolor("#dddddd")
         mesh = panel.pcolormesh(x, y, share, cmap="Oranges", vmin=0.0, vmax=100.0, shading="nearest", zorder=1)

@@ -3,15 +3,51 @@
 from functools import singledispatch
 from typing import TYPE_CHECKING, Any
 
+from squealbox.arguments import public, real
+from squealbox.declarations import Parameter
+from squealbox.plots.style import LOOK, Look, styled
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+INCHES = real(Parameter("inches", 0.5, 100.0))
+
 
 @singledispatch
-def plot(result: Any, **keywords: Any) -> "Figure":
-    """The figure of a result; keywords go to the function that draws it.
-
-    Each drawing module registers its kinds with ``plot.register``. Raises `TypeError` for a result nothing draws.
-    """
-    known = ", ".join(sorted(kind.__name__ for kind in plot.registry if kind is not object))
+def drawn_by(result: Any, **keywords: Any) -> "Figure":
+    """The figure of a result as its kind is drawn: each drawing module registers its kinds here."""
+    known = ", ".join(sorted(kind.__name__ for kind in drawn_by.registry if kind is not object))
     raise TypeError(f"no figure is known for {type(result).__name__}: expected one of {known}")
+
+
+@public(width=INCHES, height=INCHES)
+def plot(
+    result: Any, *, width: float | None = None, height: float | None = None, style: Any = None, **keywords: Any
+) -> "Figure":
+    """The figure of a result.
+
+    Parameters
+    ----------
+    result : what an analysis returned, a design, a system or a friction law
+    width, height : [in] of the figure, by default what suits it; a column of a paper has 3.4, a page 7
+    style : name, dictionary or list of matplotlib styles, which go before the look of this house; fonts, sizes and
+        lines that are set in ``matplotlib.rcParams`` do so by themselves
+    keywords : go to the function that draws the result
+
+    Raises `TypeError` for a result nothing draws, `ParameterError` for a width that is none. ``savefig("x.pdf")`` or
+    ``savefig("x.svg")`` of the figure keeps its text as text.
+
+    >>> from squealbox import DrumBrake, complex_modes
+    >>> float(plot(complex_modes(DrumBrake()), width=3.4, style={"font.family": "serif"}).get_figwidth())
+    3.4
+    """
+    token = LOOK.set(Look(width, height, style))
+    try:
+        with styled():
+            return drawn_by(result, **keywords)
+    finally:
+        LOOK.reset(token)
+
+
+plot.register = drawn_by.register  # type: ignore[attr-defined]
+plot.dispatch = drawn_by.dispatch  # type: ignore[attr-defined]

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.limit_cycles import Branch, Cycle
+from squealbox.parameters import DataSheet
 from squealbox.plots.style import MINUS, number, scaled
 from squealbox.signals import Spectrum, peaks
 from squealbox.stability import CriticalValue, StabilityMap
@@ -151,7 +152,6 @@ def read_of(names: Any, dof: int) -> str:
 
 
 def unit_of(result: Any, parameter: str) -> str:
-    """The unit of a dotted parameter of the design a result was computed from; empty where it kept none."""
+    """The unit of a dotted parameter, or of an alias, of the design a result came from; empty where it kept none."""
     design = result.inputs.get("system")
-    leaves = design.leaves() if hasattr(design, "leaves") else ()
-    return next((plain_unit(about.unit) for name, about, _ in leaves if name == parameter), "")
+    return design.unit_of(parameter) if isinstance(design, DataSheet) else ""

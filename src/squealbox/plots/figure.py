@@ -1,14 +1,29 @@
 """The figure of the house: matplotlib's own, which a notebook shows by itself."""
 
+from typing import Any
+
 from matplotlib.figure import Figure
 
-from squealbox.plots.style import drawn
+from squealbox.plots.style import LOOK, drawn, looked, spread_ticks
 
 DOTS = 150  # an inch, sharp on most screens
 
 
 class Drawing(Figure):
-    """A matplotlib figure that notebooks show without pyplot, which would keep every figure open."""
+    """A matplotlib figure that notebooks show without pyplot, which would keep every figure open.
+
+    Its files are written in the look it was made in, by `savefig` too: text stays text in SVG and PDF.
+    """
+
+    def __init__(self, *args: Any, **keywords: Any) -> None:
+        super().__init__(*args, **keywords)
+        self.look = LOOK.get()
+
+    def savefig(self, fname: Any, *args: Any, **keywords: Any) -> None:
+        """As matplotlib's, in the look of this figure."""
+        with looked(self):
+            spread_ticks(self)
+            super().savefig(fname, *args, **keywords)
 
     def _repr_png_(self) -> bytes:
         return drawn(self, "png", DOTS, trimmed=True)

@@ -5,14 +5,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.fit import FrictionFit
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, drawing, figure_of, line, quantity_label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@plot.register(FrictionFit)
+@drawn_by.register(FrictionFit)
 def friction_fit(fit: FrictionFit, *, title: str = "", axes: Any = None) -> "Figure":
     """Points, the fitted curves, and the confidence band of the law with the least AIC."""
     with drawing(axes, width=1.4 * COLUMN, height=3.0) as panel:

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.friction import FrictionLaw
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import drawing, figure_of, line, number, quantity_label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@plot.register(FrictionLaw)
-@plot.register(Mapping)
+@drawn_by.register(FrictionLaw)
+@drawn_by.register(Mapping)
 def friction_curve(
     law: FrictionLaw | Mapping[str, FrictionLaw],
     *,

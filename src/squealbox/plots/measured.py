@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.calibration import Calibration, Comparison
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, WIDTH, drawing, figure_of, line, note, number, panels, quantity_label
 from squealbox.signals import DampingOnset, NoiseMatrix, OperationalModes, SoundQuality, SquealEvents
 
@@ -16,7 +16,7 @@ NARROW = 0.45  # inches a row of a short table of bars
 SURE = 1.96  # standard deviations of a 95 % interval
 
 
-@plot.register(SquealEvents)
+@drawn_by.register(SquealEvents)
 def event_tracks(found: SquealEvents, *, title: str = "") -> "Figure":
     """Frequency of each event over time, coloured by its level, and the levels below, over the whole recording."""
     unit = found.settings.get("unit", "dB")
@@ -47,7 +47,7 @@ def event_tracks(found: SquealEvents, *, title: str = "") -> "Figure":
     return figure
 
 
-@plot.register(NoiseMatrix)
+@drawn_by.register(NoiseMatrix)
 def noise_matrix_figure(found: NoiseMatrix, *, title: str = "") -> "Figure":
     """Share of the stops that squeal in each cell, with their numbers, and the histogram of the frequencies."""
     x, y = found.settings["x"], found.settings["y"]
@@ -71,7 +71,7 @@ def noise_matrix_figure(found: NoiseMatrix, *, title: str = "") -> "Figure":
     return figure
 
 
-@plot.register(Calibration)
+@drawn_by.register(Calibration)
 def calibration_figure(found: Calibration, *, title: str = "") -> "Figure":
     """Each parameter with its 95 % interval, as a share of its best value, and the residuals in standard deviations."""
     measured = [str(each) for each in found.settings["measured"]]
@@ -104,7 +104,7 @@ def calibration_figure(found: Calibration, *, title: str = "") -> "Figure":
     return figure
 
 
-@plot.register(Comparison)
+@drawn_by.register(Comparison)
 def model_beside_measurement(found: Comparison, *, title: str = "", axes: Any = None) -> "Figure":
     """How far each simulated number lies from the measured one, beside the measured number's own 95 % error."""
     share = 100.0 * found.error / np.where(found.measured == 0.0, 1.0, np.abs(found.measured))
@@ -124,7 +124,7 @@ def model_beside_measurement(found: Comparison, *, title: str = "", axes: Any = 
         return figure_of(panel)
 
 
-@plot.register(OperationalModes)
+@drawn_by.register(OperationalModes)
 def ambient_spectrum(found: OperationalModes, *, title: str = "", axes: Any = None) -> "Figure":
     """The measured spectrum, that of the modes and the noise, and each mode with its damping ratio."""
     with drawing(axes, width=1.5 * COLUMN, height=2.8) as panel:
@@ -132,15 +132,16 @@ def ambient_spectrum(found: OperationalModes, *, title: str = "", axes: Any = No
         panel.semilogy(found.line, found.fitted, color="#D55E00", label="modes and noise")
         for f, zeta, error in zip(found.frequency, found.damping_ratio, found.damping_error, strict=True):
             panel.axvline(f, color="black", linewidth=0.5, linestyle=":")
-            panel.annotate(f" {number(100.0 * zeta, 3)} ± {number(100.0 * error, 1)} %", (f, 1.0), fontsize=6, va="top",
-                           xycoords=("data", "axes fraction"))  # fmt: skip
+            panel.annotate(f" {number(100.0 * zeta, 3)} ± {number(100.0 * error, 1)} %", (f, 0.98), fontsize=6,
+                           va="top", xycoords=("data", "axes fraction"))  # fmt: skip
         panel.set(xlabel=quantity_label("frequency", "Hz"), ylabel="power", title=title)
         panel.margins(x=0.0)
+        panel.set_ylim(top=4.0 * panel.get_ylim()[1])  # room for the numbers
         panel.legend(loc="lower left", fontsize=6)
         return figure_of(panel)
 
 
-@plot.register(DampingOnset)
+@drawn_by.register(DampingOnset)
 def damping_line(found: DampingOnset, *, title: str = "", axes: Any = None) -> "Figure":
     """Growth rates with their errors over what was varied, the line through them, and where it meets zero."""
     with drawing(axes, width=1.4 * COLUMN, height=2.6) as panel:
@@ -158,7 +159,7 @@ def damping_line(found: DampingOnset, *, title: str = "", axes: Any = None) -> "
         return figure_of(panel)
 
 
-@plot.register(SoundQuality)
+@drawn_by.register(SoundQuality)
 def specific_loudness(found: SoundQuality, *, title: str = "", axes: Any = None) -> "Figure":
     """Loudness in each critical band; the sums stand in the title."""
     with drawing(axes, width=1.4 * COLUMN, height=2.4) as panel:

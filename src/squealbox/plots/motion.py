@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.matrices import liveliest
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import read_of, unit_at
 from squealbox.plots.spectra import spectrum
 from squealbox.plots.style import drawing, figure_of, line, note, number, panels, quantity_label, scaled, uncertain
@@ -16,6 +16,9 @@ from squealbox.transient.verdict import Verdict, verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+SMOOTH = 20  # points of a drawn curve between two turning points
+MANY, LAST = 25.0, 6.0  # periods from which a history is a black block, and those of its end that are drawn apart
 
 
 def time_history(
@@ -42,7 +45,8 @@ def time_history(
     axes : draw here instead of in a new figure
     """
     columns = list(dof) if isinstance(dof, (list, tuple)) else [dof]
-    curves = [values(motion, t, dof=which) for which in columns]
+    smooth = t is None and hasattr(motion, "qd")
+    curves = [_drawn(motion, which)[:2] if smooth else values(motion, t, dof=which) for which in columns]
     kinds = {unit_at(getattr(motion, "system", None), which) for which in columns}
     if len(kinds) > 1:
         raise SignalError(f"dof = {dof}: displacements [m] and rotations [rad] do not share an axis; draw them apart")
@@ -77,8 +81,7 @@ def phase_plane(
     axes: Any = None,
 ) -> "Figure":
     """Velocity against displacement: the last `part` of the time dark, what came before pale, the start as a ring."""
-    times, x = values(motion, dof=dof)
-    velocity = np.asarray(motion.qd)[:, column(motion, dof)]
+    times, x, velocity = _drawn(motion, dof)
     system = getattr(motion, "system", None)
     factor, read = scaled(unit_at(system, dof), x, to=unit)
     speed, clock = scaled(unit_at(system, dof, moves=True), velocity, to=speed_unit)
@@ -89,7 +92,19 @@ def phase_plane(
         panel.plot(x[0] / factor, velocity[0] / speed, "o", color="#D55E00", markerfacecolor="white", zorder=3)
         panel.set(xlabel=quantity_label("displacement", read), ylabel=quantity_label("velocity", clock), title=title)
         panel.margins(0.08)
+        panel.locator_params(axis="x", nbins=5)
         return figure_of(panel)
+
+
+def _drawn(motion: Any, dof: int | str) -> tuple[Any, Any, Any]:
+    """Times, displacement and velocity as they are drawn: through few steps a smooth curve, not a polygon."""
+    times, x = values(motion, dof=dof)
+    velocity = np.asarray(motion.qd)[:, column(motion, dof)]
+    if times.size < LEAST or equal_steps(times):
+        return times, x, velocity
+    curve = smooth_curve(motion, dof=dof)
+    fine = np.linspace(curve.begin, curve.end, max(times.size, SMOOTH * curve.turns.size))
+    return fine, curve.spline(fine), curve.spline(fine, 1)
 
 
 def energy(trajectory: Trajectory, *, unit: str | None = None, title: str = "", axes: Any = None) -> "Figure":
@@ -118,39 +133,43 @@ def energy(trajectory: Trajectory, *, unit: str | None = None, title: str = "", 
         return figure_of(above)
 
 
-@plot.register(Trajectory)
+@drawn_by.register(Trajectory)
 def motion_overview(trajectory: Trajectory, *, dof: int | str | None = None, title: str = "") -> "Figure":
-    """Time history with the verdict, phase plane and spectrum of one degree of freedom.
+    """Time history with the verdict, its last periods, spectrum and phase plane of one degree of freedom.
 
     The spectrum of a run with unequal steps is that of a smooth curve through them, and says so. A run too short to
-    judge is drawn without verdict and spectrum. dof None takes the freedom that moves most, and the axis names it.
+    judge is drawn without verdict and spectrum, one of few periods without the last of them. dof None takes the freedom
+    that moves most, and the axis names it.
     """
     names = trajectory.system.names
     if dof is None:
         dof = liveliest(np.ptp(trajectory.q, axis=0), trajectory.system.units)
     place = list(names).index(dof) if isinstance(dof, str) else dof
     short = np.size(trajectory.t) < LEAST
-    figure, axes = panels(1, 2 if short else 3, height=2.5, width_ratios=[1.5, 1.0, 1.2][: 2 if short else 3])
-    time_history(
-        trajectory,
-        dof=dof,
-        verdict=None if short else verdict(trajectory, dof=dof),
-        axes=axes[0],
-        name=read_of(names, place),
-    )
-    phase_plane(trajectory, dof=dof, axes=axes[1])
+    judged = None if short else verdict(trajectory, dof=dof)
+    name, seconds = read_of(names, place), float(np.ptp(trajectory.t)) if np.size(trajectory.t) else 0.0
+    if judged is not None and float(judged.frequency) * seconds > MANY:
+        figure, axes = panels(2, 2, height=4.4, width_ratios=[1.4, 1.0])
+        history, last, lines, plane = np.ravel(axes)
+        begin = float(trajectory.t[-1] - LAST / judged.frequency)
+        _last_periods(trajectory, begin, dof=dof, name=name, axes=last)
+    else:
+        figure, axes = panels(1, 2 if short else 3, height=2.5, width_ratios=[1.5, 1.0, 1.2][: 2 if short else 3])
+        history, plane, lines = (*axes, None)[:3]
+    time_history(trajectory, dof=dof, name=name, verdict=judged, axes=history)
+    phase_plane(trajectory, dof=dof, axes=plane)
     if not short:
         even = equal_steps(trajectory.t)
         times, x = values(trajectory, dof=dof) if even else smooth_curve(trajectory, dof=dof).even()
-        spectrum(x, times, axes=axes[2], quantity=unit_at(trajectory.system, place),
-                 title="" if even else "of a smooth curve through unequal steps")  # fmt: skip
+        spectrum(x, times, axes=lines, quantity=unit_at(trajectory.system, place),
+                 remark="" if even else "through unequal steps")  # fmt: skip
     if title or not trajectory.outcome.ok:
         ended = "" if trajectory.outcome.ok else f"{trajectory.outcome}: {trajectory.outcome.message}"
         figure.suptitle(". ".join(filter(None, (title, ended))), fontsize=8)
     return figure
 
 
-@plot.register(Verdict)
+@drawn_by.register(Verdict)
 def amplitude_course(verdict: Verdict, *, unit: str | None = None, title: str = "", axes: Any = None) -> "Figure":
     """Course of the amplitude behind a verdict, on a logarithmic scale, with its sentence."""
     from matplotlib.ticker import LogLocator, NullFormatter
@@ -169,6 +188,22 @@ def amplitude_course(verdict: Verdict, *, unit: str | None = None, title: str = 
         panel.yaxis.set_minor_formatter(NullFormatter())
         panel.set(xlabel=quantity_label("time", clock), ylabel=quantity_label("half peak to peak", read), title=title)
         return figure_of(panel)
+
+
+def _last_periods(motion: Trajectory, begin: float, *, dof: int | str, name: str, axes: Any) -> None:
+    """The end of a motion of many periods, close enough to see its shape."""
+    times, x, _ = _drawn(motion, dof)
+    curve = smooth_curve(motion, dof=dof, begin=begin) if np.sum(motion.t >= begin) >= LEAST else None
+    if curve is not None:
+        times = np.linspace(curve.begin, curve.end, 800)
+        x = curve.spline(times)
+    late = times >= begin
+    factor, read = scaled(unit_at(motion.system, dof), x)
+    second, clock = scaled("s", times)
+    axes.plot(times[late] / second, x[late] / factor, **{**line(0), "linewidth": 0.8})
+    axes.set(xlabel=quantity_label("time", clock), ylabel=quantity_label(name, read), title="the last periods")
+    axes.set_xlim(times[late][0] / second, times[-1] / second)
+    axes.locator_params(axis="x", nbins=4)
 
 
 def _verdict_note(verdict: Verdict, unit: str = "m") -> str:

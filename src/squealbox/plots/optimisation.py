@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, LINES, WIDTH, drawing, figure_of, line, number, quantity_label
 from squealbox.studies.optimisation.optimum import Optimum
 
@@ -14,9 +14,10 @@ if TYPE_CHECKING:
 
 WRAPPED = 42  # characters of a line of an axis label
 BEFORE, AFTER = "#888888", "#D55E00"
+HOLE = 0.15  # of the range of a goal: a wider gap in the front is said
 
 
-@plot.register(Optimum)
+@drawn_by.register(Optimum)
 def optimum(found: Optimum, *, title: str = "", axes: Any = None) -> "Figure":
     """One goal: each parameter within its bounds, before and after. Two: the Pareto front and its parameters.
 
@@ -47,6 +48,9 @@ def _front(panel: Any, found: Optimum, title: str) -> None:
     panel.plot(x[found.best], y[found.best], "o", color=AFTER, markersize=6, label="compromise")
     if np.all(np.isfinite(found.goals_before)):
         panel.plot(*found.goals_before, "s", color=BEFORE, markersize=6, label="before")
+    across = np.sort(x)
+    if x.size > 2 and np.max(np.diff(across)) > HOLE * np.ptp(across):
+        panel.plot([], [], " ", label="gaps: nothing better was found there")
     panel.legend(loc="best")
     words = ["\n".join(wrap(f"{_label(about)}, {about['sense']}", WRAPPED)) for about in found.settings["goals"]]
     panel.set(xlabel=words[0], ylabel=words[1], title=title)

@@ -4,42 +4,74 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.designs import Design
 from squealbox.limit_cycles import HopfPoint, PointCurve
 from squealbox.matrices import liveliest
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import unit_of
-from squealbox.plots.style import LINES, drawing, figure_of, line, note, number, quantity_label, scaled
-from squealbox.stability import CriticalValue, CriticalValues, DampingSplit, ExceptionalPoints, FiniteSpectrum
+from squealbox.plots.style import MINUS, drawing, figure_of, line, note, number, power_of_ten, quantity_label, scaled
+from squealbox.stability import (
+    CriticalValue,
+    CriticalValues,
+    DampingSplit,
+    ExceptionalPoints,
+    FiniteSpectrum,
+    complex_modes,
+)
+from squealbox.system import as_system
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DOWN, UP = "#0072B2", "#D55E00"
+SMALL = 20  # degrees of freedom up to which a figure may ask for a hundred spectra
 
 
-@plot.register(CriticalValue)
-@plot.register(CriticalValues)
+@drawn_by.register(CriticalValue)
+@drawn_by.register(CriticalValues)
 def crossings(found: CriticalValue | CriticalValues, *, title: str = "", axes: Any = None) -> "Figure":
-    """Frequency of each crossing over the parameter: triangles up where a mode starts to grow, down where it stops."""
+    """Largest growth rate over the parameter with each crossing: up where a mode starts to grow, down where it stops.
+
+    Without a design to ask for it (a function made the systems, or they are large) the frequency of each stands alone.
+    """
     every = [found] if isinstance(found, CriticalValue) else list(found)
     every = [one for one in every if np.isfinite(one.value)]
     factor, read = scaled("Hz", *(one.frequency for one in every))
+    around = _growth_around(found, [float(one.value) for one in every])
     with drawing(axes, height=2.4) as panel:
+        if around is not None:
+            panel.plot(*around, **line(0))
+            panel.axhline(0.0, color="#000000", linewidth=0.5)
         for one in every:
             grows = one.direction == "destabilising"
             look = {"marker": "^" if grows else "v", "color": UP if grows else DOWN, "linestyle": "none"}
-            panel.plot(one.value, one.frequency / factor, **look, markersize=6.0)
+            at = (one.value, one.frequency / factor if around is None else 0.0)
+            panel.plot(*at, **look, markersize=6.0)
             text = f"{number(one.value, 6)}\n{one.mechanism.replace('_', ' ')}"
-            panel.annotate(text, (one.value, one.frequency / factor), xytext=(6.0, 0.0), va="center", fontsize=6.5,
-                           textcoords="offset points")  # fmt: skip
-        panel.margins(x=0.4, y=0.4)
+            text += "" if around is None else f", {number(one.frequency / factor, 4)} {read}"
+            place = {"xytext": (-6.0, 6.0), "va": "bottom", "ha": "right"}
+            if around is None:
+                place = {"xytext": (6.0, 0.0), "va": "center", "ha": "left"}
+            panel.annotate(text, at, fontsize=6.5, textcoords="offset points", **place)
+        panel.margins(x=0.4 if around is None else 0.0, y=0.4)
         note(panel, "▲ a mode grows above   ▼ below" if every else "no crossing", "lower left")
         name = quantity_label(found.parameter, unit_of(found, found.parameter))
-        panel.set(xlabel=name, ylabel=quantity_label("frequency", read), title=title)
+        value = quantity_label("frequency", read) if around is None else quantity_label("largest growth rate", "1/s")
+        panel.set(xlabel=name, ylabel=value, title=title)
         return figure_of(panel)
 
 
-@plot.register(FiniteSpectrum)
+def _growth_around(found: CriticalValue | CriticalValues, values: list[float]) -> tuple[Any, Any] | None:
+    """The parameter over its range and the largest growth rate there, of a small design; None of any other."""
+    design, bounds = found.inputs.get("system"), found.settings.get("bounds")
+    if not (isinstance(design, Design) and values and bounds is not None and as_system(design).size <= SMALL):
+        return None
+    low, high = (float(end) for end in bounds)
+    at = np.union1d(np.linspace(low, high, 161), values)
+    return at, complex_modes(design.replace({found.parameter: at})).growth_rate.max(axis=-1)
+
+
+@drawn_by.register(FiniteSpectrum)
 def finite_eigenvalues(found: FiniteSpectrum, *, title: str = "", axes: Any = None) -> "Figure":
     """The finite eigenvalues with Im >= 0 in the complex plane: dots decay, squares grow."""
     values = found.eigenvalues[np.imag(found.eigenvalues) >= 0.0]
@@ -54,12 +86,12 @@ def finite_eigenvalues(found: FiniteSpectrum, *, title: str = "", axes: Any = No
         return figure_of(panel)
 
 
-@plot.register(ExceptionalPoints)
+@drawn_by.register(ExceptionalPoints)
 def merging_points(found: ExceptionalPoints, *, title: str = "", axes: Any = None) -> "Figure":
     """Points of two parameters at which two modes merge, each with the frequency there."""
     names = found.parameters or ("", "")
     with drawing(axes, height=2.8) as panel:
-        panel.plot(found.x, found.y, "o", color=LINES[0][0], markerfacecolor="white", markersize=5.0)
+        panel.plot(found.x, found.y, "o", color="#000000", markerfacecolor="white", markersize=5.0)
         for x, y, value in zip(found.x, found.y, found.eigenvalue, strict=True):
             factor, read = scaled("Hz", abs(value.imag) / (2.0 * np.pi))
             text = f"{number(abs(value.imag) / (2.0 * np.pi) / factor)} {read}"
@@ -70,7 +102,7 @@ def merging_points(found: ExceptionalPoints, *, title: str = "", axes: Any = Non
         return figure_of(panel)
 
 
-@plot.register(DampingSplit)
+@drawn_by.register(DampingSplit)
 def damping_split(found: DampingSplit, *, title: str = "", axes: Any = None) -> "Figure":
     """Critical value over how the damping is shared; the best share marked, the undamped value as a line."""
     with drawing(axes, height=2.8) as panel:
@@ -85,7 +117,7 @@ def damping_split(found: DampingSplit, *, title: str = "", axes: Any = None) -> 
         return figure_of(panel)
 
 
-@plot.register(PointCurve)
+@drawn_by.register(PointCurve)
 def point_curve(found: PointCurve, *, title: str = "", axes: Any = None) -> "Figure":
     """A curve of special points over two parameters; where Hopf points give birth to unstable cycles it is dotted."""
     names = found.parameters or ("", "")
@@ -104,7 +136,7 @@ def point_curve(found: PointCurve, *, title: str = "", axes: Any = None) -> "Fig
         return figure_of(panel)
 
 
-@plot.register(HopfPoint)
+@drawn_by.register(HopfPoint)
 def birth_of_a_cycle(found: HopfPoint, *, title: str = "", axes: Any = None) -> "Figure":
     """The square-root law of amplitudes beside a Hopf point, up to where a contact would come to rest.
 
@@ -119,13 +151,19 @@ def birth_of_a_cycle(found: HopfPoint, *, title: str = "", axes: Any = None) -> 
     sizes = sizes[:, dof]
     factor, read = scaled(units[dof], sizes)
     stable = found.kind == "supercritical"
+    unit = unit_of(found, found.parameter)
+    narrow = reach < 0.01 * abs(float(found.value))  # then the axis counts from the point
+    at, called, origin = float(found.value), found.parameter, 0.0
+    if narrow:
+        origin, called = at, f"{called} {MINUS} {number(at, 6)}"
+    power, unit = power_of_ten(values - origin, unit) if narrow else (1.0, unit)
     with drawing(axes, height=2.6) as panel:
-        panel.plot(values, sizes / factor, **line(0 if stable else 1), label=f"cycle, {found.kind}")
-        panel.plot(float(found.value), 0.0, "o", color=UP, markersize=5.0, zorder=3, label="Hopf point")
-        panel.set(xlabel=quantity_label(found.parameter, unit_of(found, found.parameter)), title=title)
+        panel.plot((values - origin) / power, sizes / factor, **line(0 if stable else 1), label=f"cycle, {found.kind}")
+        panel.plot((at - origin) / power, 0.0, "o", color=UP, markersize=5.0, zorder=3, label="Hopf point")
+        panel.set(xlabel=quantity_label(called, unit), title=title)
         panel.set(
             ylabel=quantity_label(f"amplitude {system.names[dof]}" if len(units) > 1 and system else "amplitude", read),
-            xlim=(float(found.value) - reach, float(found.value) + reach),
+            xlim=((at - origin - reach) / power, (at - origin + reach) / power),
         )
         panel.set_ylim(bottom=0.0)
         panel.legend(loc="best")

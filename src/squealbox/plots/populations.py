@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.matrices import liveliest
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import unit_of
 from squealbox.plots.maps import amplitude_map
 from squealbox.plots.style import LINES, cautioned, drawing, figure_of, quantity_label, scaled
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@plot.register(Ensemble)
+@drawn_by.register(Ensemble)
 def ensemble_overview(found: Ensemble, *, observer: str | None = None, title: str = "", axes: Any = None) -> "Figure":
     """What an observer saw over the parameters: a map over two, points over one, else sorted by size.
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, WIDTH, drawing, figure_of, line, number, quantity_label
 from squealbox.plots.uncertainty import QUIET, SQUEAL
 from squealbox.studies.uncertainty.chaos import Surrogate
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@plot.register(DesignPoint)
+@drawn_by.register(DesignPoint)
 def design_point(found: DesignPoint, *, title: str = "", axes: Any = None) -> "Figure":
     """The quantity on the straight way from the median to the design point and beyond; importance of the parameters.
 
@@ -60,7 +60,7 @@ def _way(panel: Any, found: DesignPoint, title: str) -> None:
     )
 
 
-@plot.register(SubsetProbability)
+@drawn_by.register(SubsetProbability)
 def subset_probability(found: SubsetProbability, *, title: str = "", axes: Any = None) -> "Figure":
     """Probability that the quantity is beyond a value, level by level towards the limit, one line for each run."""
     about = found.settings["quantity"]
@@ -77,6 +77,9 @@ def subset_probability(found: SubsetProbability, *, title: str = "", axes: Any =
             panel.errorbar(
                 about["limit"], value, yerr=errors, color="#D55E00", marker="o", capsize=3, linewidth=1.0, label=label
             )
+        if panel.get_ylim()[1] < 10.0 * panel.get_ylim()[0]:
+            panel.set_yscale("linear")
+            panel.set_ylim(bottom=0.0)
         panel.legend(loc="best")
         word = "above" if about["squeals"] == "above" else "below"
         panel.set(
@@ -85,7 +88,7 @@ def subset_probability(found: SubsetProbability, *, title: str = "", axes: Any =
         return figure_of(panel)
 
 
-@plot.register(Surrogate)
+@drawn_by.register(Surrogate)
 def surrogate(found: Surrogate, *, title: str = "", axes: Any = None) -> "Figure":
     """What the surrogate says of points it has not seen, against what was computed; misjudged points stand out."""
     about = found.settings["quantity"]

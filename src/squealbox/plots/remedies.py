@@ -7,7 +7,7 @@ import numpy as np
 from squealbox.control import ClosedLoop, LoopRun
 from squealbox.countermeasures import BestAbsorber, Countermeasure
 from squealbox.plots.brakes import brake_drawing
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, drawing, figure_of, line, quantity_label, scaled
 from squealbox.remedies import Remedies
 from squealbox.system import as_system
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 MOST_BARS = 24
 
 
-@plot.register(Countermeasure)
+@drawn_by.register(Countermeasure)
 def countermeasure_drawing(design: Countermeasure, *, axes: Any = None) -> "Figure":
     """The drawing of the brake that a countermeasure holds, with what is done to it written above."""
     layers: list[str] = []
@@ -32,7 +32,7 @@ def countermeasure_drawing(design: Countermeasure, *, axes: Any = None) -> "Figu
     return figure
 
 
-@plot.register(Remedies)
+@drawn_by.register(Remedies)
 def remedies_figure(found: Remedies, *, title: str = "", axes: Any = None) -> "Figure":
     """The share of the lot that squeals with each cure, ranked, beside that without; hollow where no dose is enough."""
     count = min(len(found), MOST_BARS)
@@ -51,7 +51,7 @@ def remedies_figure(found: Remedies, *, title: str = "", axes: Any = None) -> "F
         return figure_of(panel)
 
 
-@plot.register(BestAbsorber)
+@drawn_by.register(BestAbsorber)
 def detuning_map(found: BestAbsorber, *, title: str = "", axes: Any = None) -> "Figure":
     """What was aimed for over tuning and damping of the absorber, with its best point and, of growth, the edge."""
     names = {"decay": ("growth rate", "1/s"), "margin": ("critical value", ""), "probability": ("P(squeal)", "")}
@@ -66,7 +66,7 @@ def detuning_map(found: BestAbsorber, *, title: str = "", axes: Any = None) -> "
         return figure_of(panel)
 
 
-@plot.register(ClosedLoop)
+@drawn_by.register(ClosedLoop)
 def poles_figure(found: ClosedLoop, *, title: str = "", axes: Any = None) -> "Figure":
     """Poles with the loops closed (dots) and without their forces (crosses), over growth rate and frequency."""
     with drawing(axes, width=1.4 * COLUMN, height=2.8) as panel:
@@ -79,7 +79,7 @@ def poles_figure(found: ClosedLoop, *, title: str = "", axes: Any = None) -> "Fi
         return figure_of(panel)
 
 
-@plot.register(LoopRun)
+@drawn_by.register(LoopRun)
 def loop_run(found: LoopRun, *, title: str = "", axes: Any = None) -> "Figure":
     """Displacement of each freedom, and below the force of each loop, held until the next instant."""
     names = as_system(found.inputs["system"]).names

@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox import signals
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import unit_at
 from squealbox.plots.style import LINES, drawing, figure_of, line, note, number, quantity_label, scaled, uncertain
 
+WIDER = 2.4  # so much of the frequency of the highest peak is drawn: its first harmonic with its name
 NAMED = 0.03  # share of the highest peak from which a peak is named
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ def spectrum(
     frequency_unit: str | None = None,
     name: str = "amplitude",
     quantity: str = "",
+    remark: str = "",
     title: str = "",
     axes: Any = None,
     **cut: Any,
@@ -36,15 +38,16 @@ def spectrum(
     ----------
     signal, t : a `Spectrum`, a trajectory, or an array (k,) in m with its times [s]
     peaks : how many peaks to name at most
-    upto : highest frequency drawn [Hz]; by default twice that of the highest peak
+    upto : highest frequency drawn [Hz]; by default beyond twice that of the highest peak
     logarithmic : draw the amplitude over five decades on a logarithmic scale
     unit, frequency_unit : "mm", "µm", "kHz", "rad/s", "10³ rad/s" ...; by default what suits the numbers
     quantity : unit of the signal, by default that of the degree of freedom, m or rad
+    remark : what the corner says beside window and resolution
     cut : `dof`, `begin`, `end`, `window` ... of :func:`squealbox.signals.spectrum`
     """
     lines = signal if isinstance(signal, signals.Spectrum) else signals.spectrum(signal, t, **cut)
     found = signals.peaks(lines, least=NAMED)
-    limit = upto or 2.0 * float(found.frequency[0] if found.frequency.size else lines.frequency[-1] / 2.0)
+    limit = upto or WIDER * float(found.frequency[0] if found.frequency.size else lines.frequency[-1] / WIDER)
     shown = lines.frequency <= limit
     hertz, read = scaled("Hz", lines.frequency[shown], to=frequency_unit)
     own = quantity or unit_at(getattr(signal, "system", None), cut.get("dof", 0))
@@ -61,7 +64,8 @@ def spectrum(
             side = "center" if not beside else "right" if frequency < min(beside) else "left"
             _name_peak(panel, frequency / hertz, amplitude / factor, side)
         panel.set(xlabel=quantity_label("frequency", read), ylabel=quantity_label(name, size), title=title)
-        note(panel, f"{lines.window.capitalize()} window, resolution {_fine(lines.resolution, read)}")
+        said = f"{lines.window.capitalize()} window, resolution {_fine(lines.resolution, read)}"
+        note(panel, f"{said}\n{remark}" if remark else said)
         return figure_of(panel)
 
 
@@ -134,7 +138,7 @@ def spectrogram(
         return figure_of(panel)
 
 
-@plot.register(signals.GrowthRate)
+@drawn_by.register(signals.GrowthRate)
 def component_growth(found: signals.GrowthRate, *, title: str = "", axes: Any = None) -> "Figure":
     """The amplitude of one component piece by piece, on a logarithmic scale, and the rate fitted to it."""
     second, clock = scaled("s", found.time)
@@ -144,14 +148,18 @@ def component_growth(found: signals.GrowthRate, *, title: str = "", axes: Any = 
         panel.semilogy(found.time / second, found.envelope, "o", color=LINES[0][0], markersize=3.0, label="measured")
         label = f"{uncertain(found.rate, found.rate_error)} 1/s"
         panel.semilogy(found.time / second, line_through, **line(2), label=label)
-        panel.set(xlabel=quantity_label("time", clock), ylabel="amplitude of the component", title=title)
+        panel.set(
+            xlabel=quantity_label("time", clock),
+            ylabel=quantity_label("amplitude of the component", "unit of the signal"),
+            title=title,
+        )
         factor, read = scaled("Hz", found.frequency)
         note(panel, f"at {number(found.frequency / factor, 5)} {read}", "lower left")
         panel.legend(loc="best")
         return figure_of(panel)
 
 
-@plot.register(signals.SoundLevel)
+@drawn_by.register(signals.SoundLevel)
 def loudness(found: signals.SoundLevel, *, title: str = "", axes: Any = None) -> "Figure":
     """Estimated sound pressure level of each line, with the sum in the title and what it rests on below."""
     factor, read = scaled("Hz", found.frequency)
@@ -168,5 +176,5 @@ def loudness(found: signals.SoundLevel, *, title: str = "", axes: Any = None) ->
         return figure_of(panel)
 
 
-plot.register(signals.Spectrum, spectrum)
-plot.register(signals.Spectrogram, spectrogram)
+drawn_by.register(signals.Spectrum, spectrum)
+drawn_by.register(signals.Spectrogram, spectrogram)

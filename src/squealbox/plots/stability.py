@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
+from squealbox.plots.facts import unit_of
 from squealbox.plots.modes import coalescence
 from squealbox.plots.style import LINES, drawing, figure_of, line, note, number, quantity_label, scaled
 from squealbox.stability import (
@@ -55,7 +56,7 @@ def root_locus(tracked: TrackedModes, *, title: str = "", axes: Any = None) -> "
         return figure_of(panel)
 
 
-@plot.register(ComplexModes)
+@drawn_by.register(ComplexModes)
 def eigenvalues(modes: ComplexModes, *, title: str = "", axes: Any = None) -> "Figure":
     """The spectrum in the complex plane, Im >= 0: dots where a mode decays, squares where it grows, with their numbers.
 
@@ -80,14 +81,14 @@ def eigenvalues(modes: ComplexModes, *, title: str = "", axes: Any = None) -> "F
         return figure_of(panel)
 
 
-@plot.register(TrackedModes)
+@drawn_by.register(TrackedModes)
 def tracked_modes(tracked: TrackedModes, **keywords: Any) -> "Figure":
     """Frequency and growth rate of every tracked mode against the parameter."""
     keywords.setdefault("name", tracked.parameter)
     return coalescence(tracked.value, tracked.eigenvalues, **keywords)
 
 
-@plot.register(StabilityMap)
+@drawn_by.register(StabilityMap)
 def mechanism_map(
     found: StabilityMap, *, boundary: Boundary | None = None, scales: Scales = None, title: str = "", axes: Any = None
 ) -> "Figure":
@@ -100,7 +101,7 @@ def mechanism_map(
     if len(found.axes) != 2:
         raise ValueError(f"a map over {list(found.axes)}: expected two parameters")
     (x_name, x), (y_name, y) = ((name, np.asarray(values)) for name, values in found.axes.items())
-    (x_factor, x_unit), (y_factor, y_unit) = (_scale(name, scales) for name in (x_name, y_name))
+    (x_factor, x_unit), (y_factor, y_unit) = (_scale(found, name, scales) for name in (x_name, y_name))
     handles = [Patch(facecolor="white", edgecolor="#000000", linewidth=0.5, label="stable")]
     with drawing(axes, width=4.0, height=3.4) as panel:
         for name, (colour, hatch) in AREAS.items():
@@ -128,18 +129,18 @@ def mechanism_map(
         return figure_of(panel)
 
 
-@plot.register(Boundary)
+@drawn_by.register(Boundary)
 def boundary_curves(boundary: Boundary, *, scales: Scales = None, title: str = "", axes: Any = None) -> "Figure":
     """The traced boundary alone: the curves and their points."""
     x_name, y_name = boundary.parameters
-    (x_factor, x_unit), (y_factor, y_unit) = (_scale(name, scales) for name in (x_name, y_name))
+    (x_factor, x_unit), (y_factor, y_unit) = (_scale(boundary, name, scales) for name in (x_name, y_name))
     with drawing(axes, width=4.0, height=3.4) as panel:
         _curves(panel, boundary, x_factor, y_factor, marker=".")
         panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
         return figure_of(panel)
 
 
-@plot.register(ModeEnergy)
+@drawn_by.register(ModeEnergy)
 def mode_energy(energy: ModeEnergy, *, title: str = "", axes: Any = None) -> "Figure":
     """What each contact and damper adds to the growth rate of a mode, as bars; their sum is the growth rate."""
     rows = list(energy.shares)
@@ -150,14 +151,14 @@ def mode_energy(energy: ModeEnergy, *, title: str = "", axes: Any = None) -> "Fi
     return _bars(rows, "contribution to the growth rate", "1/s", title, axes)
 
 
-@plot.register(Sensitivity)
+@drawn_by.register(Sensitivity)
 def sensitivity(found: Sensitivity, *, most: int = 10, title: str = "", axes: Any = None) -> "Figure":
     """Change of the growth rate for one per cent more of each parameter, the strongest first."""
     rows = [(name, 0.01 * value) for name, value in found.ranked()[:most]]
     return _bars(rows, "change of growth rate for +1 %", "1/s", title, axes)
 
 
-@plot.register(TransientGrowth)
+@drawn_by.register(TransientGrowth)
 def transient_growth(found: TransientGrowth, *, title: str = "", axes: Any = None) -> "Figure":
     """Largest amplification possible at each instant, with the decay the eigenvalues promise."""
     with drawing(axes) as panel:
@@ -194,5 +195,5 @@ def _curves(panel: Any, boundary: Boundary, x_factor: float, y_factor: float, **
         panel.plot(x_factor * points[:, 0], y_factor * points[:, 1], color="#000000", linewidth=1.2, **look)
 
 
-def _scale(name: str, scales: Scales) -> tuple[float, str]:
-    return (scales or {}).get(name, (1.0, ""))
+def _scale(found: StabilityMap | Boundary, name: str, scales: Scales) -> tuple[float, str]:
+    return (scales or {}).get(name, (1.0, unit_of(found, name)))

@@ -10,6 +10,8 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -59,7 +61,8 @@ NAMELESS: dict[str, dict[str, None]] = {
 }
 PACKED = 3  # of 9, how hard a PNG is packed: the usual 6 takes twice as long and saves a twentieth
 RC: dict[str, Any] = {
-    "font.family": "DejaVu Sans",
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans", "Verdana", "Arial"],
     "font.size": 8.0,
     "mathtext.fontset": "dejavusans",
     "axes.titlesize": 8.0,
@@ -68,6 +71,7 @@ RC: dict[str, Any] = {
     "axes.axisbelow": True,
     "axes.formatter.limits": (-3, 4),
     "axes.formatter.use_mathtext": True,
+    "axes.formatter.useoffset": False,
     "axes.unicode_minus": True,
     "xtick.labelsize": 7.0,
     "ytick.labelsize": 7.0,
@@ -90,29 +94,77 @@ RC: dict[str, Any] = {
     "figure.dpi": 100.0,
     "savefig.dpi": 200.0,
     "savefig.facecolor": "white",
-    "svg.fonttype": "path",
+    "svg.fonttype": "none",
+    "pdf.fonttype": 42,
     "svg.hashsalt": "squealbox",
 }
+OWN = (
+    "font.",
+    "text.",
+    "mathtext.",
+    "axes.",
+    "xtick.",
+    "ytick.",
+    "lines.",
+    "legend.",
+    "grid.",
+    "svg.fonttype",
+    "pdf.",
+    "pgf.",
+    "savefig.dpi",
+)  # settings of matplotlib that stay those of the user, where he has changed them
+NARROW = 1.9  # inches: panels beside each other that would be narrower stand under each other
+
+
+@dataclass(frozen=True)
+class Look:
+    """How wide and high a figure is to be [inches], and matplotlib styles over the house's."""
+
+    width: float | None = None
+    height: float | None = None
+    style: Any = None
+
+
+USUAL = Look()
+LOOK: ContextVar[Look] = ContextVar("look", default=USUAL)
 _STYLED: ContextVar[bool] = ContextVar("styled", default=False)
+FORMATS: ContextVar[tuple[str, ...]] = ContextVar("formats", default=("png", "svg"))
+"""The kinds of file that :func:`save` writes where it is not told."""
 
 
 @contextmanager
 def styled() -> Iterator[None]:
     """The house's look while it lasts; matplotlib's own settings come back afterwards. Within itself it does nothing:
 
-    setting all that matplotlib knows takes 2 ms, which a figure of many panels would pay dozens of times.
+    setting all that matplotlib knows takes 2 ms, which a figure of many panels would pay dozens of times. What the user
+    has set of `OWN` goes before the house's, and the style of the `Look` before both.
     """
-    from matplotlib import style
+    from matplotlib import rcParams, rcParamsDefault, style
 
     if _STYLED.get():
         yield
         return
     token = _STYLED.set(True)
     try:
-        with style.context(["default", RC]):
+        own = (name for name in rcParams if name.startswith(OWN))  # the backend, if asked for, would load pyplot
+        set_ = {str(name): rcParams[name] for name in own if rcParams[name] != rcParamsDefault[name]}
+        asked = LOOK.get().style
+        asked = asked if isinstance(asked, (list, tuple)) else [asked] if asked is not None else []
+        with style.context(["default", RC, set_, *asked]):
             yield
     finally:
         _STYLED.reset(token)
+
+
+@contextmanager
+def looked(figure: "Figure") -> Iterator[None]:
+    """The look that a figure was made in, which its file has too."""
+    token = LOOK.set(getattr(figure, "look", LOOK.get()))
+    try:
+        with styled():
+            yield
+    finally:
+        LOOK.reset(token)
 
 
 @contextmanager
@@ -132,15 +184,27 @@ def panels(
 ) -> "tuple[Figure, Any]":
     """A figure of rows x columns panels; width and height in inches. Keywords go to ``Figure.subplots``.
 
-    Returns the figure and its axes: one, or an array. Hand each to a function of this room as ``axes=``.
+    Returns the figure and its axes: one, or an array. Hand each to a function of this room as ``axes=``. In a `Look`
+    of another width the height follows, and a row of panels that would get too narrow becomes a column.
     """
     from squealbox.plots.figure import Drawing
 
-    size = (width or (COLUMN if columns == 1 else WIDTH), height or ROW * rows + 0.3)
+    look = LOOK.get()
+    usual = width or (COLUMN if columns == 1 else WIDTH)
+    size = (look.width or usual, look.height or height or ROW * rows + 0.3)
+    shape = (rows, columns)
+    if look.width is not None and columns > 1 and look.width < NARROW * columns:
+        for ratios in ("width_ratios", "height_ratios"):
+            keywords.pop(ratios, None)
+        size = (look.width, look.height or 0.9 * columns * size[1])
+        rows, columns = rows * columns, 1
+    elif look.width is not None and look.height is None:
+        size = (look.width, size[1] * min(max(look.width / usual, 0.8), 1.5))
     with styled():
         figure = Drawing(figsize=size, layout="constrained")
         axes = figure.subplots(rows, columns, **keywords)
-    return figure, axes
+        asked = min(shape) > 1 or keywords.get("squeeze") is False
+    return figure, np.reshape(axes, shape) if asked else axes
 
 
 def figure_of(axes: Any) -> "Figure":
@@ -186,6 +250,14 @@ def scaled(unit: str, *arrays: Any, to: str | None = None) -> tuple[float, str]:
     return next(((factor, name) for factor, name in choices if largest >= 0.999 * factor), choices[-1])
 
 
+def power_of_ten(values: Any, unit: str) -> tuple[float, str]:
+    """A power of ten to divide by, and the unit then read, where the values are far from one."""
+    power = int(np.floor(np.log10(max(float(np.max(np.abs(values))), 1e-300))))
+    if -3 <= power <= 3:
+        return 1.0, unit
+    return 10.0**power, f"$10^{{{power}}}$ {unit}".strip()
+
+
 def number(value: float, digits: int = 4) -> str:
     """A number as a reader writes it: plain up to 99999, a true minus, no trailing zeros."""
     value = float(value)
@@ -212,11 +284,11 @@ def quantity_label(name: str, unit: str) -> str:
 def save(
     figure: "Figure",
     path: str | os.PathLike[str],
-    formats: Sequence[str] = ("png", "svg"),
+    formats: Sequence[str] | None = None,
     *,
     dots: float | None = None,
 ) -> list[Path]:
-    """Write a figure as path.png and path.svg (or other `formats`); returns the paths.
+    """Write a figure as path.png and path.svg, as path.pdf where it ends so, or as `formats`; returns the paths.
 
     `dots` an inch, 200 by default. The files hold no date and no version, so equal figures give equal files. The figure
     is laid out once for all formats, where `Figure.savefig` alone would draw it twice for each.
@@ -225,10 +297,12 @@ def save(
 
     if not isinstance(figure.canvas, FigureCanvasAgg):
         FigureCanvasAgg(figure)  # one that stays knows the size of every text when the figure is drawn again
-    stem = Path(path)
-    stem = stem.with_suffix("") if stem.suffix.lstrip(".") in formats else stem
+    stem, given = Path(path), Path(path).suffix.lstrip(".")
+    stem = stem.with_suffix("") if given in figure.canvas.get_supported_filetypes() else stem
+    if formats is None:
+        formats = (given,) if stem != Path(path) and given not in FORMATS.get() else FORMATS.get()
     written = []
-    with styled(), _laid_out(figure):
+    with looked(figure), _laid_out(figure, dots):
         for kind in formats:
             written.append(stem.with_name(f"{stem.name}.{kind}"))
             packed: dict[str, Any] = {"pil_kwargs": {"compress_level": PACKED}} if kind == "png" else {}
@@ -239,20 +313,47 @@ def save(
 def drawn(figure: "Figure", kind: str = "png", dots: float | None = None, *, trimmed: bool = False) -> bytes:
     """The figure as the content of a PNG, SVG or PDF file, `dots` an inch, `trimmed` of an empty margin."""
     stream = io.BytesIO()
-    with styled(), _laid_out(figure):
+    with looked(figure), _laid_out(figure, dots):
         box = "tight" if trimmed else None
         figure.savefig(stream, format=kind, metadata=NAMELESS.get(kind), dpi=dots, bbox_inches=box)
     return stream.getvalue()
 
 
+def spread_ticks(figure: "Figure") -> None:
+    """Fewer ticks on every axis whose numbers would run into each other."""
+    from matplotlib.ticker import MaxNLocator
+
+    for panel in figure.axes:
+        for axis, side in ((panel.xaxis, 0), (panel.yaxis, 1)):
+            locator = axis.get_major_locator()
+            while isinstance(locator, MaxNLocator):
+                low, high = sorted(axis.get_view_interval())
+                seen = [label.get_window_extent() for at, label in zip(axis.get_majorticklocs(), axis.get_ticklabels(),
+                        strict=False) if low <= at <= high and label.get_text() and label.get_visible()]  # fmt: skip
+                spans = sorted((box.min[side], box.max[side]) for box in seen)
+                close = any(after[0] < before[1] + 0.04 * figure.dpi for before, after in pairwise(spans))
+                if not close or len(spans) < 3:
+                    break
+                locator.set_params(nbins=len(spans) - 2)
+
+
 @contextmanager
-def _laid_out(figure: "Figure") -> Iterator[None]:
-    """The figure with its layout done and put to rest, so that drawing does not do it again."""
+def _laid_out(figure: "Figure", dots: float | None) -> Iterator[None]:
+    """The figure with its layout done and put to rest, so that drawing does not do it again.
+
+    It is done at the dots an inch of the file, because letters are as wide as whole dots make them.
+    """
+    from matplotlib import rcParams
+
     engine = figure.get_layout_engine()
     if engine is None:
         yield
         return
+    before, finest = figure.dpi, rcParams["savefig.dpi"]
+    figure.set_dpi(dots or (before if finest == "figure" else finest))
+    spread_ticks(figure)
     engine.execute(figure)
+    figure.set_dpi(before)
     figure.set_layout_engine(None)  # with "none" a placeholder stays, and each file is drawn twice
     try:
         yield

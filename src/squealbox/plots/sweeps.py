@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.limit_cycles.attractors.pushes import DangerousPush
-from squealbox.plots.dispatch import plot
+from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, LINES, PREFIXES, ROW, drawing, figure_of, line, note, quantity_label, scaled
 from squealbox.studies import Sweep
 
@@ -26,7 +26,7 @@ def numeric_answers(found: Sweep) -> list[str]:
     return [name for name in found.answers if found[name].dims == dims and found[name].dtype.kind in "fiub"]
 
 
-@plot.register(Sweep)
+@drawn_by.register(Sweep)
 def sweep_overview(found: Sweep, *, answer: str | None = None, title: str = "", axes: Any = None) -> "Figure":
     """An answer of a sweep over its parameters; failed points are crosses, or grey crossed fields.
 
@@ -66,7 +66,7 @@ def sweep_overview(found: Sweep, *, answer: str | None = None, title: str = "", 
         return figure
 
 
-@plot.register(DangerousPush)
+@drawn_by.register(DangerousPush)
 def search_for_a_push(found: DangerousPush, *, title: str = "", axes: Any = None) -> "Figure":
     """Smallest energy of a push that ends in a vibration, after each round of the search."""
     with drawing(axes, height=2.4) as panel:

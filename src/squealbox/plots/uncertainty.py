@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.plots.dispatch import plot
-from squealbox.plots.style import COLUMN, LINES, WIDTH, drawing, figure_of, line, number, quantity_label
+from squealbox.plots.dispatch import drawn_by
+from squealbox.plots.style import COLUMN, LINES, WIDTH, drawing, figure_of, line, number, power_of_ten, quantity_label
 from squealbox.studies.quantity import unit_of
 from squealbox.studies.uncertainty.intervals import IntervalBounds
 from squealbox.studies.uncertainty.morris import MorrisEffects
@@ -21,7 +21,7 @@ MOST = 4  # parameters drawn beside the histogram
 BINS = 12  # of equal probability, in which the share of squeal is counted
 
 
-@plot.register(SquealProbability)
+@drawn_by.register(SquealProbability)
 def squeal_probability(found: SquealProbability, *, title: str = "", axes: Any = None) -> "Figure":
     """How the quantity is spread, with the part that squeals, and the share of squeal over each parameter.
 
@@ -35,16 +35,17 @@ def squeal_probability(found: SquealProbability, *, title: str = "", axes: Any =
     shares = [_shares(found, i) for i in range(len(found.names))]
     order = sorted(range(len(shares)), key=lambda i: -float(np.ptp(shares[i][1])))[:MOST]
     ratios = [1.9, *(1.0 for _ in order)]
+    top = min(1.0, 1.2 * max((float(np.max(shares[i][3])) for i in order), default=1.0))
     with drawing(None, 1, 1 + len(order), width=WIDTH, height=2.5, width_ratios=ratios) as panels:
         first, *rest = np.ravel(panels)
         _histogram(first, found, title)
         for place, (panel, i) in enumerate(zip(rest, order, strict=True)):
             middles, share, low, high = shares[i]
             unit = unit_of(found.inputs.get("design"), found.names[i])
-            factor, unit = _power(middles, unit)
+            factor, unit = power_of_ten(middles, unit)
             panel.fill_between(middles / factor, low, high, facecolor="#d9d9d9", edgecolor="none")
             panel.plot(middles / factor, share, **line(0), marker="o")
-            panel.set_ylim(-0.03, 1.03)
+            panel.set_ylim(-0.03 * top, 1.03 * top)
             panel.set_xlabel(quantity_label(found.names[i], unit))
             if place == 0:
                 panel.set_ylabel("share of squeal, 95 % band")
@@ -87,14 +88,6 @@ def _edges(values: Any, limit: float) -> Any:
     return limit + step * np.arange(-below, above + 1.0)
 
 
-def _power(values: Any, unit: str) -> tuple[float, str]:
-    """A power of ten to divide by, and the unit then read, where the values are far from one."""
-    power = int(np.floor(np.log10(max(float(np.max(np.abs(values))), 1e-300))))
-    if -3 <= power <= 3:
-        return 1.0, unit
-    return 10.0**power, f"$10^{{{power}}}$ {unit}".strip()
-
-
 def _shares(found: SquealProbability, i: int) -> tuple[Any, Any, Any, Any]:
     """Middle, share of squeal and its 95 % interval in bins of equal probability of parameter i."""
     from scipy.stats import binomtest
@@ -110,7 +103,7 @@ def _shares(found: SquealProbability, i: int) -> tuple[Any, Any, Any, Any]:
     return columns[0], columns[1], columns[2], columns[3]
 
 
-@plot.register(SobolIndices)
+@drawn_by.register(SobolIndices)
 def sobol_indices(found: SobolIndices, *, title: str = "", axes: Any = None) -> "Figure":
     """First-order and total index of each parameter as bars with their intervals, the strongest first."""
     order = np.argsort(-found.total)
@@ -136,7 +129,7 @@ def sobol_indices(found: SobolIndices, *, title: str = "", axes: Any = None) -> 
         return figure_of(panel)
 
 
-@plot.register(MorrisEffects)
+@drawn_by.register(MorrisEffects)
 def morris_effects(found: MorrisEffects, *, title: str = "", axes: Any = None) -> "Figure":
     """Strength mu* against spread sigma; below the line sigma = mu*/2 a parameter acts nearly alone and straight."""
     about = found.settings["quantity"]
@@ -168,7 +161,7 @@ def morris_effects(found: MorrisEffects, *, title: str = "", axes: Any = None) -
         return figure_of(panel)
 
 
-@plot.register(IntervalBounds)
+@drawn_by.register(IntervalBounds)
 def interval_bounds(found: IntervalBounds, *, title: str = "", axes: Any = None) -> "Figure":
     """The range as a bar with the limit of squeal; a figure of its own also shows where in the box the ends lie."""
     if axes is not None:

@@ -33,8 +33,8 @@ def render(page: Page) -> str:
         lstrip_blocks=True,
     )
     figures = [plain_json(chart.figure) for chart in charts(page.sections)]
-    start = environment.get_template("charts.js").render() if figures else ""
     library = packed_library() if figures else None
+    start = environment.get_template("charts.js").render() if library else ""
     allowed = " ".join(f"'sha256-{digest}'" for digest in (_digest(start), library[1])) if library else ""
     return environment.get_template(TEMPLATE).render(
         page=page, figures=figures, start=start, library=library[0] if library else "", allowed=allowed
@@ -80,10 +80,14 @@ def _plain(value: Any) -> Any:
 
 
 @cache
-def packed_library() -> tuple[str, str]:
-    """The script of plotly.js, compressed, as base64; and the SHA-256 of the script, as base64."""
-    from plotly.offline import get_plotlyjs
-
+def packed_library() -> tuple[str, str] | None:
+    """The script of plotly.js, compressed, as base64; and the SHA-256 of the script; None where it is not installed."""
+    try:
+        from plotly.offline import get_plotlyjs
+    except ModuleNotFoundError as error:
+        if str(error.name).partition(".")[0] != "plotly":
+            raise
+        return None
     script = get_plotlyjs()
     packed = gzip.compress(script.encode("utf-8"), compresslevel=9, mtime=0)
     return base64.b64encode(packed).decode("ascii"), _digest(script)

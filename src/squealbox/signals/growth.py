@@ -1,7 +1,7 @@
 """Frequency and growth rate of the strongest component of a signal, by maximum likelihood, with honest errors."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -32,6 +32,8 @@ class GrowthRate(Result):
     frequency_error: float
     halves: tuple[float, float] = (np.nan, np.nan)
     steady: bool = True
+
+    coordinates: ClassVar = {"piece": "time"}
 
     def __str__(self) -> str:
         text = f"{with_error(self.rate, self.rate_error)} 1/s at {self.frequency:.7g} Hz"

@@ -15,7 +15,7 @@ Ingard, Theoretical Acoustics, section 7.4.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -46,6 +46,8 @@ class SoundLevel(Result):
     line_level: Any = quantity("line", "dB", "sound pressure level of each line")
     velocity: Any = quantity("line", "m/s", "amplitude of the surface velocity of each line")
     efficiency: Any = quantity("line", "1", "radiation efficiency of each line")
+
+    coordinates: ClassVar = {"line": "frequency"}
 
     @property
     def assumption(self) -> str:

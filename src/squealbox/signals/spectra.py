@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -45,6 +45,8 @@ class Spectrogram(Result):
     window: str
     segment: float
     resolution: float
+
+    table_over: ClassVar = ("time", "frequency")
 
 
 @public()

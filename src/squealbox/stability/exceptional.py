@@ -5,7 +5,7 @@ and its real and imaginary part vanish together. A damped brake meets that in is
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -134,6 +134,8 @@ class DampingSplit(Result):
     undamped: Any = quantity("", "", "critical value without either damper")
     parameter: str = ""
     dampers: tuple[str, ...] = ()
+
+    coordinates: ClassVar = {"split": "share"}
 
     def summary(self) -> str:
         """The best split, and how low the critical value can fall by damping wrongly."""

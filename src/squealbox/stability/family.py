@@ -67,8 +67,8 @@ class Family:
 
     Parameters
     ----------
-    design : a design, whose ``replace({name: array})`` makes a batch; or a callable of one float for each parameter
-        that returns a design or a system, called point by point
+    design : a design or a system, whose ``replace({name: array})`` makes a batch; or a callable of one float for each
+        parameter that returns a design or a system, called point by point
     parameters : dotted names, such as "friction.static"; for a callable, what results call its arguments
     time : instant of schedules [s]
     """
@@ -78,10 +78,6 @@ class Family:
         self.recipe: Callable[..., Any] | None = None
         if callable(design) and not hasattr(design, "replace"):
             self.recipe = design
-        elif isinstance(design, System):
-            raise TypeError(
-                "a System has no named parameters to vary: give a design, or a function that makes the system"
-            )
 
     @property
     def inputs(self) -> dict[str, Any]:

@@ -71,23 +71,10 @@ class StabilityMap(Result):
     def to_dataset(self) -> "xarray.Dataset":
         """The arrays with the parameters as named coordinates."""
         dataset = super().to_dataset()
-        names = {f"axis_{i}": name for i, name in enumerate(self.axes)}
-        coordinates = {
-            name: (name, np.asarray(values), {"units": self._unit(name)}) for name, values in self.axes.items()
-        }
+        names, design = {f"axis_{i}": name for i, name in enumerate(self.axes)}, self.inputs.get("system")
+        units = {name: design.unit_of(name) if isinstance(design, DataSheet) else "" for name in self.axes}
+        coordinates = {name: (name, np.asarray(values), {"units": units[name]}) for name, values in self.axes.items()}
         return dataset.rename(names).assign_coords(coordinates)
-
-    def _unit(self, name: str) -> str:
-        """Unit of a parameter as its design declares it; empty where a function made the systems."""
-        sheet = self.inputs.get("system")
-        *inner, last = name.split(".")
-        for part in inner:
-            sheet = getattr(sheet, part, None)
-        if not isinstance(sheet, DataSheet):
-            return ""
-        declared = sheet.parameters()
-        last = getattr(sheet, "aliases", {}).get(last, (last,))[0]
-        return declared[last].unit if last in declared else ""
 
 
 @public(axes=named)

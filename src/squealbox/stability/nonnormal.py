@@ -8,7 +8,7 @@ Source: Trefethen and Embree 2005, Spectra and Pseudospectra; Schmid 2007, Annua
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -32,6 +32,9 @@ class TransientGrowth(Result):
     start_qd: Any = quantity("dof", "m/s", "optimal start, velocity")
     instants: Any = quantity("instant", "s", "instants of the envelope")
     envelope: Any = quantity("instant", "1", "largest amplification possible at each instant")
+
+    coordinates: ClassVar = {"instant": "instants"}
+    table_over: ClassVar = ("instant",)
 
     def summary(self) -> str:
         """Amplification, when, and the two abscissae."""

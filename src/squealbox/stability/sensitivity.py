@@ -15,7 +15,7 @@ of its own, so neither has a gradient: `repeated` flags that, and the derivative
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -40,6 +40,8 @@ class Sensitivity(Result):
     condition: Any = quantity("", "1", "condition number of the eigenvalue")
     separation: Any = quantity("", "1/s", "distance to the nearest other eigenvalue")
     parameters: tuple[str, ...] = ()
+
+    table_over: ClassVar = ("parameter",)
 
     @property
     def repeated(self) -> bool:

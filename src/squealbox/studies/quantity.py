@@ -141,11 +141,12 @@ def declared(design: Any, path: str) -> list[Parameter]:
         return []
     head, _, rest = path.partition(".")
     names = design.aliases.get(head, (head,))
+    design.value_of(path)  # an unknown name says so
     if rest:
-        design.value_of(head)  # an unknown name says so
-        return [about for name in names for about in declared(getattr(design, name), rest)]
-    design.value_of(path)
-    return [design.parameters()[name] for name in names if name in design.parameters()]
+        found = [about for name in names if hasattr(design, name) for about in declared(getattr(design, name), rest)]
+    else:
+        found = [design.parameters()[name] for name in names if name in design.parameters()]
+    return found or [about for name, about, _ in design.leaves() if name == path]
 
 
 def unit_of(design: Any, path: str) -> str:

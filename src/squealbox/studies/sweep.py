@@ -64,6 +64,12 @@ class Sweep(Result):
         found: xarray.Dataset = self.dataset
         return found
 
+    def to_dataframe(self) -> Any:
+        """One row for each point: its parameters, how it ended, and every number of every answer, as `table` has it."""
+        import xarray
+
+        return xarray.Dataset({name: ("point", values) for name, values in self.table().items()}).to_dataframe()
+
     @classmethod
     def from_dataset(cls, dataset: "xarray.Dataset") -> Self:
         texts = {name: json.loads(dataset.attrs[name]) for name in ("inputs", "settings", "outcome", "provenance")}

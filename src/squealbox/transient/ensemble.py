@@ -10,9 +10,9 @@ import numpy as np
 
 from squealbox.arguments import designs, public
 from squealbox.cautions import of_many_runs
-from squealbox.parameters import ParameterError, known_names
+from squealbox.parameters import DataSheet, ParameterError, known_names
 from squealbox.result import COMPLETED, Column, Outcome, Result, batched, quantity
-from squealbox.system import System, as_system
+from squealbox.system import as_system
 from squealbox.transient import _march
 from squealbox.transient.choosing import chosen_method, usual_method
 from squealbox.transient.lanes.work import HEAD, Progress, Work
@@ -93,14 +93,18 @@ class Ensemble(Result):
     def to_dataset(self) -> "xarray.Dataset":
         """As `Result.to_dataset`, with ``parameter_<name>`` and ``observed_<name>`` for what varied and was seen."""
         dataset = super().to_dataset()
-        batch = len(self.shape)
+        batch, design = len(self.shape), self.inputs.get("system")
         for name, values in self.parameters.items():
-            dataset[f"parameter_{name}"] = ([f"axis_{i}" for i in range(batch)], np.broadcast_to(values, self.shape))
+            unit = design.unit_of(name) if isinstance(design, DataSheet) else ""
+            about = {"units": unit, "long_name": f"value of {name}"}
+            dims = [f"axis_{i}" for i in range(batch)]
+            dataset[f"parameter_{name}"] = (dims, np.broadcast_to(values, self.shape), about)
         for name, values in self.observed.items():
-            of = self.settings["observed"][name][0]
+            of, unit = self.settings["observed"][name]
             first = [of] if of in dataset.sizes else []
             own = [*first, *(f"{name}_{i}" for i in range(np.ndim(values) - batch - len(first)))]
-            dataset[f"observed_{name}"] = ([*(f"axis_{i}" for i in range(batch)), *own], values)
+            about = {"units": unit, "long_name": f"observed {name}"}
+            dataset[f"observed_{name}"] = ([*(f"axis_{i}" for i in range(batch)), *own], values, about)
         return self._along(dataset)
 
     def _along(self, dataset: "xarray.Dataset") -> "xarray.Dataset":
@@ -303,9 +307,9 @@ def _space(
         if isinstance(design, (list, tuple)):
             return (), [], (len(design),)
         return (), [], as_system(design).shape or _shape_of_starts(start)
-    if isinstance(design, (System, list, tuple)):
+    if isinstance(design, (list, tuple)):
         raise ParameterError(
-            "simulate_ensemble", "parameters", list(parameters), "a design: a System has no named parameters to vary"
+            "simulate_ensemble", "parameters", list(parameters), "one design or system: of several each is run as it is"
         )
     arrays = [np.asarray(value, dtype=float) for value in parameters.values()]
     if grid:

@@ -5,7 +5,7 @@ deflection does not count, nor does a mean that drifts. Lines fitted to its loga
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -42,6 +42,8 @@ class Verdict(Result):
     envelope_centre: Any = quantity("window", "m", "mid-height in each window")
     fate: str
     text: str
+
+    coordinates: ClassVar = {"window": "envelope_time"}
 
     @property
     def kind(self) -> str:

@@ -8,7 +8,7 @@ Basin stability: Menck, Heitzig, Marwan and Kurths 2013, Nature Physics 9, 89-92
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -72,6 +72,8 @@ class Basin(Result):
     through: Any = quantity("state", "m", "state in the middle of the box, or that the plane goes through")
     plane: tuple[str, ...] = ()
     attractors: tuple[Attractor, ...] = field(default=(), metadata={"transient": True})
+
+    table_over: ClassVar = ("start",)
 
     @property
     def system(self) -> System:

@@ -11,7 +11,7 @@ vibration ends. Both edges are found on two roads:
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -51,6 +51,9 @@ class Coexistence(Result):
     parameters: tuple[str, ...] = ()
     starts: int = 0
     hopf: PointCurve | None = None
+
+    coordinates: ClassVar = {"column": "x", "row": "y"}
+    table_over: ClassVar = ("column", "row")
 
     @property
     def share(self) -> float:

@@ -9,7 +9,7 @@ motion comes from a run of its own, after the motion has settled.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -61,6 +61,9 @@ class BifurcationDiagram(Result):
     read: str = ""
     section: str = ""
     caution: str = ""
+
+    coordinates: ClassVar = {"point": "value"}
+    table_over: ClassVar = ("point",)
 
     @property
     def amplitude(self) -> Any:

@@ -44,6 +44,9 @@ class Cycle(Result):
     error: float = float("nan")
     caution: str = ""
 
+    coordinates: ClassVar = {"time": "t", "event": "event_time"}
+    table_over: ClassVar = ("time",)
+
     swept: ClassVar = {
         "period": ("", "s", "period"),
         "frequency": ("", "Hz", "1/period"),

@@ -15,7 +15,7 @@ import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -46,6 +46,9 @@ class ForcedCycle(Result):
     multipliers: Any = quantity("multiplier", "1", "Floquet multipliers, largest first")
     error: Any = quantity("", "1", "last scaled residual")
     events: int = 0
+
+    coordinates: ClassVar = {"time": "t"}
+    table_over: ClassVar = ("time",)
 
     @property
     def system(self) -> System:

@@ -8,7 +8,7 @@ K. Deb et al. 2002, IEEE Trans. Evol. Comput. 6, 182-197.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -40,6 +40,8 @@ class Optimum(Result):
     goals_before: Any = quantity("goal", "", "its goals")
     constraints_before: Any = quantity("constraint", "", "its constrained numbers")
     best: int = 0
+
+    table_over: ClassVar = ("design",)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -136,7 +138,7 @@ def optimise(
     >>> round(found.changes["x"], 5), round(float(found.goals[0, 0]), 9)
     (0.3, 1.0)
     """
-    wanted = [goals] if isinstance(goals, Goal) else list(goals)
+    wanted: list[Any] = list(goals) if isinstance(goals, (list, tuple)) else [goals]
     kept = list(constraints)
     names, box = checked_box(variables, "optimise")
     _check(wanted, kept, scatter, method)

@@ -12,7 +12,7 @@ Source: O. Ditlevsen, H. O. Madsen, Structural Reliability Methods, 1996, chapte
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -47,6 +47,8 @@ class DesignPoint(Result):
     importance: Any = quantity("parameter", "1", "alpha^2, share of each parameter")
     distance: Any = quantity("along", "1", "distance from the median along z*, in standard deviations")
     values: Any = quantity("along", "", "the quantity there")
+
+    table_over: ClassVar = ("parameter",)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -1,0 +1,107 @@
+"""What is declared of the fields of data sheets: unit, range, meaning and source, and the error for a value beyond."""
+
+import dataclasses
+import difflib
+import math
+from typing import Any
+
+import numpy as np
+
+
+@dataclasses.dataclass(frozen=True)
+class Parameter:
+    """What is known of one field of a data sheet: unit, range, meaning and source."""
+
+    unit: str
+    low: float = -math.inf
+    high: float = math.inf
+    low_open: bool = False
+    high_open: bool = False
+    meaning: str = ""
+    source: str = ""
+    optional: bool = False
+    schedule: bool = False
+
+    @property
+    def range(self) -> str:
+        """The range in interval notation with its unit, such as ``(0, inf) kg``."""
+        left = "(" if self.low_open or math.isinf(self.low) else "["
+        right = ")" if self.high_open or math.isinf(self.high) else "]"
+        unit = "" if self.unit in ("", "-") else f" {self.unit}"
+        return f"{left}{self.low:g}, {self.high:g}{right}{unit}"
+
+    @property
+    def expected(self) -> str:
+        """What a value must be, as the end of a sentence."""
+        return f"a finite number in {self.range}"
+
+    def accepts(self, value: np.ndarray) -> bool:
+        """True when every entry of `value` is finite and inside the range."""
+        above = value > self.low if self.low_open else value >= self.low
+        below = value < self.high if self.high_open else value <= self.high
+        return bool(np.all(np.isfinite(value) & above & below))
+
+
+class ParameterError(ValueError):
+    """A parameter is unknown, not a finite number, or outside its range.
+
+    The attributes carry the evidence: `owner` (class name), `name`, `value`, and `expected` (the range with its unit).
+    """
+
+    def __init__(self, owner: str, name: str, value: object, expected: str) -> None:
+        self.owner, self.name, self.value, self.expected = owner, name, value, expected
+        given = "" if expected.startswith("did you mean") and np.ndim(value) else f" = {_shown(value)}"  # type: ignore[arg-type]
+        super().__init__(f"{owner}.{name}{given}: {self.expectation}")
+
+    @property
+    def expectation(self) -> str:
+        """What was expected, as the end of a sentence."""
+        return self.expected if self.expected.startswith("did you mean") else f"expected {self.expected}"
+
+
+def parameter(
+    unit: str,
+    low: float = -math.inf,
+    high: float = math.inf,
+    *,
+    default: Any = dataclasses.MISSING,
+    default_factory: Any = dataclasses.MISSING,
+    low_open: bool = False,
+    high_open: bool = False,
+    meaning: str = "",
+    source: str = "",
+    optional: bool = False,
+    schedule: bool = False,
+) -> Any:
+    """Declare a field of a data sheet: unit, range, default, meaning, source; may it be None, or a schedule?"""
+    about = Parameter(unit, low, high, low_open, high_open, meaning, source, optional, schedule)
+    if default_factory is not dataclasses.MISSING:
+        return dataclasses.field(default_factory=default_factory, metadata={"parameter": about})
+    return dataclasses.field(default=default, metadata={"parameter": about})
+
+
+@dataclasses.dataclass(frozen=True)
+class Choice:
+    """What is known of a field that holds one of several words."""
+
+    options: tuple[str, ...]
+    meaning: str = ""
+
+
+def choice(*options: str, default: Any = dataclasses.MISSING, meaning: str = "") -> Any:
+    """Declare a field that holds one of the words `options`."""
+    return dataclasses.field(default=default, metadata={"choice": Choice(options, meaning)})
+
+
+def known_names(given: str, names: list[str]) -> str:
+    """A phrase for an error: the nearest known name, and all of them."""
+    near = difflib.get_close_matches(given, names, n=1)
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    return f"{hint}one of {', '.join(names)}"
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, type):
+        return f"the class {value.__name__}"
+    text = repr(value) if not isinstance(value, (float, int)) else f"{value:g}"
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,83 @@
+"""Figures for papers: width, style and the user's own settings, text that stays text, numbers that stay apart."""
+
+import re
+from itertools import pairwise
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+from result_examples import EXAMPLES
+from squealbox import DrumBrake, ParameterError, complex_modes, plot, plots, simulate
+from squealbox.plots import style
+
+MOTION = simulate(DrumBrake(), 0.02, times=2001)
+MODES = complex_modes(DrumBrake())
+
+
+@pytest.mark.parametrize("width", [3.4, 5.0, 7.0])
+def test_a_figure_is_as_wide_as_asked_and_no_panel_is_narrow(width):
+    figure = plot(MOTION, width=width)
+    assert figure.get_figwidth() == width
+    figure.draw_without_rendering()
+    for panel in figure.axes:
+        assert panel.get_position().width * width > 1.0
+
+
+def test_height_and_style_are_taken():
+    figure = plot(MODES, width=4.0, height=5.0, style={"axes.facecolor": "#abcdef"})
+    assert tuple(figure.get_size_inches()) == (4.0, 5.0)
+    assert figure.axes[0].get_facecolor() == mpl.colors.to_rgba("#abcdef")
+    with pytest.raises(ParameterError, match=r"plot\.width = 'wide': expected a finite number in"):
+        plot(MODES, width="wide")
+
+
+def test_what_the_user_has_set_goes_before_the_look_of_the_house():
+    with mpl.rc_context({"font.family": "monospace", "axes.labelsize": 12.0}):
+        label = plot(MODES).axes[0].xaxis.label
+    assert (label.get_fontfamily(), label.get_fontsize()) == (["monospace"], 12.0)
+    label = plot(MODES).axes[0].xaxis.label
+    assert (label.get_fontfamily(), label.get_fontsize()) == (["sans-serif"], 8.0)
+
+
+def test_text_stays_text_in_svg_and_pdf(tmp_path):
+    figure = plot(MODES)
+    figure.savefig(tmp_path / "own.svg")
+    (own,) = plots.save(figure, tmp_path / "saved", ["svg"])
+    for path in (tmp_path / "own.svg", own):
+        assert ">growth rate [1/s]</text>" in path.read_text(encoding="utf-8")
+    (pdf,) = plots.save(figure, tmp_path / "figure.pdf")
+    assert pdf.read_bytes().startswith(b"%PDF")
+    assert b"/FontFile2" in pdf.read_bytes()  # a font, not outlines of letters
+
+
+def test_numbers_along_an_axis_stay_apart():
+    figure, panel = plots.panels(width=1.6, height=1.2)
+    panel.set_xlim(-2345.0, 2345.0)
+    style.drawn(figure)
+    assert crowded(figure) == []
+
+
+def crowded(figure) -> list[str]:
+    """Axes of a drawn figure whose numbers run into each other, by their labels."""
+    found = []
+    for panel in figure.axes:
+        for axis, side in ((panel.xaxis, 0), (panel.yaxis, 1)):
+            low, high = sorted(axis.get_view_interval())
+            known = zip(axis.get_majorticklocs(), axis.get_ticklabels(), strict=False)
+            boxes = [label.get_window_extent() for at, label in known if low <= at <= high and label.get_text()]
+            spans = sorted((box.min[side], box.max[side]) for box in boxes)
+            found += [axis.get_label_text()] * any(after[0] < before[1] for before, after in pairwise(spans))
+    return found
+
+
+def test_no_offset_is_printed_over_a_label():
+    text = style.drawn(EXAMPLES["HopfPoint"]().plot(), "svg").decode()
+    assert f"{style.MINUS}0.33" in re.sub(r"\s", "", text)  # the axis counts from the point
+
+
+def test_branches_that_lie_decades_apart_share_a_logarithmic_axis():
+    from squealbox.plots.cycles import _floor
+
+    assert _floor([np.array([1.0, 2.0]), np.array([3.0, 1.0])]) == 0.0
+    assert 0.0 < _floor([np.array([1.0, 2.0]), np.array([300.0, 100.0])]) < 1.1
