@@ -22,7 +22,7 @@ from squealbox import (
     stability,
     studies,
 )
-from squealbox.control import run_loops
+from squealbox.control import defeating_push, placement, run_loops
 from squealbox.designs import DampingParadox, DrumBrake, MassOnBelt
 from squealbox.fit import fit_friction
 from squealbox.friction import Coulomb
@@ -113,6 +113,11 @@ def sampled() -> System:
     return System([[1.0]], [[0.0]], [[1.0]], loops=(PID(on="q1", derivative=0.1, sampling=2.0),))
 
 
+def limited() -> System:
+    """An oscillator of negative damping with a loop of limited force."""
+    return System([[1.0]], [[-0.1]], [[1.0]], loops=(PID(on="q1", derivative=0.3, limit=1.0),))
+
+
 def scattered(study: Callable[..., Any], **settings: Any) -> Any:
     """A study of the growth rate of the model of the damping paradox under scatter."""
     scatter = studies.Scatter({FRICTION: studies.Normal(0.28, 0.02), "eta1": studies.Uniform(0.01, 0.03)})
@@ -148,6 +153,8 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
     ),
     "ForcedCycle": lambda: forced_cycle(shaken()),
     "LoopRun": lambda: run_loops(sampled(), 5.0, ([1.0], [0.0])),
+    "Placement": lambda: placement(drum()),
+    "DefeatingPush": lambda: defeating_push(limited(), precision=0.1),
     "SquealEvents": stop,
     "NoiseMatrix": campaign,
     "Calibration": fitted,

@@ -22,7 +22,7 @@ from . import (
 from .calibration import Calibration, Measured, calibrate, compare
 from .contacts import Contacts
 from .continuation import Follower, follow
-from .control import ClosedLoop, closed_loop
+from .control import ClosedLoop, DefeatingPush, Placement, closed_loop, defeating_push, placement
 from .countermeasures import (
     AddedDamping,
     AddedMass,
@@ -307,6 +307,10 @@ __all__ = [
     "control",
     "closed_loop",
     "ClosedLoop",
+    "placement",
+    "Placement",
+    "defeating_push",
+    "DefeatingPush",
     # what would silence this brake?
     "silence",
     "Remedies",

@@ -40,6 +40,7 @@ from squealbox.designs import DESIGNS
 from squealbox.files import json_schema
 from squealbox.loops import LOOPS
 from squealbox.parameters import from_plain, to_plain
+from squealbox.plots import loop_locus, nyquist_curve
 from squealbox.remedies import Candidate, candidates_for
 from squealbox.remedies.candidates import more_friction
 from squealbox.result import Result
@@ -185,3 +186,14 @@ def test_a_tuning_to_rank_by_stays_within_its_map():
         frequency, damping = quick_tuning(brake, "x", 0.05)
         assert 0.0 < damping <= 0.5
         assert growth_of(TunedMass(brake, "x", 0.05, frequency, damping)) < growth_of(brake)
+
+
+@pytest.mark.parametrize("change", [{}, {"loops.0.delay": 1e-5}, {"loops.0.sampling": 5e4, "loops.1.sampling": 5e4}])
+def test_figures_of_a_loop(change):
+    closed = closed_loop(Controlled(DRUM, [PID(on=name, derivative=2000.0) for name in "xy"]).replace(change))
+    curve = nyquist_curve(closed).axes[0]
+    assert curve.get_xlabel() == "real part of -L"
+    nearest = min(np.min(np.hypot(line.get_xdata() + 1.0, line.get_ydata())) for line in curve.lines[:1])
+    assert nearest > 0.1  # a stable loop keeps away from -1
+    locus = loop_locus(closed).axes[0]
+    assert ("without delay" in locus.get_title()) == bool(change)

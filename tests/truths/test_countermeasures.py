@@ -252,3 +252,22 @@ def test_an_averaged_law_takes_arrays(law, w):
     assert found.mu(0.5) == pytest.approx([float(each.mu(0.5)) for each in alone], rel=1e-12)
     assert found.slope_at(0.5) == pytest.approx([float(each.slope_at(0.5)) for each in alone], rel=1e-12)
     assert np.shape(found.static_limit) == (3,)
+
+
+@pytest.mark.parametrize(("loss", "parameter"), [(1.0, 1.0), (0.4, 0.3)])
+def test_a_layer_has_its_loss_as_a_state(loss, parameter):
+    """The stiffness felt at its frequency is k (1 + i eta), and the loss is largest there."""
+    brake, hertz = ModeCoupling(k12=0.0, k3=0.0), 0.3
+    layer = LayerDamping(brake, "y", loss, parameter, frequency=hertz, model="zener")
+    system, eta = layer.system(), ross_kerwin_ungar(loss, parameter)
+
+    def felt(f):
+        w = 2.0 * np.pi * f
+        dynamic = system.K + 1j * w * system.C
+        return dynamic[1, 1] - dynamic[1, 2] * dynamic[2, 1] / dynamic[2, 2]
+
+    assert felt(hertz) == pytest.approx(2.0 * (1.0 + 1j * eta), rel=1e-12)
+    assert all(felt(f).imag / felt(f).real < eta for f in (0.8 * hertz, 1.25 * hertz))
+    viscous = LayerDamping(brake, "y", loss, parameter, frequency=hertz).system()
+    assert viscous.names == ("x", "y")
+    assert viscous.C[1, 1] == pytest.approx(2.0 * eta / (2.0 * np.pi * hertz), rel=1e-12)

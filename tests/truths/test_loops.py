@@ -14,11 +14,14 @@ from squealbox import (
     DrumBrake,
     LinearSlope,
     ModeCoupling,
+    ParameterError,
     StateFeedback,
     System,
     closed_loop,
     complex_modes,
     critical_value,
+    defeating_push,
+    placement,
     shooting,
     simulate,
 )
@@ -270,3 +273,36 @@ def test_an_actuator_follows_the_held_command():
     exact = np.linalg.eigvals(flow[:3, :3] + np.outer(flow[:3, 3], [0.0, -g, 0.0]))
     found = closed_loop(block(0.0, loop)).multipliers
     assert np.allclose(np.sort_complex(found), np.sort_complex(exact), atol=1e-12)
+
+
+def test_placement_is_the_derivative_of_each_pole():
+    drum = DrumBrake(friction=LinearSlope(0.36, -0.05))
+    found, gain = placement(drum), 1e-2
+    for i, sense in enumerate("xy"):
+        for k, act in enumerate("xy"):
+            moved = closed_loop(Controlled(drum, [PID(on=act, sense=sense, derivative=gain)])).poles
+            for m, pole in enumerate(found.poles):
+                slope = (moved[np.argmin(np.abs(moved - pole))] - pole) / gain
+                assert found.shift[i, k, m] == pytest.approx(slope, abs=1e-4)
+    sense, act, own, _ = found.ranked()[0]
+    assert (sense, act) == ("y", "y")
+    assert own < 0.0
+    assert found.ranked()[-2][3] > 0.0  # a pair that is not collocated spills over
+
+
+def test_the_push_that_defeats_a_limited_loop_lies_on_its_unstable_cycle():
+    limited = block(-0.1, PID(on="q1", derivative=0.3, limit=1.0))
+    found = defeating_push(limited, precision=1e-4)
+    edge = shooting(limited, ([0.0], [12.59], 2.0 * np.pi))
+    q, v = edge.q[:, 0], edge.qd[:, 0]
+    at = int(np.flatnonzero((q[:-1] < 0.0) & (q[1:] >= 0.0))[0])
+    passing = np.interp(0.0, q[at : at + 2], v[at : at + 2])
+    assert float(found.kept) < float(found.defeated) <= float(found.kept) * 1.0001
+    assert found.push == pytest.approx(passing, rel=2e-4)
+    lags = block(-0.1, PID(on="q1", derivative=0.3, limit=1.0, bandwidth=1.0))  # one that remembers has an edge too
+    assert 0.9 * found.push < defeating_push(lags, precision=1e-2).push < found.push
+    unstable = defeating_push(block(-0.4, PID(on="q1", derivative=0.3, limit=1.0)))
+    assert unstable.outcome == "unstable"
+    assert defeating_push(block(0.1, PID(on="q1", derivative=0.3, limit=1.0))).outcome == "no_danger"
+    with pytest.raises(ParameterError, match="a loop with a limit"):
+        defeating_push(block(0.1, PID(on="q1", derivative=0.3)))

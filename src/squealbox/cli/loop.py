@@ -27,13 +27,13 @@ def loop(
     allow_code
         run the Python file of a friction law that the design file names
     out
-        folder for the poles as table and figure
+        folder for the poles as table and figure, root locus and Nyquist curve of the first loop
     """
     found = read(file, changes, allow_code)
     if not found.design.system().loops:
         raise UsageError(f"{file} has no section [[loops]], which says what senses and acts")
     if out is not None:
-        folder(out, "poles")
+        folder(out, "poles", "root_locus", "nyquist")
     closed = closed_loop(found.design)
     show(f"{found.design.title}, {file}", closed)
     if out is not None:
@@ -41,6 +41,10 @@ def loop(
 
         columns = {"growth rate [1/s]": closed.poles.real, "frequency [Hz]": closed.frequency}
         paths = [closed.save(out / "poles.nc"), write_csv(out / "poles.csv", columns)]
-        print(written(*paths, *plots.save(plots.plot(closed, title=found.path.name), out / "poles")))
+        title = found.path.name
+        paths += plots.save(plots.plot(closed, title=title), out / "poles")
+        paths += plots.save(plots.loop_locus(closed, title=title), out / "root_locus")
+        paths += plots.save(plots.nyquist_curve(closed, title=title), out / "nyquist")
+        print(written(*paths))
     if not closed.outcome.ok:
         raise ComputationFailed(closed.outcome)

@@ -76,11 +76,7 @@ class Shim(Countermeasure):
         return place, unit, spring
 
     def _zener(self, base: System, place: int, unit: Any, spring: Any) -> System:
-        eta = np.asarray(self.loss_factor, dtype=float)
-        share = 2.0 * eta**2 + 2.0 * eta * np.sqrt(eta**2 + 1.0)
-        k0 = self.stiffness * (2.0 + share) / (2.0 * (1.0 + share))
-        k1 = share * k0
-        c1 = k1 / np.sqrt(1.0 + share) / (2.0 * np.pi * np.asarray(self.frequency))
+        k0, k1, c1 = standard_solid(self.stiffness, self.loss_factor, self.frequency)
         whole = extended(base, "shim")
         wide, z = np.append(unit, np.zeros((*unit.shape[:-1], 1)), axis=-1), np.eye(whole.size)[-1]
         total = spring + k0 + k1  # the layer's own deflection s = (k_c w.q + k1 z)/total is eliminated
@@ -113,6 +109,15 @@ class Shim(Countermeasure):
         normal, along = unit * cosine + contact.d * sine, contact.d * cosine - unit * sine
         turned = contact.replace(n=spring[..., None] * normal, d=along, t=along, normal=normal)
         return _with(added(base, stiffness=outer(spring, normal, normal) - outer(spring, unit, unit)), place, turned)
+
+
+def standard_solid(stiffness: Any, loss_factor: Any, frequency: Any) -> tuple[Any, Any, Any]:
+    """k0, k1 [N/m] and c1 [N s/m] of a Zener solid that has this stiffness and its largest loss at `frequency` [Hz]."""
+    eta = np.asarray(loss_factor, dtype=float)
+    share = 2.0 * eta**2 + 2.0 * eta * np.sqrt(eta**2 + 1.0)
+    k0 = stiffness * (2.0 + share) / (2.0 * (1.0 + share))
+    k1 = share * k0
+    return k0, k1, k1 / np.sqrt(1.0 + share) / (2.0 * np.pi * np.asarray(frequency))
 
 
 def _reaction(contact: Any, share: Any, state: Any) -> Any:
@@ -148,10 +153,10 @@ def ross_kerwin_ungar(loss_factor: Any, stiffness_parameter: Any, shear_paramete
 
 
 class LayerDamping(Countermeasure):
-    """A constrained layer on the plate behind one degree of freedom: C + eta k/(2 pi frequency) a a'.
+    """A constrained layer on the plate behind one degree of freedom, of loss factor eta after Ross, Kerwin and Ungar.
 
-    eta is that of Ross, Kerwin and Ungar and k the brake's own stiffness a'K a; as any loss factor it is said in time
-    at the one frequency.
+    viscous    C + eta k/(2 pi frequency) a a', k = a'K a the brake's own stiffness
+    zener      k as a standard solid: k (1 + i eta) at `frequency`, where eta is largest, its loss a state
 
     >>> from squealbox import DrumBrake
     >>> round(LayerDamping(DrumBrake(), on="y", loss_factor=1.0, stiffness_parameter=1.0, frequency=2e3).loss, 9)
@@ -171,6 +176,8 @@ class LayerDamping(Countermeasure):
         "Hz", 0.0, low_open=True, default=2000.0, meaning="where the loss is given", source=OWN
     )
 
+    model: str = choice("viscous", "zener", default="viscous", meaning="how the loss is said in time")
+
     @property
     def loss(self) -> Any:
         """The loss factor of the layered plate [-]."""
@@ -182,5 +189,11 @@ class LayerDamping(Countermeasure):
         base = self.brake.system()
         row = direction("LayerDamping", "on", base, self.on)
         stiffness = np.einsum("...ij,i,j->...", base.K, row, row)
+        if self.model == "zener" and np.any(self.loss):
+            k0, k1, c1 = standard_solid(stiffness, self.loss, self.frequency)
+            whole = extended(base, "layer")
+            wide, z = np.append(row, 0.0), np.eye(base.size + 1)[-1]
+            springs = outer(k0 - stiffness, wide, wide) + outer(k1, wide - z, wide - z)
+            return added(whole, stiffness=springs, damping=outer(c1, z, z))
         damper = self.loss * stiffness / (2.0 * np.pi * np.asarray(self.frequency))
         return added(base, damping=outer(damper, row, row))

@@ -37,7 +37,17 @@ from squealbox.plots.points import (
 )
 from squealbox.plots.populations import ensemble_overview
 from squealbox.plots.reliability import design_point, subset_probability, surrogate
-from squealbox.plots.remedies import countermeasure_drawing, detuning_map, loop_run, poles_figure, remedies_figure
+from squealbox.plots.remedies import (
+    countermeasure_drawing,
+    detuning_map,
+    loop_locus,
+    loop_run,
+    nyquist_curve,
+    placement_figure,
+    poles_figure,
+    push_figure,
+    remedies_figure,
+)
 from squealbox.plots.spectra import component_growth, loudness, spectrogram, spectrum
 from squealbox.plots.stability import (
     boundary_curves,
@@ -88,6 +98,7 @@ __all__ = [
     "friction_fit",
     "interval_bounds",
     "letters",
+    "loop_locus",
     "loop_run",
     "loudness",
     "mechanism_map",
@@ -97,12 +108,15 @@ __all__ = [
     "morris_effects",
     "motion_overview",
     "noise_matrix_figure",
+    "nyquist_curve",
     "optimum",
     "panels",
     "phase_plane",
+    "placement_figure",
     "plot",
     "point_curve",
     "poles_figure",
+    "push_figure",
     "remedies_figure",
     "root_locus",
     "save",

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.control import ClosedLoop, LoopRun
+from squealbox.control import ClosedLoop, DefeatingPush, LoopRun, Placement
 from squealbox.countermeasures import BestAbsorber, Countermeasure
 from squealbox.plots.brakes import brake_drawing
 from squealbox.plots.dispatch import drawn_by
@@ -75,6 +75,77 @@ def poles_figure(found: ClosedLoop, *, title: str = "", axes: Any = None) -> "Fi
             panel.plot(upper.real, upper.imag / (2.0 * np.pi), mark, markersize=4, label=label)
         panel.axvline(0.0, color="black", linewidth=0.6)
         panel.set(xlabel=quantity_label("growth rate", "1/s"), ylabel=quantity_label("frequency", "Hz"), title=title)
+        panel.legend(loc="best", fontsize=6)
+        return figure_of(panel)
+
+
+def loop_locus(
+    found: ClosedLoop, gains: Any = None, loop: int | None = None, *, title: str = "", axes: Any = None
+) -> "Figure":
+    """Where the poles go as the gain of one loop, or of all, rises from 0 (crosses) over 1 (circles) to twice that."""
+    factors = np.linspace(0.0, 2.0, 401) if gains is None else np.asarray(gains, dtype=float)
+    if any(one.late > 0.0 or one.sampling is not None for one in found.plant.loops):
+        title = f"{title} without delay and sampling".strip()
+    poles = found.root_locus(factors, loop)
+    with drawing(axes, width=1.4 * COLUMN, height=2.8) as panel:
+        upper = np.where(poles.imag >= 0.0, poles, np.nan)
+        panel.plot(upper.real.ravel(), upper.imag.ravel() / (2.0 * np.pi), ".", color="#0072B2", markersize=1.5)
+        for gain, mark in ((0.0, "x"), (1.0, "o")):
+            at = found.root_locus([gain], loop)[0]
+            at = at[at.imag >= 0.0]
+            panel.plot(at.real, at.imag / (2.0 * np.pi), mark, color="#D55E00", markersize=4, label=f"gain x {gain:g}")
+        panel.axvline(0.0, color="black", linewidth=0.6)
+        panel.set(xlabel=quantity_label("growth rate", "1/s"), ylabel=quantity_label("frequency", "Hz"), title=title)
+        panel.legend(loc="best", fontsize=6)
+        return figure_of(panel)
+
+
+def nyquist_curve(found: ClosedLoop, loop: int = 0, *, title: str = "", axes: Any = None) -> "Figure":
+    """The open loop -L of one loop, the others closed, over positive frequencies, and the critical point -1."""
+    fastest = float(np.max(np.abs(found.open_loop)))
+    slowest = max(float(np.min(np.abs(found.open_loop))), 1e-4 * fastest)
+    w = np.geomspace(1e-2 * slowest, 1e2 * fastest, 2001)
+    near = [
+        p.imag + width * abs(p.real) for p in found.open_loop if p.imag > 0.0 for width in np.linspace(-20, 20, 401)
+    ]
+    w = np.sort(np.concatenate([w, [x for x in near if x > 0.0]]))
+    rates = [float(one.sampling) for one in found.plant.loops if one.sampling is not None]
+    curve = found.nyquist(w[w < np.pi * min(rates, default=np.inf)] / (2.0 * np.pi), loop)
+    with drawing(axes, width=COLUMN, height=COLUMN) as panel:
+        panel.plot(curve.real, curve.imag, label="0 to the highest frequency", **line(0))
+        panel.plot(curve.real, -curve.imag, linewidth=0.6, color="0.6")
+        panel.plot([-1.0], [0.0], "+", color="#D55E00", markersize=8, label="-1")
+        panel.set(xlabel="real part of -L", ylabel="imaginary part of -L", title=title, aspect="equal")
+        panel.legend(loc="best", fontsize=6)
+        return figure_of(panel)
+
+
+@drawn_by.register(Placement)
+def placement_figure(found: Placement, *, title: str = "", axes: Any = None) -> "Figure":
+    """What feedback between each pair of freedoms does to the mode that grows most: blue damps it, red drives it."""
+    values = found.shift[:, :, found.target].real
+    size = float(np.max(np.abs(values))) or 1.0
+    with drawing(axes, width=1.4 * COLUMN, height=2.6) as panel:
+        image = panel.imshow(values, cmap="coolwarm", vmin=-size, vmax=size)
+        panel.figure.colorbar(image, ax=panel, label="growth rate per gain [1/kg]")
+        places = np.arange(len(found.names))
+        panel.set_xticks(places, found.names)
+        panel.set_yticks(places, found.names)
+        panel.set(xlabel="acts on", ylabel="senses", title=title)
+        return figure_of(panel)
+
+
+@drawn_by.register(DefeatingPush)
+def push_figure(found: DefeatingPush, *, title: str = "", axes: Any = None) -> "Figure":
+    """The pushes that die down and those that do not, and the edge between them."""
+    with drawing(axes, width=1.4 * COLUMN, height=1.2) as panel:
+        edge = found.push if found.outcome.ok else 1.0
+        panel.barh(0.0, edge, color="#0072B2", label="dies down")
+        panel.barh(
+            0.0, edge, left=edge, color="#D55E00", label="defeats the loops" if found.outcome.ok else "not known"
+        )
+        panel.set_yticks([])
+        panel.set(xlabel=quantity_label("push", "m/s"), title=title or ("" if found.outcome.ok else str(found.outcome)))
         panel.legend(loc="best", fontsize=6)
         return figure_of(panel)
 

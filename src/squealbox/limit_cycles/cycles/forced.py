@@ -204,7 +204,7 @@ def forced_path(
 
     >>> from squealbox import Contact, Coulomb, Sinusoid, System
     >>> def block(force):
-    ...     return System([[1.0]], [[0.2]], [[1.0]], load=Sinusoid(0.0, force, 0.1))
+    ...     return System([[1.0]], [[0.2]], [[1.0]], load=Sinusoid(0.0, force, 0.1) * [1.0])
     >>> points = list(forced_path(block, (0.1, 0.5), 0.1, ([0.0], [0.0]), largest=0.5))
     >>> points[-1][0]
     0.5
