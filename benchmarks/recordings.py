@@ -173,9 +173,8 @@ def damaged(count):
                 print(f"{whole.name}, {i}: {type(error).__name__}: {error}")
             longest = max(longest, time.process_time() - begun)
         grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
-    print(
-        f"{count} damaged files: {said} told in a sentence, {read} read, the slowest {longest:.2f} s, {grown:.0f} MB more"
-    )
+    told = f"{said} told in a sentence, {read} read"
+    print(f"{count} damaged files: {told}, the slowest {longest:.2f} s, {grown:.0f} MB more")
 
 
 if __name__ == "__main__":
