@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from squealbox import DrumBrake, LinearSlope, Measured, System, calibrate, complex_modes
-from squealbox.calibration import compare, from_signal, modal_assurance
+from squealbox import Coulomb, DrumBrake, LinearSlope, MassOnBelt, Measured, System, calibrate, complex_modes
+from squealbox.calibration import compare, from_events, from_friction, from_signal, modal_assurance, read_mode_table
 from squealbox.parameters import ParameterError
 from squealbox.result import Result
-from squealbox.signals import SignalError, squeal_events
+from squealbox.signals import Recording, SignalError, squeal_events
+from squealbox.transient import Method
 
 
 def coupled(p):
@@ -66,7 +67,7 @@ def test_intervals_hold_the_truth_as_often_as_they_promise():
     brake = DrumBrake(friction=LinearSlope(static=0.36, slope=-0.05))
     modes = complex_modes(brake)
     g, f = modes.most_unstable.growth_rate, modes.most_unstable.frequency
-    held, trials = 0, 30
+    held, trials = 0, 12
     for seed in range(trials):
         rng = np.random.default_rng(seed)
         data = [
@@ -76,7 +77,7 @@ def test_intervals_hold_the_truth_as_often_as_they_promise():
         found = calibrate(brake, {"k3": (1.5e8, 2.3e8), "friction.static": (0.3, 0.42)}, data, seed=seed)
         held += found.low[0] <= 1.9e8 <= found.high[0]
         held += found.low[1] <= 0.36 <= found.high[1]
-    assert held >= 52  # of 60 at 95 %: fewer once in a hundred; the full count is in benchmarks/calibration.py
+    assert held >= 19  # of 24 at 95 %: fewer once in two hundred; the full count is in benchmarks/calibration.py
 
 
 def test_profile_and_posterior_agree_on_a_linear_problem():
@@ -164,3 +165,83 @@ def test_a_calibration_is_saved_and_read_again(tmp_path):
     again = Result.load(own.save(tmp_path / "own.nc"))
     assert again.inputs["design"] == "function coupled, not kept"
     assert np.array_equal(again.values, own.values)
+
+
+def test_stick_slip_from_its_amplitude_and_period():
+    """A = sqrt((dF/k)^2 + (V/w)^2), T = 2 dF/(k V) + 2 (pi - atan(dF w/(k V)))/w, solved for k and friction's jump."""
+    jump, V = 0.15, 0.1
+    amplitude, period = np.hypot(jump, V), 2.0 * jump / V + 2.0 * (np.pi - np.arctan(jump / V))
+    assert (amplitude, period) == pytest.approx((0.180277564, 7.317597861), rel=1e-8)
+    brake = MassOnBelt(k=1.4, load=1.0, sliding_speed=V, friction=Coulomb(0.5, 0.25))
+    how = {"duration": 12.0 * period, "method": Method("taylor", largest_step=period / 30.0)}
+    data = [
+        Measured("amplitude", amplitude, sd=0.01, **how),
+        Measured("cycle_frequency", 1.0 / period, sd=0.001, **how),
+    ]
+    found = calibrate(brake, {"k": (0.7, 1.6), "friction.static": (0.3, 0.6)}, data, profile=False)
+    assert found.values == pytest.approx([1.0, 0.25 + jump], rel=1e-9)
+
+
+def test_lists_stand_among_measured_numbers():
+    brake = MassOnBelt(friction=LinearSlope(0.5, -0.1))
+    curve = from_friction([0.2, 1.0], [0.44, 0.36], sd=0.01)
+    found = calibrate(
+        brake, {"friction.static": (0.2, 0.8), "friction.slope": (-0.3, 0.0)}, [curve, *curve], profile=False
+    )
+    assert found.values == pytest.approx([0.46, -0.1], rel=1e-9)
+    with pytest.raises(ParameterError, match="a list of Measured"):
+        calibrate(brake, {"friction.static": (0.2, 0.8)}, [curve, [3.0]])
+
+
+def test_an_event_is_small_motion_at_its_onset_under_the_conditions_there():
+    """A mode grows at 2078 Hz and 400 1/s, then squeals at 2010 Hz: modes are compared with the first."""
+    rate, tone, squeal = 96e3, 2078.0, 2010.0
+    t = np.arange(int(0.6 * rate)) / rate
+    growing = t < 0.2
+    phase = np.where(growing, tone * t, tone * 0.2 + squeal * (t - 0.2))
+    x = np.exp(400.0 * np.minimum(t - 0.2, 0.0)) * np.sin(2 * np.pi * phase)
+    speed = ([0.0, 0.6], [1.2, 0.6])
+    noise = 1e-4 * np.random.default_rng(0).standard_normal(t.size)
+    events = squeal_events(Recording(x + noise, rate, ("mic",), ("Pa",), {"speed": speed}), band=(1000.0, 16000.0))
+    assert events.frequency[0] == pytest.approx(squeal, abs=0.1)
+    frequency, growth = from_events(events, at={"sliding_speed": "speed"})
+    assert abs(frequency.value - tone) < 4.0 * frequency.sd
+    assert abs(growth.value - 400.0) < 4.0 * growth.sd
+    assert frequency.at["sliding_speed"] == pytest.approx(1.0, abs=0.01)
+    with pytest.raises(SignalError, match="pressure was not recorded"):
+        from_events(events, at={"load": "pressure"})
+
+
+def test_modes_of_a_test_stand_beside_those_of_the_model(tmp_path):
+    modes = complex_modes(DrumBrake(friction=LinearSlope(0.36, -0.05)))
+    once = np.nonzero(modes.eigenvalues.imag > 0.0)[0]
+    names, f = ("x", "y"), modes.frequency[once]
+    shapes = modes.right[:, once]
+    rows = [f"{1e-3 * f[k]:.9f};{100.0 * modes.damping_ratio[once[k]]:.9f};" + ";".join(
+        f"{v.real:.12e}{v.imag:+.12e}i" for v in 2.0 * shapes[:, k]) for k in (1, 0)]  # fmt: skip
+    (tmp_path / "test.csv").write_text("frequency [kHz];damping ratio [%];" + ";".join(names) + "\n" + "\n".join(rows))
+    found = compare(modes, read_mode_table(tmp_path / "test.csv"))
+    assert found.names == ("frequency 1", "damping 1", "MAC 1", "frequency 2", "damping 2", "MAC 2")
+    assert found.simulated == pytest.approx(found.measured, rel=1e-8)
+    assert found.measured[[0, 3]] == pytest.approx(f[[1, 0]], rel=1e-8)
+    assert "MAC 2" in found.summary()
+    pyuff = pytest.importorskip("pyuff")
+    still = {"r2": [0.0, 0.0], "r3": [0.0, 0.0], "n_data_per_node": 3, "node_nums": [4, 7], "load_case": 1}
+    kind = {"model_type": 1, "analysis_type": 2, "data_ch": 2, "spec_data_type": 8, "data_type": 2, "modal_m": 1.0}
+    shares = {"modal_damp_vis": 0.01, "modal_damp_his": 0.0}
+    parts = [pyuff.prepare_55(**kind, **still, **shares, r1=[1.0, k], mode_n=k, freq=f[k]) for k in (0, 1)]
+    pyuff.UFF(str(tmp_path / "test.uff")).write_sets(parts, mode="overwrite")
+    table = read_mode_table(tmp_path / "test.uff")
+    assert table.places[:2] == ("4x", "7x")
+    assert table.shapes[:2] == pytest.approx(np.array([[1.0, 1.0], [0.0, 1.0]]))
+    beside = compare(modes, table)  # places of another naming: by frequency, and it is said
+    assert beside.simulated[0] == pytest.approx(beside.measured[0], rel=1e-4)
+    assert "paired by frequency" in beside.summary()
+    for text, words in (
+        ("f;x\n1;2", "no column 'frequency"),
+        ("frequency [Hz];x\n1;two", "is no number|no number"),
+        ("", "nothing"),
+    ):
+        (tmp_path / "bad.csv").write_text(text)
+        with pytest.raises(SignalError, match=words):
+            read_mode_table(tmp_path / "bad.csv")

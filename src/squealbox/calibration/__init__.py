@@ -7,16 +7,20 @@ comes out, with intervals and with what the data cannot tell apart in words.
 
 from squealbox.calibration.calibrate import Calibration, calibrate
 from squealbox.calibration.comparison import Comparison, compare, modal_assurance
-from squealbox.calibration.measured import QUANTITIES, Measured, from_events, from_signal
+from squealbox.calibration.measured import QUANTITIES, Measured, from_events, from_friction, from_signal
+from squealbox.calibration.mode_tables import ModeTable, read_mode_table
 
 __all__ = [
     "QUANTITIES",
     "Calibration",
     "Comparison",
     "Measured",
+    "ModeTable",
     "calibrate",
     "compare",
     "from_events",
+    "from_friction",
     "from_signal",
     "modal_assurance",
+    "read_mode_table",
 ]

@@ -143,7 +143,7 @@ class Calibration(Result):
 def calibrate(
     design: Any,
     parameters: Mapping[str, tuple[float, float]],
-    measured: Sequence[Measured],
+    measured: Sequence[Measured | Sequence[Measured]],
     *,
     loss: str = "squares",
     level: float = 0.95,
@@ -156,7 +156,8 @@ def calibrate(
     ----------
     design : has ``replace``; or a function of {parameter: values} that makes a design or a system of arrays
     parameters : {dotted name: (lowest, highest)} of what is fitted; a trial never leaves these bounds
-    measured : the measured numbers with their standard deviations
+    measured : the measured numbers with their standard deviations; lists of them, as `from_signal`, `from_events` and
+        `from_friction` make of a signal, an event and a friction curve, may stand among them
     loss : "squares"; or "robust", 2 (sqrt(1 + r^2) - 1), under which one bad number does not pull the rest
     level : of the intervals
     profile : False takes the intervals from the covariance, which is quicker
@@ -177,7 +178,7 @@ def calibrate(
     """
     from scipy.stats import chi2
 
-    problem = _Problem(design, tuple(parameters), list(parameters.values()), list(measured))
+    problem = _Problem(design, tuple(parameters), list(parameters.values()), _flat(measured))
     if loss not in ("squares", "robust") or not 0.0 < level < 1.0:
         raise ParameterError("calibrate", "loss, level", (loss, level), "'squares' or 'robust', and a level in (0, 1)")
     robust = loss == "robust"
@@ -227,6 +228,14 @@ def calibrate(
         singular_values=singular, directions=rows, chi_square=float(np.sum(r**2)), cannot_tell=tuple(told),
         inputs=inputs, settings=settings, outcome=outcome,
     )  # fmt: skip
+
+
+def _flat(measured: Any) -> list[Any]:
+    """The measured numbers, those of lists among them each for itself."""
+    found: list[Any] = []
+    for each in measured:
+        found += _flat(each) if isinstance(each, (list, tuple)) else [each]
+    return found
 
 
 class _Problem:

@@ -11,8 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.calibration.mode_tables import ModeTable
 from squealbox.result import Outcome, Result, quantity
 from squealbox.signals import SignalError, dominant_frequency, growth_rate, sound_level
+from squealbox.system import as_system
 
 UNITS = {"frequency": "Hz", "growth rate": "1/s", "level": "dB(A)"}
 
@@ -28,7 +30,7 @@ class Comparison(Result):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The rows: frequency, growth rate, level."""
+        """The rows: frequency, growth rate, level; of a table of modes, frequency, damping ratio and MAC of each."""
         return tuple(self.settings["rows"])
 
     def summary(self) -> str:
@@ -46,7 +48,7 @@ class Comparison(Result):
             )
             lines.append(
                 f"{name:12}  {numbers}  {away if np.isfinite(self.simulated[i] - self.measured[i]) else '-'}"
-                f"  {UNITS[name]}"
+                f"  {self.settings['units'][i]}"
             )
         head = [] if self.outcome.ok else [f"{self.outcome}: {self.outcome.message}"]
         return "\n".join([*head, *lines, *self.settings["notes"]])
@@ -62,12 +64,15 @@ def compare(simulated: Any, events: Any, *, event: int | None = None, dof: int |
     ----------
     simulated : a trajectory (its frequency over the last quarter, its growth over all of it and the level it would
         make), a limit cycle (its frequency), or complex modes (frequency and growth of the one that grows fastest)
-    events : `SquealEvents`
+    events : `SquealEvents`; or, beside modes, a `ModeTable` of a test or of another code
     event : which of them; left out, the loudest
     dof : of a motion, the degree of freedom that is heard
 
-    Raises `SignalError` when there is no such event.
+    Modes of a table are paired with the model's by MAC over the places that both name, two or more; with fewer, by
+    frequency. Raises `SignalError` when there is no such event.
     """
+    if isinstance(events, ModeTable):
+        return _of_table(simulated, events)
     if events.count == 0:
         raise SignalError(f"there is nothing to compare with: {events.outcome.message or 'no event'}")
     index = int(np.argmax(events.level)) if event is None else event
@@ -89,7 +94,43 @@ def compare(simulated: Any, events: Any, *, event: int | None = None, dof: int |
     outcome = Outcome() if told else Outcome("nothing_to_compare", "what was simulated has no frequency")
     return Comparison(
         simulated=np.array(model), measured=np.array(measured), error=np.array(errors), away=away,
-        settings={"rows": list(UNITS), "event": index, "notes": notes}, outcome=outcome,
+        settings={"rows": list(UNITS), "units": list(UNITS.values()), "event": index, "notes": notes}, outcome=outcome,
+    )  # fmt: skip
+
+
+def _of_table(modes: Any, table: ModeTable) -> Comparison:
+    """Frequency, damping ratio and MAC of each measured mode and the model's that goes with it."""
+    from scipy.optimize import linear_sum_assignment
+
+    if not (hasattr(modes, "right") and hasattr(modes, "frequency")) or np.ndim(modes.frequency) != 1:
+        raise SignalError(f"{type(modes).__name__}: expected complex modes of one brake beside a table of modes")
+    once = np.nonzero(np.imag(modes.eigenvalues) > 0.0)[0]
+    if once.size < table.frequency.size:
+        raise SignalError(f"{table.source}: {table.frequency.size} modes beside {once.size} of the model")
+    known = list(as_system(modes.inputs["system"], linear=True).names)
+    both = [i for i, place in enumerate(table.places) if place in known]
+    likeness = np.full((table.frequency.size, once.size), np.nan)
+    if len(both) > 1:
+        rows = [known.index(table.places[i]) for i in both]
+        likeness = modal_assurance(table.shapes[both], modes.right[rows][:, once])
+    far = np.abs(np.log(np.maximum(table.frequency, 1e-12)[:, None] / np.maximum(modes.frequency[once], 1e-12)))
+    measured, found = linear_sum_assignment(far if len(both) < 2 else 1.0 - likeness + 1e-6 * far)
+    lines: list[tuple[str, str, float, float]] = []
+    for i, j in zip(measured.tolist(), found.tolist(), strict=True):
+        at = once[j]
+        lines.append((f"frequency {i + 1}", "Hz", float(modes.frequency[at]), float(table.frequency[i])))
+        if np.isfinite(table.damping_ratio[i]):
+            lines.append((f"damping {i + 1}", "-", float(modes.damping_ratio[at]), float(table.damping_ratio[i])))
+        if len(both) > 1:
+            lines.append((f"MAC {i + 1}", "-", float(likeness[i, j]), 1.0))
+    names, units, model, test = zip(*lines, strict=True)
+    notes = (
+        [] if len(both) > 1 else ["paired by frequency: the table and the model name fewer than two places in common"]
+    )
+    nothing = np.full(len(lines), np.nan)
+    return Comparison(
+        simulated=np.array(model), measured=np.array(test), error=nothing, away=nothing,
+        settings={"rows": list(names), "units": list(units), "notes": notes, "source": table.source},
     )  # fmt: skip
 
 

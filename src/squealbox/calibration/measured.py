@@ -137,6 +137,19 @@ def from_signal(signal: Any, t: Any = None, *, mode: str | int = "unstable", **c
     ]
 
 
+def from_friction(speeds: Any, values: Any, sd: float, at: Mapping[str, float] | None = None) -> list[Measured]:
+    """A measured friction curve, coefficients at sliding speeds [m/s], as measured numbers.
+
+    >>> len(from_friction([0.1, 1.0], [0.42, 0.38], sd=0.01))
+    2
+    """
+    pairs = np.broadcast_arrays(np.atleast_1d(speeds), values)
+    return [
+        Measured("friction", float(mu), sd=sd, speed=float(v), label=f"friction at {v:g} m/s", at=dict(at or {}))
+        for v, mu in zip(*pairs, strict=True)
+    ]
+
+
 def from_events(events: Any, index: int = 0, at: Mapping[str, str] | None = None) -> list[Measured]:
     """Frequency and growth rate of one squeal event, as far as the recording tells them.
 

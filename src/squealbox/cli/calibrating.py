@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from squealbox.calibration import Measured, compare, from_events
+from squealbox.calibration import Measured, compare, from_events, read_mode_table
 from squealbox.calibration import calibrate as fitted
 from squealbox.cli.answers import show
 from squealbox.cli.inputs import AllowCode, Changes, read
@@ -61,10 +61,11 @@ def compare_(
     *,
     unit: str = "Pa",
     full_scale: float | None = None,
+    modes: Path | None = None,
     changes: Changes = (),
     allow_code: AllowCode = False,
 ) -> None:
-    """The modes and the motion of a design beside the loudest squeal event of a recording.
+    """The modes and the motion of a design beside the loudest squeal event of a recording, or a table of modes.
 
     Parameters
     ----------
@@ -76,14 +77,20 @@ def compare_(
         unit of that recording
     full_scale
         what its full scale is worth
+    modes
+        table (.csv) or universal file of the modes of a test or another code, to compare with those of the design
     changes
         other values for this run
     allow_code
         run the Python file of a friction law that the design file names
     """
     found = read(file, changes, allow_code)
-    events = _events(found, recording, unit, full_scale)
     try:
+        if modes is not None:
+            show("modes", compare(complex_modes(found.design), read_mode_table(modes)))
+            if recording is None:
+                return
+        events = _events(found, recording, unit, full_scale)
         show("modes", compare(complex_modes(found.design), events))
         if found.simulate is not None:
             with Progress("simulating"):

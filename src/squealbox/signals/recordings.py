@@ -270,20 +270,7 @@ def _npy(path: Path, size: int, rate: float | None) -> Read:
 
 
 def _uff(path: Path, size: int, rate: float | None) -> Read:
-    if size > LARGEST_TEXT:
-        raise SignalError(f"{path.name}: has {size} bytes, expected at most {LARGEST_TEXT} of a UFF file")
-    try:
-        import pyuff
-    except ImportError as error:
-        raise SignalError(f"{path.name}: reading UFF files needs pyuff: {INSTALL}") from error
-    try:
-        sets = pyuff.UFF(str(path)).read_sets()
-    except Exception as error:  # a damaged file makes it raise whatever comes
-        raise SignalError(f"{path.name}: is not a UFF file that can be read ({type(error).__name__})") from error
-    sets = [sets] if isinstance(sets, dict) else list(sets)
-    found = [
-        each for each in sets if isinstance(each, dict) and each.get("type") == 58 and len(each.get("data", ())) > 0
-    ]
+    found = [each for each in universal_sets(path) if each.get("type") == 58 and len(each.get("data", ())) > 0]
     found = [each for each in found if each.get("func_type") in (None, 0, 1)]
     if not found:
         raise SignalError(f"{path.name}: holds no time response (data set 58): it is empty, damaged or of another kind")
@@ -308,6 +295,22 @@ def _uff(path: Path, size: int, rate: float | None) -> Read:
     ]
     units = [str(each.get("ordinate_axis_units_lab") or "").strip().replace("NONE", "") for each in found]
     return x, own, names, units, []
+
+
+def universal_sets(path: Path) -> list[dict[str, Any]]:
+    """The data sets of a universal file. Raises `SignalError` for one that cannot be read."""
+    size = path.stat().st_size
+    if size > LARGEST_TEXT:
+        raise SignalError(f"{path.name}: has {size} bytes, expected at most {LARGEST_TEXT} of a UFF file")
+    try:
+        import pyuff
+    except ImportError as error:
+        raise SignalError(f"{path.name}: reading UFF files needs pyuff: {INSTALL}") from error
+    try:
+        sets = pyuff.UFF(str(path)).read_sets()
+    except Exception as error:  # a damaged file makes it raise whatever comes
+        raise SignalError(f"{path.name}: is not a UFF file that can be read ({type(error).__name__})") from error
+    return [each for each in ([sets] if isinstance(sets, dict) else list(sets)) if isinstance(each, dict)]
 
 
 def _is_number(cell: str) -> bool:
