@@ -12,7 +12,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.cautions import out_of_range, pulling
-from squealbox.result import COMPLETED, Array, Column, Outcome, Result, batched, quantity
+from squealbox.result import COMPLETED, Array, Outcome, Result, batched, quantity
 from squealbox.stability.deflation import special_modes, uncertain, vibrating
 from squealbox.stability.mode import Mode, OneEigenvalue, damping_ratio
 from squealbox.stability.ordering import spectrum_order
@@ -69,12 +69,6 @@ class ComplexModes(Result):
         """What the modes are called: 1 to n, and -1 to -n for their conjugates."""
         half = self.eigenvalues.shape[-1] // 2
         return np.r_[1 : half + 1, -(np.arange(half) + 1)]
-
-    def columns(self) -> dict[str, Column]:
-        """What a study keeps: of each conjugate pair the one with Im >= 0."""
-        half = self.eigenvalues.shape[-1] // 2
-        return {name: each._replace(values=each.values[..., :half]) if each.dims == ("mode",) else each
-                for name, each in super().columns().items()}  # fmt: skip
 
     @property
     def outcomes(self) -> Any:
