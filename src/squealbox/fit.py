@@ -14,7 +14,7 @@ import numpy as np
 
 from squealbox.friction import Coulomb, Cubic, ElastoPlastic, FrictionLaw, Hyperbolic, LinearSlope, LuGre, Stribeck
 from squealbox.parameters import ParameterError, known_names
-from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 
 LEAST_POINTS = 5
 CARRIES = 0.9  # leverage of a point from which it carries a coefficient nearly alone
@@ -68,16 +68,16 @@ class FrictionFit(Result):
     A law that could not be fitted has AIC inf and a NaN curve; `outcome` says why when none could.
     """
 
-    speeds: Any = quantity("point", "m/s", "measured sliding speeds")
-    values: Any = quantity("point", "-", "measured friction coefficients")
-    curve_speeds: Any = quantity("along", "m/s", "sliding speeds of the curves")
-    curves: Any = quantity("law along", "-", "fitted coefficient")
-    low: Any = quantity("law along", "-", "lower end of the confidence band")
-    high: Any = quantity("law along", "-", "upper end of the confidence band")
-    coefficients: Any = quantity("law coefficient", "", "fitted numbers in the order of the law's sheet; NaN behind")
-    errors: Any = quantity("law coefficient", "", "standard errors of the fitted numbers")
-    aic: Any = quantity("law", "-", "Akaike's criterion")
-    rms: Any = quantity("law", "-", "root of the mean squared residual")
+    speeds: Array = quantity("point", "m/s", "measured sliding speeds")
+    values: Array = quantity("point", "-", "measured friction coefficients")
+    curve_speeds: Array = quantity("along", "m/s", "sliding speeds of the curves")
+    curves: Array = quantity("law along", "-", "fitted coefficient")
+    low: Array = quantity("law along", "-", "lower end of the confidence band")
+    high: Array = quantity("law along", "-", "upper end of the confidence band")
+    coefficients: Array = quantity("law coefficient", "", "fitted numbers in the order of the law's sheet; NaN behind")
+    errors: Array = quantity("law coefficient", "", "standard errors of the fitted numbers")
+    aic: Array = quantity("law", "-", "Akaike's criterion")
+    rms: Array = quantity("law", "-", "root of the mean squared residual")
 
     coordinates: ClassVar = {"along": "curve_speeds"}
 

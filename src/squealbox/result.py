@@ -19,12 +19,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from squealbox.parameters import DRAWN_BY, from_plain, load_kind, to_plain
 
 if TYPE_CHECKING:
     import xarray
 
+Array = NDArray[Any]
+"""An array of a result; its dimensions and unit stand where it is declared."""
 COMPLETED = "completed"
 MOST_LINES = 20  # of a summary
 MOST_COLUMNS = 100  # that one array gives to a table

@@ -1,11 +1,15 @@
 """What `squealbox.` offers: every name importable, told once, in the order of the story."""
 
 import ast
+import dataclasses
+from typing import Any, get_type_hints
 
 import pytest
 
 import squealbox
-from house.rooms import PACKAGE
+from house.rooms import PACKAGE, load, public_module_names
+from squealbox.result import Array, Result
+from squealbox.stability import ComplexModes
 
 STUB = ast.parse((PACKAGE / "__init__.pyi").read_text())
 
@@ -58,3 +62,20 @@ def test_a_name_out_of_order_is_found():
 def test_an_unknown_name_is_an_attribute_error():
     with pytest.raises(AttributeError, match="no_such_name"):
         squealbox.no_such_name  # noqa: B018
+
+
+def test_arrays_of_results_are_arrays_to_a_type_checker():
+    """A user's checker knows `modes.growth_rate` for an array: no declared array is Any."""
+    for name in public_module_names():
+        if name.split(".")[1:2] not in (["cli"], ["workbench"], ["report"], ["papers"]):
+            load(name)
+    kinds = [kind for kind in Result.kinds.values() if kind.__module__.startswith("squealbox.")]
+    untyped = [
+        f"{kind.__name__}.{field.name}"
+        for kind in kinds
+        for field in dataclasses.fields(kind)
+        if field.metadata.get("dims") and field.type is Any
+    ]
+    assert len(kinds) > 25
+    assert untyped == []
+    assert get_type_hints(ComplexModes.growth_rate.fget)["return"] == Array

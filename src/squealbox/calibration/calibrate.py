@@ -17,7 +17,7 @@ from squealbox.arguments import public
 from squealbox.calibration.measured import Measured
 from squealbox.calibration.search import WORST, linearised, losses, searched
 from squealbox.parameters import ParameterError
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.uncertainty.distributions import TruncatedNormal
 from squealbox.studies.uncertainty.scatter import Scatter
 
@@ -38,15 +38,15 @@ class Calibration(Result):
     or "no_fit" (no design within the bounds has an answer to all that was measured).
     """
 
-    values: Any = quantity("parameter", "", "best values, in SI")
-    errors: Any = quantity("parameter", "", "standard deviations from the covariance")
-    covariance: Any = quantity("parameter parameter2", "", "covariance of the values")
-    low: Any = quantity("parameter", "", "lower end of the profile interval")
-    high: Any = quantity("parameter", "", "upper end of the profile interval")
-    predicted: Any = quantity("measured", "", "what the fitted design says of each measured number")
-    residuals: Any = quantity("measured", "1", "measured less predicted, in standard deviations")
-    singular_values: Any = quantity("parameter", "1", "of the scaled sensitivities, largest first")
-    directions: Any = quantity("parameter parameter2", "1", "combinations that belong to them, one in a row")
+    values: Array = quantity("parameter", "", "best values, in SI")
+    errors: Array = quantity("parameter", "", "standard deviations from the covariance")
+    covariance: Array = quantity("parameter parameter2", "", "covariance of the values")
+    low: Array = quantity("parameter", "", "lower end of the profile interval")
+    high: Array = quantity("parameter", "", "upper end of the profile interval")
+    predicted: Array = quantity("measured", "", "what the fitted design says of each measured number")
+    residuals: Array = quantity("measured", "1", "measured less predicted, in standard deviations")
+    singular_values: Array = quantity("parameter", "1", "of the scaled sensitivities, largest first")
+    directions: Array = quantity("parameter parameter2", "1", "combinations that belong to them, one in a row")
     chi_square: float = np.nan
     cannot_tell: tuple[str, ...] = ()
 

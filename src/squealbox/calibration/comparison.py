@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.calibration.mode_tables import ModeTable
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals import SignalError, dominant_frequency, growth_rate, sound_level
 from squealbox.system import as_system
 
@@ -23,10 +23,10 @@ UNITS = {"frequency": "Hz", "growth rate": "1/s", "level": "dB(A)"}
 class Comparison(Result):
     """What was simulated beside one measured event; a number one of the two does not have is NaN."""
 
-    simulated: Any = quantity("row", "", "what the model says")
-    measured: Any = quantity("row", "", "what was measured")
-    error: Any = quantity("row", "", "95 % error of the measured number; NaN where it has none")
-    away: Any = quantity("row", "1", "their distance in standard deviations")
+    simulated: Array = quantity("row", "", "what the model says")
+    measured: Array = quantity("row", "", "what was measured")
+    error: Array = quantity("row", "", "95 % error of the measured number; NaN where it has none")
+    away: Array = quantity("row", "1", "their distance in standard deviations")
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from squealbox.control import margins, sampled
 from squealbox.control.plant import Plant, plant
 from squealbox.control.poles import Late, late_poles
 from squealbox.parameters import ParameterError
-from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -21,9 +21,9 @@ class ClosedLoop(Result):
     principle ("poles_missed" when the two differ); of sampled loops ln(z)/h of the multipliers z of a sample h.
     """
 
-    poles: Any = quantity("pole", "1/s", "poles, by falling growth")
-    multipliers: Any = quantity("multiplier", "1", "of one sample; empty for loops that are not sampled")
-    open_loop: Any = quantity("open", "1/s", "eigenvalues without the loops' forces, by falling growth")
+    poles: Array = quantity("pole", "1/s", "poles, by falling growth")
+    multipliers: Array = quantity("multiplier", "1", "of one sample; empty for loops that are not sampled")
+    open_loop: Array = quantity("open", "1/s", "eigenvalues without the loops' forces, by falling growth")
     line: float = -np.inf
     counted: int = 0
     cautions: tuple[str, ...] = ()

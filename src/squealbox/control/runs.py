@@ -10,7 +10,7 @@ import numpy as np
 
 from squealbox.control.plant import with_loops
 from squealbox.parameters import ParameterError
-from squealbox.result import Result, quantity
+from squealbox.result import Array, Result, quantity
 from squealbox.system import System, equilibrium
 from squealbox.transient.pieces import driven_brake, in_pieces, start_of
 from squealbox.transient.simulate import simulate
@@ -21,13 +21,13 @@ from squealbox.transient.trajectory import Trajectory
 class LoopRun(Result):
     """A motion under late or sampled loops, as :func:`run_loops` returns it, at the ends of its pieces."""
 
-    t: Any = quantity("time", "s", "instants")
-    q: Any = quantity("time dof", "m", "displacement")
-    qd: Any = quantity("time dof", "m/s", "velocity")
-    force: Any = quantity("time loop", "N", "force of each loop from that instant on")
-    work: Any = quantity("time", "J", "work the actuators have put in")
+    t: Array = quantity("time", "s", "instants")
+    q: Array = quantity("time dof", "m", "displacement")
+    qd: Array = quantity("time dof", "m/s", "velocity")
+    force: Array = quantity("time loop", "N", "force of each loop from that instant on")
+    work: Array = quantity("time", "J", "work the actuators have put in")
     residual: Any = quantity("", "J", "what the energy audits of the pieces leave, added up")
-    saturated: Any = quantity("loop", "1", "share of the time each force was at its limit")
+    saturated: Array = quantity("loop", "1", "share of the time each force was at its limit")
 
     coordinates: ClassVar = {"time": "t"}
 

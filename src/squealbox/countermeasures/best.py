@@ -17,7 +17,7 @@ from squealbox.countermeasures.loss import at_the_window, first_loss, growth_of
 from squealbox.countermeasures.mechanical import TunedMass
 from squealbox.designs.base import Design
 from squealbox.parameters import ParameterError, known_names
-from squealbox.result import Result, quantity
+from squealbox.result import Array, Result, quantity
 from squealbox.stability import complex_modes
 from squealbox.stability.family import steady_sliding
 from squealbox.stability.state_matrix import spectrum
@@ -42,9 +42,9 @@ class BestAbsorber(Result):
     damping: Any = quantity("", "1", "damping ratio of the absorber")
     value: Any = quantity("", "", "what was aimed for")
     before: Any = quantity("", "", "the same without the absorber")
-    frequencies: Any = quantity("tuning", "Hz", "frequencies of the map")
-    dampings: Any = quantity("ratio", "1", "damping ratios of the map")
-    growth_map: Any = quantity("tuning ratio", "", "what was aimed for, over tuning and damping")
+    frequencies: Array = quantity("tuning", "Hz", "frequencies of the map")
+    dampings: Array = quantity("ratio", "1", "damping ratios of the map")
+    growth_map: Array = quantity("tuning ratio", "", "what was aimed for, over tuning and damping")
     band: tuple[float, float] = (float("nan"), float("nan"))
     aim: str = "decay"
 

@@ -51,3 +51,4 @@ def plot(
 
 plot.register = drawn_by.register  # type: ignore[attr-defined]
 plot.dispatch = drawn_by.dispatch  # type: ignore[attr-defined]
+plot.registry = drawn_by.registry  # type: ignore[attr-defined]

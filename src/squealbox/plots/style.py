@@ -326,15 +326,20 @@ def spread_ticks(figure: "Figure") -> None:
     for panel in figure.axes:
         for axis, side in ((panel.xaxis, 0), (panel.yaxis, 1)):
             locator = axis.get_major_locator()
-            while isinstance(locator, MaxNLocator):
-                low, high = sorted(axis.get_view_interval())
-                seen = [label.get_window_extent() for at, label in zip(axis.get_majorticklocs(), axis.get_ticklabels(),
-                        strict=False) if low <= at <= high and label.get_text() and label.get_visible()]  # fmt: skip
-                spans = sorted((box.min[side], box.max[side]) for box in seen)
-                close = any(after[0] < before[1] + 0.04 * figure.dpi for before, after in pairwise(spans))
-                if not close or len(spans) < 3:
-                    break
-                locator.set_params(nbins=len(spans) - 2)
+            if isinstance(locator, MaxNLocator):
+                for bins in range(len(axis.get_majorticklocs()) - 2, 1, -1):
+                    if not _crowded(axis, side, 0.04 * figure.dpi):
+                        break
+                    locator.set_params(nbins=bins)
+
+
+def _crowded(axis: Any, side: int, gap: float) -> bool:
+    """True where two numbers along an axis come closer than a `gap` [dots]."""
+    low, high = sorted(axis.get_view_interval())
+    seen = zip(axis.get_majorticklocs(), axis.get_ticklabels(), strict=False)
+    boxes = [label.get_window_extent() for at, label in seen if low <= at <= high and label.get_text()]
+    spans = sorted((box.min[side], box.max[side]) for box in boxes)
+    return any(after[0] < before[1] + gap for before, after in pairwise(spans))
 
 
 @contextmanager

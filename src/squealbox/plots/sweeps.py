@@ -100,7 +100,7 @@ def _lines(panel: Any, found: Sweep, values: "xarray.DataArray", dim: Any, ended
         _words_over(panel, x, values)
     else:
         y, unit = _numbers(values)
-        table = y.reshape(len(x), -1)
+        table = y.reshape(len(x), -1)[:, : found.told(values)]
         for i in range(min(table.shape[1], MOST_LINES)):
             look = {} if table.shape[1] == 1 else {"label": str(i + 1)}
             panel.plot(x, table[:, i], **line(i), **look, marker="." if len(x) <= 60 else "")

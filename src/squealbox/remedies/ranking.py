@@ -14,7 +14,7 @@ from squealbox.designs.base import Design
 from squealbox.parameters import ParameterError
 from squealbox.remedies.candidates import Candidate, candidates_for, more_friction
 from squealbox.remedies.production import ASSUMED, usual_scatter
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.uncertainty.scatter import Scatter
 from squealbox.system import InvalidSystem, equilibrium
 from squealbox.transient import simulate
@@ -34,17 +34,17 @@ class Remedies(Result):
     parameters a cure gives another value, {} for one that puts something on the brake.
     """
 
-    name: Any = quantity("cure", "1", "what is done")
-    dose: Any = quantity("cure", "", "how much of it, in its own unit")
-    unit: Any = quantity("cure", "1", "unit of the dose")
-    reached: Any = quantity("cure", "1", "True where the brake is quiet at the margin too")
-    growth: Any = quantity("cure", "1/s", "largest growth rate at nominal friction")
-    growth_at_margin: Any = quantity("cure", "1/s", "largest growth rate with the margin in friction")
-    probability: Any = quantity("cure", "1", "share of the lot that squeals")
-    amplitude: Any = quantity("cure", "m", "vibration some time after a push, half peak to peak; NaN unknown")
-    cost: Any = quantity("cure", "1", "what it costs, in words")
-    caution: Any = quantity("cure", "1", "what to know before using it")
-    line: Any = quantity("cure", "1", "one line of Python that makes the cured brake")
+    name: Array = quantity("cure", "1", "what is done")
+    dose: Array = quantity("cure", "", "how much of it, in its own unit")
+    unit: Array = quantity("cure", "1", "unit of the dose")
+    reached: Array = quantity("cure", "1", "True where the brake is quiet at the margin too")
+    growth: Array = quantity("cure", "1/s", "largest growth rate at nominal friction")
+    growth_at_margin: Array = quantity("cure", "1/s", "largest growth rate with the margin in friction")
+    probability: Array = quantity("cure", "1", "share of the lot that squeals")
+    amplitude: Array = quantity("cure", "m", "vibration some time after a push, half peak to peak; NaN unknown")
+    cost: Array = quantity("cure", "1", "what it costs, in words")
+    caution: Array = quantity("cure", "1", "what to know before using it")
+    line: Array = quantity("cure", "1", "one line of Python that makes the cured brake")
     values: tuple[dict[str, float], ...] = ()
     before: float = float("nan")
     growth_before: float = float("nan")

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals.recordings import as_recording
 from squealbox.signals.samples import SignalError
 
@@ -39,13 +39,13 @@ class OperationalModes(Result):
     The outcome is "completed" or "no_mode", where the spectrum is as flat as noise.
     """
 
-    frequency: Any = quantity("mode", "Hz", "undamped frequency")
-    frequency_error: Any = quantity("mode", "Hz", "95 % error")
-    damping_ratio: Any = quantity("mode", "1", "damping ratio, -Re / |lambda|")
-    damping_error: Any = quantity("mode", "1", "95 % error")
-    line: Any = quantity("line", "Hz", "frequencies at which the spectrum is kept")
-    measured: Any = quantity("line", "", "mean of the periodogram about each, in the signal's unit squared")
-    fitted: Any = quantity("line", "", "the spectrum of the modes and the noise")
+    frequency: Array = quantity("mode", "Hz", "undamped frequency")
+    frequency_error: Array = quantity("mode", "Hz", "95 % error")
+    damping_ratio: Array = quantity("mode", "1", "damping ratio, -Re / |lambda|")
+    damping_error: Array = quantity("mode", "1", "95 % error")
+    line: Array = quantity("line", "Hz", "frequencies at which the spectrum is kept")
+    measured: Array = quantity("line", "", "mean of the periodogram about each, in the signal's unit squared")
+    fitted: Array = quantity("line", "", "the spectrum of the modes and the noise")
 
     @property
     def growth_rate(self) -> Any:
@@ -129,11 +129,11 @@ class DampingOnset(Result):
     value: Any = quantity("", "", "where the growth rate is 0")
     low: Any = quantity("", "", "lower end of its 95 % interval")
     high: Any = quantity("", "", "upper end")
-    at: Any = quantity("record", "", "speed, pressure or whatever was varied")
-    frequency: Any = quantity("record", "Hz", "frequency of the mode")
-    growth_rate: Any = quantity("record", "1/s", "its growth rate")
-    growth_error: Any = quantity("record", "1/s", "95 % error")
-    line: Any = quantity("coefficient", "", "growth rate = line[0] + line[1] at")
+    at: Array = quantity("record", "", "speed, pressure or whatever was varied")
+    frequency: Array = quantity("record", "Hz", "frequency of the mode")
+    growth_rate: Array = quantity("record", "1/s", "its growth rate")
+    growth_error: Array = quantity("record", "1/s", "95 % error")
+    line: Array = quantity("coefficient", "", "growth rate = line[0] + line[1] at")
     caution: str = ""
 
     def summary(self) -> str:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals.event_ends import edges, rate_at, steady_frequency
 from squealbox.signals.radiation import HEARING, a_weighting
 from squealbox.signals.recordings import as_recording
@@ -39,24 +39,24 @@ class SquealEvents(Result):
     `settings["unit"]` says which. The outcome is "completed" or "no_event".
     """
 
-    onset: Any = quantity("event", "s", "when it begins")
-    end: Any = quantity("event", "s", "when it ends")
-    frequency: Any = quantity("event", "Hz", "mean frequency, weighed by power")
-    frequency_error: Any = quantity("event", "Hz", "95 % error of the frequency where it is steady, else its spread")
-    level: Any = quantity("event", "dB", "level over the event")
-    peak_level: Any = quantity("event", "dB", "level of its loudest frame")
-    growth_rate: Any = quantity("event", "1/s", "growth at its onset")
-    growth_error: Any = quantity("event", "1/s", "95 % error")
-    onset_frequency: Any = quantity(
+    onset: Array = quantity("event", "s", "when it begins")
+    end: Array = quantity("event", "s", "when it ends")
+    frequency: Array = quantity("event", "Hz", "mean frequency, weighed by power")
+    frequency_error: Array = quantity("event", "Hz", "95 % error of the frequency where it is steady, else its spread")
+    level: Array = quantity("event", "dB", "level over the event")
+    peak_level: Array = quantity("event", "dB", "level of its loudest frame")
+    growth_rate: Array = quantity("event", "1/s", "growth at its onset")
+    growth_error: Array = quantity("event", "1/s", "95 % error")
+    onset_frequency: Array = quantity(
         "event", "Hz", "frequency while it grows: that of small motion, where friction is one"
     )
-    onset_frequency_error: Any = quantity("event", "Hz", "95 % error")
-    decay_rate: Any = quantity("event", "1/s", "rate at its end, below 0 for a decay")
-    decay_error: Any = quantity("event", "1/s", "95 % error")
-    track_time: Any = quantity("event frame", "s", "middles of its frames; NaN behind the last")
-    track_frequency: Any = quantity("event frame", "Hz", "frequency in each frame")
-    track_level: Any = quantity("event frame", "dB", "level in each frame")
-    braking: Any = quantity("event braking", "", "quantities of the braking at the onset")
+    onset_frequency_error: Array = quantity("event", "Hz", "95 % error")
+    decay_rate: Array = quantity("event", "1/s", "rate at its end, below 0 for a decay")
+    decay_error: Array = quantity("event", "1/s", "95 % error")
+    track_time: Array = quantity("event frame", "s", "middles of its frames; NaN behind the last")
+    track_frequency: Array = quantity("event frame", "Hz", "frequency in each frame")
+    track_level: Array = quantity("event frame", "dB", "level in each frame")
+    braking: Array = quantity("event braking", "", "quantities of the braking at the onset")
     duration: float = 0.0
 
     @property

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.result import Result, quantity
+from squealbox.result import Array, Result, quantity
 from squealbox.signals.exponentials import fit_exponentials
 from squealbox.signals.samples import Samples, SignalError, given, samples
 from squealbox.signals.spectra import spectrum
@@ -24,8 +24,8 @@ class GrowthRate(Result):
     they disagree by more than the noise allows the growth is not one number: `rate_error` is then their distance.
     """
 
-    time: Any = quantity("piece", "s", "middle of each piece")
-    envelope: Any = quantity("piece", "unit of the signal", "amplitude of the component in each piece")
+    time: Array = quantity("piece", "s", "middle of each piece")
+    envelope: Array = quantity("piece", "unit of the signal", "amplitude of the component in each piece")
     rate: float
     rate_error: float
     frequency: float

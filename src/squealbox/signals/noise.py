@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals.events import SquealEvents
 from squealbox.signals.samples import SignalError
 
@@ -18,13 +18,13 @@ FREQUENCY_WIDTH = 500.0  # Hz of a bin of the histogram
 class NoiseMatrix(Result):
     """Stops and noisy stops in cells of two braking quantities, as :func:`noise_matrix` returns them."""
 
-    x_edges: Any = quantity("x_edge", "", "edges of the first quantity")
-    y_edges: Any = quantity("y_edge", "", "edges of the second quantity")
-    stops: Any = quantity("x y", "1", "stops in each cell")
-    noisy: Any = quantity("x y", "1", "of them, those with an event")
-    loudest: Any = quantity("x y", "dB", "highest peak level in each cell; NaN without an event")
-    frequency_edges: Any = quantity("frequency_edge", "Hz", "edges of the histogram")
-    histogram: Any = quantity("frequency", "1", "events in each bin of frequency")
+    x_edges: Array = quantity("x_edge", "", "edges of the first quantity")
+    y_edges: Array = quantity("y_edge", "", "edges of the second quantity")
+    stops: Array = quantity("x y", "1", "stops in each cell")
+    noisy: Array = quantity("x y", "1", "of them, those with an event")
+    loudest: Array = quantity("x y", "dB", "highest peak level in each cell; NaN without an event")
+    frequency_edges: Array = quantity("frequency_edge", "Hz", "edges of the histogram")
+    histogram: Array = quantity("frequency", "1", "events in each bin of frequency")
     total: int = 0
     total_noisy: int = 0
     unplaced: int = 0

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.result import Result, quantity
+from squealbox.result import Array, Result, quantity
 from squealbox.signals.recordings import as_recording
 from squealbox.signals.samples import SignalError
 
@@ -26,8 +26,8 @@ class SoundQuality(Result):
     loudness_level: Any = quantity("", "phon", "the level of a tone of 1 kHz that is as loud")
     sharpness: Any = quantity("", "acum", "DIN 45692")
     roughness: Any = quantity("", "asper", "Daniel and Weber 1997, mean over time")
-    specific_loudness: Any = quantity("bark", "sone/bark", "loudness in each critical band")
-    bark: Any = quantity("bark", "bark", "critical bands")
+    specific_loudness: Array = quantity("bark", "sone/bark", "loudness in each critical band")
+    bark: Array = quantity("bark", "bark", "critical bands")
 
     def summary(self) -> str:
         """The four numbers."""

@@ -20,7 +20,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals.samples import SignalError, column, given
 from squealbox.signals.spectra import peaks, spectrum
 
@@ -42,10 +42,10 @@ class SoundLevel(Result):
     weighted: Any = quantity("", "dB(A)", "A-weighted sound pressure level")
     pressure: Any = quantity("", "Pa", "root mean square of the sound pressure")
     power: Any = quantity("", "W", "radiated sound power")
-    frequency: Any = quantity("line", "Hz", "lines of the spectrum, loudest first")
-    line_level: Any = quantity("line", "dB", "sound pressure level of each line")
-    velocity: Any = quantity("line", "m/s", "amplitude of the surface velocity of each line")
-    efficiency: Any = quantity("line", "1", "radiation efficiency of each line")
+    frequency: Array = quantity("line", "Hz", "lines of the spectrum, loudest first")
+    line_level: Array = quantity("line", "dB", "sound pressure level of each line")
+    velocity: Array = quantity("line", "m/s", "amplitude of the surface velocity of each line")
+    efficiency: Array = quantity("line", "1", "radiation efficiency of each line")
 
     coordinates: ClassVar = {"line": "frequency"}
 

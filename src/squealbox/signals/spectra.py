@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.result import Result, quantity
+from squealbox.result import Array, Result, quantity
 from squealbox.signals.samples import SignalError, given, samples
 
 LOBE_STEPS = 16
@@ -17,8 +17,8 @@ LOBE_STEPS = 16
 class Spectrum(Result):
     """One-sided amplitude spectrum: a sinusoid of amplitude a shows a line of height a."""
 
-    frequency: Any = quantity("frequency", "Hz", "frequency")
-    amplitude: Any = quantity("frequency", "unit of the signal", "amplitude of the sinusoid at each frequency")
+    frequency: Array = quantity("frequency", "Hz", "frequency")
+    amplitude: Array = quantity("frequency", "unit of the signal", "amplitude of the sinusoid at each frequency")
     mean: float
     window: str
     resolution: float
@@ -39,9 +39,9 @@ class Spectrum(Result):
 class Spectrogram(Result):
     """Amplitude spectra of successive pieces of a signal; `time` is the middle of each piece."""
 
-    time: Any = quantity("time", "s", "middle of each piece")
-    frequency: Any = quantity("frequency", "Hz", "frequency")
-    amplitude: Any = quantity("frequency time", "unit of the signal", "amplitude of the sinusoid at each frequency")
+    time: Array = quantity("time", "s", "middle of each piece")
+    frequency: Array = quantity("frequency", "Hz", "frequency")
+    amplitude: Array = quantity("frequency time", "unit of the signal", "amplitude of the sinusoid at each frequency")
     window: str
     segment: float
     resolution: float

@@ -16,7 +16,7 @@ from squealbox.fe.growing_basis import GrowingBasis
 from squealbox.fe.pencil import Pencil, pencil_of
 from squealbox.fe.projection import Projected, basis_for, refined, with_shapes
 from squealbox.fe.quadratic import full_modes
-from squealbox.result import Outcome, quantity
+from squealbox.result import Array, Outcome, quantity
 from squealbox.stability.eigenvalues import ComplexModes
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
 
@@ -34,9 +34,9 @@ class BandModes(ComplexModes):
     mode counts as unstable when its growth rate is above its error bar.
     """
 
-    error: Any = quantity("... mode", "1/s", "error bar of the eigenvalue")
-    estimate: Any = quantity("... mode", "1/s", "estimate of exact less computed eigenvalue, complex")
-    real_frequency: Any = quantity("real_mode", "Hz", "frequencies of the undamped modes without friction")
+    error: Array = quantity("... mode", "1/s", "error bar of the eigenvalue")
+    estimate: Array = quantity("... mode", "1/s", "estimate of exact less computed eigenvalue, complex")
+    real_frequency: Array = quantity("real_mode", "Hz", "frequencies of the undamped modes without friction")
     band: tuple[float, float] = (0.0, 0.0)
     method: str = "projection"
     size: int = 0

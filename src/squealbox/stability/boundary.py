@@ -15,7 +15,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.cells import Crossing, Samples, crossings
 from squealbox.stability.family import Family, Steady
 from squealbox.stability.scan import coalescence, is_neutral, on_divergence
@@ -39,11 +39,11 @@ class Boundary(Result):
     Points of one curve follow each other, with the unstable side on the left (first parameter to the right, second up).
     """
 
-    x: Any = quantity("point", "", "first parameter, in its own unit")
-    y: Any = quantity("point", "", "second parameter, in its own unit")
-    curve: Any = quantity("point", "1", "number of the curve the point is on")
-    growth_rate: Any = quantity("point", "1/s", "largest growth rate at the point: what is left of zero")
-    frequency: Any = quantity("point", "Hz", "frequency of the mode on the boundary")
+    x: Array = quantity("point", "", "first parameter, in its own unit")
+    y: Array = quantity("point", "", "second parameter, in its own unit")
+    curve: Array = quantity("point", "1", "number of the curve the point is on")
+    growth_rate: Array = quantity("point", "1/s", "largest growth rate at the point: what is left of zero")
+    frequency: Array = quantity("point", "Hz", "frequency of the mode on the boundary")
     parameters: tuple[str, ...] = ()
 
     @property

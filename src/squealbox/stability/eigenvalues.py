@@ -12,7 +12,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.cautions import out_of_range, pulling
-from squealbox.result import COMPLETED, Column, Outcome, Result, batched, quantity
+from squealbox.result import COMPLETED, Array, Outcome, Result, batched, quantity
 from squealbox.stability.deflation import special_modes, uncertain, vibrating
 from squealbox.stability.mode import Mode, OneEigenvalue, damping_ratio
 from squealbox.stability.ordering import spectrum_order
@@ -37,14 +37,14 @@ class ComplexModes(Result):
     without mass has eigenvalues at infinity, which stand as NaN behind the others.
     """
 
-    eigenvalues: Any = quantity("... mode", "1/s", "eigenvalue, growth rate + i angular frequency")
-    right: Any = quantity("... dof mode", "1", "right mode u, |u| = 1")
-    left: Any = quantity("... dof mode", "s/kg", "left mode w, w^H (2 lambda M + C) u = 1")
-    condition: Any = quantity("... mode", "1", "condition number of the eigenvalue; infinite = defective")
-    steady: Any = quantity("... dof", "m", "steady sliding displacement")
-    exists: Any = quantity("...", "1", "True where there is a spectrum")
-    normal_force: Any = quantity("... contact", "N", "normal force of each contact in steady sliding, < 0 in tension")
-    floating: Any = quantity("...", "1", "number of rigid-body freedoms, whose eigenvalues are zero")
+    eigenvalues: Array = quantity("... mode", "1/s", "eigenvalue, growth rate + i angular frequency")
+    right: Array = quantity("... dof mode", "1", "right mode u, |u| = 1")
+    left: Array = quantity("... dof mode", "s/kg", "left mode w, w^H (2 lambda M + C) u = 1")
+    condition: Array = quantity("... mode", "1", "condition number of the eigenvalue; infinite = defective")
+    steady: Array = quantity("... dof", "m", "steady sliding displacement")
+    exists: Array = quantity("...", "1", "True where there is a spectrum")
+    normal_force: Array = quantity("... contact", "N", "normal force of each contact in steady sliding, < 0 in tension")
+    floating: Array = quantity("...", "1", "number of rigid-body freedoms, whose eigenvalues are zero")
     contacts: tuple[str, ...] = ()
     caution: str = ""
 
@@ -65,61 +65,55 @@ class ComplexModes(Result):
     table_over: ClassVar = ("mode",)
 
     @property
-    def numbers(self) -> Any:
+    def numbers(self) -> Array:
         """What the modes are called: 1 to n, and -1 to -n for their conjugates."""
         half = self.eigenvalues.shape[-1] // 2
         return np.r_[1 : half + 1, -(np.arange(half) + 1)]
-
-    def columns(self) -> dict[str, Column]:
-        """What a study keeps: of each conjugate pair the one with Im >= 0."""
-        half = self.eigenvalues.shape[-1] // 2
-        return {name: each._replace(values=each.values[..., :half]) if each.dims == ("mode",) else each
-                for name, each in super().columns().items()}  # fmt: skip
 
     @property
     def outcomes(self) -> Any:
         return np.where(self.exists, COMPLETED, str(self.outcome))
 
     @property
-    def growth_rate(self) -> Any:
+    def growth_rate(self) -> Array:
         """Re lambda [1/s], shape (..., 2n); positive grows."""
         return np.real(self.eigenvalues)
 
     @property
-    def angular_frequency(self) -> Any:
+    def angular_frequency(self) -> Array:
         """|Im lambda| [rad/s], shape (..., 2n)."""
         return np.abs(np.imag(self.eigenvalues))
 
     @property
-    def frequency(self) -> Any:
+    def frequency(self) -> Array:
         """|Im lambda| / (2 pi) [Hz], shape (..., 2n)."""
         return self.angular_frequency / (2.0 * np.pi)
 
     @property
-    def damping_ratio(self) -> Any:
+    def damping_ratio(self) -> Array:
         """-Re lambda / |lambda| [-], shape (..., 2n); negative grows, NaN at lambda = 0."""
         return damping_ratio(self.eigenvalues)
 
     @property
-    def largest_growth_rate(self) -> Any:
+    def largest_growth_rate(self) -> Array:
         """The largest growth rate [1/s] beside rigid-body motion, shape (...); NaN where there is no spectrum."""
         growth = vibrating(self.eigenvalues, self.floating)
         return np.where(self.exists, np.where(np.isneginf(growth), 0.0, growth), np.nan)
 
     @property
-    def stable(self) -> Any:
+    def stable(self) -> Array:
         """True where no mode grows, shape (...); undamped modes count as stable, a missing spectrum does not."""
         return self.exists & (self.unstable_modes == 0)
 
     @property
-    def unstable_modes(self) -> Any:
+    def unstable_modes(self) -> Array:
         """Number of growing modes, a complex pair counted once and real eigenvalues each, shape (...)."""
         scale = np.max(np.nan_to_num(np.abs(self.eigenvalues)), axis=-1, keepdims=True, initial=0.0)
         surely = self.growth_rate > np.maximum(MARGINAL, uncertain(self.eigenvalues, self.condition, scale)) * scale
         return np.sum(surely & (np.imag(self.eigenvalues) >= 0.0), axis=-1)
 
     @property
-    def near_defective(self) -> Any:
+    def near_defective(self) -> Array:
         """True where an eigenvalue is (nearly) defective, as at the coalescence of two modes, shape (..., 2n)."""
         return self.condition > NEAR_DEFECTIVE
 
@@ -161,8 +155,8 @@ class ComplexModes(Result):
         """Mode `index` of the system at `entry` of the leading axes."""
         return Mode(
             eigenvalue=complex(self.eigenvalues[(*entry, index)]),
-            shape=self.right[(*entry, slice(None), index)],
-            left=self.left[(*entry, slice(None), index)],
+            shape=self.right[entry][:, index],
+            left=self.left[entry][:, index],
             steady=self.steady[entry],
             index=index,
             entry=entry,

@@ -21,7 +21,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.memory_rows import no_memory
-from squealbox.result import Result, quantity
+from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import Mode, modes_of
 from squealbox.stability.family import across_dampers, steady_sliding
 from squealbox.system import System, as_system, linearise
@@ -37,15 +37,17 @@ class ModeEnergy(Result):
     when the normal force is large while the contact moves along the friction force.
     """
 
-    circulation: Any = quantity("contact", "W", "mean power fed in by normal force varying, skew part")
-    slope: Any = quantity("contact", "W", "mean power fed in by friction varying with speed")
-    across: Any = quantity("contact", "W", "mean power taken out by friction turning with the velocity across sliding")
-    dissipated: Any = quantity("dof", "W", "mean power taken out by the damping C, by degree of freedom")
-    dampers: Any = quantity("damper", "W", "mean power taken out by each damper that C is made of")
+    circulation: Array = quantity("contact", "W", "mean power fed in by normal force varying, skew part")
+    slope: Array = quantity("contact", "W", "mean power fed in by friction varying with speed")
+    across: Array = quantity(
+        "contact", "W", "mean power taken out by friction turning with the velocity across sliding"
+    )
+    dissipated: Array = quantity("dof", "W", "mean power taken out by the damping C, by degree of freedom")
+    dampers: Array = quantity("damper", "W", "mean power taken out by each damper that C is made of")
     structure: Any = quantity("", "W", "mean power fed in by the skew part of the structure's own K")
-    kinetic: Any = quantity("dof", "J", "mean kinetic energy, by degree of freedom")
-    strain: Any = quantity("dof", "J", "mean strain energy with friction's symmetric part, by degree of freedom")
-    phase: Any = quantity("contact", "rad", "phase of the normal force before the sliding velocity")
+    kinetic: Array = quantity("dof", "J", "mean kinetic energy, by degree of freedom")
+    strain: Array = quantity("dof", "J", "mean strain energy with friction's symmetric part, by degree of freedom")
+    phase: Array = quantity("contact", "rad", "phase of the normal force before the sliding velocity")
     eigenvalue: Any = quantity("", "1/s", "eigenvalue of the mode")
     contacts: tuple[str, ...] = ()
     dofs: tuple[str, ...] = ()

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.family import Family
 from squealbox.stability.onset import critical_value
 from squealbox.stability.state_matrix import spectrum
@@ -20,10 +20,10 @@ from squealbox.stability.state_matrix import spectrum
 class ExceptionalPoints(Result):
     """Points of two parameters at which two modes merge, as :func:`exceptional_points` returns them."""
 
-    x: Any = quantity("point", "", "first parameter, in its own unit")
-    y: Any = quantity("point", "", "second parameter, in its own unit")
-    eigenvalue: Any = quantity("point", "1/s", "the merged eigenvalue")
-    gap: Any = quantity("point", "1/s", "distance of the two eigenvalues that is left")
+    x: Array = quantity("point", "", "first parameter, in its own unit")
+    y: Array = quantity("point", "", "second parameter, in its own unit")
+    eigenvalue: Array = quantity("point", "1/s", "the merged eigenvalue")
+    gap: Array = quantity("point", "1/s", "distance of the two eigenvalues that is left")
     parameters: tuple[str, ...] = ()
 
     def summary(self) -> str:
@@ -127,8 +127,8 @@ def _newton(family: Family, low: Any, width: Any, point: Any, pair: Any) -> tupl
 class DampingSplit(Result):
     """Critical value against how a fixed sum of two dampings is split, as :func:`damping_split` returns it."""
 
-    share: Any = quantity("split", "1", "share of the first damper in the sum")
-    critical: Any = quantity("split", "", "critical value of the parameter, in its own unit; NaN without onset")
+    share: Array = quantity("split", "1", "share of the first damper in the sum")
+    critical: Array = quantity("split", "", "critical value of the parameter, in its own unit; NaN without onset")
     best_share: Any = quantity("", "1", "share with the highest critical value")
     best: Any = quantity("", "", "highest critical value")
     undamped: Any = quantity("", "", "critical value without either damper")

@@ -12,7 +12,7 @@ import numpy as np
 
 from squealbox.arguments import named, public
 from squealbox.parameters import DataSheet
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.eigenvalues import MARGINAL
 from squealbox.stability.family import Family, Steady, entry
 from squealbox.stability.mechanism import NAMES, STEPS, contributions, mechanism_codes
@@ -32,23 +32,23 @@ class StabilityMap(Result):
     circulation and slope [1/s] are what the two parts of friction bring to the growth rate (0 where stable).
     """
 
-    growth_rate: Any = quantity("...", "1/s", "largest growth rate")
-    frequency: Any = quantity("...", "Hz", "frequency of the mode with the largest growth rate")
-    unstable_modes: Any = quantity("...", "1", "number of growing modes")
-    mechanism: Any = quantity("...", "1", "0 stable, 1 flutter, 2 negative slope, 3 divergence, 4 mixed, -1 none")
-    circulation: Any = quantity("...", "1/s", "brought by circulatory forces")
-    slope: Any = quantity("...", "1/s", "brought by the damping part of friction")
+    growth_rate: Array = quantity("...", "1/s", "largest growth rate")
+    frequency: Array = quantity("...", "Hz", "frequency of the mode with the largest growth rate")
+    unstable_modes: Array = quantity("...", "1", "number of growing modes")
+    mechanism: Array = quantity("...", "1", "0 stable, 1 flutter, 2 negative slope, 3 divergence, 4 mixed, -1 none")
+    circulation: Array = quantity("...", "1/s", "brought by circulatory forces")
+    slope: Array = quantity("...", "1/s", "brought by the damping part of friction")
     axes: Mapping[str, Any]
 
     mechanism_names = NAMES
 
     @property
-    def unstable(self) -> Any:
+    def unstable(self) -> Array:
         """True where a mode grows."""
         return self.unstable_modes > 0
 
     @property
-    def exists(self) -> Any:
+    def exists(self) -> Array:
         """True where there is steady sliding."""
         return np.isfinite(self.growth_rate)
 

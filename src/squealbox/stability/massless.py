@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability.family import steady_sliding
 
 ZERO = 1e-12  # singular values below this share of 1 (all matrices are scaled to 1) count as zero
@@ -29,7 +29,7 @@ class FiniteSpectrum(Result):
     mass, damping and stiffness; or that of steady sliding.
     """
 
-    eigenvalues: Any = quantity("eigenvalue", "1/s", "finite eigenvalues, by falling growth rate")
+    eigenvalues: Array = quantity("eigenvalue", "1/s", "finite eigenvalues, by falling growth rate")
     infinite: int = 0
 
     @property

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.family import Steady, steady_sliding
 
 PER_PERIOD = 12  # instants of the envelope in the shortest period
@@ -28,10 +28,10 @@ class TransientGrowth(Result):
     spectral_abscissa: Any = quantity("", "1/s", "largest growth rate of the eigenvalues")
     amplification: Any = quantity("", "1", "largest norm over the norm at the start; energy grows by its square")
     time: Any = quantity("", "s", "instant at which it is reached")
-    start_q: Any = quantity("dof", "m", "optimal start, displacement from steady sliding, energy 1 J")
-    start_qd: Any = quantity("dof", "m/s", "optimal start, velocity")
-    instants: Any = quantity("instant", "s", "instants of the envelope")
-    envelope: Any = quantity("instant", "1", "largest amplification possible at each instant")
+    start_q: Array = quantity("dof", "m", "optimal start, displacement from steady sliding, energy 1 J")
+    start_qd: Array = quantity("dof", "m/s", "optimal start, velocity")
+    instants: Array = quantity("instant", "s", "instants of the envelope")
+    envelope: Array = quantity("instant", "1", "largest amplification possible at each instant")
 
     coordinates: ClassVar = {"instant": "instants"}
     table_over: ClassVar = ("instant",)

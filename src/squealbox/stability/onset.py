@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.deflation import vibrating
 from squealbox.stability.eigenvalues import OneEigenvalue, modes_of
 from squealbox.stability.family import Family, entry
@@ -35,7 +35,7 @@ class CriticalValue(OneEigenvalue, Result):
 
     value: Any = quantity("", "", "critical value of the parameter, in its own unit; NaN when there is none")
     eigenvalue: Any = quantity("", "1/s", "eigenvalue on the boundary")
-    shape: Any = quantity("dof", "1", "mode that crosses, |u| = 1")
+    shape: Array = quantity("dof", "1", "mode that crosses, |u| = 1")
     parameter: str = ""
     direction: str = ""
     mechanism: str = ""
@@ -77,17 +77,17 @@ class CriticalValue(OneEigenvalue, Result):
 class CriticalValues(Result):
     """All crossings in a range, in rising order; iterate for :class:`CriticalValue`, or use the arrays as a table."""
 
-    value: Any = quantity("crossing", "", "critical values of the parameter, in its own unit")
-    eigenvalue: Any = quantity("crossing", "1/s", "eigenvalue on the boundary")
-    shape: Any = quantity("crossing dof", "1", "mode that crosses, |u| = 1")
-    direction: Any = quantity("crossing", "1", "destabilising or stabilising")
-    mechanism: Any = quantity("crossing", "1", "flutter, negative_slope, divergence or mixed")
-    base: Any = quantity("crossing", "1/s", "growth rate without what feeds it")
-    circulation: Any = quantity("crossing", "1/s", "brought by circulatory forces")
-    slope: Any = quantity("crossing", "1/s", "brought by the damping part of friction")
-    unstable_below: Any = quantity("crossing", "1", "unstable modes just below")
-    unstable_above: Any = quantity("crossing", "1", "unstable modes just above")
-    uncertainty: Any = quantity("crossing", "", "bound on the error of the value, in the parameter's own unit")
+    value: Array = quantity("crossing", "", "critical values of the parameter, in its own unit")
+    eigenvalue: Array = quantity("crossing", "1/s", "eigenvalue on the boundary")
+    shape: Array = quantity("crossing dof", "1", "mode that crosses, |u| = 1")
+    direction: Array = quantity("crossing", "1", "destabilising or stabilising")
+    mechanism: Array = quantity("crossing", "1", "flutter, negative_slope, divergence or mixed")
+    base: Array = quantity("crossing", "1/s", "growth rate without what feeds it")
+    circulation: Array = quantity("crossing", "1/s", "brought by circulatory forces")
+    slope: Array = quantity("crossing", "1/s", "brought by the damping part of friction")
+    unstable_below: Array = quantity("crossing", "1", "unstable modes just below")
+    unstable_above: Array = quantity("crossing", "1", "unstable modes just above")
+    uncertainty: Array = quantity("crossing", "", "bound on the error of the value, in the parameter's own unit")
     parameter: str = ""
 
     def __len__(self) -> int:

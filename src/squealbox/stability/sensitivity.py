@@ -20,7 +20,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.result import Result, quantity
+from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import NEAR_DEFECTIVE, Mode, modes_of
 from squealbox.stability.family import Family, steady_sliding
 
@@ -34,9 +34,9 @@ class Sensitivity(Result):
     """Derivatives of one eigenvalue in the parameters of a design, as :func:`sensitivity` returns them."""
 
     eigenvalue: Any = quantity("", "1/s", "the eigenvalue")
-    first: Any = quantity("parameter", "", "d lambda / d p, in 1/s per unit of the parameter")
-    second: Any = quantity("parameter other", "", "d2 lambda / dp dq, in 1/s per units of the parameters")
-    values: Any = quantity("parameter", "", "the parameters' values")
+    first: Array = quantity("parameter", "", "d lambda / d p, in 1/s per unit of the parameter")
+    second: Array = quantity("parameter other", "", "d2 lambda / dp dq, in 1/s per units of the parameters")
+    values: Array = quantity("parameter", "", "the parameters' values")
     condition: Any = quantity("", "1", "condition number of the eigenvalue")
     separation: Any = quantity("", "1/s", "distance to the nearest other eigenvalue")
     parameters: tuple[str, ...] = ()

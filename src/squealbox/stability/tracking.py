@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.result import Result, quantity
+from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import MARGINAL, ComplexModes, modes_of
 from squealbox.stability.family import Family, Steady
 
@@ -44,20 +44,20 @@ class TrackedPoint:
 class TrackedModes(Result):
     """Modes along a parameter, the same mode always in the same column, as :func:`tracked_modes` returns it."""
 
-    value: Any = quantity("value", "", "the parameter, in its own unit")
-    eigenvalues: Any = quantity("value mode", "1/s", "eigenvalue of each track")
-    right: Any = quantity("value dof mode", "1", "right modes, |u| = 1")
-    criterion: Any = quantity("value mode", "1", "bi-orthogonal criterion of the pairing with the value before")
-    clear: Any = quantity("value", "1", "False where a pairing was decided by the nearest eigenvalue")
+    value: Array = quantity("value", "", "the parameter, in its own unit")
+    eigenvalues: Array = quantity("value mode", "1/s", "eigenvalue of each track")
+    right: Array = quantity("value dof mode", "1", "right modes, |u| = 1")
+    criterion: Array = quantity("value mode", "1", "bi-orthogonal criterion of the pairing with the value before")
+    clear: Array = quantity("value", "1", "False where a pairing was decided by the nearest eigenvalue")
     parameter: str = ""
 
     @property
-    def growth_rate(self) -> Any:
+    def growth_rate(self) -> Array:
         """Re lambda [1/s], (values, modes)."""
         return np.real(self.eigenvalues)
 
     @property
-    def frequency(self) -> Any:
+    def frequency(self) -> Array:
         """|Im lambda| / (2 pi) [Hz], (values, modes)."""
         return np.abs(np.imag(self.eigenvalues)) / (2.0 * np.pi)
 

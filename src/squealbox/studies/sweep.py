@@ -119,10 +119,23 @@ class Sweep(Result):
         for name in self.answers:
             values = self.dataset[name]
             flat = np.asarray(values.values).reshape(int(np.prod(shape)), -1)[first, :widest]
+            flat = flat[:, : self.told(values)]
             for i, column in enumerate(flat.T):
                 label = name if values.ndim == len(dims) else f"{name} {i + 1}"
                 columns[_headed(label, values)] = column
         return columns
+
+    def told(self, values: "xarray.DataArray") -> int | None:
+        """How many of the numbers of an answer a table tells: of modes beside their conjugates the first half."""
+        if values.dims[-1:] != (MODE,) or "frequency" not in self.dataset or values.sizes[MODE] % 2:
+            return None
+        frequency = np.asarray(self.dataset["frequency"].values)
+        half = values.sizes[MODE] // 2
+        twice = frequency.shape[-1] == 2 * half
+        return half if twice and np.array_equal(frequency[..., :half], frequency[..., half:], equal_nan=True) else None
+
+
+MODE = "mode"  # a dimension of complex modes: n of them, then their conjugates
 
 
 class Memory:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.system import as_system
 from squealbox.transient.simulate import simulate
 from squealbox.transient.trajectory import Trajectory
@@ -26,12 +26,12 @@ class ContactComparison(Result):
     """
 
     schemes: tuple[str, ...] = ()
-    period: Any = quantity("scheme", "s", "mean period over the second half of the run")
-    amplitude: Any = quantity("scheme", "m", "half peak to peak over the second half of the run")
-    final: Any = quantity("scheme state", "m, m/s", "displacements and velocities at the end")
-    error: Any = quantity("scheme", "1", "difference at the end over the largest displacement of the exact run")
-    evaluations: Any = quantity("scheme", "1", "evaluations of the right-hand side, or steps of time stepping")
-    seconds: Any = quantity("scheme", "s", "wall time of the run, compiled")
+    period: Array = quantity("scheme", "s", "mean period over the second half of the run")
+    amplitude: Array = quantity("scheme", "m", "half peak to peak over the second half of the run")
+    final: Array = quantity("scheme state", "m, m/s", "displacements and velocities at the end")
+    error: Array = quantity("scheme", "1", "difference at the end over the largest displacement of the exact run")
+    evaluations: Array = quantity("scheme", "1", "evaluations of the right-hand side, or steps of time stepping")
+    seconds: Array = quantity("scheme", "s", "wall time of the run, compiled")
     outcomes: tuple[str, ...] = ()
     runs: Mapping[str, Trajectory] = field(default_factory=dict, repr=False, metadata={"transient": True})
 

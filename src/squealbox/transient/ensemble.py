@@ -11,7 +11,7 @@ import numpy as np
 from squealbox.arguments import designs, public
 from squealbox.cautions import of_many_runs
 from squealbox.parameters import DataSheet, ParameterError, known_names
-from squealbox.result import COMPLETED, Column, Outcome, Result, batched, quantity
+from squealbox.result import COMPLETED, Array, Column, Outcome, Result, batched, quantity
 from squealbox.system import as_system
 from squealbox.transient import _march
 from squealbox.transient.choosing import chosen_method, usual_method
@@ -41,16 +41,16 @@ class Ensemble(Result):
     steps (and in the middle of Taylor's), and in how many trajectories.
     """
 
-    ended: Any = quantity("...", "", "how each trajectory ended")
-    time: Any = quantity("...", "s", "instant reached")
-    q: Any = quantity("... dof", "m", "displacement at that instant")
-    qd: Any = quantity("... dof", "m/s", "velocity at that instant")
-    steps: Any = quantity("...", "", "accepted steps")
-    tried: Any = quantity("...", "", "tried steps")
-    events: Any = quantity("...", "", "events: reversals, stick, slip, lift-off and landing")
-    sample_time: Any = quantity("instant", "s", "instants of the samples")
-    sample_q: Any = quantity("... instant dof", "m", "displacement at the samples")
-    sample_qd: Any = quantity("... instant dof", "m/s", "velocity at the samples")
+    ended: Array = quantity("...", "", "how each trajectory ended")
+    time: Array = quantity("...", "s", "instant reached")
+    q: Array = quantity("... dof", "m", "displacement at that instant")
+    qd: Array = quantity("... dof", "m/s", "velocity at that instant")
+    steps: Array = quantity("...", "", "accepted steps")
+    tried: Array = quantity("...", "", "tried steps")
+    events: Array = quantity("...", "", "events: reversals, stick, slip, lift-off and landing")
+    sample_time: Array = quantity("instant", "s", "instants of the samples")
+    sample_q: Array = quantity("... instant dof", "m", "displacement at the samples")
+    sample_qd: Array = quantity("... instant dof", "m/s", "velocity at the samples")
     parameters: Mapping[str, Any] = field(default_factory=dict, metadata={"transient": True})
     observed: Mapping[str, Any] = field(default_factory=dict, metadata={"transient": True})
     seconds: float = 0.0

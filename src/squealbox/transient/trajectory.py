@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.power import mechanical_energy
-from squealbox.result import Result, quantity
+from squealbox.result import Array, Result, quantity
 from squealbox.system import System
 
 OPEN = 2  # contact modes: +1 and -1 slip with sgn(v), 0 stick, OPEN lifted off
@@ -56,22 +56,22 @@ class EnergyAudit:
 class Trajectory(Result):
     """A motion q(t), with contact states and the energy audit, as :func:`squealbox.transient.simulate` returns it."""
 
-    t: Any = quantity("time", "s", "time")
-    q: Any = quantity("time dof", "m", "displacement")
-    qd: Any = quantity("time dof", "m/s", "velocity")
-    normal_force: Any = quantity("time contact", "N", "normal force N")
-    sliding_velocity: Any = quantity("time contact", "m/s", "sliding velocity v = V - t.q'")
-    friction_force: Any = quantity("time contact", "N", "friction force on d")
-    mode: Any = quantity("time contact", "1", "+1 or -1 slip with sgn(v), 0 stick, 2 open")
-    work_friction: Any = quantity("time contact", "J", "work of friction since the start")
-    work_load: Any = quantity("time", "J", "work of the load since the start")
-    work_circulation: Any = quantity("time", "J", "work of the skew part of K since the start")
-    work_dissipated: Any = quantity("time", "J", "energy dissipated by C since the start")
-    work_opening: Any = quantity("time", "J", "work of taking out the reaction of open contacts since the start")
-    work_impact: Any = quantity("time", "J", "work of the normal impulses of rigid contacts since the start")
-    event_time: Any = quantity("event", "s", "instants of stick, slip, reversal, lift-off and landing")
-    event_contact: Any = quantity("event", "1", "contact of each event")
-    event_mode: Any = quantity("event", "1", "mode the contact takes at the event")
+    t: Array = quantity("time", "s", "time")
+    q: Array = quantity("time dof", "m", "displacement")
+    qd: Array = quantity("time dof", "m/s", "velocity")
+    normal_force: Array = quantity("time contact", "N", "normal force N")
+    sliding_velocity: Array = quantity("time contact", "m/s", "sliding velocity v = V - t.q'")
+    friction_force: Array = quantity("time contact", "N", "friction force on d")
+    mode: Array = quantity("time contact", "1", "+1 or -1 slip with sgn(v), 0 stick, 2 open")
+    work_friction: Array = quantity("time contact", "J", "work of friction since the start")
+    work_load: Array = quantity("time", "J", "work of the load since the start")
+    work_circulation: Array = quantity("time", "J", "work of the skew part of K since the start")
+    work_dissipated: Array = quantity("time", "J", "energy dissipated by C since the start")
+    work_opening: Array = quantity("time", "J", "work of taking out the reaction of open contacts since the start")
+    work_impact: Array = quantity("time", "J", "work of the normal impulses of rigid contacts since the start")
+    event_time: Array = quantity("event", "s", "instants of stick, slip, reversal, lift-off and landing")
+    event_contact: Array = quantity("event", "1", "contact of each event")
+    event_mode: Array = quantity("event", "1", "mode the contact takes at the event")
     caution: str = ""
     steps: int = 0
     rejected: int = 0

@@ -11,7 +11,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.matrices import liveliest
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals import LEAST, highest_line, slope, with_error
 from squealbox.transient.envelope import Curve, envelope, repetition, smooth_curve
 from squealbox.transient.resolution import resolved
@@ -37,9 +37,9 @@ class Verdict(Result):
     growth_rate_error: Any = quantity("", "1/s", "95 % half-width of the growth rate")
     settled_at: Any = quantity("", "s", "when the amplitude came to stay near its last value, or near zero")
     offset: Any = quantity("", "m", "mean over the last part")
-    envelope_time: Any = quantity("window", "s", "middle of each window")
-    envelope: Any = quantity("window", "m", "half peak to peak in each window")
-    envelope_centre: Any = quantity("window", "m", "mid-height in each window")
+    envelope_time: Array = quantity("window", "s", "middle of each window")
+    envelope: Array = quantity("window", "m", "half peak to peak in each window")
+    envelope_centre: Array = quantity("window", "m", "mid-height in each window")
     fate: str
     text: str
 

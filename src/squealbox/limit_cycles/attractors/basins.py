@@ -37,7 +37,7 @@ from squealbox.limit_cycles.attractors.settling import (
 from squealbox.limit_cycles.cycles.field import remembers_nothing
 from squealbox.limit_cycles.cycles.pinned import at_rest_together
 from squealbox.parameters import ParameterError, known_names
-from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.system import System, as_system
 
 MOST_LINES = 12  # of a summary, the largest shares
@@ -53,23 +53,23 @@ class Basin(Result):
     names the two states of a picture; `through` is the state its plane goes through.
     """
 
-    start: Any = quantity("start state", "m", "starts (q, q'), displacements in m and velocities in m/s")
-    attractor: Any = quantity("start", "1", "index of the attractor; -1 not settled, -2 the run failed")
-    level: Any = quantity("start", "1", "half range at the end over V/w1, w1 the slowest frequency")
-    time: Any = quantity("start", "s", "time it ran")
-    vibrates: Any = quantity("start", "1", "True where the run does not come to rest")
-    kind: Any = quantity(
+    start: Array = quantity("start state", "m", "starts (q, q'), displacements in m and velocities in m/s")
+    attractor: Array = quantity("start", "1", "index of the attractor; -1 not settled, -2 the run failed")
+    level: Array = quantity("start", "1", "half range at the end over V/w1, w1 the slowest frequency")
+    time: Array = quantity("start", "s", "time it ran")
+    vibrates: Array = quantity("start", "1", "True where the run does not come to rest")
+    kind: Array = quantity(
         "attractor", "", "steady sliding, rest elsewhere, cycle, unstable cycle, vibration or irregular"
     )
-    count: Any = quantity("attractor", "1", "number of starts that lead there")
-    shares: Any = quantity("attractor", "1", "share of the starts that lead there")
-    intervals: Any = quantity("attractor end", "1", "its confidence interval, 95 %")
-    lowest: Any = quantity("attractor dof", "m", "least displacement")
-    highest: Any = quantity("attractor dof", "m", "largest displacement")
+    count: Array = quantity("attractor", "1", "number of starts that lead there")
+    shares: Array = quantity("attractor", "1", "share of the starts that lead there")
+    intervals: Array = quantity("attractor end", "1", "its confidence interval, 95 %")
+    lowest: Array = quantity("attractor dof", "m", "least displacement")
+    highest: Array = quantity("attractor dof", "m", "largest displacement")
     share: Any = quantity("", "1", "share of the starts that vibrate")
-    interval: Any = quantity("end", "1", "its confidence interval, 95 %")
-    rest: Any = quantity("state", "m", "steady sliding")
-    through: Any = quantity("state", "m", "state in the middle of the box, or that the plane goes through")
+    interval: Array = quantity("end", "1", "its confidence interval, 95 %")
+    rest: Array = quantity("state", "m", "steady sliding")
+    through: Array = quantity("state", "m", "state in the middle of the box, or that the plane goes through")
     plane: tuple[str, ...] = ()
     attractors: tuple[Attractor, ...] = field(default=(), metadata={"transient": True})
 

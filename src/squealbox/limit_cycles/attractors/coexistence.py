@@ -22,7 +22,7 @@ from squealbox.limit_cycles.attractors.settling import FAILED, LOOSE, REPEATS, R
 from squealbox.limit_cycles.branches.branch import branch
 from squealbox.limit_cycles.branches.curves import PointCurve, hopf_curve
 from squealbox.parameters import ParameterError
-from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import critical_value
 
 STRETCHES = 5
@@ -37,17 +37,17 @@ TURNS = ("fold", "neimark_sacker", "period_doubling")
 class Coexistence(Result):
     """Region over two parameters, as :func:`coexistence` returns it."""
 
-    x: Any = quantity("column", "", "first parameter of the grid, in its own unit")
-    y: Any = quantity("row", "", "second parameter of the grid and of the edges, in its own unit")
-    vibrates: Any = quantity("column row", "1", "share of the far starts that end in a vibration; NaN = all failed")
-    stable: Any = quantity("column row", "1", "True where steady sliding is stable")
-    onset: Any = quantity("row", "", "upper edge: sliding loses its stability; inf = beyond the range, NaN = below")
-    end: Any = quantity(
+    x: Array = quantity("column", "", "first parameter of the grid, in its own unit")
+    y: Array = quantity("row", "", "second parameter of the grid and of the edges, in its own unit")
+    vibrates: Array = quantity("column row", "1", "share of the far starts that end in a vibration; NaN = all failed")
+    stable: Array = quantity("column row", "1", "True where steady sliding is stable")
+    onset: Array = quantity("row", "", "upper edge: sliding loses its stability; inf = beyond the range, NaN = below")
+    end: Array = quantity(
         "row", "", "lower edge: the vibration followed down has ended; -inf = below the range, NaN = none"
     )
-    resolution: Any = quantity("row", "", "of the lower edge: it lies at most this much below")
-    amplitude: Any = quantity("row dof", "m", "amplitude of the last vibration, just above the lower edge")
-    state: Any = quantity("row state", "m", "a state (q, q') on it")
+    resolution: Array = quantity("row", "", "of the lower edge: it lies at most this much below")
+    amplitude: Array = quantity("row dof", "m", "amplitude of the last vibration, just above the lower edge")
+    state: Array = quantity("row state", "m", "a state (q, q') on it")
     parameters: tuple[str, ...] = ()
     starts: int = 0
     hopf: PointCurve | None = None

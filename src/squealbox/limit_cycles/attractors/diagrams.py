@@ -30,7 +30,7 @@ from squealbox.limit_cycles.attractors.settling import (
 from squealbox.limit_cycles.branches.isolated import drawn_states
 from squealbox.limit_cycles.cycles.remembering import field_of
 from squealbox.parameters import ParameterError, known_names
-from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import complex_modes
 
 SWEEPS = ("up", "down", "rest")
@@ -46,15 +46,19 @@ AT_ONCE = 2_000_000  # samples
 class BifurcationDiagram(Result):
     """What the motion settles to over a parameter, as :func:`bifurcation_diagram` returns it."""
 
-    value: Any = quantity("point", "", "value of the parameter, in its own unit")
-    maxima: Any = quantity("sweep point dof sample", "m", "last eight maxima, newest first; where it rests, its place")
-    lowest: Any = quantity("sweep point dof", "m", "least displacement in the end")
-    highest: Any = quantity("sweep point dof", "m", "largest displacement in the end")
-    frequency: Any = quantity("sweep point dof", "Hz", "frequency of the maxima")
-    kind: Any = quantity("sweep point", "1", "-1 failed, 0 not settled, 1 rests, 2 repeats itself")
-    state: Any = quantity("sweep point state", "m", "state (q, q') in which each ended")
-    sliding: Any = quantity("point dof", "m", "steady sliding")
-    crossings: Any = quantity("sweep point crossing", "", "what the section reads, m or m/s, oldest first, NaN behind")
+    value: Array = quantity("point", "", "value of the parameter, in its own unit")
+    maxima: Array = quantity(
+        "sweep point dof sample", "m", "last eight maxima, newest first; where it rests, its place"
+    )
+    lowest: Array = quantity("sweep point dof", "m", "least displacement in the end")
+    highest: Array = quantity("sweep point dof", "m", "largest displacement in the end")
+    frequency: Array = quantity("sweep point dof", "Hz", "frequency of the maxima")
+    kind: Array = quantity("sweep point", "1", "-1 failed, 0 not settled, 1 rests, 2 repeats itself")
+    state: Array = quantity("sweep point state", "m", "state (q, q') in which each ended")
+    sliding: Array = quantity("point dof", "m", "steady sliding")
+    crossings: Array = quantity(
+        "sweep point crossing", "", "what the section reads, m or m/s, oldest first, NaN behind"
+    )
     parameter: str = ""
     sweeps: tuple[str, ...] = ()
     dofs: tuple[str, ...] = ()

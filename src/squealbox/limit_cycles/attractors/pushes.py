@@ -26,7 +26,7 @@ from squealbox.limit_cycles.attractors.settling import RESTS, Batch, Scales, set
 from squealbox.limit_cycles.cycles.field import q_and_qd
 from squealbox.limit_cycles.cycles.pinned import at_rest_together
 from squealbox.parameters import ParameterError
-from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.system import System
 
 SECTIONS = (12, 8, 8)  # lengths tried at once between two, one round after the other
@@ -40,13 +40,13 @@ AGAIN = 2  # further searches when a drawn start proves smaller
 class DangerousPush(Result):
     """The smallest push found, as :func:`dangerous_push` returns it."""
 
-    push: Any = quantity("state", "m", "displacements [m] and velocities [m/s] beside steady sliding")
+    push: Array = quantity("state", "m", "displacements [m] and velocities [m/s] beside steady sliding")
     energy: Any = quantity("", "J", "its energy")
     harmless: Any = quantity("", "J", "energy in the same direction, just below, that still comes to rest")
     drawn: Any = quantity("", "1", "starts drawn uniformly from the pushes of less energy")
     dangerous: Any = quantity("", "1", "how many of them vibrate")
-    share_below: Any = quantity("end", "1", "confidence interval, 95 %, of the share of them that is dangerous")
-    history: Any = quantity("round", "J", "smallest energy after each round of the search")
+    share_below: Array = quantity("end", "1", "confidence interval, 95 %, of the share of them that is dangerous")
+    history: Array = quantity("round", "J", "smallest energy after each round of the search")
     runs: Any = quantity("", "1", "motions run in all")
     to: Attractor | None = field(default=None, metadata={"transient": True})
 

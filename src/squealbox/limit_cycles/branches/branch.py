@@ -27,7 +27,7 @@ from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.limit_cycles.cycles.harmonic_balance import Grid, harmonic_balance
 from squealbox.limit_cycles.cycles.shooting import CONTACTS, shooting
 from squealbox.parameters import ParameterError, known_names
-from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 
 METHODS = ("harmonic_balance", "shooting")
 METHODS_FROM_HOPF = (("harmonic_balance", "exact"), ("shooting", "exact"))
@@ -41,34 +41,34 @@ class Branch(Result):
     `points` (the cycle at each special point) and `family` (the design or function followed) are not saved.
     """
 
-    value: Any = quantity("point", "", "value of the parameter, in its own unit")
-    period: Any = quantity("point", "s", "period")
-    lowest: Any = quantity("point dof", "m", "least displacement")
-    highest: Any = quantity("point dof", "m", "largest displacement")
-    multipliers: Any = quantity("point multiplier", "1", "Floquet multipliers, the trivial one first")
-    start: Any = quantity("point state", "m", "state (q, q') at the beginning of the period, q' in m/s")
-    least_slip: Any = quantity(
+    value: Array = quantity("point", "", "value of the parameter, in its own unit")
+    period: Array = quantity("point", "s", "period")
+    lowest: Array = quantity("point dof", "m", "least displacement")
+    highest: Array = quantity("point dof", "m", "largest displacement")
+    multipliers: Array = quantity("point multiplier", "1", "Floquet multipliers, the trivial one first")
+    start: Array = quantity("point state", "m", "state (q, q') at the beginning of the period, q' in m/s")
+    least_slip: Array = quantity(
         "point", "m/s", "least sliding speed in the sense of V; negative where a contact reverses"
     )
-    sticking: Any = quantity("point", "s", "longest sticking time of a contact in a period")
-    unknowns: Any = quantity("point unknown", "", "what was followed")
-    special_kind: Any = quantity("special", "", "fold, period_doubling, neimark_sacker, grazing or sticking")
-    special_value: Any = quantity("special", "", "value of the parameter there")
-    special_point: Any = quantity("special", "1", "index of the point before it")
-    special_uncertainty: Any = quantity("special", "", "of the value; NaN where it lies midway between two points")
-    special_test: Any = quantity("special", "", "what is left of the test function")
+    sticking: Array = quantity("point", "s", "longest sticking time of a contact in a period")
+    unknowns: Array = quantity("point unknown", "", "what was followed")
+    special_kind: Array = quantity("special", "", "fold, period_doubling, neimark_sacker, grazing or sticking")
+    special_value: Array = quantity("special", "", "value of the parameter there")
+    special_point: Array = quantity("special", "1", "index of the point before it")
+    special_uncertainty: Array = quantity("special", "", "of the value; NaN where it lies midway between two points")
+    special_test: Array = quantity("special", "", "what is left of the test function")
     parameter: str = ""
     caution: str = ""
     points: tuple[BranchPoint, ...] = field(default=(), metadata={"transient": True})
     family: Any = field(default=None, metadata={"transient": True})
 
     @property
-    def amplitude(self) -> Any:
+    def amplitude(self) -> Array:
         """Half peak to peak [m], shape (point, dof)."""
         return 0.5 * (self.highest - self.lowest)
 
     @property
-    def stable(self) -> Any:
+    def stable(self) -> Array:
         """True where all multipliers but the trivial one lie inside the unit circle, shape (point,)."""
         return np.all(np.abs(self.multipliers[:, 1:]) < 1.0, axis=1)
 

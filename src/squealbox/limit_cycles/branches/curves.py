@@ -27,7 +27,7 @@ from squealbox.limit_cycles.branches.hopf import (
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.starting import steady_state
 from squealbox.parameters import ParameterError
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.system import System, as_system
 
 Bounds = dict[str, tuple[float, float]]
@@ -37,11 +37,11 @@ Bounds = dict[str, tuple[float, float]]
 class PointCurve(Result):
     """A curve of special points over two parameters, as :func:`hopf_curve` and :func:`point_curve` return it."""
 
-    x: Any = quantity("point", "", "first parameter, in its own unit")
-    y: Any = quantity("point", "", "second parameter, in its own unit")
-    frequency: Any = quantity("point", "Hz", "frequency there")
-    residual: Any = quantity("point", "1", "largest scaled residual of the extended system")
-    lyapunov: Any = quantity("point", "1", "first Lyapunov coefficient of Hopf points; NaN on other curves")
+    x: Array = quantity("point", "", "first parameter, in its own unit")
+    y: Array = quantity("point", "", "second parameter, in its own unit")
+    frequency: Array = quantity("point", "Hz", "frequency there")
+    residual: Array = quantity("point", "1", "largest scaled residual of the extended system")
+    lyapunov: Array = quantity("point", "1", "first Lyapunov coefficient of Hopf points; NaN on other curves")
     parameters: tuple[str, ...] = ()
     kind: str = ""
 

@@ -25,7 +25,7 @@ from squealbox.arguments import public
 from squealbox.friction import Table
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.starting import steady_state
-from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import critical_value
 from squealbox.stability.eigenvalues import OneEigenvalue
 from squealbox.system import as_system
@@ -37,8 +37,8 @@ class HopfPoint(OneEigenvalue, Result):
 
     value: Any = quantity("", "", "value of the parameter, in its own unit")
     eigenvalue: Any = quantity("", "1/s", "eigenvalue on the boundary")
-    shape: Any = quantity("state", "1", "q of the state (q, q') with |q| = 1")
-    steady: Any = quantity("state", "m", "steady sliding (q, 0)")
+    shape: Array = quantity("state", "1", "q of the state (q, q') with |q| = 1")
+    steady: Array = quantity("state", "m", "steady sliding (q, 0)")
     lyapunov: Any = quantity("", "1", "first Lyapunov coefficient l1; its sign is what matters")
     growth_slope: Any = quantity("", "1/s", "dRe lambda/dp, per unit of the parameter")
     frequency_slope: Any = quantity("", "rad/s", "dIm lambda/dp, per unit of the parameter")

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.result import Result, optional, quantity
+from squealbox.result import Array, Result, optional, quantity
 from squealbox.system import System
 
 
@@ -25,20 +25,20 @@ class Cycle(Result):
     """
 
     period: Any = quantity("", "s", "period")
-    t: Any = quantity("time", "s", "instants of one period")
-    q: Any = quantity("time dof", "m", "displacement")
-    qd: Any = quantity("time dof", "m/s", "velocity")
-    sliding_velocity: Any = quantity("time contact", "m/s", "sliding velocity v = V - t.q'")
-    mode: Any = quantity(
+    t: Array = quantity("time", "s", "instants of one period")
+    q: Array = quantity("time dof", "m", "displacement")
+    qd: Array = quantity("time dof", "m/s", "velocity")
+    sliding_velocity: Array = quantity("time contact", "m/s", "sliding velocity v = V - t.q'")
+    mode: Array = quantity(
         "time contact", "1", "mode in which the instant is reached: +1 or -1 slip with sgn(v), 0 stick, 2 open"
     )
-    multipliers: Any = quantity("multiplier", "1", "Floquet multipliers, the trivial one first")
-    lowest: Any = quantity("dof", "m", "least displacement")
-    highest: Any = quantity("dof", "m", "largest displacement")
-    event_time: Any = quantity("event", "s", "instants of stick, slip and reversal")
-    event_contact: Any = quantity("event", "1", "contact of each event")
-    event_mode: Any = quantity("event", "1", "mode the contact takes at the event")
-    memory: Any = optional(  # noqa: RUF009
+    multipliers: Array = quantity("multiplier", "1", "Floquet multipliers, the trivial one first")
+    lowest: Array = quantity("dof", "m", "least displacement")
+    highest: Array = quantity("dof", "m", "largest displacement")
+    event_time: Array = quantity("event", "s", "instants of stick, slip and reversal")
+    event_contact: Array = quantity("event", "1", "contact of each event")
+    event_mode: Array = quantity("event", "1", "mode the contact takes at the event")
+    memory: Array = optional(  # noqa: RUF009
         "state", "m", "what is remembered beside q and q' at the beginning: bristles, loops' states"
     )
     error: float = float("nan")
@@ -69,12 +69,12 @@ class Cycle(Result):
         return float(1.0 / self.period)
 
     @property
-    def amplitude(self) -> Any:
+    def amplitude(self) -> Array:
         """Half peak to peak of each degree of freedom [m], shape (dof,)."""
         return 0.5 * (self.highest - self.lowest)
 
     @property
-    def centre(self) -> Any:
+    def centre(self) -> Array:
         """Midway between the extremes of each degree of freedom [m], shape (dof,)."""
         return 0.5 * (self.highest + self.lowest)
 
@@ -85,7 +85,7 @@ class Cycle(Result):
         return bool(self.outcome.ok and np.all(others < 1.0))
 
     @property
-    def sticking_time(self) -> Any:
+    def sticking_time(self) -> Array:
         """Time in a period each contact sticks [s], shape (contact,)."""
         return np.sum((self.mode[1:] == 0) * np.diff(self.t)[:, None], axis=0)
 

@@ -25,7 +25,7 @@ from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.saltation import surface
 from squealbox.limit_cycles.cycles.variation import PARTS, _edges, _gauss, extrapolated, magnus, smooth_rows
 from squealbox.parameters import ParameterError
-from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.schedules import Constant, Schedule, Sinusoid, value_at
 from squealbox.system import System, as_system, equilibrium
 from squealbox.transient import Method, Trajectory, simulate
@@ -39,11 +39,11 @@ class ForcedCycle(Result):
     """One period of a forced motion, as :func:`forced_cycle` returns it."""
 
     period: Any = quantity("", "s", "period of what forces it")
-    t: Any = quantity("time", "s", "instants of one period")
-    q: Any = quantity("time dof", "m", "displacement")
-    qd: Any = quantity("time dof", "m/s", "velocity")
-    mode: Any = quantity("time contact", "1", "state of contact: -1, 1 slip, 0 stick, 2 open")
-    multipliers: Any = quantity("multiplier", "1", "Floquet multipliers, largest first")
+    t: Array = quantity("time", "s", "instants of one period")
+    q: Array = quantity("time dof", "m", "displacement")
+    qd: Array = quantity("time dof", "m/s", "velocity")
+    mode: Array = quantity("time contact", "1", "state of contact: -1, 1 slip, 0 stick, 2 open")
+    multipliers: Array = quantity("multiplier", "1", "Floquet multipliers, largest first")
     error: Any = quantity("", "1", "last scaled residual")
     events: int = 0
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.parameters import ParameterError, known_names
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.optimisation.goals import Candidates, Constraint, Goal
 from squealbox.studies.optimisation.search import FEASIBLE, best_of_one, pareto_front
 from squealbox.studies.quantity import input_of, unit_of
@@ -33,12 +33,12 @@ class Optimum(Result):
     nearest to the best value of every goal, each scaled by its range over the front.
     """
 
-    values: Any = quantity("design parameter", "", "varied parameters, in SI")
-    goals: Any = quantity("design goal", "", "the goals at these designs")
-    constraints: Any = quantity("design constraint", "", "the constrained numbers there")
-    before: Any = quantity("parameter", "", "varied parameters of the design given; NaN where it is unknown")
-    goals_before: Any = quantity("goal", "", "its goals")
-    constraints_before: Any = quantity("constraint", "", "its constrained numbers")
+    values: Array = quantity("design parameter", "", "varied parameters, in SI")
+    goals: Array = quantity("design goal", "", "the goals at these designs")
+    constraints: Array = quantity("design constraint", "", "the constrained numbers there")
+    before: Array = quantity("parameter", "", "varied parameters of the design given; NaN where it is unknown")
+    goals_before: Array = quantity("goal", "", "its goals")
+    constraints_before: Array = quantity("constraint", "", "its constrained numbers")
     best: int = 0
 
     table_over: ClassVar = ("design",)

@@ -19,7 +19,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.parameters import ParameterError
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import Quantity, as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.distributions import Lognormal, Normal
 from squealbox.studies.uncertainty.scatter import Scatter
@@ -42,11 +42,11 @@ class Surrogate(Result):
     (2.25, 1.0)
     """
 
-    coefficients: Any = quantity("term", "", "c_k")
-    degrees: Any = quantity("term parameter", "1", "a_ki, degree of each parameter in each term")
-    points: Any = quantity("point parameter", "", "training points, in SI")
-    values: Any = quantity("point", "", "the quantity there")
-    held_out: Any = quantity("point", "", "what a surrogate that has not seen the point says there")
+    coefficients: Array = quantity("term", "", "c_k")
+    degrees: Array = quantity("term parameter", "1", "a_ki, degree of each parameter in each term")
+    points: Array = quantity("point parameter", "", "training points, in SI")
+    values: Array = quantity("point", "", "the quantity there")
+    held_out: Array = quantity("point", "", "what a surrogate that has not seen the point says there")
     q2: Any = quantity("", "1", "share of the variance explained at points not seen")
 
     def __call__(self, at: Any) -> Any:

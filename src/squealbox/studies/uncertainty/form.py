@@ -18,7 +18,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.parameters import ParameterError
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, input_of, unit_of
 from squealbox.studies.uncertainty.importance import wide_sample
 from squealbox.studies.uncertainty.limit_state import LimitState, seeded
@@ -41,12 +41,12 @@ class DesignPoint(Result):
     sampled: Any = quantity("", "1", "P(squeal) by importance sampling about the design point")
     low: Any = quantity("", "1", "lower end of its confidence interval")
     high: Any = quantity("", "1", "upper end of its confidence interval")
-    point: Any = quantity("parameter", "", "parameters at the design point, in SI")
-    median: Any = quantity("parameter", "", "parameters at their medians, in SI")
-    normal_point: Any = quantity("parameter", "1", "z*, the design point in standard normal numbers")
-    importance: Any = quantity("parameter", "1", "alpha^2, share of each parameter")
-    distance: Any = quantity("along", "1", "distance from the median along z*, in standard deviations")
-    values: Any = quantity("along", "", "the quantity there")
+    point: Array = quantity("parameter", "", "parameters at the design point, in SI")
+    median: Array = quantity("parameter", "", "parameters at their medians, in SI")
+    normal_point: Array = quantity("parameter", "1", "z*, the design point in standard normal numbers")
+    importance: Array = quantity("parameter", "1", "alpha^2, share of each parameter")
+    distance: Array = quantity("along", "1", "distance from the median along z*, in standard deviations")
+    values: Array = quantity("along", "", "the quantity there")
 
     table_over: ClassVar = ("parameter",)
 

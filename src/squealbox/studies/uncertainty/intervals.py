@@ -15,7 +15,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.parameters import ParameterError
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
 
 MOST_CORNERS = 12  # parameters up to which every corner of the box is looked at
@@ -27,10 +27,10 @@ class IntervalBounds(Result):
 
     low: Any = quantity("", "", "least value found")
     high: Any = quantity("", "", "largest value found")
-    low_at: Any = quantity("parameter", "", "parameters of the least value")
-    high_at: Any = quantity("parameter", "", "parameters of the largest value")
-    lows: Any = quantity("run", "", "least value of each run of the search")
-    highs: Any = quantity("run", "", "largest value of each run of the search")
+    low_at: Array = quantity("parameter", "", "parameters of the least value")
+    high_at: Array = quantity("parameter", "", "parameters of the largest value")
+    lows: Array = quantity("run", "", "least value of each run of the search")
+    highs: Array = quantity("run", "", "largest value of each run of the search")
     nominal: Any = quantity("", "", "value in the middle of the box")
 
     @property

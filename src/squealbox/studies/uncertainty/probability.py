@@ -7,7 +7,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.parameters import ParameterError
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.replicates import binomial_interval, student_interval
 from squealbox.studies.uncertainty.scatter import Sampling, Scatter, unit_points
@@ -26,9 +26,9 @@ class SquealProbability(Result):
     probability: Any = quantity("", "1", "estimated probability of squeal")
     low: Any = quantity("", "1", "lower end of the confidence interval")
     high: Any = quantity("", "1", "upper end of the confidence interval")
-    values: Any = quantity("point", "", "the quantity at each point; NaN is unknown")
-    points: Any = quantity("point parameter", "", "values of the parameters that scatter, in SI")
-    of_replicates: Any = quantity("replicate", "1", "the estimate of each randomisation")
+    values: Array = quantity("point", "", "the quantity at each point; NaN is unknown")
+    points: Array = quantity("point parameter", "", "values of the parameters that scatter, in SI")
+    of_replicates: Array = quantity("replicate", "1", "the estimate of each randomisation")
     interval: str = ""
 
     @property

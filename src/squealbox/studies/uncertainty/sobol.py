@@ -15,7 +15,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.parameters import ParameterError
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.replicates import ratio_interval
 from squealbox.studies.uncertainty.scatter import Scatter, unit_points
@@ -28,12 +28,12 @@ class SobolIndices(Result):
     An estimate may fall slightly below 0 or above 1; its interval says by how much that matters.
     """
 
-    first: Any = quantity("parameter", "1", "first-order index")
-    first_low: Any = quantity("parameter", "1", "lower end of its interval")
-    first_high: Any = quantity("parameter", "1", "upper end of its interval")
-    total: Any = quantity("parameter", "1", "total index")
-    total_low: Any = quantity("parameter", "1", "lower end of its interval")
-    total_high: Any = quantity("parameter", "1", "upper end of its interval")
+    first: Array = quantity("parameter", "1", "first-order index")
+    first_low: Array = quantity("parameter", "1", "lower end of its interval")
+    first_high: Array = quantity("parameter", "1", "upper end of its interval")
+    total: Array = quantity("parameter", "1", "total index")
+    total_low: Array = quantity("parameter", "1", "lower end of its interval")
+    total_high: Array = quantity("parameter", "1", "upper end of its interval")
     average: Any = quantity("", "", "mean of the quantity")
     deviation: Any = quantity("", "", "standard deviation of the quantity")
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.parameters import ParameterError
-from squealbox.result import Outcome, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, input_of
 from squealbox.studies.uncertainty.form import lognormal_interval
 from squealbox.studies.uncertainty.limit_state import LimitState, seeded
@@ -31,10 +31,10 @@ class SubsetProbability(Result):
     variation: Any = quantity("", "1", "its coefficient of variation, as the runs state it of themselves")
     low: Any = quantity("", "1", "lower end of the confidence interval")
     high: Any = quantity("", "1", "upper end of the confidence interval")
-    of_runs: Any = quantity("run", "1", "P(squeal) of each run")
-    variation_of_runs: Any = quantity("run", "1", "coefficient of variation each run states")
-    thresholds: Any = quantity("run level", "", "the quantity at each level; NaN behind the last")
-    exceedance: Any = quantity("run level", "1", "probability that the quantity is beyond that level")
+    of_runs: Array = quantity("run", "1", "P(squeal) of each run")
+    variation_of_runs: Array = quantity("run", "1", "coefficient of variation each run states")
+    thresholds: Array = quantity("run level", "", "the quantity at each level; NaN behind the last")
+    exceedance: Array = quantity("run level", "1", "probability that the quantity is beyond that level")
 
     @property
     def spread(self) -> float:
