@@ -197,3 +197,17 @@ def test_figures_of_a_loop(change):
     assert nearest > 0.1  # a stable loop keeps away from -1
     locus = loop_locus(closed).axes[0]
     assert ("without delay" in locus.get_title()) == bool(change)
+
+
+def test_the_least_squeal_is_a_share_and_no_worse_than_a_grid():
+    brake = ModeCoupling(c1=0.02, c2=0.02, friction=Coulomb(1.1))
+    scatter = Scatter({"friction.static": Normal(1.1, 0.08), "k11": Normal(2.0, 0.04)})
+    best = best_absorber(brake, "x", 0.05, "probability", scatter, samples=64)
+    lot, centre = scatter.sample(64, seed=0), np.sqrt(2.0) / (2.0 * np.pi)
+
+    def share(frequency, damping):
+        return float(np.mean(growth_of(TunedMass(brake, "x", 0.05, frequency, damping).replace(lot)) > 0.0))
+
+    assert float(best.value) == share(float(best.frequency), float(best.damping))
+    grid = [share(centre * f, z) for f in np.linspace(0.85, 1.15, 14) for z in np.geomspace(1e-3, 0.2, 10)]
+    assert float(best.value) <= min(grid) < float(best.before)

@@ -125,12 +125,14 @@ def best_absorber(
     if aim == "margin":  # each look is a scan of its own: a coarser map
         frequencies, dampings = frequencies[::2], dampings[::2]
     grid = np.array([judge(np.full(len(dampings), f), dampings) for f in frequencies])
-    best = _searched(judge, frequencies, dampings, grid, 70 if aim == "margin" else 300)
+    best = _searched(judge, frequencies, dampings, grid, {"margin": 70, "probability": 100}.get(aim, 300))
     if aim == "decay":
         best = min([best, *_meetings(start, best[1:])], key=lambda each: each[0])
     if aim == "margin":
         best = min([best, *at_the_window(start, best, parameter)], key=lambda each: each[0])
     value, frequency, damping = best
+    if aim == "probability":  # without what decided between equal shares
+        value, grid = float(np.floor(value * samples + 1e-9)) / samples, np.floor(grid * samples + 1e-9) / samples
     sign = -1.0 if aim == "margin" else 1.0
     without = _without(brake, aim, scatter, parameter, bounds, samples, seed)
     inputs = {"system": brake, "on": on, "mass": float(mass)}
@@ -138,7 +140,7 @@ def best_absorber(
     return BestAbsorber(
         frequency=np.asarray(frequency), damping=np.asarray(damping), value=np.asarray(sign * value),
         before=np.asarray(without), frequencies=frequencies, dampings=dampings,
-        growth_map=sign * (grid if aim != "probability" else np.floor(grid * samples + 1e-9) / samples),
+        growth_map=sign * grid,
         band=_band(start.replace(frequency=frequency, damping=damping)), aim=aim, inputs=inputs, settings=settings,
     )  # fmt: skip
 
