@@ -109,3 +109,9 @@ def test_a_room_depends_on_what_the_page_says(room):
     said = stated(room)
     if said is not None:
         assert imported(room) <= said
+
+
+def test_formulas_have_no_dots_above_that_some_browsers_lose():
+    """A derivative is a prime: without a mathematical font a dot above q lies on the q."""
+    dotted = [path.name for path in PAGES if re.search(r"\\d?dot\b", path.read_text())]
+    assert dotted == []

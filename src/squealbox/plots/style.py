@@ -70,7 +70,7 @@ RC: dict[str, Any] = {
     "axes.linewidth": 0.6,
     "axes.axisbelow": True,
     "axes.formatter.limits": (-3, 4),
-    "axes.formatter.use_mathtext": True,
+    "axes.formatter.use_mathtext": False,  # it takes as long as all else of a figure
     "axes.formatter.useoffset": False,
     "axes.unicode_minus": True,
     "xtick.labelsize": 7.0,
@@ -331,6 +331,8 @@ def spread_ticks(figure: "Figure") -> None:
                     if not _crowded(axis, side, 0.04 * figure.dpi):
                         break
                     locator.set_params(nbins=bins)
+            if getattr(axis.get_major_formatter(), "orderOfMagnitude", 0):
+                axis.get_major_formatter().set_useMathText(True)  # a power of ten is set as one, plain numbers are not
 
 
 def _crowded(axis: Any, side: int, gap: float) -> bool:
