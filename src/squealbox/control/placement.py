@@ -14,7 +14,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.parameters import ParameterError
-from squealbox.result import Result, quantity
+from squealbox.result import Array, Result, quantity
 from squealbox.stability import complex_modes
 from squealbox.system import as_system
 
@@ -25,8 +25,8 @@ SHOWN = 6
 class Placement(Result):
     """What each pair of sensor and actuator does to each mode, as :func:`placement` returns it."""
 
-    poles: Any = quantity("mode", "1/s", "eigenvalues of the brake, those with Im >= 0")
-    shift: Any = quantity("sense act mode", "1/kg", "d lambda/d g of velocity feedback; negative real parts damp")
+    poles: Array = quantity("mode", "1/s", "eigenvalues of the brake, those with Im >= 0")
+    shift: Array = quantity("sense act mode", "1/kg", "d lambda/d g of velocity feedback; negative real parts damp")
     names: tuple[str, ...] = ()
 
     @property

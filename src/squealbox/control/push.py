@@ -13,7 +13,7 @@ from squealbox.arguments import public
 from squealbox.control.closed_loop import closed_loop
 from squealbox.control.plant import with_loops
 from squealbox.parameters import ParameterError
-from squealbox.result import COMPLETED, Outcome, Result, quantity
+from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import complex_modes
 from squealbox.system import equilibrium
 from squealbox.transient.simulate import simulate
@@ -33,8 +33,8 @@ class DefeatingPush(Result):
 
     kept: Any = quantity("", "m/s", "largest push that still dies down")
     defeated: Any = quantity("", "m/s", "smallest push that does not")
-    amplitude: Any = quantity("dof", "m", "of the motion between the two, near the unstable cycle")
-    direction: Any = quantity("dof", "1", "velocities of a push of 1 m/s")
+    amplitude: Array = quantity("dof", "m", "of the motion between the two, near the unstable cycle")
+    direction: Array = quantity("dof", "1", "velocities of a push of 1 m/s")
     runs: int = 0
 
     @property
