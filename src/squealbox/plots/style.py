@@ -321,7 +321,7 @@ def drawn(figure: "Figure", kind: str = "png", dots: float | None = None, *, tri
 
 def spread_ticks(figure: "Figure") -> None:
     """Fewer ticks on every axis whose numbers would run into each other."""
-    from matplotlib.ticker import MaxNLocator
+    from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
     for panel in figure.axes:
         for axis, side in ((panel.xaxis, 0), (panel.yaxis, 1)):
@@ -331,8 +331,9 @@ def spread_ticks(figure: "Figure") -> None:
                     if not _crowded(axis, side, 0.04 * figure.dpi):
                         break
                     locator.set_params(nbins=bins)
-            if getattr(axis.get_major_formatter(), "orderOfMagnitude", 0):
-                axis.get_major_formatter().set_useMathText(True)  # a power of ten is set as one, plain numbers are not
+            formatter = axis.get_major_formatter()
+            if isinstance(formatter, ScalarFormatter) and formatter.get_offset():
+                formatter.set_useMathText(True)  # a power of ten is set as one, plain numbers are not
 
 
 def _crowded(axis: Any, side: int, gap: float) -> bool:
