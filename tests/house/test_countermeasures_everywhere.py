@@ -1,5 +1,7 @@
 """Every countermeasure goes where a design goes: files, arrays, drawings, the command line; remedies are reproduced."""
 
+import html
+
 import numpy as np
 import pytest
 
@@ -43,6 +45,9 @@ from squealbox.parameters import from_plain, to_plain
 from squealbox.plots import loop_locus, nyquist_curve
 from squealbox.remedies import Candidate, candidates_for
 from squealbox.remedies.candidates import more_friction
+from squealbox.report.blocks import Table
+from squealbox.report.page import render
+from squealbox.report.results import result_page
 from squealbox.result import Result
 from squealbox.studies import Normal
 
@@ -211,3 +216,13 @@ def test_the_least_squeal_is_a_share_and_no_worse_than_a_grid():
     assert float(best.value) == share(float(best.frequency), float(best.damping))
     grid = [share(centre * f, z) for f in np.linspace(0.85, 1.15, 14) for z in np.geomspace(1e-3, 0.2, 10)]
     assert float(best.value) <= min(grid) < float(best.before)
+
+
+def test_cures_have_a_page_of_their_own(table):
+    page = result_page(table)
+    cells = [block for block in page.sections[0].blocks if isinstance(block, Table)]
+    assert len(cells[0].rows) == len(table)
+    assert str(table.line[0]) in html.unescape(render(page))
+    dithered = [i for i in range(len(table)) if "Dithered" in str(table.line[i])]
+    assert len(dithered) >= 2
+    assert all("mean friction left" in str(table.caution[i]) for i in dithered)

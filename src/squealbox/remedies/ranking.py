@@ -75,30 +75,29 @@ class Remedies(Result):
             for i in range(len(self))
         ]  # fmt: skip
 
-    def summary(self) -> str:
-        """The ranked table, ready for an e-mail."""
-        head = (
-            "cure",
-            "dose",
-            "growth [1/s]",
-            f"at +{100.0 * self.margin:.3g} %",
-            "P(squeal)",
-            "after push [um]",
-            "cost",
-        )
-        table = [head, *(row[:7] for row in self.rows())]
-        widths = [max(len(row[i]) for row in table) for i in range(len(head))]
-        lines = [
-            "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in table
-        ]
-        first = (
+    def heads(self) -> tuple[str, ...]:
+        """What the first seven of the columns of `rows` are called."""
+        later = f"at +{100.0 * self.margin:.3g} %"
+        return ("cure", "dose", "growth [1/s]", later, "P(squeal)", "after push [um]", "cost")
+
+    def without(self) -> str:
+        """The brake as it is, in a sentence."""
+        return (
             f"Without: growth {self.growth_before:+.4g} 1/s, P(squeal) {self.before:.3f}, "
             f"{1e6 * self.amplitude_before:.3g} um after a push"
         )
+
+    def summary(self) -> str:
+        """The ranked table, ready for an e-mail."""
+        table = [self.heads(), *(row[:7] for row in self.rows())]
+        widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+        lines = [
+            "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in table
+        ]
         cautions = [f"{self.name[i]}: {self.caution[i]}" for i in range(len(self)) if self.caution[i]]
         missed = [f"margin not reached at any dose tried: {', '.join(map(str, self.name[~self.reached.astype(bool)]))}"]
         said = [self.assumption] if self.assumption else []
-        return "\n".join([first, *lines, "", *(missed if not np.all(self.reached) else []), *cautions, *said])
+        return "\n".join([self.without(), *lines, "", *(missed if not np.all(self.reached) else []), *cautions, *said])
 
 
 @public(scatter=None)
@@ -230,7 +229,7 @@ def _share_cured(each: Candidate, cured: Design, brake: Design, lot: dict[str, A
     """Share of the lot that squeals with a cure; a parameter that it changes scatters about its new value."""
     values: dict[str, Any] = {}
     if each.values is None:
-        where = _place(cured, brake)
+        where = "brake." * len(_layers(cured, brake))  # no field of a countermeasure is taken for the brake's
         values = {f"{where}{name}": sample for name, sample in lot.items()}
     else:
         for name, sample in lot.items():
@@ -241,12 +240,13 @@ def _share_cured(each: Candidate, cured: Design, brake: Design, lot: dict[str, A
     return _share(cured, values)
 
 
-def _place(cured: Design, brake: Design) -> str:
-    """How a parameter of the brake begins in the cured one, so that no field of a countermeasure is taken for it."""
-    where, held = "", cured
+def _layers(cured: Design, brake: Design) -> list[Countermeasure]:
+    """The countermeasures put onto the brake, the outermost first; none where it is not among what they hold."""
+    found, held = [], cured
     while held is not brake and isinstance(held, Countermeasure):
-        where, held = f"{where}brake.", held.brake
-    return where if held is brake else ""
+        found.append(held)
+        held = held.brake
+    return found if held is brake else []
 
 
 def _one_side(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -258,9 +258,10 @@ def _one_side(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _said(cured: Design, brake: Design) -> list[str]:
-    if isinstance(cured, Dithered):
-        left = cured.friction_left
-        return [f"mean friction left {100.0 * float(np.min(left)):.0f} %", *cured.cautions()]
+    for layer in _layers(cured, brake):
+        if isinstance(layer, Dithered):
+            left = f"mean friction left {100.0 * float(np.min(layer.friction_left)):.0f} %"
+            return [left, *layer.cautions()]
     if isinstance(cured, Controlled):
         found = closed_loop(cured)
         if not found.stable:

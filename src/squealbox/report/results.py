@@ -11,6 +11,7 @@ from squealbox.designs import Design
 from squealbox.matrices import liveliest
 from squealbox.plots.cards import has_drawing, has_figure, parameter_rows
 from squealbox.plots.sweeps import numeric_answers
+from squealbox.remedies import Remedies
 from squealbox.report.blocks import Code, Page, Picture, Points, ReportError, Section, Sound, Table, Text
 from squealbox.report.pictures import picture, wav
 from squealbox.result import Result, provenance
@@ -66,10 +67,12 @@ def _about(result: Result) -> Iterator[Any]:
     """What the result says: its summary, its key numbers, its figure, a motion also its verdicts and sound."""
     yield Text(f"Ended: {_ended(result)}.")
     told = getattr(result, "summary", None)
-    if told is not None:
+    if isinstance(result, Remedies):
+        yield from _cures(result)
+    elif told is not None:
         yield Code(told())
     caution = getattr(result, "caution", "")
-    if caution:
+    if isinstance(caution, str) and caution:
         yield Text(f"Caution: {caution}")
     numbers = tuple((name, f"{value} {unit}".rstrip()) for name, value, unit in plots.facts(result))
     if numbers:
@@ -81,6 +84,15 @@ def _about(result: Result) -> Iterator[Any]:
         yield picture(plots.plot(result), f"{type(result).__name__}.")
     if isinstance(result, Trajectory) and len(result.t) >= LEAST:
         yield from _motion(result)
+
+
+def _cures(found: Remedies) -> Iterator[Any]:
+    """The ranked table of cures with their cautions, and the line of Python of each."""
+    yield Text(found.without())
+    yield Table((*found.heads(), "caution"), tuple(found.rows()))
+    if found.assumption:
+        yield Text(found.assumption)
+    yield Code("\n".join(map(str, found.line)))
 
 
 def _motion(motion: Trajectory) -> Iterator[Any]:
