@@ -98,7 +98,12 @@ def round_trip(stops):
         braking = braking if seed % 2 else {}  # in every second stop; the frequency of the squeal falls with it
         mode = complex_modes(design).most_unstable
         times = np.arange(int(duration * RATE)) / RATE
-        motion = simulate(design.replace(braking), duration, start=mode.start(1e-19), times=times)
+        motion = simulate(
+            design.replace(braking),
+            duration,
+            start=mode.start(1e-5 * float(np.exp(-0.07 * mode.growth_rate))),
+            times=times,
+        )
         clean = rendered(motion, dof="x").channel()
         sound = rendered(motion, dof="x", noise=1e-2 * float(np.max(np.abs(clean))), seed=seed)
         begun = time.process_time()
