@@ -115,7 +115,8 @@ def round_trip(stops):
             held += (found.low <= truth) & (found.high >= truth)
             told += 1
         spent += time.process_time() - begun
-        a, b = (int(RATE * at) for at in (events.onset[i] + 0.05, events.end[i] - 0.05))
+        share = min(0.05, 0.25 * float(events.end[i] - events.onset[i]))
+        a, b = (int(RATE * at) for at in (events.onset[i] + share, events.end[i] - share))
         near = butter(2, [0.8 * events.frequency[i], 1.2 * events.frequency[i]], "band", fs=RATE, output="sos")
         tone = sosfiltfilt(near, clean)[a:b]
         turns = np.nonzero((tone[:-1] < 0.0) & (tone[1:] >= 0.0))[0]
