@@ -98,7 +98,12 @@ def round_trip(stops):
         braking = braking if seed % 2 else {}  # in every second stop; the frequency of the squeal falls with it
         mode = complex_modes(design).most_unstable
         times = np.arange(int(duration * RATE)) / RATE
-        motion = simulate(design.replace(braking), duration, start=mode.start(1e-19), times=times)
+        motion = simulate(
+            design.replace(braking),
+            duration,
+            start=mode.start(1e-5 * float(np.exp(-0.07 * mode.growth_rate))),
+            times=times,
+        )
         clean = rendered(motion, dof="x").channel()
         sound = rendered(motion, dof="x", noise=1e-2 * float(np.max(np.abs(clean))), seed=seed)
         begun = time.process_time()
@@ -110,7 +115,8 @@ def round_trip(stops):
             held += (found.low <= truth) & (found.high >= truth)
             told += 1
         spent += time.process_time() - begun
-        a, b = (int(RATE * at) for at in (events.onset[i] + 0.05, events.end[i] - 0.05))
+        share = min(0.05, 0.25 * float(events.end[i] - events.onset[i]))
+        a, b = (int(RATE * at) for at in (events.onset[i] + share, events.end[i] - share))
         near = butter(2, [0.8 * events.frequency[i], 1.2 * events.frequency[i]], "band", fs=RATE, output="sos")
         tone = sosfiltfilt(near, clean)[a:b]
         turns = np.nonzero((tone[:-1] < 0.0) & (tone[1:] >= 0.0))[0]
