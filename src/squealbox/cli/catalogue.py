@@ -22,14 +22,17 @@ def list_(name: str | None = None) -> None:
 def _overview() -> Iterator[str]:
     from squealbox.files import BRAKES
     from squealbox.files.sheets import SCHEDULE_NAMES
-    from squealbox.transient.methods import TABLEAUX
+    from squealbox.transient.methods import TABLEAUX, TAYLOR
 
     yield from _section("designs (brake = ...)", {name: sheet.title for name, sheet in BRAKES.items()})
     yield from _section("friction laws (law = ...)", {name: _first_line(sheet) for name, sheet in _laws().items()})
     yield from _section(
         "schedules, in place of a number", {n: _first_line(sheet) for n, sheet in SCHEDULE_NAMES.items()}
     )
-    yield from _section("methods (method = ...)", {name: make().title for name, make in TABLEAUX.items()})
+    methods = {name: make().title for name, make in TABLEAUX.items()}
+    yield from _section("methods (method = ...)", methods | {TAYLOR: "the motion's own series, for exact contact"})
+    schemes = {"exact": "stick, slip and lift-off by events", "raw": "plain sgn(v)"}
+    yield from _section("contact (contact = ...)", schemes | {"smooth, tanh": "sgn(v) smoothed over `width`"})
     yield from _section("papers (squealbox paper ...)", _papers())
     yield "squealbox list NAME shows the parameters of a design, law or schedule"
 
