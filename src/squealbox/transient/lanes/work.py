@@ -86,11 +86,13 @@ class Work:
         samples = np.full((count, max(self.times.size, 1), 2 * system.size) if self.times.size else (1, 1, 1), np.nan)
         n = system.size
         shown = [*range(HEAD + seen), *range(HEAD + n, HEAD + n + seen), *range(HEAD + 2 * n, width)]
+        least = np.full((count, m), np.nan)
         try:
             self._compute(jobs, out, samples, count, part.start, total)
+            least = self._least(system, out[:, width - m :])
         finally:
             whole = n == seen
-            self.rows.append(np.hstack([out if whole else out[:, shown], self._least(system, out[:, width - m :])]))
+            self.rows.append(np.hstack([out if whole else out[:, shown], least]))
             keep = [*range(seen), *range(n, n + seen)]
             self.samples.append(samples if whole or not self.times.size else samples[:, :, keep])
 
