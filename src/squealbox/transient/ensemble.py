@@ -38,7 +38,7 @@ class Ensemble(Result):
     observed maps each observer's name to its values, (..., n), (..., contacts) or (...), with k values each where it
     returns several; parameters maps dotted names to what varied, (...). sample_q and sample_qd are (..., instants, n),
     empty when no instants were asked for. caution names contacts that left the range of their model, as at the ends of
-    steps (and in the middle of Taylor's), and in how many trajectories.
+    steps (and in the middle of Taylor's), and in how many trajectories; speeds with exact contact alone.
     """
 
     ended: Array = quantity("...", "", "how each trajectory ended")

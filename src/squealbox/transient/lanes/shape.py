@@ -110,9 +110,9 @@ class Shape:
 
     @property
     def ranging(self) -> list[int]:
-        """Contacts whose law may turn negative or end: how fast they slide is kept."""
+        """Contacts whose law may turn negative or end: with exact contact, how fast they slide is kept."""
         bounded = [LAWS.index(law) for law in (Coulomb, Stribeck, Hyperbolic)]
-        return [c for c in range(self.m) if self.recorded or self.laws[c][0] not in bounded]
+        return [c for c in range(self.m) if self.recorded or (self.exact and self.laws[c][0] not in bounded)]
 
     def is_smooth(self, c: int) -> bool:
         """Whether contact c has a law without events."""
