@@ -1,5 +1,7 @@
 """Closed forms of control: gains, delays, actuators, sampling, limits, active force control, spillover."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -25,6 +27,7 @@ from squealbox import (
     shooting,
     simulate,
 )
+from squealbox.result import Outcome
 
 FRICTION = "friction.static"
 
@@ -306,3 +309,21 @@ def test_the_push_that_defeats_a_limited_loop_lies_on_its_unstable_cycle():
     assert defeating_push(block(0.1, PID(on="q1", derivative=0.3, limit=1.0))).outcome == "no_danger"
     with pytest.raises(ParameterError, match="a loop with a limit"):
         defeating_push(block(0.1, PID(on="q1", derivative=0.3)))
+
+
+def test_the_edge_of_pushes_is_found_from_above_too_and_from_no_run_that_failed(monkeypatch):
+    """What is told as kept has been tried: the first push may be beyond the edge. A run that fails tells nothing."""
+    limited = block(-0.1, PID(on="q1", derivative=0.3, limit=1.0))
+    usual = defeating_push(limited, precision=1e-2)
+    monkeypatch.setattr("squealbox.control.push.FIRST", 1e3)
+    above = defeating_push(limited, precision=1e-2)
+    assert above.push == pytest.approx(usual.push, rel=2e-2)
+    assert above.kept < above.defeated
+    monkeypatch.setattr(
+        "squealbox.control.push.simulate",
+        lambda *given, **options: replace(simulate(*given, **options), outcome=Outcome("step_limit", "too many")),
+    )
+    failed = defeating_push(limited, precision=1e-2)
+    assert failed.outcome == "failed_run"
+    assert np.isnan(failed.kept)
+    assert failed.runs <= 2

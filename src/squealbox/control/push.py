@@ -18,7 +18,7 @@ from squealbox.stability import complex_modes
 from squealbox.system import equilibrium
 from squealbox.transient.simulate import simulate
 
-PERIODS, LONGEST = 40, 16  # of the pushed mode in one run, and runs one after the other before it counts as kept
+PERIODS, LONGEST = 40, 16  # of the pushed mode in one run, and longer ones before it counts as not dying down
 DEAD, GROWN = 0.3, 1.0 / 0.3  # of the first amplitude: where a motion has clearly died down, or grown
 FIRST, DOUBLINGS = 1e-3, 40  # the first push, over the speed at which the force reaches its limit, and how many more
 
@@ -28,7 +28,7 @@ class DefeatingPush(Result):
     """Between which pushes a limited loop is beaten, as :func:`defeating_push` returns it.
 
     Outcome "completed"; "unstable" when it is not even stable near steady sliding; "no_danger" when nothing tried beats
-    it.
+    it; "no_edge" when the least that was tried does; "failed_run" when a motion ended early, and so told nothing.
     """
 
     kept: Any = quantity("", "m/s", "largest push that still dies down")
@@ -104,17 +104,13 @@ def defeating_push(
     period = 1.0 / max(float(worst.frequency), 1e-300)
     search = _Pushed(design_or_system, equilibrium(bare).q, shape, period, rtol)
     first = FIRST * max(float(loop.limit or 0.0) / _gain(loop, system.names, shape, period) for loop in limits)
-    low, high = first, first
-    for _ in range(DOUBLINGS):
-        if search.grows(high):
-            break
-        low, high = high, 2.0 * high
-    else:
-        message = f"no push up to {low:.4g} m/s defeats it"
-        return DefeatingPush(**nothing, **common, runs=search.runs, outcome=Outcome("no_danger", message))
-    while high > low * (1.0 + precision):
+    low, high, outcome = search.bracket(first)
+    while outcome.ok and search.failed.ok and high > low * (1.0 + precision):
         middle = float(np.sqrt(low * high))
         low, high = (low, middle) if search.grows(middle) else (middle, high)
+    outcome = outcome if search.failed.ok else search.failed
+    if not outcome.ok:
+        return DefeatingPush(**nothing, **common, runs=search.runs, outcome=outcome)
     return DefeatingPush(
         kept=np.asarray(low), defeated=np.asarray(high), amplitude=search.amplitude, runs=search.runs, **common,
         outcome=Outcome(COMPLETED),
@@ -132,7 +128,18 @@ class _Pushed:
 
     def __init__(self, brake: Any, rest: Any, shape: Any, period: float, rtol: float) -> None:
         self.brake, self.rest, self.shape, self.period, self.rtol = brake, rest, shape, period, rtol
-        self.runs, self.amplitude = 0, np.zeros(len(rest))
+        self.runs, self.amplitude, self.failed = 0, np.zeros(len(rest)), Outcome(COMPLETED)
+
+    def bracket(self, first: float) -> tuple[float, float, Outcome]:
+        """A push that dies down and twice it, which does not, from the first one tried."""
+        upwards, push = not self.grows(first), first
+        for _ in range(DOUBLINGS):
+            before, push = push, push * (2.0 if upwards else 0.5)
+            if self.grows(push) == upwards or not self.failed.ok:
+                return min(before, push), max(before, push), Outcome(COMPLETED)
+        if upwards:
+            return push, push, Outcome("no_danger", f"no push up to {push:.4g} m/s defeats it")
+        return push, push, Outcome("no_edge", f"pushes down to {push:.4g} m/s still defeat it")
 
     def grows(self, push: float) -> bool:
         """Whether the motion after a push does not die down."""
@@ -142,7 +149,11 @@ class _Pushed:
             duration = length * (round_ + 1)
             motion = simulate(self.brake, duration, (self.rest, push * self.shape), count, rtol=self.rtol)
             self.runs += 1
+            if motion.outcome == "not_finite":
+                return True
             if not motion.outcome.ok:
+                message = f"the motion after a push of {push:.6g} m/s ended early: {motion.outcome.message}"
+                self.failed = Outcome("failed_run", message, push=push)
                 return True
             away = motion.q[:, :n] - self.rest
             early, late = (np.ptp(away[part], axis=0) for part in (slice(0, 128), slice(-128, None)))
