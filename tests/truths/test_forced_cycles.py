@@ -1,5 +1,7 @@
 """Forced periodic sliding: Floquet multipliers across reversals against averaging and closed forms."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -18,8 +20,10 @@ from squealbox import (
     System,
     complex_modes,
     shooting,
+    simulate,
 )
 from squealbox.limit_cycles import forced_branch, forced_cycle, forced_path
+from squealbox.result import Outcome
 
 BLOCK = MassOnBelt(c=0.02, k=1.0, sliding_speed=0.5, load=1.0, friction=Coulomb(0.4))
 AVERAGED = 0.02 + 2.0 * 0.4 / (np.pi * np.sqrt(1.0 - 0.25))
@@ -99,6 +103,27 @@ def test_a_path_over_the_frequency_goes_through_its_fold():
     assert last.events == 2
     assert not last.stable
     assert float(last.amplitude[0]) > 1.005 * abs(linear(omega))
+
+
+def test_a_path_that_no_step_leads_on_says_so(monkeypatch):
+    """Motions that end early beyond a force of 0.3 N stand for what no engine can run."""
+
+    def block(force):
+        return System([[1.0]], [[0.2]], [[1.0]], load=Sinusoid(0.0, force, 0.1) * [1.0])
+
+    def breaking(system, *given, **options):
+        motion = simulate(system, *given, **options)
+        swing = max(abs(weight) * part.amplitude for weight, part in system.load.terms() if hasattr(part, "amplitude"))
+        return replace(motion, outcome=Outcome("step_limit", "too many")) if np.max(swing) > 0.3 else motion
+
+    whole = list(forced_path(block, (0.1, 0.5), 0.1, ([0.0], [0.0]), largest=0.5))
+    assert whole[-1][0] == 0.5
+    assert all(cycle.outcome == "completed" for _, cycle in whole)
+    monkeypatch.setattr("squealbox.limit_cycles.cycles.forced.simulate", breaking)
+    cut = list(forced_path(block, (0.1, 0.5), 0.1, ([0.0], [0.0]), largest=0.5))
+    assert cut[-1][1].outcome == "step_underflow"
+    assert cut[-1][0] == pytest.approx(0.3, abs=1e-2)
+    assert all(cycle.outcome == "completed" for _, cycle in cut[:-1])
 
 
 def test_what_is_not_periodic_is_refused():

@@ -178,13 +178,9 @@ def near_sliding(system: Any) -> Any:
 
 def _wider(system: Any, M: Any, C: Any, K: Any, more: int) -> Any:
     """The system with these matrices and its contacts and load padded by rows without force."""
-    contacts = []
-    for contact in system.contacts:
-        given = {name: getattr(contact, name) for name in ("n", "d", "t", "normal")}
-        contacts.append(contact.replace({name: padded(row, more) for name, row in given.items() if row is not None}))
     names = numbered(system.names, "loop state", more)
-    load = padded_load(system.load, more)
-    return system.replace(M=M, C=C, K=K, load=load, contacts=tuple(contacts), names=names, loops=())
+    load, contacts = padded_load(system.load, more), padded_contacts(system.contacts, more)
+    return system.replace(M=M, C=C, K=K, load=load, contacts=contacts, names=names, loops=())
 
 
 def numbered(names: tuple[str, ...], name: str, more: int) -> tuple[str, ...]:
@@ -200,6 +196,15 @@ def numbered(names: tuple[str, ...], name: str, more: int) -> tuple[str, ...]:
 def padded(row: Any, more: int) -> Any:
     """A row (..., n) with zeros at its end."""
     return np.pad(row, [(0, 0)] * (np.ndim(row) - 1) + [(0, more)])
+
+
+def padded_contacts(contacts: Any, more: int) -> tuple[Any, ...]:
+    """Contacts that neither sense nor act along `more` further rows."""
+    out = []
+    for contact in contacts:
+        given = {name: getattr(contact, name) for name in ("n", "d", "t", "normal")}
+        out.append(contact.replace({name: padded(row, more) for name, row in given.items() if row is not None}))
+    return tuple(out)
 
 
 def padded_load(load: Any, more: int) -> Any:

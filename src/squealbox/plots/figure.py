@@ -22,7 +22,8 @@ class Drawing(Figure):
     def savefig(self, fname: Any, *args: Any, **keywords: Any) -> None:
         """As matplotlib's, in the look of this figure."""
         with looked(self):
-            spread_ticks(self)
+            if self.get_layout_engine() is not None:  # else they were spread with the layout that is done
+                spread_ticks(self)
             super().savefig(fname, *args, **keywords)
 
     def _repr_png_(self) -> bytes:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.loops.rows import force_per_state, numbered, padded, padded_load
+from squealbox.loops.rows import force_per_state, numbered, padded_contacts, padded_load
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Schedule, value_at
 from squealbox.system import Contact, InvalidSystem, System
@@ -57,7 +57,7 @@ def laid_open(system: System) -> System:
         return system
     base, more = system.base, system.size - system.base.size
     plain: dict[str, Any] = {key: np.pad(getattr(base, key), (0, more)) for key in ("M", "C", "K")}
-    load, contacts = padded_load(base.load, more), _padded(base.contacts, more)
+    load, contacts = padded_load(base.load, more), padded_contacts(base.contacts, more)
     told = System(**plain, load=load, contacts=contacts, names=system.names, angles=base.angles)
     return system.replace(seen=system.size, base=told, embedding=np.eye(system.size))
 
@@ -97,7 +97,7 @@ def _appended(system: System, more: int, name: str) -> tuple[dict[str, Any], Any
     fields: dict[str, Any] = {key: np.zeros((*lead, n + more, n + more)) for key in ("M", "C", "K")}
     for key in fields:
         fields[key][..., :n, :n] = getattr(system, key)
-    fields |= {"contacts": _padded(system.contacts, more), "load": padded_load(system.load, more)}
+    fields |= {"contacts": padded_contacts(system.contacts, more), "load": padded_load(system.load, more)}
     fields["loops"] = system.loops
     fields["names"] = numbered(system.names, name, more)
     old = system if isinstance(system, Widened) else None
@@ -107,15 +107,6 @@ def _appended(system: System, more: int, name: str) -> tuple[dict[str, Any], Any
     embedding = np.eye(n) if old is None else old.embedding
     fields["embedding"] = np.vstack([embedding, np.zeros((more, embedding.shape[1]))])
     return fields, lead
-
-
-def _padded(contacts: tuple[Contact, ...], more: int) -> tuple[Contact, ...]:
-    """Contacts that neither sense nor act along `more` further rows."""
-    out = []
-    for contact in contacts:
-        given = {key: getattr(contact, key) for key in ("n", "d", "t", "normal")}
-        out.append(contact.replace({key: padded(row, more) for key, row in given.items() if row is not None}))
-    return tuple(out)
 
 
 def _with_memory(system: System) -> System:

@@ -34,7 +34,6 @@ from squealbox.limit_cycles.attractors.settling import (
     settle_on,
     together,
 )
-from squealbox.limit_cycles.cycles.field import remembers_nothing
 from squealbox.limit_cycles.cycles.pinned import at_rest_together
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
@@ -141,9 +140,7 @@ def basin(
     >>> basin(DrumBrake(friction=LinearSlope(0.3, -0.05)), [1e-6, 1e-6, 0.0, 0.0], 4).share
     array(0.)
     """
-    system = as_system(design_or_system)
-    remembers_nothing(system)
-    system = at_rest_together(system)
+    system = at_rest_together(as_system(design_or_system))
     batch = Batch.over(system)
     scales = Scales.of(batch, 1)
     n = system.size

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from squealbox.limit_cycles.cycles.cycle import Cycle, extremes
-from squealbox.limit_cycles.cycles.differences import by_differences, change
+from squealbox.limit_cycles.cycles.differences import by_differences, change, derived
 from squealbox.limit_cycles.cycles.field import Autonomous, Field
 from squealbox.limit_cycles.cycles.remembering import field_of
 from squealbox.limit_cycles.cycles.shooting import cycle_through
-from squealbox.limit_cycles.cycles.variation import Flight, flight, fly, quick_flight
+from squealbox.limit_cycles.cycles.variation import Flight, fly, quick_flight
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import System
@@ -163,10 +163,7 @@ class ShootingPath:
         """The cycle at a point, its multipliers computed anew to 1e-12; error is the scaled residual there."""
         start = self.start(x)
         field = self.field(p)
-        if not isinstance(field, Field):
-            flown = by_differences(field, start, float(x[-1]), motion=fly(field, start, float(x[-1]), 1e-13))
-        else:
-            flown = flight(field, start, float(x[-1]))
+        flown = derived(field, start, float(x[-1]))
         error = float(np.max(np.abs(self.residual(x, p))))
         settings = {"contact": "exact", "width": 0.0, "shots": 1, "rtol": 1e-13}
         return cycle_through(field, start, float(x[-1]), flown.phi, Outcome(COMPLETED), settings, 2049, error,

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.cycles.variation import Flight, fly, method_of
+from squealbox.limit_cycles.cycles.field import Autonomous, Field
+from squealbox.limit_cycles.cycles.variation import Flight, flight, fly, method_of
 from squealbox.transient import Trajectory
 
 SHARES = (1e-4, 1e-5, 1e-6, 1e-7)  # of the motion
@@ -17,8 +18,8 @@ WAYS = np.array([[1.0], [-1.0], [2.0], [-2.0], [4.0], [-4.0]])
 ALIKE = 1e-9  # two extrapolations, of their largest entry
 
 
-def by_differences(field: Any, x: Any, duration: float, rtol: float = 1e-13, *, motion: Trajectory) -> Flight:
-    """As `variation.flight`, of any field that has `flows`: to some 1e-10 of the largest entry.
+def by_differences(field: Autonomous, x: Any, duration: float, rtol: float = 1e-13, *, motion: Trajectory) -> Flight:
+    """As `variation.flight`, to some 1e-10 of the largest entry.
 
     motion : that of `fly`, which reached the end
     """
@@ -39,6 +40,16 @@ def by_differences(field: Any, x: Any, duration: float, rtol: float = 1e-13, *, 
         if mismatch < ALIKE:
             break
     return Flight(states[-1], field.rate(states[-1], motion.mode[-1]), best, motion, mismatch)
+
+
+def derived(
+    field: Autonomous, x: Any, duration: float, rtol: float = 1e-13, *, motion: Trajectory | None = None
+) -> Flight:
+    """The motion and its derivative: by the equation where `field` is one, else by differences."""
+    motion = fly(field, x, duration, rtol) if motion is None else motion
+    if isinstance(field, Field):
+        return flight(field, x, duration, rtol, motion=motion)
+    return by_differences(field, x, duration, rtol, motion=motion)
 
 
 def change(x: Any, duration: float, rtol: float, beside: tuple[Any, Any, float]) -> Any:

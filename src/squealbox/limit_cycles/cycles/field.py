@@ -17,17 +17,17 @@ import numpy as np
 
 from squealbox.limit_cycles.cycles.cycle import ordered
 from squealbox.limit_cycles.cycles.pinned import pinned
+from squealbox.matrices import Equilibrium
 from squealbox.memory_rows import no_memory
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Schedule, value_at
-from squealbox.system import InvalidSystem, System, as_system
+from squealbox.system import InvalidSystem, System, as_system, equilibrium
 from squealbox.transient import Method
 from squealbox.transient.choosing import usual_method
 from squealbox.transient.lanes.flows import Flows
-from squealbox.transient.limited import in_time
 from squealbox.transient.packing import inverse_mass
 from squealbox.transient.rows import WITH_MASS, row_kinds
-from squealbox.transient.simulate import SCHEMES
+from squealbox.transient.simulate import SCHEMES, system_of
 from squealbox.transient.widened import Widened
 
 OPEN = 2
@@ -58,7 +58,7 @@ def check_states(system: System) -> None:
 def remembers_nothing(system: System) -> None:
     """Raise `InvalidSystem` where something beside the rows of a system is remembered."""
     no_memory(system.contacts, "this analysis")
-    if isinstance(in_time(system), Widened):
+    if isinstance(system_of(system), Widened):
         raise InvalidSystem(
             "M is singular otherwise than by rows without mass, or a loop remembers: expected displacements and "
             f"velocities as the only states here; {OTHERWISE}"
@@ -76,14 +76,13 @@ class Autonomous:
     """An autonomous system without leading axes as a search for cycles sees it: a start, a motion, a rate.
 
     system is what results know, asked the one given, held_fast what moves; a state is the displacements and velocities
-    (2 size,) of all its rows, scale what makes velocities of them. Raises `ParameterError` for a system that varies
-    with time, whose motion has no period of its own, or that has leading axes.
+    (2 size,) of all its rows, scale what makes velocities of them. Those below raise `ParameterError` for a system that
+    varies with time, whose motion has no period of its own, or that has leading axes.
     """
 
     def __init__(
         self, asked: System, system: System, moves: System, contact: str, width: float, frequency: float
     ) -> None:  # fmt: skip
-        check_autonomous(moves)
         self.asked, self.system, self.held_fast, self.contact, self.width = asked, system, moves, contact, width
         n, rows = moves.size, moves.contacts
         self.size = n
@@ -105,6 +104,10 @@ class Autonomous:
     def contact_state(self, x: Any) -> tuple[Any, Any]:
         """Normal force [N] and sliding velocity [m/s] of each contact."""
         return self.N0 + x[..., : self.size] @ self.n.T, self.V - x[..., self.size :] @ self.t.T
+
+    def sliding(self) -> Equilibrium:
+        """Steady sliding of the rows that results know."""
+        return equilibrium(self.held_fast)
 
     def state(self, q: Any, qd: Any, memory: Any = None) -> Any:
         """State of displacements and velocities (n,), with what is remembered beside them where that is known."""
@@ -130,7 +133,7 @@ class Field(Autonomous):
     """
 
     def __init__(self, system: System, contact: str = "exact", width: float = 1e-3) -> None:
-        system = in_time(system)
+        system = system_of(system)
         check_states(system)
         check_autonomous(system)
         inverse = inverse_mass(system.M)

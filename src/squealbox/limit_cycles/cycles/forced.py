@@ -13,7 +13,7 @@ Source: Leine and Nijmeijer 2004, Dynamics and Bifurcations of Non-Smooth Mechan
 
 import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, ClassVar
 
@@ -23,7 +23,16 @@ from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.saltation import surface
-from squealbox.limit_cycles.cycles.variation import PARTS, _edges, _gauss, extrapolated, magnus, smooth_rows
+from squealbox.limit_cycles.cycles.variation import (
+    PARTS,
+    between,
+    chained,
+    extrapolated,
+    gauss,
+    magnus,
+    smooth_rows,
+    subdivided,
+)
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.schedules import Constant, Schedule, Sinusoid, value_at
@@ -160,6 +169,7 @@ def forced_cycle(
     period = int(rounds) * common_period(system)
     x = _start(system, start)
     history: list[float] = []
+    scale = Field(_frozen(system, 0.0)).scale
     settings = {"rounds": int(rounds), "rtol": rtol, "tolerance": tolerance}
     for _ in range(most_steps):
         motion, end, phi, events = _flight(system, x, period, rtol)
@@ -167,7 +177,6 @@ def forced_cycle(
             return _made(
                 design_or_system, settings, period, motion, np.full(x.size, np.nan), np.inf, events, motion.outcome
             )
-        scale = Field(_frozen(system, 0.0)).scale
         size = float(np.max(np.abs(np.hstack([motion.q, motion.qd]) * scale))) or 1.0
         history.append(float(np.max(np.abs((end - x) * scale))) / size)
         if history[-1] <= tolerance:
@@ -200,7 +209,8 @@ def forced_path(
 
     `family(value)` is the brake. Walks from `begin` within `bounds`, first upwards, or downwards with `direction` -1;
     `first` and `largest` are step lengths, a length of 1 from bound to bound or the motion it begins with. Yields
-    (value, motion); unstable motions between two folds are among them.
+    (value, motion); unstable motions between two folds are among them. A walk that no step leads on, short of
+    a bound and of `most_points`, ends with its last motion again, whose outcome says why.
 
     >>> from squealbox import Contact, Coulomb, Sinusoid, System
     >>> def block(force):
@@ -236,10 +246,15 @@ def forced_path(
         return (phi - np.eye(x.size)) / unit[:, None], by_p / unit
 
     control = StepControl(first=first, largest=largest, tolerance=1e-8, most_points=most_points)
-    for point in follow(residual, x, begin, jacobian=jacobian, control=control, bounds=bounds, x_scale=unit,
-                        p_scale=high - low, closes=False, direction=direction):  # fmt: skip
-        q, qd = np.split(point.x, 2)
-        yield float(point.p), forced_cycle(family(float(point.p)), (q, qd), rtol=rtol)
+    walk = follow(residual, x, begin, jacobian=jacobian, control=control, bounds=bounds, x_scale=unit,
+                  p_scale=high - low, closes=False, direction=direction)  # fmt: skip
+    at = begin
+    for point in walk:
+        at, (q, qd) = float(point.p), np.split(point.x, 2)
+        found = forced_cycle(family(at), (q, qd), rtol=rtol)
+        yield at, found
+    if not walk.outcome.ok and walk.outcome != "most_points":
+        yield at, replace(found, outcome=walk.outcome)
 
 
 def common_period(system: System) -> float:
@@ -276,21 +291,16 @@ def _flight(system: System, x: Any, period: float, rtol: float) -> tuple[Traject
     states, field = np.hstack([motion.q, motion.qd]), Moving(system, 0.0)
     rows = smooth_rows(field, motion)
     pieces = list(itertools.pairwise(rows))
-    edges = [_edges(motion.t[i : k + 1], parts) for parts in (PARTS, 2 * PARTS) for i, k in pieces]
-    instants = [_gauss(each) for each in edges]
-    wanted, place = np.unique(np.concatenate(instants), return_inverse=True)
-    inner = simulate(system, period, start, wanted, method)
-    along = np.split(np.hstack([inner.q, inner.qd])[place], np.cumsum([len(t) for t in instants])[:-1])
+    edges = [subdivided(motion.t[i : k + 1], parts) for parts in (PARTS, 2 * PARTS) for i, k in pieces]
+    along = between(lambda times: simulate(system, period, start, times, method), edges)
     phis = []
-    for own, times, inside, (_, k) in zip(edges, instants, along, 2 * pieces, strict=True):
-        matrices = field.at(times).jacobians(inside, motion.mode[k])
+    for own, inside, (_, k) in zip(edges, along, 2 * pieces, strict=True):
+        matrices = field.at(gauss(own)).jacobians(inside, motion.mode[k])
         phis.append(magnus(matrices[::2], matrices[1::2], np.diff(own), field.scale))
-    coarse, fine = np.eye(2 * n), np.eye(2 * n)
-    for piece, ((i, _), wide, narrow) in enumerate(zip(pieces, phis[: len(pieces)], phis[len(pieces) :], strict=True)):
-        if piece > 0:
-            jump = _jump(field, states[i], motion.mode[i], motion.mode[i + 1], float(motion.t[i]), period)
-            coarse, fine = jump @ coarse, jump @ fine
-        coarse, fine = wide @ coarse, narrow @ fine
+    jumps = [
+        _jump(field, states[i], motion.mode[i], motion.mode[i + 1], float(motion.t[i]), period) for i, _ in pieces[1:]
+    ]
+    coarse, fine = chained(phis[: len(pieces)], jumps), chained(phis[len(pieces) :], jumps)
     return motion, states[-1], extrapolated(coarse, fine), len(rows) - 2
 
 

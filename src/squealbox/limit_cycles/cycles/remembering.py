@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from squealbox.limit_cycles.cycles.cycle import ordered
-from squealbox.limit_cycles.cycles.field import Autonomous, Field
+from squealbox.limit_cycles.cycles.field import Autonomous, Field, check_autonomous
+from squealbox.matrices import Equilibrium
 from squealbox.stability import complex_modes
-from squealbox.system import System, as_system
+from squealbox.system import System, as_system, equilibrium
 from squealbox.transient import simulate
-from squealbox.transient.limited import in_time
 from squealbox.transient.rows import ALGEBRAIC, WITH_MASS, row_kinds
+from squealbox.transient.simulate import system_of
 from squealbox.transient.widened import Widened, base_of, laid_open, start_of
 
 INSTANT = 1e-5  # of a period over 2 pi: of the differences that give a rate
@@ -25,7 +26,8 @@ class Remembering(Autonomous):
     """A system with rows without mass or with memory, as shooting sees it."""
 
     def __init__(self, asked: System, contact: str = "exact", width: float = 1e-3) -> None:
-        wide = self._wide = in_time(asked)
+        wide = self._wide = system_of(asked)
+        check_autonomous(wide)
         self.asked = asked
         frequency = float(np.max(self.own_modes()[0], initial=0.0)) or 1.0
         super().__init__(asked, base_of(wide), laid_open(wide), contact, width, frequency)
@@ -40,6 +42,9 @@ class Remembering(Autonomous):
         swings = np.flatnonzero(np.isfinite(rates) & (rates > 0.0))
         shapes = [modes.mode(int(i)).shape[: self.asked.size] for i in swings]
         return rates[swings], np.array(shapes).reshape(-1, self.asked.size).T
+
+    def sliding(self) -> Equilibrium:
+        return equilibrium(self.asked)
 
     def state(self, q: Any, qd: Any, memory: Any = None) -> Any:
         q, qd = start_of(self._wide, q, qd, None, False, 0.0)
@@ -67,6 +72,6 @@ class Remembering(Autonomous):
 def field_of(design_or_system: Any, contact: str = "exact", width: float = 1e-3) -> Autonomous:
     """The equation of a system whose states are q and q', else what its motion tells."""
     system = as_system(design_or_system)
-    wide = in_time(system)
+    wide = system_of(system)
     alone = not isinstance(wide, Widened) and all(kind == WITH_MASS for kind in row_kinds(wide))
     return Field(system, contact, width) if alone else Remembering(system, contact, width)

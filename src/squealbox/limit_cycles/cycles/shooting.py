@@ -5,8 +5,9 @@ With k shots of length T/k from x_0 .. x_{k-1},
     r_i = x_{i+1} - flow(x_i, T/k) = 0    (x_k = x_0)
     phase: f(x_ref) . (x_0 - x_ref) = 0
 
-are solved by Newton with the exact derivative of the flow, saltation matrices included (`variation`). The multipliers
-are the eigenvalues of the product of the shots' derivatives.
+are solved by Newton with the derivative of the flow, on the way from motions beside (`differences`). The multipliers
+are the eigenvalues of the product of the shots' derivatives, exact with saltation matrices where the states are q and
+q' (`variation`).
 """
 
 from typing import Any

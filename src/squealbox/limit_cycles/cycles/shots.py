@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.cycles.differences import by_differences
+from squealbox.limit_cycles.cycles.differences import by_differences, derived
 from squealbox.limit_cycles.cycles.field import Autonomous, Field
-from squealbox.limit_cycles.cycles.variation import Flight, flight, fly
+from squealbox.limit_cycles.cycles.variation import Flight, fly
 from squealbox.result import COMPLETED, Outcome
 from squealbox.transient import Trajectory
 from squealbox.transient.choosing import is_small
@@ -86,14 +86,12 @@ class Newton:
         return [self._derivative(node, duration, motion, last) for node, motion in pairs]
 
     def _derivative(self, x: Any, duration: float, motion: Trajectory, last: bool) -> Flight:
-        """By differences where there is no equation to differentiate, and quickly on the way to the cycle."""
-        if not isinstance(self.field, Field):
-            return by_differences(self.field, x, duration, self.rtol, motion=motion)
-        if not last and is_small(self.field.held_fast):
+        """Quickly on the way to the cycle, where that tells the derivative well enough."""
+        if not last and isinstance(self.field, Field) and is_small(self.field.held_fast):
             near = by_differences(self.field, x, duration, self.rtol, motion=motion)
             if near.mismatch < CLOSE:
                 return near
-        return flight(self.field, x, duration, self.rtol, motion=motion)
+        return derived(self.field, x, duration, self.rtol, motion=motion)
 
     def _phase(self, motion: Trajectory) -> Any:
         normal = self.field.rate(self.reference, motion.mode[0]) * self.field.scale

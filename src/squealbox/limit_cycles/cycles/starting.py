@@ -6,7 +6,6 @@ import numpy as np
 
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.limit_cycles.cycles.field import Autonomous
-from squealbox.limit_cycles.cycles.remembering import Remembering
 from squealbox.limit_cycles.cycles.variation import PERIOD_STEPS, fly
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Outcome
@@ -160,6 +159,6 @@ def _slowest_period(field: Autonomous) -> float:
 
 def steady_state(field: Autonomous) -> Any:
     """Steady sliding (q, q') (2n,), or NaN where there is none."""
-    state, n = equilibrium(field.asked if isinstance(field, Remembering) else field.held_fast), field.system.size
+    state, n = field.sliding(), field.system.size
     q = state.q if np.all(state.exists) else np.full(n, np.nan)
     return np.concatenate([q, np.zeros(n)])

@@ -6,6 +6,7 @@ the last halving of the steps still changed of Phi, whichever is more, is kept a
 """
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -72,26 +73,26 @@ def flight(
     states, rows = np.hstack([motion.q, motion.qd]), smooth_rows(field, motion)
     pieces = list(itertools.pairwise(rows))
     half = len(pieces)
-    edges = [_edges(motion.t[i : k + 1], parts) for parts in (PARTS, 2 * PARTS) for i, k in pieces]
-    along = _states(field, x, duration, rtol, edges)
+    edges = [subdivided(motion.t[i : k + 1], parts) for parts in (PARTS, 2 * PARTS) for i, k in pieces]
+    along = between(lambda times: fly(field, x, duration, rtol, times), edges)
     phis, paths = [], []
     for times, inside, mode in zip(edges, along, 2 * [motion.mode[k] for _, k in pieces], strict=True):
         dt, matrices, rates = np.diff(times), field.jacobians(inside, mode), field.rates(inside, mode)
         phis.append(magnus(matrices[::2], matrices[1::2], dt, field.scale))
         paths.append(0.5 * dt @ (rates[::2] + rates[1::2]))
-    fine, coarse, mismatch, least, together = np.eye(size), np.eye(size), 0.0, 1.0, False
-    halves = phis[:half], phis[half:], paths[:half], paths[half:]
-    for piece, ((i, k), wide, narrow, path, finer) in enumerate(zip(pieces, *halves, strict=True)):
-        if piece > 0:
-            before, after = motion.mode[i], motion.mode[i + 1]
-            jump, rate, _ = saltation(field, states[i], before, after)
-            fine, coarse, least = jump @ fine, jump @ coarse, min(least, abs(rate))
-            together = together or int(np.sum(before != after)) > 1
-        fine, coarse = narrow @ fine, wide @ coarse
-        missed = states[k] - states[i] - extrapolated(path, finer)
-        mismatch = max(mismatch, _relative(field, missed, states))
+    jumps, least, together = [], 1.0, False
+    for i, _ in pieces[1:]:
+        before, after = motion.mode[i], motion.mode[i + 1]
+        jump, rate, _ = saltation(field, states[i], before, after)
+        jumps.append(jump)
+        least, together = min(least, abs(rate)), together or int(np.sum(before != after)) > 1
+    coarse, fine = chained(phis[:half], jumps), chained(phis[half:], jumps)
+    gone = [extrapolated(*each) for each in zip(paths[:half], paths[half:], strict=True)]
+    missed = [states[k] - states[i] - way for (i, k), way in zip(pieces, gone, strict=True)]
     phi, ratio = extrapolated(coarse, fine), field.scale[:, None] / field.scale
-    mismatch = max(mismatch, float(np.max(np.abs((phi - fine) * ratio)) / np.max(np.abs(phi * ratio))))
+    mismatch = max(
+        _relative(field, missed, states), float(np.max(np.abs((phi - fine) * ratio)) / np.max(np.abs(phi * ratio)))
+    )
     return Flight(states[-1], field.rate(states[-1], motion.mode[-1]), phi, motion, mismatch, least, together)
 
 
@@ -110,20 +111,20 @@ def quick_flight(
         return flight(field, x, duration, rtol, motion=motion)
     states, rows = np.hstack([motion.q, motion.qd]), smooth_rows(field, motion)
     counts = [max(8, int(np.ceil(steps * (motion.t[k] - motion.t[i]) / duration))) for i, k in itertools.pairwise(rows)]
-    edges = [_edges(motion.t[[i, k]], n) for i, k, n in zip(rows[:-1], rows[1:], counts, strict=True)]
-    inside = _states(field, x, duration, rtol, edges)
+    edges = [subdivided(motion.t[[i, k]], n) for i, k, n in zip(rows[:-1], rows[1:], counts, strict=True)]
+    inside = between(lambda times: fly(field, x, duration, rtol, times), edges)
     size, least, scale = x.size, 1.0, field.scale
     along = [field.jacobians(inner_, motion.mode[k]) for inner_, k in zip(inside, rows[1:], strict=True)]
     if beside is not None:
         along, weight = _with_parameter(field, along, inside, motion.mode[rows[1:]], beside)
         scale = np.append(scale, weight)
-    phi = np.eye(len(scale))
-    for piece, i in enumerate(rows[:-1]):
-        if piece > 0:
-            jump, rate, _ = saltation(field, states[i], motion.mode[i], motion.mode[i + 1], beside)
-            phi, least = jump @ phi, min(least, abs(rate))
-        a, b = along[piece][::2], along[piece][1::2]
-        phi = magnus(a, b, np.diff(edges[piece]), scale) @ phi
+    jumps = []
+    for i in rows[1:-1]:
+        jump, rate, _ = saltation(field, states[i], motion.mode[i], motion.mode[i + 1], beside)
+        jumps.append(jump)
+        least = min(least, abs(rate))
+    parts = [magnus(a[::2], a[1::2], np.diff(own), scale) for a, own in zip(along, edges, strict=True)]
+    phi = chained(parts, jumps)
     by_p = None if beside is None else phi[:size, size]
     return Flight(states[-1], field.rate(states[-1], motion.mode[-1]), phi[:size, :size], motion, 0.0, least,
                   by_p=by_p)  # fmt: skip
@@ -150,21 +151,32 @@ def smooth_rows(field: Field, motion: Trajectory) -> list[int]:
     return [0, *cuts, len(motion.t) - 1]
 
 
-def _edges(t: Any, parts: int) -> Any:
+def chained(parts: list[Any], jumps: list[Any]) -> Any:
+    """Phi over pieces one after the other, from those of the pieces and of the events between them."""
+    total = parts[0]
+    for part, jump in zip(parts[1:], jumps, strict=True):
+        total = part @ (jump @ total)
+    return total
+
+
+def subdivided(t: Any, parts: int) -> Any:
     """The instants t with the intervals between them in so many equal parts."""
     inner = t[:-1, None] + np.diff(t)[:, None] * np.arange(parts) / parts
     return np.append(inner.ravel(), t[-1])
 
 
-def _states(field: Field, x: Any, duration: float, rtol: float, edges: list[Any]) -> list[Any]:
-    """States (2 k, 2n) at the two Gauss points of each of the k steps between the `edges` of each list."""
-    instants = [_gauss(each) for each in edges]
+def between(run: Callable[[Any], Trajectory], edges: list[Any]) -> list[Any]:
+    """States (2 k, 2n) at the two Gauss points of each of the k steps between the `edges` of each list.
+
+    run : gives the motion at instants
+    """
+    instants = [gauss(each) for each in edges]
     wanted, place = np.unique(np.concatenate(instants), return_inverse=True)
-    inner = fly(field, x, duration, rtol, wanted)
+    inner = run(wanted)
     return np.split(np.hstack([inner.q, inner.qd])[place], np.cumsum([len(t) for t in instants])[:-1])
 
 
-def _gauss(edges: Any) -> Any:
+def gauss(edges: Any) -> Any:
     """The two Gauss points of each step, in rising order."""
     middle, h = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
     return (middle[:, None] + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0 * h[:, None]).ravel()
