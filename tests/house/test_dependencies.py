@@ -45,5 +45,11 @@ def test_imports_are_declared(path):
     assert third_party(path.read_text()) <= declared(PROJECT_TABLE["dependencies"]) | declared(extra)
 
 
+def test_the_pages_are_built_with_what_their_cells_run():
+    """`make docs` of a fresh clone installs the extra `docs` alone."""
+    itself = PROJECT_TABLE["optional-dependencies"]["docs"][0]
+    assert set(EXTRAS.values()) <= set(itself.removeprefix("squealbox[").removesuffix("]").split(","))
+
+
 def test_an_undeclared_import_is_seen():
     assert third_party("import numpy\nimport os\ndef f():\n    from plotly.io import show\n") == {"numpy", "plotly"}

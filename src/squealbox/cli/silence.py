@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from squealbox.cli.answers import show
+from squealbox.cli.answers import keep
 from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
@@ -55,7 +55,8 @@ def silence(
     with Progress("looking for what silences it"):
         lot = found.scatter.scatter if found.scatter is not None else None
         table = silenced(brake, lot, margin=margin, samples=samples, seed=seed)
-    show(f"{found.design.title}, {file}", table)
+    print(f"{found.design.title}, {file}\n{table.summary(len(table))}")
+    keep(table)
     if out is not None:
         from squealbox import plots
 

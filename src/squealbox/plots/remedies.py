@@ -45,7 +45,8 @@ def remedies_figure(found: Remedies, *, title: str = "", axes: Any = None) -> "F
         panel.set_yticks(places, [str(name) for name in found.name[:count]], fontsize=6)
         panel.invert_yaxis()
         panel.set_xlim(0.0, 1.0)
-        panel.set_xlabel("share of the lot that squeals")
+        left_out = f" (the best {count} of {len(found)} cures)" if count < len(found) else ""
+        panel.set_xlabel(f"share of the lot that squeals{left_out}")
         panel.set_title(title)
         panel.legend(loc="lower right", fontsize=6)
         return figure_of(panel)
@@ -114,9 +115,10 @@ def nyquist_curve(found: ClosedLoop, loop: int = 0, *, title: str = "", axes: An
     with drawing(axes, width=COLUMN, height=COLUMN) as panel:
         panel.plot(curve.real, curve.imag, label="0 to the highest frequency", **line(0))
         panel.plot(curve.real, -curve.imag, linewidth=0.6, color="0.6")
-        panel.plot([-1.0], [0.0], "+", color="#D55E00", markersize=8, label="-1")
-        panel.set(xlabel="real part of -L", ylabel="imaginary part of -L", title=title, aspect="equal")
-        panel.legend(loc="best", fontsize=6)
+        panel.plot([-1.0], [0.0], "+", color="#D55E00", markersize=8, zorder=3, label="-1")
+        panel.set(xlabel="real part of -L", ylabel="imaginary part of -L", aspect="equal")
+        panel.set_title(title, y=1.12)
+        panel.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize=6)  # the mark stays in sight
         return figure_of(panel)
 
 

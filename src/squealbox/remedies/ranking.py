@@ -22,6 +22,7 @@ from squealbox.transient import simulate
 TUNING = 0.03  # standard deviation of an absorber's frequency in production, relative
 ZOOM = 17
 PUSH, PERIODS = 0.05, 100.0  # m/s of the push, and how many periods of the worst mode it is followed
+MOST_ROWS = 20  # of a summary
 HALF = 0.5
 
 
@@ -87,17 +88,18 @@ class Remedies(Result):
             f"{1e6 * self.amplitude_before:.3g} um after a push"
         )
 
-    def summary(self) -> str:
-        """The ranked table, ready for an e-mail."""
-        table = [self.heads(), *(row[:7] for row in self.rows())]
+    def summary(self, most: int = MOST_ROWS) -> str:
+        """The ranked table, ready for an e-mail: the `most` best cures, a screenful, and what to know of them."""
+        shown = min(most, len(self))
+        table = [self.heads(), *(row[:7] for row in self.rows()[:shown])]
         widths = [max(map(len, column)) for column in zip(*table, strict=True)]
         lines = [
             "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in table
         ]
-        cautions = [f"{self.name[i]}: {self.caution[i]}" for i in range(len(self)) if self.caution[i]]
-        missed = [f"margin not reached at any dose tried: {', '.join(map(str, self.name[~self.reached.astype(bool)]))}"]
+        lines += [f"and {len(self) - shown} more, in rows()"] if shown < len(self) else []
+        cautions = [f"{self.name[i]}: {self.caution[i]}" for i in range(shown) if self.caution[i]]
         said = [self.assumption] if self.assumption else []
-        return "\n".join([self.without(), *lines, "", *(missed if not np.all(self.reached) else []), *cautions, *said])
+        return "\n".join([self.without(), *lines, "", *cautions, *said])
 
 
 @public(scatter=None)
