@@ -98,7 +98,7 @@ def _results(motion: "Trajectory", title: str, out: Path) -> tuple[str, list[Pat
     if drawn is not motion:
         text += (f"\nNote: {len(motion.t)} kept instants do not carry these frequencies (give more points for data and "
                  "sound); the verdict and the figures come from every step of the run")  # fmt: skip
-    text += "".join(f"\nCaution: {said}" for said in _cautions(motion))
+    text += "".join(f"\nCaution: {said}" for said in motion.caution.split("; ") if said)
     (out / "verdict.txt").write_text(f"{text}\n", encoding="utf-8")
     turns = [unit == "rad" for unit in motion.system.units]
     ranked = sorted(range(len(judged)), key=lambda i: (turns[i], -float(judged[i].amplitude)))[:MOST_FIGURES]
@@ -108,14 +108,6 @@ def _results(motion: "Trajectory", title: str, out: Path) -> tuple[str, list[Pat
     paths += plots.save(plots.energy(motion, title=title), out / "energy")
     paths += _sound(motion, ranked[0], float(judged[ranked[0]].frequency), out)
     return text, [out / "verdict.txt", *paths]
-
-
-def _cautions(motion: "Trajectory") -> tuple[str, ...]:
-    """Where the motion leaves the range of its model, and what the run itself warns of."""
-    from squealbox.cautions import out_of_range
-
-    own = (motion.caution,) if motion.caution else ()
-    return (*own, *out_of_range(motion.system, motion.normal_force, motion.sliding_velocity))
 
 
 def _sound(motion: "Trajectory", dof: int, pitch: float, out: Path) -> list[Path]:
