@@ -1,6 +1,7 @@
 """A Dask cluster of separate processes: the bits of the serial run, also when its workers are killed."""
 
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -12,6 +13,7 @@ import numpy as np
 import psutil
 import pytest
 
+import squealbox
 from faults import study_victim
 from faults.store_study import answer
 from squealbox import DrumBrake, complex_modes, sweep
@@ -92,6 +94,29 @@ def test_a_poisonous_point_is_isolated(address):
     assert table.failures == {3: "the workers that computed it died"}
 
 
+def test_a_point_is_blamed_for_deaths_that_it_died_alone(address, monkeypatch):
+    """Its neighbours on the same worker die with a poisonous point, as often as their cluster allows."""
+    from distributed.scheduler import KilledWorker
+
+    from squealbox.studies.cluster import _Cluster
+
+    taken = _Cluster._take
+
+    def unlucky(self, future, piece):
+        if len(piece) == 1 and piece.start not in seen:
+            seen.add(piece.start)
+            future = SimpleNamespace(
+                status="error", exception=lambda: KilledWorker("key", SimpleNamespace(address="worker"), 3)
+            )
+        taken(self, future, piece)
+
+    seen = set()
+    monkeypatch.setattr(_Cluster, "_take", unlucky)
+    table = sweep(DrumBrake(), {"load": np.arange(4.0)}, lambda design: design.load1, scheduler=address, chunk=1)
+    assert table.outcomes.tolist() == ["completed"] * 4
+    assert seen == {0, 1, 2, 3}
+
+
 def test_a_hanging_point_is_ended(address):
     def hang(design):
         if design.load1 == 1.0:
@@ -139,7 +164,7 @@ def test_other_versions_on_the_workers_are_refused(address, monkeypatch):
     from squealbox.studies import cluster
 
     monkeypatch.setattr(cluster, "provenance", lambda: {"squealbox": "9.9"})
-    with pytest.raises(StudyError, match=r"has squealbox 0\.1\.0, this process 9\.9"):
+    with pytest.raises(StudyError, match=rf"has squealbox {re.escape(squealbox.__version__)}, this process 9\.9"):
         sweep(DrumBrake(), {"load": np.arange(4.0)}, complex_modes, scheduler=address)
 
 

@@ -6,6 +6,7 @@ from itertools import pairwise
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from result_examples import EXAMPLES
 from squealbox import DrumBrake, ParameterError, complex_modes, plot, plots, simulate
@@ -60,12 +61,12 @@ def test_numbers_along_an_axis_stay_apart():
 
 def crowded(figure) -> list[str]:
     """Axes of a drawn figure whose numbers run into each other, by their labels."""
-    found = []
+    found, renderer = [], FigureCanvasAgg(figure).get_renderer()
     for panel in figure.axes:
         for axis, side in ((panel.xaxis, 0), (panel.yaxis, 1)):
             low, high = sorted(axis.get_view_interval())
             known = zip(axis.get_majorticklocs(), axis.get_ticklabels(), strict=False)
-            boxes = [label.get_window_extent() for at, label in known if low <= at <= high and label.get_text()]
+            boxes = [label.get_window_extent(renderer) for at, label in known if low <= at <= high and label.get_text()]
             spans = sorted((box.min[side], box.max[side]) for box in boxes)
             found += [axis.get_label_text()] * any(after[0] < before[1] for before, after in pairwise(spans))
     return found

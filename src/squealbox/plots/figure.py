@@ -4,7 +4,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from squealbox.plots.style import LOOK, drawn, looked, spread_ticks
+from squealbox.plots.style import LOOK, drawn, laid_out, looked
 
 DOTS = 150  # an inch, sharp on most screens
 
@@ -21,9 +21,8 @@ class Drawing(Figure):
 
     def savefig(self, fname: Any, *args: Any, **keywords: Any) -> None:
         """As matplotlib's, in the look of this figure."""
-        with looked(self):
-            if self.get_layout_engine() is not None:  # else they were spread with the layout that is done
-                spread_ticks(self)
+        dots = keywords.get("dpi")
+        with looked(self), laid_out(self, dots if isinstance(dots, (int, float)) else None):
             super().savefig(fname, *args, **keywords)
 
     def _repr_png_(self) -> bytes:

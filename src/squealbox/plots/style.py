@@ -302,7 +302,7 @@ def save(
     if formats is None:
         formats = (given,) if stem != Path(path) and given not in FORMATS.get() else FORMATS.get()
     written = []
-    with looked(figure), _laid_out(figure, dots):
+    with looked(figure), laid_out(figure, dots):
         for kind in formats:
             written.append(stem.with_name(f"{stem.name}.{kind}"))
             packed: dict[str, Any] = {"pil_kwargs": {"compress_level": PACKED}} if kind == "png" else {}
@@ -313,13 +313,13 @@ def save(
 def drawn(figure: "Figure", kind: str = "png", dots: float | None = None, *, trimmed: bool = False) -> bytes:
     """The figure as the content of a PNG, SVG or PDF file, `dots` an inch, `trimmed` of an empty margin."""
     stream = io.BytesIO()
-    with looked(figure), _laid_out(figure, dots):
+    with looked(figure), laid_out(figure, dots):
         box = "tight" if trimmed else None
         figure.savefig(stream, format=kind, metadata=NAMELESS.get(kind), dpi=dots, bbox_inches=box)
     return stream.getvalue()
 
 
-def spread_ticks(figure: "Figure") -> None:
+def _spread_ticks(figure: "Figure") -> None:
     """Fewer ticks on every axis whose numbers would run into each other."""
     from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
@@ -346,7 +346,7 @@ def _crowded(axis: Any, side: int, gap: float) -> bool:
 
 
 @contextmanager
-def _laid_out(figure: "Figure", dots: float | None) -> Iterator[None]:
+def laid_out(figure: "Figure", dots: float | None) -> Iterator[None]:
     """The figure with its layout done and put to rest, so that drawing does not do it again.
 
     It is done at the dots an inch of the file, because letters are as wide as whole dots make them.
@@ -359,8 +359,8 @@ def _laid_out(figure: "Figure", dots: float | None) -> Iterator[None]:
         return
     before, finest = figure.dpi, rcParams["savefig.dpi"]
     figure.set_dpi(dots or (before if finest == "figure" else finest))
-    spread_ticks(figure)
     engine.execute(figure)
+    _spread_ticks(figure)  # along axes as long as the layout leaves them
     figure.set_dpi(before)
     figure.set_layout_engine(None)  # with "none" a placeholder stays, and each file is drawn twice
     try:

@@ -2,7 +2,8 @@
 
 A piece travels with its task, so a worker that joins late or comes back knows all it needs. Results come back to this
 process, which alone writes the store. Dask computes the pieces of a lost worker again; a piece that loses several
-workers is taken apart until the point to blame stands alone.
+workers is taken apart until the point to blame stands alone, and that point is blamed when workers die of it with
+nothing else in hand: other points that shared its workers died with them.
 """
 
 import os
@@ -47,6 +48,8 @@ class _Cluster:
         self.payload, self.versions = packed(work.task), provenance()
         self.back: queue.Queue[Future] = queue.Queue()
         self.out: dict[Any, tuple[Future, Piece, float]] = {}
+        self.suspects: list[Piece] = []  # single points that workers died with, to be tried one at a time
+        self.tried: Piece | None = None  # the one in hand, with nothing else
         self.alone: float | None = None  # since when looks at the cluster find no worker
 
     def run(self) -> None:
@@ -72,8 +75,16 @@ class _Cluster:
         )
         self.work.target.log(text)
 
+    def _next(self) -> Piece | None:
+        """The next piece to hand out; None where there is none, or while one has to be by itself."""
+        if self.tried is not None:
+            return None
+        if (piece := self.work.take()) is None and self.suspects and not self.out:
+            piece = self.tried = self.suspects.pop(0)
+        return piece
+
     def _fill(self) -> None:
-        while len(self.out) < AHEAD * self.work.slots and (piece := self.work.take()) is not None:
+        while len(self.out) < AHEAD * self.work.slots and (piece := self._next()) is not None:
             future = self.client.submit(
                 compute, self.payload, piece.start, dict(self.work.values(piece)), self.versions, pure=False
             )
@@ -95,6 +106,11 @@ class _Cluster:
         from distributed.scheduler import KilledWorker
 
         error = future.exception() if future.status == "error" else None
+        if piece is self.tried:
+            self.tried = None
+        elif isinstance(error, KilledWorker) and len(piece) == 1:
+            self.suspects.append(piece)
+            return
         if isinstance(error, KilledWorker):
             self._blame(piece, DIED, "the workers that computed it died", str(error))
         elif isinstance(error, StudyError):
@@ -137,6 +153,7 @@ class _Cluster:
                 self.out[key] = (future, piece, now)  # not begun, or begun just now
             elif now - self.out[key][2] > limit:
                 del self.out[key]
+                self.tried = None  # the piece in hand, if one was by itself
                 future.cancel(force=True)
                 self.client.restart_workers([started[key]], timeout=PATIENCE, raise_for_error=False)
                 self._blame(piece, LATE, f"took longer than the time limit of {limit:g} s")
