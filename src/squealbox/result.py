@@ -1,8 +1,8 @@
 """What every result carries: its arrays, the inputs and settings that made them, an outcome and its provenance.
 
 A result is frozen. Its arrays are declared with :func:`quantity` (dimensions, unit, meaning), and from that one
-declaration come the labelled dataset, the file and the reading back. Files are NetCDF 4, written by xarray and
-h5netcdf; nothing in them is ever executed.
+declaration come the labelled dataset, the file and the reading back. Files are NetCDF 4, written by h5netcdf and read
+by xarray; nothing in them is ever executed.
 """
 
 import dataclasses
@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from squealbox.labelled import Labelled, Labels
 from squealbox.parameters import DRAWN_BY, from_plain, load_kind, to_plain
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ NAMED_BY = {  # dimension to the attributes that may hold its names
     "scheme": ("schemes",), "law": ("names",), "damper": ("damper_names",), "row": ("names",), "sweep": ("sweeps",),
     "dof": ("dofs",), "contact": ("contacts",)
 }  # fmt: skip
+KEPT = {"kind": "kind of it"}  # field to its attribute in a file, where that name says the kind of the result
 Analysis = TypeVar("Analysis", bound=Callable[..., Any])
 
 
@@ -184,19 +186,20 @@ class Result:
         runs over: ``motion.to_dataset()["q"].sel(time=0.01, dof="x")``. Of instants that are not exactly there the
         nearest are found by ``.sel(dof="x").sel(time=0.01, method="nearest")``; xarray finds no nearest name.
         """
-        import xarray
+        return self.labelled().dataset()
 
-        variables = {}
+    def labelled(self) -> Labelled:
+        """What `to_dataset` holds and `save` writes."""
+        found = {}
         for field in _quantities(type(self)):
             array = np.asarray(getattr(self, field.name))
-            about = {"units": field.metadata["unit"], "long_name": field.metadata["meaning"]}
-            variables[field.name] = (_dims(field.metadata["dims"], array.ndim), array, about)
-        attributes = {name: json.dumps(to_plain(value)) for name, value in self._plain().items()}
+            found[field.name] = Labels(_dims(field.metadata["dims"], array.ndim), array, _said(*_about(field)))
         for name, (dims, unit, meaning) in self.derived.items():
             array = np.asarray(getattr(self, name))
-            variables[name] = (_dims(tuple(dims.split()), array.ndim), array, {"units": unit, "long_name": meaning})
-        dataset = xarray.Dataset(variables, attrs={"kind": self.kind_name(), **attributes})
-        return dataset.assign_coords(self._labels(dataset))
+            found[name] = Labels(_dims(tuple(dims.split()), array.ndim), array, _said(unit, meaning))
+        attributes = {KEPT.get(name, name): json.dumps(to_plain(value)) for name, value in self._plain().items()}
+        whole = Labelled(found, {}, {"kind": self.kind_name(), **attributes})
+        return whole.with_({}, self._labels(whole))
 
     def to_dataframe(self) -> Any:
         """One row for each entry of what the result runs over (instants, points, trajectories), as a `pandas` table.
@@ -233,12 +236,15 @@ class Result:
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
         os.close(handle)
         try:
-            self.to_dataset().to_netcdf(temporary, engine="h5netcdf", invalid_netcdf=True)
+            self._write(temporary)
             os.chmod(temporary, 0o644)  # a temporary file is readable by its owner alone
             os.replace(temporary, path)
         finally:
             Path(temporary).unlink(missing_ok=True)
         return path
+
+    def _write(self, path: str) -> None:
+        self.labelled().write(path)
 
     @classmethod
     def from_dataset(cls, dataset: "xarray.Dataset") -> Self:
@@ -252,7 +258,8 @@ class Result:
         if kind is not cls:
             return kind.from_dataset(dataset)  # a kind may read more than its arrays
         plain = {name: json.loads(value) for name, value in dataset.attrs.items() if name != "kind"}
-        plain = {name: _unfolded(value) for name, value in plain.items()}
+        fields = {kept: name for name, kept in KEPT.items()}
+        plain = {fields.get(name, name): _unfolded(value) for name, value in plain.items()}
         plain["outcome"] = Outcome.from_plain(plain["outcome"])
         plain["inputs"] = from_plain(plain["inputs"])
         arrays: dict[str, Any] = {field.name: dataset[field.name].values for field in _quantities(kind)}
@@ -286,25 +293,27 @@ class Result:
         others = {name: _folded(getattr(self, name)) for name in kept if name not in arrays}
         return {**others, "outcome": self.outcome.to_plain()}
 
-    def _labels(self, dataset: "xarray.Dataset") -> dict[str, Any]:
-        """Coordinates of a dataset: names of freedoms and contacts, and the arrays that `coordinates` names."""
-        found: dict[str, Any] = {}
+    def _labels(self, whole: Labelled) -> dict[str, Labels]:
+        """Coordinates: names of freedoms and contacts, and the arrays that `coordinates` names."""
+        found: dict[str, Labels] = {}
+        sizes, known = whole.sizes, whole.variables
         for dim, name in self.coordinates.items():
-            if dim in dataset.sizes and np.shape(getattr(self, name)) == (dataset.sizes[dim],):
-                found[dim] = (dim, np.asarray(getattr(self, name)), dataset[name].attrs if name in dataset else {})
+            if dim in sizes and np.shape(getattr(self, name)) == (sizes[dim],):
+                about = known[name].about if name in known else {}
+                found[dim] = Labels((dim,), np.asarray(getattr(self, name)), about)
         system: Any = self.inputs.get("system") if isinstance(self.inputs, Mapping) else None
-        if {"dof", "contact", "state"} & set(dataset.sizes):
+        if {"dof", "contact", "state"} & set(sizes):
             system = system.system() if hasattr(system, "system") else system
         dofs = tuple(getattr(system, "names", ()))
         names = {"dof": dofs, "contact": getattr(system, "contact_names", ()),
                  "state": (*dofs, *(f"{name}'" for name in dofs)), "end": ("low", "high"),
                  "goal": tuple(each["name"] for each in self.settings.get("goals", ()))}  # fmt: skip
-        for dim in {str(dim) for dim in dataset.sizes} - set(found) - set(dataset.coords):
-            known = names.get(dim, ())
+        for dim in set(sizes) - set(found) - set(known):
+            words = names.get(dim, ())
             for attribute in NAMED_BY.get(dim, ()):
-                known = known or getattr(self, attribute, ())
-            if len(set(known)) == dataset.sizes[dim] and all(isinstance(name, str) for name in known):
-                found[dim] = (dim, np.array(known))
+                words = words or getattr(self, attribute, ())
+            if len(set(words)) == sizes[dim] and all(isinstance(name, str) for name in words):
+                found[dim] = Labels((dim,), np.array(words), {})
         return found
 
 
@@ -359,6 +368,10 @@ def _tuples(kind: type[Result], plain: dict[str, Any]) -> dict[str, Any]:
     declared = {f.name for f in dataclasses.fields(kind) if str(f.type).startswith("tuple")}
     return {name: tuple(value) if name in declared and isinstance(value, list) else value
             for name, value in plain.items()}  # fmt: skip
+
+
+def _said(unit: str, meaning: str) -> dict[str, str]:
+    return {"units": unit, "long_name": meaning}
 
 
 def _about(field: dataclasses.Field[Any]) -> tuple[str, str]:

@@ -49,7 +49,8 @@ def test_version(said):
         (["onset", "a", "--range", "0"], "--range requires 2"),
         (["map", "a", "--points", "many"], "--points"),
         (["modes", "no.toml"], "no.toml: there is no such file"),
-        (["simulate", "no.toml"], "--out requires an argument"),
+        (["run", "no.toml"], "--out requires an argument"),
+        (["simulate", "no.toml"], "no.toml: there is no such file"),
         (["simulate", "no.toml", "--out", "x"], "no.toml: there is no such file"),
         (["paper", "drum-brake"], "squealbox paper: 'drum-brake' is no paper this program knows: did you mean"),
         (["list", "drum_brak"], "did you mean 'drum_brake'?"),
@@ -263,6 +264,11 @@ def test_simulate(said, brake, tmp_path):
     table = rows(folder / "motion.csv")
     assert len(table) == len(motion.t) == 5001
     assert float(table[-1]["x [m]"]) == pytest.approx(motion.q[-1, 0], rel=1e-9)
+    there = sorted(tmp_path.rglob("*"))
+    code, answer, err = said("simulate", brake, "--duration", "30 ms")
+    assert (code, err) == (0, "")
+    assert out.startswith(answer)
+    assert sorted(tmp_path.rglob("*")) == there
 
 
 def test_basin(said, brake, tmp_path):

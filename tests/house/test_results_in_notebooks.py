@@ -1,4 +1,4 @@
-"""Every result and every design draws itself: a card for a notebook, and a figure."""
+"""Every result and every design draws itself: a card for a notebook, and a figure. Every result is saved and read."""
 
 import dataclasses
 import importlib
@@ -9,6 +9,7 @@ import sys
 
 import numpy as np
 import pytest
+import xarray
 
 import squealbox
 from house.test_figures_for_papers import crowded
@@ -37,7 +38,7 @@ def test_every_kind_of_the_package_is_drawn():
 
 
 @pytest.mark.parametrize("name", list(EXAMPLES))
-def test_a_result_draws_itself_and_has_a_card(name):
+def test_a_result_draws_itself_has_a_card_and_is_saved(name, tmp_path):
     result = EXAMPLES[name]()
     assert type(result).__name__ == name
     figure = result.plot()
@@ -57,6 +58,13 @@ def test_a_result_draws_itself_and_has_a_card(name):
         if "dims" in field.metadata:
             assert f">{field.name}<" in text
     assert len(text) < 200_000  # a notebook of fifty results stays under 10 MB
+    path = result.save(tmp_path / "result.nc")
+    with xarray.open_dataset(path, engine="h5netcdf") as read:
+        xarray.testing.assert_identical(read.load(), result.to_dataset())
+    back = Result.load(path)
+    assert type(back) is type(result)
+    xarray.testing.assert_identical(back.to_dataset(), result.to_dataset())
+    assert back.save(tmp_path / "again.nc").read_bytes() == path.read_bytes()
 
 
 @pytest.mark.parametrize("name", ["CriticalValue", "Cycle", "Verdict"])

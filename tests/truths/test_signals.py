@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.io import wavfile
-from scipy.signal import butter, find_peaks, lfilter
+from scipy.signal import butter, find_peaks, get_window, lfilter
 
 from squealbox.signals import (
     SignalError,
@@ -243,6 +243,14 @@ def test_nothing_is_made_of_nothing(tmp_path):
         spectrogram(sine(2000.0), T, segment=1.0)
     with pytest.raises(SignalError, match="level = 2"):
         sound(sine(2000.0), tmp_path / "loud.wav", T, level=2.0)
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 512])
+def test_the_usual_window_is_that_of_scipy(count):
+    from squealbox.signals.spectra import window_weights
+
+    assert window_weights("hann", count) == pytest.approx(get_window("hann", count), abs=1e-15)
+    assert window_weights("flattop", count).tolist() == get_window("flattop", count).tolist()
 
 
 def test_results_are_saved_and_read_back(tmp_path):

@@ -15,6 +15,7 @@ from squealbox.parameters import ParameterError
 
 if TYPE_CHECKING:
     from squealbox.transient.trajectory import Trajectory
+    from squealbox.transient.verdict import Verdict
 
 SAMPLES_A_PERIOD = 4.0  # fewer points do not hold the motion
 MOST_FIGURES = 4  # degrees of freedom that are drawn: those that move most
@@ -23,7 +24,7 @@ MOST_FIGURES = 4  # degrees of freedom that are drawn: those that move most
 def simulate(
     file: Path,
     *,
-    out: Path,
+    out: Path | None = None,
     duration: str | None = None,
     start: str | None = None,
     method: str | None = None,
@@ -31,7 +32,7 @@ def simulate(
     changes: Changes = (),
     allow_code: AllowCode = False,
 ) -> None:
-    """Follow the motion in time, say what becomes of it, and write figures and data.
+    """Follow the motion in time and say what becomes of it; with --out, write figures, data and sound.
 
     Parameters
     ----------
@@ -59,12 +60,16 @@ def simulate(
     settings = found.simulate or settings
     system = found.design.system()
     start_of(system, settings)  # what cannot be started is said before a folder is made
-    folder(out, "verdict", "motion", "energy")
+    if out is not None:
+        folder(out, "verdict", "motion", "energy")
     with Progress("simulating (the first run compiles the engine)"):
         motion = run(system, settings)
-    with Progress("drawing"):
-        text, paths = _results(motion, file.name, out)
-    print(f"{found.design.title}, {file}\n{text}\n{written(*paths)}")
+    text, judged = _judged(motion)
+    paths: list[Path] = []
+    if out is not None:
+        with Progress("drawing"):
+            paths = _files(motion, text, judged, file.name, out)
+    print("\n".join([f"{found.design.title}, {file}", text, *([written(*paths)] if paths else [])]))
     if not motion.outcome.ok:
         raise ComputationFailed(motion.outcome)
 
@@ -79,35 +84,47 @@ def _settings(given: Simulate, duration: str | None, options: dict[str, str | No
         raise UsageError(f"--{error.name} {options.get(error.name) or duration}: {error.expectation}") from error
 
 
-def _results(motion: "Trajectory", title: str, out: Path) -> tuple[str, list[Path]]:
-    """The verdict on each degree of freedom in words, and the files written."""
-    from squealbox import plots
+def _judged(motion: "Trajectory") -> tuple[str, list["Verdict"]]:
+    """The verdict on each degree of freedom, in words and as results; none of a motion too short for one."""
     from squealbox.signals import SignalError
     from squealbox.transient import resolved, verdict
 
-    paths = [motion.save(out / "motion.nc"), write_csv(out / "motion.csv", _columns(motion))]
     if len(motion.t) < 2:
-        return "nothing was reached that could be judged or drawn", paths
+        return "nothing was reached that could be judged or drawn", []
     try:
         judged = [verdict(motion, dof=i) for i in range(motion.system.size)]
-        keep(motion, *judged)
-        drawn = resolved(motion)
+        whole = resolved(motion) is motion
     except SignalError as error:
-        return f"the motion is too short to be judged or drawn: {error}", paths
-    text = "\n".join(f"{name}: {each}" for name, each in zip(motion.system.names, judged, strict=True))
-    if drawn is not motion:
-        text += (f"\nNote: {len(motion.t)} kept instants do not carry these frequencies (give more points for data and "
-                 "sound); the verdict and the figures come from every step of the run")  # fmt: skip
-    text += "".join(f"\nCaution: {said}" for said in motion.caution.split("; ") if said)
-    (out / "verdict.txt").write_text(f"{text}\n", encoding="utf-8")
+        return f"the motion is too short to be judged or drawn: {error}", []
+    keep(motion, *judged)
+    lines = [f"{name}: {each}" for name, each in zip(motion.system.names, judged, strict=True)]
+    if not whole:
+        lines.append(
+            f"Note: {len(motion.t)} kept instants do not carry these frequencies (give more points for data and "
+            "sound); the verdict and the figures come from every step of the run"
+        )
+    return "\n".join([*lines, *(f"Caution: {said}" for said in motion.caution.split("; ") if said)]), judged
+
+
+def _files(motion: "Trajectory", text: str, judged: list["Verdict"], title: str, out: Path) -> list[Path]:
+    """The files written: data, and of what could be judged its verdict, figures of what moves most, and sound."""
+    data = [motion.save(out / "motion.nc"), write_csv(out / "motion.csv", _columns(motion))]
+    if not judged:
+        return data
+    from squealbox import plots
+    from squealbox.transient import resolved
+
+    said, drawn = out / "verdict.txt", resolved(motion)
+    said.write_text(f"{text}\n", encoding="utf-8")
     turns = [unit == "rad" for unit in motion.system.units]
     ranked = sorted(range(len(judged)), key=lambda i: (turns[i], -float(judged[i].amplitude)))[:MOST_FIGURES]
+    pictures: list[Path] = []
     for i in sorted(ranked):
         name = motion.system.names[i]
-        paths += plots.save(plots.plot(drawn, dof=i, title=f"{title}: {name}"), out / f"motion_{name}")
-    paths += plots.save(plots.energy(motion, title=title), out / "energy")
-    paths += _sound(motion, ranked[0], float(judged[ranked[0]].frequency), out)
-    return text, [out / "verdict.txt", *paths]
+        pictures += plots.save(plots.plot(drawn, dof=i, title=f"{title}: {name}"), out / f"motion_{name}")
+    pictures += plots.save(plots.energy(motion, title=title), out / "energy")
+    sounds = _sound(motion, ranked[0], float(judged[ranked[0]].frequency), out)
+    return [said, *data, *pictures, *sounds]
 
 
 def _sound(motion: "Trajectory", dof: int, pitch: float, out: Path) -> list[Path]:

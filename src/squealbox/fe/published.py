@@ -18,7 +18,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 from scipy import sparse
-from scipy.io import loadmat
 
 from squealbox.designs.base import Design
 from squealbox.parameters import ParameterError, choice, parameter
@@ -85,6 +84,8 @@ class PublishedDiscBrake(Design):
 @lru_cache(maxsize=2)
 def read_matrices(folder: str) -> dict[str, Any]:
     """The eight matrices in a folder, by name, in compressed sparse rows; `ParameterError` where a file is missing."""
+    from scipy.io import loadmat
+
     found = {}
     for name, stem in FILES.items():
         path = Path(folder) / f"{stem}00.mat"

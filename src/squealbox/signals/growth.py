@@ -9,7 +9,7 @@ from squealbox.arguments import public
 from squealbox.result import Array, Result, quantity
 from squealbox.signals.exponentials import fit_exponentials
 from squealbox.signals.samples import Samples, SignalError, given, samples
-from squealbox.signals.spectra import spectrum
+from squealbox.signals.spectra import spectrum, window_weights
 from squealbox.signals.tones import SLOW, Tones, tones
 
 LEVEL = 0.95  # of the errors
@@ -71,7 +71,6 @@ def highest_line(signal: Any, t: Any = None, **cut: Any) -> float:
     noise. For one who asks that himself. Raises `SignalError` for a constant signal.
     """
     from scipy.optimize import minimize_scalar
-    from scipy.signal import get_window
 
     data = samples(signal, t, **cut)
     coarse = spectrum(data.x, rate=data.rate)
@@ -79,7 +78,7 @@ def highest_line(signal: Any, t: Any = None, **cut: Any) -> float:
     if not np.any(coarse.amplitude[heard] > 0.0):
         raise SignalError(f"the signal is constant ({data.x[0]:g}): it has no frequency")
     guess = coarse.frequency[heard][np.argmax(coarse.amplitude[heard])]
-    weights = get_window("hann", data.x.size)
+    weights = window_weights("hann", data.x.size)
     weighted = weights * (data.x - np.average(data.x, weights=weights))
     clock = (np.arange(data.x.size) - data.x.size / 2.0) / data.rate
 
@@ -222,12 +221,10 @@ def _halves(found: Tones, index: int) -> tuple[tuple[complex, complex], bool]:
 
 def _envelope(data: Samples, frequency: float, periods: float) -> tuple[Any, Any]:
     """Middles [s] of pieces of `periods` periods, and the amplitude of the component in each under a Hann window."""
-    from scipy.signal import get_window
-
     length = min(max(round(periods * data.rate / frequency), 4), data.x.size)
     count = max((2 * data.x.size) // length - 1, 1)
     starts = np.linspace(0, data.x.size - length, count).round().astype(int)
-    weights = get_window("hann", length)
+    weights = window_weights("hann", length)
     carrier = np.exp(-2j * np.pi * frequency * np.arange(length) / data.rate) * weights
     carrier = carrier - weights * (np.sum(carrier) / np.sum(weights))  # blind to an offset
     parts = np.stack([carrier.real, carrier.imag], axis=1)

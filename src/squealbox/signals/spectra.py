@@ -76,11 +76,10 @@ def spectrum(signal: Any, t: Any = None, *, window: str = "hann", pad: int = 4, 
     2.0
     """
     from scipy.fft import next_fast_len, rfft, rfftfreq
-    from scipy.signal import get_window
 
     data = samples(signal, t, **cut)
     count = data.x.size
-    weights = get_window(window, count)
+    weights = window_weights(window, count)
     length = next_fast_len(max(int(pad), 1) * count, real=True) if pad > 1 else count
     mean = float(np.average(data.x, weights=weights))
     amplitude = 2.0 * np.abs(rfft(weights * (data.x - mean), length)) / np.sum(weights)
@@ -96,6 +95,15 @@ def spectrum(signal: Any, t: Any = None, *, window: str = "hann", pad: int = 4, 
         noise_bandwidth=float(data.rate * np.sum(weights**2) / np.sum(weights) ** 2),
         settings={"pad": pad, "window": window, **given(cut)},
     )
+
+
+def window_weights(window: str, count: int) -> Any:
+    """The periodic window of a name `scipy.signal.get_window` knows; the usual one without loading that package."""
+    if window == "hann" and count > 1:
+        return 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(count) / count)
+    from scipy.signal import get_window
+
+    return get_window(window, count)
 
 
 @dataclass(frozen=True)
@@ -142,10 +150,8 @@ def peaks(spectrum: Spectrum, count: int | None = None, *, least: float = 0.03) 
 
 def _side_lobes(window: str) -> Any:
     """Highest share of a line that a window shows at each 1/LOBE_STEPS resolution from it, or farther."""
-    from scipy.signal import get_window
-
     bins = 512  # the response depends on the window's length only through 1/bins^2
-    response = np.abs(np.fft.rfft(get_window(window, bins), bins * LOBE_STEPS))
+    response = np.abs(np.fft.rfft(window_weights(window, bins), bins * LOBE_STEPS))
     return np.maximum.accumulate(response[::-1])[::-1] / response[0]
 
 
@@ -159,7 +165,7 @@ def spectrogram(
     that lie whole inside the record are kept, so `time` starts and ends half a piece inside it. Each piece is taken
     about its own mean under the window.
     """
-    from scipy.signal import ShortTimeFFT, get_window
+    from scipy.signal import ShortTimeFFT
 
     data = samples(signal, t, **cut)
     length = round((data.duration / 8.0 if segment is None else segment) * data.rate)
@@ -170,7 +176,7 @@ def spectrogram(
         )
     hop = max(1, round(length * (1.0 - overlap)))
     scale = {"scale_to": "magnitude", "fft_mode": "onesided2X"}
-    weights = get_window(window, length)
+    weights = window_weights(window, length)
     transform = ShortTimeFFT(weights, hop, data.rate, mfft=4 * length, **scale)
     first, last = transform.lower_border_end[1], transform.upper_border_begin(data.x.size)[1]
 

@@ -6,20 +6,18 @@ without steady sliding is a missing value, not an error. The boundary as curves 
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from squealbox.arguments import named, public
+from squealbox.labelled import Labelled, Labels
 from squealbox.parameters import DataSheet
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.eigenvalues import MARGINAL
 from squealbox.stability.family import Family, Steady, entry
 from squealbox.stability.mechanism import NAMES, STEPS, contributions, mechanism_codes
 from squealbox.stability.spectra import Engine, largest_growth
-
-if TYPE_CHECKING:
-    import xarray
 
 CHUNK = 1 << 15  # points computed together: their arrays stay in the processor's cache
 
@@ -68,13 +66,12 @@ class StabilityMap(Result):
             lines.append(f"{total - known} points without steady sliding")
         return "\n".join(lines)
 
-    def to_dataset(self) -> "xarray.Dataset":
+    def labelled(self) -> Labelled:
         """The arrays with the parameters as named coordinates."""
-        dataset = super().to_dataset()
         names, design = {f"axis_{i}": name for i, name in enumerate(self.axes)}, self.inputs.get("system")
         units = {name: design.unit_of(name) if isinstance(design, DataSheet) else "" for name in self.axes}
-        coordinates = {name: (name, np.asarray(values), {"units": units[name]}) for name, values in self.axes.items()}
-        return dataset.rename(names).assign_coords(coordinates)
+        labels = {name: Labels((name,), np.asarray(at), {"units": units[name]}) for name, at in self.axes.items()}
+        return super().labelled().renamed(names).with_({}, labels)
 
 
 @public(axes=named)

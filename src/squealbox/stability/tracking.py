@@ -8,17 +8,15 @@ the nearest eigenvalue decides and the step is marked.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.labelled import Labelled, Labels
 from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import MARGINAL, ComplexModes, modes_of
 from squealbox.stability.family import Family, Steady
-
-if TYPE_CHECKING:
-    import xarray
 
 CLEAR = 0.8  # criterion from which a pairing counts as clear
 HALVINGS = 12
@@ -61,11 +59,11 @@ class TrackedModes(Result):
         """|Im lambda| / (2 pi) [Hz], (values, modes)."""
         return np.abs(np.imag(self.eigenvalues)) / (2.0 * np.pi)
 
-    def to_dataset(self) -> "xarray.Dataset":
+    def labelled(self) -> Labelled:
         """The arrays with the parameter as coordinate, and growth rate and frequency beside the eigenvalues."""
-        rate = (["value", "mode"], self.growth_rate, {"units": "1/s", "long_name": "growth rate"})
-        hertz = (["value", "mode"], self.frequency, {"units": "Hz", "long_name": "frequency"})
-        return super().to_dataset().set_coords("value").assign(growth_rate=rate, frequency=hertz)
+        rate = Labels(("value", "mode"), self.growth_rate, {"units": "1/s", "long_name": "growth rate"})
+        hertz = Labels(("value", "mode"), self.frequency, {"units": "Hz", "long_name": "frequency"})
+        return super().labelled().with_({"growth_rate": rate, "frequency": hertz})
 
     def summary(self) -> str:
         """Each mode with its frequency and growth rate at both ends, and the values between which it begins to grow."""

@@ -64,6 +64,9 @@ class Sweep(Result):
         found: xarray.Dataset = self.dataset
         return found
 
+    def _write(self, path: str) -> None:
+        self.dataset.to_netcdf(path, engine="h5netcdf", invalid_netcdf=True)
+
     def to_dataframe(self) -> Any:
         """One row for each point: its parameters, how it ended, and every number of every answer, as `table` has it."""
         import xarray

@@ -10,6 +10,7 @@ import numpy as np
 
 from squealbox.arguments import designs, public
 from squealbox.cautions import of_many_runs
+from squealbox.labelled import Labelled, Labels
 from squealbox.parameters import DataSheet, ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Column, Outcome, Result, batched, quantity
 from squealbox.system import as_system
@@ -90,24 +91,24 @@ class Ensemble(Result):
         """Trajectories per second, compilation and parameters included."""
         return float(np.sum(self.ended != NOT_RUN)) / self.seconds if self.seconds > 0.0 else np.nan
 
-    def to_dataset(self) -> "xarray.Dataset":
-        """As `Result.to_dataset`, with ``parameter_<name>`` and ``observed_<name>`` for what varied and was seen."""
-        dataset = super().to_dataset()
-        batch, design = len(self.shape), self.inputs.get("system")
+    def labelled(self) -> Labelled:
+        """As `Result.labelled`, with ``parameter_<name>`` and ``observed_<name>`` for what varied and was seen."""
+        whole = super().labelled()
+        axes, design = tuple(f"axis_{i}" for i in range(len(self.shape))), self.inputs.get("system")
+        found = {}
         for name, values in self.parameters.items():
             unit = design.unit_of(name) if isinstance(design, DataSheet) else ""
             about = {"units": unit, "long_name": f"value of {name}"}
-            dims = [f"axis_{i}" for i in range(batch)]
-            dataset[f"parameter_{name}"] = (dims, np.broadcast_to(values, self.shape), about)
+            found[f"parameter_{name}"] = Labels(axes, np.broadcast_to(values, self.shape), about)
         for name, values in self.observed.items():
             of, unit = self.settings["observed"][name]
-            first = [of] if of in dataset.sizes else []
-            own = [*first, *(f"{name}_{i}" for i in range(np.ndim(values) - batch - len(first)))]
+            first = (of,) if of in whole.sizes else ()
+            more = np.ndim(values) - len(axes) - len(first)
             about = {"units": unit, "long_name": f"observed {name}"}
-            dataset[f"observed_{name}"] = ([*(f"axis_{i}" for i in range(batch)), *own], values, about)
-        return self._along(dataset)
+            found[f"observed_{name}"] = Labels((*axes, *first, *(f"{name}_{i}" for i in range(more))), values, about)
+        return self._along(whole.with_(found))
 
-    def _along(self, dataset: "xarray.Dataset") -> "xarray.Dataset":
+    def _along(self, whole: Labelled) -> Labelled:
         """An axis along which one parameter alone varies bears its name and its values."""
         varied: dict[str, list[str]] = {f"axis_{i}": [] for i in range(len(self.shape))}
         for name, values in self.parameters.items():
@@ -119,8 +120,8 @@ class Ensemble(Result):
             if len(names) == 1 and sum(names[0] in others for others in varied.values()) == 1:
                 values = np.moveaxis(np.broadcast_to(self.parameters[names[0]], self.shape), int(axis[5:]), 0)
                 labels = values.reshape(len(values), -1)[:, 0]
-                dataset = dataset.rename({axis: names[0]}).assign_coords({names[0]: labels})
-        return dataset
+                whole = whole.renamed({axis: names[0]}).with_({}, {names[0]: Labels((names[0],), labels, {})})
+        return whole
 
     @classmethod
     def from_dataset(cls, dataset: "xarray.Dataset") -> Self:

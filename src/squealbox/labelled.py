@@ -1,0 +1,120 @@
+"""Arrays with named dimensions, units and labels: as a dataset of xarray, and as a NetCDF file.
+
+The file is written by h5netcdf as xarray would read it, without loading xarray: that takes longer than most analyses.
+"""
+
+import os
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import h5netcdf
+    import xarray
+
+
+class Labels(NamedTuple):
+    """An array with the names of its dimensions, its unit and its meaning."""
+
+    dims: tuple[str, ...]
+    values: Any
+    about: Mapping[str, str]
+
+
+class Labelled(NamedTuple):
+    """What a dataset holds. A variable of the name of its one dimension labels it, as one of `coordinates` does."""
+
+    variables: Mapping[str, Labels]
+    coordinates: Mapping[str, Labels]
+    attributes: Mapping[str, str]
+
+    @property
+    def everything(self) -> dict[str, Labels]:
+        """Variables and coordinates."""
+        return {**self.variables, **self.coordinates}
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Dimension to its length."""
+        of = (zip(each.dims, np.shape(each.values), strict=True) for each in self.everything.values())
+        return {dim: size for pairs in of for dim, size in pairs}
+
+    def renamed(self, names: Mapping[str, str]) -> "Labelled":
+        """With other names for some dimensions."""
+
+        def called(part: Mapping[str, Labels]) -> dict[str, Labels]:
+            return {
+                key: Labels(tuple(names.get(dim, dim) for dim in dims), values, about)
+                for key, (dims, values, about) in part.items()
+            }
+
+        return Labelled(called(self.variables), called(self.coordinates), self.attributes)
+
+    def with_(self, variables: Mapping[str, Labels], coordinates: Mapping[str, Labels] | None = None) -> "Labelled":
+        """With more variables and coordinates, or others of the same names."""
+        return Labelled({**self.variables, **variables}, {**self.coordinates, **(coordinates or {})}, self.attributes)
+
+    def dataset(self) -> "xarray.Dataset":
+        """As xarray holds it."""
+        import xarray
+
+        return xarray.Dataset(dict(self.variables), coords=dict(self.coordinates), attrs=dict(self.attributes))
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """As a NetCDF 4 file; equal arrays give equal bytes."""
+        import h5netcdf
+
+        with h5netcdf.File(path, "w", invalid_netcdf=True) as file:
+            file.dimensions = self.sizes
+            for name, (dims, values, about) in self.everything.items():
+                put(file, name, dims, np.asarray(values), about)
+            aside = [name for name, each in self.coordinates.items() if (name,) != each.dims]
+            more = {"coordinates": " ".join(aside)} if aside else {}
+            for name, text in {**self.attributes, **more}.items():
+                file.attrs[name] = text
+
+
+def about(unit: str, meaning: str) -> dict[str, str]:
+    """The attributes that say unit and meaning."""
+    return {key: text for key, text in {"units": unit, "long_name": meaning}.items() if text}
+
+
+def put(file: "h5netcdf.File", name: str, dims: tuple[str, ...], values: Any, about: Mapping[str, str]) -> None:
+    """Write an array as a variable of an open file."""
+    if values.dtype.kind == "O":
+        values = values.astype(str)
+    encoded = stored(values)
+    if values.dtype.kind == "U":
+        values = np.char.decode(encoded, "latin-1")  # as wide as its bytes
+    target = created(file, name, dims, values.dtype, about)
+    if values.size:
+        target[...] = encoded
+
+
+def created(
+    file: "h5netcdf.File", name: str, dims: tuple[str, ...], dtype: Any, about: Mapping[str, str], width: int = 1
+) -> Any:
+    """A variable of an open file that is to be filled; a letter of its words takes up to `width` bytes."""
+    kind = {"U": np.dtype(f"S{max(1, dtype.itemsize // 4 * width)}"), "b": np.dtype("i1")}.get(dtype.kind, dtype)
+    variable = file.create_variable(name, dims, dtype=kind)
+    marks = {"U": {"_Encoding": "utf-8"}, "b": {"dtype": "bool"}}.get(dtype.kind, {})
+    for key, text in {**about, **marks}.items():
+        variable.attrs[key] = text
+    return variable
+
+
+def stored(values: Any) -> Any:
+    """The values as such a variable takes them."""
+    kind = values.dtype.kind
+    return in_bytes(values) if kind == "U" else values.astype("i1") if kind == "b" else values
+
+
+def in_bytes(words: Any) -> Any:
+    """Words as UTF-8; all the same or plain ASCII, the usual cases, on the quick road."""
+    if words.size and np.all(words == words.flat[0]):
+        return np.full(words.shape, str(words.flat[0]).encode())
+    try:
+        return words.astype("S")
+    except UnicodeEncodeError:
+        return np.char.encode(words, "utf-8")
