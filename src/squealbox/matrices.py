@@ -75,7 +75,8 @@ def array(name: str, value: Any, ndim: int) -> np.ndarray:
         array = np.array(value).astype(float, casting="same_kind")  # refuses complex numbers and texts
     except (TypeError, ValueError) as error:
         given = f" = {value!r}" if isinstance(value, str) or value is None else ""
-        raise InvalidSystem(f"{name}{given}: expected an array of real numbers") from error
+        else_ = "; what varies in time is a schedule, such as Sinusoid or schedules.Table" if callable(value) else ""
+        raise InvalidSystem(f"{name}{given}: expected an array of real numbers{else_}") from error
     if array.ndim < ndim:
         raise InvalidSystem(f"{name} has shape {array.shape}: expected at least {ndim} axes")
     if not np.all(np.isfinite(array)):

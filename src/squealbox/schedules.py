@@ -27,15 +27,24 @@ class Schedule(DataSheet):
 
     def coefficients(self) -> tuple[Any, ...]:
         """The coefficients p of the formula."""
-        raise NotImplementedError
+        raise self._lacks("coefficients", "a method that gives p of the formulas")
 
     def value(self, time: Any) -> Any:
         """The value at `time` [s]."""
-        return type(self).formula(np.asarray(time, dtype=float), self.coefficients())
+        return self._of("formula", "value", time)
 
     def rate(self, time: Any) -> Any:
         """The time derivative at `time` [s]; at a kink, the one from the right."""
-        return type(self).rate_formula(np.asarray(time, dtype=float), self.coefficients())
+        return self._of("rate_formula", "rate", time)
+
+    def _of(self, name: str, method: str, time: Any) -> Any:
+        formula = getattr(type(self), name, None)
+        if formula is None:
+            raise self._lacks(name, f"a function of (t, p), or a method {method}(time)")
+        return formula(np.asarray(time, dtype=float), self.coefficients())
+
+    def _lacks(self, name: str, expectation: str) -> ParameterError:
+        return ParameterError(type(self).__name__, name, None, expectation)
 
     def breaks(self) -> tuple[float, ...]:
         """Instants [s] at which the formula is not smooth."""

@@ -9,7 +9,18 @@ from scipy.optimize import brentq
 
 from slow_reference import slow
 from small_systems import METHODS, block_on_belt
-from squealbox import Contact, Coulomb, DrumBrake, LinearSlope, Ramp, Sinusoid, System, simulate, simulate_ensemble
+from squealbox import (
+    Contact,
+    Coulomb,
+    DrumBrake,
+    LinearSlope,
+    Ramp,
+    Sinusoid,
+    System,
+    complex_modes,
+    simulate,
+    simulate_ensemble,
+)
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Schedule
 from squealbox.system import InvalidSystem
@@ -165,7 +176,9 @@ def test_what_cannot_be_compiled_is_told_in_a_sentence():
         for run in (simulate, lambda s, d: simulate_ensemble(s, duration=d)):
             with pytest.raises(InvalidSystem, match="expected one that can be compiled"):
                 run(system, 1.0)
-    with pytest.raises(InvalidSystem, match="load"):
+    with pytest.raises(ParameterError, match=r"Own\.rate_formula.*expected a function of \(t, p\), or a method rate"):
+        complex_modes(block_on_belt(Coulomb(0.4), Own()))
+    with pytest.raises(InvalidSystem, match="load: .*; what varies in time is a schedule"):
         System([[1.0]], [[0.0]], [[1.0]], lambda t: t)
     assert Constant(1.0).angular_frequency() == 0.0
     with pytest.raises(InvalidSystem, match="V"):

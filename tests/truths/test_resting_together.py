@@ -86,6 +86,23 @@ def test_a_contact_that_is_not_pressed(other):
     assert found.q[0] == pytest.approx(motion.q[-1, 0], rel=1e-8)
 
 
+@pytest.mark.parametrize("order", [
+    [(10.0, 1.0), (0.0, 1.0)], [(0.0, 2.0), (10.0, 1.0)], [(10.0, 1.0), (0.0, -1.0)], [(5.0, 1.0), (1e-12, 1.0), (5.0, -1.0)],
+])  # fmt: skip
+@pytest.mark.parametrize("law", [Coulomb(0.4, 0.3), Coulomb(0.4)])
+def test_a_contact_that_is_not_pressed_goes_with_the_one_that_lets_go(law, order):
+    """Whichever of them is named first, and against whichever direction it counts: as if it was not there."""
+
+    def driven(*given):
+        contacts = tuple(Contact([0.0], [row], [row], N0, 0.2 * row, law) for N0, row in given)
+        return System([[1.0]], [[0.1]], [[10.0]], [0.0], contacts)
+
+    alone, motion = simulate(driven((10.0, 1.0)), 10.0), simulate(driven(*order), 10.0)
+    assert motion.outcome == "completed"
+    assert len(motion.event_time) == len(order) * len(alone.event_time)
+    assert motion.q[-1] == pytest.approx(alone.q[-1], abs=1e-8)
+
+
 def test_pressure_that_ebbs_away_to_nothing():
     """Without friction left the block swings freely: q = a cos(t - c) from the release on."""
     motion = simulate(block_on_belt(Coulomb(0.3), 0.0, normal=Ramp(1.0, -0.5)), 20.0, ([0.1], [0.0]))

@@ -26,6 +26,7 @@ from squealbox.transient._sharing import contact_matrix, share_out
 
 CLEAR = 50.0  # times the round-off of a force: what a mode that does not hold exceeds
 LEAVE = 1e-8  # share of its terms below which the acceleration of a contact that leaves zero speed counts as zero
+UNPRESSED = 1e-11  # share of the limit of another contact up to which one holds nothing beside it
 RISES = 1e-100  # static limit up to which a contact never holds anything: its friction rises from zero
 EVENED = 400  # turns of the rule that evens out what contacts carry
 NEARLY = 1e-10  # of 1
@@ -118,19 +119,21 @@ def land(p, t, y, mode, s, which):
 def force_releases(p, mode, s, which):
     """Release contact `which`, and with it every other one that sticks at its limit to round-off.
 
-    One whose friction rises from zero was held by the others: it goes with them, in the sense in which they move it.
+    One whose friction rises from zero, or that is not pressed, was held by the others: it goes with them, in the sense
+    in which they move it.
     """
     sense = 1 if s.force[which] > 0.0 else -1
     least = 1.0 - (1e-6 if s.spare[0] else 1e-9)
+    nothing = max(UNPRESSED * p.static[which] * s.normal[which], RISES)
     for c in range(p.contacts):
         limit = p.static[c] * s.normal[c]
         if p.rigid[c] and mode[c] != OPEN and s.idle[c] != 0:  # friction alone kept it from lifting off
             mode[c] = OPEN
             s.at_zero[c] = 0
             s.forced[c] = OPEN
-        elif c == which or (mode[c] == STICK and abs(s.force[c]) >= limit * least and p.static[c] > RISES):
+        elif c == which or (mode[c] == STICK and abs(s.force[c]) >= limit * least and limit > nothing):
             s.forced[c] = 1 if s.force[c] > 0.0 else -1
-        elif mode[c] == STICK and p.static[c] <= RISES and p.g[c, which] != 0.0:
+        elif mode[c] == STICK and limit <= nothing and p.g[c, which] != 0.0:
             s.forced[c] = sense if p.g[c, which] > 0.0 else -sense
 
 
