@@ -86,9 +86,15 @@ def test_a_contact_that_is_not_pressed(other):
     assert found.q[0] == pytest.approx(motion.q[-1, 0], rel=1e-8)
 
 
-@pytest.mark.parametrize("order", [
-    [(10.0, 1.0), (0.0, 1.0)], [(0.0, 2.0), (10.0, 1.0)], [(10.0, 1.0), (0.0, -1.0)], [(5.0, 1.0), (1e-12, 1.0), (5.0, -1.0)],
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "order",
+    [
+        [(10.0, 1.0), (0.0, 1.0)],
+        [(0.0, 2.0), (10.0, 1.0)],
+        [(10.0, 1.0), (0.0, -1.0)],
+        [(5.0, 1.0), (1e-12, 1.0), (5.0, -1.0)],
+    ],
+)
 @pytest.mark.parametrize("law", [Coulomb(0.4, 0.3), Coulomb(0.4)])
 def test_a_contact_that_is_not_pressed_goes_with_the_one_that_lets_go(law, order):
     """Whichever of them is named first, and against whichever direction it counts: as if it was not there."""
