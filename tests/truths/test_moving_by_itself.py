@@ -17,6 +17,7 @@ from squealbox import (
     Ramp,
     Sinusoid,
     System,
+    schedules,
     simulate,
     simulate_ensemble,
 )
@@ -54,6 +55,23 @@ def test_box_in_an_ensemble(method, rtol, error):
     assert found.ended == "completed"
     assert found.events == 519
     assert found.q[0] == pytest.approx(2.99788422, abs=error)
+
+
+@pytest.mark.parametrize("method", ["dormand-prince-8", "dormand-prince", "bogacki-shampine"])
+def test_a_belt_that_is_jerked_away_under_a_block_at_rest_on_it(method):
+    """m = k = N = 1, mu 0.4, carried at 0.2 m/s until V turns at 1 s to fall by 1/s: q(1) = 0.2, let go at once."""
+    belt = schedules.Table([0.0, 1.0, 3.0], [0.2, 0.2, -1.8])
+    start = ([0.0], [0.2])
+    motion = simulate(block_on_belt(Coulomb(0.4), belt), 2.0, start, method=method, rtol=1e-9)
+    found = simulate_ensemble(block_on_belt(Coulomb(0.4), belt), duration=2.0, start=start, method=method, rtol=1e-9)
+    assert motion.outcome == found.ended == "completed"
+    assert motion.event_time[0] == 1.0
+    assert found.events == len(motion.event_time)
+    # q'' = -q - 0.4 from q = 0.2, q' = 0.2 on, until the belt is overtaken
+    t = motion.t[(motion.t >= 1.0) & (motion.t <= 1.0 + 1e-2)] - 1.0
+    closed = 0.6 * np.cos(t) + 0.2 * np.sin(t) - 0.4
+    assert motion.q[(motion.t >= 1.0) & (motion.t <= 1.0 + 1e-2), 0] == pytest.approx(closed, abs=1e-8)
+    assert found.q[0] == pytest.approx(motion.q[-1, 0], abs=1e-6)
 
 
 def test_box_by_time_stepping_at_its_usual_step():

@@ -130,7 +130,7 @@ class Calibration(Result):
         lines.append(f"chi^2 = {self.chi_square:.3g} of {len(self.residuals)} measured numbers")
         for text, found, away in zip(self.settings["measured"], self.predicted, self.residuals, strict=True):
             mark = "  <- not reached" if abs(away) > FAR else ""
-            lines.append(f"  {text}: the model says {found:.6g}, {away:+.2f} sd{mark}")
+            lines.append(f"  {text}: the model says {found:.6g}, {round(float(away), 2) + 0.0:+.2f} sd{mark}")
         if not self.outcome.ok:
             lines.append(f"{self.outcome}: {self.outcome.message}")
         return "\n".join([*lines, *self.cannot_tell])

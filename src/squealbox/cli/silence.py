@@ -60,17 +60,7 @@ def silence(
     if out is not None:
         from squealbox import plots
 
-        names = (
-            "cure",
-            "dose",
-            "growth [1/s]",
-            "growth at margin [1/s]",
-            "P(squeal)",
-            "after push [um]",
-            "cost",
-            "caution",
-        )
-        columns = {name: np.array(column) for name, column in zip(names, zip(*table.rows(), strict=True), strict=True)}
+        columns = {name: np.array(column) for name, *column in zip(table.heads(), *table.rows(), strict=True)}
         columns["python"] = table.line
         paths = [table.save(out / "silence.nc"), write_csv(out / "silence.csv", columns)]
         print(written(*paths, *plots.save(plots.plot(table, title=found.path.name), out / "silence")))

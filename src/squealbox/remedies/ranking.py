@@ -65,33 +65,38 @@ class Remedies(Result):
         made: Design = _made(str(self.line[row]), {**known, "brake": self.inputs["system"]})
         return made
 
+    @property
+    def pushed(self) -> bool:
+        """Whether motions after a push were followed."""
+        return bool(np.isfinite(self.amplitude_before) or np.any(np.isfinite(self.amplitude)))
+
     def rows(self) -> list[tuple[str, ...]]:
-        """The table as text: cure, dose, growth, growth at the margin, P(squeal), after a push, cost, caution."""
+        """The table as text, under `heads`."""
         return [
             (
                 str(self.name[i]), f"{float(self.dose[i]):.4g} {self.unit[i]}".strip(), f"{float(self.growth[i]):+.4g}",
                 f"{float(self.growth_at_margin[i]):+.4g}", f"{float(self.probability[i]):.3f}",
-                f"{1e6 * float(self.amplitude[i]):.3g}", str(self.cost[i]), str(self.caution[i]),
+                *([f"{1e6 * float(self.amplitude[i]):.3g}"] if self.pushed else []), str(self.cost[i]),
+                str(self.caution[i]),
             )
             for i in range(len(self))
         ]  # fmt: skip
 
     def heads(self) -> tuple[str, ...]:
-        """What the first seven of the columns of `rows` are called."""
+        """What the columns of `rows` are called; what was not followed has none."""
         later = f"at +{100.0 * self.margin:.3g} %"
-        return ("cure", "dose", "growth [1/s]", later, "P(squeal)", "after push [um]", "cost")
+        push = ("after push [um]",) if self.pushed else ()
+        return ("cure", "dose", "growth [1/s]", later, "P(squeal)", *push, "cost", "caution")
 
     def without(self) -> str:
         """The brake as it is, in a sentence."""
-        return (
-            f"Without: growth {self.growth_before:+.4g} 1/s, P(squeal) {self.before:.3f}, "
-            f"{1e6 * self.amplitude_before:.3g} um after a push"
-        )
+        push = f", {1e6 * self.amplitude_before:.3g} um after a push" if self.pushed else ""
+        return f"Without: growth {self.growth_before:+.4g} 1/s, P(squeal) {self.before:.3f}{push}"
 
     def summary(self, most: int = MOST_ROWS) -> str:
         """The ranked table, ready for an e-mail: the `most` best cures, a screenful, and what to know of them."""
         shown = min(most, len(self))
-        table = [self.heads(), *(row[:7] for row in self.rows()[:shown])]
+        table = [row[:-1] for row in (self.heads(), *self.rows()[:shown])]
         widths = [max(map(len, column)) for column in zip(*table, strict=True)]
         lines = [
             "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in table

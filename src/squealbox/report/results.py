@@ -89,7 +89,7 @@ def _about(result: Result) -> Iterator[Any]:
 def _cures(found: Remedies) -> Iterator[Any]:
     """The ranked table of cures with their cautions, and the line of Python of each."""
     yield Text(found.without())
-    yield Table((*found.heads(), "caution"), tuple(found.rows()))
+    yield Table(found.heads(), tuple(found.rows()))
     if found.assumption:
         yield Text(found.assumption)
     yield Code("\n".join(map(str, found.line)))
