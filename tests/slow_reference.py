@@ -53,7 +53,7 @@ class Slow:
         self.step = 2.0 * np.pi / 16.0 / max(*self.angular_frequencies(), 1e-3)
         reach = np.linalg.norm(self.d @ self.inverse, axis=1)
         self.reach = np.where(reach > 0.0, reach, 1.0)  # contacts on one motion come to their limits together
-        self.modes, self.fastest = [1] * self.m, 0.0
+        self.modes, self.fastest, self.inside = [1] * self.m, 0.0, np.inf
         self.alike = [(a, b, sign) for b in range(self.m) for a in range(b) if (sign := self.on_one_motion(a, b))]
 
     def on_one_motion(self, a, b):
@@ -98,6 +98,7 @@ class Slow:
 
     def motion(self, t, y, modes):
         """(y', forces, normal forces, speeds) with the contacts in these modes."""
+        t = min(t, self.inside)
         q, v = self.completed(t, y)
         normal, speed = self.given(t, q, v)
         force = np.zeros(self.m)
@@ -151,6 +152,7 @@ class Slow:
 
     def functions(self, t, y, modes):
         """Two for each contact, positive while the modes hold."""
+        t = min(t, self.inside)
         rates, force, normal, speed = self.motion(t, y, modes)
         gap, a = self.gap(self.completed(t, y)[0]), rates[self.n :]
         out = np.ones((self.m, 2))
@@ -290,6 +292,7 @@ class Slow:
         for value in scheduled(self.system):
             kinks += [b for b in value.breaks() if 0.0 < b < duration] if hasattr(value, "breaks") else []
         for end in sorted(set(kinks)):
+            self.inside = np.nextafter(end, 0.0)  # the end of a piece sees the slopes before its kink
             while t < end:
                 if len(events) > MOST:
                     raise RuntimeError(f"more than {MOST} events")

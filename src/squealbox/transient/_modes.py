@@ -204,12 +204,12 @@ def settle(p, t, y, mode, s):
     if not decide(p, t, y, mode, s):
         return False
     for c in range(p.contacts):
-        s.leave[c] = LEAVE * rate_terms(p, c, y, s) + RISES
+        s.leave[c] = LEAVE * rate_terms(p, c, y, s, p.rigid[c] != 0 and mode[c] == OPEN) + RISES
     contact_kinematics(p, y, s)
     for c in range(p.contacts):
         s.fresh[c] = s.at_zero[c] != 0 and mode[c] != STICK and mode[c] != OPEN
         if p.rigid[c] and mode[c] == OPEN:
-            s.fresh[c] = touches(p, c, y, s)
+            s.fresh[c] = s.old[c] != OPEN or s.leaving[c] != 0 or touches(p, c, y, s)
     if p.rigid_count > 0:
         return project(p, y, mode, s)
     return remove_drift(p, y, s, list_sticking(p, mode, s))

@@ -264,24 +264,25 @@ def normal_noise(p, c, y, s):
     return ROUND_OFF * total
 
 
-def rate_terms(p, c, y, s):
-    """Sum of the sizes of all that makes up V' - t . q''; forces as last computed."""
+def rate_terms(p, c, y, s, lifts):
+    """Sum of the sizes of all that makes up V' - t . q'', or the opening w . q'' of a gap; forces as last computed."""
     n = p.mk.shape[0]
-    total = abs(s.signal[p.signals + c])
+    total = 0.0 if lifts else abs(s.signal[p.signals + c])
     for i in range(n):
-        if p.t[c, i] != 0.0:
+        row = abs(p.w[c, i] if lifts else p.t[c, i])
+        if row != 0.0:
             terms = abs(s.signal[2 * p.contacts + i])
             for j in range(n):
                 terms += abs(p.mk[i, j] * y[j]) + abs(p.mc[i, j] * y[n + j])
             for e in range(p.contacts):
                 terms += abs(p.md[e, i] * s.force[e])
-            total += abs(p.t[c, i]) * terms
+            total += row * terms
     return total
 
 
 def force_noise(p, c, y, s):
     """Round-off of the terms that balance in the force of a sticking contact, and of its limit; never zero."""
-    total = rate_terms(p, c, y, s)
+    total = rate_terms(p, c, y, s, False)
     mobility = abs(p.g[c, c])
     size = ROUND_OFF * total / mobility if mobility > 0.0 else 0.0
     return size + p.static[c] * normal_noise(p, c, y, s) + 1e-300
