@@ -12,70 +12,16 @@ from types import SimpleNamespace
 
 import numpy as np
 from scipy.integrate import DOP853, solve_ivp
-from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq, minimize_scalar
 
-from squealbox import friction, schedules
+from slow_laws import own_coefficient, own_schedule, scheduled
+from squealbox import schedules
 
 STICK, OPEN = 0, 2
 PLACES = np.linspace(0.0, 1.0, 13)
 MOST = 600  # events, after which the slow integrator gives up
+NOTHING = 1e-30  # N of a closed floor that carries nothing
 CLOSED = 1e-6  # share of the fastest landing below which a rebound counts as none: a convention of the program
-
-
-def own_coefficient(law):
-    """mu(v) of a law from its data sheet, written anew."""
-    if isinstance(law, friction.Coulomb):
-        level = law.static if law.kinetic is None else law.kinetic
-        return lambda v: level
-    if isinstance(law, friction.Stribeck):
-        return lambda v: law.static * np.exp(-v / law.speed) + law.kinetic * -np.expm1(-v / law.speed)
-    if isinstance(law, friction.LinearSlope):
-        return lambda v: max(law.static + law.slope * v, -np.inf if law.floor is None else law.floor)
-    if isinstance(law, friction.Hyperbolic):
-        return lambda v: law.static / (1.0 + law.delta * v)
-    if isinstance(law, friction.Cubic):
-        return lambda v: law.static + (law.kinetic - law.static) * (3.0 - (v / law.speed) ** 2) * v / law.speed / 2.0
-    if isinstance(law, friction.Table):
-        curve = PchipInterpolator(law.speeds, law.values)
-        return lambda v: float(curve(min(max(v, law.speeds[0]), law.speeds[-1])))
-    raise TypeError(f"the slow integrator knows no {type(law).__name__}")
-
-
-def own_schedule(value):
-    """(value(t), rate(t)) of a number or schedule, written anew."""
-    if not hasattr(value, "terms"):
-        held = np.asarray(value, dtype=float)
-        return (lambda t: held), (lambda t: 0.0 * held)
-    parts = [(weight, *_simple(part)) for weight, part in value.terms()]
-    return (lambda t: sum(w * f(t) for w, f, _ in parts)), (lambda t: sum(w * g(t) for w, _, g in parts))
-
-
-def _simple(part):
-    if isinstance(part, schedules.Sinusoid):
-        om = 2.0 * np.pi * part.frequency
-        return (
-            lambda t: part.mean + part.amplitude * np.sin(om * t + part.phase),
-            lambda t: part.amplitude * om * np.cos(om * t + part.phase),
-        )
-    if isinstance(part, schedules.Constant):
-        return (lambda t: part.level), (lambda t: 0.0)
-    if isinstance(part, schedules.Table):
-        times, values = np.asarray(part.times, float), np.asarray(part.values, float)
-        slopes = np.concatenate([[0.0], np.diff(values) / np.diff(times), [0.0]])
-        rate = lambda t: slopes[np.searchsorted(times, t, side="right")]  # noqa: E731
-        return (lambda t: np.interp(t, times, values)), rate
-    end = np.inf if part.stop is None or part.slope == 0.0 else (part.stop - part.start) / part.slope
-    end = np.inf if end <= 0.0 else end
-    return (
-        lambda t: part.start + part.slope * min(max(t - part.begin, 0.0), end),
-        lambda t: part.slope if 0.0 <= t - part.begin < end else 0.0,
-    )
-
-
-def scheduled(system):
-    """Every load, normal force and speed of a system."""
-    return (system.load, *(x for c in system.contacts for x in (c.V, c.N0)))
 
 
 class Slow:
@@ -107,7 +53,7 @@ class Slow:
         self.step = 2.0 * np.pi / 16.0 / max(*self.angular_frequencies(), 1e-3)
         reach = np.linalg.norm(self.d @ self.inverse, axis=1)
         self.reach = np.where(reach > 0.0, reach, 1.0)  # contacts on one motion come to their limits together
-        self.modes, self.fastest = [1] * self.m, 0.0
+        self.modes, self.fastest, self.inside = [1] * self.m, 0.0, np.inf
         self.alike = [(a, b, sign) for b in range(self.m) for a in range(b) if (sign := self.on_one_motion(a, b))]
 
     def on_one_motion(self, a, b):
@@ -152,6 +98,7 @@ class Slow:
 
     def motion(self, t, y, modes):
         """(y', forces, normal forces, speeds) with the contacts in these modes."""
+        t = min(t, self.inside)
         q, v = self.completed(t, y)
         normal, speed = self.given(t, q, v)
         force = np.zeros(self.m)
@@ -174,26 +121,38 @@ class Slow:
                 weight = 1.0 if self.rigid[c] else np.sqrt(max(self.static[c] * normal[c], 0.0) / self.reach[c])
                 unknown.append((c, self.t[c], float(self.speed_given[c][1](t)), self.d[c], weight, False))
         a = self.inverse @ (push + self.d.T @ force)
-        if unknown:
-            rows, right = np.array([u[1] for u in unknown]), np.array([u[2] for u in unknown])
-            floors = np.array([u[5] for u in unknown])  # which carry what they can, friction beside them nothing
-            weight = np.array([u[4] for u in unknown]) * np.where(floors | ~np.any(floors), 1.0, 1e-3)
-            weight /= max(weight.max(), 1e-300)
-            columns = self.inverse @ np.array([u[3] for u in unknown]).T * weight
-            found = weight * np.linalg.lstsq(rows @ columns, right - rows @ a, rcond=1e-11)[0]
-            a = a + self.inverse @ np.array([u[3] for u in unknown]).T @ found
-            for (c, *_, pressing), x in zip(unknown, found, strict=True):
-                if pressing:
-                    normal[c] = x
-                else:
-                    force[c] = x
-        return np.concatenate([v, a]), force, normal, speed
+        found, rest = self.solved(unknown, a)
+        for lost in [u[0] for u, x in zip(unknown, found, strict=True) if u[5] and x < 0.0]:
+            fewer = [u for u in unknown if u[0] != lost]  # a floor that would pull, where friction holds all the same
+            other, left = self.solved(fewer, a)
+            gone = max(abs(u[1] @ left - u[2]) for u in unknown if u[0] == lost)
+            if gone <= 1e-8 * (np.sum(np.abs(a)) + np.sum(np.abs(left)) + 1e-9):
+                unknown, found, rest, normal[lost] = fewer, other, left, NOTHING
+        for (c, *_, pressing), x in zip(unknown, found, strict=True):
+            if pressing:
+                normal[c] = x
+            else:
+                force[c] = x
+        return np.concatenate([v, rest]), force, normal, speed
+
+    def solved(self, unknown, a):
+        """The unknown forces, floors carrying what they can, and the accelerations with them."""
+        if not unknown:
+            return [], a
+        rows, right = np.array([u[1] for u in unknown]), np.array([u[2] for u in unknown])
+        floors = np.array([u[5] for u in unknown])  # friction beside them carries nothing
+        weight = np.array([u[4] for u in unknown]) * np.where(floors | ~np.any(floors), 1.0, 1e-5)
+        weight /= max(weight.max(), 1e-300)
+        columns = self.inverse @ np.array([u[3] for u in unknown]).T
+        found = weight * np.linalg.lstsq(rows @ columns * weight, right - rows @ a, rcond=1e-11)[0]
+        return found, a + columns @ found
 
     def gap(self, q):
         return self.gap0 - self.w @ q
 
     def functions(self, t, y, modes):
         """Two for each contact, positive while the modes hold."""
+        t = min(t, self.inside)
         rates, force, normal, speed = self.motion(t, y, modes)
         gap, a = self.gap(self.completed(t, y)[0]), rates[self.n :]
         out = np.ones((self.m, 2))
@@ -333,6 +292,7 @@ class Slow:
         for value in scheduled(self.system):
             kinks += [b for b in value.breaks() if 0.0 < b < duration] if hasattr(value, "breaks") else []
         for end in sorted(set(kinks)):
+            self.inside = np.nextafter(end, 0.0)  # the end of a piece sees the slopes before its kink
             while t < end:
                 if len(events) > MOST:
                     raise RuntimeError(f"more than {MOST} events")
@@ -361,7 +321,8 @@ class Slow:
 
             places = PLACES
             if first:  # what has just changed starts at zero
-                places = np.concatenate([[min(1e-4 * self.step / h, 0.5)], PLACES[1:]])
+                soon = min(1e-4 * self.step, 0.1 * self.flight(a, dense(a), modes))
+                places = np.concatenate([[min(soon / h, 0.5)], PLACES[1:]])
                 first = False
             table = np.array([values(x) for x in places])
             best = 2.0
@@ -370,6 +331,13 @@ class Slow:
             if best <= 1.0:
                 return a + best * h, dense(a + best * h)
         return solver.t, solver.y
+
+    def flight(self, t, y, modes):
+        """How long the shortest rebound that has just begun will last."""
+        rates = self.motion(t, y, modes)[0]
+        rate, falls = -self.w @ rates[: self.n], self.w @ rates[self.n :]
+        off = self.rigid & (np.array(modes) == OPEN) & (rate > 0.0) & (falls > 0.0) & (self.gap(y[: self.n]) < 1e-9)
+        return float(np.min(2.0 * rate[off] / falls[off], initial=np.inf))
 
     @staticmethod
     def root(places, column, function):

@@ -5,7 +5,18 @@ import pytest
 from scipy.optimize import brentq, linprog
 
 from small_systems import block_on_belt
-from squealbox import Contact, Coulomb, LinearSlope, Ramp, Sinusoid, System, simulate, simulate_ensemble
+from squealbox import (
+    Contact,
+    Coulomb,
+    ElastoPlastic,
+    LinearSlope,
+    Ramp,
+    Sinusoid,
+    System,
+    simulate,
+    simulate_ensemble,
+)
+from squealbox.schedules import Constant, Table
 
 
 def held(count, *, normal=1.0, law=None, mass=1.0, stiffness=0.0, load=0.0, speed=0.0):
@@ -254,3 +265,91 @@ def test_a_guide_beside_a_floor(halves):
     assert motion.friction_force[2, 1:] == pytest.approx(-0.5 / halves, abs=1e-9)
     assert motion.q[-1, 1] == pytest.approx(1.5**3 / 3.0, rel=1e-6)
     assert motion.steps + motion.rejected < 1_000
+
+
+@pytest.mark.parametrize("beside", [False, True])
+@pytest.mark.parametrize("method", ["dormand-prince-8", "tsitouras", "bogacki-shampine"])
+def test_a_pad_lifts_off_beside_one_that_holds(method, beside):
+    """y'' = N - 3, N = 10 - 4 y while pressed: y = 7/4 (1 - cos 2t), off at y = 2.5, back after 2 y'/3; x is held.
+
+    Until the pad has no force it sticks with its share; a stop that touches elsewhere changes nothing.
+    """
+    size = 3 if beside else 2
+    along, up, third = np.eye(size)[0], np.eye(size)[1], np.eye(size)[-1]
+    pad = Contact(-4.0 * up, along, along, 10.0, 0.0, Coulomb(0.4), unilateral=True, normal=-up)
+    other = Contact(0.0 * along, along, along, 1.0, 0.0, Coulomb(0.5))
+    stop = (rigid(third, size),) if beside else ()
+    system = System(np.eye(size), np.zeros((size, size)), 4.0 * np.outer(up, up),
+                    0.3 * along + 7.0 * up + (0.1 * third if beside else 0.0), (pad, other, *stop))  # fmt: skip
+    off = np.arccos(-3.0 / 7.0) / 2.0
+    back = off + 2.0 * (3.5 * np.sin(2.0 * off)) / 3.0
+    motion = simulate(system, 4.0, method=method)
+    assert motion.outcome == "completed"
+    assert motion.event_time == pytest.approx([off, back], rel=1e-5)
+    assert (motion.event_contact.tolist(), motion.event_mode.tolist()) == ([0, 0], [2, 0])
+    assert motion.q[-1, 0] == pytest.approx(0.0, abs=1e-12)
+    if not beside:
+        many = simulate_ensemble(system, duration=4.0, method=method)
+        assert (many.ended, many.events) == ("completed", 2)
+
+
+@pytest.mark.parametrize("other", [1e-4, 1.0, 100.0])
+def test_the_friction_of_a_floor_and_of_a_pad_let_go_together(other):
+    """Pulled by t against 0.4 10 N under the weight and what the pad holds: then q'' = t - both."""
+    floor = rigid([0.0, -1.0], 2, d=[1.0, 0.0], t=[1.0, 0.0], mu=0.4)
+    pad = Contact([0.0, 0.0], [1.0, 0.0], [1.0, 0.0], other, 0.0, Coulomb(1.0))
+    load = Ramp(0.0, 1.0, stop=None) * [1.0, 0.0] + Constant(1.0) * [0.0, -10.0]
+    motion = simulate(System(np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), load, (floor, pad)), 6.0 + other)
+    assert (motion.outcome, motion.caution) == ("completed", "")
+    assert motion.event_time == pytest.approx([4.0 + other] * 2, rel=1e-9)
+    assert motion.q[-1, 0] == pytest.approx(2.0**3 / 6.0, rel=1e-7)
+
+
+def test_friction_that_rises_from_zero_begins_with_a_push_that_begins():
+    """At rest until 1 s, then q'' = (t - 1) - 40 q': released where nothing pushes yet."""
+    block = System([[1.0]], [[0.0]], [[0.0]], Ramp(0.0, 1.0, stop=None, begin=1.0) * [1.0],
+                   (Contact([0.0], [1.0], [1.0], 4.0, 0.0, LinearSlope(0.0, 10.0)),))  # fmt: skip
+    for method in ("taylor", "dormand-prince-8"):
+        motion = simulate(block, 3.0, method=method)
+        assert motion.outcome == "completed"
+        assert motion.q[-1, 0] == pytest.approx(2.0 / 40.0 - 2.0 / 1600.0 + (1.0 - np.exp(-80.0)) / 64000.0, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("law", "speed", "within"),
+    [
+        (Coulomb(0.5), 1.0, 1e-6),
+        (ElastoPlastic(0.5, 0.5, 0.1, stiffness=1e5, damping=50.0, breakaway=0.7), 1.0, 1e-2),
+        (LinearSlope(0.0, 1e3), 1.2, 1e-3),
+    ],
+)
+def test_what_rigid_contacts_and_friction_leave_open_is_said(law, speed, within):
+    """A guide holds the body that a lift takes off its floor: who carries it when the lift lets go is a matter of law.
+
+    Lift - 1 + t to 2 s, then 3 - t; the floor rubs with 0.2. Stiff bristles are where they were at 3 s, and the floor
+    has the weight, of impulse 1/2 + 9/2; what creeps has to come back first, at 3 + sqrt 2, when the impulse of the
+    lift is undone: 1/2 + 7/2. Rigid contacts decide for the floor and say so.
+    """
+    floor = rigid([0.0, -1.0], 2, d=[1.0, 0.0], t=[1.0, 0.0], mu=0.2)
+    guide = Contact([0.0, 0.0], [0.0, 1.0], [0.0, 1.0], 4.0, 0.0, law)
+    lift = Table([0.0, 2.0, 6.0], [-1.0, 1.0, -3.0]) * [0.0, 1.0]
+    motion = simulate(System(np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), lift, (floor, guide)), 6.0,
+                      ([0.0, 0.0], [2.0, 0.0]))  # fmt: skip
+    assert motion.outcome == "completed"
+    assert motion.qd[-1, 0] == pytest.approx(speed, abs=within)
+    assert ("carries what it can" in motion.caution) == isinstance(law, Coulomb)
+
+
+@pytest.mark.parametrize("method", ["dormand-prince-8", "tsitouras", "bogacki-shampine"])
+@pytest.mark.parametrize("height", [0.0, 0.02])
+def test_a_load_that_ebbs_away_lets_a_body_off_its_floor_once(height, method):
+    """Pressed by 1 - t beside what swings: from 1 s on y = (t - 1)^3/6; off at N = 0, without a jump of y''."""
+    floor = rigid([0.0, -1.0], 2, d=[1.0, 0.0], t=[1.0, 0.0])
+    load = Ramp(-1.0, 1.0, stop=None) * [0.0, 1.0]
+    body = System(np.eye(2), np.zeros((2, 2)), np.diag([4.0, 0.0]), load, (floor,))
+    motion = simulate(body, 3.0, ([0.3, height], [0.0, 0.0]), method=method)
+    assert motion.outcome == "completed"
+    assert motion.event_mode[-1] == 2
+    assert len(motion.event_time) == (2 if height else 1)
+    assert motion.event_time[-1] == pytest.approx(1.0, abs=1e-5)
+    assert motion.q[-1, 1] == pytest.approx(8.0 / 6.0, rel=1e-5)

@@ -172,15 +172,24 @@ def start_power(p, h, mode, s, stage, c):
 
     Its speed over theta tends to its acceleration times h there. After a release without a drop of friction that is
     zero too, to round-off of its own terms, and the speed over theta squared is searched instead; its first value is
-    that of the cubic through the others. The gap of a rigid contact that has just opened is treated likewise.
+    that of the cubic through the others. The gap of a rigid contact that has just opened is treated likewise; where its
+    normal force has come down to zero, its acceleration is zero too, and the gap begins with theta^3.
     """
     rate, noise = start_rate(p, mode, s, stage, c)
     if abs(rate) > noise:
         return 1, h * rate
+    power = 2
+    if mode[c] == OPEN:
+        rate = 0.0
+        for i in range(p.mk.shape[0]):
+            rate -= p.w[c, i] * stage[0, p.mk.shape[0] + i]
+        if abs(rate) > s.leave[c]:
+            return 2, 0.5 * h * h * rate
+        power = 3
     value = 0.0
     for i in range(1, 5):
-        value += (0.0, 4.0, -6.0, 4.0, -1.0)[i] * s.nodes[i, c] * (4.0 / i) ** 2
-    return 2, value
+        value += (0.0, 4.0, -6.0, 4.0, -1.0)[i] * s.nodes[i, c] * (4.0 / i) ** power
+    return power, value
 
 
 def start_rate(p, mode, s, stage, c):
@@ -192,7 +201,8 @@ def start_rate(p, mode, s, stage, c):
         for i in range(n):
             rate -= p.w[c, i] * stage[0, i]
             size += abs(p.w[c, i] * stage[0, i])
-        return rate, 1e-8 * size
+        # where nothing else moves along it, what is left of its rate has no size of its own
+        return rate, 1e-8 * size + 1e-4 * p.window * s.leave[c]
     return mode[c] * slip_acceleration(p, c, stage[0], s), s.leave[c]
 
 

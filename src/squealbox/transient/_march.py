@@ -273,7 +273,7 @@ def change_modes(p, s, events, t, which, moved):
     if not ok:
         return not_consistent(p, s)
     restart(p, s, t)
-    if which >= p.contacts or (p.unilateral[which] and s.old[which] == OPEN):
+    if which >= p.contacts or s.old[which] == OPEN or s.mode[which] == OPEN:
         begin_from_zero(p, s, which)
     rebounds = False
     if p.rigid_count > 0:

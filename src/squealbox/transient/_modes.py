@@ -21,13 +21,11 @@ from squealbox.transient._motion import (
     rate_terms,
     slip_acceleration,
 )
-from squealbox.transient._rigid import solve
-from squealbox.transient._sharing import contact_matrix, share_out
+from squealbox.transient._sharing import RISES, contact_matrix, share_out, solve, weigh_sticking
 
 CLEAR = 50.0  # times the round-off of a force: what a mode that does not hold exceeds
 LEAVE = 1e-8  # share of its terms below which the acceleration of a contact that leaves zero speed counts as zero
 UNPRESSED = 1e-11  # share of the limit of another contact up to which one holds nothing beside it
-RISES = 1e-100  # static limit up to which a contact never holds anything: its friction rises from zero
 EVENED = 400  # turns of the rule that evens out what contacts carry
 NEARLY = 1e-10  # of 1
 SWING = 160.0  # windows of time make one over the highest angular frequency
@@ -78,7 +76,8 @@ def apply_event(p, t, y, mode, s, j):
     c = j if j < m else j - m
     if p.rigid[c] and j < m and mode[c] == OPEN:
         return land(p, t, y, mode, s, c)
-    if j >= m or (p.rigid[c] and mode[c] == STICK and s.normal[c] <= 1e-6 * s.phi0[m + c]):
+    lost = mode[c] == STICK and s.normal[c] <= (1e-6 * s.phi0[m + c] if p.rigid[c] else normal_noise(p, c, y, s))
+    if j >= m or (p.unilateral[c] and lost):  # no force to stick with, where others hold the same motion
         mode[c] = OPEN
         s.at_zero[c] = 0
         if p.rigid[c]:
@@ -149,17 +148,18 @@ def even_out(p, t, y, mode, s):
         worst, weights, mean = 0.0, 0.0, 0.0
         sticking = list_sticking(p, mode, s)
         for a in range(sticking):
-            limit = p.static[s.stuck[a]] * s.normal[s.stuck[a]]
-            if limit > 0.0 and p.static[s.stuck[a]] > RISES and s.share[a] > 0.0:
-                worst = max(worst, abs(s.force[s.stuck[a]]) / limit)
-                weights += limit**2 / s.share[a]
-                mean += s.force[s.stuck[a]] ** 2 / s.share[a]
+            c = s.stuck[a]
+            limit = p.static[c] * s.normal[c]
+            if limit > 0.0 and p.static[c] > RISES and s.share[c] > 0.0:
+                worst = max(worst, abs(s.force[c]) / limit)
+                weights += limit**2 / s.share[c]
+                mean += s.force[c] ** 2 / s.share[c]
         if not worst > 0.0 or weights * worst**2 <= mean * (1.0 + NEARLY):
             return worst
         for a in range(sticking):
             c = s.stuck[a]
             limit = p.static[c] * s.normal[c]
-            if limit > 0.0 and p.static[c] > RISES and s.share[a] > 0.0:
+            if limit > 0.0 and p.static[c] > RISES and s.share[c] > 0.0:
                 ratio = max(abs(s.force[c]) / (limit * worst), 0.1)
                 s.bias[c] = min(s.bias[c] / (ratio * np.sqrt(ratio)), 1e6)  # twice 3/4 of a turn would overshoot
         if not derivative(p, t, y, mode, s, s.dy):
@@ -204,12 +204,12 @@ def settle(p, t, y, mode, s):
     if not decide(p, t, y, mode, s):
         return False
     for c in range(p.contacts):
-        s.leave[c] = LEAVE * rate_terms(p, c, y, s) + 1e-300
+        s.leave[c] = LEAVE * rate_terms(p, c, y, s, p.rigid[c] != 0 and mode[c] == OPEN) + RISES
     contact_kinematics(p, y, s)
     for c in range(p.contacts):
         s.fresh[c] = s.at_zero[c] != 0 and mode[c] != STICK and mode[c] != OPEN
         if p.rigid[c] and mode[c] == OPEN:
-            s.fresh[c] = touches(p, c, y, s)
+            s.fresh[c] = s.old[c] != OPEN or s.leaving[c] != 0 or touches(p, c, y, s)
     if p.rigid_count > 0:
         return project(p, y, mode, s)
     return remove_drift(p, y, s, list_sticking(p, mode, s))
@@ -226,7 +226,8 @@ def remove_drift(p, y, s, sticking):
     if not solved:
         for a in range(sticking):
             s.wanted[a] = s.speed[s.stuck[a]]
-        solved = share_out(p, s, sticking)
+        weigh_sticking(p, s, sticking)
+        solved = share_out(s, sticking)
     for a in range(sticking):
         for i in range(p.mk.shape[0]):
             y[p.mk.shape[0] + i] += p.md[s.stuck[a], i] * s.right[a]

@@ -14,8 +14,8 @@ scheme uses it. A rigid contact has -gap in the place of N while it is open; clo
 
 import numpy as np
 
-from squealbox.transient._rigid import constrain, solve
-from squealbox.transient._sharing import all_held, contact_matrix, share_out
+from squealbox.transient._rigid import constrain
+from squealbox.transient._sharing import all_held, contact_matrix, share_out, solve, weigh_sticking
 
 RAW, EXACT, TANH, ARCTAN = 0, 1, 2, 3  # WITH_EVENTS is true in the file compiled for EXACT
 STICK, OPEN = 0, 2
@@ -140,6 +140,7 @@ def derivative(p, t, y, mode, s, dy):
         evaluate_signals(p, t, s)
     sticking = 0
     opened = False
+    closed = False
     for c in range(p.contacts):
         normal = normal_force(p, c, y, s)
         speed = sliding_velocity(p, c, y, s)
@@ -152,6 +153,7 @@ def derivative(p, t, y, mode, s, dy):
         elif p.smooth[c] > 0:
             force = grip * normal
         elif WITH_EVENTS and p.rigid[c]:
+            closed = True
             normal = 0.0
             s.mu[c] = sliding_coefficient(p, c, mode[c] * speed)
         elif WITH_EVENTS and mode[c] == STICK:
@@ -176,7 +178,7 @@ def derivative(p, t, y, mode, s, dy):
     if opened:
         release_open(p, mode, s, dy)
     solved = True
-    if WITH_EVENTS and p.rigid_count > 0:
+    if WITH_EVENTS and closed:
         solved = constrain(p, mode, s, dy, False)
     elif WITH_EVENTS and sticking > 0:
         solved = hold(p, s, sticking, dy)
@@ -243,10 +245,12 @@ def hold(p, s, sticking, dy):
     if not solved:
         for a in range(sticking):
             s.wanted[a] = slip_acceleration(p, s.stuck[a], dy, s)
-        solved = share_out(p, s, sticking) and all_held(p, s, sticking)
+        weigh_sticking(p, s, sticking)
+        solved = share_out(s, sticking) and all_held(s, sticking)
     for a in range(sticking):
         c = s.stuck[a]
         s.force[c] = s.right[a]
+        s.share[c] = s.weight[a]
         for i in range(n):
             dy[n + i] += p.md[c, i] * s.force[c]
     return solved
@@ -260,24 +264,25 @@ def normal_noise(p, c, y, s):
     return ROUND_OFF * total
 
 
-def rate_terms(p, c, y, s):
-    """Sum of the sizes of all that makes up V' - t . q''; forces as last computed."""
+def rate_terms(p, c, y, s, lifts):
+    """Sum of the sizes of all that makes up V' - t . q'', or the opening w . q'' of a gap; forces as last computed."""
     n = p.mk.shape[0]
-    total = abs(s.signal[p.signals + c])
+    total = 0.0 if lifts else abs(s.signal[p.signals + c])
     for i in range(n):
-        if p.t[c, i] != 0.0:
+        row = abs(p.w[c, i] if lifts else p.t[c, i])
+        if row != 0.0:
             terms = abs(s.signal[2 * p.contacts + i])
             for j in range(n):
                 terms += abs(p.mk[i, j] * y[j]) + abs(p.mc[i, j] * y[n + j])
             for e in range(p.contacts):
                 terms += abs(p.md[e, i] * s.force[e])
-            total += abs(p.t[c, i]) * terms
+            total += row * terms
     return total
 
 
 def force_noise(p, c, y, s):
     """Round-off of the terms that balance in the force of a sticking contact, and of its limit; never zero."""
-    total = rate_terms(p, c, y, s)
+    total = rate_terms(p, c, y, s, False)
     mobility = abs(p.g[c, c])
     size = ROUND_OFF * total / mobility if mobility > 0.0 else 0.0
     return size + p.static[c] * normal_noise(p, c, y, s) + 1e-300

@@ -12,9 +12,10 @@ compiled by `_engine`. Source: Glocker 2001, Set-Valued Force Laws, chapters 5 a
 
 # mypy: disable-error-code="no-untyped-def"
 
-import numpy as np
+from squealbox.transient._sharing import RISES, all_held, column_size, share_out, solve
 
 AGAIN = 12  # turns in which the residual of a raised diagonal is solved for
+FLOORS_FIRST = 1e6  # times as much as friction carries what is closed, where both hold the same motion
 NORMAL, ALONG = 0, 1  # what a row of the system holds: the gap, or the sliding velocity
 APART = 2  # mode of an open contact, as OPEN in _motion
 
@@ -26,10 +27,18 @@ def constrain(p, mode, s, dy, impact):
     """
     for c in range(p.contacts):
         s.idle[c] = 0
-    count = list_rows(p, mode, s)
+        s.slack[c] = 0
+    for i in range(p.mk.shape[0]):
+        s.before[i] = dy[p.mk.shape[0] + i]
     size_normal_forces(p, s, dy)
-    solved = correct(p, mode, s, dy, count, impact, False)
-    if not solved:
+    clear(p, mode, s)
+    count = list_rows(p, mode, s)
+    write_system(p, mode, s, dy, count, impact)
+    solved = solve_raised(s, count, 0.0)
+    s.spare[0] = not solved
+    if solved:
+        add_forces(p, mode, s, dy, count)
+    else:
         solved = spread(p, mode, s, dy, impact)
     for c in range(p.contacts):
         if p.rigid[c] and mode[c] != APART and mode[c] != 0:
@@ -38,46 +47,94 @@ def constrain(p, mode, s, dy, impact):
 
 
 def spread(p, mode, s, dy, impact):
-    """Forces of redundant contacts: a slightly raised diagonal shares them out, its residual is solved for again.
+    """Forces of redundant contacts.
 
     Friction carries nothing where normal forces do. A floor that would pull while friction on the same motion holds is
     left without force; where friction does not, it pulls, and so opens.
     """
-    n = p.mk.shape[0]
-    for i in range(n):
-        s.before[i] = dy[n + i]
-    for c in range(p.contacts):
-        s.idle[c] = not impact and not p.rigid[c] and mode[c] == 0
-    spread_over(p, mode, s, dy, impact)
-    for c in range(p.contacts):
-        s.idle[c] = s.idle[c] != 0 and holds_all_the_same(p, c, s, dy)
-    solved = spread_over(p, mode, s, dy, impact)
+    solved = floors_first(p, mode, s, dy, impact)
     for _ in range(p.contacts):
         which = pulling(p, mode, s)
         if impact or which < 0 or not solved:
             return solved
+        s.idle[which] = 1
+        solved = floors_first(p, mode, s, dy, impact)
         for c in range(p.contacts):
-            s.idle[c] = c == which or (s.idle[c] != 0 and p.rigid[c] != 0)
-        solved = spread_over(p, mode, s, dy, impact)
-        for c in range(p.contacts):
-            solved = solved and (s.idle[c] == 0 or holds_all_the_same(p, c, s, dy))
+            solved = solved and (s.idle[c] == 0 or holds_all_the_same(p, c, s, dy, True))
+            beyond = mode[c] == 0 and p.static[c] * abs(s.normal[c]) <= RISES  # what never sticks holds nothing
+            solved = solved and not (beyond and abs(s.force[c]) > 1e-9 * s.size[which])
         if not solved:
             for c in range(p.contacts):
                 s.idle[c] = 0
-            return spread_over(p, mode, s, dy, impact)
+            return floors_first(p, mode, s, dy, impact)
     return solved
 
 
+def floors_first(p, mode, s, dy, impact):
+    """The forces where floors alone hold what they can; friction shares the rest in proportion to its limits."""
+    sticks = False
+    for c in range(p.contacts):
+        s.slack[c] = not impact and mode[c] == 0
+        sticks = sticks or (s.slack[c] != 0 and p.rigid[c] != 0)
+    solved = spread_over(p, mode, s, dy, impact)
+    if impact:
+        return solved
+    for c in range(p.contacts):
+        s.slack[c] = s.slack[c] != 0 and holds_all_the_same(p, c, s, dy, False)
+    solved = spread_over(p, mode, s, dy, impact)
+    return spread_over(p, mode, s, dy, impact) if sticks else solved  # limits with the normal forces just found
+
+
 def spread_over(p, mode, s, dy, impact):
-    """The forces that share, from the start; False when a matrix is singular all the same."""
+    """The forces that share, from the start, again for what they still lack; False where there are none.
+
+    In an impact a slightly raised diagonal shares: of contacts on one motion that rebound differently it pulls the
+    slower, which so opens.
+    """
     n = p.mk.shape[0]
     for i in range(n):
         dy[n + i] = s.before[i]
     count = list_rows(p, mode, s)
+    write_system(p, mode, s, dy, count, impact)
+    weigh(p, s, count)
+    clear(p, mode, s)
     solved = True
-    for _ in range(AGAIN):
-        solved = correct(p, mode, s, dy, count, impact, True) and solved
+    for _ in range(AGAIN if impact else 2):
+        write_system(p, mode, s, dy, count, impact)
+        if impact:
+            solved = solve_raised(s, count, 1e-9) and solved
+        else:
+            solved = share_out(s, count) and all_held(s, count) and solved
+        add_forces(p, mode, s, dy, count)
     return solved
+
+
+def solve_raised(s, count, by):
+    """s.right with s.whole x = s.wanted, the diagonal raised by this share, of friction by far more."""
+    for a in range(count):
+        s.right[a] = s.wanted[a]
+        for b in range(count):
+            s.matrix[a, b] = s.whole[a, b]
+        s.matrix[a, a] *= 1.0 + (by if s.row_kind[a] == NORMAL else 1e5 * by)
+    return solve(s.matrix, s.right, count)
+
+
+def weigh(p, s, count):
+    """Weights of `share_out`: friction by its limits, as in `weigh_sticking`, floors by far more than any of it."""
+    most = 0.0
+    for a in range(count):
+        c = s.row_contact[a]
+        limit = s.bias[c] * max(p.static[c] * s.normal[c], 0.0) if s.row_kind[a] == ALONG else 0.0
+        s.weight[a] = limit
+        most = max(most, limit)
+    for a in range(count):
+        c = s.row_contact[a]
+        size = column_size(s, a, count)
+        if s.row_kind[a] == NORMAL:
+            s.weight[a] = FLOORS_FIRST * most if most > 0.0 else 1.0
+        elif s.weight[a] <= max(1e-13 * most, RISES):
+            s.weight[a] = 0.0
+        s.weight[a] = s.weight[a] / size if size > 0.0 else 0.0
 
 
 def pulling(p, mode, s):
@@ -88,56 +145,40 @@ def pulling(p, mode, s):
     return -1
 
 
-def holds_all_the_same(p, c, s, dy):
+def holds_all_the_same(p, c, s, dy, floor):
     """Whether the other forces keep a floor closed, or friction sticking, without a force of its own."""
     n = p.mk.shape[0]
-    rate = 0.0 if p.rigid[c] else s.signal[p.signals + c]
+    rate = 0.0 if floor else s.signal[p.signals + c]
     terms = abs(rate)
     for i in range(n):
-        row = p.w[c, i] if p.rigid[c] else -p.t[c, i]
+        row = p.w[c, i] if floor else -p.t[c, i]
         rate += row * dy[n + i]
         terms += abs(row) * (abs(dy[n + i]) + abs(s.before[i]))
     return abs(rate) <= 1e-9 * terms
 
 
-def raised(p, s, a, count):
-    """What is added to diagonal entry a of redundant contacts.
-
-    It weighs the squares of the forces: friction far more than normal forces, and each in proportion to its limit.
-    """
-    entry = abs(s.matrix[a, a])
-    if s.row_kind[a] == NORMAL:
-        return 1e-9 * entry
-    most = 0.0
-    own = 0.0
-    for b in range(count):
-        c = s.row_contact[b]
-        if s.row_kind[b] == ALONG and not p.rigid[c]:
-            size = p.static[c] * s.normal[c] * np.sqrt(abs(p.g[c, c]))
-            most = max(most, size)
-            own = size if b == a else own
-    return 1e-4 * entry * (min(most / own, 1e3) if own > 0.0 else 1.0 if p.rigid[s.row_contact[a]] else 1e3)
-
-
 def list_rows(p, mode, s):
-    """The rows of the system, into s.row_contact and s.row_kind; their forces start from zero."""
+    """The rows of the system, into s.row_contact and s.row_kind; returns how many."""
     count = 0
     for c in range(p.contacts):
-        if mode[c] == APART:
-            continue
-        if p.rigid[c]:
-            s.normal[c] = 0.0
-        if p.rigid[c] and s.idle[c] == 0:
+        if mode[c] != APART and p.rigid[c] and s.idle[c] == 0:
             s.row_contact[count] = c
             s.row_kind[count] = NORMAL
             count += 1
-        if mode[c] == 0:
-            s.force[c] = 0.0
-        if mode[c] == 0 and (s.idle[c] == 0 or p.rigid[c]):
+        if mode[c] == 0 and s.slack[c] == 0:
             s.row_contact[count] = c
             s.row_kind[count] = ALONG
             count += 1
     return count
+
+
+def clear(p, mode, s):
+    """The forces of the rows, and of those left out of them, start from zero."""
+    for c in range(p.contacts):
+        if mode[c] != APART and p.rigid[c]:
+            s.normal[c] = 0.0
+        if mode[c] == 0:
+            s.force[c], s.share[c] = 0.0, 0.0
 
 
 def size_normal_forces(p, s, dy):
@@ -153,34 +194,36 @@ def size_normal_forces(p, s, dy):
             s.size[c] = total / mobility
 
 
-def correct(p, mode, s, dy, count, impact, redundant):
-    """One solve for what the forces still lack; False when the matrix is singular."""
+def write_system(p, mode, s, dy, count, impact):
+    """What the rows still lack, into s.wanted, and how much each force changes it, into s.whole."""
     n = p.mk.shape[0]
     for a in range(count):
         c = s.row_contact[a]
         if s.row_kind[a] == NORMAL:
-            right = s.rebound[c] if impact else 0.0
+            wanted = s.rebound[c] if impact else 0.0
             for i in range(n):
-                right += p.w[c, i] * dy[n + i]
+                wanted += p.w[c, i] * dy[n + i]
         else:
-            right = s.signal[c] if impact else s.signal[p.signals + c]
+            wanted = s.signal[c] if impact else s.signal[p.signals + c]
             for i in range(n):
-                right -= p.t[c, i] * dy[n + i]
-        s.right[a] = right
+                wanted -= p.t[c, i] * dy[n + i]
+        s.wanted[a] = wanted
         for b in range(count):
-            s.matrix[a, b] = row_times_column(p, mode, s, a, b)
-        if redundant:
-            s.matrix[a, a] += raised(p, s, a, count)
-    if not solve(s.matrix, s.right, count):
-        return False
+            s.whole[a, b] = row_times_column(p, mode, s, a, b)
+
+
+def add_forces(p, mode, s, dy, count):
+    """Add the forces in s.right, and the accelerations they cause."""
+    n = p.mk.shape[0]
     for b in range(count):
+        c = s.row_contact[b]
         for i in range(n):
             dy[n + i] += column(p, mode, s, b, i) * s.right[b]
         if s.row_kind[b] == NORMAL:
-            s.normal[s.row_contact[b]] += s.right[b]
+            s.normal[c] += s.right[b]
         else:
-            s.force[s.row_contact[b]] += s.right[b]
-    return True
+            s.force[c] += s.right[b]
+            s.share[c] = s.weight[b]
 
 
 def column(p, mode, s, b, i):
@@ -213,31 +256,3 @@ def paradox(p, mode, s):
             if not total > 0.0:
                 return True
     return False
-
-
-def solve(matrix, right, size):
-    """Gaussian elimination with partial pivoting, in place; False when a pivot is lost."""
-    scale = 0.0
-    for i in range(size):
-        for j in range(size):
-            scale = max(scale, abs(matrix[i, j]))
-    for k in range(size):
-        best = k
-        for i in range(k + 1, size):
-            if abs(matrix[i, k]) > abs(matrix[best, k]):
-                best = i
-        if not abs(matrix[best, k]) > 1e-13 * scale:
-            return False
-        for j in range(k, size):
-            matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
-        right[k], right[best] = right[best], right[k]
-        for i in range(k + 1, size):
-            factor = matrix[i, k] / matrix[k, k]
-            for j in range(k, size):
-                matrix[i, j] -= factor * matrix[k, j]
-            right[i] -= factor * right[k]
-    for k in range(size - 1, -1, -1):
-        for j in range(k + 1, size):
-            right[k] -= matrix[k, j] * right[j]
-        right[k] /= matrix[k, k]
-    return True

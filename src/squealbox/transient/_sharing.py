@@ -1,53 +1,86 @@
-"""How sticking contacts that do not hold motions of their own share the force; plain loops compiled by `_engine`."""
+"""How contacts that do not hold motions of their own share the force; plain loops compiled by `_engine`.
+
+The forces x of sticking contacts, and of closed rigid ones, obey A x = b, which leaves the split open where rows of A
+depend on each other. Of all splits that one is taken which has the least sum of x^2/L, with a weight L for each.
+"""
 
 # mypy: disable-error-code="no-untyped-def"
 
 import numpy as np
 
-from squealbox.transient._rigid import solve
+RISES = 1e-100  # static limit up to which a contact never holds anything: its friction rises from zero
 
 
 def contact_matrix(p, s, sticking):
-    """t . M^-1 d of the sticking contacts."""
+    """t . M^-1 d of the sticking contacts, into s.whole and, to be solved with, s.matrix."""
     for a in range(sticking):
         for b in range(sticking):
-            s.matrix[a, b] = p.g[s.stuck[a], s.stuck[b]]
+            s.whole[a, b] = p.g[s.stuck[a], s.stuck[b]]
+            s.matrix[a, b] = s.whole[a, b]
 
 
-def share_out(p, s, sticking):
-    """Forces of sticking contacts, into s.right, that give s.wanted where contacts hold the same motion.
+def weigh_sticking(p, s, sticking):
+    """Weights L = bias limit/|g| with the column g of t . M^-1 d.
 
-    Of all forces that do, those with the least sum of F^2/L, L = bias limit/|g| with the column g of t . M^-1 d:
-    contacts on one motion reach their limits together whatever their levers, and one that is not pressed carries
-    nothing. With B an orthonormal basis of the rows of t . M^-1 d, F = L B' (B L B')^-1 b. False where that has no
-    solution. The bias is 1 until `_modes.even_out` finds that other shares hold longer.
+    Contacts on one motion reach their limits together whatever their levers, and one that is not pressed carries
+    nothing. The bias is 1 until `_modes.even_out` finds that other shares hold longer.
     """
-    kept = independent_rows(p, s, sticking)
+    largest = 1e13 * RISES
+    for a in range(sticking):
+        largest = max(largest, p.static[s.stuck[a]] * s.normal[s.stuck[a]])
+    for a in range(sticking):
+        c = s.stuck[a]
+        limit = p.static[c] * s.normal[c]
+        size = column_size(s, a, sticking)
+        s.weight[a] = s.bias[c] * limit / size if size > 0.0 and limit > 1e-13 * largest else 0.0
+
+
+def column_size(s, b, count):
+    """|column b| of s.whole."""
+    total = 0.0
+    for a in range(count):
+        total += s.whole[a, b] ** 2
+    return np.sqrt(total)
+
+
+def share_out(s, count):
+    """Forces into s.right with s.whole x = s.wanted and the least sum of x^2/s.weight; False where there is none.
+
+    With B an orthonormal basis of the rows of s.whole, x = L B' (B L B')^-1 b. A weight of zero makes a force zero,
+    unless it alone holds a motion.
+    """
+    kept = independent_rows(s, count)
     for i in range(kept):
+        s.multiplier[i] = 0.0
+        for e in range(count):
+            s.multiplier[i] += s.basis[i, e] ** 2 * s.weight[e]
+        s.multiplier[i] = 1.0 / np.sqrt(max(s.multiplier[i], 1e-300))
+    for i in range(kept):
+        s.right[i] *= s.multiplier[i]
         for j in range(kept):
             total = 0.0
-            for e in range(sticking):
-                total += s.basis[i, e] * s.share[e] * s.basis[j, e]
-            s.matrix[i, j] = total
+            for e in range(count):
+                total += s.basis[i, e] * s.weight[e] * s.basis[j, e]
+            s.matrix[i, j] = total * s.multiplier[i] * s.multiplier[j]
     if not solve(s.matrix, s.right, kept):
         return False
     for i in range(kept):
-        s.multiplier[i] = s.right[i]
-    for e in range(sticking):
+        s.multiplier[i] *= s.right[i]
+    for e in range(count):
         total = 0.0
         for i in range(kept):
             total += s.basis[i, e] * s.multiplier[i]
-        s.right[e] = s.share[e] * total
+        s.right[e] = s.weight[e] * total
     return True
 
 
-def all_held(p, s, sticking):
-    """Whether the forces of `share_out` give every sticking contact what it wants, not the independent ones alone."""
-    for a in range(sticking):
+def all_held(s, count):
+    """Whether the forces of `share_out` give every contact what it wants, not the independent ones alone."""
+    for a in range(count):
         rest = s.wanted[a]
         size = abs(rest)
-        for e in range(sticking):
-            term = p.g[s.stuck[a], s.stuck[e]] * s.right[e]
+        for e in range(count):
+            term = s.whole[a, e] * s.right[e]
             rest -= term
             size += abs(term)
         if not abs(rest) <= 1e-6 * size + 1e-300:
@@ -55,51 +88,70 @@ def all_held(p, s, sticking):
     return True
 
 
-def independent_rows(p, s, sticking):
-    """An orthonormal basis of the rows of t . M^-1 d into s.basis, what it wants into s.right; how many there are.
+def independent_rows(s, count):
+    """An orthonormal basis of the rows of s.whole into s.basis, what it wants into s.right; how many there are.
 
-    By Gram and Schmidt's process, with the contacts that are pressed first. Sets s.share too: L as a share of the
-    largest one; of a contact that is not pressed 1 if it alone holds a motion, else 0.
+    By Gram and Schmidt's process, with those first that carry something. Brings the largest weight to 1.
     """
-    largest, most = 0.0, 0.0
-    for a in range(sticking):
-        limit = p.static[s.stuck[a]] * s.normal[s.stuck[a]]
-        column = 0.0
-        for e in range(sticking):
-            column += p.g[s.stuck[e], s.stuck[a]] ** 2
-        s.share[a] = s.bias[s.stuck[a]] * limit / np.sqrt(column) if column > 0.0 else 0.0
-        largest, most = max(largest, limit), max(most, s.share[a])
+    most = 0.0
+    for a in range(count):
+        most = max(most, s.weight[a])
     kept = 0
     for turn in range(2):
-        for a in range(sticking):
-            pressed = p.static[s.stuck[a]] * s.normal[s.stuck[a]] > 1e-13 * largest and s.share[a] > 0.0
-            if pressed and turn == 0:
-                s.share[a] /= most
-            if pressed != (turn == 0):
+        for a in range(count):
+            if (s.weight[a] > 0.0) != (turn == 0):
                 continue
-            if turn == 1:
-                s.share[a] = 0.0
             before = 0.0
             wanted = s.wanted[a]
-            for e in range(sticking):
-                s.basis[kept, e] = p.g[s.stuck[a], s.stuck[e]]
+            for e in range(count):
+                s.basis[kept, e] = s.whole[a, e]
                 before += s.basis[kept, e] ** 2
             for _ in range(2):
                 for k in range(kept):
                     along = 0.0
-                    for e in range(sticking):
+                    for e in range(count):
                         along += s.basis[k, e] * s.basis[kept, e]
                     wanted -= along * s.right[k]
-                    for e in range(sticking):
+                    for e in range(count):
                         s.basis[kept, e] -= along * s.basis[k, e]
             after = 0.0
-            for e in range(sticking):
+            for e in range(count):
                 after += s.basis[kept, e] ** 2
             if after > 1e-18 * before:
-                for e in range(sticking):
+                for e in range(count):
                     s.basis[kept, e] /= np.sqrt(after)
                 s.right[kept] = wanted / np.sqrt(after)
                 kept += 1
                 if turn == 1:
-                    s.share[a] = 1.0
+                    s.weight[a] = max(most, 1e-300)
+    for a in range(count):
+        s.weight[a] /= most if most > 0.0 else 1e-300
     return kept
+
+
+def solve(matrix, right, size):
+    """Gaussian elimination with partial pivoting, in place; False when a pivot is lost."""
+    scale = 0.0
+    for i in range(size):
+        for j in range(size):
+            scale = max(scale, abs(matrix[i, j]))
+    for k in range(size):
+        best = k
+        for i in range(k + 1, size):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        if not abs(matrix[best, k]) > 1e-13 * scale:
+            return False
+        for j in range(k, size):
+            matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
+        right[k], right[best] = right[best], right[k]
+        for i in range(k + 1, size):
+            factor = matrix[i, k] / matrix[k, k]
+            for j in range(k, size):
+                matrix[i, j] -= factor * matrix[k, j]
+            right[i] -= factor * right[k]
+    for k in range(size - 1, -1, -1):
+        for j in range(k + 1, size):
+            right[k] -= matrix[k, j] * right[j]
+        right[k] /= matrix[k, k]
+    return True

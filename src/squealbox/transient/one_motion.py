@@ -6,7 +6,10 @@ import numpy as np
 
 from squealbox.schedules import Schedule
 from squealbox.system import Contact, System
+from squealbox.transient.rows import rows_of
 
+STICK, OPEN = 0, 2  # modes, as in `_motion`
+RISES, TINY, CLEAR = 1e-100, 1e-300, 1e-9  # static limit of what never sticks; stands for zero; more than round-off
 PARALLEL = 1e-12  # share of a row by which it may leave the direction of another
 
 
@@ -62,3 +65,45 @@ def _along(row: Any, first: Any) -> bool:
 def _limit_varies(contact: Contact) -> bool:
     """Whether the static limit of a contact changes without an event."""
     return bool(np.any(contact.n)) or isinstance(contact.N0, Schedule)
+
+
+SHARED = (
+    "friction that sticks holds the motion that {name} stops, and their laws leave open how they share its force, on "
+    "which the sliding of {name} depends: taken here is that what is closed carries what it can"
+)
+
+
+def undetermined(system: System, rows: Any, events: Any) -> tuple[str, ...]:
+    """A sentence for each rigid contact whose sliding the laws of the contacts left open along a run.
+
+    Forces x of closed and of sticking contacts with A x = 0 change no motion that is held. Where they change another
+    one all the same, it is that of a rigid contact that slides with a normal force out of x. `rows` of output end with
+    the modes of the contacts; `events` tell the instant, the contact and its new mode.
+    """
+    m = len(system.contacts)
+    if not any(contact.rigid for contact in system.contacts) or len(rows) == 0:
+        return ()
+    modes, mode = [rows[:, -m:]], np.array(rows[0, -m:])
+    for time, c, new in events:
+        if time > rows[0, 0]:
+            mode[int(c)] = new
+            modes.append(mode[None].copy())
+    found = [_left_open(system, each) for each in np.unique(np.concatenate(modes), axis=0)]
+    return tuple(SHARED.format(name=system.contact_names[c]) for c in sorted(set().union(*found)))
+
+
+def _left_open(system: System, mode: Any) -> set[int]:
+    """The rigid contacts whose sliding is left open in one set of modes."""
+    contacts = system.contacts
+    closed = [c for c in range(len(contacts)) if contacts[c].rigid and mode[c] != OPEN]
+    held = [c for c in range(len(contacts)) if mode[c] == STICK and contacts[c].law.static_limit > RISES]
+    if not any(mode[c] != STICK for c in closed):
+        return set()
+    rows = np.array([*(contacts[c].normal for c in closed), *(contacts[c].t for c in held)])
+    pushes = [mode[c] * contacts[c].law.static_limit * contacts[c].d - contacts[c].normal for c in closed]
+    columns = rows_of(system).inverse @ np.array([*pushes, *(contacts[c].d for c in held)]).T
+    columns = columns / np.maximum(np.linalg.norm(columns, axis=0), TINY)
+    _, size, null = np.linalg.svd(rows / np.maximum(np.linalg.norm(rows, axis=1), TINY)[:, None] @ columns)
+    free = null[int(np.sum(size > CLEAR * size[0])) :]
+    loose = free[np.linalg.norm(free @ columns.T, axis=1) > CLEAR]
+    return {c for i, c in enumerate(closed) if mode[c] != STICK and np.any(np.abs(loose[:, i]) > CLEAR)}

@@ -156,10 +156,9 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
     width = 2 * n + m + 5
     floats: dict[str, tuple[int, ...]] = {
         "signal": (2 * (m + n) + m,), "normal": (m,), "speed": (m,), "force": (m,), "right": (2 * m,),
-        "matrix": (2 * m, 2 * m), "basis": (m + 1, m),
-        "before": (n,),
-        "share": (m,), "bias": (m,), "leave": (m,), "lowest": (m,), "fastest": (m,), "wanted": (m,), "multiplier": (m,),
-        "creep": (m,),
+        "matrix": (2 * m, 2 * m), "whole": (2 * m, 2 * m), "basis": (2 * m + 1, 2 * m), "before": (n,),
+        "share": (m,), "bias": (m,), "leave": (m,), "lowest": (m,), "fastest": (m,), "creep": (m,),
+        "weight": (2 * m,), "wanted": (2 * m,), "multiplier": (2 * m,),
         "state": (width,), "state_new": (width,), "y": (width,), "y_dense": (width,), "dy": (width,),
         "stage": (STAGES, width), "phi": (2 * m,), "phi0": (2 * m,), "phi1": (2 * m,), "nodes": (5, 2 * m),
         "stack": (128, 7), "clock": (7,),
@@ -178,6 +177,7 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
         "hit",
         "noisy",
         "idle",
+        "slack",
     )
     integers = dict.fromkeys(names, m) | {"spare": 1, "row_contact": 2 * m, "row_kind": 2 * m, "count": 11}
     kinds = tuple((name, "f8", shape) for name, shape in floats.items())

@@ -18,6 +18,7 @@ from squealbox.transient.choosing import check_series, chosen_method, usual_meth
 from squealbox.transient.latest import Latest
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR, Method
+from squealbox.transient.one_motion import undetermined
 from squealbox.transient.own_laws import own_texts
 from squealbox.transient.self_check import checked
 from squealbox.transient.smooth_laws import smooth_kinds
@@ -233,13 +234,13 @@ class _Run:
 
     def trajectory(self, settings: dict[str, Any], outcome: Outcome) -> Trajectory:
         """The output so far as a result."""
-        m = len(self.system.contacts)
-        count = [int(x) for x in self.scratch["count"]]
-        reversals = count[_motion.REVERSALS]
-        said = of_a_run(self.system, self.scratch["lowest"][:m], self.scratch["fastest"][:m])
-        caution = "; ".join(each for each in (_instead(settings), _caution(settings, reversals), *said) if each)
-        steps = count[_motion.ACCEPTED], count[_motion.REJECTED], count[_motion.EVALUATIONS]
+        m, s = len(self.system.contacts), self.scratch
+        count = [int(x) for x in s["count"]]
         rows, events = self.rows[: count[_motion.ROWS]], self.events[: count[_motion.EVENTS]]
+        said = [_instead(settings), _caution(settings, count[_motion.REVERSALS])]
+        said += (*of_a_run(self.system, s["lowest"][:m], s["fastest"][:m]), *undetermined(self.system, rows, events))
+        caution = "; ".join(each for each in said if each)
+        steps = count[_motion.ACCEPTED], count[_motion.REJECTED], count[_motion.EVALUATIONS]
         return told(self.system, rows, events, settings, outcome, caution, steps)
 
 

@@ -31,8 +31,7 @@ from squealbox.transient._motion import (
     force_noise,
     list_sticking,
 )
-from squealbox.transient._rigid import solve
-from squealbox.transient._sharing import contact_matrix, share_out
+from squealbox.transient._sharing import contact_matrix, share_out, solve, weigh_sticking
 from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
 from squealbox.transient.lanes.recording import first_row, log_event, modes_held, room_left, write_rows
@@ -245,7 +244,7 @@ def refresh(A, b, lane, t, p, s):
 
 
 def hold_matrix(A, b, lane, p, s):
-    """Rows H: the inverse of t . M^-1 d over the sticking contacts; where it is singular, `_motion.share_out`."""
+    """Rows H: the inverse of t . M^-1 d over the sticking contacts; where it is singular, `_sharing.share_out`."""
     for c in range(CONTACTS):
         for e in range(CONTACTS):
             A[b + (ROW_HOLD + c * CONTACTS + e) * WIDTH + lane] = 0.0
@@ -257,7 +256,8 @@ def hold_matrix(A, b, lane, p, s):
         if not solve(s.matrix, s.right, sticking):
             for a in range(sticking):
                 s.wanted[a] = 1.0 if a == e else 0.0
-            share_out(p, s, sticking)
+            weigh_sticking(p, s, sticking)
+            share_out(s, sticking)
         for a in range(sticking):
             A[b + (ROW_HOLD + s.stuck[a] * CONTACTS + s.stuck[e]) * WIDTH + lane] = s.right[a]
 
@@ -284,7 +284,7 @@ def change_modes(A, b, lane, j, p, s, events, count):
                     log_event(A, b, lane, c, s.mode[c], events, count)
         if not solved:
             return TENSION if pulled(p, s) else INCONSISTENT
-        opened = s.old[j] == OPEN if j < CONTACTS else True
+        opened = j >= CONTACTS or s.old[j] == OPEN or s.mode[j] == OPEN
         refresh(A, b, lane, t, p, s)
         if FUNCTIONS > CONTACTS and opened:  # N = 0 there: round-off of the other sign is no event of its own
             c = j if j < CONTACTS else j - CONTACTS
