@@ -141,8 +141,19 @@ class DataSheet:
     def unit_of(self, path: str) -> str:
         """Unit of a dotted parameter or of an alias; empty for a pure number and for what has none."""
         names = (path, *self._paths(path))
-        unit = next((about.unit for name, about, _ in self.leaves() if name in names), "")
+        unit = next((about.unit for name, about, _ in self.leaves() if name in names), "") or self._declared(names[1])
         return "" if unit == "-" else unit
+
+    def _declared(self, path: str) -> str:
+        """The unit of a field that is no leaf, such as what all members share; empty where nothing declares it."""
+        name, _, rest = path.partition(".")
+        value = getattr(self, name, None)
+        if rest and members(value):
+            key, _, rest = rest.partition(".")
+            value = value[self._place(name, value, key)]  # type: ignore[index]
+        if rest:
+            return value.unit_of(rest) if isinstance(value, DataSheet) else ""
+        return self.parameters()[name].unit if name in self.parameters() else self.told.get(name, ("",))[0]
 
     def _paths(self, path: str) -> tuple[str, ...]:
         """The fields that a dotted name stands for: its own, or those of an alias or of what all members share."""

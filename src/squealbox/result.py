@@ -72,6 +72,9 @@ class Outcome(str):
         return cls(data["name"], data["message"], **data["evidence"])
 
 
+TABLES = (".csv", ".txt", ".tsv", ".xls", ".xlsx", ".ods", ".json", ".mat", ".npy", ".npz")  # what save does not write
+
+
 class ResultFileError(OSError):
     """A file could not be read as a result; the message names the file and what is wrong with it."""
 
@@ -233,6 +236,11 @@ class Result:
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the result to a NetCDF file, whole or not at all; returns the path."""
         path = Path(path)
+        if path.suffix.lower() in TABLES:
+            raise ResultFileError(
+                f"{path.name}: a result is saved as NetCDF, in a file whose name ends in .nc; to_dataframe() makes a "
+                "table, with to_csv(...) and to_excel(...)"
+            )
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
         os.close(handle)
         try:

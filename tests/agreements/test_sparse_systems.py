@@ -56,6 +56,22 @@ def test_the_modes_in_a_band_are_those_of_the_whole_spectrum():
     assert np.max(exact) < 1e-6
 
 
+@pytest.mark.parametrize("band", [(3000.0, 5000.0), (1000.0, 20e3)])
+def test_no_error_bar_is_below_what_floating_point_leaves(band):
+    """A basis that spans everything leaves no residual, and still no eigenvalue is known to 1e-25 1/s."""
+    system = pad_brake(friction=LAW)
+    every = complex_modes(dense(system)).eigenvalues
+    modes = complex_modes(system, band=band)
+    half = len(modes.eigenvalues) // 2
+    assert np.all(modes.error[:half] > np.finfo(float).eps * np.abs(modes.eigenvalues[:half]))
+    nearest = np.array([np.min(np.abs(every - value)) for value in modes.eigenvalues[:half]])
+    assert np.all(nearest <= 3.0 * modes.error[:half])
+    lines = modes.summary().splitlines()
+    told = [line for line in lines if line.split()[0].isdigit()]
+    assert len(told) == min(half, 30)  # of more modes the least damped
+    assert any(line.startswith(f"and {half - 30} more") for line in lines) == (half > 30)
+
+
 def test_energies_close_and_agree_contact_by_contact():
     system = pad_brake(friction=LAW, unilateral=True)
     mode = complex_modes(system, band=(3000.0, 8000.0), method="full").most_unstable

@@ -1,10 +1,14 @@
 """Every stability result has its figure, through the one door `plot`, and the figure shows what the result holds."""
 
+import warnings
+
 import numpy as np
 import pytest
 
+from squealbox.countermeasures import TunedMass
 from squealbox.designs import DrumBrake
-from squealbox.plots import mechanism_map, plot, root_locus
+from squealbox.plots import coalescence, mechanism_map, plot, root_locus
+from squealbox.plots.style import drawn
 from squealbox.stability import (
     mode_energy,
     sensitivity,
@@ -40,6 +44,45 @@ def test_map_with_its_boundary() -> None:
     labels = [text.get_text() for text in panel.get_legend().get_texts()]
     assert labels[0] == "stable"
     assert "flutter" in labels
+
+
+@pytest.mark.parametrize(("low", "high"), [(100.0, 800.0), (10.0, 20.0)])
+def test_a_map_that_is_stable_all_over_has_the_axes_it_was_asked_for(low, high) -> None:
+    found = stability_map(
+        DrumBrake(), {"friction.static": np.linspace(0.05, 0.2, 5), "load": np.linspace(low, high, 5)}
+    )
+    assert np.all(found.growth_rate < 0.0)
+    panel = plot(found).axes[0]
+    assert (panel.get_xlim(), panel.get_ylim()) == ((0.05, 0.2), (low, high))
+
+
+def test_what_all_contacts_share_and_what_a_held_brake_has_is_drawn_with_its_unit() -> None:
+    held = TunedMass(DrumBrake(), on="x", mass=0.05, frequency=2000.0)
+    for brake in (held, DrumBrake().system()):
+        axes = {"friction.static": np.linspace(0.1, 0.5, 3), "sliding_speed": np.linspace(0.1, 1.0, 3)}
+        panel = plot(stability_map(brake, axes)).axes[0]
+        assert (panel.get_xlabel(), panel.get_ylabel()) == ("friction.static [-]", "sliding_speed [m/s]")
+    assert [held.unit_of(name) for name in ("k3", "brake.k3", "mass", "load")] == ["N/m", "N/m", "kg", "N"]
+    names = ("normal_force", "contacts.1.V", "K", "friction", "nothing")
+    assert [DrumBrake().system().unit_of(name) for name in names] == ["N", "m/s", "N/m", "", ""]
+
+
+def test_of_many_modes_those_that_may_grow_are_named_and_the_others_grey() -> None:
+    """Forty modes in a legend hid the curves and pushed the figure out of its frame."""
+    mu = np.linspace(0.0, 1.0, 21)
+    growth = np.tile(-10.0 - np.arange(40.0), (mu.size, 1))
+    growth[:, 17] = -5.0 + 20.0 * mu
+    values = growth + 2j * np.pi * np.linspace(500.0, 9000.0, 40)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        figure = coalescence(mu, np.concatenate([values, values.conj()], axis=1))
+        drawn(figure, "png")
+    above, below = figure.axes
+    assert [text.get_text() for text in above.get_legend().get_texts()] == ["mode 1", "mode 2", "mode 3", "mode 18"]
+    assert len(above.get_lines()) == 40  # all are drawn
+    assert below.get_ylim()[1] > 15.0
+    few = coalescence(mu, np.concatenate([values[:, 14:19], values[:, 14:19].conj()], axis=1)).axes[0]
+    assert len(few.get_legend().get_texts()) == 5  # the twin: a few modes are all named
 
 
 def test_a_map_of_one_parameter_is_refused() -> None:

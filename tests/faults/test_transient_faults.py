@@ -244,6 +244,13 @@ def motion():
     return simulate(two_blocks_on_belt(), 6.0, ([0.3, -0.1], [0.1, 0.0]), times=31)
 
 
+@pytest.mark.parametrize("name", ["motion.csv", "motion.xlsx", "motion.MAT"])
+def test_a_result_is_not_saved_under_the_name_of_another_kind_of_file(motion, tmp_path, name):
+    with pytest.raises(ResultFileError, match=r"ends in \.nc; to_dataframe\(\)"):
+        motion.save(tmp_path / name)
+    assert not list(tmp_path.iterdir())
+
+
 def test_save_and_load(motion, tmp_path):
     path = motion.save(tmp_path / "motion.nc")
     back = Trajectory.load(path)

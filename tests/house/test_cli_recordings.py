@@ -65,6 +65,21 @@ def test_calibrate_and_compare(stop, said):
     assert read_file(stop / "brake.toml").recording.unit == "Pa"
 
 
+def test_compare_says_the_unit_of_the_level_and_takes_a_band(stop, said):
+    """A recording without calibration has no dB(A), and squeal below the usual band can be asked for."""
+    table = np.loadtxt(stop / "stop.csv", delimiter=",", skiprows=1)
+    header = {"delimiter": ",", "header": "t [s],mic", "comments": "", "fmt": "%.9g"}
+    np.savetxt(stop / "bare.csv", table, **header)
+    (stop / "bare.toml").write_text(BRAKE.split("[recording]")[0])
+    asked = "compare", str(stop / "bare.toml"), str(stop / "bare.csv"), "--unit", ""
+    code, out, _ = said(*asked)
+    assert code == 0
+    assert "dB re full scale" in out
+    assert "dB(A)" not in out
+    code, _, err = said(*asked, "--band", "4kHz", "8kHz")
+    assert (code, "no squeal between 4000 and 8000 Hz" in err) == (2, True)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [

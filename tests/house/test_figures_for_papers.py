@@ -9,7 +9,19 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from result_examples import EXAMPLES
-from squealbox import DrumBrake, ParameterError, complex_modes, plot, plots, simulate
+from squealbox import (
+    Contact,
+    Coulomb,
+    DrumBrake,
+    ParameterError,
+    System,
+    branch,
+    complex_modes,
+    hopf_point,
+    plot,
+    plots,
+    simulate,
+)
 from squealbox.plots import style
 
 MOTION = simulate(DrumBrake(), 0.02, times=2001)
@@ -75,6 +87,21 @@ def crowded(figure) -> list[str]:
 def test_no_offset_is_printed_over_a_label():
     text = style.drawn(EXAMPLES["HopfPoint"]().plot(), "svg").decode()
     assert f"{style.MINUS}0.33" in re.sub(r"\s", "", text)  # the axis counts from the point
+
+
+def test_a_branch_that_goes_straight_up_is_drawn_straight_and_has_no_folds():
+    """Two springs and constant friction: the equation is linear while sliding, and one friction has every amplitude."""
+    pad = Contact(name="pad", n=[0.0, 3e6], d=[1.0, 0.0], t=[1.0, 0.0], N0=5e3, V=1.0, law=Coulomb(0.3))
+    system = System(np.eye(2), 10.0 * np.eye(2), [[3.8e6, 1e6], [1e6, 4e6]], 0.0, (pad,))
+    found = branch(system, "friction.static", (0.1, 1.5), hopf_point(system, "friction.static", (0.1, 1.5)), points=12)
+    assert np.ptp(found.value) < 1e-9
+    assert len(found.special("fold")) == 0
+    assert "it goes straight up" in found.summary()
+    panel = found.plot().axes[0]
+    assert panel.get_xlabel() == "friction.static [-]"
+    left, right = panel.get_xlim()
+    assert right - left > 1e-7
+    assert "straight" not in EXAMPLES["Branch"]().summary()  # the twin
 
 
 def test_branches_that_lie_decades_apart_share_a_logarithmic_axis():

@@ -96,6 +96,23 @@ def test_what_is_wrong_with_a_recording_is_said_in_a_sentence(tmp_path):
         read_recording(tmp_path / "missing.wav")
 
 
+@pytest.mark.parametrize(
+    ("rate", "digits"), [(44100.0, "%.6f"), (44100.0, "%.8g"), (8000.0, "%.5f"), (51200.0, "%.9e")]
+)
+def test_times_are_judged_by_the_digits_they_are_written_with(rate, digits, tmp_path):
+    t = 0.25 + np.arange(60000) / rate
+    kept = np.arange(t.size) != 31000  # the twin: one sample is lost
+    for name, chosen in (("whole.csv", t), ("lost.csv", t[kept])):
+        np.savetxt(tmp_path / name, np.column_stack([chosen, np.sin(chosen)]), fmt=digits, delimiter=",",
+                   header="t [s],x", comments="")  # fmt: skip
+    assert read_recording(tmp_path / "whole.csv").rate == pytest.approx(rate, rel=1e-6)
+    with pytest.raises(SignalError, match=r"not equally spaced.* but after \d\.\d+ s comes"):
+        read_recording(tmp_path / "lost.csv")
+    (tmp_path / "coarse.csv").write_text("t,x\n" + "\n".join(f"{each:.4f},1" for each in t[:2000]))
+    with pytest.raises(SignalError, match="the times are written to 0.0001 s"):
+        read_recording(tmp_path / "coarse.csv")
+
+
 @pytest.mark.parametrize("ending", [".wav", ".flac", ".csv", ".npy", ".uff"])
 def test_damaged_files_get_a_sentence(ending, tmp_path):
     soundfile = pytest.importorskip("soundfile")
@@ -145,6 +162,22 @@ def test_events_of_a_stop_with_a_known_truth():
     assert squeal_events(x, RATE, least_level=84.0).count == 1  # the twins: a threshold, and a band
     assert squeal_events(x, RATE, band=(5000.0, 16000.0)).count == 1
     assert squeal_events(0.0 * x + 1e-9, RATE).outcome == "no_event"
+
+
+@pytest.mark.parametrize("harmonic", [2, 3])
+def test_a_harmonic_of_a_louder_tone_below_the_band_is_told_as_one(harmonic):
+    t = np.arange(int(2 * RATE)) / RATE
+    hiss = 0.001 * np.random.default_rng(0).standard_normal(t.size)
+    over = tone(t, harmonic * 1450.0, 0.15, 0.5, 1.5) + hiss
+    (note,) = squeal_events(over + tone(t, 1450.0, 0.5, 0.5, 1.5), RATE).settings["notes"]
+    assert f"at 1450 Hz, of which the event at {harmonic * 1450} Hz is harmonic {harmonic}" in note
+    assert not squeal_events(over, RATE).settings[
+        "notes"
+    ]  # the twins: no such tone, a quieter one, a band that holds it
+    assert not squeal_events(over + tone(t, 1450.0, 0.02, 0.5, 1.5), RATE).settings["notes"]
+    assert not squeal_events(over + tone(t, 1450.0, 0.5, 0.5, 1.5), RATE, band=(1000.0, 16e3)).settings["notes"]
+    (alone,) = squeal_events(hiss + tone(t, 1450.0, 0.5, 0.5, 1.5), RATE).settings["notes"]
+    assert alone == "a tone stands below the band, at 1450 Hz: a band from 1000 Hz holds it"
 
 
 def test_growth_and_decay_of_an_event_are_those_put_in():

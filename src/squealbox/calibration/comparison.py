@@ -16,7 +16,7 @@ from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals import SignalError, dominant_frequency, growth_rate, sound_level
 from squealbox.system import as_system
 
-UNITS = {"frequency": "Hz", "growth rate": "1/s", "level": "dB(A)"}
+ROWS, UNITS = ("frequency", "growth rate", "level"), ("Hz", "1/s")  # the level has the unit of the recording
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -78,7 +78,7 @@ def compare(simulated: Any, events: Any, *, event: int | None = None, dof: int |
     index = int(np.argmax(events.level)) if event is None else event
     if not 0 <= index < events.count:
         raise SignalError(f"event = {event}: expected one of {events.count} events")
-    notes: list[str] = []
+    notes = [note for note in events.settings.get("notes", ()) if "below the band" in note]
     model = _said(simulated, dof, notes)
     measured = [float(events.frequency[index]), float(events.growth_rate[index]), float(events.level[index])]
     errors = [float(events.frequency_error[index]), float(events.growth_error[index]), np.nan]
@@ -87,6 +87,7 @@ def compare(simulated: Any, events: Any, *, event: int | None = None, dof: int |
         notes.append("levels are not compared: the recording has no calibration")
     elif np.isfinite(model[2]):
         notes.append("the simulated level is that of a plain piston: differences of levels mean more than levels")
+    units = [*UNITS, events.settings["unit"]]
     sd = np.array(errors) / 1.96
     with np.errstate(divide="ignore", invalid="ignore"):
         away = np.where(sd > 0.0, (np.array(model) - measured) / sd, np.nan)
@@ -94,7 +95,7 @@ def compare(simulated: Any, events: Any, *, event: int | None = None, dof: int |
     outcome = Outcome() if told else Outcome("nothing_to_compare", "what was simulated has no frequency")
     return Comparison(
         simulated=np.array(model), measured=np.array(measured), error=np.array(errors), away=away,
-        settings={"rows": list(UNITS), "units": list(UNITS.values()), "event": index, "notes": notes}, outcome=outcome,
+        settings={"rows": list(ROWS), "units": units, "event": index, "notes": notes}, outcome=outcome,
     )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from squealbox.calibration import calibrate as fitted
 from squealbox.cli.answers import show
 from squealbox.cli.inputs import AllowCode, Changes, read
 from squealbox.cli.progress import Progress
+from squealbox.cli.recordings import Band, ends_of
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.files import DesignFile, write_design
 from squealbox.files.measurements import Recorded
@@ -61,6 +62,7 @@ def compare_(
     *,
     unit: str = "Pa",
     full_scale: float | None = None,
+    band: Band = None,
     modes: Path | None = None,
     changes: Changes = (),
     allow_code: AllowCode = False,
@@ -77,6 +79,8 @@ def compare_(
         unit of that recording
     full_scale
         what its full scale is worth
+    band
+        lowest and highest frequency at which squeal is looked for: --band 1kHz 16kHz
     modes
         table (.csv) or universal file of the modes of a test or another code, to compare with those of the design
     changes
@@ -90,7 +94,7 @@ def compare_(
             show("modes", compare(complex_modes(found.design), read_mode_table(modes)))
             if recording is None:
                 return
-        events = _events(found, recording, unit, full_scale)
+        events = _events(found, recording, unit, full_scale, band)
         show("modes", compare(complex_modes(found.design), events))
         if found.simulate is not None:
             with Progress("simulating"):
@@ -101,7 +105,11 @@ def compare_(
 
 
 def _events(
-    found: DesignFile, recording: Path | None = None, unit: str = "Pa", full_scale: float | None = None
+    found: DesignFile,
+    recording: Path | None = None,
+    unit: str = "Pa",
+    full_scale: float | None = None,
+    band: Band = None,
 ) -> SquealEvents:
     about = found.recording
     if about is None and recording is None:
@@ -111,6 +119,7 @@ def _events(
     path = Path(about.file) if recording is not None else found.path.parent / about.file
     try:
         sound = read_recording(path, unit=about.unit, full_scale=about.full_scale, rate=about.rate)
-        return squeal_events(sound, channel=about.channel, band=about.band, least_level=about.least_level)
+        ends = about.band if band is None else ends_of(band)
+        return squeal_events(sound, channel=about.channel, band=ends, least_level=about.least_level)
     except SignalError as error:
         raise UsageError(str(error)) from error

@@ -169,12 +169,11 @@ def damping(
         raise UsageError("expected one recording or more")
     if out is not None and not against:
         raise UsageError("--out: keeps the onset, which --against asks for")
-    ends = tuple(number(each, "Hz", f"--band {each[:40]}") for each in band)
     found, at = [], []
     for path in recordings:
         with _named(path):
             sound = _sound(path, unit, full_scale, rate)
-            found.append(operational_modes(sound, channel=_place(channel), band=(ends[0], ends[1])))
+            found.append(operational_modes(sound, channel=_place(channel), band=ends_of(band)))
             show(f"{path}", found[-1])
             if against and against not in sound.braking:
                 known = ", ".join(sound.braking) or f"nothing: {path.with_suffix('.braking.csv').name} is missing"
@@ -228,10 +227,16 @@ def quality(
 def _found(
     path: Path, unit: str, full_scale: float | None, rate: str | None, channel: str, band: Band, least_level: float
 ) -> SquealEvents:
-    ends = BAND if band is None else tuple(number(each, "Hz", f"--band {each[:40]}") for each in band)
+    ends = BAND if band is None else ends_of(band)
     with _named(path):
         sound = _sound(path, unit, full_scale, rate)
-        return squeal_events(sound, channel=_place(channel), band=(ends[0], ends[1]), least_level=least_level)
+        return squeal_events(sound, channel=_place(channel), band=ends, least_level=least_level)
+
+
+def ends_of(band: tuple[str, str]) -> tuple[float, float]:
+    """The ends of a --band [Hz]."""
+    low, high = (number(each, "Hz", f"--band {each[:40]}") for each in band)
+    return low, high
 
 
 def _sound(path: Path, unit: str, full_scale: float | None, rate: str | None) -> Recording:

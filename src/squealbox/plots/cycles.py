@@ -9,6 +9,7 @@ import numpy as np
 from squealbox.limit_cycles import Branch, Cycle, EstimateCurve, ForcedCycle, HopfPoint, estimate_curves
 from squealbox.limit_cycles.estimates.curves import AVERAGED, DESCRIBING
 from squealbox.matrices import liveliest
+from squealbox.parameters import DataSheet, ParameterError
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import read_of, unit_at
 from squealbox.plots.style import (
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 APART = 10.0  # times as large: branches that differ by more do not share a linear axis
+NARROWEST = 1e-6  # of its values: half the least width of the axis of a parameter
 BESIDE = 4  # entries; a longer legend stands beside the panel
 # Marks of the special points: shape, and what the legend calls them.
 MARKS = {
@@ -141,12 +143,31 @@ def branch_diagram(
         if runs is not None:
             at, sizes = (np.asarray(x) for x in runs)
             panel.plot(at / scale, sizes / factor, "+", color="#555555", markersize=4.5, label="long run")
-        panel.set(xlabel=name or several[0].parameter, ylabel=quantity_label(read_as, read), title=title)
+        panel.set(xlabel=name or _parameter(several[0]), ylabel=quantity_label(read_as, read), title=title)
         panel.set_ylim(bottom=floor)
         panel.margins(x=0.05)
+        _wide_enough(panel)
         _legend(panel, alone=axes is None)
         cautioned(panel, [one.caution for one in several], axes is None)
         return figure_of(panel)
+
+
+def _parameter(one: Branch) -> str:
+    """The parameter with its unit, where what was followed declares one."""
+    followed: Any = one.family if isinstance(one.family, DataSheet) else one.inputs.get("system")
+    try:
+        followed.value_of(one.parameter)
+    except (AttributeError, ParameterError):  # a function's own name for what it varies
+        return one.parameter
+    return quantity_label(one.parameter, followed.unit_of(one.parameter))
+
+
+def _wide_enough(panel: Any) -> None:
+    """A branch that goes straight up is drawn so: its parameter is no better known than to `NARROWEST` of itself."""
+    left, right = panel.get_xlim()
+    middle, half = 0.5 * (left + right), NARROWEST * max(abs(left), abs(right))
+    if right - left < 2.0 * half:
+        panel.set_xlim(middle - half, middle + half)
 
 
 def _floor(sizes: Sequence[Any]) -> float:

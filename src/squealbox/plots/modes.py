@@ -4,10 +4,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.plots.style import UNSTABLE, drawing, figure_of, line, note, number, quantity_label, scaled
+from squealbox.plots.style import LINES, UNSTABLE, drawing, figure_of, line, note, number, quantity_label, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+MOST_NAMED = 4  # modes named in the legend where there are more than looks
+OF_INTEREST = 3.0  # times the largest growth: as far down the growth rates of many modes are drawn
+OTHERS: dict[str, Any] = {"color": "#aaaaaa", "linewidth": 0.6, "linestyle": "-", "zorder": 1}
 
 
 def coalescence(
@@ -43,9 +48,11 @@ def coalescence(
     hertz, read = scaled("Hz", frequency, to=frequency_unit)
     worst = np.max(np.real(eigenvalues), axis=-1)
     with drawing(axes, rows=2, height=3.8, sharex=True) as (above, below):
-        for i in range(branches.shape[1]):
-            look = {**line(i, marker=True, count=values.size), "linewidth": 1.2}
-            above.plot(values, frequency[:, i] / hertz, label=f"mode {i + 1}", **look)
+        named = _told(growth)
+        for i, told in enumerate(named):
+            look = {**line(int(np.sum(named[:i])), marker=True, count=values.size), "linewidth": 1.2}
+            look = look if told else OTHERS
+            above.plot(values, frequency[:, i] / hertz, label=f"mode {i + 1}" if told else None, **look)
             below.plot(values, growth[:, i], **look)
         below.axhline(0.0, color="#000000", linewidth=0.5)
         for panel in (above, below):
@@ -58,7 +65,20 @@ def coalescence(
         above.set(ylabel=quantity_label("frequency", read), title=title)
         below.set(xlabel=quantity_label(name, unit), ylabel=quantity_label("growth rate", "1/s"))
         above.legend(loc="upper right")
+        if np.any(growth > 0.0) and not np.all(named):
+            below.set_ylim(-OF_INTEREST * np.nanmax(growth), 1.1 * np.nanmax(growth))
         return figure_of(above)
+
+
+def _told(growth: Any) -> Any:
+    """Which modes of (k, n) have a look and a name of their own (n,): all of a few, else those nearest to growing.
+
+    Of more modes than looks the others are thin and grey.
+    """
+    highest = np.nanmax(growth, axis=0)
+    told = np.zeros(highest.size, dtype=bool)
+    told[np.argsort(-highest, kind="stable")[: highest.size if highest.size <= len(LINES) else MOST_NAMED]] = True
+    return told
 
 
 def followed(eigenvalues: Any) -> Any:

@@ -126,6 +126,8 @@ def mechanism_map(
             _curves(panel, boundary, x_factor, y_factor)
         panel.legend(handles=handles, loc="best", handlelength=2.0)
         panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
+        # a map that is stable all over draws nothing else, and would keep the axes of an empty figure
+        panel.set(xlim=x_factor * x[[0, -1]], ylim=y_factor * y[[0, -1]])
         return figure_of(panel)
 
 

@@ -9,6 +9,7 @@ Band and threshold follow SAE J2521 as its public summary states them: a peak of
 (from 1.25 kHz on for full corners).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,6 +28,8 @@ LEAST_LEVEL = 70.0  # dB(A)
 FRAME = 0.043  # s
 CHANCE = 1e-3  # that noise passes the threshold in a line of a frame
 SURE = 1e-5  # and the threshold of the mean over the frames of an event
+BENEATH = 0.5  # of the lower end of the band: as far down a louder tone is looked for
+HARMONIC = 0.01  # by which an event may miss a multiple of it
 STEADY = 0.02  # lines an event may wander and still have one frequency
 MOST_TOLD = 10.0  # events a second whose samples are looked at, so that no recording takes for ever
 
@@ -166,6 +169,7 @@ def squeal_events(
         _of_samples(event, x, rate, length)
     untold = f"only of the {len(told)} loudest of {len(events)} events are frequency and rates read from the samples"
     notes = [*sound.notes, *([untold] if len(told) < len(events) else [])]
+    notes += _beneath(x, rate, length, chance, events, low, weigh, reference, least_level if calibrated else None)
     events.sort(key=lambda event: event["onset"])
     names = list(sound.braking)
     settings = {"band": [low, high], "least_level": least_level, "frame": length / rate, "chance": chance}
@@ -200,6 +204,29 @@ _NAMES = (
 
 
 _OF_SAMPLES = _NAMES[6:12]
+
+
+def _beneath(
+    x: Any, rate: float, length: int, chance: float, events: Sequence[dict[str, Any]], low: float, weigh: Any,
+    reference: float, least: float | None,
+) -> list[str]:  # fmt: skip
+    """A tone below the band that is louder than all in it: what is told may be no more than its harmonic."""
+    frames = Frames(x, rate, length, (BENEATH * low, low))
+    found = [_event(each, frames, weigh, reference) for each in tracks(frames, chance)
+             if stands_out(each, frames, SURE * chance / CHANCE)]  # fmt: skip
+    loudest = max((event["level"] for event in events), default=-np.inf)
+    found = [each for each in found if BENEATH * low <= each["frequency"] < low and each["level"] > loudest]
+    found = [each for each in found if least is None or each["peak_level"] >= least]
+    if not found:
+        return []
+    tone = max(found, key=lambda each: each["level"])
+    times = [event["frequency"] / tone["frequency"] for event in events]
+    whole = sorted({round(each) for each in times if abs(each - round(each)) < HARMONIC * each})
+    of = f", of which the event at {whole[0] * tone['frequency']:.0f} Hz is harmonic {whole[0]}" if whole else ""
+    louder = "a louder tone" if events else "a tone"
+    return [
+        f"{louder} stands below the band, at {tone['frequency']:.0f} Hz{of}: a band from {BENEATH * low:g} Hz holds it"
+    ]
 
 
 def _level_unit(unit: str) -> str:

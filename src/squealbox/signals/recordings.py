@@ -16,7 +16,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.cells import cells
-from squealbox.signals.samples import LEAST, SignalError, equal_steps
+from squealbox.signals.samples import COARSEST, LEAST, SignalError, equal_steps, last_digits
 
 LARGEST = 2_000_000_000  # bytes of a file
 LARGEST_TEXT = 200_000_000
@@ -242,13 +242,32 @@ def _csv(path: Path, size: int, rate: float | None) -> Read:
         times, table, names = table[:, 0] * factor, table[:, 1:], names[1:]
         if not names:
             raise SignalError(f"{path.name}: holds times only")
-        if np.any(np.diff(times) <= 0.0) or not equal_steps(times):
-            raise SignalError(f"{path.name}: the times are not equally spaced: expected equal steps")
+        if not np.all(np.isfinite(times)):
+            raise SignalError(f"{path.name}: row {int(np.argmin(np.isfinite(times))) + 1}: the time is not finite")
+        rounding = last_digits([row[0] for row in rows]) * factor
+        if not equal_steps(times, rounding):
+            raise SignalError(f"{path.name}: {_uneven(times, rounding)}")
         rate = (len(times) - 1) / (times[-1] - times[0])
     if rate is None:
         raise SignalError(f"{path.name}: has no column of times: expected a first column 't [s]', or rate= in Hz")
     units = [name.partition("[")[2].partition("]")[0].strip() for name in names]
     return table, rate, [name.partition("[")[0].strip() or name for name in names], units, []
+
+
+def _uneven(times: Any, rounding: Any) -> str:
+    """Why a column of times will not do: too few digits, or which step is unlike the others."""
+    steps = np.diff(times)
+    usual = float(np.median(steps))
+    if np.max(rounding) > COARSEST * (times[-1] - times[0]) / len(steps):
+        return (
+            f"the times are written to {np.max(rounding):g} s, too coarse for steps of {usual:g} s: expected more "
+            "digits, or no column of times and the sampling rate instead"
+        )
+    worst = int(np.argmax(np.abs(steps - usual)))
+    return (
+        f"the times are not equally spaced: expected equal steps, but after {times[worst]:g} s comes "
+        f"{times[worst + 1]:g} s where the step is {usual:g} s elsewhere"
+    )
 
 
 def _npy(path: Path, size: int, rate: float | None) -> Read:

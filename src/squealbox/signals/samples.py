@@ -1,12 +1,14 @@
 """Equally spaced samples of a signal: what every function of this room starts from."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
 
 LEAST = 8  # fewer samples say nothing
+COARSEST = 0.25  # of a step: times written with fewer digits do not show whether a sample is missing
 JITTER = 1e-3  # of a step: disturbs a line at half the sampling rate by 0.3 %, any other less
 
 
@@ -57,11 +59,29 @@ def samples(
     return Samples(times, x, float((times.size - 1) / (times[-1] - times[0])))
 
 
-def equal_steps(t: Any) -> bool:
-    """True when the times (k,) are equally spaced, to a thousandth of a step."""
+def equal_steps(t: Any, rounding: Any = 0.0) -> bool:
+    """True when the times (k,) are equally spaced, to a thousandth of a step and the `rounding` [s] of their digits.
+
+    Digits as coarse as a quarter of a step are not enough: a lost sample moves times by half a step.
+    """
     times = np.asarray(t, dtype=float)
     even = np.linspace(times[0], times[-1], times.size)
-    return bool(np.max(np.abs(times - even)) <= JITTER * (even[1] - even[0]))
+    step = even[1] - even[0]
+    off = np.abs(times - even) - np.minimum(rounding, COARSEST * step)
+    return bool(step > 0.0 and np.max(off) <= JITTER * step)
+
+
+def last_digits(numbers: Sequence[str]) -> Any:
+    """What the last digit of each number of a column as text is worth (k,), written with fixed places or fixed digits.
+
+    >>> last_digits(["0.5", "1", "10.25"]).tolist()
+    [0.01, 0.01, 0.01]
+    """
+    parts = [Decimal(each.strip()).as_tuple() for each in numbers]
+    places = max(-int(part.exponent) for part in parts)
+    digits = max(len(part.digits) for part in parts)
+    leading = np.array([len(part.digits) + int(part.exponent) if any(part.digits) else -places for part in parts])
+    return 10.0 ** np.maximum(-places, leading - digits)
 
 
 def values(signal: Any, t: Any = None, *, dof: int | str = 0, rate: float | None = None) -> tuple[Any, Any]:

@@ -22,7 +22,10 @@ from squealbox.system import InvalidSystem, System, as_system, equilibrium
 
 Way = Literal["projection", "full"]
 TOLERANCE = 0.05  # [1/s]
-NOT_ASKED = "not certified: not asked for; complex_modes(..., certify=True) counts the modes by the winding number"
+MOST_TOLD = 30  # modes of a table; of more only the least damped are told
+NOT_ASKED = (
+    "whether a growing mode is missing was not counted: certify=True, or --certify, does so by the winding number"
+)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -30,8 +33,8 @@ class BandModes(ComplexModes):
     """The modes of a large brake in a band, as :func:`complex_modes` returns them of sparse matrices.
 
     The first half of the eigenvalues has Im > 0 and rises in frequency, the second half are the conjugates. error is
-    the size of the estimated difference to the exact eigenvalue, `corrected` the eigenvalue with that estimate added. A
-    mode counts as unstable when its growth rate is above its error bar.
+    the size of the estimated difference to the exact eigenvalue and the round-off of the small problem, `corrected` the
+    eigenvalue with that estimate added. A mode counts as unstable when its growth rate is above its error bar.
     """
 
     error: Array = quantity("... mode", "1/s", "error bar of the eigenvalue")
@@ -119,7 +122,7 @@ def band_modes(
         right=np.concatenate([found.right, found.right.conj()], axis=1),
         left=np.concatenate([found.left, found.left.conj()], axis=1),
         condition=np.tile(found.condition, 2),
-        error=np.tile(np.abs(found.error), 2),
+        error=np.tile(np.abs(found.error) + _rounding(found), 2),
         estimate=_both(found.error),
         outcome=_outcome(modes.complete, modes.count, len(modes.frequency), modes.top),
         **common,
@@ -161,11 +164,16 @@ def band_table(modes: BandModes) -> str:
         lines.append(f"Of {int(modes.doubtful_modes)} modes the growth rate is within its error bar of 0.")
     lines.append(modes.certificate[:1].upper() + modes.certificate[1:] + ".")
     lines.append(f"{'mode':>5} {'frequency [Hz]':>15} {'growth [1/s]':>14} {'error [1/s]':>12} {'damping [%]':>12}")
-    order = sorted(range(half), key=lambda i: (modes.growth_rate[i] <= modes.error[i], modes.frequency[i]))
+    ratio = modes.damping_ratio[:half]
+    shown = set(range(half)) if half <= MOST_TOLD else {*np.argsort(ratio)[:MOST_TOLD].tolist()}
+    shown |= {i for i in range(half) if modes.growth_rate[i] > -modes.error[i]}
+    order = sorted(shown, key=lambda i: (modes.growth_rate[i] <= modes.error[i], modes.frequency[i]))
     for i in order:
         mark = "  unstable" if modes.growth_rate[i] > modes.error[i] else ""
         cells = (modes.frequency[i], modes.growth_rate[i], modes.error[i], 100.0 * modes.damping_ratio[i])
         lines.append("{:>5} {:>15.6g} {:>+14.6g} {:>12.2g} {:>+12.4f}".format(i + 1, *cells) + mark)
+    if len(shown) < half:
+        lines.append(f"and {half - len(shown)} more, all better damped than these")
     return "\n".join(lines)
 
 
@@ -175,6 +183,15 @@ def _checked_band(band: Any) -> tuple[float, float]:
     if np.shape(band) != (2,) or not (np.all(np.isfinite(band)) and 0.0 < band[0] < band[1]):
         raise ValueError(f"band = {band!r}: expected (f1, f2) in Hz with 0 < f1 < f2")
     return float(band[0]), float(band[1])
+
+
+def _rounding(found: Projected) -> Any:
+    """What the eigenvalues of the small problem lose in floating point (k,) [1/s]: no error bar is below it.
+
+    The order of the small problem times the unit round-off times condition and size of the eigenvalue; the residuals
+    of a basis that spans everything say nothing of it.
+    """
+    return len(found.every) * np.finfo(float).eps * found.condition * np.abs(found.eigenvalues)
 
 
 def _full(pencil: Pencil, band: tuple[float, float], count: int, common: dict[str, Any]) -> BandModes:

@@ -151,5 +151,4 @@ def declared(design: Any, path: str) -> list[Parameter]:
 
 def unit_of(design: Any, path: str) -> str:
     """The unit of a parameter, for tables and figures; empty when nothing declares it."""
-    about = declared(design, path)
-    return "" if not about or about[0].unit == "-" else about[0].unit
+    return design.unit_of(path) if isinstance(design, DataSheet) else ""

@@ -21,7 +21,7 @@ from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
 from squealbox.limit_cycles.branches.hopf import HopfPoint, family
 from squealbox.limit_cycles.branches.phases import begun, heading
 from squealbox.limit_cycles.branches.shooting_path import ShootingPath
-from squealbox.limit_cycles.branches.special_points import BranchPoint
+from squealbox.limit_cycles.branches.special_points import STRAIGHT, BranchPoint
 from squealbox.limit_cycles.branches.walks import Special, special_points, walked
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.limit_cycles.cycles.harmonic_balance import Grid, harmonic_balance
@@ -84,6 +84,8 @@ class Branch(Result):
         walked = f"{len(self.value)} cycles, {self.parameter} from {low:.6g} to {high:.6g}"
         ended = f"{self.outcome} {self.outcome.message}".rstrip()
         lines = [f"{walked}, {int(np.sum(self.stable))} stable; ended: {ended}"]
+        if len(self.value) > 2 and high - low < STRAIGHT * max(abs(low), abs(high)):
+            lines += [f"it goes straight up: cycles of every amplitude at {self.parameter} = {low:.8g}"]
         lines += [f"{kind} at {value:.8g}" for kind, value in zip(self.special_kind, self.special_value, strict=True)]
         lines += [f"Caution: {self.caution}"] if self.caution else []
         return "\n".join(lines)

@@ -24,6 +24,7 @@ from squealbox.continuation import KEEP, SLOW, PathPoint
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.result import quantity
 
+STRAIGHT = 1e-11  # a tangent or a relative range of the parameter below it is round-off: the branch goes straight up
 SHARE = 1e-11  # of the chord, to which s is solved for
 HALVINGS = 30
 NEWTON_STEPS = 12
@@ -179,7 +180,8 @@ def candidates(visited: list[PathPoint], seen: list[dict[str, Any]]) -> list[tup
     """(kind, index of the point before) wherever a test function changes its sign along a walk."""
     found = []
     for i, (a, b) in enumerate(itertools.pairwise(visited)):
-        if a.tangent[-1] * b.tangent[-1] < 0.0:
+        turns = abs(a.tangent[-1]) + abs(b.tangent[-1]) > STRAIGHT
+        if turns and a.tangent[-1] * b.tangent[-1] < 0.0:
             found.append(("fold", i))
         found += [(kind, i) for kind, test in TESTS.items() if test(seen[i]) * test(seen[i + 1]) < 0.0]
     return found
