@@ -5,7 +5,7 @@ transient engine. `breaks` names the instants at which the formula has a kink, s
 Schedules add, and multiply by a number or an array: ``load1 * [sin, -cos] + load2 * [-sin, cos]`` is a load vector.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, ClassVar
 
 import numpy as np
@@ -46,8 +46,8 @@ class Schedule(DataSheet):
     def _lacks(self, name: str, expectation: str) -> ParameterError:
         return ParameterError(type(self).__name__, name, None, expectation)
 
-    def breaks(self) -> tuple[float, ...]:
-        """Instants [s] at which the formula is not smooth."""
+    def breaks(self) -> tuple[Any, ...]:
+        """Instants [s] at which the formula is not smooth; arrays where parameters are."""
         return ()
 
     def angular_frequency(self) -> Any:
@@ -88,8 +88,8 @@ class Sum(Schedule):
     def rate(self, time: Any) -> Any:
         return sum(weight * part.rate(time) for weight, part in self.parts)
 
-    def breaks(self) -> tuple[float, ...]:
-        return tuple(sorted({instant for _, part in self.parts for instant in part.breaks()}))
+    def breaks(self) -> tuple[Any, ...]:
+        return tuple(kinks(part for _, part in self.parts))
 
     def angular_frequency(self) -> Any:
         fastest = np.zeros(())
@@ -167,15 +167,16 @@ class Ramp(Schedule):
             raise ParameterError("Ramp", "slope", self.slope, expected)
 
     @property
-    def length(self) -> float:
-        """How long the ramp runs [s]; inf when it never reaches `stop`."""
-        if self.stop is None or self.slope == 0.0 or self.start == self.stop:
-            return np.inf
-        length = (self.stop - self.start) / self.slope
-        return float(length) if length >= 0.0 else np.inf
+    def length(self) -> Any:
+        """How long the ramp runs [s], as its parameters in shape; inf where it never reaches `stop`."""
+        slope = np.asarray(self.slope, dtype=float)
+        way = (np.nan if self.stop is None else np.asarray(self.stop, dtype=float)) - np.asarray(self.start)
+        there = (way != 0.0) & (way * slope > 0.0)
+        return np.where(there, way, np.inf) / np.where(there, slope, 1.0)
 
-    def breaks(self) -> tuple[float, ...]:
-        return tuple(t for t in (self.begin, self.begin + self.length) if np.isfinite(t))
+    def breaks(self) -> tuple[Any, ...]:
+        ends = [np.asarray(end, dtype=float) for end in (self.begin, self.begin + self.length)]
+        return tuple(np.where(np.isfinite(t), t, self.begin)[()] for t in ends if np.any(np.isfinite(t)))
 
 
 def sinusoid(t: Any, p: Any) -> Any:
@@ -264,6 +265,12 @@ SCHEDULES: tuple[type[Schedule], ...] = (Constant, Ramp, Sinusoid, Table)
 def as_schedule(value: Any) -> Schedule:
     """A schedule as it is; a number or array becomes `Constant`."""
     return value if isinstance(value, Schedule) else Constant(value)
+
+
+def kinks(parts: Iterable[Schedule]) -> list[Any]:
+    """The instants [s] at which some have a kink, in order and each once; behind them those that are arrays."""
+    found = [instant for part in parts for instant in part.breaks()]
+    return [*sorted({float(t) for t in found if np.ndim(t) == 0}), *(t for t in found if np.ndim(t) > 0)]
 
 
 def never_settles(schedule: Schedule) -> bool:

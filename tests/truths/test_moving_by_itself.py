@@ -14,8 +14,10 @@ from squealbox import (
     Coulomb,
     DrumBrake,
     LinearSlope,
+    MassOnBelt,
     Ramp,
     Sinusoid,
+    Stribeck,
     System,
     schedules,
     simulate,
@@ -72,6 +74,35 @@ def test_a_belt_that_is_jerked_away_under_a_block_at_rest_on_it(method):
     closed = 0.6 * np.cos(t) + 0.2 * np.sin(t) - 0.4
     assert motion.q[(motion.t >= 1.0) & (motion.t <= 1.0 + 1e-2), 0] == pytest.approx(closed, abs=1e-8)
     assert found.q[0] == pytest.approx(motion.q[-1, 0], abs=1e-6)
+
+
+@pytest.mark.parametrize("method", [None, "dormand-prince-8", "dormand-prince", "bogacki-shampine"])
+def test_a_belt_that_stops_lets_go_what_it_carried_for_a_moment(method):
+    """V = 0.3 (1 - t) stops at 1 s with q = 1/2: the force held jumps from 0.2 to 0.5 N, above 0.4 N, N = 1 + 10 s.
+
+    Then q = 0.4 + 4 s + 0.1 cos(s) - 4 sin(s) until q' = 0 again, after 0.05 s: a step may well end behind it.
+    """
+    system = block_on_belt(Coulomb(0.4), Ramp(0.3, -0.3), normal=Ramp(1.0, 10.0, stop=5.0, begin=1.0))
+    start = ([0.35], [0.3])
+    motion = simulate(system, 3.0, start, method=method, rtol=1e-10)
+    found = simulate_ensemble(system, duration=3.0, start=start, method=method, rtol=1e-10)
+    again = brentq(lambda s: 4.0 - 0.1 * np.sin(s) - 4.0 * np.cos(s), 0.01, 0.1)
+    assert motion.event_time == pytest.approx([1.0, 1.0 + again], abs=1e-8)
+    assert motion.event_mode.tolist() == [1, 0]
+    end = 0.4 + 4.0 * again + 0.1 * np.cos(again) - 4.0 * np.sin(again)
+    assert motion.q[-1, 0] == pytest.approx(end, abs=1e-9)
+    assert found.events == 2
+    assert found.q[0] == pytest.approx(end, abs=1e-8)
+
+
+def test_ramps_differ_in_an_ensemble():
+    brake = MassOnBelt(sliding_speed=Ramp(1.0, -0.2, 0.1), friction=Stribeck(0.4, 0.2, 0.3))
+    varied = {"slope": [-0.1, -0.4], "start": [0.5, 2.0], "begin": [0.0, 1.0], "stop": [0.0, 0.3]}
+    for name, values in varied.items():
+        found = simulate_ensemble(brake, {f"sliding_speed.{name}": values}, duration=8.0, rtol=1e-10)
+        alone = [simulate(brake.replace({f"sliding_speed.{name}": value}), 8.0, rtol=1e-12) for value in values]
+        assert found.events.tolist() == [len(each.event_time) for each in alone]
+        assert found.q[:, 0] == pytest.approx([each.q[-1, 0] for each in alone], abs=1e-7)
 
 
 def test_box_by_time_stepping_at_its_usual_step():

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.schedules import SCHEDULES, Constant, Schedule
+from squealbox.schedules import SCHEDULES, Constant, Schedule, kinks
 from squealbox.system import Contact, InvalidSystem, System
 from squealbox.transient.methods import Method, Tableau, tableau
 from squealbox.transient.own_laws import law_kinds
@@ -299,7 +299,7 @@ def _signals(system: System, rows: Rows) -> dict[str, Any]:
     terms = [term for group in lists for term in group]
     kinds = np.array([schedule_kind(part) for _, part in terms], dtype=np.int64)
     coefficients = [np.array(part.coefficients(), dtype=float).ravel() for _, part in terms]
-    breaks = sorted({t for _, part in terms for t in part.breaks()})
+    breaks = kinks(part for _, part in terms)
     return {
         "signals": len(lists),
         "signal_start": _starts(lists),

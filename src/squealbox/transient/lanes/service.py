@@ -114,7 +114,7 @@ def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out
             if which >= 0:
                 ended = change_modes(A, b, lane, which, p, s, events, count)
         elif code & DONE:
-            ended = next_piece(A, b, lane, fixed[0], p, s)
+            ended = next_piece(A, b, lane, fixed[0], p, s, events, count)
         if ended != RUNNING:
             finish(A, b, lane, ended, out)
             idle += 1 - refill(A, b, lane, table, varies, fixed, times, counter, total, out, p, s)
@@ -192,8 +192,8 @@ def start(A, b, lane, p, s):
     return RUNNING
 
 
-def next_piece(A, b, lane, end, p, s):
-    """Go on behind a kink of a schedule; COMPLETED at the end."""
+def next_piece(A, b, lane, end, p, s, events, count):
+    """Go on behind a kink of a schedule, where a force that jumps may let a contact go; COMPLETED at the end."""
     t = A[b + ROW_T * WIDTH + lane]
     if t >= end:
         return COMPLETED
@@ -203,6 +203,12 @@ def next_piece(A, b, lane, end, p, s):
     for c in range(CONTACTS):
         s.fresh[c] = 0
     refresh(A, b, lane, t, p, s)
+    if EXACT_CONTACT:
+        for c in range(CONTACTS):
+            if s.mode[c] == STICK and s.phi[c] < 0.0:
+                A[b + ROW_RESUME * WIDTH + lane] = A[b + ROW_H * WIDTH + lane]
+                A[b + (ROW_FORCE + c) * WIDTH + lane] = s.force[c]
+                return change_modes(A, b, lane, c, p, s, events, count)
     return RUNNING
 
 

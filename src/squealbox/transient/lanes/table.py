@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.schedules import Constant, Schedule, value_at
+from squealbox.schedules import Constant, Schedule, kinks, value_at
 from squealbox.system import Contact, InvalidSystem, System
 from squealbox.transient import packing
 from squealbox.transient._motion import EXACT
@@ -162,8 +162,7 @@ def _equation(system: System, rows: Rows, recorded: bool = False) -> tuple[dict[
             values[f"weight{index}_{k}"] = np.asarray(weight, dtype=float)
             for i, coefficient in enumerate(part.coefficients()):
                 values[f"given{index}_{k}_{i}"] = np.asarray(coefficient, dtype=float)
-    instants = sorted({t for terms in signals for _, part in terms for t in part.breaks()})
-    return values, tuple(kinds), [np.asarray(t) for t in instants]
+    return values, tuple(kinds), [np.asarray(t) for t in kinks(part for terms in signals for _, part in terms)]
 
 
 def _filled(present: frozenset[str], names: list[str]) -> frozenset[str]:
