@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from squealbox import PID, Contact, Coulomb, System, branch, simulate
-from squealbox.friction import LuGre
-from squealbox.limit_cycles import basin, bifurcation_diagram, shooting
+from squealbox import PID, Contact, Coulomb, MassOnBelt, ParameterError, System, branch, simulate
+from squealbox.friction import Dahl, LuGre
+from squealbox.limit_cycles import basin, bifurcation_diagram, settled_cycles, shooting
 from squealbox.limit_cycles.cycles.differences import by_differences
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.variation import flight, fly
@@ -116,6 +116,23 @@ def test_a_basin_and_a_diagram_without_a_mass_everywhere():
     assert swings[0] / 2.0 == pytest.approx(cycle.amplitude, rel=1e-6)
     diagram = bifurcation_diagram(with_maxwell, "V", np.array([0.1, 0.12]), sweeps=("rest",))
     assert diagram.outcome == "completed"
+
+
+def test_settled_cycles_of_rows_without_mass():
+    for system in (with_maxwell(), on_two_springs()):
+        (cycle,) = settled_cycles(system, 8)
+        assert cycle.period == pytest.approx(shooting(system).period, rel=1e-8)
+    with pytest.raises(ParameterError, match="leading axes"):
+        shooting(on_two_springs(np.array([0.1, 0.2])))
+
+
+def test_one_of_a_family_is_neither_stable_nor_unstable():
+    """Sliding throughout without damping, each amplitude below V/w is a cycle of period 2 pi; bent bristles rest."""
+    cycle = shooting(MassOnBelt(m=1.0, k=1.0, c=0.0, load=1.0, friction=Dahl(0.3, 300.0), sliding_speed=0.1))
+    assert cycle.period == pytest.approx(2.0 * np.pi, rel=1e-8)
+    assert cycle.stability == "neutral"
+    assert not cycle.stable
+    assert "neutral cycle" in str(cycle)
 
 
 def test_differences_agree_with_the_equation_s_derivative():

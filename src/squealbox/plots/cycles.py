@@ -79,7 +79,7 @@ def cycle_overview(cycle: Cycle | ForcedCycle, *, dof: int | None = None, title:
         circle.plot(values[:1].real, values[:1].imag, "x", color="#000000")
         circle.set(xlabel="Re multiplier [-]", ylabel="Im multiplier [-]")
         circle.set_aspect("equal", adjustable="datalim")
-    kind = "stable" if cycle.stable else "unstable"
+    kind = cycle.stability
     what = "forced motion" if isinstance(cycle, ForcedCycle) else "cycle"
     said = f"{kind} {what}, {number(cycle.frequency)} Hz" if cycle.outcome.ok else str(cycle.outcome)
     said_of_range = getattr(cycle, "caution", "")

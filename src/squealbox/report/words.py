@@ -117,7 +117,7 @@ def _cycle(found: Examination) -> Iterator[str]:
         why = f"{_listed(found.tried)} ({cycle.outcome.message})"
         yield f"No limit cycle was found from {why}; that does not prove there is none."
         return
-    kind = "stable" if cycle.stable else "unstable"
+    kind = cycle.stability
     sizes = ", ".join(
         f"{name} {quantity(size, unit)}"
         for name, size, unit in zip(found.system.names, cycle.amplitude, found.system.units, strict=True)

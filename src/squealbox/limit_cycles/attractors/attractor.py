@@ -140,7 +140,7 @@ def _confirmed(
         twin = next((i for i, (other, _) in enumerate(found)
                      if other.kind in (CYCLE, UNSTABLE) and _alike(cycle, other, SAME_CYCLE)), None)  # fmt: skip
         if twin is None:
-            found.append((_with(attractor, CYCLE if cycle.stable else UNSTABLE, cycle), members))
+            found.append((_with(attractor, UNSTABLE if cycle.stability == "unstable" else CYCLE, cycle), members))
         else:
             found[twin] = (found[twin][0], np.concatenate([found[twin][1], members]))
     return found

@@ -13,6 +13,8 @@ import numpy as np
 from squealbox.result import Array, Result, optional, quantity
 from squealbox.system import System
 
+NEUTRAL = 1e-8  # how far from the unit circle a multiplier is known not to lie on it
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Cycle(Result):
@@ -81,8 +83,12 @@ class Cycle(Result):
     @property
     def stable(self) -> bool:
         """True when every multiplier but the trivial one lies inside the unit circle."""
-        others = np.abs(self.multipliers[1:])
-        return bool(self.outcome.ok and np.all(others < 1.0))
+        return self.stability == "stable"
+
+    @property
+    def stability(self) -> str:
+        """As `stability_of` the multipliers but the trivial one; a neutral cycle is one of a family, or splits."""
+        return stability_of(self.multipliers[1:]) if self.outcome.ok else "unstable"
 
     @property
     def sticking_time(self) -> Array:
@@ -101,9 +107,16 @@ class Cycle(Result):
             return f"{self.outcome}: {self.outcome.message}"
         about = zip(self.system.names, self.amplitude, self.system.units, strict=True)
         sizes = ", ".join(f"{name} {a:.6g} {unit}" for name, a, unit in about)
-        kind = "stable" if self.stable else "unstable"
-        said = f"{kind} cycle, period {float(self.period):.10g} s ({self.frequency:.6g} Hz), amplitude {sizes}"
+        said = (
+            f"{self.stability} cycle, period {float(self.period):.10g} s ({self.frequency:.6g} Hz), amplitude {sizes}"
+        )
         return f"{said}\nCaution: {self.caution}" if self.caution else said
+
+
+def stability_of(multipliers: Any) -> str:
+    """One of stable, unstable, or neutral where the largest lies on the unit circle as far as it is known."""
+    largest = float(np.max(np.abs(multipliers), initial=0.0))
+    return "stable" if largest < 1.0 - NEUTRAL else "neutral" if largest <= 1.0 + NEUTRAL else "unstable"
 
 
 def ordered(multipliers: Any) -> Any:

@@ -21,6 +21,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
+from squealbox.limit_cycles.cycles.cycle import stability_of
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.saltation import surface
 from squealbox.limit_cycles.cycles.variation import (
@@ -72,7 +73,12 @@ class ForcedCycle(Result):
     @property
     def stable(self) -> bool:
         """True where every disturbance dies out."""
-        return bool(self.outcome.ok and np.all(np.abs(self.multipliers) < 1.0))
+        return self.stability == "stable"
+
+    @property
+    def stability(self) -> str:
+        """As `stability_of` the multipliers."""
+        return stability_of(self.multipliers) if self.outcome.ok else "unstable"
 
     @property
     def growth_rate(self) -> float:
@@ -94,11 +100,10 @@ class ForcedCycle(Result):
         """Period, stability and amplitudes."""
         if not self.outcome.ok:
             return f"{self.outcome}: {self.outcome.message}"
-        state = "stable" if self.stable else "unstable"
         sizes = ", ".join(f"{size:.6g}" for size in np.atleast_1d(self.amplitude))
         return (
-            f"forced motion of period {float(self.period):.6g} s is {state}: growth rate {self.growth_rate:+.6g} 1/s, "
-            f"{self.events} events, amplitudes {sizes} m"
+            f"forced motion of period {float(self.period):.6g} s is {self.stability}: growth rate "
+            f"{self.growth_rate:+.6g} 1/s, {self.events} events, amplitudes {sizes} m"
         )
 
     def __repr__(self) -> str:
