@@ -194,7 +194,10 @@ class Slow:
         """Modes that hold over a short stretch: the present ones, else sticking first."""
         choices = self.choices(t, y)
         best, least = None, np.inf
-        combinations = sorted(product(*choices), key=lambda modes: -sum(mode == STICK for mode in modes))
+        firm = self.firm(t, y)
+        combinations = sorted(product(*choices), key=lambda modes: (
+            sum(mode != STICK for mode, held in zip(modes, firm, strict=True) if held),
+            -sum(mode == STICK for mode in modes)))  # fmt: skip
         combinations = [x for x in combinations if all(OPEN in (x[a], x[b]) or x[b] == s * x[a]
                                                        for a, b, s in self.alike)]  # fmt: skip
         for length in (1e-4, 1e-6, 1e-2):
@@ -206,6 +209,15 @@ class Slow:
                 if broken < least:
                     best, least = modes, broken
         return list(best)
+
+    def firm(self, t, y):
+        """The contacts that stick below their limits: nothing lets them go but what another does."""
+        if t == 0.0:
+            return [False] * self.m
+        _, force, normal, _ = self.motion(t, y, self.modes)
+        limit = self.static * normal
+        return [mode == STICK and abs(f) < (1.0 - 1e-7) * g
+                for mode, f, g in zip(self.modes, force, limit, strict=True)]  # fmt: skip
 
     def broken(self, t, y, modes, stretch):
         """By how much the modes fail over a stretch, over the size of what fails."""

@@ -353,3 +353,26 @@ def test_a_load_that_ebbs_away_lets_a_body_off_its_floor_once(height, method):
     assert len(motion.event_time) == (2 if height else 1)
     assert motion.event_time[-1] == pytest.approx(1.0, abs=1e-5)
     assert motion.q[-1, 1] == pytest.approx(8.0 / 6.0, rel=1e-5)
+
+
+@pytest.mark.parametrize("method", ROADS[:2])
+@pytest.mark.parametrize("order", [1, -1])
+@pytest.mark.parametrize(("static", "start"), [(0.5, 0.0), (0.35, -1.0)])
+def test_what_sticks_below_its_limit_is_not_let_go_by_a_reversal_elsewhere(static, start, order, method):
+    """A plate rests on 0.5 or 0.35 N under a block that rubs it with 0.3 N and swings on a spring: it stays there.
+
+    At each reversal the block could not stick without moving the plate, and a plate that slid would go on (0.2 N): but
+    no friction that it ever feels moves it. From rest the block loses 2 0.3/4 m in each half period, pi/2 s.
+    """
+    plate = Contact([0.0, 0.0], [1.0, 0.0], [1.0, 0.0], 1.0, 0.0, Coulomb(static, 0.2))
+    block = Contact([0.0, 0.0], [1.0, -1.0], [1.0, -1.0], 1.0, 0.0, Coulomb(0.4, 0.3))
+    system = System(np.eye(2), np.zeros((2, 2)), np.diag([0.0, 4.0]), 0.0, (plate, block)[::order])
+    motion = simulate(system, 2.5 * np.pi, ([0.0, 2.0], [0.0, start]), method=method)
+    alone = System([[1.0]], [[0.0]], [[4.0]], 0.0, (Contact([0.0], [-1.0], [-1.0], 1.0, 0.0, block.law),))
+    one = simulate(alone, 2.5 * np.pi, ([2.0], [start]), method=method)
+    assert motion.outcome == "completed"
+    assert motion.q[-1] == pytest.approx([0.0, one.q[-1, 0]], abs=1e-9)
+    assert start or motion.q[-1, 1] == pytest.approx(-1.25, abs=1e-8)
+    assert motion.event_time == pytest.approx(one.event_time, abs=1e-9)
+    many = simulate_ensemble(system, duration=2.5 * np.pi, start=([0.0, 2.0], [0.0, start]), method=method)
+    assert (many.ended, many.events) == ("completed", len(one.event_time))

@@ -237,27 +237,42 @@ def remove_drift(p, y, s, sticking):
 def decide(p, t, y, mode, s):
     """Modes of the contacts at zero speed: each sticks with |force| <= static N, or slips with v' in its sense.
 
-    One complementarity problem in all of them, solved by Murty's least-index principal pivoting from all sticking; when
-    static exceeds kinetic friction it may cycle, and then all combinations are tried, sticking first.
+    One complementarity problem in all of them, solved by principal pivoting from all sticking, in the end by Murty's
+    least index; when static exceeds kinetic friction it may cycle, and then all combinations are tried, sticking first.
     """
     for c in range(p.contacts):
         if s.at_zero[c] or s.touch[c]:
             mode[c] = first_guess(p, c, y, mode, s)
-    for _ in range(20 + 10 * p.contacts * p.contacts):
+    for turn in range(20 + 10 * p.contacts * p.contacts):
         if not derivative(p, t, y, mode, s, s.dy):
             return enumerate_modes(p, t, y, mode, s)  # contacts on one motion whose speeds part, or rigid ones
         if s.spare[0] and overloaded(p, mode, s):
             even_out(p, t, y, mode, s)
-        changed = False
-        for c in range(p.contacts):
-            wanted = wanted_mode(p, c, y, mode, s)
-            if wanted != mode[c]:
-                mode[c] = wanted
-                changed = True
-                break
-        if not changed:
+        if not change_one(p, y, mode, s, turn < 4 * p.contacts):
             return not pulled_while_held(p, y, mode, s)
     return enumerate_modes(p, t, y, mode, s)
+
+
+def change_one(p, y, mode, s, by_load):
+    """Give one contact that wants another mode what it wants; False when none does.
+
+    As under a load that rises from nothing: of those that stick beyond their limits, the one furthest beyond goes first
+    (`by_load`, else the first). Those that stuck until now come last: what they carry lets them go, not what they would
+    carry if others stuck too. So the order in which contacts are named decides nothing.
+    """
+    for turn in range(2):
+        which, to, most = -1, 0, -1.0
+        for c in range(p.contacts):
+            if (s.old[c] == STICK) == (turn == 1) and (which < 0 or by_load):
+                wanted = wanted_mode(p, c, y, mode, s)
+                limit = p.static[c] * s.normal[c]
+                beyond = abs(s.force[c]) / limit if mode[c] == STICK and limit > 0.0 else np.inf
+                if wanted != mode[c] and beyond > most:
+                    which, to, most = c, wanted, beyond
+        if which >= 0:
+            mode[which] = to
+            return True
+    return False
 
 
 def pulled_while_held(p, y, mode, s):
@@ -318,10 +333,11 @@ def enumerate_modes(p, t, y, mode, s):
     Left open are the contacts at zero speed and the touching rigid ones, but not those whose release is forced.
     """
     k = 0
-    for c in range(p.contacts):
-        if (s.at_zero[c] or s.touch[c]) and s.forced[c] == 0:
-            s.chosen[k] = c
-            k += 1
+    for turn in range(2):  # what stuck until now comes last, and so is let go last
+        for c in range(p.contacts):
+            if (s.at_zero[c] or s.touch[c]) and s.forced[c] == 0 and (s.old[c] == STICK) == (turn == 1):
+                s.chosen[k] = c
+                k += 1
     if k > 8:
         return False
     for code in range(4**k):
