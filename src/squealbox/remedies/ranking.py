@@ -24,6 +24,7 @@ ZOOM = 17
 PUSH, PERIODS = 0.05, 100.0  # m/s of the push, and how many periods of the worst mode it is followed
 MOST_ROWS = 20  # of a summary
 HALF = 0.5
+NO_DOSE = "no dose up to"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -74,9 +75,9 @@ class Remedies(Result):
         """The table as text, under `heads`."""
         return [
             (
-                str(self.name[i]), f"{float(self.dose[i]):.4g} {self.unit[i]}".strip(), f"{float(self.growth[i]):+.4g}",
+                str(self.name[i]), _told(float(self.dose[i]), str(self.unit[i])), f"{float(self.growth[i]):+.4g}",
                 f"{float(self.growth_at_margin[i]):+.4g}", f"{float(self.probability[i]):.3f}",
-                *([f"{1e6 * float(self.amplitude[i]):.3g}"] if self.pushed else []), str(self.cost[i]),
+                *([f"{round(1e6 * float(self.amplitude[i]), 3):.3g}"] if self.pushed else []), str(self.cost[i]),
                 str(self.caution[i]),
             )
             for i in range(len(self))
@@ -84,7 +85,7 @@ class Remedies(Result):
 
     def heads(self) -> tuple[str, ...]:
         """What the columns of `rows` are called; what was not followed has none."""
-        later = f"at +{100.0 * self.margin:.3g} %"
+        later = f"at mu +{100.0 * self.margin:.3g} %"
         push = ("after push [um]",) if self.pushed else ()
         return ("cure", "dose", "growth [1/s]", later, "P(squeal)", *push, "cost", "caution")
 
@@ -102,7 +103,13 @@ class Remedies(Result):
             "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in table
         ]
         lines += [f"and {len(self) - shown} more, in rows()"] if shown < len(self) else []
-        cautions = [f"{self.name[i]}: {self.caution[i]}" for i in range(shown) if self.caution[i]]
+        several = [[part for part in str(self.caution[i]).split("; ") if part] for i in range(shown)]
+        others = [[part for part in each if not part.startswith(NO_DOSE)] for each in several]
+        cautions = [f"{self.name[i]}: {'; '.join(others[i])}" for i in range(shown) if others[i]]
+        loud = [str(self.name[i]) for i in range(shown) if len(others[i]) < len(several[i])]
+        if loud:
+            friction = f" with {100.0 * self.margin:.3g} % more friction" if self.margin else ""
+            cautions += [f"no dose that was tried makes it quiet{friction}: {', '.join(loud)}"]
         said = [self.assumption] if self.assumption else []
         return "\n".join([self.without(), *lines, "", *cautions, *said])
 
@@ -179,9 +186,7 @@ def _row(each: Candidate, brake: Design, margin: float, lot: Any, tuning: Any, p
     share = _share_cured(each, cured, brake, lot, tuning)
     cautions = [*each.cautions, *_said(cured, brake)]
     if not reached:
-        cautions.insert(
-            0, f"no dose up to {float(np.abs(each.doses[-1])):.4g} {each.unit} makes it quiet at the margin"
-        )
+        cautions.insert(0, f"{NO_DOSE} {_told(float(np.abs(each.doses[-1])), each.unit)} makes it quiet at the margin")
     if growth <= 0.0 and share > HALF:
         cautions.insert(0, f"stable as drawn, and yet {100.0 * share:.0f} % of the lot squeals")
     return {
@@ -191,6 +196,11 @@ def _row(each: Candidate, brake: Design, margin: float, lot: Any, tuning: Any, p
         "caution": "; ".join(cautions), "line": each.line(dose),
         "values": {} if each.values is None else each.values(dose),
     }  # fmt: skip
+
+
+def _told(dose: float, unit: str) -> str:
+    """A dose as a reader writes it: angles in degrees, pure numbers without a unit."""
+    return f"{np.rad2deg(dose):.4g} deg" if unit == "rad" else f"{dose:.4g} {unit.strip('-')}".strip()
 
 
 def _dose(each: Candidate, margin: float) -> tuple[float, bool]:
