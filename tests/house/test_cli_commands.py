@@ -393,12 +393,3 @@ def test_every_paper_listed_can_be_reproduced():
     for paper in PAPERS.values():
         asked = list(inspect.signature(import_module(paper.module).reproduce).parameters)
         assert asked == ["out", "progress", "fine", "search"]
-
-
-def test_init_takes_the_name_of_a_file_too(said, tmp_path):
-    """`init pad.toml` made a folder of that name."""
-    code, out, _ = said("init", tmp_path / "new" / "pad.toml")
-    assert code == 0
-    assert (tmp_path / "new" / "pad.toml").is_file()
-    assert f"squealbox modes {tmp_path / 'new' / 'pad.toml'}" in out
-    assert said("init", tmp_path / "new" / "pad.toml")[0] == 2  # the twin: nothing is overwritten
