@@ -15,6 +15,14 @@ from squealbox.system import InvalidSystem
 QUIET = block_on_belt(Coulomb(0.3), 0.2, damping=0.5)
 
 
+@pytest.mark.parametrize("static", [0.2, 0.27, 0.325])
+def test_a_run_that_dies_down_is_said_to(static):
+    """Three hundred periods leave a swing above 1e-5 V where sliding is weakly damped: no cycle, and no failure."""
+    cycle = shooting(drum(static))
+    assert cycle.outcome == "steady_sliding", cycle.outcome.message
+    assert shooting(drum(0.36)).outcome.ok  # the twin: where sliding is unstable there is a cycle
+
+
 @pytest.mark.parametrize("find", [shooting, harmonic_balance])
 def test_steady_sliding_is_said(find):
     cycle = find(QUIET)

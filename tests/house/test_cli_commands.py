@@ -49,7 +49,7 @@ def test_version(said):
         (["onset", "a", "--range", "0"], "--range requires 2"),
         (["map", "a", "--points", "many"], "--points"),
         (["modes", "no.toml"], "no.toml: there is no such file"),
-        (["run", "no.toml"], "--out requires an argument"),
+        (["run", "no.toml"], "--out is missing"),
         (["simulate", "no.toml"], "no.toml: there is no such file"),
         (["simulate", "no.toml", "--out", "x"], "no.toml: there is no such file"),
         (["paper", "drum-brake"], "squealbox paper: 'drum-brake' is no paper this program knows: did you mean"),

@@ -19,3 +19,12 @@ def test_what_is_missing_is_called_as_the_usage_line_calls_it(said):
 def test_a_byte_order_mark_is_no_part_of_the_text(said, brake):
     brake.write_bytes(b"\xef\xbb\xbf" + brake.read_bytes())
     assert said("modes", brake)[0] == 0
+
+
+def test_init_takes_the_name_of_a_file_too(said, tmp_path):
+    """`init pad.toml` made a folder of that name."""
+    code, out, _ = said("init", tmp_path / "new" / "pad.toml")
+    assert code == 0
+    assert (tmp_path / "new" / "pad.toml").is_file()
+    assert f"squealbox modes {tmp_path / 'new' / 'pad.toml'}" in out
+    assert said("init", tmp_path / "new" / "pad.toml")[0] == 2  # the twin: nothing is overwritten

@@ -1,6 +1,7 @@
 """Every countermeasure goes where a design goes: files, arrays, drawings, the command line; remedies are reproduced."""
 
 import html
+import re
 
 import numpy as np
 import pytest
@@ -121,6 +122,20 @@ def test_remedies_are_many_ranked_and_reproduced_by_their_line(table):
             assert table.growth_at_margin[row] <= 1e-9
         if table.growth[row] <= 0.0 and table.probability[row] > 0.5:
             assert "stable as drawn" in table.caution[row]
+
+
+def test_the_table_is_read_without_a_key(table):
+    """Angles in degrees, no unit of a pure number, no amplitude of 1e-13 um, and what never helps named in one line."""
+    text = table.summary(len(table))
+    assert " rad" not in text
+    assert not re.search(r"\d - |  makes", text)
+    assert "at mu +10 %" in text
+    (loud,) = [line for line in text.splitlines() if line.startswith("no dose that was tried makes it quiet with 10 %")]
+    never = [str(table.name[i]) for i in range(len(table)) if not table.reached[i]]
+    assert never
+    assert sorted(loud.partition(": ")[2].split(", ")) == sorted(never)
+    row = next(i for i in range(len(table)) if table.unit[i] == "rad")
+    assert table.rows()[row][1] == f"{np.rad2deg(table.dose[row]):.4g} deg"
 
 
 def test_dampers_need_the_dose_that_is_known(table):

@@ -13,6 +13,7 @@ from squealbox import (
     Contact,
     Coulomb,
     DrumBrake,
+    LinearSlope,
     ParameterError,
     System,
     branch,
@@ -102,6 +103,13 @@ def test_a_branch_that_goes_straight_up_is_drawn_straight_and_has_no_folds():
     left, right = panel.get_xlim()
     assert right - left > 1e-7
     assert "straight" not in EXAMPLES["Branch"]().summary()  # the twin
+
+
+@pytest.mark.parametrize("law", [Coulomb(0.4), LinearSlope(0.45, -0.01)])
+def test_a_law_that_hardly_falls_is_not_drawn_on_the_frame(law):
+    bottom, top = plot(law).axes[0].get_ylim()
+    assert bottom == 0.0
+    assert top > 1.05 * law.mu(0.0)
 
 
 def test_branches_that_lie_decades_apart_share_a_logarithmic_axis():

@@ -27,6 +27,7 @@ from squealbox import (
     shooting,
     simulate,
 )
+from squealbox.control import margins
 from squealbox.result import Outcome
 
 FRICTION = "friction.static"
@@ -198,6 +199,37 @@ def test_the_delay_margin_of_the_drum_has_a_maximum(gain, margin):
     drum = DrumBrake(friction=LinearSlope(0.36, -0.05))
     found = closed_loop(Controlled(drum, [PID(on=name, derivative=gain) for name in "xy"]))
     assert 1e6 * found.delay_margin == pytest.approx(margin, abs=6e-5)
+
+
+@pytest.mark.parametrize("bandwidth", [None, 8.0])
+@pytest.mark.parametrize("seed", range(3))
+def test_the_delay_margin_of_a_large_plant_is_that_of_the_kronecker_products(bandwidth, seed, monkeypatch):
+    """At 134 states the products would take 10 GB: the second road must give what the first gives of small plants."""
+    rng = np.random.default_rng(seed)
+    factor = rng.standard_normal((4, 4))
+    K = factor @ factor.T + np.diag(rng.uniform(1.0, 50.0, 4))
+    K += 0.3 * (np.triu(K, 1) - np.tril(K, -1))
+    loops = [PID(on=f"q{i + 1}", derivative=g, bandwidth=bandwidth) for i, g in enumerate(rng.uniform(0.3, 3.0, 3))]
+    found = closed_loop(System(np.eye(4), 0.05 * np.eye(4), K, loops=tuple(loops)))
+    assert found.stable
+    products = margins.delay_margin(found.plant)
+    monkeypatch.setattr(margins, "LARGEST_PRODUCT", 0)
+    assert margins.delay_margin(found.plant) == pytest.approx(products, rel=1e-9)
+    late = replace(found.plant, delay=found.plant.delay + 0.5 * products)  # a delay of all is taken off the margin
+    assert margins.delay_margin(late) == pytest.approx(0.5 * products, rel=1e-9)
+
+
+def test_the_delay_margin_beyond_the_products_is_where_a_pole_crosses():
+    """Twenty blocks, two loops: with a delay below the margin the brake is stable, above it is not."""
+    n = 20
+    K = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
+
+    def chain(delay):
+        loops = tuple(PID(on=name, derivative=0.4, delay=delay) for name in ("q1", "q12"))
+        return System(np.eye(n), 0.02 * np.eye(n), K, loops=loops)
+
+    margin = closed_loop(chain(0.0)).delay_margin
+    assert [closed_loop(chain(share * margin)).stable for share in (0.99, 1.01)] == [True, False]
 
 
 def test_the_slowest_sampling_of_the_drum():

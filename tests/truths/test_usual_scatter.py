@@ -3,7 +3,17 @@
 import numpy as np
 import pytest
 
-from squealbox import DrumBrake, LinearSlope, ModeCoupling, ParameterError, Stribeck, silence
+from squealbox import (
+    Coulomb,
+    DrumBrake,
+    LinearSlope,
+    ModeCoupling,
+    OwnBrake,
+    OwnContact,
+    ParameterError,
+    Stribeck,
+    silence,
+)
 from squealbox.remedies import usual_scatter
 from squealbox.studies import Scatter
 
@@ -28,9 +38,23 @@ def test_the_table_says_what_was_assumed_and_nothing_where_it_was_given():
     brake = ModeCoupling(c1=0.02, c2=0.02)
     table = silence(brake, candidates=[], push=0.0)
     assert "assumed scatter" in table.summary()
+    assert "brakes in the lot" not in table.summary()
     assert "nan" not in table.summary()  # what was not asked has no column
     assert "after push [um]" not in table.heads()
     own = Scatter(usual_scatter(brake).distributions)
     assert "assumed" not in silence(brake, own, candidates=[], push=0.0).summary()
     with pytest.raises(ParameterError, match="a Scatter"):
         silence(brake, {"friction.static": 0.1})
+
+
+def test_the_lot_of_a_large_brake_is_smaller_and_said():
+    """2048 spectra of 130 states for each of thirty cures took an hour."""
+    n = 40
+    stiffness = 1e6 * (2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))
+    contacts = [OwnContact(name="pad", n=1e5 * np.eye(n)[0], d=np.eye(n)[1])]
+    brake = OwnBrake(M=np.eye(n), C=5.0 * np.eye(n), K=stiffness, contacts=contacts, friction=Coulomb(0.4))
+    found = silence(brake, candidates=[], push=0.0)
+    assert found.settings["samples"] == 512
+    assert "512 brakes in the lot, as each is large: P(squeal) is known to 4 % or better" in found.summary()
+    asked = silence(brake, candidates=[], push=0.0, samples=64)  # the twin: what is asked is taken
+    assert (asked.settings["samples"], "in the lot" in asked.summary()) == (64, False)

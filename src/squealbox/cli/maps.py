@@ -132,7 +132,8 @@ def _edge_summary(edge: Boundary, plane: Plane) -> str:
     if not edge.outcome.ok:
         return f"boundary: none, {edge.outcome.message}"
     curves = edge.curves
-    lines = [f"boundary: {len(curves)} piece{'s' * (len(curves) > 1)}, unstable on the left of the way"]
+    whole = f"{len(curves)} piece{'s' * (len(curves) > 1)}"
+    lines = [f"boundary: {whole}; who follows one as it is told has the unstable side on the left"]
     for i, points in enumerate(curves):
         hertz = edge.frequency[edge.curve == i]
         span = f"{np.min(hertz):.5g} to {np.max(hertz):.5g} Hz"

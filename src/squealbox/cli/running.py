@@ -86,6 +86,8 @@ def _missing(name: str, text: str, function: Callable[..., object]) -> str:
     asked = inspect.signature(function).parameters.get(found[1].replace("-", "_")) if found else None
     if found and asked is not None and asked.kind is not inspect.Parameter.KEYWORD_ONLY:
         return f"{found[1].upper()} is missing: squealbox {name} {found[1].upper()}; --help tells more"
+    if found and "requires an argument" in text:  # an option that was not given, or given without its value
+        return f"--{found[1]} is missing, or what belongs behind it; --help tells more"
     return _one_sentence(text)
 
 

@@ -57,17 +57,17 @@ def init(directory: Path, *, brake: str = "drum_brake") -> None:
     Parameters
     ----------
     directory
-        folder to put brake.toml into; made when it is not there
+        folder to put brake.toml into; made when it is not there; or the file itself, such as pad.toml
     brake
         which design to begin with, "own" for matrices of your own; squealbox list names them
     """
     from squealbox.files import write_design
 
     design = _example(brake)
-    path = directory / FILE
+    path = directory if directory.suffix == ".toml" else directory / FILE
     if path.exists():
         raise UsageError(f"{path} is there already, and init overwrites nothing")
-    directory.mkdir(parents=True, exist_ok=True)
+    path.parent.mkdir(parents=True, exist_ok=True)
     second = _second_axis(design)
     axes = {"second": "\n".join(second), "second_inline": ", ".join(second)}
     write_design(design, path, sections=STUDIES.format(file=path, duration=_duration(design), **axes))

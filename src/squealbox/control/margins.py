@@ -9,6 +9,9 @@ of the polynomial pencil Im L = 0, the second imaginary eigenvalues of a Hamilto
 they are looked for on a grid and refined. A delay common to all loops puts z = exp(-i w T) on the unit circle in
 
     det[ z^2 I (x) A1 + z (A0 (+) A0) + A1 (x) I ] = 0        A0 = A, A1 = B H   (Louisell 2001, IEEE TAC 46)
+
+whose order is twice the square of that of A. For larger plants the frequencies are those where an eigenvalue of the
+small H (i w - A)^-1 B has the size 1, looked for on a grid that is dense at every resonance, open and closed.
 """
 
 from typing import Any
@@ -17,6 +20,8 @@ import numpy as np
 
 from squealbox.control.plant import Plant
 
+LARGEST_PRODUCT = 16  # states up to which the Kronecker products are built: 512 rows, at 134 they would take 10 GB
+BESIDE = 41  # frequencies looked at beside each resonance
 GRID = 4001  # frequencies looked at for a loop with a delay of its own
 
 
@@ -82,7 +87,8 @@ def delay_margin(plant: Plant) -> float:
         return float(min(delays, default=np.inf))
     if np.ptp(plant.delay) > 0.0:
         return _common_by_grid(plant)
-    crossings = _crossings(plant.A, plant.B @ plant.H)
+    exact = len(plant.A) <= LARGEST_PRODUCT
+    crossings = _crossings(plant.A, plant.B @ plant.H) if exact else _crossings_by_grid(plant)
     own = float(plant.delay[0])
     later = [
         w_t - own for w, t in crossings for w_t in (t + 2.0 * np.pi / w * np.arange(64)) if w_t > own * (1 + 1e-12)
@@ -112,6 +118,41 @@ def _crossings(A0: Any, A1: Any) -> list[tuple[float, float]]:
                 if pair is not None and all(abs(pair[0] - w) > 1e-9 or abs(pair[1] - p) > 1e-8 for w, p in found):
                     found.append(pair)
     return [(w * size, (phase % (2.0 * np.pi)) / (w * size)) for w, phase in found]
+
+
+def _crossings_by_grid(plant: Plant) -> list[tuple[float, float]]:
+    """The same of a large plant: where the sorted |eigenvalues| of H (i w - A)^-1 B pass 1, dense at each resonance."""
+    from scipy.linalg import matrix_balance
+    from scipy.optimize import brentq
+
+    poles = np.concatenate([np.linalg.eigvals(plant.A), np.linalg.eigvals(plant.closed)])
+    poles = poles[poles.imag > 0.0]
+    size = float(np.max(np.abs(poles), initial=0.0)) or 1.0
+    about = poles.imag[:, None] + np.abs(poles.real)[:, None] * np.tan(np.linspace(-1.5, 1.5, BESIDE))
+    w = np.unique(np.concatenate([about.ravel(), np.geomspace(1e-4 * size, 30.0 * size, GRID)]))
+    w = w[w > 0.0]
+    _, (scale, _) = matrix_balance(np.abs(plant.A) + np.abs(plant.B @ plant.H), permute=False, separate=True)
+    A, B, H = plant.A * scale / scale[:, None] / size, plant.B / scale[:, None] / size, plant.H * scale
+
+    own, shapes = np.linalg.eig(A)
+    out, into = H @ shapes, np.linalg.solve(shapes, B.astype(complex))  # near a double pole a little off: a guess
+
+    def gains(x: Any) -> Any:
+        values = np.linalg.eigvals((out / (1j * np.asarray(x)[..., None, None] - own)) @ into)
+        return np.take_along_axis(values, np.argsort(np.abs(values), axis=-1), axis=-1)
+
+    logs = np.log(np.maximum(np.abs(gains(w / size)), 1e-300))
+    found: list[tuple[float, float]] = []
+    for i, j in zip(*np.nonzero(np.sign(logs[1:]) != np.sign(logs[:-1])), strict=True):
+        root = float(brentq(_logarithm, w[i] / size, w[i + 1] / size, args=(gains, j), xtol=1e-15))
+        pair = _polished(A, B @ H, root, float(np.angle(gains(root)[j])))
+        if pair is not None and all(abs(pair[0] - x) > 1e-9 or abs(pair[1] - p) > 1e-8 for x, p in found):
+            found.append(pair)
+    return [(x * size, phase / (x * size)) for x, phase in found]
+
+
+def _logarithm(x: float, gains: Any, place: int) -> float:
+    return float(np.log(abs(gains(x)[place])))
 
 
 def _polished(A0: Any, A1: Any, w: float, phase: float) -> tuple[float, float] | None:

@@ -139,7 +139,8 @@ def branch_diagram(
             panel.set_yscale("log")
         ends = panel.get_ylim()
         _estimates(panel, _known(several) if estimates is True else estimates or (), dof, factor, scale)
-        panel.set_ylim(top=max(ends[1], floor))  # an estimate far above the cycles leaves the panel
+        room = 1.0 if floor else 1.05  # the branch does not end on the frame
+        panel.set_ylim(top=max(room * ends[1], floor))  # an estimate far above the cycles leaves the panel
         if runs is not None:
             at, sizes = (np.asarray(x) for x in runs)
             panel.plot(at / scale, sizes / factor, "+", color="#555555", markersize=4.5, label="long run")

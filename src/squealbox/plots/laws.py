@@ -42,9 +42,10 @@ def friction_curve(
             panel.plot(speeds, each.mu(speeds), label=label or None, **look)
         if speed is not None:
             panel.axvline(speed, color="#808080", linewidth=0.6, label=f"steady sliding, {number(speed, 3)} m/s")
-        lowest = min(float(np.min(each.mu(speeds))) for each in laws.values())
+        every = np.concatenate([np.ravel(each.mu(speeds)) for each in laws.values()])
+        lowest, highest = float(np.min(every)), float(np.max(every))
         panel.set_xlim(0.0, upto)
-        panel.set_ylim(bottom=min(0.0, 1.1 * lowest))
+        panel.set_ylim(bottom=min(0.0, 1.1 * lowest), top=1.1 * highest if highest > 0.0 else None)
         panel.set(xlabel=quantity_label("sliding speed", "m/s"), ylabel=quantity_label("friction coefficient µ", ""))
         panel.set_title(title)
         if panel.get_legend_handles_labels()[1]:

@@ -1,5 +1,6 @@
 """Figures of studies under scatter: how the answer is spread, and which parameter makes it so."""
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 QUIET, SQUEAL = "#9ecae1", "#f0b27a"
 SIGMA = "\N{GREEK SMALL LETTER SIGMA}"
+LETTERS = 36  # of a line below an axis in a column of a paper
 MOST = 4  # parameters drawn beside the histogram
 BINS = 12  # of equal probability, in which the share of squeal is counted
 
@@ -122,9 +124,9 @@ def sobol_indices(found: SobolIndices, *, title: str = "", axes: Any = None) -> 
         panel.set_yticks(places, [found.names[i] for i in order])
         panel.invert_yaxis()
         panel.axvline(0.0, color="#000000", linewidth=0.5)
-        panel.set_xlim(right=max(1.0, float(np.nanmax(found.total_high)) * 1.02))
+        panel.set_xlim(right=max(1.0, float(np.nanmax(found.total_high, initial=0.0)) * 1.02))
         about = found.settings["quantity"]
-        panel.set(xlabel=f"share of the variance of the {about['name']}", title=title)
+        panel.set(xlabel=textwrap.fill(f"share of the variance of the {about['name']}", LETTERS), title=title)
         panel.legend(loc="lower right")
         return figure_of(panel)
 

@@ -23,7 +23,11 @@ TUNING = 0.03  # standard deviation of an absorber's frequency in production, re
 ZOOM = 17
 PUSH, PERIODS = 0.05, 100.0  # m/s of the push, and how many periods of the worst mode it is followed
 MOST_ROWS = 20  # of a summary
+LOT, LEAST_LOT, SMALL = 2048, 128, 20  # brakes, and degrees of freedom up to which LOT of them take seconds
+Z = 1.96  # of a 95 % interval
+FEWER = "{} brakes in the lot, as each is large: P(squeal) is known to {:.0f} % or better, with more samples closer"
 HALF = 0.5
+NO_DOSE = "no dose up to"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -74,9 +78,9 @@ class Remedies(Result):
         """The table as text, under `heads`."""
         return [
             (
-                str(self.name[i]), f"{float(self.dose[i]):.4g} {self.unit[i]}".strip(), f"{float(self.growth[i]):+.4g}",
+                str(self.name[i]), _told(float(self.dose[i]), str(self.unit[i])), f"{float(self.growth[i]):+.4g}",
                 f"{float(self.growth_at_margin[i]):+.4g}", f"{float(self.probability[i]):.3f}",
-                *([f"{1e6 * float(self.amplitude[i]):.3g}"] if self.pushed else []), str(self.cost[i]),
+                *([f"{round(1e6 * float(self.amplitude[i]), 3):.3g}"] if self.pushed else []), str(self.cost[i]),
                 str(self.caution[i]),
             )
             for i in range(len(self))
@@ -84,7 +88,7 @@ class Remedies(Result):
 
     def heads(self) -> tuple[str, ...]:
         """What the columns of `rows` are called; what was not followed has none."""
-        later = f"at +{100.0 * self.margin:.3g} %"
+        later = f"at mu +{100.0 * self.margin:.3g} %"
         push = ("after push [um]",) if self.pushed else ()
         return ("cure", "dose", "growth [1/s]", later, "P(squeal)", *push, "cost", "caution")
 
@@ -102,7 +106,13 @@ class Remedies(Result):
             "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in table
         ]
         lines += [f"and {len(self) - shown} more, in rows()"] if shown < len(self) else []
-        cautions = [f"{self.name[i]}: {self.caution[i]}" for i in range(shown) if self.caution[i]]
+        several = [[part for part in str(self.caution[i]).split("; ") if part] for i in range(shown)]
+        others = [[part for part in each if not part.startswith(NO_DOSE)] for each in several]
+        cautions = [f"{self.name[i]}: {'; '.join(others[i])}" for i in range(shown) if others[i]]
+        loud = [str(self.name[i]) for i in range(shown) if len(others[i]) < len(several[i])]
+        if loud:
+            friction = f" with {100.0 * self.margin:.3g} % more friction" if self.margin else ""
+            cautions += [f"no dose that was tried makes it quiet{friction}: {', '.join(loud)}"]
         said = [self.assumption] if self.assumption else []
         return "\n".join([self.without(), *lines, "", *cautions, *said])
 
@@ -114,7 +124,7 @@ def silence(
     candidates: Sequence[Candidate] | None = None,
     margin: float = 0.1,
     *,
-    samples: int = 2048,
+    samples: int | None = None,
     seed: int = 0,
     push: float = PUSH,
 ) -> Remedies:
@@ -127,7 +137,8 @@ def silence(
     candidates : None takes `candidates_for`: each parameter, absorbers, dampers, masses, springs, shims, asymmetry,
         dither, velocity feedback, active force control, combinations of two
     margin : by which friction may rise without squeal
-    samples, seed : of the lot, the same for every candidate; absorbers scatter in their tuning by 3 % besides
+    samples, seed : of the lot, the same for every candidate; absorbers scatter in their tuning by 3 % besides. None
+        takes 2048 brakes, fewer of more than 20 degrees of freedom, which take longer; the summary says so
     push : [m/s] velocity of the push along the worst mode after which the motion is followed; 0 follows none
 
     >>> from squealbox import Coulomb, ModeCoupling
@@ -143,6 +154,8 @@ def silence(
     scatter = usual_scatter(brake) if scatter is None else scatter
     if not isinstance(scatter, Scatter):
         raise ParameterError("silence", "scatter", scatter, "a Scatter of the brake's parameters")
+    fewer = samples is None and _lot(brake) < LOT
+    samples = _lot(brake) if samples is None else samples
     lot = scatter.sample(samples, seed=seed)
     tuning = 1.0 + TUNING * np.random.default_rng(seed + 1).standard_normal(samples)
     worse = more_friction(brake, 1.0 + margin)
@@ -168,8 +181,13 @@ def silence(
         **columns, values=tuple(row["values"] for row in rows), before=_share(brake, lot),
         growth_before=float(growth_of(brake)), amplitude_before=_pushed(brake, brake, push), margin=margin,
         inputs={"system": brake}, settings={"samples": samples, "seed": seed, "push": push}, outcome=outcome,
-        assumption=ASSUMED if assumed else "",
+        assumption="\n".join([ASSUMED] * assumed + [FEWER.format(samples, 50.0 * Z / np.sqrt(samples))] * fewer),
     )  # fmt: skip
+
+
+def _lot(brake: Design) -> int:
+    """Brakes in the lot of a brake of n degrees of freedom: the fewer the larger, as a spectrum costs n^2 to n^3."""
+    return max(LEAST_LOT, int(LOT * min(1.0, (SMALL / brake.system().size) ** 2)))
 
 
 def _row(each: Candidate, brake: Design, margin: float, lot: Any, tuning: Any, push: float) -> dict[str, Any]:
@@ -179,9 +197,7 @@ def _row(each: Candidate, brake: Design, margin: float, lot: Any, tuning: Any, p
     share = _share_cured(each, cured, brake, lot, tuning)
     cautions = [*each.cautions, *_said(cured, brake)]
     if not reached:
-        cautions.insert(
-            0, f"no dose up to {float(np.abs(each.doses[-1])):.4g} {each.unit} makes it quiet at the margin"
-        )
+        cautions.insert(0, f"{NO_DOSE} {_told(float(np.abs(each.doses[-1])), each.unit)} makes it quiet at the margin")
     if growth <= 0.0 and share > HALF:
         cautions.insert(0, f"stable as drawn, and yet {100.0 * share:.0f} % of the lot squeals")
     return {
@@ -191,6 +207,11 @@ def _row(each: Candidate, brake: Design, margin: float, lot: Any, tuning: Any, p
         "caution": "; ".join(cautions), "line": each.line(dose),
         "values": {} if each.values is None else each.values(dose),
     }  # fmt: skip
+
+
+def _told(dose: float, unit: str) -> str:
+    """A dose as a reader writes it: angles in degrees, pure numbers without a unit."""
+    return f"{np.rad2deg(dose):.4g} deg" if unit == "rad" else f"{dose:.4g} {unit.strip('-')}".strip()
 
 
 def _dose(each: Candidate, margin: float) -> tuple[float, bool]:

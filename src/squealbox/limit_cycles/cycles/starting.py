@@ -19,6 +19,8 @@ GUESS_RTOL = 1e-9
 UNBOUNDED = 1e100  # [m, m/s]; squares of what is below it are still numbers
 LONG_STEPS = 2_000_000  # of the run that is to settle
 STIFF = "one period of the slowest mode takes too many steps: damping, or what is held, is far faster than it"
+DYING = 0.05  # share of the sliding speed; a swing below it that falls goes on falling where sliding is stable
+FALLS = 0.98  # by which a swing falls at least over two thirds of a run that dies down
 STILL = 1e-5  # share of the sliding speed; a run that swings less has settled on steady sliding
 
 
@@ -64,6 +66,11 @@ def first_return(field: Autonomous, x: Any, period: float) -> tuple[Any, float, 
     fastest = max(float(np.max(np.abs(field.V), initial=0.0)), 1e-300)
     if not np.any(run.mode == 0) and np.max(np.ptp(run.qd, axis=0)) <= STILL * fastest:
         return x, period, Outcome("steady_sliding", "the run settles on steady sliding, not on a cycle")
+    if (swing := _dying(field, run) / fastest) < DYING:
+        message = (
+            f"the run dies down to steady sliding: it swings by {100.0 * swing:.2g} % of the sliding speed, and falls"
+        )
+        return x, period, Outcome("steady_sliding", message)
     begin = _fast_slip(run)
     section = np.concatenate([run.qd[begin], np.diff(run.qd[begin : begin + 2], axis=0)[0]]) / size**2
     beside = (states - states[begin]) @ section
@@ -79,6 +86,15 @@ def first_return(field: Autonomous, x: Any, period: float) -> tuple[Any, float, 
     if not crossing:
         return x, period, Outcome("no_cycle", "the motion does not return: a longer `settle` may help")
     return states[begin], found, Outcome(COMPLETED)
+
+
+def _dying(field: Autonomous, run: Trajectory) -> float:
+    """Swing [m/s] at the end of a run that slides all along, swings less and less, and whose sliding is stable."""
+    if np.any(run.mode != run.mode[0]) or np.any(run.mode == 0):
+        return np.inf
+    early, late = (float(np.max(np.ptp(part, axis=0))) for part in np.array_split(run.qd, 3)[::2])
+    stable = late < FALLS * early and bool(np.all(complex_modes(field.asked).stable))
+    return late if stable else np.inf
 
 
 def _inside_a_stick(run: Trajectory) -> bool:
