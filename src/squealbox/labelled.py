@@ -69,10 +69,7 @@ class Labelled(NamedTuple):
             file.dimensions = self.sizes
             for name, (dims, values, about) in self.everything.items():
                 put(file, name, dims, np.asarray(values), about)
-            aside = [name for name, each in self.coordinates.items() if (name,) != each.dims]
-            more = {"coordinates": " ".join(aside)} if aside else {}
-            for name, text in {**self.attributes, **more}.items():
-                file.attrs[name] = text
+            put_attributes(file, {name: each.dims for name, each in self.coordinates.items()}, self.attributes)
 
 
 def about(unit: str, meaning: str) -> dict[str, str]:
@@ -90,6 +87,16 @@ def put(file: "h5netcdf.File", name: str, dims: tuple[str, ...], values: Any, ab
     target = created(file, name, dims, values.dtype, about)
     if values.size:
         target[...] = encoded
+
+
+def put_attributes(
+    file: "h5netcdf.File", coordinates: Mapping[str, tuple[str, ...]], attributes: Mapping[str, str]
+) -> None:
+    """Write the attributes of an open file, with the coordinates (name to dimensions) that are no dimension's own."""
+    aside = [name for name, dims in coordinates.items() if (name,) != dims]
+    more = {"coordinates": " ".join(aside)} if aside else {}
+    for name, text in {**attributes, **more}.items():
+        file.attrs[name] = text
 
 
 def created(

@@ -14,6 +14,7 @@ import numpy as np
 from squealbox.calibration.mode_tables import ModeTable
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals import SignalError, dominant_frequency, growth_rate, sound_level
+from squealbox.signals.events import BELOW
 from squealbox.system import as_system
 
 ROWS, UNITS = ("frequency", "growth rate", "level"), ("Hz", "1/s")  # the level has the unit of the recording
@@ -78,7 +79,7 @@ def compare(simulated: Any, events: Any, *, event: int | None = None, dof: int |
     index = int(np.argmax(events.level)) if event is None else event
     if not 0 <= index < events.count:
         raise SignalError(f"event = {event}: expected one of {events.count} events")
-    notes = [note for note in events.settings.get("notes", ()) if "below the band" in note]
+    notes = [note for note in events.settings.get("notes", ()) if BELOW in note]
     model = _said(simulated, dof, notes)
     measured = [float(events.frequency[index]), float(events.growth_rate[index]), float(events.level[index])]
     errors = [float(events.frequency_error[index]), float(events.growth_error[index]), np.nan]

@@ -64,7 +64,8 @@ def simulate(
         folder(out, "verdict", "motion", "energy")
     with Progress("simulating (the first run compiles the engine)"):
         motion = run(system, settings)
-    text, judged = _judged(motion)
+    with Progress("judging"):
+        text, judged = _judged(motion)
     paths: list[Path] = []
     if out is not None:
         with Progress("drawing"):

@@ -29,6 +29,7 @@ FRAME = 0.043  # s
 CHANCE = 1e-3  # that noise passes the threshold in a line of a frame
 SURE = 1e-5  # and the threshold of the mean over the frames of an event
 BENEATH = 0.5  # of the lower end of the band: as far down a louder tone is looked for
+BELOW = "stands below the band"
 HARMONIC = 0.01  # by which an event may miss a multiple of it
 STEADY = 0.02  # lines an event may wander and still have one frequency
 MOST_TOLD = 10.0  # events a second whose samples are looked at, so that no recording takes for ever
@@ -224,9 +225,7 @@ def _beneath(
     whole = sorted({round(each) for each in times if abs(each - round(each)) < HARMONIC * each})
     of = f", of which the event at {whole[0] * tone['frequency']:.0f} Hz is harmonic {whole[0]}" if whole else ""
     louder = "a louder tone" if events else "a tone"
-    return [
-        f"{louder} stands below the band, at {tone['frequency']:.0f} Hz{of}: a band from {BENEATH * low:g} Hz holds it"
-    ]
+    return [f"{louder} {BELOW}, at {tone['frequency']:.0f} Hz{of}: a band from {BENEATH * low:g} Hz holds it"]
 
 
 def _level_unit(unit: str) -> str:

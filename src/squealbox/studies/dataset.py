@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.labelled import about, created, in_bytes, put, stored
+from squealbox.labelled import about, created, in_bytes, put, put_attributes, stored
 from squealbox.parameters import to_plain
 from squealbox.result import COMPLETED, Outcome
 from squealbox.studies.block import NOT_RUN, Block, missing
@@ -85,10 +85,7 @@ def write_file(path: Path, plan: Layout, blocks: Iterable[Block]) -> None:
                     target[index] = stored(values.reshape(*shape, *values.shape[1:]))
         for start, stop in plan.gaps:
             _leave_open(plan, targets, ended, start, stop)
-        aside = [name for name, c in frame.coordinates.items() if name != c.dim]
-        more = {"coordinates": " ".join(aside)} if aside else {}
-        for name, value in {**attributes_of(plan), **more}.items():
-            file.attrs[name] = value
+        put_attributes(file, {name: (c.dim,) for name, c in frame.coordinates.items()}, attributes_of(plan))
 
 
 def _within(plan: Layout, blocks: Iterable[Block]) -> Iterator[Block]:

@@ -123,16 +123,17 @@ def force_releases(p, mode, s, which):
     """
     sense = 1 if s.force[which] > 0.0 else -1
     least = 1.0 - (1e-6 if s.spare[0] else 1e-9)
-    nothing = max(UNPRESSED * p.static[which] * s.normal[which], RISES)
+    nothing = UNPRESSED * p.static[which] * s.normal[which]
     for c in range(p.contacts):
         limit = p.static[c] * s.normal[c]
+        held = p.static[c] <= RISES or (s.spare[0] != 0 and limit <= nothing)
         if p.rigid[c] and mode[c] != OPEN and s.idle[c] != 0:  # friction alone kept it from lifting off
             mode[c] = OPEN
             s.at_zero[c] = 0
             s.forced[c] = OPEN
-        elif c == which or (mode[c] == STICK and abs(s.force[c]) >= limit * least and limit > nothing):
+        elif c == which or (mode[c] == STICK and abs(s.force[c]) >= limit * least and not held):
             s.forced[c] = 1 if s.force[c] > 0.0 else -1
-        elif mode[c] == STICK and limit <= nothing and p.g[c, which] != 0.0:
+        elif mode[c] == STICK and held and p.g[c, which] != 0.0:
             s.forced[c] = sense if p.g[c, which] > 0.0 else -sense
 
 

@@ -128,7 +128,6 @@ def weigh(p, s, count):
         s.weight[a] = limit
         most = max(most, limit)
     for a in range(count):
-        c = s.row_contact[a]
         size = column_size(s, a, count)
         if s.row_kind[a] == NORMAL:
             s.weight[a] = FLOORS_FIRST * most if most > 0.0 else 1.0

@@ -6,10 +6,11 @@ import numpy as np
 
 from squealbox.schedules import Schedule
 from squealbox.system import Contact, System
+from squealbox.transient._motion import OPEN, STICK
+from squealbox.transient._sharing import RISES
 from squealbox.transient.rows import rows_of
 
-STICK, OPEN = 0, 2  # modes, as in `_motion`
-RISES, TINY, CLEAR = 1e-100, 1e-300, 1e-9  # static limit of what never sticks; stands for zero; more than round-off
+TINY, CLEAR = 1e-300, 1e-9  # stands for zero; more than round-off
 PARALLEL = 1e-12  # share of a row by which it may leave the direction of another
 
 

@@ -57,8 +57,7 @@ class Attractor:
             return self.kind
         sizes = ", ".join(f"{a:.4g}" for a in self.amplitude)
         if self.kind in (CYCLE, UNSTABLE) and self.cycle is not None:
-            kind = "stable cycle" if self.kind == CYCLE else UNSTABLE
-            return f"{kind}, amplitude {sizes} m, {self.cycle.frequency:.6g} Hz"
+            return f"{self.cycle.stability} cycle, amplitude {sizes} m, {self.cycle.frequency:.6g} Hz"
         return f"{self.kind}, amplitude {sizes} m, maxima at {self.frequency:.5g} Hz"
 
 

@@ -82,6 +82,7 @@ class EventText(EquationText):
                 self.put(f"near = minimum({self.row('tolerance')}, 1e-9 * (abs({self.row(f'phi{j}')}) + abs(left{j})))")
                 sure += f" | (landing & (abs(value{j}) <= 4.0 * abs(gap) + near))"
             self.put(f"clear = clear & ({sure})")
+        # a contact let go a little too early would stick again at once: the margin of one that sticks is reached closer
         self.put(f"reach = minimum({self.reach!r} * rtol_, 1e-3) * (1.0 - 0.999 * held)")
         self.put("mended = (abs(gap) <= -1.0 * reach * pace) & (t_ + 1.01 * hh < t_end_)")
         self.put(f"close = mended | (abs(gap) <= {self.row('tolerance')})")
