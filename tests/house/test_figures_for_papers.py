@@ -112,6 +112,18 @@ def test_a_law_that_hardly_falls_is_not_drawn_on_the_frame(law):
     assert top > 1.05 * law.mu(0.0)
 
 
+def test_numbers_stay_on_the_paper_and_parameters_have_their_unit():
+    figure = EXAMPLES["Boundary"]().plot()
+    style.drawn(figure, dots=120)  # where ticks are thinned, and others come to the end of the axis
+    figure.set_dpi(120)
+    panel, renderer = figure.axes[0], FigureCanvasAgg(figure).get_renderer()
+    low, high = panel.get_xlim()
+    shown = [label for at, label in zip(panel.get_xticks(), panel.get_xticklabels(), strict=True) if low <= at <= high]
+    assert max(label.get_window_extent(renderer).x1 for label in shown) <= figure.bbox.x1
+    curve = EXAMPLES["PointCurve"]().plot().axes[0]
+    assert (curve.get_xlabel(), curve.get_ylabel()) == ("friction.static [-]", "k1 [N/m]")
+
+
 def test_branches_that_lie_decades_apart_share_a_logarithmic_axis():
     from squealbox.plots.cycles import _floor
 

@@ -319,10 +319,11 @@ def drawn(figure: "Figure", kind: str = "png", dots: float | None = None, *, tri
     return stream.getvalue()
 
 
-def _spread_ticks(figure: "Figure") -> None:
-    """Fewer ticks on every axis whose numbers would run into each other."""
+def _spread_ticks(figure: "Figure") -> bool:
+    """Fewer ticks on every axis whose numbers would run into each other; whether that changed any."""
     from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
+    changed = False
     for panel in figure.axes:
         for axis, side in ((panel.xaxis, 0), (panel.yaxis, 1)):
             locator = axis.get_major_locator()
@@ -331,9 +332,12 @@ def _spread_ticks(figure: "Figure") -> None:
                     if not _crowded(axis, side, 0.04 * figure.dpi):
                         break
                     locator.set_params(nbins=bins)
+                    changed = True
             formatter = axis.get_major_formatter()
-            if isinstance(formatter, ScalarFormatter) and formatter.get_offset():
+            if isinstance(formatter, ScalarFormatter) and formatter.get_offset() and not formatter.get_useMathText():
                 formatter.set_useMathText(True)  # a power of ten is set as one, plain numbers are not
+                changed = True
+    return changed
 
 
 def _crowded(axis: Any, side: int, gap: float) -> bool:
@@ -360,7 +364,8 @@ def laid_out(figure: "Figure", dots: float | None) -> Iterator[None]:
     before, finest = figure.dpi, rcParams["savefig.dpi"]
     figure.set_dpi(dots or (before if finest == "figure" else finest))
     engine.execute(figure)
-    _spread_ticks(figure)  # along axes as long as the layout leaves them
+    if _spread_ticks(figure):  # along axes as long as the layout leaves them; other numbers need other room
+        engine.execute(figure)
     figure.set_dpi(before)
     figure.set_layout_engine(None)  # with "none" a placeholder stays, and each file is drawn twice
     try:

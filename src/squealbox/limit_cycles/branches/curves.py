@@ -26,7 +26,7 @@ from squealbox.limit_cycles.branches.hopf import (
 )
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.starting import steady_state
-from squealbox.parameters import ParameterError
+from squealbox.parameters import DataSheet, ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.system import System, as_system
 
@@ -88,10 +88,10 @@ def hopf_curve(design: Any, bounds: Bounds, *, value: float | None = None, point
     middle = 0.5 * (bottom + top) if value is None else float(value)
     born = hopf_point(lambda a: make(a, middle), names[0], (low, high))
     if not born.outcome.ok:
-        return curve_of([], lambda *_: (0.0, 0.0), names, "hopf", born.outcome)
+        return curve_of(design, [], lambda *_: (0.0, 0.0), names, "hopf", born.outcome)
     extended = _Hopf(make, born)
     walks = both_ways(extended.residual, extended.start, middle, bounds, extended.scale(high - low), points)
-    return curve_of(walks, extended.describe, names, "hopf", ending(walks))
+    return curve_of(design, walks, extended.describe, names, "hopf", ending(walks))
 
 
 class _Hopf:
@@ -162,12 +162,14 @@ def ending(walks: list[Any]) -> Outcome:
     return Outcome(message="; ".join(outcome.message for _, outcome in walks))
 
 
-def curve_of(walks: list[Any], describe: Any, names: tuple[str, str], kind: str, outcome: Outcome) -> PointCurve:
-    """The result of the walks."""
+def curve_of(
+    design: Any, walks: list[Any], describe: Any, names: tuple[str, str], kind: str, outcome: Outcome
+) -> PointCurve:
+    """The result of the walks; a design is kept, since it knows the units of its parameters."""
     line = [at for i, (kept, _) in enumerate(walks) for at in (kept[:0:-1] if i == 0 and len(walks) > 1 else kept)]
     about = np.array([describe(at.x, at.p) for at in line]).reshape(-1, 2)
     return PointCurve(
-        outcome=outcome, x=np.array([at.x[-1] for at in line]), y=np.array([at.p for at in line]),
-        frequency=about[:, 0], residual=np.array([at.residual for at in line]), lyapunov=about[:, 1],
-        parameters=names, kind=kind,
+        inputs={"system": design} if isinstance(design, DataSheet) else {}, outcome=outcome,
+        x=np.array([at.x[-1] for at in line]), y=np.array([at.p for at in line]), frequency=about[:, 0],
+        residual=np.array([at.residual for at in line]), lyapunov=about[:, 1], parameters=names, kind=kind,
     )  # fmt: skip

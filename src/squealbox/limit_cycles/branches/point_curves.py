@@ -60,7 +60,7 @@ def point_curve(design: Any, bounds: Bounds, point: BranchPoint, value: float, *
     walks = both_ways(
         extended.residual, extended.start, float(value), bounds, extended.scale, points, extended.jacobian
     )
-    return curve_of(walks, extended.describe, names, point.kind, ending(walks))
+    return curve_of(design, walks, extended.describe, names, point.kind, ending(walks))
 
 
 class _Special:
