@@ -45,14 +45,15 @@ def test_a_reader_that_leaves_early_is_no_error():
 
 def test_ctrl_c_keeps_what_was_reached(tmp_path):
     assert main(["init", str(tmp_path)]) == 0
+    assert main(["simulate", str(tmp_path / "brake.toml"), "--duration", "1 ms"]) == 0  # compiles the engine
     words = [*COMMAND, "simulate", str(tmp_path / "brake.toml"), "--out", str(tmp_path / "out"), "--duration", "1e4 s"]
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        # The folder is made when the file has been understood; the engine may be compiled for some seconds after that.
-        for _ in range(600):
-            time.sleep(0.1)
+        # The folder is made when the file has been understood; then it runs for seconds to its largest number of steps.
+        for _ in range(1200):
+            time.sleep(0.05)
             if (tmp_path / "out").exists():
                 break
-        time.sleep(3.0)
+        time.sleep(0.5)
         process.send_signal(signal.SIGINT)
         _, err = process.communicate(timeout=120)
     assert process.returncode == 130, err

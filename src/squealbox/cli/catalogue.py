@@ -30,7 +30,9 @@ def _overview() -> Iterator[str]:
         "schedules, in place of a number", {n: _first_line(sheet) for n, sheet in SCHEDULE_NAMES.items()}
     )
     methods = {name: make().title for name, make in TABLEAUX.items()}
-    yield from _section("methods (method = ...)", methods | {TAYLOR: "the motion's own series, for exact contact"})
+    usual = {"usual": f"{TAYLOR} where the equation has a series, else dormand-prince-8"}
+    methods = usual | methods | {TAYLOR: "the motion's own series, for exact contact"}
+    yield from _section("methods (method = ...)", methods)
     schemes = {"exact": "stick, slip and lift-off by events", "raw": "plain sgn(v)"}
     yield from _section("contact (contact = ...)", schemes | {"smooth, tanh": "sgn(v) smoothed over `width`"})
     yield from _section("papers (squealbox paper ...)", _papers())

@@ -45,7 +45,7 @@ def simulate(
     start
         rest (loads applied suddenly) or sliding
     method
-        Runge-Kutta pair; squealbox list names them
+        usual (the Taylor series where the equation has one), or one that squealbox list names
     contact
         exact (stick, slip and lift-off by events), raw (plain sgn), smooth or tanh
     changes

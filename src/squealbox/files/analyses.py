@@ -36,7 +36,10 @@ class Simulate(DataSheet):
     start: str = choice("rest", "sliding", default="rest", meaning="where it starts: at zero, or in steady sliding")
     q: Vector = parameter("m", default=None, optional=True, meaning="displacement added at the start; left out, none")
     qd: Vector = parameter("m/s", default=None, optional=True, meaning="velocity at the start; left out, zero")
-    method: str = choice(*TABLEAUX, TAYLOR, default="dormand-prince-8", meaning="Runge-Kutta pair, or series")
+    method: str = choice(
+        "usual", TAYLOR, *TABLEAUX, default="usual",
+        meaning="usual: the Taylor series where the equation has one, else dormand-prince-8; or a method by name",
+    )  # fmt: skip
     rtol: float | None = parameter("-", 1e-14, 0.1, default=None, optional=True, meaning="left out, the method's own")
     contact: str = choice(*SCHEMES, default="exact", meaning="events (exact), plain sgn (raw) or a smoothed sgn")
     width: float = parameter("m/s", 0.0, low_open=True, default=1e-3, meaning="speed over which sgn is smoothed")

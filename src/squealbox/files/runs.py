@@ -59,7 +59,7 @@ def run(system: System, settings: Simulate, *, points: Any = None) -> Trajectory
         settings.duration,
         start=start_of(system, settings),
         times=int(settings.points) if points is None else points,
-        method=settings.method,
+        method=None if settings.method == "usual" else settings.method,
         contact=settings.contact,
         rtol=settings.rtol,
         width=settings.width,
