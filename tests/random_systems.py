@@ -16,6 +16,18 @@ from squealbox import (
     schedules,
 )
 
+FAMILIES, FAMILY = 1000, 25  # from this seed on so many follow each other that share their code and differ in numbers
+
+
+class Draws:
+    """Draws of one system: what it is made of is the same in a family, every size is its own."""
+
+    def __init__(self, key, seed):
+        sizes = np.random.default_rng([key, seed])
+        kinds = sizes if seed < FAMILIES else np.random.default_rng([key, seed - seed % FAMILY])
+        self.integers, self.random, self.choice = kinds.integers, kinds.random, kinds.choice
+        self.uniform, self.standard_normal = sizes.uniform, sizes.standard_normal
+
 
 def random_law(rng):
     """Any of the laws with a formula."""
@@ -45,7 +57,7 @@ def random_normal(rng):
 
 def random_system(seed, freedoms=2):
     """A system of up to `freedoms` freedoms and as many contacts and one more, its start and a duration [s]."""
-    rng = np.random.default_rng([20261128, seed])
+    rng = Draws(20261128, seed)
     n = int(rng.integers(1, freedoms + 1))
     frame = np.linalg.qr(rng.standard_normal((n, n)))[0]
     stiffness = frame @ np.diag(rng.uniform(0.5, 8.0, n)) @ frame.T
@@ -98,7 +110,7 @@ def wide_system(seed, rooms=ROOMS):
 
     Returns the system, its start, a duration [s] and words for what is in it.
     """
-    rng = np.random.default_rng([20261129, seed])
+    rng = Draws(20261129, seed)
     n, m = rooms[rng.integers(len(rooms))]
     frame = np.linalg.qr(rng.standard_normal((n, n)))[0]
     stiffness = frame @ np.diag(rng.uniform(0.5, 8.0, n)) @ frame.T

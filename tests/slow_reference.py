@@ -300,6 +300,7 @@ class Slow:
     def run(self, duration, q, v):
         """q, v, and the events (time, contact, mode) of the whole run."""
         t, y, events = 0.0, np.concatenate([np.asarray(q, float), np.asarray(v, float)]), []
+        before = -np.inf  # the event before the last: intervals that shrink are followed as they do
         kinks = [duration]
         for value in scheduled(self.system):
             kinks += [b for b in value.breaks() if 0.0 < b < duration] if hasattr(value, "breaks") else []
@@ -312,6 +313,7 @@ class Slow:
                 if np.any(self.rigid):
                     y, landed = self.land(t, y)
                 chosen = self.choose(t, y, end)
+                self.last, before = before, t
                 if t > 0.0:
                     events += [(t, c, chosen[c]) for c in range(self.m) if chosen[c] != self.modes[c] or c in landed]
                 self.modes = chosen
@@ -333,7 +335,7 @@ class Slow:
 
             places = PLACES
             if first:  # what has just changed starts at zero
-                soon = min(1e-4 * self.step, 0.1 * self.flight(a, dense(a), modes))
+                soon = min(1e-4 * self.step, 0.1 * self.flight(a, dense(a), modes), 0.01 * max(a - self.last, 1e-9))
                 places = np.concatenate([[min(soon / h, 0.5)], PLACES[1:]])
                 first = False
             table = np.array([values(x) for x in places])
