@@ -76,6 +76,28 @@ def random_system(seed, freedoms=2):
     return system, (rng.uniform(-1.0, 1.0, n), rng.uniform(-0.5, 0.5, n)), 6.0
 
 
+def squealing_system(seed):
+    """Up to three freedoms, hardly damped, on belts whose friction falls with speed: many of them squeal."""
+    rng = np.random.default_rng([5, seed])
+    n, contacts = int(rng.integers(1, 4)), []
+    count = int(rng.integers(1, 3))
+    frame = np.linalg.qr(rng.standard_normal((n, n)))[0]
+    stiffness = frame @ np.diag(rng.uniform(0.5, 6.0, n)) @ frame.T
+    for _ in range(count):
+        row, static = rng.standard_normal(n), rng.uniform(0.2, 0.6)
+        kinetic = static * rng.uniform(0.4, 0.95)
+        laws = (
+            Stribeck(static, kinetic, rng.uniform(0.1, 0.6)), Hyperbolic(static, rng.uniform(0.1, 1.5)),
+            LinearSlope(static, -rng.uniform(0.02, 0.2), 0.05), Cubic(static, kinetic, rng.uniform(2.0, 4.0)),
+            Coulomb(static),
+        )  # fmt: skip
+        sensed = rng.uniform(-1.0, 1.0, n) * rng.choice([0.0, 1.0])
+        pressed, speed = rng.uniform(0.5, 2.0), rng.uniform(0.1, 1.0)
+        contacts.append(Contact(sensed, row, row, pressed, speed, laws[rng.integers(5)]))
+    mass = np.diag(rng.uniform(0.5, 2.0, n))
+    return System(mass, stiffness * rng.uniform(0.0, 0.03), stiffness, rng.uniform(-0.3, 0.3, n), tuple(contacts))
+
+
 def any_law(rng):
     """Any law at all: falling, rising, through measured points, rising from zero, none."""
     if rng.random() < 0.5:

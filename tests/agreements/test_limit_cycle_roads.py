@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from random_systems import squealing_system
 from small_systems import block_on_belt, drum, two_blocks_on_belt
 from squealbox import Hyperbolic, harmonic_balance, shooting, simulate
 
@@ -10,6 +11,8 @@ SMOOTHED = {
     "belt": (lambda: block_on_belt(Hyperbolic(1.0, 3.0), 0.2), 0.1),
     "consistent": (lambda: drum(0.45), 0.2),
     "eq3": (lambda: drum(0.6, "eq3"), 0.3),
+    "three freedoms": (lambda: squealing_system(3), 0.1),
+    "two contacts": (lambda: squealing_system(9), 0.1),
 }
 
 

@@ -32,6 +32,8 @@ LARGEST = 512  # harmonics; beyond this a smoothed cycle is better found by shoo
 ABSENT = 1e-9  # of the largest harmonic: Newton's method leaves less than its tolerance
 FAILURES = 4  # doublings in a row without convergence after which the search ends
 ADVICE = "give a start nearer to the cycle, more harmonics, or a wider smoothing; or use shooting"
+STICKS = "a contact reverses or sticks on this cycle: use a smoothed contact, or shooting"
+CLOSED = 1e-2  # of its size, by which a motion of one period that is taken for the cycle itself may fail to close
 Guess: TypeAlias = "Callable[[Grid], Any]"
 
 
@@ -117,12 +119,25 @@ def _guess(field: Field, x: Any, period: float, found: Outcome) -> tuple[Guess, 
         if run is not None:
             message = f"the first period ended early: {run.outcome.message}"
             found = Outcome("no_convergence", message, history=[], advice=ADVICE)
+    elif field.contact == "exact" and _closes(run) and _reverses(field, run.mode):
+        found = Outcome("sticking", STICKS, history=[], advice=ADVICE)
+    if run is None or not found.ok:
         return lambda grid: grid.series(np.tile(x[: field.size], (grid.samples, 1))), found
 
     def along(grid: Grid) -> Any:
         return grid.series(fly(field, x, period, 1e-9, np.linspace(0.0, period, grid.samples + 1)).q[: grid.samples])
 
     return along, found
+
+
+def _closes(run: Any) -> bool:
+    """Whether a motion of one period is the cycle, to what a first guess knows."""
+    return bool(np.all(np.abs(run.q[-1] - run.q[0]) <= CLOSED * max(float(np.max(np.ptp(run.q, axis=0))), 1e-300)))
+
+
+def _reverses(field: Field, modes: Any) -> bool:
+    """Whether a contact sticks, or slips against its belt, in any of the modes (k, m)."""
+    return bool(np.any((modes == 0) | (modes == np.where(field.V >= 0.0, -1, 1))))
 
 
 def _refined(balance: "Balance", guess: Guess, period: float, tolerance: float, most: int) -> tuple[Any, ...]:
@@ -284,8 +299,7 @@ class Balance:
             return Outcome("steady_sliding", "the series shrank to steady sliding, not a cycle", history=history)
         reverses = np.any(self.field.contact_state(states)[1] * self.modes(states) < 0.0)
         if self.field.contact == "exact" and reverses:
-            message = "a contact reverses or sticks on this cycle: use a smoothed contact, or shooting"
-            return Outcome("sticking", message, history=history, advice=ADVICE)
+            return Outcome("sticking", STICKS, history=history, advice=ADVICE)
         return Outcome(COMPLETED, "", history=history)
 
     def turned(self, coefficients: Any) -> tuple[Any, int]:
