@@ -14,7 +14,7 @@ from slow_reference import slow
 from squealbox import simulate
 from squealbox.system import InvalidSystem
 
-SEEDS = (0, 4, 8, 10, 11, 40, 46)
+SEEDS = (0, 4, 8, 10, 11, 40, 46, 1188)
 WIDE = (2, 4, 11, 16, 30, 44)  # of one and two freedoms or with a rigid contact, whose code is compiled soon
 BEGIN = FAMILIES + FAMILY * int(os.environ.get("SQUEALBOX_FUZZ_FROM", "0"))
 LONG = range(BEGIN, BEGIN + int(os.environ.get("SQUEALBOX_FUZZ", "0")) // 2)

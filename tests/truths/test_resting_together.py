@@ -376,3 +376,24 @@ def test_what_sticks_below_its_limit_is_not_let_go_by_a_reversal_elsewhere(stati
     assert motion.event_time == pytest.approx(one.event_time, abs=1e-9)
     many = simulate_ensemble(system, duration=2.5 * np.pi, start=([0.0, 2.0], [0.0, start]), method=method)
     assert (many.ended, many.events) == ("completed", len(one.event_time))
+
+
+@pytest.mark.parametrize("method", ROADS[:2])
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_block_that_turns_back_takes_its_plate_along(order, method):
+    """A plate on a floor (0.2 N), pulled by -0.15 N, under a block that slides forward and is pulled back by 0.9 N.
+
+    The block drags the plate with 0.3 N, and the floor holds 0.15 N, until it stops at 1 s. Then it pulls the plate off
+    the floor. A block that slips back, y'' = -0.6 and x'' = -0.25 m/s^2, is as consistent as one that sticks and takes
+    the plate along, both -0.425 m/s^2 by 0.475 of 0.6 N. To slip it would first have to overcome 0.6 N: it sticks.
+    """
+    plate = Contact([0.0, 0.0], [1.0, 0.0], [1.0, 0.0], 1.0, 0.0, Coulomb(0.2))
+    block = Contact([0.0, 0.0], [1.0, -1.0], [1.0, -1.0], 1.0, 0.0, Coulomb(0.6, 0.3))
+    system = System(np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), [-0.15, -0.9], (plate, block)[::order])
+    start = [0.0, 0.0], [0.0, 1.2]
+    motion = simulate(system, 2.0, start, method=method)
+    assert motion.outcome == "completed"
+    assert motion.q[-1] == pytest.approx([-0.2125, 0.6 - 0.2125], abs=1e-9)
+    assert motion.friction_force[-1][::order] == pytest.approx([0.2, -0.475], abs=1e-9)
+    many = simulate_ensemble(system, duration=2.0, start=start, method=method)
+    assert many.q == pytest.approx([-0.2125, 0.6 - 0.2125], abs=1e-9)

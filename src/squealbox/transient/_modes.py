@@ -241,17 +241,49 @@ def decide(p, t, y, mode, s):
     One complementarity problem in all of them, solved by principal pivoting from all sticking, in the end by Murty's
     least index; when static exceeds kinetic friction it may cycle, and then all combinations are tried, sticking first.
     """
+    guess_modes(p, y, mode, s)
+    if not pivoted(p, t, y, mode, s):
+        return enumerate_modes(p, t, y, mode, s)
+    if caught(p, y, mode, s) and not pivoted(p, t, y, mode, s):
+        guess_modes(p, y, mode, s)
+        pivoted(p, t, y, mode, s)
+    return not pulled_while_held(p, y, mode, s)
+
+
+def guess_modes(p, y, mode, s):
+    """The modes from which the pivoting begins."""
     for c in range(p.contacts):
         if s.at_zero[c] or s.touch[c]:
             mode[c] = first_guess(p, c, y, mode, s)
+
+
+def pivoted(p, t, y, mode, s):
+    """Change modes one by one until no contact wants another; False when that does not end."""
     for turn in range(20 + 10 * p.contacts * p.contacts):
         if not derivative(p, t, y, mode, s, s.dy):
-            return enumerate_modes(p, t, y, mode, s)  # contacts on one motion whose speeds part, or rigid ones
+            return False  # contacts on one motion whose speeds part, or rigid ones
         if s.spare[0] and overloaded(p, mode, s):
             even_out(p, t, y, mode, s)
         if not change_one(p, y, mode, s, turn < 4 * p.contacts):
-            return not pulled_while_held(p, y, mode, s)
-    return enumerate_modes(p, t, y, mode, s)
+            return True
+    return False
+
+
+def caught(p, y, mode, s):
+    """Let those that came to rest stick again where one that stuck until now was let go all the same.
+
+    They were let go first, so that it might stay; where it does not, they come to rest as if it had slipped before.
+    """
+    lost = False
+    for c in range(p.contacts):
+        lost = lost or (s.old[c] == STICK and s.forced[c] == 0 and mode[c] != STICK and mode[c] != OPEN)
+    found = False
+    for c in range(p.contacts):
+        new = lost and s.at_zero[c] != 0 and s.old[c] != STICK and s.forced[c] == 0 and mode[c] != OPEN
+        if new and mode[c] != STICK and s.normal[c] > normal_noise(p, c, y, s):
+            mode[c] = STICK
+            found = True
+    return found
 
 
 def change_one(p, y, mode, s, by_load):
