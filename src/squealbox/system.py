@@ -189,11 +189,11 @@ class System(DataSheet):
         return tuple((law, tuple(contacts)) for law, contacts in found.items())
 
 
-def as_system(design_or_system: Any, *, linear: bool = False) -> System:
+def as_system(design_or_system: Any, *, linear: bool = False, plane: bool = False) -> System:
     """The system itself, or what a design's ``system()`` makes.
 
-    A `linear` analysis, about steady sliding, takes sparse matrices and contacts that slide in a plane; any other gets
-    an `InvalidSystem` that says why it does not.
+    A `linear` analysis, about steady sliding, takes sparse matrices and contacts that slide in a plane, a motion that
+    knows the `plane` takes these; any other gets an `InvalidSystem` that says why it does not.
     """
     system = _system_of(design_or_system)
     if linear:
@@ -204,10 +204,10 @@ def as_system(design_or_system: Any, *, linear: bool = False) -> System:
             "reduce(brake, band=(f1, f2)) makes a small brake that keeps the contacts"
         )
     for i, contact in enumerate(system.contacts):
-        if contact.across is not None:
+        if contact.across is not None and not plane:
             raise InvalidSystem(
-                f"contacts[{i}].across is given: friction in a plane is only known linearised about steady sliding; "
-                "across=None leaves the cross direction out of a motion"
+                f'contacts[{i}].across is given: friction in a plane moves by simulate(..., contact="time-stepping"); '
+                "across=None leaves the cross direction out of any other motion"
             )
     return system
 

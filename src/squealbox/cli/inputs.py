@@ -44,10 +44,12 @@ def small(found: DesignFile, *axes: Axis) -> DesignFile:
 
 
 def in_motion(found: DesignFile, *axes: Axis) -> DesignFile:
-    """As :func:`small`, for motions in time: friction across the sliding direction is left out, and that is said."""
+    """As :func:`small`, for motions in time: most leave out friction across the sliding direction, and that is said."""
     from squealbox.files.reduced import ONE_WAY
 
     made = small(found, *axes)
+    if found.simulate is not None and found.simulate.contact == "time-stepping":
+        return made
     if isinstance(made.design, ReducedBrake) and made.design.reduction.arrays["across"] is not None:
         print(ONE_WAY)
         return dataclasses.replace(made, design=made.design.sliding_one_way())

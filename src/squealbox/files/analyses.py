@@ -18,7 +18,7 @@ from squealbox.files.numbers import WRONG, read_number, wrong
 from squealbox.files.sheets import field_type, read_sheet
 from squealbox.parameters import DataSheet, Parameter, ParameterError, choice, known_names, parameter
 from squealbox.transient.methods import TABLEAUX, TAYLOR
-from squealbox.transient.simulate import SCHEMES
+from squealbox.transient.simulate import SCHEMES, TIME_STEPPING
 
 
 class Modes(DataSheet):
@@ -41,7 +41,10 @@ class Simulate(DataSheet):
         meaning="usual: the Taylor series where the equation has one, else dormand-prince-8; or a method by name",
     )  # fmt: skip
     rtol: float | None = parameter("-", 1e-14, 0.1, default=None, optional=True, meaning="left out, the method's own")
-    contact: str = choice(*SCHEMES, default="exact", meaning="events (exact), plain sgn (raw) or a smoothed sgn")
+    contact: str = choice(
+        *SCHEMES, TIME_STEPPING, default="exact",
+        meaning="events (exact), plain sgn (raw), a smoothed sgn, or fixed steps, which know sliding in a plane",
+    )  # fmt: skip
     width: float = parameter("m/s", 0.0, low_open=True, default=1e-3, meaning="speed over which sgn is smoothed")
     begin: float = parameter("s", default=0.0, meaning="instant at which the schedules begin")
     points: int = parameter("-", 2, 1_000_000, default=5001, meaning="number of instants kept")

@@ -38,7 +38,9 @@ if TYPE_CHECKING:
 REDUCED = "reduced"
 KEYS = ("file", "friction", "values")
 RARE = 1e-6  # share of a distribution without bounds that is left out at either end
-ONE_WAY = "Motions leave out friction across the sliding direction, which only damps."
+ONE_WAY = (
+    'Motions leave out friction across the sliding direction, which only damps; contact = "time-stepping" keeps it.'
+)
 MISSING = 'give [reduce] band = ["500 Hz", "10 kHz"] in the file, or the band of [modes]'
 
 

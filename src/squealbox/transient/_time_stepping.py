@@ -7,6 +7,12 @@ With the midpoint qm = q + h/2 u the step solves, for the velocities u' at its e
 where Sgn is the set-valued sign, so a sticking contact needs no rule of its own. The impulses P are found by projected
 Gauss-Seidel on u' itself: every contact touches only the degrees of freedom it acts on, so a sweep costs time
 proportional to the number of contacts. Explicit in K: the step must stay below 2/omega_max.
+
+A contact that slides in a plane has a relative velocity w = (V - t . u', -a . u') and impulses P on d and a:
+
+    |P| <= h mu N,    P = h mu N w/|w| where it slips, w = 0 where it sticks
+
+so the direction of slip is part of the state; P is projected on the disc, and mu is taken at |w|.
 Source: Moreau 1988, Unilateral contact and dry friction in finite freedom dynamics; Studer 2009, Numerics of Unilateral
 Contacts and Friction, chapter 4.
 """
@@ -15,6 +21,8 @@ Contacts and Friction, chapter 4.
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
 import numpy as np
+
+STUCK = 1e-9  # share of the limit by which the pair of a sticking contact is below it; round-off of a projection
 
 
 def signal_value(z, i, t):
@@ -56,7 +64,10 @@ def time_stepping(z, q, u, start, h, steps, sweeps, tolerance, rows, work):
             along = 0.0
             for k in range(z.d_start[c], z.d_start[c + 1]):
                 along += z.d_value[k] * 0.5 * (u[z.d_column[k]] + z.u_new[z.d_column[k]])
-            work[c] += z.impulse[c] * along
+            aside = 0.0
+            for k in range(z.a_start[c], z.a_start[c + 1]):
+                aside += z.a_value[k] * 0.5 * (u[z.a_column[k]] + z.u_new[z.a_column[k]])
+            work[c] += z.impulse[c] * along + z.side[c] * aside
         for i in range(n):
             q[i] = z.q_mid[i] + 0.5 * h * z.u_new[i]
             u[i] = z.u_new[i]
@@ -67,6 +78,22 @@ def time_stepping(z, q, u, start, h, steps, sweeps, tolerance, rows, work):
     return steps, worst_sweeps, worst_change
 
 
+def speed_of(z, u, t, c):
+    """Relative velocity of contact c along its sliding direction, V - t . u."""
+    speed = signal_value(z, c, t)
+    for k in range(z.t_start[c], z.t_start[c + 1]):
+        speed -= z.t_value[k] * u[z.t_column[k]]
+    return speed
+
+
+def speed_aside(z, u, c):
+    """Relative velocity of contact c across its sliding direction, -a . u."""
+    speed = 0.0
+    for k in range(z.a_start[c], z.a_start[c + 1]):
+        speed -= z.a_value[k] * u[z.a_column[k]]
+    return speed
+
+
 def set_limits(z, u, t, h):
     """Largest friction impulse of each contact in the step, and the reaction an open contact must give back."""
     m = z.limit.shape[0]
@@ -74,17 +101,16 @@ def set_limits(z, u, t, h):
         normal = signal_value(z, m + c, t + 0.5 * h)
         for k in range(z.n_start[c], z.n_start[c + 1]):
             normal += z.n_value[k] * z.q_mid[z.n_column[k]]
-        speed = signal_value(z, c, t)
-        for k in range(z.t_start[c], z.t_start[c + 1]):
-            speed -= z.t_value[k] * u[z.t_column[k]]
+        speed = np.hypot(speed_of(z, u, t, c), speed_aside(z, u, c))
         if z.unilateral[c] != 0 and normal <= 0.0:
             for k in range(z.mw_start[c], z.mw_start[c + 1]):
                 z.u_new[z.mw_column[k]] += h * z.mw_value[k] * normal
             normal = 0.0
-        stuck = abs(z.impulse[c]) < z.limit[c]
-        mu = z.static[c] if stuck else law_mu(z.law_kind[c], abs(speed), z.law_coefficients[c])
+        stuck = np.hypot(z.impulse[c], z.side[c]) < z.limit[c] * (1.0 - STUCK)
+        mu = z.static[c] if stuck else law_mu(z.law_kind[c], speed, z.law_coefficients[c])
         z.limit[c] = h * mu * normal
         z.impulse[c] = 0.0
+        z.side[c] = 0.0
 
 
 def sweep(z, t, sweeps, tolerance):
@@ -94,10 +120,11 @@ def sweep(z, t, sweeps, tolerance):
     for number in range(sweeps):
         change = 0.0
         for c in range(m):
-            speed = signal_value(z, c, t)
-            for k in range(z.t_start[c], z.t_start[c + 1]):
-                speed -= z.t_value[k] * z.u_new[z.t_column[k]]
+            speed = speed_of(z, z.u_new, t, c)
             limit = z.limit[c]
+            if z.a_start[c] != z.a_start[c + 1]:
+                change = max(change, turn(z, c, speed) / max(abs(limit), 1e-300))
+                continue
             wanted = z.impulse[c] + speed / z.mobility[c]
             new = min(max(wanted, -limit), limit) if limit >= 0.0 else limit * np.sign(speed)
             delta = new - z.impulse[c]
@@ -109,6 +136,32 @@ def sweep(z, t, sweeps, tolerance):
         if change <= tolerance:
             return number + 1, change
     return sweeps, change
+
+
+def turn(z, c, speed):
+    """The pair of impulses of a contact that slides in a plane, once; returns the size of its change."""
+    aside = speed_aside(z, z.u_new, c)
+    limit = z.limit[c]
+    along = z.impulse[c] + z.hold[c, 0] * speed + z.hold[c, 1] * aside
+    across = z.side[c] + z.hold[c, 2] * speed + z.hold[c, 3] * aside
+    if limit < 0.0:  # pulled: as in a line, a force along the slip, of the other sign
+        size = max(np.hypot(speed, aside), 1e-300)
+        along = limit * speed / size
+        across = limit * aside / size
+    elif np.hypot(along, across) > limit:
+        along = z.impulse[c] + z.reach[c] * speed
+        across = z.side[c] + z.reach[c] * aside
+        share = min(limit / max(np.hypot(along, across), 1e-300), 1.0)
+        along *= share
+        across *= share
+    more, aslant = along - z.impulse[c], across - z.side[c]
+    z.impulse[c] = along
+    z.side[c] = across
+    for k in range(z.md_start[c], z.md_start[c + 1]):
+        z.u_new[z.md_column[k]] += z.md_value[k] * more
+    for k in range(z.ma_start[c], z.ma_start[c + 1]):
+        z.u_new[z.ma_column[k]] += z.ma_value[k] * aslant
+    return np.hypot(more, aslant)
 
 
 def write_impact_row(z, q, u, t, h, work, row):
@@ -123,10 +176,7 @@ def write_impact_row(z, q, u, t, h, work, row):
         normal = signal_value(z, m + c, t)
         for k in range(z.n_start[c], z.n_start[c + 1]):
             normal += z.n_value[k] * q[z.n_column[k]]
-        speed = signal_value(z, c, t)
-        for k in range(z.t_start[c], z.t_start[c + 1]):
-            speed -= z.t_value[k] * u[z.t_column[k]]
         row[1 + 2 * n + c] = normal
-        row[1 + 2 * n + m + c] = speed
+        row[1 + 2 * n + m + c] = speed_of(z, u, t, c)
         row[1 + 2 * n + 2 * m + c] = z.impulse[c] / h if h > 0.0 else 0.0
         row[1 + 2 * n + 3 * m + c] = work[c]

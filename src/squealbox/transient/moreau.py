@@ -12,6 +12,7 @@ from squealbox.system import InvalidSystem, System
 from squealbox.transient import packing
 from squealbox.transient.methods import Method
 from squealbox.transient.own_laws import own_texts
+from squealbox.transient.packing import inverse_mass
 from squealbox.transient.trajectory import OPEN, Trajectory
 
 SWEEPS = 2000
@@ -42,7 +43,15 @@ class Stepping(NamedTuple):
     mw_start: Any
     mw_column: Any
     mw_value: Any
+    a_start: Any
+    a_column: Any
+    a_value: Any
+    ma_start: Any
+    ma_column: Any
+    ma_value: Any
     mobility: Any
+    hold: Any
+    reach: Any
     unilateral: Any
     static: Any
     law_kind: Any
@@ -55,6 +64,7 @@ class Stepping(NamedTuple):
     u_new: Any
     limit: Any
     impulse: Any
+    side: Any
 
 
 def time_stepping(
@@ -84,6 +94,7 @@ def time_stepping(
     n, m = system.size, len(system.contacts)
     rows = np.zeros((steps + 1, 1 + 2 * n + 4 * m))
     z = _stepping(system, problem)
+    z.limit[_at_rest(system, qd, start_time)] = np.inf  # as if each had stuck in a step before
     done, sweeps, change = time_stepping_kernel(own=own_texts(system.contacts))(
         z, q.copy(), qd.copy(), start_time, h, steps, SWEEPS, TOLERANCE, rows, np.zeros(m)
     )
@@ -101,8 +112,11 @@ def _stepping(system: System, problem: Any) -> Stepping:
     n, m = system.size, len(system.contacts)
     fields: dict[str, Any] = {}
     matrices = {"mk": (n, n), "mc": (n, n), "n": (m, n), "t": (m, n), "d": (m, n), "md": (m, n), "mw": (m, n)}
-    for name, (rows, columns) in matrices.items():
-        sparse = csr_array(problem[name][:rows, :columns])
+    across = np.zeros((m, n)) if system.across is None else system.across
+    ma = across @ inverse_mass(system.M).T
+    given = {name: problem[name][:rows, :columns] for name, (rows, columns) in matrices.items()}
+    for name, matrix in (given | {"a": across, "ma": ma}).items():
+        sparse = csr_array(matrix)
         fields[f"{name}_start"] = sparse.indptr.astype(np.int64)
         fields[f"{name}_column"] = sparse.indices.astype(np.int64)
         fields[f"{name}_value"] = sparse.data.copy()
@@ -111,13 +125,38 @@ def _stepping(system: System, problem: Any) -> Stepping:
         raise InvalidSystem(
             "time stepping needs t . M^-1 d > 0 for every contact: its friction must act against its slip"
         )
+    fields["hold"], fields["reach"] = _mobilities(problem["t"][:m, :n], across, problem["md"][:m, :n], ma)
     for name in ("unilateral", "static", "law_kind", "law_coefficients"):
         fields[name] = problem[name][:m].copy()
     for name in ("signal_start", "term_weight", "term_kind", "term_coefficients"):
         fields[name] = problem[name].copy()
     return Stepping(
-        **fields, mobility=mobility, q_mid=np.zeros(n), u_new=np.zeros(n), limit=np.zeros(m), impulse=np.zeros(m)
-    )
+        **fields, mobility=mobility, q_mid=np.zeros(n), u_new=np.zeros(n), limit=np.zeros(m), impulse=np.zeros(m),
+        side=np.zeros(m),
+    )  # fmt: skip
+
+
+def _at_rest(system: System, qd: Any, time: float) -> Any:
+    """Which contacts have no relative velocity, to round-off, shape (m,)."""
+    table = np.array([c.t for c in system.contacts]).reshape(-1, system.size)
+    belts = np.array([float(value_at(c.V, time)) for c in system.contacts])
+    sizes = np.abs(belts) + np.abs(table) @ np.abs(qd)
+    aside = np.zeros(len(belts)) if system.across is None else system.across @ qd
+    return np.hypot(belts - table @ qd, aside) <= 1e-12 * sizes
+
+
+def _mobilities(t: Any, a: Any, md: Any, ma: Any) -> tuple[Any, Any]:
+    """Of contacts in a plane: the inverse of what their velocities gain by their impulses, as rows, and a bound."""
+    blocks = np.moveaxis(np.array([[np.sum(x * y, axis=1) for y in (md, ma)] for x in (t, a)]), -1, 0)
+    hold, reach = np.zeros((len(t), 4)), np.zeros(len(t))
+    for c in np.flatnonzero(np.any(a, axis=1)):
+        values = np.linalg.eigvalsh(0.5 * (blocks[c] + blocks[c].T))
+        if not values[0] > 0.0:
+            raise InvalidSystem(
+                f"contacts[{c}]: time stepping needs friction that acts against every direction of its slip"
+            )
+        hold[c], reach[c] = np.linalg.inv(blocks[c]).ravel(), 1.0 / values[-1]
+    return hold, reach
 
 
 def _outcome(done: int, steps: int, h: float, sweeps: int, change: float) -> Outcome:
@@ -143,7 +182,9 @@ def _trajectory(
         _integral(power_dissipated(system, qd), instants),
         _integral(_power_of_opening(system, instants, q, qd), instants),
     ]
-    sticking = np.abs(speed) <= 1e-9 * np.max(np.abs(speed), initial=1e-300)
+    aside = 0.0 if system.across is None else qd @ system.across.T
+    slip = np.hypot(speed, aside)
+    sticking = slip <= 1e-9 * np.max(slip, initial=1e-300)
     mode = np.where(opens, OPEN, np.where(sticking, 0, np.sign(speed))).astype(np.int8)
     changed = np.argwhere(np.diff(mode, axis=0) != 0)
     events = (instants[changed[:, 0] + 1], changed[:, 1], mode[changed[:, 0] + 1, changed[:, 1]])

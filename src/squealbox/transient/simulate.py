@@ -93,7 +93,8 @@ def simulate(
         tolerances; None takes "taylor" wherever the equation has a series, else "dormand-prince-8", also where the
         series ends at an instant: `caution` and `settings` then say so
     contact : "exact" (stick, slip and lift-off by events), "raw" (plain sgn), "smooth" = "arctan"
-        ((2/pi) arctan(v/width)), "tanh" (tanh(v/width)) or "time-stepping" (Moreau, fixed step, for many contacts)
+        ((2/pi) arctan(v/width)), "tanh" (tanh(v/width)) or "time-stepping" (Moreau, fixed step, for many contacts and
+        for contacts that slide in a plane)
     rtol, atol : override those of `method`
     width : [m/s] of the smoothed sgn
     step : [s] of time stepping; None takes 1/400 of the shortest period. The other schemes choose their steps.
@@ -115,12 +116,13 @@ def simulate(
     """
     if contact not in (*SCHEMES, TIME_STEPPING):
         raise ParameterError("simulate", "contact", contact, known_names(str(contact), [*SCHEMES, TIME_STEPPING]))
-    late = LATE.of(design_or_system, (), lambda: pieces.late_loops(as_system(design_or_system)))
+    plane = contact == TIME_STEPPING
+    late = LATE.of(design_or_system, plane, lambda: pieces.late_loops(as_system(design_or_system, plane=plane)))
     if late is not None:
         one = partial(simulate, method=method, contact=contact, rtol=rtol, atol=atol, width=width)
         asked = _times(times, start_time, duration)
         return pieces.motion_of(late, start, start_time, duration, asked, one, contact, progress)
-    system = system_of(design_or_system)
+    system = system_of(design_or_system, plane=plane)
     chosen = chosen_method(method or usual_method(system, contact), rtol, atol)
     requested = _times(times, start_time, duration)
     if contact != "exact":
@@ -129,7 +131,7 @@ def simulate(
     q, qd = _start(base_of(system), start, start_time)
     _check_gaps(base_of(system), q)
     q, qd = start_of(system, q, qd, z, isinstance(start, str) and start == "sliding", start_time)
-    if contact == TIME_STEPPING:
+    if plane:
         return moreau.time_stepping(system, duration, q, qd, start_time, requested, step)
     instead: dict[str, str] = {}
     if chosen.tableau == TAYLOR:
@@ -153,9 +155,9 @@ def simulate(
 SYSTEMS, LATE = Latest(16), Latest(16)
 
 
-def system_of(design_or_system: Any) -> System:
-    """The system in time of a design."""
-    found: System = SYSTEMS.of(design_or_system, (), lambda: in_time(as_system(design_or_system)))
+def system_of(design_or_system: Any, *, plane: bool = False) -> System:
+    """The system in time of a design; one that slides in a `plane` where the motion knows it."""
+    found: System = SYSTEMS.of(design_or_system, plane, lambda: in_time(as_system(design_or_system, plane=plane)))
     return found
 
 

@@ -92,6 +92,16 @@ class Trajectory(Result):
         return system
 
     @property
+    def slip_direction(self) -> Any:
+        """Angle [rad] of the relative velocity (V - t.q', -a.q') of each contact, shape (k, contacts).
+
+        0 or pi where a contact slides in one direction only; NaN while it sticks or is open.
+        """
+        across = self.system.across
+        aside = np.zeros_like(self.sliding_velocity) if across is None else -self.qd @ across.T
+        return np.where(np.abs(self.mode) == 1, np.arctan2(aside, self.sliding_velocity), np.nan)
+
+    @property
     def energy(self) -> EnergyAudit:
         """The energy audit from the start to each instant of `t`."""
         stored = mechanical_energy(self.system, self.q, self.qd)
