@@ -137,6 +137,7 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
     "CriticalValue": lambda: stability.critical_value(drum(), FRICTION, RANGE),
     "CriticalValues": lambda: stability.critical_values(drum(), FRICTION, RANGE),
     "ModeEnergy": lambda: stability.mode_energy(drum()),
+    "LocalSensitivity": lambda: stability.local_sensitivity(drum(), stability.complex_modes(drum()).most_unstable),
     "Sensitivity": lambda: stability.sensitivity(drum()),
     "TrackedModes": lambda: stability.tracked_modes(drum(), FRICTION, np.linspace(0.1, 0.4, 5)),
     "StabilityMap": lambda: stability.stability_map(

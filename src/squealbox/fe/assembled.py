@@ -129,6 +129,20 @@ class AssembledBrake(Design):
         """The structure without friction."""
         return self.structure.read() if isinstance(self.structure, StructureFiles) else self.structure
 
+    def node_rows(self) -> tuple[Any, Any]:
+        """Node of each freedom, shape (n,), 0 for rotations and freedoms of no node; its place [m], (n, 3), or NaN."""
+        structure = self.exported()
+        places = np.full((structure.size, 3), np.nan)
+        if structure.labels is None:
+            return np.zeros(structure.size, dtype=int), places
+        moves = (structure.labels[:, 0] > 0) & (structure.labels[:, 1] >= 1) & (structure.labels[:, 1] <= 3)
+        numbers = np.where(moves, structure.labels[:, 0], 0)
+        if structure.nodes is not None:
+            known = dict(zip(structure.nodes.numbers.tolist(), structure.nodes.places, strict=True))
+            for row, node in enumerate(numbers.tolist()):
+                places[row] = known.get(node, places[row])
+        return numbers, places
+
     def system(self) -> System:
         """The sparse system; `InvalidSystem` where files or pairs do not fit."""
         try:

@@ -112,6 +112,14 @@ class MeshedBrake(Design):
         contact = rows.T @ sparse.diags_array(self.value_of("contact_stiffness") * made.area[touching]) @ rows
         return {**found, "springs": (nothing, sparse.csr_array(springs)), "contact": (nothing, contact)}
 
+    def node_rows(self) -> tuple[Any, Any]:
+        """Number from 1 of the node, shape (n,), and place [m], shape (n, 3), that each freedom belongs to."""
+        made = self.structure()
+        places = np.concatenate([body.places[:3] for body in made.bodies], axis=1).T[made.kept]
+        body = np.repeat(np.arange(len(made.bodies)), [body.size for body in made.bodies])[made.kept]
+        apart = np.round(np.column_stack([body, places]), 9)  # bodies that touch do not share their nodes
+        return np.unique(apart, axis=0, return_inverse=True)[1].ravel() + 1, places
+
     def system(self) -> System:
         """M, C, K with every contact closed, what presses as load, and a unilateral contact at every point."""
         self.one_system()

@@ -52,6 +52,7 @@ from squealbox.plots.spectra import component_growth, loudness, spectrogram, spe
 from squealbox.plots.stability import (
     boundary_curves,
     eigenvalues,
+    local_sensitivity,
     mechanism_map,
     mode_energy,
     root_locus,
@@ -98,6 +99,7 @@ __all__ = [
     "friction_fit",
     "interval_bounds",
     "letters",
+    "local_sensitivity",
     "loop_locus",
     "loop_run",
     "loudness",

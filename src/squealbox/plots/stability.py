@@ -16,6 +16,7 @@ from squealbox.plots.style import LINES, drawing, figure_of, line, note, number,
 from squealbox.stability import (
     Boundary,
     ComplexModes,
+    LocalSensitivity,
     ModeEnergy,
     Sensitivity,
     StabilityMap,
@@ -158,6 +159,29 @@ def sensitivity(found: Sensitivity, *, most: int = 10, title: str = "", axes: An
     """Change of the growth rate for one per cent more of each parameter, the strongest first."""
     rows = [(name, 0.01 * value) for name, value in found.ranked()[:most]]
     return _bars(rows, "change of growth rate for +1 %", "1/s", title, axes)
+
+
+@drawn_by.register(LocalSensitivity)
+def local_sensitivity(found: LocalSensitivity, *, most: int = 10, title: str = "", axes: Any = None) -> "Figure":
+    """What a gram at each node does to the growth rate, where the nodes are; without nodes, on each freedom as bars."""
+    label = "change of growth rate for +1 g"
+    known = np.all(np.isfinite(found.place), axis=1)
+    if not np.any(known):
+        strongest = np.argsort(-np.abs(found.mass.real), kind="stable")[:most]
+        names = found.to_dataset()["dof"].values
+        return _bars([(str(names[i]), 1e-3 * float(found.mass[i].real)) for i in strongest], label, "1/s", title, axes)
+    change, places = 1e-3 * found.node_mass[known].real, found.place[known]
+    first, second = np.sort(np.argsort(-np.ptp(places, axis=0), kind="stable")[:2])
+    order = np.argsort(np.abs(change), kind="stable")  # what matters lies on top
+    top = float(np.max(np.abs(change)))
+    with drawing(axes, width=4.5, height=3.6) as panel:
+        x, y = places[order, first], places[order, second]
+        look = {"vmin": -top, "vmax": top, "cmap": "PuOr_r", "edgecolors": "#888888"}
+        dots = panel.scatter(1e3 * x, 1e3 * y, c=change[order], s=14.0, linewidths=0.2, **look)
+        figure_of(panel).colorbar(dots, ax=panel, pad=0.02).set_label(quantity_label(label, "1/s"))
+        panel.set(xlabel=quantity_label("xyz"[first], "mm"), ylabel=quantity_label("xyz"[second], "mm"), title=title)
+        panel.set_aspect("equal")
+        return figure_of(panel)
 
 
 @drawn_by.register(TransientGrowth)

@@ -9,6 +9,7 @@ from squealbox.stability.eigenvalues import ComplexModes, Mode, complex_modes
 from squealbox.stability.energy import ModeEnergy, mode_energy
 from squealbox.stability.exceptional import DampingSplit, ExceptionalPoints, damping_split, exceptional_points
 from squealbox.stability.indices import damping_ratio_from, indices, logarithmic_decrement, loss_factor, squeal_index
+from squealbox.stability.local_sensitivity import LocalSensitivity, local_sensitivity
 from squealbox.stability.maps import StabilityMap, stability_map
 from squealbox.stability.massless import FiniteSpectrum, finite_spectrum
 from squealbox.stability.mechanism import Mechanism, mechanism
@@ -28,6 +29,7 @@ __all__ = [
     "DampingSplit",
     "ExceptionalPoints",
     "FiniteSpectrum",
+    "LocalSensitivity",
     "Mechanism",
     "Mode",
     "ModeEnergy",
@@ -50,6 +52,7 @@ __all__ = [
     "finite_spectrum",
     "first_crossings",
     "indices",
+    "local_sensitivity",
     "logarithmic_decrement",
     "loss_factor",
     "map_boundary",

@@ -93,8 +93,7 @@ def simulate(
         tolerances; None takes "taylor" wherever the equation has a series, else "dormand-prince-8", also where the
         series ends at an instant: `caution` and `settings` then say so
     contact : "exact" (stick, slip and lift-off by events), "raw" (plain sgn), "smooth" = "arctan"
-        ((2/pi) arctan(v/width)), "tanh" (tanh(v/width)) or "time-stepping" (Moreau, fixed step, for many contacts and
-        for contacts that slide in a plane)
+        ((2/pi) arctan(v/width)), "tanh" (tanh(v/width)) or "time-stepping" (Moreau: many contacts, sliding in a plane)
     rtol, atol : override those of `method`
     width : [m/s] of the smoothed sgn
     step : [s] of time stepping; None takes 1/400 of the shortest period. The other schemes choose their steps.
@@ -397,6 +396,5 @@ def _check_gaps(system: System, q: Any) -> None:
             size = abs(contact.gap) + float(np.sum(np.abs(contact.normal * q)))
             gap = contact.gap - float(contact.normal @ q)
             if gap < -1e-12 * size:
-                raise ParameterError(
-                    "simulate", "start", q.tolist(), f"a gap >= 0 at rigid contact {i}, not {gap:.3g} m"
-                )
+                expected = f"a gap >= 0 at rigid contact {i + 1}, not {gap:.3g} m"
+                raise ParameterError("simulate", "start", q.tolist(), expected)
