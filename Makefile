@@ -24,6 +24,9 @@ CREATE  = $(PYTHON) -m venv $(VENV)
 INSTALL = $(BIN)/python -m pip install --quiet --disable-pip-version-check
 endif
 
+# Tests start some hundred processes: each would translate the sources anew where no compiled modules may be kept.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: help demo test lint floors types tests fuzz format docs picture bench fortran clean
 .DEFAULT_GOAL := help
 

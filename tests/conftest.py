@@ -8,6 +8,11 @@ import pytest
 
 os.environ.setdefault("MPLBACKEND", "Agg")
 
+# As the command line does, before NumPy is loaded: with a worker on every core, threads of the algebra wait in busy
+# loops for a core that another worker has, and eigenvalues take four to seven times as long. Processes inherit it.
+for library in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(library, "1")
+
 # A shell starts a job in the background deaf to Ctrl-C, and the processes tests start would inherit that.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -17,9 +17,9 @@ def drum(slope=-0.05, **changes):
 def test_sweeps_end_in_the_exact_cycles_and_in_sliding():
     """Down: on the stick-slip cycle that shooting finds; up and from rest: sliding. Negative twin: above the onset none
     of them rests."""
-    diagram = bifurcation_diagram(drum(), FRICTION, np.linspace(0.15, 0.36, 15))
+    diagram = bifurcation_diagram(drum(), FRICTION, np.linspace(0.15, 0.36, 8))
     up, down, rest = diagram.kind
-    i = 8
+    i = 4
     assert diagram.value[i] == pytest.approx(0.27)
     assert (up[i], down[i], rest[i]) == (1, 2, 1)
     assert diagram.coexist[i]
@@ -35,7 +35,7 @@ def test_sweeps_end_in_the_exact_cycles_and_in_sliding():
 def test_edges_of_the_region_by_runs_and_by_exact_cycles():
     """Lower edge: runs followed down, and the fold of exact cycles solved for. Upper: critical friction, Hopf curve."""
     bounds = {FRICTION: (0.05, 0.4), "load": (1000.0, 2000.0)}
-    region = coexistence(drum(), bounds, columns=8, rows=2, starts=8)
+    region = coexistence(drum(), bounds, columns=6, rows=2, starts=4)
     value, kind = cycle_ends(drum(), region)
     assert kind.tolist() == ["fold", "fold"]
     # the edge lies within the resolution above the end; seen twice as late, because what passes a fold lingers
@@ -55,8 +55,8 @@ def test_edges_of_the_region_by_runs_and_by_exact_cycles():
 def test_without_slope_only_load_over_speed_counts():
     """With constant friction the equation is linear in load and V together: twice the load is half the speed."""
     flat, friction = drum(slope=0.0), (0.05, 0.4)
-    by_load = coexistence(flat, {FRICTION: friction, "load": (1000.0, 2000.0)}, columns=3, rows=2, starts=8)
-    by_speed = coexistence(flat, {FRICTION: friction, "sliding_speed": (0.1, 0.2)}, columns=3, rows=2, starts=8)
+    by_load = coexistence(flat, {FRICTION: friction, "load": (1000.0, 2000.0)}, columns=3, rows=2, starts=4)
+    by_speed = coexistence(flat, {FRICTION: friction, "sliding_speed": (0.1, 0.2)}, columns=3, rows=2, starts=4)
     np.testing.assert_allclose(by_speed.onset[::-1], by_load.onset, rtol=1e-9)
     assert np.all(np.abs(by_speed.end[::-1] - by_load.end) <= 2.0 * by_load.resolution)
     assert abs(by_load.end[0] - by_load.end[1]) > 100.0 * by_load.resolution[0]  # and load alone does count

@@ -101,3 +101,17 @@ def test_what_needs_a_mass_for_each_freedom_says_so(ask):
     arguments = {"hopf_point": ("sliding_speed", (0.2, 0.3))}.get(ask, ())
     with pytest.raises(InvalidSystem, match=r"rows without mass.*shooting\(\)"):
         getattr(limit_cycles, ask)(brake, *arguments)
+
+
+def test_a_slow_mode_beside_fast_ones_is_not_taken_for_rigid():
+    """A damper that turns one motion's speed into the other's force: m^2 x^4 + m x^2 - 10 x - 1 = 0, with a root near
+    -0.1 beside three of 2e4. Without the spring there is a body at rest, and a zero."""
+    damping, stiffness = np.zeros((3, 3)), np.array([[0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    damping[0, 1] = 10.0
+    mass = np.diag([1e-6, 1e-6, 0.0])
+    values = complex_modes(System(M=mass, C=damping, K=stiffness)).eigenvalues
+    found = values[np.isfinite(values)]
+    expected = np.roots([1e-12, 0.0, 1e-6, -10.0, -1.0])
+    np.testing.assert_allclose(np.sort(found.real), np.sort(expected.real), rtol=1e-6)
+    free = complex_modes(System(M=mass, C=damping, K=np.diag([0.0, 1.0, 1.0])))
+    assert np.any(free.eigenvalues == 0.0)

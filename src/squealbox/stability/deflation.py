@@ -34,7 +34,8 @@ def special_modes(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, Any, An
     if found is None:
         return None
     left, right, embedding = found
-    values, states = _eigen(np.linalg.solve(left, right)) if len(left) else (np.zeros(0, complex), np.zeros((0, 0)))
+    empty = np.zeros(0, complex), np.zeros((0, 0))
+    values, states = _eigen(np.linalg.solve(left, right), _held(stiffness)) if len(left) else empty
     states = embedding @ states
     shapes = np.where(np.max(np.abs(states[:size]), axis=0, initial=0.0) > ZERO, states[:size], states[size:])
     lefts, condition = _lefts(m, c, k, values, shapes)
@@ -77,14 +78,22 @@ def _levels(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, float]:
     return 1.0 / np.sqrt(np.where(size > 0.0, size, 1.0)), rate
 
 
-def _eigen(matrix: Any) -> tuple[Any, Any]:
-    """Eigenvalues and vectors; zeros exact, with a basis of their invariant space for vectors."""
+def _held(stiffness: Any) -> bool:
+    """Whether springs hold every motion: then no eigenvalue is zero, however heavily something is damped."""
+    rows = np.max(np.abs(stiffness), axis=1, keepdims=True, initial=0.0)
+    if not np.all(rows > 0.0):
+        return False
+    return bool(np.linalg.svd(stiffness / rows, compute_uv=False)[-1] > ZERO)
+
+
+def _eigen(matrix: Any, held: bool) -> tuple[Any, Any]:
+    """Eigenvalues and vectors; zeros, which what is held has none of, exact, with a basis of their invariant space."""
     size = len(matrix)
     basis, zeros, rest = np.eye(size), 0, matrix
     while len(rest):
         _, sizes, v = np.linalg.svd(rest)
         regular = int(np.sum(sizes > ZERO * max(1.0, sizes[0])))
-        if regular == len(rest):
+        if held or regular == len(rest):
             break
         turned = np.vstack([v[regular:], v[:regular]]).T
         basis[:, zeros:] = basis[:, zeros:] @ turned

@@ -102,6 +102,9 @@ def head(
     return parts + _dispatcher("schedule_rate", [each.rate_formula for each in SCHEDULES], "t", schedules)
 
 
+_source = cache(inspect.getsource)
+
+
 def _no_creep(v: Any, z: Any, p: Any) -> Any:
     return 0.0 * v
 
@@ -121,7 +124,7 @@ def _dispatcher(
     """Each formula under a name of its own, and one function that chooses by kind."""
     parts = []
     lines = ["@inner", f"def {name}(kind, {argument}, p):"]
-    for i, formula in enumerate([*map(inspect.getsource, formulas), *(own or ())]):
+    for i, formula in enumerate([*map(_source, formulas), *(own or ())]):
         if kinds is not None and i not in kinds:
             continue
         text = re.sub(r"^def \w+", f"def {name}_{i}", formula, count=1)
@@ -134,13 +137,39 @@ def _dispatcher(
 def definitions(module: ModuleType, fixed: Mapping[str, float], entries: tuple[str, ...] = ENTRIES) -> list[str]:
     """Constants and functions of a plain module, in order, with their decorators."""
     parts = []
-    for node in ast.parse(inspect.getsource(module)).body:
-        if isinstance(node, ast.Assign):
-            parts.append(ast.unparse(node))
-        elif isinstance(node, ast.FunctionDef):
-            chosen = ast.unparse(_Fixed(fixed).visit(node))
-            parts.append(("@entry\n" if node.name in entries else "@inner\n") + chosen)
+    for i, (name, text, mentioned) in enumerate(_plain(module)):
+        if name:
+            given = tuple((each, type(fixed[each]), fixed[each]) for each in mentioned if each in fixed)
+            text = ("@entry\n" if name in entries else "@inner\n") + _chosen(module, i, given)
+        parts.append(text)
     return parts
+
+
+@cache
+def _plain(module: ModuleType) -> list[tuple[str, str, tuple[str, ...]]]:
+    """Of each constant and function of a module: its name ("" of a constant), its text, what can be fixed in it."""
+    source = inspect.getsource(module)
+    parts: list[tuple[str, str, tuple[str, ...]]] = []
+    lines = source.splitlines()
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.Assign):
+            parts.append(("", ast.unparse(node), ()))
+        elif isinstance(node, ast.FunctionDef):
+            inside = list(ast.walk(node))
+            names = {_dotted(each) for each in inside if isinstance(each, (ast.Name, ast.Attribute))}
+            names |= {f"{_dotted(each.value)}[]" for each in inside if isinstance(each, ast.Subscript)}
+            parts.append((node.name, "\n".join(lines[node.lineno - 1 : node.end_lineno]), tuple(sorted(names))))
+    return parts
+
+
+@cache
+def _chosen(module: ModuleType, index: int, given: tuple[tuple[str, type, float], ...]) -> str:
+    """A function with numbers for names. Kernels share most of theirs, and to write them takes longer than to load.
+
+    given : names, kinds (1 and True are one key, but two texts) and numbers
+    """
+    function = ast.parse(_plain(module)[index][1]).body[0]
+    return ast.unparse(_Fixed({name: value for name, _, value in given}).visit(function))
 
 
 class _Fixed(ast.NodeTransformer):

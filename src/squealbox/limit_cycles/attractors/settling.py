@@ -88,6 +88,11 @@ class Batch:
         return Batch(self.design, {name: value[which] for name, value in self.parameters.items()})
 
     @property
+    def held(self) -> "Batch":
+        """The same with its systems made, for many runs of them."""
+        return Batch(self.system, {})
+
+    @property
     def one(self) -> System:
         """Its first system, without leading axes."""
         return first_of(self.system)
@@ -210,7 +215,7 @@ def settle(
     seen = np.full((2, 2, count, n), np.nan)  # (low, high) of the last window and the one before
     tone, tops, arrived = np.full((count, n), np.nan), np.full((count, n, 8), np.nan), np.zeros(count, dtype=bool)
     nearer = np.zeros((len(known), count), dtype=int)
-    todo = np.flatnonzero(np.all(np.isfinite(q) & np.isfinite(qd), axis=-1))
+    todo, taken, part = np.flatnonzero(np.all(np.isfinite(q) & np.isfinite(qd), axis=-1)), -1, batch
     kind[np.setdiff1d(np.arange(count), todo)] = FAILED
     for stretch, window in itertools.product(range(stretches), range(WINDOWS)):
         if todo.size == 0:
@@ -218,7 +223,9 @@ def settle(
         if stretch and not window:  # the last two windows are one of the new width
             width, pair = 2.0 * width, seen[:, :, todo]
             seen[0, 0, todo], seen[0, 1, todo] = np.min(pair[:, 0], axis=0), np.max(pair[:, 1], axis=0)
-        run = batch.take(todo).run(q[todo], qd[todo], width, OBSERVERS, threads)
+        if todo.size != taken:
+            taken, part = todo.size, batch.take(todo).held
+        run = part.run(q[todo], qd[todo], width, OBSERVERS, threads)
         seen[1, :, todo] = seen[0, :, todo]
         seen[0, :, todo] = np.moveaxis(run["extent"], -1, 1)
         if window == WINDOWS - 1 or (often and (stretch or window >= UNSEEN)):

@@ -146,6 +146,7 @@ class Field(Autonomous):
         self.mw = np.array(normal).reshape(-1, self.size) @ inverse.T
         self.laws = [c.law for c in system.contacts]
         self.same = bool(self.laws) and all(law == self.laws[0] for law in self.laws)
+        self._holds: dict[tuple[int, ...], Any] = {}
 
     def state(self, q: Any, qd: Any, memory: Any = None) -> Any:
         return np.concatenate([q, qd])
@@ -203,20 +204,40 @@ class Field(Autonomous):
         return np.concatenate([qd, a + self.held(mode, a)])
 
     def rates(self, states: Any, mode: Any) -> Any:
-        """x' at states (k, 2n) in the modes (m,), shape (k, 2n)."""
+        """x' at states (k, 2n) in the modes (m,) or (k, m), shape (k, 2n)."""
         force, _, _, opened = self.forces(states, mode)
         q, qd = states[:, : self.size], states[:, self.size :]
         a = self.mf - q @ self.mk.T - qd @ self.mc.T + force @ self.md
         if np.any(opened):
             a = a + (self.contact_state(states)[0] * opened) @ self.mw
-        return np.hstack([qd, a + np.transpose(self.held(mode, a.T))])
+        for rows, hold in self._holding_rows(mode):
+            a[rows] -= a[rows] @ hold.T
+        return np.hstack([qd, a])
 
     def held(self, mode: Any, a: Any) -> Any:
         """What the sticking contacts add to accelerations a (n,) or to the columns of a matrix (n, k)."""
         stuck = self.sticking(mode)
-        if stuck.size == 0:
-            return 0.0
-        return self.md[stuck].T @ self._holding(stuck, a)
+        return -(self._hold(stuck) @ a) if stuck.size else 0.0
+
+    def _hold(self, stuck: Any) -> Any:
+        """M^-1 d G^-1 t' over the sticking contacts, shape (n, n); those that hold the same motion share."""
+        key = tuple(stuck)
+        if key not in self._holds:
+            t, md = self.t[stuck], self.md[stuck]
+            self._holds[key] = md.T @ np.linalg.pinv(t @ md.T, rcond=1e-12) @ t
+        return self._holds[key]
+
+    def _holding_rows(self, mode: Any) -> list[tuple[Any, Any]]:
+        """Which of the rows with modes (m,) or (k, m) stick alike, and what holds them."""
+        if self.contact != "exact":
+            return []
+        if np.ndim(mode) == 1:
+            alike = [(slice(None), self.sticking(mode))]
+        else:
+            kinds: dict[bytes, int] = {}
+            which = np.array([kinds.setdefault(row.tobytes(), len(kinds)) for row in np.equal(mode, 0)])
+            alike = [(which == i, np.flatnonzero(np.frombuffer(kind, bool))) for kind, i in kinds.items()]
+        return [(rows, self._hold(stuck)) for rows, stuck in alike if stuck.size]
 
     def sticking(self, mode: Any) -> Any:
         """Indices of the sticking contacts."""
@@ -234,7 +255,7 @@ class Field(Autonomous):
         return np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), free + self.held(mode, free)])
 
     def jacobians(self, states: Any, mode: Any) -> Any:
-        """df/dx at states (k, 2n) with modes (m,) or (k, m) that stick alike, shape (k, 2n, 2n)."""
+        """df/dx at states (k, 2n) with modes (m,) or (k, m), shape (k, 2n, 2n)."""
         n = self.size
         _, by_normal, by_speed, opened = self.forces(states, mode)
         out = np.zeros((len(states), 2 * n, 2 * n))
@@ -243,10 +264,8 @@ class Field(Autonomous):
         if np.any(opened):
             out[:, n:, :n] += np.einsum("...c,ci,cj->...ij", 1.0 * opened, self.mw, self.n)
         out[:, n:, n:] = -self.mc - np.einsum("...c,ci,cj->...ij", by_speed, self.md, self.t)
-        stuck = self.sticking(np.atleast_2d(mode)[0])
-        if stuck.size:
-            hold = self.md[stuck].T @ np.linalg.pinv(self.t[stuck] @ self.md[stuck].T) @ self.t[stuck]
-            out[:, n:] -= hold @ out[:, n:]
+        for rows, hold in self._holding_rows(mode):
+            out[rows, n:] -= hold @ out[rows, n:]
         return out
 
     def _free_jacobian(self, x: Any, mode: Any) -> tuple[Any, Any]:

@@ -42,11 +42,13 @@ def surface(field: Field, x: Any, before: Any, contact: int) -> tuple[float, flo
 
 
 def saltation(
-    field: Field, x: Any, before: Any, after: Any, beside: tuple[Field, Field, float] | None = None
-) -> tuple[Any, float, int]:
+    field: Field, x: Any, before: Any, after: Any, beside: tuple[Field, Field, float] | None = None,
+    rates: tuple[Any, Any] | None = None,
+) -> tuple[Any, float, int]:  # fmt: skip
     """S (2n, 2n) at state x between two sets of modes, the event's rate h_x.f- scaled by |h_x||f-|, and its contact.
 
     With `beside`, the fields at two values of a parameter and their distance, S is (2n + 1, 2n + 1), p its last state.
+    rates : x' before and after, where they are known.
     When contacts change together, the one whose own event function is nearest to zero is taken for the cause. A rate
     near zero means grazing: S then grows without bound.
     """
@@ -54,7 +56,7 @@ def saltation(
     surfaces = [surface(field, x, before, int(c)) for c in changed]
     cause = int(np.argmin([abs(value) / (size + 1e-300) for value, size, _ in surfaces]))
     gradient = surfaces[cause][2]
-    f_before, f_after = field.rate(x, before), field.rate(x, after)
+    f_before, f_after = rates or (field.rate(x, before), field.rate(x, after))
     rate = float(gradient @ f_before)
     size = float(np.linalg.norm(gradient / field.scale) * np.linalg.norm(field.scale * f_before))
     if beside is not None:

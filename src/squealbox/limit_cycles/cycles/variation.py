@@ -6,7 +6,7 @@ the last halving of the steps still changed of Phi, whichever is more, is kept a
 """
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -80,12 +80,7 @@ def flight(
         dt, matrices, rates = np.diff(times), field.jacobians(inside, mode), field.rates(inside, mode)
         phis.append(magnus(matrices[::2], matrices[1::2], dt, field.scale))
         paths.append(0.5 * dt @ (rates[::2] + rates[1::2]))
-    jumps, least, together = [], 1.0, False
-    for i, _ in pieces[1:]:
-        before, after = motion.mode[i], motion.mode[i + 1]
-        jump, rate, _ = saltation(field, states[i], before, after)
-        jumps.append(jump)
-        least, together = min(least, abs(rate)), together or int(np.sum(before != after)) > 1
+    jumps, least, together = jumps_of(field, states, motion.mode, rows[1:-1])
     coarse, fine = chained(phis[:half], jumps), chained(phis[half:], jumps)
     gone = [extrapolated(*each) for each in zip(paths[:half], paths[half:], strict=True)]
     missed = [states[k] - states[i] - way for (i, k), way in zip(pieces, gone, strict=True)]
@@ -112,36 +107,46 @@ def quick_flight(
     states, rows = np.hstack([motion.q, motion.qd]), smooth_rows(field, motion)
     counts = [max(8, int(np.ceil(steps * (motion.t[k] - motion.t[i]) / duration))) for i, k in itertools.pairwise(rows)]
     edges = [subdivided(motion.t[[i, k]], n) for i, k, n in zip(rows[:-1], rows[1:], counts, strict=True)]
-    inside = between(lambda times: fly(field, x, duration, rtol, times), edges)
-    size, least, scale = x.size, 1.0, field.scale
-    along = [field.jacobians(inner_, motion.mode[k]) for inner_, k in zip(inside, rows[1:], strict=True)]
+    inside = np.concatenate(between(lambda times: fly(field, x, duration, rtol, times), edges))
+    mode = np.repeat(motion.mode[rows[1:]], 2 * np.array(counts), axis=0)
+    size, scale, along = x.size, field.scale, field.jacobians(inside, mode)
     if beside is not None:
-        along, weight = _with_parameter(field, along, inside, motion.mode[rows[1:]], beside)
+        along, weight = _with_parameter(field, along, inside, mode, beside)
         scale = np.append(scale, weight)
-    jumps = []
-    for i in rows[1:-1]:
-        jump, rate, _ = saltation(field, states[i], motion.mode[i], motion.mode[i + 1], beside)
-        jumps.append(jump)
-        least = min(least, abs(rate))
-    parts = [magnus(a[::2], a[1::2], np.diff(own), scale) for a, own in zip(along, edges, strict=True)]
-    phi = chained(parts, jumps)
+    jumps, least, _ = jumps_of(field, states, motion.mode, rows[1:-1], beside)
+    ratio = scale[:, None] / scale
+    dt = np.concatenate([np.diff(each) for each in edges])
+    factors = _factors(along[::2] * ratio, along[1::2] * ratio, dt)
+    if jumps:
+        factors = np.insert(factors, np.cumsum(counts)[:-1], np.array(jumps) * ratio, axis=0)
+    phi = _product(factors) / ratio
     by_p = None if beside is None else phi[:size, size]
     return Flight(states[-1], field.rate(states[-1], motion.mode[-1]), phi[:size, :size], motion, 0.0, least,
                   by_p=by_p)  # fmt: skip
 
 
+def jumps_of(
+    field: Field, states: Any, mode: Any, events: Sequence[int], beside: tuple[Field, Field, float] | None = None
+) -> tuple[list[Any], float, bool]:
+    """Saltation matrices at rows of a motion, the least |rate| of an event, whether contacts change together."""
+    if not events:
+        return [], 1.0, False
+    at, after = np.array(events), np.array(events) + 1
+    rates = zip(field.rates(states[at], mode[at]), field.rates(states[at], mode[after]), strict=True)
+    found = [saltation(field, states[i], mode[i], mode[i + 1], beside, both) for i, both in zip(at, rates, strict=True)]
+    together = bool(np.any(np.sum(mode[at] != mode[after], axis=-1) > 1))
+    return [jump for jump, _, _ in found], min(1.0, *(abs(rate) for _, rate, _ in found)), together
+
+
 def _with_parameter(
-    field: Field, along: list[Any], inside: list[Any], modes: Any, beside: tuple[Field, Field, float]
-) -> tuple[list[Any], float]:
-    """df/d(x, p) of each piece, (k, 2n + 1, 2n + 1), and what p is multiplied by to weigh as the others do."""
+    field: Field, by_x: Any, states: Any, mode: Any, beside: tuple[Field, Field, float]
+) -> tuple[Any, float]:
+    """df/d(x, p), (k, 2n + 1, 2n + 1), and what p is multiplied by to weigh as the others do."""
     low, high, distance = beside
-    full, largest = [], 0.0
-    for by_x, states, mode in zip(along, inside, modes, strict=True):
-        by_p = (high.rates(states, mode) - low.rates(states, mode)) / distance
-        full.append(np.pad(by_x, ((0, 0), (0, 1), (0, 1))))
-        full[-1][:, :-1, -1] = by_p
-        largest = max(largest, float(np.max(np.abs(by_p) * field.scale)))
-    return full, largest / (field.frequency or 1.0) or 1.0
+    by_p = (high.rates(states, mode) - low.rates(states, mode)) / distance
+    full = np.pad(by_x, ((0, 0), (0, 1), (0, 1)))
+    full[:, :-1, -1] = by_p
+    return full, float(np.max(np.abs(by_p) * field.scale)) / (field.frequency or 1.0) or 1.0
 
 
 def smooth_rows(field: Field, motion: Trajectory) -> list[int]:
@@ -193,13 +198,22 @@ def magnus(a: Any, b: Any, dt: Any, scale: Any) -> Any:
     exp(dt (a + b)/2 + sqrt(3) dt^2 [b, a]/12), Iserles and Norsett 1999, Phil. Trans. R. Soc. A 357, 983-1019.
     """
     ratio = scale[:, None] / scale
-    a, b, dt = a * ratio, b * ratio, np.reshape(dt, (-1, 1, 1))
-    factors = _exponential(0.5 * dt * (a + b) + np.sqrt(3.0) / 12.0 * dt**2 * (b @ a - a @ b))
+    return _product(_factors(a * ratio, b * ratio, dt)) / ratio
+
+
+def _factors(a: Any, b: Any, dt: Any) -> Any:
+    """Phi of each of the steps."""
+    dt = np.reshape(dt, (-1, 1, 1))
+    return _exponential(0.5 * dt * (a + b) + np.sqrt(3.0) / 12.0 * dt**2 * (b @ a - a @ b))
+
+
+def _product(factors: Any) -> Any:
+    """Product of matrices (k, m, m), the first to act first."""
     while len(factors) > 1:
         if len(factors) % 2:
             factors = np.concatenate([factors, np.eye(factors.shape[-1])[None]])
         factors = factors[1::2] @ factors[::2]
-    return factors[0] / ratio
+    return factors[0]
 
 
 def _exponential(matrices: Any) -> Any:

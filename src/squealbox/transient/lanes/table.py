@@ -11,6 +11,7 @@ from squealbox.transient import packing
 from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.batch import first_of
 from squealbox.transient.lanes.shape import LANES, PARTS, Shape, audit, entries, parameter_rows
+from squealbox.transient.latest import Latest
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.one_motion import lever, shared_motions
 from squealbox.transient.own_laws import law_kinds, own_texts
@@ -49,9 +50,9 @@ def tabulate(
         )
     batch = system.shape or np.shape(start[0])[:-1]
     count = int(np.prod(batch, dtype=int))
-    rows = rows_of(system)
-    values, signals, breaks = _equation(system, rows, recorded)
-    template = first_of(system)
+    rows, equation, template = EQUATIONS.of(system, recorded, lambda: _prepared(system, recorded))
+    found, signals, breaks = equation
+    values: dict[str, Any] = dict(found)
     n, m = system.size, len(system.contacts)
     q, qd = start
     q = consistent(system, rows, q, np.asarray(value_at(system.load, begin), dtype=float))
@@ -109,6 +110,15 @@ def tabulate(
             columns.append(np.broadcast_to(value, batch).ravel())
     table = np.stack(columns, axis=1) if columns else np.zeros((count, 1))
     return Jobs(shape, np.ascontiguousarray(table), varies, fixed, template, own)
+
+
+EQUATIONS = Latest(8)  # of systems that are run several times
+
+
+def _prepared(system: System, recorded: bool) -> tuple[Rows, Any, System]:
+    """What depends on the system alone."""
+    rows = rows_of(system)
+    return rows, _equation(system, rows, recorded), first_of(system)
 
 
 def _equation(system: System, rows: Rows, recorded: bool = False) -> tuple[dict[str, Any], Any, list[Any]]:
