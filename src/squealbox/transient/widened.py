@@ -22,6 +22,10 @@ from squealbox.transient.smooth_laws import Saturation
 NOTHING = 1e-12  # share of the largest entry below which one of a matrix in other coordinates is round-off
 
 
+class RunApart(InvalidSystem):
+    """Systems that the lanes of one kernel do not carry together, though each of them can be run."""
+
+
 class Widened(System):
     """A system whose rows from `seen` on are its memory.
 
@@ -132,9 +136,7 @@ def _with_limited_loops(system: System) -> System:
         if any(
             np.ndim(x) > k for x, k in ((row.P, 1), (row.R, 1), (row.S, 1), (row.A, 2), (np.asarray(loop.limit), 0))
         ):
-            raise InvalidSystem(
-                f"a {type(loop).__name__} with a limit varies in an ensemble: run such loops one by one"
-            )
+            raise RunApart(f"a {type(loop).__name__} with a limit varies in an ensemble: run such loops one by one")
         m = row.memory
         base, law = base_of(system), Saturation(float(loop.limit or 0.0))
         told = Contact(
