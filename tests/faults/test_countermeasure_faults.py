@@ -20,7 +20,7 @@ from squealbox import (
     best_absorber,
     closed_loop,
     complex_modes,
-    shooting,
+    harmonic_balance,
     silence,
 )
 from squealbox.files.document import DesignFileError
@@ -72,9 +72,9 @@ def test_bad_input_is_one_sentence(what):
     assert "\n" not in str(caught.value)
 
 
-def test_a_late_loop_is_not_left_out_of_a_motion():
+def test_a_late_loop_is_not_left_out_of_an_estimate():
     with pytest.raises(InvalidSystem, match="has a delay"):
-        shooting(LATE)
+        harmonic_balance(LATE)
 
 
 def test_a_system_says_what_is_no_loop():

@@ -41,14 +41,17 @@ class Limited(FrictionLaw):
         return mu, "def slope(v, p):\n    return p[1] * (p[1] * v < p[2])\n"
 
 
-def in_time(system: System) -> System:
-    """The system whose loops are all rows or contacts, with rows for all it remembers.
+def in_time(system: System, delays: bool = False) -> System:
+    """The system whose loops are all rows or contacts, with rows for all it remembers; with `delays` those too.
 
     Raises `RunApart` for a loop that is run in pieces.
     """
     contacts, others = list(system.contacts), []
     for i, loop in enumerate(system.loops):
         rows = loop.rows(system.names)
+        if delays and loop.sampling is None and not loop.linear:
+            others.append(loop)
+            continue
         if not loop.linear:
             what = "sampling" if loop.sampling is not None else "a delay"
             raise RunApart(f"loops[{i}] has {what}: expected loops without; simulate() runs it, piece by piece")
