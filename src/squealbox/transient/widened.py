@@ -139,7 +139,7 @@ def _with_loops(system: System) -> System:
     """
     for loop in system.loops:
         row, n, base = loop.rows(system.names), system.size, base_of(system)
-        numbers = (row.P, 1), (row.R, 1), (row.S, 1), (row.A, 2), (np.asarray(loop.limit or 0.0), 0), (loop.late, 0)
+        numbers: list[Any] = [(row.P, 1), (row.R, 1), (row.S, 1), (row.A, 2), (loop.limit, 0), (loop.delay, 0)]
         if any(np.ndim(x) > k for x, k in numbers):
             raise RunApart(f"a {type(loop).__name__} with a limit varies in an ensemble: run such loops one by one")
         spring, mass = (float(np.max(np.abs(x), initial=0.0)) or 1.0 for x in (system.K, system.M))

@@ -92,6 +92,8 @@ def with_delays(asked: System) -> System:
                 "number of samples; simulate() runs it, complex_modes() gives its growth"
             )
     late = any(not loop.linear for loop in asked.loops)
+    if late:
+        check_autonomous(asked)
     found: System = LATE.of(asked, (), lambda: in_time(asked, delays=True)) if late else system_of(asked)
     return found
 
