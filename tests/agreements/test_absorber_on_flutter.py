@@ -5,9 +5,9 @@ K = [[k, 1 - D], [1, k]], M = 1, C = c, an absorber of mass e, frequency w and d
     Y = s^2 + c s + k,    X = Y + e s^2 (2 z w s + w^2)/(s^2 + 2 z w s + w^2)        the two diagonal stiffnesses
 
 the characteristic equation is X Y - (1 - D) = 0: stability changes at s = i a where Im(X Y) = 0, and there it does at
-D = 1 - Re(X Y). Im(X Y) times the absorber's |s^2 + 2 z w s + w^2|^2 is a times a polynomial in a^2, so all changes are its
-roots, and three of them are a window of instability below the last. The onset is the first, so the best tuning is on the
-curve where that window just closes, a double root, with the highest D beyond. 1.2016217 overlooks the window.
+D = 1 - Re(X Y). Im(X Y) times the absorber's |s^2 + 2 z w s + w^2|^2 is a times a polynomial in a^2, so all changes are
+its roots, and three of them are a window of instability below the last. The onset is the first, so the best tuning is
+on the curve where that window just closes, a double root, with the highest D beyond. 1.2016217 overlooks the window.
 """
 
 import numpy as np
