@@ -5,11 +5,13 @@ coefficients p. The same functions serve NumPy arrays here and are compiled by t
 arithmetic and NumPy functions. By convention p[0] is the static limit, the coefficient a sticking contact can reach.
 """
 
+import inspect
+import re
 from typing import Any
 
 import numpy as np
 
-from squealbox.averages import mean_over_phase
+from squealbox.averages import WIDTHS, in_text, mean_over_phase, summed
 from squealbox.bristles import Dahl, ElastoPlastic, LuGre
 from squealbox.law import NEVER_STICKS, FrictionLaw
 from squealbox.parameters import ParameterError, parameter
@@ -259,12 +261,14 @@ class Averaged(FrictionLaw):
             raise ParameterError(
                 "Averaged", "law", self.law, "a law of the speed alone: one with memory is not averaged"
             )
+        _ = self.texts  # says what is no formula
         super().__post_init__()
 
     def coefficients(self) -> tuple[Any, ...]:
-        """No static limit, the dither's velocity; mu0, a1, a3 where it is mu0 (2/pi) asin(v/w) + a1 v + a3 v^3."""
+        """No static limit, the dither's velocity; mu0, a1, a3 of mu0 (2/pi) asin(v/w) + a1 v + a3 v^3, or of a sum."""
         lead = np.broadcast_shapes(np.shape(self.velocity), *(np.shape(c) for c in self.law.coefficients()))
-        return (np.full(lead, NEVER_STICKS)[()], self.velocity, *(self._polynomial() or ()))
+        more = self._polynomial() or (*in_text(self._edges()), *self.law.coefficients())
+        return (np.full(lead, NEVER_STICKS)[()], self.velocity, *more)
 
     def mu(self, velocity: Any) -> Any:
         base = self.law.mu(0.0)
@@ -280,8 +284,28 @@ class Averaged(FrictionLaw):
 
     @property
     def texts(self) -> tuple[str, str] | None:
-        """Sources of law and slope for the compiled engines; None where it is known by quadrature alone."""
-        return None if self._polynomial() is None else (_AVERAGED_MU, _AVERAGED_SLOPE)
+        """Sources of law and slope for the compiled engines; None for a law that is not a formula itself.
+
+        In closed form where that is a polynomial; else a sum over the phase, to 1e-11 for a law that varies over at
+        least a thousandth of the dither's velocity.
+        """
+        if self._polynomial() is not None:
+            return _AVERAGED_MU, _AVERAGED_SLOPE
+        own: tuple[str, str] | None = getattr(self.law, "texts", None)
+        if own is None and not hasattr(type(self.law), "formula"):
+            return None
+        known = {1: len(self.law.speeds)} if isinstance(self.law, Table) else {}
+        text = inspect.getsource(type(self.law).formula) if own is None else own[0]
+        try:
+            return summed(re.sub(r": Any| -> Any", "", text), len(self._edges()), known)
+        except ValueError as error:
+            raise ParameterError("Averaged", "law", type(self.law).__name__, f"a formula: {error}") from error
+
+    def _edges(self) -> list[Any]:
+        """Speeds [m/s], from 0, between which the law is smooth, or ever wider parts of the dither's velocity."""
+        w, kinks = np.asarray(self.velocity, dtype=float), _kinks(self.law)
+        kinks = [np.where(np.asarray(kink) > 0.0, kink, w)[()] for kink in kinks]
+        return [0.0, *kinks] if kinks else [(share * w)[()] for share in WIDTHS]
 
     def _polynomial(self) -> tuple[Any, Any, Any] | None:
         """mu0, a1, a3 of the laws whose h is a cubic polynomial."""

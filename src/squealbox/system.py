@@ -158,6 +158,7 @@ class System(DataSheet):
             shapes += [np.shape(getattr(contact, field))[:-1] for field in ("n", "d", "t")]
             shapes += [np.shape(value_at(value, 0.0)) for value in (contact.N0, contact.V)]
             shapes += [np.shape(value) for value in contact.law.coefficients()]
+        shapes += [np.shape(value) for loop in self.loops for _, _, value in loop.leaves() if value is not None]
         try:
             return np.broadcast_shapes(*set(shapes))
         except ValueError as error:

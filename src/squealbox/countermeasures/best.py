@@ -99,8 +99,9 @@ def best_absorber(
 
     Returns
     -------
-    BestAbsorber. Accuracy: about 1e-8 of the largest |eigenvalue| where two modes meet; a margin
-    whose best tuning lies at the edge of a narrow window of instability is found to about 1e-4.
+    BestAbsorber. Accuracy: about 1e-8 of the largest |eigenvalue| where two modes meet. A margin whose best tuning lies
+    at the edge of a narrow window of instability, which just closes there, is solved for where the matrices are linear
+    in the parameter, as in friction that does not fall; else it is found to about 1e-4.
 
     >>> from squealbox import LinearSlope, MassOnBelt
     >>> block = MassOnBelt(sliding_speed=1.0, friction=LinearSlope(0.4, -0.1))
@@ -129,7 +130,9 @@ def best_absorber(
     if aim == "decay":
         best = min([best, *_meetings(start, best[1:])], key=lambda each: each[0])
     if aim == "margin":
-        best = min([best, *at_the_window(start, best, parameter)], key=lambda each: each[0])
+        best = min(
+            [best, *at_the_window(start, best, parameter, _limits(start, parameter, bounds))], key=lambda each: each[0]
+        )
     value, frequency, damping = best
     if aim == "probability":  # without what decided between equal shares
         value, grid = float(np.floor(value * samples + 1e-9)) / samples, np.floor(grid * samples + 1e-9) / samples

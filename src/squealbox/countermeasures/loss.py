@@ -1,11 +1,25 @@
-"""Where one brake loses its stability first, narrow windows included; tunings at which such a window just closes."""
+"""Where one brake loses its stability first, narrow windows included; tunings at which such a window just closes.
 
+Where the state matrix is A0 + x A1, two eigenvalues add up to zero just where
+
+    det P' (A I + I A) P = 0      on the antisymmetric products P = (e_i e_j - e_j e_i)/sqrt 2
+
+which is linear in A: all places at which stability may change are generalised eigenvalues x (bialternate product;
+Govaerts 2000, Numerical Methods for Bifurcations of Dynamical Equilibria, ch. 4). A window closes where two of them
+meet. Other brakes are scanned.
+"""
+
+from functools import cache
 from typing import Any
 
 import numpy as np
 
 from squealbox.stability.family import steady_sliding
 from squealbox.stability.spectra import largest_growth
+
+MOST_ROWS = 12  # of a state matrix, whose products are 66 then
+NEAR = 2e-3  # share of a margin by which the window below it may lie above the margin of another tuning
+REAL = 1e-6  # imaginary part below which a place is one; beside a window that closes it is the root of round-off
 
 
 def growth_of(design: Any) -> Any:
@@ -20,6 +34,12 @@ def first_loss(design: Any, parameter: str, bounds: tuple[float, float]) -> floa
     Where the growth rate comes near zero and turns back it is looked at more closely, ever again.
     """
     low, high = bounds
+    places = changes(design, parameter, bounds)
+    if places is not None:
+        known = np.sort(places.real[np.abs(places.imag) < REAL])
+        ends = np.concatenate([[0.0], known[(known > 0.0) & (known < 1.0)], [1.0]])
+        growing = growth_of(design.replace({parameter: low + (high - low) * 0.5 * (ends[1:] + ends[:-1])})) > 0.0
+        return low + (high - low) * float(ends[int(np.argmax(growing))]) if np.any(growing) else high
     values = np.linspace(low, high, 97)
     growth = growth_of(design.replace({parameter: values}))
     for _ in range(5):
@@ -44,6 +64,40 @@ def first_loss(design: Any, parameter: str, bounds: tuple[float, float]) -> floa
     return found
 
 
+def changes(design: Any, parameter: str, bounds: tuple[float, float]) -> Any:
+    """Complex x (k,), of low + x (high - low), at which stability may change; None where A is not linear in it."""
+    from scipy.linalg import LinAlgError, eigvals
+
+    low, high = bounds
+    about = steady_sliding(design.replace({parameter: np.array([low, 0.5 * (low + high), high])}))
+    M, C, K = (np.broadcast_to(x, about.K.shape) for x in (about.M, about.C, about.K))
+    n = M.shape[-1]
+    if 2 * n > MOST_ROWS or not np.all(np.isfinite(K)) or not np.all(np.isfinite(C)):
+        return None
+    rate = np.sqrt(np.max(np.abs(K)) / (np.max(np.abs(M)) or 1.0))
+    try:
+        stiffness, damping = np.linalg.solve(M, K) / rate**2, np.linalg.solve(M, C) / rate
+    except LinAlgError:  # rows without mass
+        return None
+    A = np.zeros((3, 2 * n, 2 * n))
+    A[:, :n, n:], A[:, n:, :n], A[:, n:, n:] = np.eye(n), -stiffness, -damping
+    if np.max(np.abs(A[1] - 0.5 * (A[0] + A[2]))) > 1e-13 * np.max(np.abs(A)):
+        return None
+    P, one = _products(2 * n), np.eye(2 * n)
+    first, more = (P.T @ (np.kron(x, one) + np.kron(one, x)) @ P for x in (A[0], A[2] - A[0]))
+    found = np.concatenate([eigvals(first, -more), eigvals(A[0], A[0] - A[2])])
+    return found[np.isfinite(found)]
+
+
+@cache
+def _products(size: int) -> Any:
+    pairs = [(i, j) for i in range(size) for j in range(i)]
+    P = np.zeros((size * size, len(pairs)))
+    for k, (i, j) in enumerate(pairs):
+        P[i * size + j, k], P[j * size + i, k] = np.sqrt(0.5), -np.sqrt(0.5)
+    return P
+
+
 def _with(design: Any, parameter: str, values: Any, growth: Any, more: Any) -> tuple[Any, Any]:
     every = np.append(values, more)
     rates = np.append(growth, growth_of(design.replace({parameter: more})))
@@ -51,64 +105,43 @@ def _with(design: Any, parameter: str, values: Any, growth: Any, more: Any) -> t
     return every, rates[places]
 
 
-def at_the_window(start: Any, near: tuple[float, float, float], parameter: str) -> list[tuple[float, float, float]]:
+def at_the_window(
+    start: Any, near: tuple[float, float, float], parameter: str, bounds: tuple[float, float]
+) -> list[tuple[float, float, float]]:
     """The best of the tunings at which the window of instability below the margin just closes.
 
     The margin as a function of the tuning ends at that edge, which a search only comes near: for each damping the
-    frequency is solved for, and the damping is searched.
+    frequency is solved for, at which the ends of the window meet, and the damping is searched.
     """
     from scipy.optimize import brentq, minimize_scalar
 
     value, frequency, damping = near
-    end = -value
-    own = start.replace(frequency=frequency, damping=damping)
-    values = np.linspace(0.8 * end, end, 801)
-    growth = growth_of(own.replace({parameter: values}))
-    inner = np.flatnonzero((growth[1:-1] >= growth[:-2]) & (growth[1:-1] >= growth[2:])) + 1
-    if not inner.size:
-        return []
-    place = float(values[inner[int(np.argmax(growth[inner]))]])
-    wide = 0.6 * (end - place)
+    known = (1.0 + NEAR) * (-value - bounds[0]) / (bounds[1] - bounds[0])
 
-    def at(f: float, z: float, x: float) -> float:
-        return float(growth_of(start.replace({"frequency": f, "damping": z, parameter: x})))
-
-    def peak(f: float, z: float) -> tuple[float, float]:
-        coarse = np.linspace(place - wide, place + wide, 41)
-        rates = growth_of(start.replace({"frequency": f, "damping": z, parameter: coarse}))
-        inside = np.flatnonzero((rates[1:-1] >= rates[:-2]) & (rates[1:-1] >= rates[2:])) + 1
-        if not inside.size:
-            return -np.inf, place
-        k = int(inside[np.argmax(rates[inside])])
-        found = minimize_scalar(
-            lambda x: -at(f, z, x), bounds=(coarse[k - 1], coarse[k + 1]), method="bounded",
-            options={"xatol": 1e-9 * end},
-        )  # fmt: skip
-        return -float(found.fun), float(found.x)
+    def window(f: float, z: float) -> float:
+        """(x1 - x2)^2 of the ends of the window nearest to closing, as shares of the bounds; NaN without one."""
+        places = changes(start.replace({"frequency": f, "damping": z}), parameter, bounds)
+        if places is None:
+            return np.nan
+        below = places[(places.real > 0.0) & (places.real < known)]
+        apart = np.abs(below.imag) >= REAL
+        squares = np.concatenate([np.diff(np.sort(below.real[~apart])) ** 2, -4.0 * below.imag[apart] ** 2])
+        return float(squares[np.argmin(np.abs(squares))]) if len(squares) else np.nan
 
     def margin(log_z: float) -> tuple[float, float, float]:
-        z = float(np.exp(log_z))
-        shares = 1.0 + np.array([-4e-4, -2e-4, -1e-4, 0.0, 1e-4, 2e-4, 4e-4])
-        heights = np.array([peak(frequency * share, z)[0] for share in shares])
-        known = np.isfinite(heights)
-        changes = np.flatnonzero((np.sign(heights[1:]) != np.sign(heights[:-1])) & known[1:] & known[:-1])
-        best = (0.0, frequency, z)
-        for c in changes:
-            low, high = frequency * shares[c], frequency * shares[c + 1]
-            f = float(brentq(lambda x: peak(x, z)[0], low, high, xtol=1e-13 * frequency))
-            top = peak(f, z)[1]
-            beyond = np.linspace(top + 0.02 * wide, end + wide, 400)
-            rates = growth_of(start.replace({"frequency": f, "damping": z, parameter: beyond}))
-            first = int(np.argmax(rates > 0.0))
-            if first > 0:
-                last = float(brentq(lambda x, f=f: at(f, z, x), beyond[first - 1], beyond[first], xtol=1e-13 * end))
-                best = min(best, (-last, f, z))
+        z, best = float(np.exp(log_z)), (0.0, frequency, damping)
+        tried = frequency * (1.0 + np.linspace(-4e-4, 4e-4, 17))
+        heights = np.array([window(float(f), z) for f in tried])
+        for c in np.flatnonzero(heights[1:] * heights[:-1] < 0.0):
+            f = float(brentq(lambda x: window(x, z), tried[c], tried[c + 1], xtol=1e-15 * frequency))
+            closed = f + 1e-11 * frequency * (1.0 if heights[c + 1] < 0.0 else -1.0)
+            there = start.replace({"frequency": closed, "damping": z})
+            best = min(best, (-first_loss(there, parameter, bounds), closed, z))
         return best
 
     found = minimize_scalar(
-        lambda x: margin(x)[0],
-        bracket=(np.log(damping) - 0.02, np.log(damping) + 0.02),
-        options={"xtol": 1e-6, "maxiter": 25},
-    )
+        lambda x: margin(x)[0], bounds=(np.log(damping) - 0.05, np.log(damping) + 0.05), method="bounded",
+        options={"xatol": 1e-7, "maxiter": 30},
+    )  # fmt: skip
     best = margin(float(found.x))
     return [best] if best[0] < 0.0 else []

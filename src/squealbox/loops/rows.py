@@ -65,8 +65,11 @@ def lagging(own: Rows, rate: Any) -> Rows:
     return Rows(A, E, F, G, np.zeros(n), np.zeros(n), S, own.b)
 
 
-def late(own: Rows, delay: Any, rate: Any) -> Rows:
-    """Rows whose force is late: w' = (2/T)(D w + D_0 c), w what is under way at Chebyshev points, w(0) = c."""
+def delayed(own: Rows, delay: Any, rate: Any, lag: Any = None) -> tuple[Rows, Any]:
+    """What a loop and its delay remember while the command u comes from outside, and the row (..., m) of its force.
+
+    The command is P q + R q' + S z; under way, w' = (2/T)(D w + D_0 u) at Chebyshev points, then an actuator that lags.
+    """
     angle = float(np.max(rate * delay))
     if angle > LONGEST:
         expected = (
@@ -74,21 +77,30 @@ def late(own: Rows, delay: Any, rate: Any) -> Rows:
         )
         raise ParameterError("system", "loops", f"a delay of {float(np.max(delay)):g} s", expected)
     order = int(min(LEAST_POINTS + np.ceil(1.2 * angle), MOST_POINTS))
-    speed = 2.0 / np.maximum(delay, SHORTEST / rate)
+    speed = np.asarray(2.0 / np.maximum(delay, SHORTEST / rate))
     _, D = chebyshev(order)
-    m, n = own.memory, own.b.size
+    m, n, more = own.memory, own.b.size, order + (lag is not None)
     vectors = (np.shape(row)[:-1] for row in (own.P, own.R, own.S))
-    lead = np.broadcast_shapes(np.shape(speed), *vectors, np.shape(own.A)[:-2])
-    A, E, F = (np.zeros((*lead, m + order, width)) for width in (m + order, n, n))
-    G, S = np.zeros((*lead, m + order)), np.zeros((*lead, m + order))
-    A[..., :m, :m], E[..., :m, :], F[..., :m, :], G[..., :m], S[..., -1] = own.A, own.E, own.F, own.G, 1.0
-    enter = np.asarray(speed)[..., None, None] * D[1:, :1]
-    A[..., m:, :m] = enter * np.asarray(own.S)[..., None, :]
-    A[..., m:, m:] = np.asarray(speed)[..., None, None] * D[1:, 1:]
-    E[..., m:, :], F[..., m:, :] = enter * own.P[..., None, :], enter * own.R[..., None, :]
-    size = np.ones((*lead, m + order))
-    size[..., :m] = force_per_state(own, rate)
-    return Rows(A, E, F, G, np.zeros(n), np.zeros(n), S, own.b, size)
+    lead = np.broadcast_shapes(np.shape(speed), np.shape(lag), *vectors, np.shape(own.A)[:-2])
+    A, E, F = (np.zeros((*lead, m + more, width)) for width in (m + more, n, n))
+    G, S, force, size = (np.zeros((*lead, m + more)) for _ in range(4))
+    w = slice(m, m + order)
+    A[..., :m, :m], E[..., :m, :], F[..., :m, :], S[..., :m] = own.A, own.E, own.F, own.S
+    A[..., w, w], G[..., w] = speed[..., None, None] * D[1:, 1:], speed[..., None] * D[1:, 0]
+    if lag is not None:
+        A[..., -1, -2], A[..., -1, -1] = lag, -np.asarray(lag)
+    A[..., :m, -1] = own.G  # a controller feels the force the actuator really has
+    force[..., -1], size[..., m:], size[..., :m] = 1.0, 1.0, force_per_state(own, rate)
+    return Rows(A, E, F, G, own.P, own.R, S, own.b, size), force
+
+
+def late(own: Rows, delay: Any, rate: Any) -> Rows:
+    """Rows whose force is late: those of `delayed` with the command of the rows themselves."""
+    row, force = delayed(own, delay, rate)
+    A = row.A + row.G[..., :, None] * row.S[..., None, :]
+    E, F = (row.G[..., :, None] * np.asarray(x)[..., None, :] + y for x, y in ((own.P, row.E), (own.R, row.F)))
+    none = np.zeros(own.b.size)
+    return Rows(A, E, F, 0.0 * row.G, none, none, force, own.b, row.size)
 
 
 def chebyshev(order: int) -> tuple[Any, Any]:

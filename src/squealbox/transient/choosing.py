@@ -58,6 +58,8 @@ def has_root_at_rest(law: FrictionLaw) -> bool:
 def no_series(system: System) -> str:
     """Why the generated step of a Taylor series cannot run the system; empty where it can."""
     contacts = system.contacts
+    if any(loop.sampling is None and not loop.linear for loop in system.loops):
+        return "what a loop is late by is known at instants, and has no Taylor series"
     if any(contact.rigid for contact in contacts):
         return "a rigid contact has impacts"
     values = [system.load, *(value for c in contacts for value in (c.V, c.N0))]

@@ -1,9 +1,9 @@
 """Many transients at once: eight trajectories in the lanes of each group, groups on all cores."""
 
 import os
-import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -19,12 +19,15 @@ from squealbox.transient.choosing import chosen_method, usual_method
 from squealbox.transient.lanes.work import HEAD, Progress, Work
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.observers import as_observers
-from squealbox.transient.simulate import MESSAGES, SCHEMES, instants_within
+from squealbox.transient.one_by_one import OneByOne
+from squealbox.transient.simulate import MESSAGES, SCHEMES, instants_within, simulate
+from squealbox.transient.widened import RunApart
 
 if TYPE_CHECKING:
     import xarray
 
-CODES = {_march.COMPLETED: COMPLETED, _march.NOT_CONFIRMED: "not_confirmed"} | {
+UNBALANCED = 1 + _march.NOT_CONFIRMED  # a motion of its own whose energy audit does not close
+CODES = {UNBALANCED: "energy_unbalanced", _march.COMPLETED: COMPLETED, _march.NOT_CONFIRMED: "not_confirmed"} | {
     code: name for code, (name, _) in MESSAGES.items()
 }
 NOT_RUN = "not_run"
@@ -206,15 +209,25 @@ def simulate_ensemble(
         raise ParameterError(
             "simulate_ensemble", "contact", contact, "exact: a Taylor series does not see a jump of sgn"
         )
-    job = Work(
-        chosen, SCHEMES[contact], width, start, duration, start_time, as_observers(observe),
-        instants, _threads(threads), progress,
+    work = (
+        chosen, SCHEMES[contact], width, start, duration, start_time, as_observers(observe), instants,
+        _threads(threads), progress,
     )  # fmt: skip
-    job.run(design_or_system, names, arrays, shape)
+    job, together = Work(*work), True
+    try:
+        job.run(design_or_system, names, arrays, shape)
+    except RunApart:
+        together = False
+    if not together:
+        job = OneByOne(*work)
+        job.simulate = partial(simulate, contact=contact)
+        job.usual = lambda system: chosen if method else chosen_method(usual_method(system, contact), rtol, atol)
+        job.codes = {name: code for code, name in CODES.items()}
+        job.run(design_or_system, names, arrays, shape)
     settings = {
         "duration": duration, "start_time": start_time, "contact": contact, "width": width, "grid": grid,
         "tableau": job.method.tableau, "rtol": job.method.rtol, "observe": [each.name for each in job.observers],
-        "observed": {each.name: [each.of, each.unit] for each in job.observers},
+        "one_by_one": not together, "observed": {each.name: [each.of, each.unit] for each in job.observers},
     }  # fmt: skip
     several = isinstance(design_or_system, (list, tuple))
     inputs = {"systems": list(design_or_system)} if several else {"system": design_or_system}
@@ -265,7 +278,7 @@ def _result(
         parameters=parameters,
         observed=observed,
         caution=of_many_runs(work.system, *np.split(rows[:, at:], 3, axis=1)),
-        seconds=time.monotonic() - work.began,
+        seconds=work.elapsed(),
     )
 
 

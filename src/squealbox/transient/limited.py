@@ -11,8 +11,8 @@ import numpy as np
 
 from squealbox.friction import NEVER_STICKS, FrictionLaw
 from squealbox.parameters import parameter
-from squealbox.system import Contact, InvalidSystem, System
-from squealbox.transient.widened import widened
+from squealbox.system import Contact, System
+from squealbox.transient.widened import RunApart, widened
 
 
 class Limited(FrictionLaw):
@@ -41,17 +41,20 @@ class Limited(FrictionLaw):
         return mu, "def slope(v, p):\n    return p[1] * (p[1] * v < p[2])\n"
 
 
-def in_time(system: System) -> System:
-    """The system whose loops are all rows or contacts, with rows for all it remembers.
+def in_time(system: System, delays: bool = False) -> System:
+    """The system whose loops are all rows or contacts, with rows for all it remembers; with `delays` those too.
 
-    Raises `InvalidSystem` for a loop that an engine cannot run.
+    Raises `RunApart` for a loop that is run in pieces.
     """
     contacts, others = list(system.contacts), []
     for i, loop in enumerate(system.loops):
         rows = loop.rows(system.names)
+        if delays and loop.sampling is None and not loop.linear:
+            others.append(loop)
+            continue
         if not loop.linear:
             what = "sampling" if loop.sampling is not None else "a delay"
-            raise InvalidSystem(f"loops[{i}] has {what}: expected loops without; simulate() runs it, piece by piece")
+            raise RunApart(f"loops[{i}] has {what}: expected loops without; simulate() runs it, piece by piece")
         if rows.memory or np.any(rows.P) or np.ndim(rows.R) > 1:
             others.append(loop)
             continue

@@ -50,9 +50,14 @@ def law_kinds(contacts: Sequence[Contact]) -> Any:
     return np.array(kinds, dtype=np.int64)
 
 
+def is_long(text: str) -> bool:
+    """Whether an own law is a sum of many terms, such as one averaged over a phase."""
+    return "for " in text
+
+
 @cache
 def untraced(text: str) -> str:
     """Why the series of an own law's mu cannot be written; empty where it can."""
     from squealbox.transient.lanes.formulas import tried
 
-    return tried(text)
+    return "a friction law that is a sum of many terms has no short Taylor series" if is_long(text) else tried(text)

@@ -12,21 +12,27 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.loops.rows import force_per_state, numbered, padded_contacts, padded_load
+from squealbox.loops.rows import delayed, force_per_state, numbered, padded_contacts, padded_load
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Schedule, value_at
 from squealbox.system import Contact, InvalidSystem, System
 from squealbox.transient.rows import row_kinds, solved_for
 from squealbox.transient.smooth_laws import Saturation
 
+ENDLESS = 1e200  # N, of a force without a limit
 NOTHING = 1e-12  # share of the largest entry below which one of a matrix in other coordinates is round-off
+
+
+class RunApart(InvalidSystem):
+    """Systems that the lanes of one kernel do not carry together, though each of them can be run."""
 
 
 class Widened(System):
     """A system whose rows from `seen` on are its memory.
 
     base is what results know of it; memories are the rows of the contacts' laws, -1 without; unaudited the rows outside
-    the energy audit; embedding (rows, seen) puts q and q' among the rows.
+    the energy audit; embedding (rows, seen) puts q and q' among the rows. Of each delay [s]: the row whose velocity is
+    the command, the row that holds it a delay later, the force [N] of a unit there, and the limit [N] of it.
     """
 
     seen: int = 0
@@ -34,13 +40,14 @@ class Widened(System):
     memories: tuple[int, ...] = ()
     unaudited: tuple[int, ...] = ()
     embedding: Any = None
+    delays: tuple[tuple[float, int, int, float, float], ...] = ()
 
 
 def widened(system: System) -> System:
     """The system with rows for all it remembers; itself where that is nothing or they are there."""
     if isinstance(system, Widened):
         return system
-    return _with_memory(_in_coordinates(_with_limited_loops(system)))
+    return _with_memory(_in_coordinates(_with_loops(system)))
 
 
 def base_of(system: System) -> System:
@@ -102,7 +109,7 @@ def _appended(system: System, more: int, name: str) -> tuple[dict[str, Any], Any
     fields["names"] = numbered(system.names, name, more)
     old = system if isinstance(system, Widened) else None
     fields["seen"], fields["base"] = (old.seen, old.base) if old else (n, system)
-    fields["memories"] = old.memories if old else ()
+    fields["memories"], fields["delays"] = (old.memories, old.delays) if old else ((), ())
     fields["unaudited"] = (*(old.unaudited if old else ()), *range(n, n + more))
     embedding = np.eye(n) if old is None else old.embedding
     fields["embedding"] = np.vstack([embedding, np.zeros((more, embedding.shape[1]))])
@@ -125,37 +132,48 @@ def _with_memory(system: System) -> System:
     return Widened(**fields | {"memories": tuple(rows.get(c, -1) for c in range(len(system.contacts)))})
 
 
-def _with_limited_loops(system: System) -> System:
-    """Loops with a limit that feed back more than a velocity, as rows and a contact without events each."""
+def _with_loops(system: System) -> System:
+    """Loops with a limit that feed back more than a velocity, or with a delay, as rows, and a contact for each limit.
+
+    The contact, without events, senses the command and cuts it; without a limit the command is rows as well.
+    """
     for loop in system.loops:
-        row, n = loop.rows(system.names), system.size
-        if any(
-            np.ndim(x) > k for x, k in ((row.P, 1), (row.R, 1), (row.S, 1), (row.A, 2), (np.asarray(loop.limit), 0))
-        ):
-            raise InvalidSystem(
-                f"a {type(loop).__name__} with a limit varies in an ensemble: run such loops one by one"
-            )
-        m = row.memory
-        base, law = base_of(system), Saturation(float(loop.limit or 0.0))
-        told = Contact(
-            np.zeros(base.size), row.b[: base.size], np.zeros(base.size), 1.0, 0.0, law, name=f"loop on {loop.on}"
-        )
-        fields, _ = _appended(system, m + 1, "loop state")
-        z, w = slice(n, n + m), n + m
+        row, n, base = loop.rows(system.names), system.size, base_of(system)
+        numbers: list[Any] = [(row.P, 1), (row.R, 1), (row.S, 1), (row.A, 2), (loop.limit, 0), (loop.delay, 0)]
+        if any(np.ndim(x) > k for x, k in numbers):
+            raise RunApart(f"a {type(loop).__name__} with a limit varies in an ensemble: run such loops one by one")
         spring, mass = (float(np.max(np.abs(x), initial=0.0)) or 1.0 for x in (system.K, system.M))
         rate = np.sqrt(spring / mass)
+        under_way = loop.late > 0.0
+        row, force = (
+            delayed(loop.controller(system.names), loop.late, rate, loop.rate) if under_way else (row, np.zeros(0))
+        )
+        m, limit = row.memory, ENDLESS if loop.limit is None else float(loop.limit)
+        fields, _ = _appended(system, m + 1 + under_way, "loop state")
+        z, w = slice(n, n + m), n + m
         time, unit = spring / rate, spring / force_per_state(row, rate)  # z = unit times a displacement
         scale = time / unit[:, None]
         C, K = fields["C"], fields["K"]
         C[..., z, :n], K[..., z, :n] = -scale * row.F, -scale * row.E
         C[..., z, z], K[..., z, z] = time * np.eye(m), -scale * row.A * unit
+        into, onto = np.zeros(len(K)), np.zeros(len(K))
+        into[z], onto[:n] = time / unit * row.G, row.b
         C[..., w, w], C[..., w, :n], K[..., w, :n], K[..., w, z] = 1.0, -row.R, -row.P, -row.S * unit
-        acts, senses = np.concatenate([row.b, time / unit * row.G, [0.0]]), np.zeros(n + m + 1)
-        senses[w] = -1.0
-        cut = Contact(np.zeros(n + m + 1), acts, senses, 1.0, 0.0, law, name=told.name)
-        fields |= {"contacts": (*fields["contacts"], cut), "loops": (), "base": base.replace(
-            loops=(), contacts=(*base.contacts, told))}  # fmt: skip
-        system = Widened(**fields)
+        sensed = [(w, into if under_way else into + onto)]  # the row of a command, and what it drives
+        if under_way:
+            C[..., w + 1, w + 1], K[..., w + 1, z] = 1.0, -force * unit
+            sensed.append((w + 1, onto))
+            end = w - 1 - (loop.rate is not None)
+            fields["delays"] = (*fields["delays"], (float(loop.late), w, end, float(unit[end - n]), limit))
+        for w, acts in sensed:
+            senses, none, law = -np.eye(len(K))[w], np.zeros(base.size), Saturation(limit)
+            name = f"loop on {loop.on}" if np.any(acts[:n]) else f"command of the loop on {loop.on}"
+            base = base.replace(
+                loops=(), contacts=(*base.contacts, Contact(none, acts[: base.size], none, 1.0, 0.0, law, name=name))
+            )
+            cutting = Contact(np.zeros(len(K)), acts, senses, 1.0, 0.0, law, name=name)
+            fields["contacts"] = (*fields["contacts"], cutting)
+        system = Widened(**fields | {"loops": (), "base": base})
     return system
 
 

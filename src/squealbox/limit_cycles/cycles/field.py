@@ -22,7 +22,7 @@ from squealbox.memory_rows import no_memory
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Schedule, value_at
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
-from squealbox.transient import Method
+from squealbox.transient import Method, Trajectory
 from squealbox.transient.choosing import usual_method
 from squealbox.transient.lanes.flows import Flows
 from squealbox.transient.packing import inverse_mass
@@ -90,7 +90,7 @@ class Autonomous:
         self.N0, self.V = (np.array([float(value_at(getattr(c, x), 0.0)) for c in rows]) for x in ("N0", "V"))
         self.unilateral = np.array([c.unilateral for c in rows], dtype=bool)
         self.static = np.array([float(c.law.static_limit) for c in rows])
-        self.frequency = frequency
+        self.frequency, self.late = frequency, any(not loop.linear for loop in asked.loops)
         self.scale = np.r_[np.full(n, frequency or 1.0), np.ones(n)]
         self._flows: dict[Method, Flows] = {}
 
@@ -116,6 +116,10 @@ class Autonomous:
     def rate(self, x: Any, mode: Any) -> Any:
         """x' at a state, with the contacts in the modes (contacts,)."""
         raise NotImplementedError
+
+    def delay_error(self, run: Trajectory) -> float:
+        """How far the rows that stand for delays are from them along one period, over the largest command [-]."""
+        return 0.0
 
     def own_modes(self) -> tuple[Any, Any]:
         """Angular frequencies [rad/s] and shapes (n, modes) of the system without contacts."""

@@ -13,12 +13,15 @@ from squealbox.limit_cycles.cycles.cycle import ordered
 from squealbox.limit_cycles.cycles.field import Autonomous, Field, check_autonomous
 from squealbox.matrices import Equilibrium
 from squealbox.stability import complex_modes
-from squealbox.system import System, as_system, equilibrium
-from squealbox.transient import simulate
+from squealbox.system import InvalidSystem, System, as_system, equilibrium
+from squealbox.transient import Trajectory, simulate
+from squealbox.transient.latest import Latest
+from squealbox.transient.limited import in_time
 from squealbox.transient.rows import ALGEBRAIC, WITH_MASS, row_kinds
 from squealbox.transient.simulate import system_of
 from squealbox.transient.widened import Widened, base_of, laid_open, start_of
 
+LATE = Latest(16)
 INSTANT = 1e-5  # of a period over 2 pi: of the differences that give a rate
 
 
@@ -26,7 +29,7 @@ class Remembering(Autonomous):
     """A system with rows without mass or with memory, as shooting sees it."""
 
     def __init__(self, asked: System, contact: str = "exact", width: float = 1e-3) -> None:
-        wide = self._wide = system_of(asked)
+        wide = self._wide = with_delays(asked)
         check_autonomous(wide)
         self.asked = asked
         frequency = float(np.max(self.own_modes()[0], initial=0.0)) or 1.0
@@ -62,6 +65,17 @@ class Remembering(Autonomous):
         early, middle, late = np.hstack([run.q, run.qd])
         return (4.0 * middle - 3.0 * early - late) / (2.0 * h)
 
+    def delay_error(self, run: Trajectory) -> float:
+        late = getattr(self._wide, "delays", ())
+        worst, phase = 0.0, run.t - run.t[0]
+        fine = np.flatnonzero(np.diff(phase, prepend=-np.inf) > 1e-9 * phase[-1])
+        for delay, row, end, unit, limit in late:
+            command = np.clip(run.qd[fine, row], -limit, limit)
+            earlier = np.interp(phase[fine] - delay, phase[fine], command, period=phase[-1])
+            off = np.max(np.abs(run.q[fine, end] * unit - earlier))
+            worst = max(worst, float(off) / (float(np.max(np.abs(command))) or 1.0))
+        return worst
+
     def multipliers(self, monodromy: Any) -> Any:
         inside = monodromy[np.ix_(self.independent, self.independent)]
         if not np.all(np.isfinite(inside)):
@@ -69,9 +83,24 @@ class Remembering(Autonomous):
         return ordered(np.linalg.eigvals(inside))
 
 
+def with_delays(asked: System) -> System:
+    """The system in time, with what is under way in its delays as rows; `InvalidSystem` for loops that are sampled."""
+    for i, loop in enumerate(asked.loops):
+        if loop.sampling is not None:
+            raise InvalidSystem(
+                f"loops[{i}] has sampling, a clock of its own: a motion under it has no period unless that is a whole "
+                "number of samples; simulate() runs it, complex_modes() gives its growth"
+            )
+    late = any(not loop.linear for loop in asked.loops)
+    if late:
+        check_autonomous(asked)
+    found: System = LATE.of(asked, (), lambda: in_time(asked, delays=True)) if late else system_of(asked)
+    return found
+
+
 def field_of(design_or_system: Any, contact: str = "exact", width: float = 1e-3) -> Autonomous:
     """The equation of a system whose states are q and q', else what its motion tells."""
     system = as_system(design_or_system)
-    wide = system_of(system)
+    wide = with_delays(system)
     alone = not isinstance(wide, Widened) and all(kind == WITH_MASS for kind in row_kinds(wide))
     return Field(system, contact, width) if alone else Remembering(system, contact, width)

@@ -27,6 +27,8 @@ from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Outcome
 
 CONTACTS = {"exact": "exact", "smooth": "arctan", "arctan": "arctan", "tanh": "tanh"}
+FINER = 0.1  # of the tolerance, where rows of a delay pass the corners of a command on
+ROUNDED = 1e-5  # of a command, up to which a delay is told without a word
 TURNS = (1, 2, 4)  # past a doubling, a run settles on the cycle that closes after two turns, past the next after four
 
 
@@ -78,6 +80,7 @@ def shooting(
     if int(shots) != shots or shots < 1:
         raise ParameterError("shooting", "shots", shots, "a whole number of at least 1")
     field = field_of(design_or_system, CONTACTS[contact], width)
+    rtol = FINER * rtol if field.late else rtol
     x, period, found = first_guess(field, start, settle)
     settings = {"contact": contact, "width": width, "shots": shots, "rtol": rtol, "tolerance": tolerance}
     if not found.ok:
@@ -134,10 +137,16 @@ def cycle_through(
         q=q, qd=qd, memory=run.q[0, n:], sliding_velocity=run.sliding_velocity, mode=run.mode, multipliers=multipliers,
         lowest=low, highest=high, event_time=run.event_time, event_contact=run.event_contact,
         event_mode=run.event_mode, error=float(error),
-        caution="; ".join([*filter(None, [_caution(flights or [])]),
+        caution="; ".join([*filter(None, [_caution(flights or []), _late(field.delay_error(run))]),
                            *out_of_range(field.system, run.normal_force, run.sliding_velocity),
                            *turned(field.system, q)]),
     )  # fmt: skip
+
+
+def _late(error: float) -> str:
+    """What a reader must know of a delay that is written as rows."""
+    told = f"what is under way in a delay is a polynomial, off by {error:.1e} of the command: corners of it are rounded"
+    return told if error > ROUNDED else ""
 
 
 def _caution(flights: list[Flight]) -> str:

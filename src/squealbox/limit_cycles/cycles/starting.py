@@ -34,7 +34,7 @@ def first_guess(field: Autonomous, start: Any, settle: float | None) -> tuple[An
     if isinstance(start, Cycle):
         return field.state(start.q[0], start.qd[0], start.memory), float(start.period), Outcome(COMPLETED)
     if isinstance(start, (tuple, list)) and len(start) == 3:
-        return field.state(*(_vector(field, x) for x in start[:2])), float(start[2]), Outcome(COMPLETED)
+        return _under_way(field, field.state(*(_vector(field, x) for x in start[:2])), float(start[2]))
     x = state_of(field, start)
     slowest = _slowest_period(field)
     duration = PERIODS * slowest if settle is None else settle
@@ -48,6 +48,17 @@ def first_guess(field: Autonomous, start: Any, settle: float | None) -> tuple[An
             return x, slowest, Outcome("no_cycle", f"the first run ended early: {run.outcome.message}")
         x = np.concatenate([run.q[-1], run.qd[-1]])
     return first_return(field, x, slowest)
+
+
+def _under_way(field: Autonomous, x: Any, period: float) -> tuple[Any, float, Outcome]:
+    """A known start, with what is then under way in delays, as a period of the motion from it leaves that."""
+    if field.late:
+        run = fly(field, x, period, GUESS_RTOL)
+        if not run.outcome.ok:
+            return x, period, Outcome("no_cycle", f"the first period ended early: {run.outcome.message}")
+        n = field.system.size
+        x = field.state(x[:n], x[field.size : field.size + n], run.q[-1, n:])
+    return x, period, Outcome(COMPLETED)
 
 
 def first_return(field: Autonomous, x: Any, period: float) -> tuple[Any, float, Outcome]:

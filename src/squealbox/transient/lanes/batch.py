@@ -9,18 +9,18 @@ import numpy as np
 from squealbox import friction, schedules
 from squealbox.parameters import DataSheet
 from squealbox.schedules import Sum
-from squealbox.system import InvalidSystem, System, as_system
+from squealbox.system import System, as_system
 from squealbox.transient.limited import in_time
-from squealbox.transient.widened import Widened, base_of
+from squealbox.transient.widened import RunApart, Widened, base_of
 
 
 def stacked(designs: Sequence[Any]) -> System:
-    """Systems of the same structure as one with a leading axis; `InvalidSystem` names one that differs."""
+    """Systems of the same structure as one with a leading axis; `RunApart` names one that differs."""
     systems = [in_time(as_system(each)) for each in designs]
     whole = _joined(systems)
     if isinstance(whole, Widened):
         if any(not np.array_equal(each.embedding, whole.embedding) for each in systems[1:]):  # type: ignore[attr-defined]
-            raise InvalidSystem("designs of a sequence have singular mass matrices that differ: run them apart")
+            raise RunApart("designs of a sequence have singular mass matrices that differ: run them apart")
         whole = whole.replace(base=_joined([base_of(each) for each in systems]))
     return whole
 
@@ -33,7 +33,7 @@ def _joined(systems: list[System]) -> System:
         if other.shape != () or not alike or kinds != [
             (type(c.law), c.unilateral, type(c.V), type(c.N0)) for c in first.contacts
         ]:  # fmt: skip
-            raise InvalidSystem(f"design {i} of the sequence has another structure than the first: run them apart")
+            raise RunApart(f"design {i} of the sequence has another structure than the first: run them apart")
     plain = {name: np.stack([getattr(s, name) for s in systems]) for name in ("M", "C", "K")}
     contacts = []
     for c, contact in enumerate(first.contacts):
@@ -51,7 +51,7 @@ def _joined(systems: list[System]) -> System:
 
 def _same(values: list[Any], name: str) -> Any:
     if any(value != values[0] for value in values):
-        raise InvalidSystem(f"{name}: schedules in a sequence of designs must be the same: run them apart")
+        raise RunApart(f"{name}: schedules in a sequence of designs must be the same: run them apart")
     return values[0]
 
 
@@ -62,36 +62,55 @@ def _stacked_law(laws: list[Any]) -> Any:
     fields = {each.name: [getattr(law, each.name) for law in laws] for each in dataclasses.fields(first)}
     fields = {name: values for name, values in fields.items() if any(value != values[0] for value in values)}
     if any(not isinstance(value, (int, float)) for values in fields.values() for value in values):
-        raise InvalidSystem("friction laws of a sequence may differ in numbers that all of them set: run them apart")
+        raise RunApart("friction laws of a sequence may differ in numbers that all of them set: run them apart")
     return first.replace({name: np.array(values, dtype=float) for name, values in fields.items()})
 
 
 def first_of(system: System) -> System:
     """The first system of a batch."""
+    return member(system, 0)
+
+
+def member(system: System, i: int) -> System:
+    """System i of a batch, counted along its leading axes."""
     if system.shape == ():
         return system
-    cut = {"M": 2, "C": 2, "K": 2}
-    plain = {name: _first(getattr(system, name), tail) for name, tail in cut.items()}
-    plain["load"] = _first(system.load, 1)
+    cut = _Cut(system.shape, i)
+    plain = {name: cut(getattr(system, name), 2) for name in ("M", "C", "K")}
+    plain["load"] = cut(system.load, 1)
     contacts = []
     for contact in system.contacts:
-        given = {name: _first(getattr(contact, name), 1) for name in ("n", "d", "t", "normal")}
-        given |= {name: _first(getattr(contact, name), 0) for name in ("N0", "V", "law")}
+        given = {name: cut(getattr(contact, name), 1) for name in ("n", "d", "t", "normal")}
+        given |= {name: cut(getattr(contact, name), 0) for name in ("N0", "V", "law")}
         contacts.append(contact.replace(given))
-    return system.replace({**plain, "contacts": tuple(contacts)})
+    loops = tuple(cut(loop, 0) for loop in system.loops)
+    return system.replace({**plain, "contacts": tuple(contacts), "loops": loops})
 
 
-def _first(value: Any, tail: int) -> Any:
-    """The first entry along leading axes of an array, or of every number of a law or schedule."""
-    if value is None or isinstance(value, (bool, str)):
-        return value
-    if isinstance(value, DataSheet):
-        own = {each.name: getattr(value, each.name) for each in dataclasses.fields(value)}  # type: ignore[arg-type]
-        if isinstance(value, Sum):
-            return Sum(tuple((_first(w, tail), _first(part, 0)) for w, part in own["parts"]))
-        scalars = {name: _first(x, 0) for name, x in own.items() if isinstance(x, np.ndarray) and x.ndim > 0}
-        if isinstance(value, (friction.Table, schedules.Table)):  # its arrays are points, not leading axes
+@dataclasses.dataclass(frozen=True)
+class _Cut:
+    """Entry i along leading axes of an array, or of every number of a law, schedule or loop."""
+
+    shape: tuple[int, ...]
+    i: int
+
+    def __call__(self, value: Any, tail: int) -> Any:
+        if value is None or isinstance(value, (bool, str)):
             return value
-        return value.replace(scalars) if scalars else value
-    array = np.asarray(value)
-    return array.reshape((-1, *array.shape[array.ndim - tail :]))[0] if array.ndim > tail else array
+        if isinstance(value, DataSheet):
+            own = {each.name: getattr(value, each.name) for each in dataclasses.fields(value)}  # type: ignore[arg-type]
+            if isinstance(value, Sum):
+                return Sum(tuple((self(w, tail), self(part, 0)) for w, part in own["parts"]))
+            if isinstance(value, (friction.Table, schedules.Table)):  # its arrays are points, not leading axes
+                return value
+            changed = {
+                name: self(x, 0)
+                for name, x in own.items()
+                if isinstance(x, DataSheet) or (isinstance(x, np.ndarray) and x.ndim > 0)
+            }
+            return value.replace(changed) if changed else value
+        array = np.asarray(value)
+        if array.ndim <= tail:
+            return array
+        last = array.shape[array.ndim - tail :]
+        return np.broadcast_to(array, (*self.shape, *last)).reshape((-1, *last))[self.i]

@@ -83,11 +83,11 @@ class EquationText:
         return parts
 
     def given(self, name: str, count: int, table: bool, at: int) -> str:
-        """The coefficients name0, name1, ... of a formula; of a table they stay in memory, their number p[at] known."""
+        """The coefficients name0, name1, ... of a formula; of a long one they stay in memory, p[at] known."""
         if not table:
             return "(" + ", ".join(self.row(f"{name}{i}") for i in range(count)) + ",)"
         columns = 3 - (at == 0)  # speeds, coefficients and slopes of a law; instants and values of a schedule
-        known = {at: (count - 1) // columns}
+        known = {} if at < 0 else {at: (count - 1) // columns}
         return f"Given(A, b + {self.rows.places[f'{name}0'] * self.shape.lanes}, {count}, {known})"
 
     def accelerations(self, q: list[str], v: list[str], time: str) -> dict[str, list[str]]:

@@ -14,6 +14,7 @@ from squealbox.schedules import SCHEDULES
 from squealbox.system import InvalidSystem
 from squealbox.transient.lanes.shape import Shape
 from squealbox.transient.observers import extreme
+from squealbox.transient.own_laws import is_long
 from squealbox.transient.smooth_laws import SMOOTH
 
 VECTOR_FUNCTIONS = ("where", "minimum", "maximum", "sqrt", "exp", "sin", "cos", "arctan", "log")
@@ -24,7 +25,7 @@ def formulas(shape: Shape) -> list[str]:
     parts: list[str] = []
     laws = [*(inspect.getsource(law.formula) for law in LAWS), *(mu for mu, _ in shape.own)]
     for kind in sorted({kind for kind, _ in shape.laws}):
-        parts.append(lane_function(laws[kind], f"lane_mu_{kind}", is_table(LAWS, kind)))
+        parts.append(lane_function(laws[kind], f"lane_mu_{kind}", in_memory(kind, shape.own)))
     for kind in sorted({kind - 1 for kind in shape.smooth if kind > 0}):
         law = SMOOTH[kind]
         for name, formula in (("creep", law.creep_formula), ("grip", law.grip_formula)):
@@ -43,6 +44,11 @@ def formulas(shape: Shape) -> list[str]:
 def is_table(kinds: Sequence[type], kind: int) -> bool:
     """Whether it is a table, whose coefficients are as many as its points; kinds after the known ones are own laws."""
     return kind < len(kinds) and kinds[kind] in (friction.Table, schedules.Table)
+
+
+def in_memory(kind: int, own: Sequence[tuple[str, str]]) -> bool:
+    """Whether a law is long, and so called with its coefficients in memory: a table, or an own law that is a sum."""
+    return is_long(own[kind - len(LAWS)][0]) if kind >= len(LAWS) else is_table(LAWS, kind)
 
 
 def source_of(function: Callable[..., Any]) -> str:

@@ -10,7 +10,7 @@ from squealbox.friction import LAWS
 from squealbox.transient._motion import ARCTAN, RAW
 from squealbox.transient.lanes.equation_text import CALLED, minus
 from squealbox.transient.lanes.event_text import EventText, probes, slope_weights
-from squealbox.transient.lanes.formulas import is_table
+from squealbox.transient.lanes.formulas import in_memory
 from squealbox.transient.lanes.shape import Shape
 from squealbox.transient.methods import tableau
 from squealbox.transient.rows import ALGEBRAIC, FIRST_ORDER, WITH_MASS
@@ -37,7 +37,7 @@ class Step(EventText):
         """Friction force of a sliding contact; 0 while it sticks or is open."""
         shape, force = self.shape, f"f{c}_{k}"
         kind, count = shape.laws[c]
-        p = self.given(f"law{c}_", count, is_table(LAWS, kind), 1)
+        p = self.given(f"law{c}_", count, in_memory(kind, shape.own), 1 if kind < len(LAWS) else -1)
         if shape.exact:
             s = self.row(f"s{c}")
             self.put(f"u{c}_{k} = {s} * {speed}")

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.schedules import Constant, Schedule, kinks, value_at
-from squealbox.system import Contact, InvalidSystem, System
+from squealbox.system import Contact, System
 from squealbox.transient import packing
 from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.batch import first_of
@@ -17,6 +17,7 @@ from squealbox.transient.one_motion import lever, shared_motions
 from squealbox.transient.own_laws import law_kinds, own_texts
 from squealbox.transient.rows import Rows, audited, audited_matrix, consistent, fastest_rate, memories, rows_of
 from squealbox.transient.smooth_laws import smooth_kinds
+from squealbox.transient.widened import RunApart
 
 FEW = 3  # freedoms and contacts up to which a single run shares its kernel with other patterns of zeros
 ANGLE = 1.5  # of a schedule in a Taylor step: a series of order 16 leaves out 3e-12 of its swing, tolerances want less
@@ -45,9 +46,7 @@ def tabulate(
 ) -> Jobs:  # fmt: skip
     """The jobs of a batched system; leading axes are those of the system or else of the starts, flattened."""
     if any(contact.rigid for contact in system.contacts):
-        raise InvalidSystem(
-            "a rigid contact has impacts, which lanes do not know: run such systems one by one, with simulate"
-        )
+        raise RunApart("a rigid contact has impacts, which lanes do not know: run such systems one by one")
     batch = system.shape or np.shape(start[0])[:-1]
     count = int(np.prod(batch, dtype=int))
     rows, equation, template = EQUATIONS.of(system, recorded, lambda: _prepared(system, recorded))

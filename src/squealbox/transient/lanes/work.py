@@ -46,6 +46,10 @@ class Work:
         self.interrupted = False
         self.began = time.monotonic()
 
+    def elapsed(self) -> float:
+        """Seconds since the beginning."""
+        return time.monotonic() - self.began
+
     def run(self, design: Any, names: tuple[str, ...], arrays: list[Any], shape: tuple[int, ...]) -> None:
         """Work through all blocks, or until Ctrl-C."""
         total = int(np.prod(shape, dtype=int))
@@ -153,7 +157,7 @@ class Work:
                 while thread.is_alive():
                     thread.join(0.2)
                     if self.progress is not None:
-                        self.progress(min(before + int(counter[0]), total), total, time.monotonic() - self.began)
+                        self.progress(min(before + int(counter[0]), total), total, self.elapsed())
         except BaseException as error:  # Ctrl-C, or what `progress` raised
             stop[0] = 1
             for thread in threads:

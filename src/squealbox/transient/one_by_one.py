@@ -1,0 +1,140 @@
+"""Ensembles whose members no kernel carries together: each is a run of `simulate`, looked at by the same observers.
+
+Such are loops that are sampled or late, limits that vary, rigid contacts, and designs of one size but of other
+structure. Observers see the rows of a run, at most `STEP` of its fastest swing apart, with q'' of the cubic through q
+and q' of both ends.
+"""
+
+import dataclasses
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from squealbox.cautions import least_coefficient
+from squealbox.parameters import ParameterError
+from squealbox.system import System, as_system
+from squealbox.transient.lanes.batch import member
+from squealbox.transient.lanes.work import Work
+from squealbox.transient.methods import Method
+from squealbox.transient.observers import Observer
+from squealbox.transient.trajectory import Trajectory
+from squealbox.transient.widened import RunApart
+
+STEP = 1.0 / 32.0  # rad; an extreme is then off by less than 1e-8 of the swing
+Run = Callable[..., Trajectory]
+
+
+class OneByOne(Work):
+    """Members one after another, and the rows of results they leave, as `Work` makes them.
+
+    `simulate` is the function of that name with the contact scheme of the ensemble, `usual` the method a system takes,
+    `codes` how a run may end.
+    """
+
+    simulate: Run
+    usual: Callable[[System], Method]
+    codes: dict[str, int]
+
+    def run(self, design: Any, names: tuple[str, ...], arrays: list[Any], shape: tuple[int, ...]) -> None:
+        """All members in order, or until Ctrl-C."""
+        total = int(np.prod(shape, dtype=int))
+        flat = [np.broadcast_to(array, shape).ravel() for array in arrays]
+        try:
+            for i in range(total):
+                values = {name: float(array[i]) for name, array in zip(names, flat, strict=True)}
+                self._keep(self._member(design, values, i), self._start(shape, i))
+                if self.progress is not None:
+                    self.progress(i + 1, total, self.elapsed())
+        except KeyboardInterrupt:
+            if not self.rows:
+                raise
+            self.interrupted = True
+
+    @staticmethod
+    def _member(design: Any, values: dict[str, float], i: int) -> System:
+        if values:
+            return as_system(design.replace(values))
+        return as_system(design[i]) if isinstance(design, (list, tuple)) else member(as_system(design), i)
+
+    def _start(self, shape: tuple[int, ...], i: int) -> Any:
+        """The start of one member: as given, or its own of arrays with leading axes."""
+        if self.start is None or isinstance(self.start, str):
+            return self.start
+        try:
+            parts = [np.asarray(part, dtype=float) for part in self.start]
+            return tuple(np.broadcast_to(x, (*shape, x.shape[-1])).reshape(-1, x.shape[-1])[i] for x in parts)
+        except (TypeError, ValueError, IndexError) as error:
+            expected = '"rest", "sliding" or (q, qd) of shape (..., n)'
+            raise ParameterError("simulate_ensemble", "start", self.start, expected) from error
+
+    def _keep(self, system: System, start: Any) -> None:
+        """One run, as a row of results and its samples."""
+        swing = _fastest(system)
+        chosen = self.usual(system)
+        closer = min(STEP / swing if swing > 0.0 else np.inf, chosen.largest_step or np.inf)
+        method = dataclasses.replace(chosen, largest_step=closer) if np.isfinite(closer) else chosen
+        given = {"start_time": self.begin, "width": self.width}
+        motion = self.simulate(system, self.duration, start, None, method, **given)
+        if motion.outcome == "interrupted":
+            raise KeyboardInterrupt
+        known: System = motion.inputs["system"]
+        if self.system is None:
+            self.system = known
+        elif self.system.names != known.names or len(self.system.contacts) != len(known.contacts):
+            raise RunApart("members have other degrees of freedom or contacts: run them apart")
+        counts = motion.steps, motion.steps + motion.rejected, len(motion.event_time)
+        head = [self.codes[str(motion.outcome)], motion.t[-1], *counts]
+        seen = [self._seen(each, motion) for each in self.observers]
+        m = len(known.contacts)
+        lowest, fastest = np.min(motion.normal_force, axis=0), np.max(np.abs(motion.sliding_velocity), axis=0)
+        least = [least_coefficient(c, np.array([v]))[0] for c, v in zip(known.contacts, fastest[:m], strict=True)]
+        row = [head, motion.q[-1], motion.qd[-1], *seen, lowest[:m], fastest[:m], least]
+        self.rows.append(np.concatenate(row)[None])
+        if self.times.size:
+            asked = self.simulate(system, self.duration, start, self.times, chosen, **given)
+            whole = np.full((1, self.times.size, 2 * known.size), np.nan)
+            whole[0, : len(asked.t)] = np.hstack([asked.q, asked.qd])
+            self.samples.append(whole)
+
+    def _seen(self, observer: Observer, motion: Trajectory) -> Any:
+        """Memory and coefficients of an observer at the end of a run, for each of its copies."""
+        n, m = motion.q.shape[1], motion.mode.shape[1]
+        watch = observer.watch()
+        copies = watch.copies(n, m)
+        p = (self.begin + (1.0 - observer.last) * self.duration, *observer.settings)
+        memory: Any = tuple(np.full(copies, x) if observer.of != "system" else x for x in watch.start)
+        for before, after in _steps(motion, observer.of):
+            memory = observer.update(memory, p, before, after)
+        table = np.empty((copies, watch.width))
+        for k, value in enumerate((*memory, *p)):
+            table[:, k] = value
+        return table.ravel()
+
+
+def _steps(motion: Trajectory, of: str) -> Any:
+    """Both ends of each step as an observer of that kind sees them, all its copies at once."""
+    length = np.diff(motion.t)
+    for i in np.flatnonzero(length > 0.0):
+        h, ends = length[i], []
+        rise, (v, u) = (motion.q[i + 1] - motion.q[i]) / h, motion.qd[i : i + 2]
+        for j, bent in ((i, (6.0 * rise - 4.0 * v - 2.0 * u) / h), (i + 1, (4.0 * u + 2.0 * v - 6.0 * rise) / h)):
+            seen: dict[str, Any] = {"q": motion.q[j], "qd": motion.qd[j], "qdd": bent}
+            if of == "system":
+                seen = {name: tuple(values) for name, values in seen.items()}
+            elif of == "contact":
+                seen = {"velocity": motion.sliding_velocity[j], "normal": motion.normal_force[j]}
+                seen |= {"mode": motion.mode[i + 1], "work": motion.work_friction[j]}
+            ends.append(SimpleNamespace(t=motion.t[j], **seen))
+        yield ends
+
+
+def _fastest(system: System) -> float:
+    """Highest angular frequency [rad/s] of what has mass, without its contacts."""
+    heavy = np.any(system.M != 0.0, axis=1)
+    if not np.any(heavy):
+        return 0.0
+    rows = np.ix_(heavy, heavy)
+    values = np.linalg.eigvals(np.linalg.lstsq(system.M[rows], system.K[rows], rcond=None)[0])
+    return float(np.sqrt(np.max(np.abs(values))))
