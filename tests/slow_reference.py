@@ -313,7 +313,8 @@ class Slow:
                 if np.any(self.rigid):
                     y, landed = self.land(t, y)
                 chosen = self.choose(t, y, end)
-                self.last, before = before, t
+                changed = bool(landed) or list(chosen) != list(self.modes)
+                self.last, before = (before, t) if changed else (-np.inf, before)
                 if t > 0.0:
                     events += [(t, c, chosen[c]) for c in range(self.m) if chosen[c] != self.modes[c] or c in landed]
                 self.modes = chosen

@@ -55,8 +55,12 @@ class ParameterError(ValueError):
 
     @property
     def expectation(self) -> str:
-        """What was expected, as the end of a sentence."""
-        return self.expected if self.expected.startswith("did you mean") else f"expected {self.expected}"
+        """What was expected, as the end of a sentence; what looks like degrees is told in radians."""
+        if self.expected.startswith("did you mean"):
+            return self.expected
+        angle = self.value if self.expected.endswith(" rad") and isinstance(self.value, (int, float)) else math.inf
+        degrees = f"; {angle:g} deg are {math.radians(angle):.5g} rad" if 3.0 < abs(angle) <= 360.0 else ""
+        return f"expected {self.expected}{degrees}"
 
 
 def parameter(

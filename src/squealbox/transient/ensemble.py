@@ -16,11 +16,12 @@ from squealbox.result import COMPLETED, Array, Column, Outcome, Result, batched,
 from squealbox.system import as_system
 from squealbox.transient import _march
 from squealbox.transient.choosing import chosen_method, usual_method
+from squealbox.transient.instants import instants_of
 from squealbox.transient.lanes.work import HEAD, Progress, Work
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.observers import as_observers
 from squealbox.transient.one_by_one import OneByOne
-from squealbox.transient.simulate import MESSAGES, SCHEMES, instants_within, simulate
+from squealbox.transient.simulate import MESSAGES, SCHEMES, simulate
 from squealbox.transient.widened import RunApart
 
 if TYPE_CHECKING:
@@ -174,7 +175,7 @@ def simulate_ensemble(
     contact : "exact", "raw", "smooth" = "arctan", or "tanh", as in `simulate`
     start : "rest", "sliding", or (q, qd) whose arrays end with n and broadcast with the parameters; without parameters
         their leading axes are those of the ensemble
-    times : instants at which q and qd are sampled [s]; they do not influence the steps
+    times : instants at which q and qd are sampled [s], or a whole number of equal ones; they do not influence the steps
     rtol, atol, width, start_time : as in `simulate`
     threads : how many; None takes one for each core
     progress : called with (trajectories done, in all, seconds) about five times a second; what it raises ends the
@@ -201,7 +202,7 @@ def simulate_ensemble(
         raise ParameterError("simulate_ensemble", "contact", contact, known_names(str(contact), list(SCHEMES)))
     instants = np.zeros(0)
     if times is not None:
-        instants = instants_within("simulate_ensemble", np.atleast_1d(times), start_time, duration)
+        instants = instants_of("simulate_ensemble", times, start_time, duration, one=True)
     names, arrays, shape = _space(design_or_system, parameters, grid, start)
     named = method or _usual(design_or_system, names, arrays, contact)
     chosen = chosen_method(named, rtol, atol)

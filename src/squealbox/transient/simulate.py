@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.arguments import public, whole
+from squealbox.arguments import public
 from squealbox.cautions import of_a_run
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
@@ -15,6 +15,7 @@ from squealbox.system import InvalidSystem, System, as_system, equilibrium, no_r
 from squealbox.transient import _march, _motion, moreau, packing, pieces
 from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
 from squealbox.transient.choosing import check_series, chosen_method, usual_method
+from squealbox.transient.instants import instants_of
 from squealbox.transient.latest import Latest
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR, Method
@@ -119,11 +120,11 @@ def simulate(
     late = LATE.of(design_or_system, plane, lambda: pieces.late_loops(as_system(design_or_system, plane=plane)))
     if late is not None:
         one = partial(simulate, method=method, contact=contact, rtol=rtol, atol=atol, width=width)
-        asked = _times(times, start_time, duration)
+        asked = instants_of("simulate", times, start_time, duration)
         return pieces.motion_of(late, start, start_time, duration, asked, one, contact, progress)
     system = system_of(design_or_system, plane=plane)
     chosen = chosen_method(method or usual_method(system, contact), rtol, atol)
-    requested = _times(times, start_time, duration)
+    requested = instants_of("simulate", times, start_time, duration)
     if contact != "exact":
         no_rigid_contact(system, f"contact={contact!r}")
     start, z = parted("simulate", start, system)
@@ -347,26 +348,6 @@ def _caution(settings: dict[str, Any], reversals: int) -> str:
         return f"plain sgn was stepped over {reversals} times: no tolerance bounds the error there; {advice}"
     width = settings["width"]
     return f"sliding reversed {reversals} times inside a smoothing of {width:g} m/s: sticking became creep; {advice}"
-
-
-def _times(times: Any, start_time: float, duration: float) -> Any:
-    if times is None:
-        return None
-    if np.ndim(times) == 0:
-        if expected := whole(2)(times):
-            raise ParameterError("simulate", "times", times, f"{expected}, or an array of instants")
-        return np.linspace(start_time, start_time + duration, int(times))
-    return instants_within("simulate", times, start_time, duration)
-
-
-def instants_within(function: str, times: Any, start_time: float, duration: float) -> Any:
-    """The instants as an array; `ParameterError` of `function` unless they increase within the run."""
-    instants = np.asarray(times, dtype=float)
-    end = start_time + duration
-    inside = np.all((instants >= start_time) & (instants <= end * (1.0 + 1e-12)))
-    if instants.ndim != 1 or not inside or np.any(np.diff(instants) < 0.0):
-        raise ParameterError(function, "times", times, f"increasing instants within [{start_time:g}, {end:g}] s")
-    return np.minimum(instants, end)
 
 
 def _start(system: System, start: Any, time: float) -> tuple[Any, Any]:
