@@ -138,6 +138,16 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
     "CriticalValues": lambda: stability.critical_values(drum(), FRICTION, RANGE),
     "ModeEnergy": lambda: stability.mode_energy(drum()),
     "LocalSensitivity": lambda: stability.local_sensitivity(drum(), stability.complex_modes(drum()).most_unstable),
+    "MeshDoubt": lambda: stability.MeshDoubt(
+        frequency=np.array([2868.9, 3494.8, 5292.2]),
+        growth_rate=np.array([2.1, 432.7, -3.0]),
+        other_frequency=np.array([2910.9, 3521.7, np.nan]),
+        other_growth_rate=np.array([3.0, 399.3, np.nan]),
+        likeness=np.array([0.87, 0.99, 0.3]),
+        element_size=0.02,
+        other_size=0.03,
+        freedoms=(7344, 4014),
+    ),
     "Sensitivity": lambda: stability.sensitivity(drum()),
     "TrackedModes": lambda: stability.tracked_modes(drum(), FRICTION, np.linspace(0.1, 0.4, 5)),
     "StabilityMap": lambda: stability.stability_map(

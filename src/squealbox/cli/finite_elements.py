@@ -10,25 +10,29 @@ from squealbox.cli.inputs import small
 from squealbox.cli.progress import Progress
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.assembled import AssembledBrake
+from squealbox.fe.meshed import MeshedBrake
 from squealbox.fe.mode_shapes import write_uff, write_vtu
 from squealbox.files import DesignFile
 from squealbox.files.analyses import Axis, scalar_parameters
 from squealbox.files.reduced import Reduce, Reduced
 from squealbox.stability import complex_modes
 from squealbox.stability.mode_table import mode_table, table_text
+from squealbox.stability.second_mesh import ONE_MESH, mesh_doubt
 
 FRICTION = "friction.static"
 POINTS = 61
-MESH = (
-    "Doubt: one mesh was looked at. Frequencies settle with the mesh, growth rates hardly do: export a finer one and "
-    "compare before believing a growth rate."
-)
 
 
-def print_more(found: DesignFile, spectrum: Any, band: tuple[float, float], time: float, out: Path | None) -> None:
-    """Rest of the page, and the files of `--out`."""
+def print_more(
+    found: DesignFile, spectrum: Any, band: tuple[float, float], time: float, out: Path | None, mesh: float | None
+) -> None:
+    """Rest of the page, and the files of `--out`; `mesh` is the element size of a second mesh [m]."""
     table = mode_table(found.design, spectrum, time)
-    print("\n".join(text for text in (table_text(table), MESH) if text))
+    second = None
+    if isinstance(found.design, MeshedBrake):
+        with Progress("meshing a second time"):
+            second = mesh_doubt(found.design, spectrum, mesh)
+    print("\n".join(text for text in (table_text(table), second.summary() if second else ONE_MESH) if text))
     if isinstance(found.design, AssembledBrake):
         structure = found.design.exported()
         frequencies = spectrum.frequency[: len(spectrum.eigenvalues) // 2]
@@ -37,6 +41,7 @@ def print_more(found: DesignFile, spectrum: Any, band: tuple[float, float], time
     if out is None:
         return
     paths = [spectrum.save(out / "modes.nc"), write_csv(out / "modes.csv", table)]
+    paths += [] if second is None else [second.save(out / "second_mesh.nc")]
     paths += _shapes(found, spectrum, out) + _coalescence(found, band, out)
     print(written(*paths))
 

@@ -34,6 +34,7 @@ def modes(
     allow_code: AllowCode = False,
     band: Ends = None,
     certify: bool = False,
+    second_mesh: str | None = None,
     out: Path | None = None,
 ) -> None:
     """Is steady sliding stable? Complex eigenvalues: frequency, growth rate and damping of each mode.
@@ -50,6 +51,8 @@ def modes(
         of a finite-element brake: lowest and highest frequency, with or without a unit: 500 10kHz
     certify
         of a finite-element brake: prove by counting that no growing mode of the band is missing
+    second_mesh
+        of a brake that meshes itself: element size of the mesh it is compared with; 1.5 times its own by default
     out
         folder for the table, a figure of the eigenvalues and one of what feeds and damps the worst mode
     """
@@ -58,10 +61,12 @@ def modes(
     if out is not None:
         folder(out, "modes", "mode_energy", "coalescence")
     if found.design.system().is_sparse:
-        _modes_in_band(found, time, band, certify, out)
+        _modes_in_band(found, time, band, certify, second_mesh, out)
         return
-    if band is not None or certify:
-        raise UsageError("--band and --certify: for finite-element brakes; of this one all modes are shown")
+    if band is not None or certify or second_mesh:
+        raise UsageError(
+            "--band, --certify and --second-mesh: for finite-element brakes; of this one all modes are shown"
+        )
     spectrum = complex_modes(found.design, time)
     if not spectrum.outcome.ok:
         raise ComputationFailed(spectrum.outcome)
@@ -72,8 +77,11 @@ def modes(
         print(written(*_mode_files(spectrum, found, time, out)))
 
 
-def _modes_in_band(found: "DesignFile", time: float, band: Ends, certify: bool, out: Path | None) -> None:
+def _modes_in_band(
+    found: "DesignFile", time: float, band: Ends, certify: bool, second_mesh: str | None, out: Path | None
+) -> None:
     """The modes of a finite-element brake in its band, each with an error bar."""
+    mesh = None if second_mesh is None else number(second_mesh, "m", f"--second-mesh {second_mesh}")
     given = None if found.modes is None else found.modes.band
     if band is not None:
         low, high = (number(text, "Hz", f"--band {text}") for text in band)
@@ -89,7 +97,7 @@ def _modes_in_band(found: "DesignFile", time: float, band: Ends, certify: bool, 
     if not spectrum.outcome.ok:
         raise ComputationFailed(spectrum.outcome)
     show(f"{found.design.title}, {found.path}", spectrum)
-    print_more(found, spectrum, (low, high), time, out)
+    print_more(found, spectrum, (low, high), time, out, mesh)
 
 
 def onset(

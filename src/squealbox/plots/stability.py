@@ -17,6 +17,7 @@ from squealbox.stability import (
     Boundary,
     ComplexModes,
     LocalSensitivity,
+    MeshDoubt,
     ModeEnergy,
     Sensitivity,
     StabilityMap,
@@ -181,6 +182,27 @@ def local_sensitivity(found: LocalSensitivity, *, most: int = 10, title: str = "
         figure_of(panel).colorbar(dots, ax=panel, pad=0.02).set_label(quantity_label(label, "1/s"))
         panel.set(xlabel=quantity_label("xyz"[first], "mm"), ylabel=quantity_label("xyz"[second], "mm"), title=title)
         panel.set_aspect("equal")
+        return figure_of(panel)
+
+
+@drawn_by.register(MeshDoubt)
+def mesh_doubt(found: MeshDoubt, *, title: str = "", axes: Any = None) -> "Figure":
+    """Growth rate over frequency on both meshes; a line joins what is one mode."""
+    with drawing(axes, width=4.5, height=3.0) as panel:
+        for at in zip(
+            *(1e-3 * x for x in (found.frequency, found.other_frequency)),
+            *(found.growth_rate, found.other_growth_rate),
+            strict=True,
+        ):
+            panel.plot(at[:2], at[2:], color="#888888", linewidth=0.8, zorder=1)
+        looks = ({"color": "#0072B2"}, {"markerfacecolor": "none", "color": "#D55E00"})
+        pairs = ((found.frequency, found.growth_rate), (found.other_frequency, found.other_growth_rate))
+        for (f, growth), look, size in zip(pairs, looks, (found.element_size, found.other_size), strict=True):
+            label = f"elements of {1e3 * float(size):g} mm"
+            panel.plot(1e-3 * f, growth, "o", markersize=4.0, label=label, **look)
+        panel.axhline(0.0, color="#000000", linewidth=0.5)
+        panel.set(xlabel=quantity_label("frequency", "kHz"), ylabel=quantity_label("growth rate", "1/s"), title=title)
+        panel.legend(loc="best")
         return figure_of(panel)
 
 

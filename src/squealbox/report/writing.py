@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from squealbox.designs import Design
+from squealbox.fe.meshed import MeshedBrake
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files import DesignFile, read_file
 from squealbox.files.reduced import ONE_WAY, dense, promise
@@ -15,6 +16,8 @@ from squealbox.report.examining import Progress, examine
 from squealbox.report.page import write_page
 from squealbox.report.results import folder_page, result_page
 from squealbox.result import Result
+from squealbox.stability import complex_modes
+from squealbox.stability.second_mesh import ONE_MESH, mesh_doubt
 
 EXPECTED = "a design file (.toml), a result (.nc) or a folder that holds results"
 
@@ -80,7 +83,7 @@ def _page_at(path: Path, allow_code: bool, progress: Progress) -> Page:
 
 
 def _file_page(found: DesignFile, progress: Progress) -> Page:
-    found = dense(found)
+    whole, found = found.design, dense(found)
     time = found.modes.time if found.modes else 0.0
     about = examine(
         found.design, onset=found.onset, plane=found.map, simulate=found.simulate, time=time, progress=progress
@@ -95,6 +98,12 @@ def _file_page(found: DesignFile, progress: Progress) -> Page:
     notes += [note] if found.study else []
     if isinstance(found.design, ReducedBrake):
         notes.append(promise(found.design))
+        if isinstance(whole, MeshedBrake):
+            progress("a second mesh")
+            modes = complex_modes(whole, time, band=found.design.reduction.band)
+            notes.append(mesh_doubt(whole, modes).sentence)
+        else:
+            notes.append(ONE_MESH)
         if found.design.reduction.arrays["across"] is not None:
             notes.append(ONE_WAY)
     return design_page(about, title=title, command=f"squealbox report {name}", note=" ".join(notes))

@@ -16,6 +16,7 @@ from squealbox.stability.mechanism import Mechanism, mechanism
 from squealbox.stability.nonnormal import TransientGrowth, pseudospectrum, transient_growth
 from squealbox.stability.onset import CriticalValue, CriticalValues, critical_value, critical_values
 from squealbox.stability.routh_hurwitz import routh_hurwitz
+from squealbox.stability.second_mesh import MeshDoubt, mesh_doubt
 from squealbox.stability.sensitivity import Sensitivity, sensitivity
 from squealbox.stability.spectra import compiled_eigenvalues
 from squealbox.stability.tracking import TrackedModes, TrackedPoint, track, tracked_modes
@@ -31,6 +32,7 @@ __all__ = [
     "FiniteSpectrum",
     "LocalSensitivity",
     "Mechanism",
+    "MeshDoubt",
     "Mode",
     "ModeEnergy",
     "Sensitivity",
@@ -57,6 +59,7 @@ __all__ = [
     "loss_factor",
     "map_boundary",
     "mechanism",
+    "mesh_doubt",
     "mode_energy",
     "pseudospectrum",
     "routh_hurwitz",
