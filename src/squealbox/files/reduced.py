@@ -174,8 +174,12 @@ def promise(brake: ReducedBrake) -> str:
     names = sorted({name for point in corners for name in point})
     over = [f"{name} {min(p[name] for p in corners):g} to {max(p[name] for p in corners):g}" for name in names]
     held = "" if about.error <= about.tolerance else f", more than the {about.tolerance:g} 1/s asked for"
+    count = len(about.arrays["M"])
+    done = (
+        f"Reduced from {about.size} to {count} coordinates" if count < about.size else f"All {count} coordinates kept"
+    )
     return (
-        f"Reduced from {about.size} to {len(about.arrays['M'])} coordinates for {about.band[0]:g} to {about.band[1]:g} "
+        f"{done} for {about.band[0]:g} to {about.band[1]:g} "
         f"Hz{' and ' + ', '.join(over) if over else ''}: eigenvalues in the band within {about.error:.2g} 1/s{held}, "
         f"estimated at {len(about.errors)} points; that no growing mode is missing is not certified here "
         "(squealbox modes --certify)."
