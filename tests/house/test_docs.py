@@ -41,8 +41,10 @@ def test_links_lead_somewhere(path):
 
 
 def built(source, folder) -> subprocess.CompletedProcess[str]:
-    """The pages without their cells, which `test_cells_run` runs; a cell that is not run has no language."""
-    settings = ["nb_execution_mode=off", "suppress_warnings=ref.python,myst-nb.lexer"]
+    """The pages without their cells, which `test_cells_run` runs, and without names in the list of contents; a cell
+    that is not run has no language.
+    """
+    settings = ["nb_execution_mode=off", "suppress_warnings=ref.python,myst-nb.lexer", "toc_object_entries=0"]
     command = [sys.executable, "-m", "sphinx", "-q", "--fail-on-warning", "-b", "html"]
     command += [word for setting in settings for word in ("-D", setting)]
     return subprocess.run([*command, str(source), str(folder)], capture_output=True, text=True, timeout=600)

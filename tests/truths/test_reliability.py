@@ -41,18 +41,15 @@ def coupling(rho):
 def test_form_is_exact_for_a_straight_boundary(rho):
     """Through eigenvalues and a root search: the onset is good to 1e-12, the search of the point to 1e-7."""
     scatter, beta = coupling(rho)
-    found = form(ModeCoupling(), scatter, MARGIN, samples=1000)
+    found = form(ModeCoupling(), scatter, MARGIN, samples=300)
     assert float(found.beta) == pytest.approx(beta, rel=1e-6)
     assert float(found.probability) == pytest.approx(norm.sf(beta), rel=1e-4)
     assert found.straight
     assert float(found.low) < norm.sf(beta) < float(found.high)
     assert found.point[0] == pytest.approx(found.point[1], rel=1e-6)  # mu k3 = k12 there
     assert float(found.beta) != pytest.approx(0.3 / 0.09, rel=0.05)  # deviations added instead of variances
-
-
-def test_importance_of_independent_parameters_is_their_share_of_the_variance():
-    found = form(ModeCoupling(), coupling(0.0)[0], MARGIN, samples=100)
-    assert found.importance == pytest.approx([25.0 / 41.0, 16.0 / 41.0], rel=1e-5)
+    if rho == 0.0:  # the importance of independent parameters is their share of the variance
+        assert found.importance == pytest.approx([25.0 / 41.0, 16.0 / 41.0], rel=1e-5)
 
 
 def test_a_squealing_median_has_a_negative_index():
@@ -70,7 +67,7 @@ def test_form_is_wrong_for_a_sphere_and_says_so():
 
 
 def test_no_design_point_is_an_outcome():
-    found = form(None, PAIR, Quantity(lambda at: np.tanh(at["a"]), "never", limit=2.0))
+    found = form(None, PAIR, Quantity(lambda at: np.tanh(at["a"]), "never", limit=2.0), iterations=20)
     assert found.outcome == "no_design_point"
     assert np.isnan(found.probability)
     assert "no_design_point" in found.summary()
@@ -92,7 +89,7 @@ def test_subset_simulation_at_one_in_a_million():
 
 def test_subset_simulation_of_an_onset_below_and_above_the_median():
     scatter, beta = coupling(0.0)
-    found = subset_simulation(ModeCoupling(), scatter, MARGIN, samples=400, runs=2, seed=1)
+    found = subset_simulation(ModeCoupling(), scatter, MARGIN, samples=200, runs=2, seed=1)
     assert float(found.low) < norm.sf(beta) < float(found.high)
     usual = subset_simulation(None, PAIR, Quantity(lambda at: at["a"], "a", limit=0.3), seed=1)
     assert float(usual.low) < norm.sf(0.3) < float(usual.high)
@@ -163,7 +160,7 @@ def test_surrogate_warns_at_the_kink_and_serves_where_the_quantity_is_smooth():
 
 def test_results_are_saved_and_read_back(tmp_path):
     far = Quantity(lambda at: at["a"] + at["b"], "sum", limit=4.0)
-    runs = form(None, PAIR, far), subset_simulation(None, PAIR, far, samples=200), polynomial_chaos(None, PAIR, far)
+    runs = form(None, PAIR, far), subset_simulation(None, PAIR, far, samples=200), polynomial_chaos(None, PAIR, far, samples=64)
     for i, found in enumerate(runs):
         again = Result.load(found.save(tmp_path / f"{i}.nc"))
         assert again.summary() == found.summary()
