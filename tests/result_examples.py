@@ -185,7 +185,7 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
     ),
     "BifurcationDiagram": lambda: bifurcation_diagram(drum(), FRICTION, [0.1, 0.3]),
     "Coexistence": lambda: coexistence(
-        drum(), {FRICTION: (0.1, 0.4), "load": (900.0, 1100.0)}, columns=4, rows=2, starts=4
+        drum(), {FRICTION: (0.3, 0.9), "load": (900.0, 1100.0)}, columns=4, rows=2, starts=2
     ),
     "PointCurve": lambda: hopf_curve(drum(), {FRICTION: RANGE, "k1": (18e6, 20e6)}, points=6),
     "SquealProbability": lambda: scattered(studies.squeal_probability, samples=512),

@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 
-POINTS, CHUNK = 1000, 5
+POINTS, CHUNK = 500, 5
 LOADS = np.arange(POINTS, dtype=float)
 PACE = 0.002  # seconds for a point
 JOURNAL = "SQUEALBOX_JOURNAL"

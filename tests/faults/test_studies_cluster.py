@@ -62,7 +62,7 @@ def test_a_worker_killed_in_the_midst_changes_nothing(address, tmp_path, monkeyp
     killed = []
 
     def kill(pace):
-        if pace.done > 150 * (len(killed) + 1) and len(killed) < 3:
+        if pace.done > 100 * (len(killed) + 1) and len(killed) < 3:
             busy = [p for p in psutil.process_iter(["cmdline", "ppid"]) if is_worker(p, address)]
             killed.append(busy[len(killed) % len(busy)].pid)
             os.kill(killed[-1], signal.SIGKILL)

@@ -18,7 +18,7 @@ import pytest
 from faults import study_victim
 from squealbox.studies import Store
 
-KILLS = int(os.environ.get("SQUEALBOX_KILLS", "4"))
+KILLS = int(os.environ.get("SQUEALBOX_KILLS", "3"))
 VICTIM = Path(study_victim.__file__)
 BLOCKS = study_victim.POINTS // study_victim.CHUNK
 

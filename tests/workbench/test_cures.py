@@ -21,6 +21,7 @@ def test_a_click_applies_a_cure_another_takes_it_back_and_one_key_plays_both(pag
     page.enter("friction.static", 0.45)
     page.page.wait_for_selector("#verdict[data-verdict=unstable]")
     page.page.click("#ask-silences")
+    page.option("silence", samples=16)
     page.page.click("text=Find cures")
     page.page.wait_for_selector("section[data-panel=silence][data-state=drawn]", timeout=240_000)
     assert int(page.page.get_attribute("section[data-panel=silence]", "data-cures")) >= 15
@@ -53,7 +54,7 @@ def test_a_click_applies_a_cure_another_takes_it_back_and_one_key_plays_both(pag
 
 
 def test_each_row_leads_to_the_brake_its_numbers_are_of():
-    found = function_of("silence")(BRAKE, Options({"samples": 32}), Work(apart=True)).data
+    found = function_of("silence")(BRAKE, Options({"samples": 16}), Work(apart=True)).data
     assert found["growth"] == pytest.approx(complex_modes(BRAKE).most_unstable.growth_rate, rel=1e-9)
     seen = {"values": 0, "text": 0}
     for row in found["rows"]:

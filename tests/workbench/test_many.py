@@ -11,7 +11,7 @@ from squealbox.workbench.frames import unframed
 from workbench.conftest import Server
 
 PAGES, MOVES = 20, 12
-MESSAGES = 1200
+MESSAGES = 600
 STATE = {"brake": "drum_brake", "laws": {}, "values": {}}
 
 
@@ -73,10 +73,10 @@ def test_memory_does_not_grow_with_messages(tmp_path):
 
     try:
         run(kernels())
-        run(messages(600))
+        run(messages(300))
         before = process.memory_info().rss
-        for _ in range(4):
-            run(messages(MESSAGES // 4))
+        for _ in range(2):
+            run(messages(MESSAGES // 2))
         assert process.memory_info().rss - before < 1e3 * MESSAGES
     finally:
         server.stop()

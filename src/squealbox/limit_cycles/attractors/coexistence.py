@@ -114,8 +114,8 @@ def coexistence(
 
     >>> from squealbox import DrumBrake, LinearSlope
     >>> drum = DrumBrake(friction=LinearSlope(0.3, -0.05))
-    >>> area = {"friction.static": (0.1, 0.4), "load": (900.0, 1100.0)}
-    >>> coexistence(drum, area, columns=4, rows=2, starts=4).outcome.ok
+    >>> area = {"friction.static": (0.3, 0.5), "load": (900.0, 1100.0)}
+    >>> coexistence(drum, area, columns=4, rows=2, starts=2).outcome.ok
     True
     """
     if len(bounds) != 2 or not all(low < high for low, high in bounds.values()) or not hasattr(design, "replace"):
