@@ -36,7 +36,9 @@ help:
 demo: $(VENV)/.installed
 	$(BIN)/squealbox paper drum-brake-2011 --out $(OUT)
 
-test: lint floors types tests
+# Types are looked at beside the tests, which wait for files and browsers now and then.
+test: lint floors
+	$(MAKE) --no-print-directory --jobs=2 types tests
 
 lint: $(VENV)/.installed-dev
 	$(BIN)/ruff check
