@@ -71,18 +71,21 @@ class Opened:
         self.page.goto(path.as_uri())
 
 
-@pytest.fixture
-def opened(browser, written):
+def anew(browser, written):
     reading = Opened(browser, written)
     reading.page.wait_for_selector("html[data-charts]")
     yield reading
     reading.page.close()
 
 
-def test_it_opens_without_network_request_or_error(opened, written):
-    assert opened.page.evaluate("document.documentElement.dataset.charts") == "drawn"
-    assert opened.errors == []
-    assert [url for url in opened.requests if not url.startswith("data:")] == [written.as_uri()]
+untouched = pytest.fixture(anew, name="untouched")  # opened for one test
+opened = pytest.fixture(anew, scope="module", name="opened")  # for all that read it
+
+
+def test_it_opens_without_network_request_or_error(untouched, written):
+    assert untouched.page.evaluate("document.documentElement.dataset.charts") == "drawn"
+    assert untouched.errors == []
+    assert [url for url in untouched.requests if not url.startswith("data:")] == [written.as_uri()]
     assert written.stat().st_size < 5e6
 
 

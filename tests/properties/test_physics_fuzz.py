@@ -87,7 +87,7 @@ def disturbed(system, start, duration, truth):
 
 @pytest.mark.parametrize("method", ["dormand-prince", "tsitouras", "bogacki-shampine"])
 def test_every_method_finds_the_same_events(method):
-    for seed in range(14, 34):
+    for seed in range(14, 24):
         system, start, duration = random_system(seed)
         one = simulate(system, duration, start, rtol=1e-11)
         other = simulate(system, duration, start, method=method, rtol=1e-9)

@@ -10,7 +10,7 @@ from websockets.asyncio.client import connect
 from squealbox.workbench.frames import unframed
 from workbench.conftest import Server
 
-PAGES, MOVES = 20, 12
+PAGES, MOVES = 20, 5
 MESSAGES = 600
 STATE = {"brake": "drum_brake", "laws": {}, "values": {}}
 
