@@ -160,7 +160,11 @@ def test_surrogate_warns_at_the_kink_and_serves_where_the_quantity_is_smooth():
 
 def test_results_are_saved_and_read_back(tmp_path):
     far = Quantity(lambda at: at["a"] + at["b"], "sum", limit=4.0)
-    runs = form(None, PAIR, far), subset_simulation(None, PAIR, far, samples=200), polynomial_chaos(None, PAIR, far, samples=64)
+    runs = (
+        form(None, PAIR, far),
+        subset_simulation(None, PAIR, far, samples=200),
+        polynomial_chaos(None, PAIR, far, samples=64),
+    )
     for i, found in enumerate(runs):
         again = Result.load(found.save(tmp_path / f"{i}.nc"))
         assert again.summary() == found.summary()
