@@ -49,13 +49,12 @@ def held(plant: Plant, rate: float | None = None, delay: Any = None, gains: Any 
     depth = [l + (r > 0.0) for l, r in zip(behind, rest, strict=True)]
     size = d + sum(depth)
     matrix = np.zeros((size, size))
-    matrix[:d, :d] = _flow(A, plant.B[:, :0], step)[0]
+    flows = {time: _flow(A, plant.B[:, chosen], time) for time in {step, *(step - r for r in rest)}}
+    matrix[:d, :d], whole = flows[step]
     at = d
-    for a, l, r, kept in zip(chosen, behind, rest, depth, strict=True):
-        column, row = plant.B[:, [a]], H[a]
-        _, late = _flow(A, column, step - r)  # held over the last h - r of the step
-        _, whole = _flow(A, column, step)
-        early = whole - late
+    for i, (a, l, r, kept) in enumerate(zip(chosen, behind, rest, depth, strict=True)):
+        row, late = H[a], flows[step - r][1][:, [i]]  # held over the last h - r of the step
+        early = whole[:, [i]] - late
         places = [None, *range(at, at + kept)]  # u(k), u(k - 1), ...
         for back, effect in ((l, late), (l + 1, early)):
             if not np.any(effect):
@@ -67,8 +66,8 @@ def held(plant: Plant, rate: float | None = None, delay: Any = None, gains: Any 
                 matrix[:d, where] += effect[:, 0]
         if kept:
             matrix[at, :d] = row
-            for i in range(1, kept):
-                matrix[at + i, at + i - 1] = 1.0
+            for back in range(1, kept):
+                matrix[at + back, at + back - 1] = 1.0
         at += kept
     return matrix, step
 
