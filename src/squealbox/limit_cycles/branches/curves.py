@@ -89,38 +89,58 @@ def hopf_curve(design: Any, bounds: Bounds, *, value: float | None = None, point
     born = hopf_point(lambda a: make(a, middle), names[0], (low, high))
     if not born.outcome.ok:
         return curve_of(design, [], lambda *_: (0.0, 0.0), names, "hopf", born.outcome)
-    extended = _Hopf(make, born)
-    walks = both_ways(extended.residual, extended.start, middle, bounds, extended.scale(high - low), points)
+    extended = _Hopf(make, born, (high - low, top - bottom))
+    walks = both_ways(extended.residual, extended.start, middle, bounds, extended.scale(), points, extended.jacobian)
     return curve_of(design, walks, extended.describe, names, "hopf", ending(walks))
 
 
 class _Hopf:
     """The extended system of a Hopf point, in states scaled to velocities."""
 
-    def __init__(self, make: Callable[[float, float], System], born: HopfPoint) -> None:
-        self.make = make
+    def __init__(
+        self, make: Callable[[float, float], System], born: HopfPoint, widths: tuple[float, float]
+    ) -> None:  # fmt: skip
+        self.make, self.widths = make, widths
         self.units = Field(born.inputs["system"]).scale
         q = born.shape * self.units
         self.reference = q / np.linalg.norm(q)
         self.rate = born.angular_frequency
         self.start = np.concatenate([self.reference.real, self.reference.imag, [self.rate, float(born.value)]])
 
-    def scale(self, width: float) -> Any:
+    def scale(self) -> Any:
         """Typical sizes of the unknowns."""
-        return np.concatenate([np.ones(len(self.start) - 2), [self.rate, width]])
+        return np.concatenate([np.ones(len(self.start) - 2), [self.rate, self.widths[0]]])
+
+    def matrix(self, a: float, b: float) -> Any:
+        """df/dx about steady sliding; NaN outside the range of a parameter."""
+        try:
+            field = Field(self.make(float(a), float(b)))
+        except ParameterError:
+            return np.full((len(self.units), len(self.units)), np.nan)
+        steady = steady_state(field)
+        return field.jacobian(steady, steady_modes(field, steady)) * (self.units[:, None] / self.units)
 
     def residual(self, x: Any, b: float) -> Any:
         """Of the extended system, over the frequency at the start; NaN outside the range of a parameter."""
         u, w, omega, a = *np.split(x[:-2], 2), x[-2], x[-1]
-        try:
-            field = Field(self.make(float(a), float(b)))
-        except ParameterError:
-            return np.full(len(x), np.nan)
-        steady = steady_state(field)
-        matrix = field.jacobian(steady, steady_modes(field, steady)) * (self.units[:, None] / self.units)
+        matrix = self.matrix(a, b)
         phase = np.vdot(self.reference, u + 1j * w) - 1.0
         parts = [(matrix @ u + omega * w) / self.rate, (matrix @ w - omega * u) / self.rate]
         return np.concatenate([*parts, [phase.real, phase.imag]])
+
+    def jacobian(self, x: Any, b: float) -> tuple[Any, Any]:
+        """By the unknowns and by the second parameter; the matrix by both from central differences."""
+        u, w, omega, a = *np.split(x[:-2], 2), x[-2], x[-1]
+        matrix, one, none = self.matrix(a, b), np.eye(len(u)), np.zeros(1)
+        by = []
+        for da, db in np.diag(self.widths) * np.cbrt(np.finfo(float).eps):
+            slope = (self.matrix(a + da, b + db) - self.matrix(a - da, b - db)) / (2.0 * (da + db))
+            by.append(np.concatenate([slope @ u / self.rate, slope @ w / self.rate, none, none]))
+        r, s = self.reference.real, self.reference.imag
+        by_motion = np.block([[matrix / self.rate, omega / self.rate * one], [-omega / self.rate * one,
+                             matrix / self.rate], [r, s], [-s, r]])  # fmt: skip
+        by_omega = np.concatenate([w / self.rate, -u / self.rate, none, none])
+        return np.column_stack([by_motion, by_omega, by[0]]), by[1]
 
     def describe(self, x: Any, b: float) -> tuple[float, float]:
         """Frequency [Hz] and first Lyapunov coefficient."""
