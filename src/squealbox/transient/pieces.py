@@ -145,7 +145,26 @@ def motion_of(
         motion: Trajectory = one(system, until - now, state, instants, start_time=now)
         return motion
 
-    return in_pieces(driven, start_of(driven, start, begin), begin, duration, times, run).motion
+    motion = in_pieces(driven, start_of(driven, start, begin), begin, duration, times, run).motion
+    return replace(motion, caution="; ".join([*filter(None, [motion.caution]), *_aliased(driven)]))
+
+
+def _aliased(driven: Driven) -> list[str]:
+    """A sentence for each loop that samples a mode, without friction, less than twice in its period."""
+    heavy, said = np.flatnonzero(np.any(driven.system.M != 0.0, axis=1)), []
+    rows = np.ix_(heavy, heavy)
+    squares = np.linalg.eigvals(np.linalg.lstsq(driven.system.M[rows], driven.system.K[rows], rcond=None)[0])
+    modes = np.sqrt(np.abs(squares)) / (2.0 * np.pi)
+    for loop in driven.loops:
+        rate = np.inf if loop.sampling is None else float(loop.sampling)
+        fastest = float(np.max(modes, initial=0.0))
+        if fastest > 0.5 * rate:
+            taken = abs(fastest - rate * round(fastest / rate))
+            said.append(
+                f"the loop on {loop.on} samples at {rate:g} Hz, less than twice the mode at {fastest:.6g} Hz, which it "
+                f"takes for {taken:.6g} Hz"
+            )
+    return said
 
 
 def in_pieces(driven: Driven, start: tuple[Any, Any], begin: float, duration: float, times: Any, run: Run) -> Pieces:
