@@ -53,9 +53,13 @@ BAD = {
     "too many gains": (lambda: Controlled(DRUM, [StateFeedback(on="y", velocity=(1.0,) * 3)]), "at most 2 gains"),
     "a loop that is not there": (lambda: LATE.replace({"loops.3.delay": 0.0}), "loops.0.NAME"),
     "poles without loops": (lambda: closed_loop(DRUM), "a brake with loops"),
-    "modes of a sampled loop": (
-        lambda: complex_modes(LATE.replace({"loops.0.sampling": 1e4})),
-        "with sampling.*closed_loop.. gives its poles",
+    "modes of loops of two rates": (
+        lambda: complex_modes(Controlled(DRUM, [PID(on="y", sampling=1e4), PID(on="x", sampling=2e4)])),
+        "one rate for all sampled loops",
+    ),
+    "modes of a sampled loop beside a late one": (
+        lambda: complex_modes(Controlled(LATE, [PID(on="x", derivative=1.0, sampling=1e5)])),
+        "no other loop that is late",
     ),
     "a contact it has not": (lambda: Shim(DRUM, "shoe 9", 1e9).system(), "Shim.at = 'shoe 9'"),
     "a contact without a spring": (lambda: Shim(MassOnBelt(), "belt", 1e9).system(), "a contact with a stiffness"),
