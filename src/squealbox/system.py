@@ -22,7 +22,7 @@ from typing import Any, ClassVar
 import numpy as np
 from scipy import sparse
 
-from squealbox import sparse_sliding
+from squealbox import sampled_sliding, sparse_sliding
 from squealbox.arguments import design
 from squealbox.contacts import ROWS, Contact, Contacts, dense_rows, numbered, sparse_matrix
 from squealbox.factorisation import is_symmetric
@@ -236,10 +236,9 @@ def equilibrium(system: Any, time: float = 0.0, start: sparse_sliding.Start | No
 
     Newton on r(q) = K q - f - sum mu sgn(V) d N(q) [- normal min(N, 0) for unilateral contacts]. Without unilateral
     contacts r is linear in q, because mu depends on V alone, and one step is exact; with them r is piecewise linear and
-    each step changes the set of open contacts, so the number of steps is bounded by that of the contacts' states. A
-    sparse search may begin at the `start` of a similar brake.
+    each step changes the set of open contacts. A sparse search may begin at the `start` of a similar brake.
     """
-    system = near_sliding(system if isinstance(system, System) else as_system(system, linear=True))
+    system = near_sliding(system if isinstance(system, System) else as_system(system, linear=True), held=True)
     if system.is_sparse:
         return _sparse_equilibrium(system, time, start)
     no_rigid_contact(system, "steady sliding")
@@ -277,18 +276,19 @@ def equilibrium(system: Any, time: float = 0.0, start: sparse_sliding.Start | No
 
 def linearise(system: Any, time: float = 0.0, start: sparse_sliding.Start | None = None) -> Linearised:
     """K_eff and C_eff about steady sliding at `time` [s]; an open contact only takes its stiffness out."""
-    system = near_sliding(system if isinstance(system, System) else as_system(system, linear=True))
+    system = system if isinstance(system, System) else as_system(system, linear=True)
+    if any(loop.sampling is not None for loop in system.loops):
+        return sampled_sliding.linearised(system, time, linearise)
+    system = near_sliding(system)
     state = equilibrium(system, time, start)
     if system.is_sparse:
         return Linearised(system.M, *_sparse_linearised(system, state), state)
     shape, size = system.shape, system.size
     moving = swinging({"load": [system.load], **{x: [getattr(c, x) for c in system.contacts] for x in ("V", "N0")}})
     if moving:  # it moves even at rest: nothing stands still to be linearised about
-        state = replace(
-            state, exists=np.zeros(shape, dtype=bool), outcome=Outcome("moving", MOVES.format(" and ".join(moving)))
-        )
-    damping = np.array(np.broadcast_to(system.C, (*shape, size, size)))
-    stiffness = np.array(np.broadcast_to(system.K, (*shape, size, size)))
+        said = Outcome("moving", MOVES.format(" and ".join(moving)))
+        state = replace(state, exists=np.zeros(shape, dtype=bool), outcome=said)
+    damping, stiffness = (np.array(np.broadcast_to(x, (*shape, size, size))) for x in (system.C, system.K))
     if system.contacts:
         n, d, t, reaction = system.rows
         lifts = np.array([contact.unilateral for contact in system.contacts])

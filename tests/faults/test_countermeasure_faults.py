@@ -10,6 +10,7 @@ from squealbox import (
     Coulomb,
     Dithered,
     DrumBrake,
+    LinearSlope,
     MassOnBelt,
     ModeCoupling,
     ParameterError,
@@ -22,6 +23,7 @@ from squealbox import (
     complex_modes,
     harmonic_balance,
     silence,
+    simulate,
 )
 from squealbox.files.document import DesignFileError
 from squealbox.files.reading import read_text
@@ -51,9 +53,13 @@ BAD = {
     "too many gains": (lambda: Controlled(DRUM, [StateFeedback(on="y", velocity=(1.0,) * 3)]), "at most 2 gains"),
     "a loop that is not there": (lambda: LATE.replace({"loops.3.delay": 0.0}), "loops.0.NAME"),
     "poles without loops": (lambda: closed_loop(DRUM), "a brake with loops"),
-    "modes of a sampled loop": (
-        lambda: complex_modes(LATE.replace({"loops.0.sampling": 1e4})),
-        "with sampling.*closed_loop.. gives its poles",
+    "modes of loops of two rates": (
+        lambda: complex_modes(Controlled(DRUM, [PID(on="y", sampling=1e4), PID(on="x", sampling=2e4)])),
+        "one rate for all sampled loops",
+    ),
+    "modes of a sampled loop beside a late one": (
+        lambda: complex_modes(Controlled(LATE, [PID(on="x", derivative=1.0, sampling=1e5)])),
+        "no other loop that is late",
     ),
     "a contact it has not": (lambda: Shim(DRUM, "shoe 9", 1e9).system(), "Shim.at = 'shoe 9'"),
     "a contact without a spring": (lambda: Shim(MassOnBelt(), "belt", 1e9).system(), "a contact with a stiffness"),
@@ -70,6 +76,19 @@ def test_bad_input_is_one_sentence(what):
     with pytest.raises(ParameterError, match=sentence) as caught:
         call()
     assert "\n" not in str(caught.value)
+
+
+def test_cautions_of_a_cure_stand_beside_its_modes():
+    dithered = Dithered(DrumBrake(friction=LinearSlope(0.4, -0.05)), 0.1, 40e3)
+    for brake in (dithered, Controlled(dithered, [PID(on="y", derivative=1.0)])):
+        assert "stays below the sliding speed" in complex_modes(brake).caution
+    assert "sliding speed" not in complex_modes(dithered.replace(velocity=0.4)).caution
+
+
+def test_sampling_below_twice_a_mode_is_told_in_time():
+    slow = Controlled(DRUM, [PID(on="y", derivative=1.0, sampling=2000.0)])
+    assert "samples at 2000 Hz, less than twice the mode at" in simulate(slow, 1e-3).caution
+    assert "samples" not in simulate(slow.replace({"loops.0.sampling": 1e5}), 1e-4).caution
 
 
 def test_a_late_loop_is_not_left_out_of_an_estimate():

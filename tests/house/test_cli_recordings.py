@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from squealbox import complex_modes, plots, squeal_events
 from squealbox.files import read_design, read_file
+from squealbox.files.runs import run_closely
+from squealbox.signals import read_recording
 
 BRAKE = """brake = "drum_brake"
 friction = { law = "linear_slope", static = 0.36, slope = "-0.05 s/m" }
@@ -63,6 +66,25 @@ def test_calibrate_and_compare(stop, said):
     assert (code, err) == (0, "")
     assert "frequency" in out
     assert read_file(stop / "brake.toml").recording.unit == "Pa"
+
+
+def test_compare_leaves_figures_and_both_spectrograms(stop, said):
+    with (stop / "brake.toml").open("a") as file:
+        file.write('\n[simulate]\nduration = "20 ms"\n')
+    code, _, err = said("compare", str(stop / "brake.toml"), "--out", str(stop / "beside"))
+    assert (code, err) == (0, "")
+    names = {path.name for path in (stop / "beside").iterdir()}
+    assert names == {f"{name}.{kind}" for name in ("modes", "motion", "spectrograms") for kind in ("png", "svg")}
+    found = read_file(stop / "brake.toml")
+    sound = read_recording(stop / "stop.csv", unit="Pa")
+    motion = run_closely(found.design.system(), found.simulate)
+    figure = plots.spectrograms_beside(motion, sound, squeal_events(sound))
+    levels = [panel.collections[0] for panel in figure.axes[:2]]
+    heights = [1e3 * levels[1].get_coordinates()[:, 0, 1], 1e3 * levels[0].get_coordinates()[:, 0, 1]]
+    meshes = zip(heights, levels[::-1], strict=True)
+    strongest = [float(height[np.argmax(np.max(mesh.get_array(), axis=1))]) for height, mesh in meshes]
+    assert strongest[0] == pytest.approx(2078.0, abs=120.0)  # the recording's, to the resolution of pieces of 2.5 ms
+    assert strongest[1] == pytest.approx(complex_modes(found.design).most_unstable.frequency, abs=250.0)
 
 
 def test_compare_says_the_unit_of_the_level_and_takes_a_band(stop, said):

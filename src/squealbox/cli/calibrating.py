@@ -2,17 +2,18 @@
 
 from pathlib import Path
 
-from squealbox.calibration import Measured, compare, from_events, read_mode_table
+from squealbox.calibration import Comparison, Measured, compare, from_events, read_mode_table
 from squealbox.calibration import calibrate as fitted
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import AllowCode, Changes, read
+from squealbox.cli.inputs import AllowCode, Changes, folder, read
 from squealbox.cli.progress import Progress
 from squealbox.cli.recordings import Band, ends_of
 from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.tables import written
 from squealbox.files import DesignFile, write_design
 from squealbox.files.measurements import Recorded
 from squealbox.files.runs import run_closely
-from squealbox.signals import SignalError, SquealEvents, read_recording, squeal_events
+from squealbox.signals import Recording, SignalError, SquealEvents, read_recording, squeal_events
 from squealbox.stability import complex_modes
 
 
@@ -44,7 +45,7 @@ def calibrate(
         raise UsageError(f"{file}: has no section [calibrate], which says what is fitted to what")
     measured: list[Measured] = list(found.calibrate.measured)
     if heard:
-        events = _events(found)
+        _, events = _heard(found)
         measured += from_events(events, int(events.level.argmax())) if events.count else []
     with Progress("calibrating"):
         result = fitted(found.design, found.calibrate.parameters, measured, loss=found.calibrate.loss)
@@ -64,6 +65,7 @@ def compare_(
     full_scale: float | None = None,
     band: Band = None,
     modes: Path | None = None,
+    out: Path | None = None,
     changes: Changes = (),
     allow_code: AllowCode = False,
 ) -> None:
@@ -83,34 +85,50 @@ def compare_(
         lowest and highest frequency at which squeal is looked for: --band 1kHz 16kHz
     modes
         table (.csv) or universal file of the modes of a test or another code, to compare with those of the design
+    out
+        folder for a figure of each comparison and the spectrogram of the motion beside that of the recording
     changes
         other values for this run
     allow_code
         run the Python file of a friction law that the design file names
     """
     found = read(file, changes, allow_code)
+    figures: dict[str, Comparison] = {}
+    if out is not None:
+        folder(out, "mode_table", "modes", "motion", "spectrograms")
     try:
         if modes is not None:
-            show("modes", compare(complex_modes(found.design), read_mode_table(modes)))
-            if recording is None:
-                return
-        events = _events(found, recording, unit, full_scale, band)
-        show("modes", compare(complex_modes(found.design), events))
-        if found.simulate is not None:
-            with Progress("simulating"):
-                motion = run_closely(found.design.system(), found.simulate)
-            show("motion", compare(motion, events))
+            figures["mode_table"] = compare(complex_modes(found.design), read_mode_table(modes))
+            show("modes", figures["mode_table"])
+        if modes is None or recording is not None:
+            sound, events = _heard(found, recording, unit, full_scale, band)
+            figures["modes"] = compare(complex_modes(found.design), events)
+            show("modes", figures["modes"])
+            if found.simulate is not None:
+                with Progress("simulating"):
+                    motion = run_closely(found.design.system(), found.simulate)
+                figures["motion"] = compare(motion, events)
+                show("motion", figures["motion"])
     except SignalError as error:
         raise UsageError(str(error)) from error
+    if out is not None:
+        from squealbox import plots
+
+        drawn = {name: plots.plot(result) for name, result in figures.items()}
+        if "motion" in figures:
+            channel = found.recording.channel if found.recording is not None and recording is None else 0
+            drawn["spectrograms"] = plots.spectrograms_beside(motion, sound, events, channel=channel)
+        print(written(*(path for name, figure in drawn.items() for path in plots.save(figure, out / name))))
 
 
-def _events(
+def _heard(
     found: DesignFile,
     recording: Path | None = None,
     unit: str = "Pa",
     full_scale: float | None = None,
     band: Band = None,
-) -> SquealEvents:
+) -> tuple[Recording, SquealEvents]:
+    """The recording of the section or the one that is named, and the squeal events in it."""
     about = found.recording
     if about is None and recording is None:
         raise UsageError(f"{found.path}: has no section [recording], and no recording is named")
@@ -120,6 +138,6 @@ def _events(
     try:
         sound = read_recording(path, unit=about.unit, full_scale=about.full_scale, rate=about.rate)
         ends = about.band if band is None else ends_of(band)
-        return squeal_events(sound, channel=about.channel, band=ends, least_level=about.least_level)
+        return sound, squeal_events(sound, channel=about.channel, band=ends, least_level=about.least_level)
     except SignalError as error:
         raise UsageError(str(error)) from error

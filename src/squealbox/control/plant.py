@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from squealbox.loops import Loop, folded
+from squealbox.loops.held import first_order
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome
-from squealbox.stability.first_order import first_order_rows
 from squealbox.system import System, linearise
 
 
@@ -72,7 +72,7 @@ def plant(design_or_system: Any, time: float = 0.0) -> Plant:
     if bool(steady.exists) and whole.contacts:  # steady sliding is that of the closed loop
         about = _about(system, steady, time)
     outcome = steady.outcome
-    A, displacement, velocity, into = _first_order(about.M, about.C, about.K)
+    A, displacement, velocity, into = first_order(about.M, about.C, about.K)
     n = system.size  # loops sense and push the brake's own rows, not the bristles of its contacts
     displacement, velocity, into = displacement[:n], velocity[:n], into[:, :n]
     d, lags = len(A), [loop.rate is not None for loop in system.loops]
@@ -122,22 +122,3 @@ def _about(system: System, steady: Any, time: float) -> Any:
         if not closed:
             stiffness[:n, :n] -= np.outer(contact.normal, contact.n)
     return type(found)(found.M, found.C, stiffness, steady)
-
-
-def _first_order(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, Any, Any, Any]:
-    """A, the rows that read q and q' from x = (q, q_m'), and what a force (n,) does to x'."""
-    n = len(mass)
-    light = first_order_rows(mass)
-    z, m = np.flatnonzero(light), np.flatnonzero(~light)
-    velocity, into_v = np.zeros((n, n + m.size)), np.zeros((n, n))
-    velocity[m, n + np.arange(m.size)] = 1.0
-    if z.size:
-        own = np.linalg.inv(damping[np.ix_(z, z)])
-        velocity[z, :n] = -own @ stiffness[z, :]
-        velocity[z, n:] = -own @ damping[np.ix_(z, m)]
-        into_v[z[:, None], z] = own
-    displacement = np.hstack([np.eye(n), np.zeros((n, m.size))])
-    inverse = np.linalg.inv(mass[np.ix_(m, m)])
-    acceleration = -inverse @ (stiffness[m, :] @ displacement + damping[m, :] @ velocity)
-    force = inverse @ (np.eye(n)[m, :] - damping[np.ix_(m, z)] @ into_v[z, :])
-    return np.vstack([velocity, acceleration]), displacement, velocity, np.vstack([into_v, force])

@@ -1,11 +1,6 @@
 """Loops that are held between samples: discrete multipliers by exact steps.
 
-With one rate h = 1/sampling, u_a held over [k h + T_a, (k + 1) h + T_a) and T_a = (l - 1) h + r, 0 < r <= h,
-
-    x((k + 1) h) = exp(A h) x + sum_a [int_{h - r}^{h} exp(A s) ds B_a u_a(k - l)
-                                       + int_0^{h - r} exp(A s) ds B_a u_a(k - l + 1)]
-
-is exact for any delay (Astrom and Wittenmark 1997, Computer-Controlled Systems, ch. 3). Growth is ln|z|/h. With loop a
+With one rate h = 1/sampling a step is that of `loops.held`. Growth is ln|z|/h. With loop a
 broken, L(z) = h (z I - Phi)^-1 b on the unit circle says its margins of gain and phase, as L(i w) does of a continuous
 one.
 """
@@ -15,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.control.plant import Plant
+from squealbox.loops.held import step_matrix
 from squealbox.parameters import ParameterError
 
 GRID = 3001  # places on the unit circle looked at between two frequencies, and as many even ones
@@ -42,34 +38,8 @@ def held(plant: Plant, rate: float | None = None, delay: Any = None, gains: Any 
         raise ParameterError("closed_loop", "delay", float(delays[~sampled].max()), "0 beside sampled loops")
     step = 1.0 / rate
     A = plant.A + plant.B[:, ~sampled] @ H[~sampled]
-    d, chosen = len(A), np.flatnonzero(sampled)
-    behind = [max(int(np.floor(delays[a] / step + 1e-9)), 0) for a in chosen]  # whole samples
-    rest = [delays[a] - l * step for a, l in zip(chosen, behind, strict=True)]
-    rest = [0.0 if abs(r) < 1e-9 * step else r for r in rest]
-    depth = [l + (r > 0.0) for l, r in zip(behind, rest, strict=True)]
-    size = d + sum(depth)
-    matrix = np.zeros((size, size))
-    flows = {time: _flow(A, plant.B[:, chosen], time) for time in {step, *(step - r for r in rest)}}
-    matrix[:d, :d], whole = flows[step]
-    at = d
-    for i, (a, l, r, kept) in enumerate(zip(chosen, behind, rest, depth, strict=True)):
-        row, late = H[a], flows[step - r][1][:, [i]]  # held over the last h - r of the step
-        early = whole[:, [i]] - late
-        places = [None, *range(at, at + kept)]  # u(k), u(k - 1), ...
-        for back, effect in ((l, late), (l + 1, early)):
-            if not np.any(effect):
-                continue
-            where = places[back] if back < len(places) else None
-            if back == 0:
-                matrix[:d, :d] += effect @ row[None]
-            elif where is not None:
-                matrix[:d, where] += effect[:, 0]
-        if kept:
-            matrix[at, :d] = row
-            for back in range(1, kept):
-                matrix[at + back, at + back - 1] = 1.0
-        at += kept
-    return matrix, step
+    chosen = np.flatnonzero(sampled)
+    return step_matrix(A, plant.B[:, chosen], H[chosen], delays[chosen], step), step
 
 
 def multipliers(plant: Plant, rate: float | None = None, delay: Any = None) -> tuple[Any, float]:
@@ -201,14 +171,3 @@ def aliased(plant: Plant) -> tuple[float, float] | None:
         return None
     worst = float(np.max(above))
     return worst, abs(worst - rate * round(worst / rate))
-
-
-def _flow(A: Any, B: Any, time: float) -> tuple[Any, Any]:
-    """exp(A t) and int_0^t exp(A s) ds B."""
-    from scipy.linalg import expm
-
-    d, m = len(A), B.shape[1]
-    big = np.zeros((d + m, d + m))
-    big[:d, :d], big[:d, d:] = A, B
-    found = expm(big * time)
-    return found[:d, :d], found[:d, d:]

@@ -46,6 +46,10 @@ class Countermeasure(Design):
         """The unit of a dotted name, the countermeasure's own or the brake's."""
         return super().unit_of(path) or self.brake.unit_of(path)
 
+    def cautions(self) -> tuple[str, ...]:
+        """Where what is done to the brake may make it worse, in sentences."""
+        return self.brake.cautions() if isinstance(self.brake, Countermeasure) else ()
+
     @property
     def innermost(self) -> Design:
         """The brake itself, without any countermeasure."""

@@ -65,7 +65,7 @@ class Dithered(Countermeasure):
             return np.stack(left, axis=-1) / base.friction
 
     def cautions(self) -> tuple[str, ...]:
-        """Where this dither may make it worse, in sentences."""
+        """Where this dither, or what is inside, may make it worse, in sentences."""
         base = self.brake.system()
         chosen = shaken(type(self).__name__, base, self.along)
         state = equilibrium(base)
@@ -79,8 +79,7 @@ class Dithered(Countermeasure):
                 )
             if np.any(state.normal_force[..., i] < 0.0):
                 said.append(f"{name} is pulled (N < 0): dither takes damping away there")
-        said += resonances(self.brake, self.frequency)
-        return tuple(said)
+        return (*said, *resonances(self.brake, self.frequency), *super().cautions())
 
 
 class NormalDither(Countermeasure):
@@ -132,7 +131,7 @@ class NormalDither(Countermeasure):
             )
         else:
             said.append("normal dither without lift-off does nothing to a linear brake with Coulomb friction")
-        return (*said, *resonances(self.brake, self.frequency))
+        return (*said, *resonances(self.brake, self.frequency), *super().cautions())
 
 
 def resonances(brake: Any, frequency: Any) -> list[str]:
@@ -140,7 +139,7 @@ def resonances(brake: Any, frequency: Any) -> list[str]:
     from squealbox.stability import complex_modes
 
     modes = complex_modes(brake)
-    if not modes.outcome.ok or np.ndim(modes.growth_rate) > 1:
+    if not modes.outcome.ok or np.ndim(modes.growth_rate) > 1 or np.ndim(frequency) > 0:
         return []
     half = modes.frequency.shape[-1] // 2
     own = [f for f in modes.frequency[:half] if np.isfinite(f) and f > 0.0]

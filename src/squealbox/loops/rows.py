@@ -179,8 +179,15 @@ def force_per_state(row: Rows, rate: Any) -> Any:
     return np.where(size > 0.0, size, 1.0)
 
 
-def near_sliding(system: Any) -> Any:
-    """The system near steady sliding, its loops as rows, delays too; `ParameterError` for loops that are sampled."""
+def near_sliding(system: Any, held: bool = False) -> Any:
+    """The system near steady sliding, its loops as rows, delays too; `ParameterError` for loops that are sampled.
+
+    With `held` those are as if they were not, for what stands still.
+    """
+    if held and any(loop.sampling is not None for loop in system.loops):
+        ideal: dict[str, Any] = {"sampling": None, "delay": 0.0, "computing": 0.0}
+        loops = tuple(loop if loop.sampling is None else loop.replace(ideal) for loop in system.loops)
+        system = system.replace(loops=loops)
     near = folded(system, near=True)
     for loop in near.loops:
         given = f"{type(loop).__name__}(on={loop.on!r}) with sampling"

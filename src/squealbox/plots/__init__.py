@@ -23,6 +23,7 @@ from squealbox.plots.measured import (
     model_beside_measurement,
     noise_matrix_figure,
     specific_loudness,
+    spectrograms_beside,
 )
 from squealbox.plots.modes import coalescence
 from squealbox.plots.motion import amplitude_course, energy, motion_overview, phase_plane, time_history
@@ -129,6 +130,7 @@ __all__ = [
     "sobol_indices",
     "specific_loudness",
     "spectrogram",
+    "spectrograms_beside",
     "spectrum",
     "squeal_probability",
     "stability_map",

@@ -7,12 +7,21 @@ import numpy as np
 from squealbox.calibration import Calibration, Comparison
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, WIDTH, drawing, figure_of, line, note, number, panels, quantity_label
-from squealbox.signals import DampingOnset, NoiseMatrix, OperationalModes, SoundQuality, SquealEvents
+from squealbox.signals import (
+    DampingOnset,
+    NoiseMatrix,
+    OperationalModes,
+    Recording,
+    SoundQuality,
+    SquealEvents,
+    spectrogram,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 NARROW = 0.45  # inches a row of a short table of bars
+LONGER, PIECES = 8.0, 8.0  # times the motion that is shown of a recording, and pieces of the shorter one
 SURE = 1.96  # standard deviations of a 95 % interval
 
 
@@ -122,6 +131,40 @@ def model_beside_measurement(found: Comparison, *, title: str = "", axes: Any = 
         panel.invert_yaxis()
         panel.legend(loc="best", fontsize=6)
         return figure_of(panel)
+
+
+def spectrograms_beside(
+    simulated: Any, recording: Recording, events: SquealEvents | None = None, *, channel: int = 0, dof: int | str = 0,
+    title: str = "",
+) -> "Figure":  # fmt: skip
+    """The spectrogram of a motion beside that of a recording, in dB below the largest of each, at one resolution.
+
+    Of the recording the loudest event is shown, from its onset on, as long as eight times the motion at most; without
+    `events` its beginning. `channel` is the recording's, `dof` the motion's that is heard.
+    """
+    heard = recording.samples[:, channel]
+    began, ended = 0.0, len(heard) / recording.rate
+    if events is not None and events.count:
+        loudest = int(np.argmax(events.level))
+        began, ended = float(events.onset[loudest]), float(events.end[loudest])
+    length = float(simulated.t[-1] - simulated.t[0])
+    ended = min(ended, began + LONGER * length)
+    segment = min(length, ended - began) / PIECES
+    cut: dict[str, Any] = {"begin": began, "end": ended, "segment": segment}
+    grids = (spectrogram(simulated, dof=dof, segment=segment), spectrogram(heard, recording.t, **cut))
+    tops = [float(grid.frequency[np.argmax(np.max(grid.amplitude[1:], axis=1)) + 1]) for grid in grids]
+    figure, axes = panels(1, 2, width=WIDTH, height=2.8, sharey=True)
+    with drawing(axes) as both:
+        for panel, grid, name in zip(both, grids, ("simulated", "recorded"), strict=True):
+            shown = grid.frequency <= 2.0 * max(tops)
+            level = 20.0 * np.log10(np.maximum(grid.amplitude[shown] / np.max(grid.amplitude[shown]), 1e-3))
+            look = {"cmap": "Blues", "vmin": -60.0, "vmax": 0.0, "rasterized": True}
+            mesh = panel.pcolormesh(1e3 * (grid.time - grid.time[0]), 1e-3 * grid.frequency[shown], level, **look)
+            panel.set(xlabel=quantity_label("time", "ms"), title=name)
+        both[0].set_ylabel(quantity_label("frequency", "kHz"))
+        figure.colorbar(mesh, ax=list(both), pad=0.02).set_label(quantity_label("below the largest", "dB"))
+    figure.suptitle(title, fontsize=8)
+    return figure
 
 
 @drawn_by.register(OperationalModes)

@@ -209,6 +209,8 @@ def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None,
     names = system.contact_names
     state = about.equilibrium
     said = out_of_range(system, state.normal_force, state.sliding_speed) if np.any(state.exists) else ()
+    if state.exists.ndim == 0 and state.exists and hasattr(design_or_system, "cautions"):
+        said = (*said, *design_or_system.cautions())  # a countermeasure may make it worse
     modes = replace(modes_of(about, inputs, names), caution="; ".join(said))
     band = getattr(design_or_system, "band", None) if band is None else band
     return modes if band is None else modes.within(band)

@@ -27,6 +27,9 @@ def steady_sliding(design_or_system: Any, time: float = 0.0) -> Steady:
     if system.is_sparse:
         as_system(system)  # says what to do instead
     about = linearise(system, time)
+    if any(loop.sampling is not None for loop in system.loops):  # of what is held between samples no part is friction's
+        unknown = np.full(about.K.shape, np.nan)
+        return Steady(about.M, about.C, about.K, about.equilibrium, unknown, unknown)
     structural = np.zeros(about.C.shape)
     structural[..., : system.size, : system.size] = system.C
     for row in range(system.size, about.C.shape[-1]):

@@ -127,7 +127,10 @@ def stability_map(
 def _block(steady: Steady, mechanism: bool, steps: int, engine: Engine) -> dict[str, Any]:
     growth, omega, growing = largest_growth(steady, engine)
     circulation, slope = np.zeros(growth.shape), np.zeros(growth.shape)
-    unstable = growing > 0
+    unstable, mechanism = (
+        growing > 0,
+        mechanism and bool(np.all(np.isfinite(steady.structural[steady.equilibrium.exists]))),
+    )
     if mechanism and np.any(unstable):
         _, circulation[unstable], slope[unstable] = contributions(entry(steady, unstable), steps=steps, engine=engine)
     scale = np.hypot(growth, omega)

@@ -124,6 +124,8 @@ def mechanism_codes(growth: Any, angular_frequency: Any, circulation: Any, slope
 
 def mechanism_at(steady: Steady, angular_frequency: float, *, rank: int = 0, steps: int = STEPS) -> Mechanism:
     """The mechanism by which the `rank`-th mode of one system grows, also at the onset where it only just does."""
+    if not np.all(np.isfinite(steady.structural)):  # held between samples, no part of the matrices is friction's
+        return Mechanism("unknown", *(float("nan"),) * 3)
     base, circulation, slope = (float(x) for x in contributions(steady, rank=rank, steps=steps, engine="numpy"))
     scale = float(np.nanmax(np.abs(spectrum(steady)), initial=0.0))
     code = mechanism_codes(np.float64(scale), np.float64(angular_frequency), circulation, slope, scale)
@@ -133,6 +135,8 @@ def mechanism_at(steady: Steady, angular_frequency: float, *, rank: int = 0, ste
 @public()
 def mechanism(design_or_system: Any, time: float = 0.0) -> Mechanism:
     """Why one system is unstable at `time` [s]; "stable" when it is not, "unknown" without steady sliding.
+
+    Under sampled loops it is "unknown" too: of what is held between samples no part is friction's.
 
     >>> from squealbox.system import System
     >>> coupled = System(M=[[1.0, 0.0], [0.0, 1.0]], C=[[0.0] * 2] * 2, K=[[2.0, 1.0], [-1.0, 2.0]])

@@ -46,9 +46,11 @@ def with_special(about: Linearised, eigenvalues: Any) -> Any:
             np.isnan(values), -1e3 * np.nanmax(np.abs(values), axis=-1, keepdims=True, initial=1.0), values
         )
         values = np.take_along_axis(values, spectrum_order(known), axis=-1)
-        places = np.argwhere(quick)[answered]
-        eigenvalues[tuple(places.T)], special = values[answered], np.array(special)
-        special[tuple(places.T)] = False
+        special = np.array(special)
+        if np.any(answered):
+            places = np.argwhere(quick)[answered]
+            eigenvalues[tuple(places.T)] = values[answered]
+            special[tuple(places.T)] = False
     floating = np.broadcast_to(about.equilibrium.floating, special.shape)
     free = special & (floating > 0) & np.broadcast_to(_regular(_once(about.M)), special.shape)
     if np.any(free):

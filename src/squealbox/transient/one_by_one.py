@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from squealbox.cautions import least_coefficient
+from squealbox.members import member
 from squealbox.parameters import ParameterError
 from squealbox.system import System, as_system
-from squealbox.transient.lanes.batch import member
 from squealbox.transient.lanes.work import Work
 from squealbox.transient.methods import Method
 from squealbox.transient.observers import Observer

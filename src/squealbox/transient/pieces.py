@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.cautions import of_a_run
-from squealbox.loops import Loop, folded
-from squealbox.loops.rows import driven, force_per_state, size_and_rate, with_rows
+from squealbox.loops.driven import Driven, driven_brake
+from squealbox.loops.rows import size_and_rate
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Schedule, Table
 from squealbox.system import InvalidSystem, System, equilibrium
@@ -32,32 +32,6 @@ Run = Callable[[System, Any, Any, float, float], Trajectory]  # of a system, (q,
 
 
 @dataclass(frozen=True, eq=False)
-class Driven:
-    """A brake whose `loops` are driven by commands u: they load its rows by `columns` and sense by P and R, all (a, n).
-
-    force (a, n) reads the force of an actuator that is among the rows; zeros where the command is the force, b (a, n).
-    """
-
-    system: System
-    loops: tuple[Loop, ...]
-    columns: Any
-    P: Any
-    R: Any
-    force: Any
-    b: Any
-
-    def commands(self, q: Any, qd: Any) -> Any:
-        """Commands (..., a) at states (..., n), cut at their limits."""
-        limits = np.array([np.inf if loop.limit is None else float(loop.limit) for loop in self.loops])
-        return np.clip(q @ self.P.T + qd @ self.R.T, -limits, limits)
-
-    def forces(self, q: Any, u: Any) -> Any:
-        """Forces (..., a) [N] of the actuators."""
-        ideal = ~np.any(self.force, axis=-1)
-        return np.where(ideal, u, q @ self.force.T)
-
-
-@dataclass(frozen=True, eq=False)
 class Pieces:
     """The motion as one trajectory; `cuts` its instants between pieces, `rows` where, `commands` (k, a) held there."""
 
@@ -68,38 +42,6 @@ class Pieces:
     commands: Any
     work: Any
     residual: float
-
-
-def driven_brake(system: System) -> Driven:
-    """The brake with its sampled and late loops driven from outside, the others as rows."""
-    bare = folded(system)
-    late = tuple(loop for loop in bare.loops if not loop.linear)
-    for loop in bare.loops:
-        rows = loop.rows(bare.names)
-        if loop.linear and (rows.memory or np.any(rows.P)):
-            given = f"{type(loop).__name__}(on={loop.on!r}) with a limit"
-            expected = "beside sampled or late loops only velocity feedback with a limit, or a limit there too"
-            raise ParameterError("simulate", "loops", given, expected)
-    if system.shape != () or any(np.ndim(loop.rows(bare.names).P) > 1 for loop in bare.loops):
-        raise ParameterError("simulate", "loops", "leading axes", "one brake: sampled and late loops run one by one")
-    own = [loop.controller(bare.names) for loop in late]
-    _, rate = size_and_rate(bare, ())
-    rows = [
-        replace(driven(row, loop.rate), size=force_per_state(loop.rows(bare.names), rate))
-        for row, loop in zip(own, late, strict=True)
-    ]
-    whole, places = with_rows(bare.replace(loops=()), rows)
-    n, size = bare.size, whole.size
-    columns, P, R, force, b = (np.zeros((len(late), size)) for _ in range(5))
-    for a, (row, loop, (m, unit, scale)) in enumerate(zip(own, late, places, strict=True)):
-        z = slice(m.start, m.start + row.memory)
-        b[a, :n] = row.b
-        if loop.rate is None:
-            columns[a, :n], columns[a, z] = row.b, scale[: row.memory] * row.G
-        else:
-            columns[a, m.stop - 1], force[a, m.stop - 1] = scale[-1] * float(loop.rate), unit[-1]
-        P[a, :n], R[a, :n], P[a, z] = row.P, row.R, row.S * unit[: row.memory]
-    return Driven(whole.replace(loops=tuple(x for x in bare.loops if x.linear)), late, columns, P, R, force, b)
 
 
 def start_of(driven: Driven, start: Any, time: float = 0.0) -> tuple[Any, Any]:
@@ -145,7 +87,26 @@ def motion_of(
         motion: Trajectory = one(system, until - now, state, instants, start_time=now)
         return motion
 
-    return in_pieces(driven, start_of(driven, start, begin), begin, duration, times, run).motion
+    motion = in_pieces(driven, start_of(driven, start, begin), begin, duration, times, run).motion
+    return replace(motion, caution="; ".join([*filter(None, [motion.caution]), *_aliased(driven)]))
+
+
+def _aliased(driven: Driven) -> list[str]:
+    """A sentence for each loop that samples a mode, without friction, less than twice in its period."""
+    heavy, said = np.flatnonzero(np.any(driven.system.M != 0.0, axis=1)), []
+    rows = np.ix_(heavy, heavy)
+    squares = np.linalg.eigvals(np.linalg.lstsq(driven.system.M[rows], driven.system.K[rows], rcond=None)[0])
+    modes = np.sqrt(np.abs(squares)) / (2.0 * np.pi)
+    for loop in driven.loops:
+        rate = np.inf if loop.sampling is None else float(loop.sampling)
+        fastest = float(np.max(modes, initial=0.0))
+        if fastest > 0.5 * rate:
+            taken = abs(fastest - rate * round(fastest / rate))
+            said.append(
+                f"the loop on {loop.on} samples at {rate:g} Hz, less than twice the mode at {fastest:.6g} Hz, which it "
+                f"takes for {taken:.6g} Hz"
+            )
+    return said
 
 
 def in_pieces(driven: Driven, start: tuple[Any, Any], begin: float, duration: float, times: Any, run: Run) -> Pieces:
