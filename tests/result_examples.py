@@ -22,7 +22,7 @@ from squealbox import (
     stability,
     studies,
 )
-from squealbox.control import defeating_push, placement, run_loops
+from squealbox.control import defeating_push, placement, run_loops, stable_gains
 from squealbox.designs import DampingParadox, DrumBrake, MassOnBelt
 from squealbox.fit import fit_friction
 from squealbox.friction import Coulomb
@@ -166,6 +166,7 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
     "LoopRun": lambda: run_loops(sampled(), 5.0, ([1.0], [0.0])),
     "Placement": lambda: placement(drum()),
     "DefeatingPush": lambda: defeating_push(limited(), precision=0.1),
+    "StableGains": lambda: stable_gains(limited()),
     "SquealEvents": stop,
     "NoiseMatrix": campaign,
     "Calibration": fitted,

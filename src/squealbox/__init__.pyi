@@ -22,7 +22,16 @@ from . import (
 from .calibration import Calibration, Measured, calibrate, compare
 from .contacts import Contacts
 from .continuation import Follower, follow
-from .control import ClosedLoop, DefeatingPush, Placement, closed_loop, defeating_push, placement
+from .control import (
+    ClosedLoop,
+    DefeatingPush,
+    Placement,
+    StableGains,
+    closed_loop,
+    defeating_push,
+    placement,
+    stable_gains,
+)
 from .countermeasures import (
     AddedDamping,
     AddedMass,
@@ -310,7 +319,9 @@ __all__ = [
     "placement",
     "Placement",
     "defeating_push",
+    "stable_gains",
     "DefeatingPush",
+    "StableGains",
     # what would silence this brake?
     "silence",
     "Remedies",

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.control import ClosedLoop, DefeatingPush, LoopRun, Placement
+from squealbox.control import ClosedLoop, DefeatingPush, LoopRun, Placement, StableGains
 from squealbox.countermeasures import BestAbsorber, Countermeasure
 from squealbox.plots.brakes import brake_drawing
 from squealbox.plots.dispatch import drawn_by
@@ -149,6 +149,22 @@ def push_figure(found: DefeatingPush, *, title: str = "", axes: Any = None) -> "
         panel.set_yticks([])
         panel.set(xlabel=quantity_label("push", "m/s"), title=title or ("" if found.outcome.ok else str(found.outcome)))
         panel.legend(loc="best", fontsize=6)
+        return figure_of(panel)
+
+
+@drawn_by.register(StableGains)
+def gains_figure(found: StableGains, *, title: str = "", axes: Any = None) -> "Figure":
+    """Growth rate over the factor on the loops' forces, and the ranges in which they hold the brake."""
+    with drawing(axes, width=1.4 * COLUMN, height=2.0) as panel:
+        panel.plot(found.factor, found.growth, color="#0072B2")
+        for low, high in zip(found.low, found.high, strict=True):
+            panel.axvspan(low, min(high, np.max(found.factor)), color="#009E73", alpha=0.2, lw=0.0)
+        panel.axhline(0.0, color="0.5", lw=0.6)
+        panel.set_xscale("symlog", linthresh=1e-3)
+        size = 1.5 * max(abs(found.least_growth), abs(float(found.growth[0]))) if len(found.growth) else 1.0
+        panel.set_ylim(-size, size)
+        panel.set(xlabel=quantity_label("factor on the forces", ""), ylabel=quantity_label("growth rate", "1/s"),
+                  title=title or ("" if found.outcome.ok else str(found.outcome)))  # fmt: skip
         return figure_of(panel)
 
 
