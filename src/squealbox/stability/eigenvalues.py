@@ -12,6 +12,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.cautions import out_of_range, pulling
+from squealbox.loops.held import aliased
 from squealbox.result import COMPLETED, Array, Outcome, Result, batched, quantity
 from squealbox.stability.deflation import special_modes, uncertain, vibrating
 from squealbox.stability.mode import Mode, OneEigenvalue, damping_ratio
@@ -211,6 +212,8 @@ def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None,
     said = out_of_range(system, state.normal_force, state.sliding_speed) if np.any(state.exists) else ()
     if state.exists.ndim == 0 and state.exists and hasattr(design_or_system, "cautions"):
         said = (*said, *design_or_system.cautions())  # a countermeasure may make it worse
+    if state.exists.ndim == 0 and system.loops:
+        said = (*said, *aliased(system, system.loops))
     modes = replace(modes_of(about, inputs, names), caution="; ".join(said))
     band = getattr(design_or_system, "band", None) if band is None else band
     return modes if band is None else modes.within(band)

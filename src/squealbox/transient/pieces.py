@@ -15,6 +15,7 @@ import numpy as np
 
 from squealbox.cautions import of_a_run
 from squealbox.loops.driven import Driven, driven_brake
+from squealbox.loops.held import aliased
 from squealbox.loops.rows import size_and_rate
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Schedule, Table
@@ -88,25 +89,7 @@ def motion_of(
         return motion
 
     motion = in_pieces(driven, start_of(driven, start, begin), begin, duration, times, run).motion
-    return replace(motion, caution="; ".join([*filter(None, [motion.caution]), *_aliased(driven)]))
-
-
-def _aliased(driven: Driven) -> list[str]:
-    """A sentence for each loop that samples a mode, without friction, less than twice in its period."""
-    heavy, said = np.flatnonzero(np.any(driven.system.M != 0.0, axis=1)), []
-    rows = np.ix_(heavy, heavy)
-    squares = np.linalg.eigvals(np.linalg.lstsq(driven.system.M[rows], driven.system.K[rows], rcond=None)[0])
-    modes = np.sqrt(np.abs(squares)) / (2.0 * np.pi)
-    for loop in driven.loops:
-        rate = np.inf if loop.sampling is None else float(loop.sampling)
-        fastest = float(np.max(modes, initial=0.0))
-        if fastest > 0.5 * rate:
-            taken = abs(fastest - rate * round(fastest / rate))
-            said.append(
-                f"the loop on {loop.on} samples at {rate:g} Hz, less than twice the mode at {fastest:.6g} Hz, which it "
-                f"takes for {taken:.6g} Hz"
-            )
-    return said
+    return replace(motion, caution="; ".join([*filter(None, [motion.caution]), *aliased(driven.system, driven.loops)]))
 
 
 def in_pieces(driven: Driven, start: tuple[Any, Any], begin: float, duration: float, times: Any, run: Run) -> Pieces:
