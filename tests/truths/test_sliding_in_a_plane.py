@@ -34,7 +34,7 @@ def test_a_puck_on_a_belt_slows_down_along_its_slip(speed, start, turned):
     assert motion.energy.relative_residual < 1e-10
 
 
-@pytest.mark.parametrize("angle", [0.0, 0.8, 2.5])
+@pytest.mark.parametrize("angle", [0.0, 0.8, 2.5, 0.5 * np.pi])
 def test_it_breaks_away_in_any_direction_at_the_same_force(angle):
     """0.4 of 2 N hold 0.79 N and not 0.81 N, however they point; then 0.3 of 2 N slow it down."""
     push = np.array([np.cos(angle), np.sin(angle)])
@@ -42,6 +42,9 @@ def test_it_breaks_away_in_any_direction_at_the_same_force(angle):
     assert np.max(np.abs(held.q)) < 1e-12
     away = simulate(puck(Coulomb(0.4, 0.3), load=0.81 * push), 1.0, contact=STEPS, step=1e-4)
     assert away.q[-1] == pytest.approx(0.5 * (0.81 - 0.6) / 1.5 * push, abs=2e-5)
+    assert set(held.mode.ravel()) == {0}
+    assert abs(away.mode[-1, 0]) == 1  # straight across it slips too
+    assert np.cos(away.slip_direction[-1, 0] - angle) == pytest.approx(-1.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("law", [Coulomb(0.4, 0.3), LinearSlope(0.4, -0.05)])

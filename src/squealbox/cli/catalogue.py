@@ -33,8 +33,12 @@ def _overview() -> Iterator[str]:
     usual = {"usual": f"{TAYLOR} where the equation has a series, else dormand-prince-8"}
     methods = usual | methods | {TAYLOR: "the motion's own series, for exact contact"}
     yield from _section("methods (method = ...)", methods)
-    schemes = {"exact": "stick, slip and lift-off by events", "raw": "plain sgn(v)"}
-    yield from _section("contact (contact = ...)", schemes | {"smooth, tanh": "sgn(v) smoothed over `width`"})
+    schemes = {
+        "exact": "stick, slip and lift-off by events", "raw": "plain sgn(v)",
+        "smooth, tanh": "sgn(v) smoothed over `width`",
+        "time-stepping": "fixed steps, for many contacts and for sliding in a plane",
+    }  # fmt: skip
+    yield from _section("contact (contact = ...)", schemes)
     yield from _section("papers (squealbox paper ...)", _papers())
     yield "squealbox list NAME shows the parameters of a design, law or schedule"
 

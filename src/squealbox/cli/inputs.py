@@ -18,6 +18,7 @@ from squealbox.files import DesignFile, read_file
 from squealbox.files.analyses import Axis, quantity_of
 from squealbox.files.units import UnitError, in_si
 from squealbox.parameters import Parameter, ParameterError
+from squealbox.transient.simulate import TIME_STEPPING
 
 Changes = Annotated[tuple[str, ...], cyclopts.Parameter(name="--set", negative="", show_default=False)]
 AllowCode = Annotated[bool, cyclopts.Parameter(name="--allow-code", negative="")]
@@ -43,12 +44,15 @@ def small(found: DesignFile, *axes: Axis) -> DesignFile:
     return made
 
 
-def in_motion(found: DesignFile, *axes: Axis) -> DesignFile:
-    """As :func:`small`, for motions in time: most leave out friction across the sliding direction, and that is said."""
+def in_motion(found: DesignFile, *axes: Axis, contact: str = "exact") -> DesignFile:
+    """As :func:`small`, for motions in time by a contact scheme.
+
+    All but one leave out friction across the sliding direction, and that is said.
+    """
     from squealbox.files.reduced import ONE_WAY
 
     made = small(found, *axes)
-    if found.simulate is not None and found.simulate.contact == "time-stepping":
+    if contact == TIME_STEPPING:
         return made
     if isinstance(made.design, ReducedBrake) and made.design.reduction.arrays["across"] is not None:
         print(ONE_WAY)

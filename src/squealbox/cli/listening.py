@@ -49,7 +49,7 @@ def listen(
     seconds = time_of("--duration", duration)
     if not 0.0 < seconds <= 60.0:
         raise UsageError(f"--duration {duration}: expected more than 0 and at most 60 s")
-    found = in_motion(found)
+    found = in_motion(found, contact=(found.simulate or Simulate()).contact)
     settings = (found.simulate or Simulate()).replace({"duration": seconds})
     with Progress("simulating (the first run compiles the engine)"):
         motion = run(found.design.system(), settings, points=int(seconds * SAMPLES) + 1)

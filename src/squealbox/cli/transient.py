@@ -47,7 +47,7 @@ def simulate(
     method
         usual (the Taylor series where the equation has one), or one that squealbox list names
     contact
-        exact (stick, slip and lift-off by events), raw (plain sgn), smooth or tanh
+        exact (stick, slip and lift-off by events), raw (plain sgn), smooth, tanh or time-stepping
     changes
         other values for this run: --set friction.static=0.4 load="2 kN"
     allow_code
@@ -56,7 +56,7 @@ def simulate(
     found = read(file, changes, allow_code)
     options = {"start": start, "method": method, "contact": contact}
     settings = _settings(found.simulate or Simulate(), duration, options)
-    found = in_motion(dataclasses.replace(found, simulate=settings))
+    found = in_motion(dataclasses.replace(found, simulate=settings), contact=settings.contact)
     settings = found.simulate or settings
     system = found.design.system()
     start_of(system, settings)  # what cannot be started is said before a folder is made

@@ -39,7 +39,8 @@ REDUCED = "reduced"
 KEYS = ("file", "friction", "values")
 RARE = 1e-6  # share of a distribution without bounds that is left out at either end
 ONE_WAY = (
-    'Motions leave out friction across the sliding direction, which only damps; contact = "time-stepping" keeps it.'
+    "Motions leave out friction across the sliding direction, which only damps; "
+    'transients by contact = "time-stepping" keep it.'
 )
 MISSING = 'give [reduce] band = ["500 Hz", "10 kHz"] in the file, or the band of [modes]'
 

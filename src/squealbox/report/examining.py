@@ -32,6 +32,7 @@ from squealbox.stability import (
 )
 from squealbox.system import InvalidSystem
 from squealbox.transient import verdict
+from squealbox.transient.simulate import TIME_STEPPING
 
 Progress = Callable[[str], None]
 PERIODS = 200  # of the worst mode, followed where the file does not say how long
@@ -132,7 +133,8 @@ class _Work:
     def transient(self, simulate: Simulate | None) -> None:
         with self.part("transient", "transient (the first run compiles the engine)"):
             self.found["settings"] = settings = simulate or Simulate(duration=PERIODS * self._period())
-            self.found["motion"] = motion = run_closely(self.moving, settings)
+            moving = self.system if settings.contact == TIME_STEPPING else self.moving
+            self.found["motion"] = motion = run_closely(moving, settings)
             if not motion.outcome.ok:
                 self.missing["sound"] = f"the transient ended early: {motion.outcome.message}"
                 return
@@ -147,7 +149,7 @@ class _Work:
             if not 20.0 <= pitch <= 20e3:
                 raise SignalError(f"its frequency, {pitch:.4g} Hz, is not one people hear")
             longer = settings.replace({"duration": max(HEARD, settings.duration)})
-            self.found["heard"] = run(self.moving, longer, points=int(longer.duration * SAMPLING) + 1)
+            self.found["heard"] = run(moving, longer, points=int(longer.duration * SAMPLING) + 1)
 
     def cycle(self) -> None:
         """A limit cycle: from the usual start, the end of the transient, and pushes about steady sliding."""

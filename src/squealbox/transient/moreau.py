@@ -12,7 +12,6 @@ from squealbox.system import InvalidSystem, System
 from squealbox.transient import packing
 from squealbox.transient.methods import Method
 from squealbox.transient.own_laws import own_texts
-from squealbox.transient.packing import inverse_mass
 from squealbox.transient.trajectory import OPEN, Trajectory
 
 SWEEPS = 2000
@@ -103,7 +102,7 @@ def time_stepping(
         "duration": duration, "start": [q.tolist(), qd.tolist()], "start_time": start_time,
         "contact": "time-stepping", "step": h,
     }  # fmt: skip
-    return _trajectory(system, rows[: done + 1], times, settings, outcome, int(done))
+    return _trajectory(system, rows[: done + 1], times, settings, outcome, int(done), h * z.mobility)
 
 
 def _stepping(system: System, problem: Any) -> Stepping:
@@ -113,7 +112,7 @@ def _stepping(system: System, problem: Any) -> Stepping:
     fields: dict[str, Any] = {}
     matrices = {"mk": (n, n), "mc": (n, n), "n": (m, n), "t": (m, n), "d": (m, n), "md": (m, n), "mw": (m, n)}
     across = np.zeros((m, n)) if system.across is None else system.across
-    ma = across @ inverse_mass(system.M).T
+    ma = across @ packing.inverse_mass(system.M).T
     given = {name: problem[name][:rows, :columns] for name, (rows, columns) in matrices.items()}
     for name, matrix in (given | {"a": across, "ma": ma}).items():
         sparse = csr_array(matrix)
@@ -169,8 +168,9 @@ def _outcome(done: int, steps: int, h: float, sweeps: int, change: float) -> Out
 
 
 def _trajectory(
-    system: System, rows: Any, times: Any, settings: dict[str, Any], outcome: Outcome, steps: int
+    system: System, rows: Any, times: Any, settings: dict[str, Any], outcome: Outcome, steps: int, gains: Any
 ) -> Trajectory:
+    """gains (m,): the speed [m/s] that a newton of its friction takes from each contact in a step."""
     n, m = system.size, len(system.contacts)
     t, q, qd, normal, speed, force, work = np.split(rows, np.cumsum([1, n, n, m, m, m]), axis=1)
     instants = t[:, 0]
@@ -184,8 +184,9 @@ def _trajectory(
     ]
     aside = 0.0 if system.across is None else qd @ system.across.T
     slip = np.hypot(speed, aside)
-    sticking = slip <= 1e-9 * np.max(slip, initial=1e-300)
-    mode = np.where(opens, OPEN, np.where(sticking, 0, np.sign(speed))).astype(np.int8)
+    taken = np.max(np.abs(force) * gains, initial=1e-300)  # where all is at rest, speeds are the round-off of that
+    sticking = slip <= 1e-9 * np.maximum(np.max(slip, initial=0.0), taken)
+    mode = np.where(opens, OPEN, np.where(sticking, 0, np.where(speed < 0.0, -1, 1))).astype(np.int8)
     changed = np.argwhere(np.diff(mode, axis=0) != 0)
     events = (instants[changed[:, 0] + 1], changed[:, 1], mode[changed[:, 0] + 1, changed[:, 1]])
     columns = [q, qd, normal, speed, force, work, *works]
