@@ -26,6 +26,8 @@ def test_its_own_mesh_says_the_same(brake, modes):
     np.testing.assert_allclose(found.likeness, 1.0, atol=1e-3)
     np.testing.assert_allclose(found.other_frequency, found.frequency, rtol=1e-5)
     np.testing.assert_allclose(found.other_growth_rate, found.growth_rate, atol=0.05)
+    assert found.outcome == "same_mesh"
+    assert "one mesh was looked at" in found.sentence
     assert found.freedoms[0] == found.freedoms[1] == brake.system().size
 
 
@@ -40,6 +42,18 @@ def test_a_finer_mesh_shifts_frequencies_little_and_growth_rates_much(brake, mod
         assert np.min(np.abs(there.eigenvalues - value)) < 1.0 or found.other_frequency[i] > BAND[1]
     grows = np.nanargmax(np.abs(found.other_growth_rate - found.growth_rate) * (found.growth_rate > 0.0))
     assert f"{abs(found.other_growth_rate[grows] - found.growth_rate[grows]):.3g} 1/s" in found.sentence
+
+
+def test_a_mesh_that_is_too_coarse_is_said_and_loses_nothing(brake, modes, monkeypatch):
+    def none(self):
+        raise ParameterError("DiscBrake", "piston_radius", 0.001, "a patch that holds at least one quadrature point")
+
+    monkeypatch.setattr(type(brake), "system", none)
+    found = mesh_doubt(brake, modes, 0.06)
+    assert found.outcome == "no_second_mesh"
+    assert "piston_radius" in found.sentence
+    assert np.all(np.isnan(found.other_frequency))
+    np.testing.assert_array_equal(found.growth_rate, modes.growth_rate[: len(found.frequency)])
 
 
 def test_a_brake_without_a_mesh_of_its_own_is_refused(modes):

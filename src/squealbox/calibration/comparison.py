@@ -1,10 +1,4 @@
-"""Simulated and measured side by side: frequency, growth, level; and mode shapes by the modal assurance criterion.
-
-    MAC(a, b) = |a^H b|^2 / ((a^H a) (b^H b))
-
-1 for the same shape, 0 for shapes that have nothing in common. Source: R. J. Allemang, D. L. Brown 1982, Proc. 1st
-International Modal Analysis Conference, 110-116.
-"""
+"""Simulated and measured side by side: frequency, growth, level; and mode shapes by the modal assurance criterion."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -15,6 +9,7 @@ from squealbox.calibration.mode_tables import ModeTable
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals import SignalError, dominant_frequency, growth_rate, sound_level
 from squealbox.signals.events import BELOW
+from squealbox.stability.mode import modal_assurance
 from squealbox.system import as_system
 
 ROWS, UNITS = ("frequency", "growth rate", "level"), ("Hz", "1/s")  # the level has the unit of the recording
@@ -134,23 +129,6 @@ def _of_table(modes: Any, table: ModeTable) -> Comparison:
         simulated=np.array(model), measured=np.array(test), error=nothing, away=nothing,
         settings={"rows": list(names), "units": list(units), "notes": notes, "source": table.source},
     )  # fmt: skip
-
-
-def modal_assurance(shapes: Any, others: Any) -> Any:
-    """MAC of every column of `shapes` (n, k) with every column of `others` (n, m): shape (k, m).
-
-    Raises `SignalError` when the shapes have different numbers of rows, or one is nothing but zeros.
-
-    >>> modal_assurance([[1.0, 0.0], [1.0, 1.0]], [[2.0], [2.0]]).round(3).tolist()
-    [[1.0], [0.5]]
-    """
-    a, b = (np.atleast_2d(np.asarray(each, dtype=complex)) for each in (shapes, others))
-    if a.shape[0] != b.shape[0]:
-        raise SignalError(f"shapes of {a.shape[0]} and {b.shape[0]} places: expected the same places in both")
-    own, theirs = (np.sum(np.abs(each) ** 2, axis=0) for each in (a, b))
-    if not (np.all(own > 0.0) and np.all(theirs > 0.0)):
-        raise SignalError("a mode shape is nothing but zeros: expected motion somewhere")
-    return np.abs(a.conj().T @ b) ** 2 / np.outer(own, theirs)
 
 
 def _said(simulated: Any, dof: int | str, notes: list[str]) -> list[float]:

@@ -32,10 +32,7 @@ def write_shape(brake: MeshedBrake, shape: Any, eigenvalue: complex, path: str |
     shape = np.asarray(shape, dtype=complex)
     if shape.shape != (made.size,):
         raise ValueError(f"shape has shape {shape.shape}: expected ({made.size},), all degrees of freedom of the brake")
-    whole = np.zeros(sum(body.size for body in made.bodies), dtype=complex)
-    whole[made.kept] = shape
-    starts = np.cumsum([0, *(body.size for body in made.bodies)])
-    parts = [_corners(body, whole[a:b]) for body, a, b in zip(made.bodies, starts[:-1], starts[1:], strict=True)]
+    parts = [_corners(body, values) for body, values in zip(made.bodies, made.by_body(shape), strict=True)]
     places = np.concatenate([place for place, _, _ in parts])
     moved = np.concatenate([values for _, values, _ in parts])
     offsets = np.cumsum([0, *(len(place) for place, _, _ in parts)])
@@ -55,11 +52,9 @@ def write_shape(brake: MeshedBrake, shape: Any, eigenvalue: complex, path: str |
 def _corners(body: Body, values: Any) -> tuple[Any, Any, Any]:
     """Places (k, 3), displacements (k, 3) and corners of the elements (cells, 8) in the order of VTK."""
     corner, cells = body.corners
-    r, theta, z = body.grid_points
     local = np.asarray(body.reference_corners).T.astype(int)
     order = [int(np.flatnonzero((local == at).all(axis=1))[0]) for at in VTK]
-    places = np.stack([r * np.cos(theta), r * np.sin(theta), z], axis=1)
-    return places, values[body.freedoms[corner]].T, cells[:, order]
+    return body.corner_places.T, values[body.freedoms[corner]].T, cells[:, order]
 
 
 VTK = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))

@@ -123,6 +123,12 @@ class Body:
         return self._flat.p
 
     @property
+    def corner_places(self) -> Any:
+        """(3, corners): x, y and z [m] of each corner of the open grid."""
+        r, theta, z = self.grid_points
+        return np.stack([r * np.cos(theta), r * np.sin(theta), z])
+
+    @property
     def reference_corners(self) -> Any:
         """(3, 8): local coordinates of an element's corners, in the order in which it lists them."""
         return self._element.refdom.p

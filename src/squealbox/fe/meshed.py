@@ -65,6 +65,13 @@ class Structure:
     bodies: tuple[Body, ...]
     kept: Any
 
+    def by_body(self, values: Any) -> list[Any]:
+        """Of values (n, ...) on the freedoms those of each body, with zeros where it is held."""
+        sizes = [body.size for body in self.bodies]
+        whole = np.zeros((sum(sizes), *np.shape(values)[1:]), dtype=np.asarray(values).dtype)
+        whole[self.kept] = values
+        return np.split(whole, np.cumsum(sizes)[:-1])
+
 
 class MeshedBrake(Design):
     """A brake that meshes itself; a subclass says of what it is made.

@@ -58,3 +58,25 @@ def damping_ratio(eigenvalues: Any) -> Any:
     """-Re lambda / |lambda| [-], NaN at lambda = 0."""
     with np.errstate(invalid="ignore", divide="ignore"):
         return -np.real(eigenvalues) / np.abs(eigenvalues)
+
+
+def modal_assurance(shapes: Any, others: Any) -> Any:
+    """MAC of every column of `shapes` (n, k) with every column of `others` (n, m): shape (k, m).
+
+    MAC(a, b) = |a^H b|^2 / ((a^H a) (b^H b)) is 1 for the same shape, 0 for shapes that have nothing in common. Source:
+    R. J. Allemang, D. L. Brown 1982, Proc. 1st International Modal Analysis Conference, 110-116.
+
+    Raises `SignalError` when the shapes have different numbers of rows, or one is nothing but zeros.
+
+    >>> modal_assurance([[1.0, 0.0], [1.0, 1.0]], [[2.0], [2.0]]).round(3).tolist()
+    [[1.0], [0.5]]
+    """
+    from squealbox.signals import SignalError
+
+    a, b = (np.atleast_2d(np.asarray(each, dtype=complex)) for each in (shapes, others))
+    if a.shape[0] != b.shape[0]:
+        raise SignalError(f"shapes of {a.shape[0]} and {b.shape[0]} places: expected the same places in both")
+    own, theirs = (np.sum(np.abs(each) ** 2, axis=0) for each in (a, b))
+    if not (np.all(own > 0.0) and np.all(theirs > 0.0)):
+        raise SignalError("a mode shape is nothing but zeros: expected motion somewhere")
+    return np.abs(a.conj().T @ b) ** 2 / np.outer(own, theirs)

@@ -1,10 +1,7 @@
 """The same brake on a second mesh: which modes are found again, and how far their growth rates lie apart.
 
 Frequencies converge with the mesh, growth rates hardly do, so one mesh alone says nothing of its own doubt. Modes of
-the two meshes are the same by their shapes at common places, the corners of the elements of the coarser mesh:
-
-    MAC(a, b) = |a^H b|^2 / (a^H a b^H b)
-
+the two meshes are the same by the MAC of their shapes at common places, the corners of the elements of the coarser one,
 and paired so that the sum of all is largest (Kuhn 1955, Naval Research Logistics Quarterly 2, 83-97). Of modes that two
 shapes share, a doublet of a disc, neither may be found again.
 """
@@ -17,8 +14,10 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.fe.meshed import MeshedBrake
 from squealbox.parameters import ParameterError
-from squealbox.result import Array, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.eigenvalues import complex_modes
+from squealbox.stability.mode import modal_assurance
+from squealbox.system import InvalidSystem
 
 COARSER = 1.5  # times the element size, where none is given
 WIDER = 0.05  # share of the band in which modes of the other mesh are looked for beyond it
@@ -31,7 +30,11 @@ ONE_MESH = (
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MeshDoubt(Result):
-    """Modes of a brake beside those of the same brake on another mesh, as :func:`mesh_doubt` returns them."""
+    """Modes of a brake beside those of the same brake on another mesh, as :func:`mesh_doubt` returns them.
+
+    Outcome "completed", "no_second_mesh" where the brake has no mesh, or no modes, of that element size, or "same_mesh"
+    where both sizes make one mesh, as very coarse ones do: then nothing is told of it.
+    """
 
     frequency: Array = quantity("mode", "Hz", "frequency of each mode")
     growth_rate: Array = quantity("mode", "1/s", "growth rate of each mode")
@@ -47,6 +50,8 @@ class MeshDoubt(Result):
     @property
     def sentence(self) -> str:
         """What a reader of growth rates must know, about the modes that grow on either mesh."""
+        if not self.outcome.ok:
+            return f"{ONE_MESH} {self.outcome.message}."
         growing = (self.growth_rate > 0.0) | (self.other_growth_rate > 0.0)
         lost = int(np.sum(np.isnan(self.other_frequency[growing])))
         found = growing & np.isfinite(self.other_frequency)
@@ -96,52 +101,48 @@ def mesh_doubt(brake: MeshedBrake, modes: Any, element_size: float | None = None
     size = COARSER * float(brake.value_of("element_size")) if element_size is None else float(element_size)
     other = brake.replace({"element_size": size})
     low, high = modes.band
-    there = complex_modes(other, band=((1.0 - WIDER) * low, (1.0 + WIDER) * high))
-    if not there.outcome.ok:
-        raise ParameterError("mesh_doubt", "element_size", size, f"a mesh whose modes are found: {there.outcome}")
-    half, others = len(modes.eigenvalues) // 2, len(there.eigenvalues) // 2
-    places = _corners(brake if float(brake.value_of("element_size")) > size else other)
-    a, b = _moved(brake, modes.right[:, :half], places), _moved(other, there.right[:, :others], places)
-    likeness = np.abs(a.conj().T @ b) ** 2 / np.outer(np.sum(np.abs(a) ** 2, axis=0), np.sum(np.abs(b) ** 2, axis=0))
+    half = len(modes.eigenvalues) // 2
+    own: dict[str, Any] = {
+        "frequency": modes.eigenvalues[:half].imag / (2.0 * np.pi), "growth_rate": modes.eigenvalues[:half].real,
+        "element_size": float(brake.value_of("element_size")), "other_size": size, "inputs": {"system": brake},
+    }  # fmt: skip
+    try:
+        there = complex_modes(other, band=((1.0 - WIDER) * low, (1.0 + WIDER) * high))
+        why = "" if there.outcome.ok else str(there.outcome.message)
+    except (ParameterError, InvalidSystem) as error:  # too coarse for a part of the brake
+        why = str(error)
+    if why:
+        message = f"with elements of {1e3 * size:g} mm there are no modes to compare with: {why}"
+        none = np.full(half, np.nan)
+        return MeshDoubt(**own, other_frequency=none, other_growth_rate=none, likeness=0.0 * none,
+                         freedoms=(len(modes.right), 0), outcome=Outcome("no_second_mesh", message))  # fmt: skip
+    others = len(there.eigenvalues) // 2
+    coarser = brake if float(own["element_size"]) > size else other
+    places = [body.corner_places for body in coarser.structure().bodies]
+    here = _moved(brake, modes.right[:, :half], places)
+    likeness = modal_assurance(here, _moved(other, there.right[:, :others], places))
     partner = _paired(likeness)
     alike = np.array([likeness[i, j] if j >= 0 else 0.0 for i, j in enumerate(partner)])
     again = alike >= ALIKE
     values = np.where(again, there.eigenvalues[:others][partner] if others else np.nan, np.nan + 0j)
+    grids = [[body.breaks for body in each.structure().bodies] for each in (brake, other)]
+    same = all(np.array_equal(a, b) for one, two in zip(*grids, strict=True) for a, b in zip(one, two, strict=True))
+    message = f"elements of {1e3 * size:g} mm make the same mesh as those of {1e3 * own['element_size']:g} mm"
     return MeshDoubt(
-        frequency=modes.eigenvalues[:half].imag / (2.0 * np.pi),
-        growth_rate=modes.eigenvalues[:half].real,
+        **own,
+        outcome=Outcome("same_mesh", message) if same else Outcome(),
         other_frequency=np.where(again, values.imag / (2.0 * np.pi), np.nan),
         other_growth_rate=np.where(again, values.real, np.nan),
         likeness=alike,
-        element_size=float(brake.value_of("element_size")),
-        other_size=size,
         freedoms=(len(modes.right), len(there.right)),
-        inputs={"system": brake},
     )
-
-
-def _corners(brake: MeshedBrake) -> list[Any]:
-    """Places (3, k) [m] of the corners of the elements of each body."""
-    found = []
-    for body in brake.structure().bodies:
-        r, theta, z = body.grid_points
-        found.append(np.stack([r * np.cos(theta), r * np.sin(theta), z]))
-    return found
 
 
 def _moved(brake: MeshedBrake, shapes: Any, places: list[Any]) -> Any:
     """Displacements at the places, one after another, of shapes (n, modes)."""
     made = brake.structure()
-    whole = np.zeros((sum(body.size for body in made.bodies), shapes.shape[1]), dtype=complex)
-    whole[made.kept] = shapes
-    starts = np.cumsum([0, *(body.size for body in made.bodies)])
-    return np.concatenate(
-        [
-            row @ whole[a:b]
-            for body, place, a, b in zip(made.bodies, places, starts[:-1], starts[1:], strict=True)
-            for row in body.points(place)
-        ]
-    )
+    parts = zip(made.bodies, made.by_body(shapes), places, strict=True)
+    return np.concatenate([row @ values for body, values, place in parts for row in body.points(place)])
 
 
 def _paired(likeness: Any) -> Any:
