@@ -45,7 +45,7 @@ def calibrate(
         raise UsageError(f"{file}: has no section [calibrate], which says what is fitted to what")
     measured: list[Measured] = list(found.calibrate.measured)
     if heard:
-        _, events = _heard(found)
+        *_, events = _heard(found)
         measured += from_events(events, int(events.level.argmax())) if events.count else []
     with Progress("calibrating"):
         result = fitted(found.design, found.calibrate.parameters, measured, loss=found.calibrate.loss)
@@ -97,12 +97,13 @@ def compare_(
     if out is not None:
         folder(out, "mode_table", "modes", "motion", "spectrograms")
     try:
+        own = complex_modes(found.design)
         if modes is not None:
-            figures["mode_table"] = compare(complex_modes(found.design), read_mode_table(modes))
+            figures["mode_table"] = compare(own, read_mode_table(modes))
             show("modes", figures["mode_table"])
         if modes is None or recording is not None:
-            sound, events = _heard(found, recording, unit, full_scale, band)
-            figures["modes"] = compare(complex_modes(found.design), events)
+            sound, channel, events = _heard(found, recording, unit, full_scale, band)
+            figures["modes"] = compare(own, events)
             show("modes", figures["modes"])
             if found.simulate is not None:
                 with Progress("simulating"):
@@ -116,7 +117,6 @@ def compare_(
 
         drawn = {name: plots.plot(result) for name, result in figures.items()}
         if "motion" in figures:
-            channel = found.recording.channel if found.recording is not None and recording is None else 0
             drawn["spectrograms"] = plots.spectrograms_beside(motion, sound, events, channel=channel)
         print(written(*(path for name, figure in drawn.items() for path in plots.save(figure, out / name))))
 
@@ -127,8 +127,8 @@ def _heard(
     unit: str = "Pa",
     full_scale: float | None = None,
     band: Band = None,
-) -> tuple[Recording, SquealEvents]:
-    """The recording of the section or the one that is named, and the squeal events in it."""
+) -> tuple[Recording, int, SquealEvents]:
+    """The recording of the section or the one that is named, the channel of it that is heard, and its squeal events."""
     about = found.recording
     if about is None and recording is None:
         raise UsageError(f"{found.path}: has no section [recording], and no recording is named")
@@ -138,6 +138,7 @@ def _heard(
     try:
         sound = read_recording(path, unit=about.unit, full_scale=about.full_scale, rate=about.rate)
         ends = about.band if band is None else ends_of(band)
-        return sound, squeal_events(sound, channel=about.channel, band=ends, least_level=about.least_level)
+        events = squeal_events(sound, channel=about.channel, band=ends, least_level=about.least_level)
     except SignalError as error:
         raise UsageError(str(error)) from error
+    return sound, about.channel, events

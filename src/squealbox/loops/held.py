@@ -16,18 +16,23 @@ import numpy as np
 GONE = 1e-13  # of the largest multiplier: less is none
 
 
-def aliased(system: Any, loops: Any) -> list[str]:
-    """A sentence for each loop that samples a mode of the system, without friction, less than twice in its period."""
-    heavy, said = np.flatnonzero(np.any(system.M != 0.0, axis=-1)), []
+def highest_rate(system: Any) -> float:
+    """Highest angular frequency [rad/s] of what has mass, without contacts and loops; 0 where nothing has."""
+    heavy = np.flatnonzero(np.any(system.M != 0.0, axis=-1))
     rows = np.ix_(heavy, heavy)
     squares = np.linalg.eigvals(np.linalg.lstsq(system.M[rows], system.K[rows], rcond=None)[0])
-    fastest = float(np.max(np.sqrt(np.abs(squares)) / (2.0 * np.pi), initial=0.0))
+    return float(np.sqrt(np.max(np.abs(squares), initial=0.0)))
+
+
+def aliased(system: Any, loops: Any) -> list[str]:
+    """A sentence for each loop that samples a mode of the system, without friction, less than twice in its period."""
+    said, highest = [], highest_rate(system) / (2.0 * np.pi)
     for loop in loops:
         rate = np.inf if loop.sampling is None else float(loop.sampling)
-        if fastest > 0.5 * rate:
-            taken = abs(fastest - rate * round(fastest / rate))
+        if highest > 0.5 * rate:
+            taken = abs(highest - rate * round(highest / rate))
             said.append(
-                f"the loop on {loop.on} samples at {rate:g} Hz, less than twice the mode at {fastest:.6g} Hz, which it "
+                f"the loop on {loop.on} samples at {rate:g} Hz, less than twice the mode at {highest:.6g} Hz, which it "
                 f"takes for {taken:.6g} Hz"
             )
     return said

@@ -152,11 +152,11 @@ def spectrograms_beside(
     segment = min(length, ended - began) / PIECES
     cut: dict[str, Any] = {"begin": began, "end": ended, "segment": segment}
     grids = (spectrogram(simulated, dof=dof, segment=segment), spectrogram(heard, recording.t, **cut))
-    tops = [float(grid.frequency[np.argmax(np.max(grid.amplitude[1:], axis=1)) + 1]) for grid in grids]
+    upto = 2.0 * max(grid.strongest for grid in grids)
     figure, axes = panels(1, 2, width=WIDTH, height=2.8, sharey=True)
     with drawing(axes) as both:
         for panel, grid, name in zip(both, grids, ("simulated", "recorded"), strict=True):
-            shown = grid.frequency <= 2.0 * max(tops)
+            shown = grid.frequency <= upto
             level = 20.0 * np.log10(np.maximum(grid.amplitude[shown] / np.max(grid.amplitude[shown]), 1e-3))
             look = {"cmap": "Blues", "vmin": -60.0, "vmax": 0.0, "rasterized": True}
             mesh = panel.pcolormesh(1e3 * (grid.time - grid.time[0]), 1e-3 * grid.frequency[shown], level, **look)

@@ -163,6 +163,7 @@ def gains_figure(found: StableGains, *, title: str = "", axes: Any = None) -> "F
         panel.set_xscale("symlog", linthresh=1e-3)
         size = 1.5 * max(abs(found.least_growth), abs(float(found.growth[0]))) if len(found.growth) else 1.0
         panel.set_ylim(-size, size)
+        panel.set_xlim(0.0, np.max(found.factor, initial=1.0))
         panel.set(xlabel=quantity_label("factor on the forces", ""), ylabel=quantity_label("growth rate", "1/s"),
                   title=title or ("" if found.outcome.ok else str(found.outcome)))  # fmt: skip
         return figure_of(panel)

@@ -117,8 +117,7 @@ def spectrogram(
     from matplotlib.colors import LogNorm
 
     grid = signal if isinstance(signal, signals.Spectrogram) else signals.spectrogram(signal, t, **cut)
-    strongest = grid.frequency[np.argmax(np.max(grid.amplitude[1:], axis=1)) + 1]
-    shown = grid.frequency <= (upto or 2.0 * strongest)
+    shown = grid.frequency <= (upto or 2.0 * grid.strongest)
     hertz, read = scaled("Hz", grid.frequency[shown], to=frequency_unit)
     own = unit_at(getattr(signal, "system", None), cut.get("dof", 0))
     factor, size = scaled(own, grid.amplitude[shown], to=unit)

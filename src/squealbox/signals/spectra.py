@@ -48,6 +48,11 @@ class Spectrogram(Result):
 
     table_over: ClassVar = ("time", "frequency")
 
+    @property
+    def strongest(self) -> float:
+        """Frequency [Hz] of the largest amplitude above 0 Hz, at any time."""
+        return float(self.frequency[np.argmax(np.max(self.amplitude[1:], axis=1)) + 1])
+
 
 @public()
 def spectrum(signal: Any, t: Any = None, *, window: str = "hann", pad: int = 4, **cut: Any) -> Spectrum:

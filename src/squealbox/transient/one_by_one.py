@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.cautions import least_coefficient
+from squealbox.loops.held import highest_rate
 from squealbox.members import member
 from squealbox.parameters import ParameterError
 from squealbox.system import System, as_system
@@ -71,7 +72,7 @@ class OneByOne(Work):
 
     def _keep(self, system: System, start: Any) -> None:
         """One run, as a row of results and its samples."""
-        swing = _fastest(system)
+        swing = highest_rate(system)
         chosen = self.usual(system)
         closer = min(STEP / swing if swing > 0.0 else np.inf, chosen.largest_step or np.inf)
         method = dataclasses.replace(chosen, largest_step=closer) if np.isfinite(closer) else chosen
@@ -128,13 +129,3 @@ def _steps(motion: Trajectory, of: str) -> Any:
                 seen |= {"mode": motion.mode[i + 1], "work": motion.work_friction[j]}
             ends.append(SimpleNamespace(t=motion.t[j], **seen))
         yield ends
-
-
-def _fastest(system: System) -> float:
-    """Highest angular frequency [rad/s] of what has mass, without its contacts."""
-    heavy = np.any(system.M != 0.0, axis=1)
-    if not np.any(heavy):
-        return 0.0
-    rows = np.ix_(heavy, heavy)
-    values = np.linalg.eigvals(np.linalg.lstsq(system.M[rows], system.K[rows], rcond=None)[0])
-    return float(np.sqrt(np.max(np.abs(values))))
