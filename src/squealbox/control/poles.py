@@ -21,6 +21,7 @@ LARGEST = 160  # rows of a discretisation, unless `FIRST_ORDER` points make more
 GRIDS = (0.6, 0.25, 0.1)  # steps of the grid, over the longest delay, on which poles are looked for that it missed
 SAME = 1e-8  # relative distance below which two refined poles are one
 MOST_POINTS = 400_000  # of a contour
+WELL = 1e6  # condition of the eigenvectors of A up to which its modes tell the phase of det D
 
 
 class Late:
@@ -34,6 +35,13 @@ class Late:
         self.A = A * scale / scale[:, None]
         self.parts = [(delay, part * scale / scale[:, None]) for delay, part in parts]
         self.own, self.sizes = _norm(self.A), [_norm(part) for _, part in self.parts]
+        self.split = [(delay, *_halves(part)) for delay, part in self.parts]
+        values, vectors = np.linalg.eig(self.A)
+        self.values, self.known = values, bool(np.linalg.cond(vectors) < WELL)
+        if self.known:
+            into = np.linalg.solve(vectors, np.hstack([left for _, left, _ in self.split]))
+            out = np.vstack([right for _, _, right in self.split]) @ vectors
+            self.way = (out.T[:, :, None] * into[:, None, :]).reshape(len(values), -1)  # V (sI - A)^-1 U by modes of A
 
     def matrix(self, s: Any) -> Any:
         """D(s) for s (...), shape (..., d, d)."""
@@ -49,6 +57,24 @@ class Late:
             for delay, part in self.parts
         )
         return np.eye(len(self.A)) + sum(late)
+
+    def phase(self, s: Any) -> Any:
+        """det D/|det D| for s (k,), by det D = det(sI - A) det(I - V (sI - A)^-1 U e(s)) with what is late as U e V."""
+        if not self.known:
+            return np.linalg.slogdet(self.matrix(s))[0]
+        gap = s[:, None] - self.values
+        size = round(np.sqrt(self.way.shape[1]))
+        e = np.concatenate([np.full(len(right), delay) for delay, _, right in self.split])
+        with np.errstate(all="ignore"):  # at an eigenvalue of A, and where exp is beyond all numbers: the other way
+            small = np.eye(size) - ((1.0 / gap) @ self.way).reshape(-1, size, size) * np.exp(-s[:, None] * e)[:, None]
+            if size == 1:
+                small = small[:, 0, 0]
+            else:
+                small = small[:, 0, 0] * small[:, 1, 1] - small[:, 0, 1] * small[:, 1, 0] if size == 2 else np.linalg.det(small)
+            found = np.prod(gap / np.abs(gap), axis=1) * small / np.abs(small)
+        lost = ~np.isfinite(found)
+        found[lost] = np.linalg.slogdet(self.matrix(s[lost]))[0]
+        return found
 
     def reach(self, line: Any) -> Any:
         """No pole with Re s >= line is farther from 0 than this."""
@@ -71,17 +97,18 @@ def late_poles(late: Late, line: float) -> tuple[Any, int]:
 
 def in_cells(late: Late, line: float, step: float) -> Any:
     """Middles of the cells of a grid, Im s >= 0, around which the argument of det D turns."""
-    right = line
-    for _ in range(60):  # the largest x with x <= |A| + sum |A_k| exp(-x T_k)
-        right = 0.5 * (right + late.reach(right)) if late.reach(right) > right else right
     height = late.reach(line)
+    low, right = line, height
+    for _ in range(30):  # the largest x with x <= |A| + sum |A_k| exp(-x T_k)
+        middle = 0.5 * (low + right)
+        low, right = (middle, right) if late.reach(middle) > middle else (low, middle)
     step = max(step, np.sqrt((right - line + 2.0 * step) * height / MOST_POINTS))
     x = np.arange(line - step, right + 2.0 * step, step)
     y = np.arange(-0.5 * step, height + 2.0 * step, step)
     reach = late.reach(x - 2.0 * step) + 2.0 * step
     inside = np.abs(x[:, None] + 1j * y) <= reach[:, None]
     phase = np.ones(inside.shape, dtype=complex)
-    phase[inside] = _phase(late, (x[:, None] + 1j * y)[inside])
+    phase[inside] = late.phase((x[:, None] + 1j * y)[inside])
     across, up = np.angle(phase[1:] / phase[:-1]), np.angle(phase[:, 1:] / phase[:, :-1])
     turns = across[:, :-1] + up[1:] - across[:, 1:] - up[:-1]
     i, k = np.nonzero((np.abs(turns) > np.pi) & inside[:-1, :-1] & inside[1:, 1:])
@@ -90,11 +117,7 @@ def in_cells(late: Late, line: float, step: float) -> Any:
 
 def discretised(late: Late, reach: float) -> Any:
     """Eigenvalues with what is under way in each delay on Chebyshev points: x' = A x + sum U w(-T), w(0) = V x."""
-    split = []
-    for delay, part in late.parts:
-        left, sizes, right = np.linalg.svd(part)
-        kept = sizes > 1e-14 * sizes[0] if sizes.size else sizes > 0.0
-        split.append((delay, left[:, kept] * sizes[kept], right[kept]))
+    split = late.split
     d, width = len(late.A), sum(len(right) for _, _, right in split)
     most = max(FIRST_ORDER, min(LAST_ORDER, LARGEST // max(width, 1)))
     orders = [int(np.clip(FIRST_ORDER + 0.7 * reach * delay, FIRST_ORDER, most)) for delay, _, _ in split]
@@ -117,14 +140,15 @@ def refined(late: Late, guesses: Any, line: float) -> Any:
     scale = late.reach(line)
     near = guesses[(guesses.real > line - 0.1 * abs(line) - 0.02 * scale) & (np.abs(guesses) < 1.2 * scale)]
     near = near[near.imag >= -1e-9 * scale]
-    kept: list[complex] = []
-    for value in sorted(newton(late, near), key=lambda each: -each.real) if len(near) else []:
-        value = complex(value) if abs(value.imag) > 1e-11 * abs(value) + 1e-13 * scale else complex(value.real)
-        value = complex(value.real, abs(value.imag))
-        if value.real > line and all(abs(value - other) > SAME * max(abs(value), 1e-3 * scale) for other in kept):
-            kept.append(value)
-    both = [*kept, *(value.conjugate() for value in kept if value.imag > 0.0)]
-    return np.array(sorted(both, key=lambda s: (-s.real, -s.imag)), dtype=complex)
+    values = newton(late, near) if len(near) else near
+    values = np.where(np.abs(values.imag) > 1e-11 * np.abs(values) + 1e-13 * scale, values, values.real + 0j)
+    values = values.real + 1j * np.abs(values.imag)
+    values = values[values.real > line]
+    values = values[np.argsort(-values.real)]
+    alike = np.abs(values[:, None] - values) <= SAME * np.maximum(np.abs(values), 1e-3 * scale)[:, None]
+    kept = values[~np.any(np.tril(alike, -1), axis=1)]
+    both = np.concatenate([kept, kept[kept.imag > 0.0].conj()])
+    return both[np.lexsort((-both.imag, -both.real))]
 
 
 def newton(late: Late, guesses: Any, most: int = 16) -> Any:
@@ -165,19 +189,22 @@ def count(late: Late, line: float, reach: float) -> int:
     longest = max(delay for delay, _ in late.parts)
     points = int(np.clip(64 + 8.0 * top * longest, 64, MOST_POINTS // 8))
     path = line + 1j * np.linspace(top, 0.0, points)
-    phase = _phase(late, path)
+    phase = late.phase(path)
     for _ in range(40):
         turns = np.angle(phase[1:] / phase[:-1])
         wide = np.flatnonzero(np.abs(turns) > 1.0)
         if wide.size == 0 or path.size > MOST_POINTS:
             break
         middle = 0.5 * (path[wide] + path[wide + 1])
-        path, phase = np.insert(path, wide + 1, middle), np.insert(phase, wide + 1, _phase(late, middle))
+        path, phase = np.insert(path, wide + 1, middle), np.insert(phase, wide + 1, late.phase(middle))
     return int(np.rint((around + np.sum(np.angle(phase[1:] / phase[:-1]))) / np.pi))
 
 
-def _phase(late: Late, s: Any) -> Any:
-    return np.linalg.slogdet(late.matrix(s))[0]
+def _halves(part: Any) -> tuple[Any, Any]:
+    """U and V of part = U V, of as few columns as it needs."""
+    left, sizes, right = np.linalg.svd(part)
+    kept = sizes > 1e-14 * sizes[0]
+    return left[:, kept] * sizes[kept], right[kept]
 
 
 def _beside(line: float, poles: Any, reach: float) -> float:
