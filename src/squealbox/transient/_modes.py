@@ -65,6 +65,9 @@ def apply_event(p, t, y, mode, s, j):
     for c in range(m):
         s.bias[c] = 1.0
     derivative(p, t, y, mode, s, s.dy)
+    if list_sticking(p, mode, s) > 0:  # one that lets go begins to slip from zero speed, not from what it drifted
+        hold_still(p, y, mode, s)
+        derivative(p, t, y, mode, s, s.dy)
     reference = s.speed[j] if j < m and mode[j] != OPEN else 0.0
     for c in range(m):
         s.old[c] = mode[c]
@@ -211,6 +214,11 @@ def settle(p, t, y, mode, s):
         s.fresh[c] = s.at_zero[c] != 0 and mode[c] != STICK and mode[c] != OPEN
         if p.rigid[c] and mode[c] == OPEN:
             s.fresh[c] = s.old[c] != OPEN or s.leaving[c] != 0 or touches(p, c, y, s)
+    return hold_still(p, y, mode, s)
+
+
+def hold_still(p, y, mode, s):
+    """Bring to zero what the modes hold there: sliding velocities, and gaps of rigid contacts with their rates."""
     if p.rigid_count > 0:
         return project(p, y, mode, s)
     return remove_drift(p, y, s, list_sticking(p, mode, s))
