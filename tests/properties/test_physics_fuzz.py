@@ -64,16 +64,18 @@ def test_every_kind_of_system_against_a_slow_integrator(seed):
     size = max(1.0, float(np.max(np.abs(motion.q))))
     bends = any(isinstance(contact.law, friction.Table) for contact in system.contacts)
     within = 1e-6 if bends else 1e-7  # a step across a bend of a law errs more than its tolerance
-    sensitive = disturbed(system, start, duration, truth)
     assert motion.outcome == "completed"
-    if not any(contact.rigid and contact.restitution for contact in system.contacts):
-        expected = [float(time) for time, contact, _ in truth.events if sharp[contact]]
-        if len(times) != len(expected) and any(contact.rigid for contact in system.contacts):
-            times, expected = accumulated(times), accumulated(expected)  # stops that shrink to nothing, an endless row
-        assert len(times) == len(expected)
-        # The slow integrator looks for events on its interpolant, which errs by some 1e-7 where forces decide them.
-        assert np.sort(times) == pytest.approx(np.sort(expected), abs=1e-6 + 10.0 * sensitive)
-    assert motion.q[-1] == pytest.approx(truth.q, abs=within * size + 10.0 * sensitive)
+    counted = not any(contact.rigid and contact.restitution for contact in system.contacts)
+    expected = [float(time) for time, contact, _ in truth.events if sharp[contact]]
+    if counted and len(times) != len(expected) and any(contact.rigid for contact in system.contacts):
+        times, expected = accumulated(times), accumulated(expected)  # stops that shrink to nothing, an endless row
+    # The slow integrator looks for events on its interpolant, which errs by some 1e-7 where forces decide them.
+    off = np.max(np.abs(np.sort(times) - np.sort(expected)), initial=0.0) if len(times) == len(expected) else np.inf
+    ends = float(np.max(np.abs(motion.q[-1] - truth.q)))
+    if (counted and off > 1e-6) or ends > within * size:
+        sensitive = disturbed(system, start, duration, truth)
+        assert not counted or off <= 1e-6 + 10.0 * sensitive
+        assert ends <= within * size + 10.0 * sensitive
     assert motion.energy.relative_residual < 1e-6
 
 
