@@ -84,7 +84,9 @@ def apply_event(p, t, y, mode, s, j):
         mode[c] = OPEN
         s.at_zero[c] = 0
         if p.rigid[c]:
-            s.forced[c] = OPEN
+            for e in range(m):
+                if e == c or (s.touch[e] and on_one_gap(p, c, e)):
+                    mode[e], s.at_zero[e], s.forced[e] = OPEN, 0, OPEN
     elif mode[c] == OPEN:
         s.at_zero[c] = abs(s.speed[c]) <= slip_tolerance(p, c, y, s)
         mode[c] = 1 if s.speed[c] >= 0.0 else -1
@@ -356,7 +358,11 @@ def wanted_mode(p, c, y, mode, s):
             return OPEN
         if mode[c] == OPEN:
             rate, tolerance = gap_rate(p, c, s.dy)
-            return closed_mode(s, c) if rate < -tolerance else OPEN
+            shut = rate < -tolerance
+            for e in range(p.contacts):
+                shared = e != c and p.rigid[e] and mode[e] != OPEN and s.old[c] != OPEN and rate <= tolerance
+                shut = shut or (shared and on_one_gap(p, c, e))
+            return closed_mode(s, c) if shut else OPEN
     if not s.at_zero[c]:
         return mode[c]
     if mode[c] == STICK:
@@ -366,6 +372,16 @@ def wanted_mode(p, c, y, mode, s):
     if mode[c] * slip_acceleration(p, c, s.dy, s) >= -CLEAR * force_noise(p, c, y, s) * max(abs(p.g[c, c]), 1e-300):
         return mode[c]
     return STICK if s.normal[c] >= -normal_noise(p, c, y, s) else -mode[c]
+
+
+def on_one_gap(p, c, e):
+    """Whether two rigid contacts close the same gap: what presses is shared between them, and neither opens alone."""
+    own, other, both = 0.0, 0.0, 0.0
+    for i in range(p.mk.shape[0]):
+        own += p.w[c, i] * p.mw[c, i]
+        other += p.w[e, i] * p.mw[e, i]
+        both += p.w[c, i] * p.mw[e, i]
+    return both > 0.0 and both * both >= (1.0 - 1e-12) * own * other
 
 
 def enumerate_modes(p, t, y, mode, s):
