@@ -24,6 +24,10 @@ NOTHING = 1e-30  # N of a closed floor that carries nothing
 CLOSED = 1e-6  # share of the fastest landing below which a rebound counts as none: a convention of the program
 
 
+class EndlessEvents(RuntimeError):
+    """A row of events, as of rebounds that shrink, that the slow integrator does not get through."""
+
+
 class Slow:
     """One system with its modes."""
 
@@ -50,7 +54,7 @@ class Slow:
         self.inverse[np.ix_(self.massive, self.massive)] = np.linalg.inv(system.M[np.ix_(self.massive, self.massive)])
         self.damped = self.light & np.any(system.C != 0.0, axis=1)
         self.static_rows = self.light & ~self.damped
-        self.step = 2.0 * np.pi / 16.0 / max(*self.angular_frequencies(), 1e-3)
+        self.step = 2.0 * np.pi / 16.0 / max(*self.angular_frequencies(), 1.0)  # a free body too is looked at
         reach = np.linalg.norm(self.d @ self.inverse, axis=1)
         self.reach = np.where(reach > 0.0, reach, 1.0)  # contacts on one motion come to their limits together
         self.modes, self.fastest, self.inside = [1] * self.m, 0.0, np.inf
@@ -308,7 +312,7 @@ class Slow:
             self.inside = np.nextafter(end, 0.0)  # the end of a piece sees the slopes before its kink
             while t < end:
                 if len(events) > MOST:
-                    raise RuntimeError(f"more than {MOST} events")
+                    raise EndlessEvents(f"more than {MOST} events")
                 landed = []
                 if np.any(self.rigid):
                     y, landed = self.land(t, y)

