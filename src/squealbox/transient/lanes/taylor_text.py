@@ -186,7 +186,8 @@ class TaylorStep(EquationText):
 
         A law that falls exponentially is hidden in its series where its share there is below round-off.
         """
-        moving = {i: [] for i in self.shape.of(WITH_MASS, FIRST_ORDER)}  # what is amiss in the rate of each row
+        # what is amiss in the rate of each row
+        moving: dict[int, list[str]] = {i: [] for i in self.shape.of(WITH_MASS, FIRST_ORDER)}
         for c in (c for c in range(self.shape.m) if self.hides(c)):
             row = self.shape.memories[c] if self.shape.memories else -1
             for j, share in enumerate(JUDGED):
