@@ -338,15 +338,20 @@ class Slow:
             def values(x, dense=dense, a=a, h=h):
                 return self.functions(a + x * h, dense(a + x * h), modes)
 
-            places = PLACES
+            places, begin = PLACES, 0 * values(0.0)
             if first:  # what has just changed starts at zero
                 soon = min(1e-4 * self.step, 0.1 * self.flight(a, dense(a), modes), 0.01 * max(a - self.last, 1e-9))
-                places = np.concatenate([[min(soon / h, 0.5)], PLACES[1:]])
+                begin = values(0.0)
+                early = np.geomspace(min(soon / h, 0.5 * PLACES[1]), PLACES[1], 16)  # short flights among long steps
+                places = np.concatenate([early[:-1], PLACES[1:]])
                 first = False
             table = np.array([values(x) for x in places])
             best = 2.0
             for j in range(table.shape[1]):
-                best = min(best, self.root(places, table[:, j], lambda x, j=j: values(x)[j]))
+                at, column = places, table[:, j]
+                if begin[j] > 1e-7 * np.max(np.abs(column)):  # has not just changed, and may end at once
+                    at, column = np.r_[0.0, places], np.r_[begin[j], column]
+                best = min(best, self.root(at, column, lambda x, j=j: values(x)[j]))
             if best <= 1.0:
                 return a + best * h, dense(a + best * h)
         return solver.t, solver.y

@@ -26,6 +26,7 @@ from squealbox.transient._sharing import RISES, contact_matrix, share_out, solve
 CLEAR = 50.0  # times the round-off of a force: what a mode that does not hold exceeds
 LEAVE = 1e-8  # share of its terms below which the acceleration of a contact that leaves zero speed counts as zero
 UNPRESSED = 1e-11  # share of the limit of another contact up to which one holds nothing beside it
+JUMPED = 1e-5  # share of its limit by which the force of a contact lies beyond it after a jump
 EVENED = 400  # turns of the rule that evens out what contacts carry
 NEARLY = 1e-10  # of 1
 SWING = 160.0  # windows of time make one over the highest angular frequency
@@ -93,7 +94,7 @@ def apply_event(p, t, y, mode, s, j):
     elif mode[c] == STICK and s.spare[0] and even_out(p, t, y, mode, s) < 1.0 - NEARLY:
         s.at_zero[c] = 1  # other shares of the force still hold
     elif mode[c] == STICK:
-        force_releases(p, mode, s, c)
+        force_releases(p, y, mode, s, c)
     else:
         s.at_zero[c] = 1
     return settle(p, t, y, mode, s)
@@ -120,9 +121,10 @@ def land(p, t, y, mode, s, which):
     return True
 
 
-def force_releases(p, mode, s, which):
+def force_releases(p, y, mode, s, which):
     """Release contact `which`, and with it every other one that sticks at its limit to round-off.
 
+    Where forces jump, as behind a kink of a schedule, they come to lie far beyond limits: who goes is then decided.
     One whose friction rises from zero, or that is not pressed, was held by the others: it goes with them, in the sense
     in which they move it.
     """
@@ -136,6 +138,8 @@ def force_releases(p, mode, s, which):
             mode[c] = OPEN
             s.at_zero[c] = 0
             s.forced[c] = OPEN
+        elif mode[c] == STICK and abs(s.force[c]) > limit * (1.0 + JUMPED) + CLEAR * force_noise(p, c, y, s):
+            s.at_zero[c] = 1
         elif c == which or (mode[c] == STICK and abs(s.force[c]) >= limit * least and not held):
             s.forced[c] = 1 if s.force[c] > 0.0 else -1
         elif mode[c] == STICK and held and p.g[c, which] != 0.0:
