@@ -99,12 +99,12 @@ def spread_over(p, mode, s, dy, impact):
     weigh(p, s, count)
     clear(p, mode, s)
     solved = True
-    for _ in range(AGAIN if impact else 2):
+    for turn in range(AGAIN if impact else 2):
         write_system(p, mode, s, dy, count, impact)
         if impact:
             solved = solve_raised(s, count, 1e-9) and solved
-        else:
-            solved = share_out(s, count) and all_held(s, count) and solved
+        else:  # what still lacks the second time is round-off, which need not be held
+            solved = share_out(s, count) and (turn > 0 or all_held(s, count)) and solved
         add_forces(p, mode, s, dy, count)
     return solved
 
