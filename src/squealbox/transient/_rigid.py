@@ -98,15 +98,16 @@ def spread_over(p, mode, s, dy, impact):
     write_system(p, mode, s, dy, count, impact)
     weigh(p, s, count)
     clear(p, mode, s)
-    solved = True
+    solved, held = True, True
     for turn in range(AGAIN if impact else 2):
         write_system(p, mode, s, dy, count, impact)
         if impact:
             solved = solve_raised(s, count, 1e-9) and solved
-        else:  # what still lacks the second time is round-off, which need not be held
-            solved = share_out(s, count) and (turn > 0 or all_held(s, count)) and solved
+        else:
+            solved = share_out(s, count) and solved
+            held = all_held(s, count, turn)
         add_forces(p, mode, s, dy, count)
-    return solved
+    return solved and held
 
 
 def solve_raised(s, count, by):
