@@ -19,7 +19,7 @@ from squealbox import schedules
 
 STICK, OPEN = 0, 2
 PLACES = np.linspace(0.0, 1.0, 13)
-MOST = 600  # events, after which the slow integrator gives up
+MOST = 600  # looks for new modes, after which the slow integrator gives up
 NOTHING = 1e-30  # N of a closed floor that carries nothing
 CLOSED = 1e-6  # share of the fastest landing below which a rebound counts as none: a convention of the program
 
@@ -303,6 +303,7 @@ class Slow:
 
     def run(self, duration, q, v):
         """q, v, and the events (time, contact, mode) of the whole run."""
+        turns = 0
         t, y, events = 0.0, np.concatenate([np.asarray(q, float), np.asarray(v, float)]), []
         before = -np.inf  # the event before the last: intervals that shrink are followed as they do
         kinks = [duration]
@@ -311,8 +312,9 @@ class Slow:
         for end in sorted(set(kinks)):
             self.inside = np.nextafter(end, 0.0)  # the end of a piece sees the slopes before its kink
             while t < end:
-                if len(events) > MOST:
-                    raise EndlessEvents(f"more than {MOST} events")
+                turns += 1
+                if turns > MOST:
+                    raise EndlessEvents(f"more than {MOST} turns to t = {t:.6g} s")
                 landed = []
                 if np.any(self.rigid):
                     y, landed = self.land(t, y)
