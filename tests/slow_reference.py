@@ -19,9 +19,13 @@ from squealbox import schedules
 
 STICK, OPEN = 0, 2
 PLACES = np.linspace(0.0, 1.0, 13)
-MOST = 600  # events, after which the slow integrator gives up
+MOST = 600  # looks for new modes, after which the slow integrator gives up
 NOTHING = 1e-30  # N of a closed floor that carries nothing
 CLOSED = 1e-6  # share of the fastest landing below which a rebound counts as none: a convention of the program
+
+
+class EndlessEvents(RuntimeError):
+    """A row of events, as of rebounds that shrink, that the slow integrator does not get through."""
 
 
 class Slow:
@@ -50,7 +54,7 @@ class Slow:
         self.inverse[np.ix_(self.massive, self.massive)] = np.linalg.inv(system.M[np.ix_(self.massive, self.massive)])
         self.damped = self.light & np.any(system.C != 0.0, axis=1)
         self.static_rows = self.light & ~self.damped
-        self.step = 2.0 * np.pi / 16.0 / max(*self.angular_frequencies(), 1e-3)
+        self.step = 2.0 * np.pi / 16.0 / max(*self.angular_frequencies(), 1.0)  # a free body too is looked at
         reach = np.linalg.norm(self.d @ self.inverse, axis=1)
         self.reach = np.where(reach > 0.0, reach, 1.0)  # contacts on one motion come to their limits together
         self.modes, self.fastest, self.inside = [1] * self.m, 0.0, np.inf
@@ -299,6 +303,7 @@ class Slow:
 
     def run(self, duration, q, v):
         """q, v, and the events (time, contact, mode) of the whole run."""
+        turns = 0
         t, y, events = 0.0, np.concatenate([np.asarray(q, float), np.asarray(v, float)]), []
         before = -np.inf  # the event before the last: intervals that shrink are followed as they do
         kinks = [duration]
@@ -307,8 +312,9 @@ class Slow:
         for end in sorted(set(kinks)):
             self.inside = np.nextafter(end, 0.0)  # the end of a piece sees the slopes before its kink
             while t < end:
-                if len(events) > MOST:
-                    raise RuntimeError(f"more than {MOST} events")
+                turns += 1
+                if turns > MOST:
+                    raise EndlessEvents(f"more than {MOST} turns to t = {t:.6g} s")
                 landed = []
                 if np.any(self.rigid):
                     y, landed = self.land(t, y)
@@ -334,15 +340,20 @@ class Slow:
             def values(x, dense=dense, a=a, h=h):
                 return self.functions(a + x * h, dense(a + x * h), modes)
 
-            places = PLACES
+            places, begin = PLACES, 0 * values(0.0)
             if first:  # what has just changed starts at zero
                 soon = min(1e-4 * self.step, 0.1 * self.flight(a, dense(a), modes), 0.01 * max(a - self.last, 1e-9))
-                places = np.concatenate([[min(soon / h, 0.5)], PLACES[1:]])
+                begin = values(0.0)
+                early = np.geomspace(min(soon / h, 0.5 * PLACES[1]), PLACES[1], 16)  # short flights among long steps
+                places = np.concatenate([early[:-1], PLACES[1:]])
                 first = False
             table = np.array([values(x) for x in places])
             best = 2.0
             for j in range(table.shape[1]):
-                best = min(best, self.root(places, table[:, j], lambda x, j=j: values(x)[j]))
+                at, column = places, table[:, j]
+                if begin[j] > 1e-7 * np.max(np.abs(column)):  # has not just changed, and may end at once
+                    at, column = np.r_[0.0, places], np.r_[begin[j], column]
+                best = min(best, self.root(at, column, lambda x, j=j: values(x)[j]))
             if best <= 1.0:
                 return a + best * h, dense(a + best * h)
         return solver.t, solver.y

@@ -26,6 +26,7 @@ from squealbox.transient._sharing import RISES, contact_matrix, share_out, solve
 CLEAR = 50.0  # times the round-off of a force: what a mode that does not hold exceeds
 LEAVE = 1e-8  # share of its terms below which the acceleration of a contact that leaves zero speed counts as zero
 UNPRESSED = 1e-11  # share of the limit of another contact up to which one holds nothing beside it
+JUMPED = 1e-5  # share of its limit by which the force of a contact lies beyond it after a jump
 EVENED = 400  # turns of the rule that evens out what contacts carry
 NEARLY = 1e-10  # of 1
 SWING = 160.0  # windows of time make one over the highest angular frequency
@@ -65,6 +66,9 @@ def apply_event(p, t, y, mode, s, j):
     for c in range(m):
         s.bias[c] = 1.0
     derivative(p, t, y, mode, s, s.dy)
+    if list_sticking(p, mode, s) > 0:  # one that lets go begins to slip from zero speed, not from what it drifted
+        hold_still(p, y, mode, s)
+        derivative(p, t, y, mode, s, s.dy)
     reference = s.speed[j] if j < m and mode[j] != OPEN else 0.0
     for c in range(m):
         s.old[c] = mode[c]
@@ -81,14 +85,16 @@ def apply_event(p, t, y, mode, s, j):
         mode[c] = OPEN
         s.at_zero[c] = 0
         if p.rigid[c]:
-            s.forced[c] = OPEN
+            for e in range(m):
+                if e == c or (s.touch[e] and on_one_gap(p, c, e)):
+                    mode[e], s.at_zero[e], s.forced[e] = OPEN, 0, OPEN
     elif mode[c] == OPEN:
         s.at_zero[c] = abs(s.speed[c]) <= slip_tolerance(p, c, y, s)
         mode[c] = 1 if s.speed[c] >= 0.0 else -1
     elif mode[c] == STICK and s.spare[0] and even_out(p, t, y, mode, s) < 1.0 - NEARLY:
         s.at_zero[c] = 1  # other shares of the force still hold
     elif mode[c] == STICK:
-        force_releases(p, mode, s, c)
+        force_releases(p, y, mode, s, c)
     else:
         s.at_zero[c] = 1
     return settle(p, t, y, mode, s)
@@ -115,9 +121,10 @@ def land(p, t, y, mode, s, which):
     return True
 
 
-def force_releases(p, mode, s, which):
+def force_releases(p, y, mode, s, which):
     """Release contact `which`, and with it every other one that sticks at its limit to round-off.
 
+    Where forces jump, as behind a kink of a schedule, they come to lie far beyond limits: who goes is then decided.
     One whose friction rises from zero, or that is not pressed, was held by the others: it goes with them, in the sense
     in which they move it.
     """
@@ -131,6 +138,8 @@ def force_releases(p, mode, s, which):
             mode[c] = OPEN
             s.at_zero[c] = 0
             s.forced[c] = OPEN
+        elif mode[c] == STICK and abs(s.force[c]) > limit * (1.0 + JUMPED) + CLEAR * force_noise(p, c, y, s):
+            s.at_zero[c] = 1
         elif c == which or (mode[c] == STICK and abs(s.force[c]) >= limit * least and not held):
             s.forced[c] = 1 if s.force[c] > 0.0 else -1
         elif mode[c] == STICK and held and p.g[c, which] != 0.0:
@@ -211,6 +220,11 @@ def settle(p, t, y, mode, s):
         s.fresh[c] = s.at_zero[c] != 0 and mode[c] != STICK and mode[c] != OPEN
         if p.rigid[c] and mode[c] == OPEN:
             s.fresh[c] = s.old[c] != OPEN or s.leaving[c] != 0 or touches(p, c, y, s)
+    return hold_still(p, y, mode, s)
+
+
+def hold_still(p, y, mode, s):
+    """Bring to zero what the modes hold there: sliding velocities, and gaps of rigid contacts with their rates."""
     if p.rigid_count > 0:
         return project(p, y, mode, s)
     return remove_drift(p, y, s, list_sticking(p, mode, s))
@@ -348,7 +362,11 @@ def wanted_mode(p, c, y, mode, s):
             return OPEN
         if mode[c] == OPEN:
             rate, tolerance = gap_rate(p, c, s.dy)
-            return closed_mode(s, c) if rate < -tolerance else OPEN
+            shut = rate < -tolerance
+            for e in range(p.contacts):
+                shared = e != c and p.rigid[e] and mode[e] != OPEN and s.old[c] != OPEN and rate <= tolerance
+                shut = shut or (shared and on_one_gap(p, c, e))
+            return closed_mode(s, c) if shut else OPEN
     if not s.at_zero[c]:
         return mode[c]
     if mode[c] == STICK:
@@ -358,6 +376,16 @@ def wanted_mode(p, c, y, mode, s):
     if mode[c] * slip_acceleration(p, c, s.dy, s) >= -CLEAR * force_noise(p, c, y, s) * max(abs(p.g[c, c]), 1e-300):
         return mode[c]
     return STICK if s.normal[c] >= -normal_noise(p, c, y, s) else -mode[c]
+
+
+def on_one_gap(p, c, e):
+    """Whether two rigid contacts close the same gap: what presses is shared between them, and neither opens alone."""
+    own, other, both = 0.0, 0.0, 0.0
+    for i in range(p.mk.shape[0]):
+        own += p.w[c, i] * p.mw[c, i]
+        other += p.w[e, i] * p.mw[e, i]
+        both += p.w[c, i] * p.mw[e, i]
+    return both > 0.0 and both * both >= (1.0 - 1e-12) * own * other
 
 
 def enumerate_modes(p, t, y, mode, s):

@@ -246,7 +246,7 @@ def hold(p, s, sticking, dy):
         for a in range(sticking):
             s.wanted[a] = slip_acceleration(p, s.stuck[a], dy, s)
         weigh_sticking(p, s, sticking)
-        solved = share_out(s, sticking) and all_held(s, sticking)
+        solved = share_out(s, sticking) and all_held(s, sticking, 0)
     for a in range(sticking):
         c = s.stuck[a]
         s.force[c] = s.right[a]

@@ -98,15 +98,16 @@ def spread_over(p, mode, s, dy, impact):
     write_system(p, mode, s, dy, count, impact)
     weigh(p, s, count)
     clear(p, mode, s)
-    solved = True
-    for _ in range(AGAIN if impact else 2):
+    solved, held = True, True
+    for turn in range(AGAIN if impact else 2):
         write_system(p, mode, s, dy, count, impact)
         if impact:
             solved = solve_raised(s, count, 1e-9) and solved
         else:
-            solved = share_out(s, count) and all_held(s, count) and solved
+            solved = share_out(s, count) and solved
+            held = all_held(s, count, turn)
         add_forces(p, mode, s, dy, count)
-    return solved
+    return solved and held
 
 
 def solve_raised(s, count, by):

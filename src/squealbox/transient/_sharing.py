@@ -74,18 +74,21 @@ def share_out(s, count):
     return True
 
 
-def all_held(s, count):
-    """Whether the forces of `share_out` give every contact what it wants, not the independent ones alone."""
+def all_held(s, count, turn):
+    """Whether the forces of `share_out` give every contact what it wants, not the independent ones alone.
+
+    In later turns, which solve for what the first left, beside the terms of the first.
+    """
+    held = True
     for a in range(count):
         rest = s.wanted[a]
-        size = abs(rest)
+        s.terms[a] = abs(rest) if turn == 0 else s.terms[a]
         for e in range(count):
             term = s.whole[a, e] * s.right[e]
             rest -= term
-            size += abs(term)
-        if not abs(rest) <= 1e-6 * size + 1e-300:
-            return False
-    return True
+            s.terms[a] += abs(term)
+        held = held and abs(rest) <= 1e-6 * s.terms[a] + 1e-300
+    return held
 
 
 def independent_rows(s, count):

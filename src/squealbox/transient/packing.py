@@ -158,7 +158,7 @@ def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> An
         "signal": (2 * (m + n) + m,), "normal": (m,), "speed": (m,), "force": (m,), "right": (2 * m,),
         "matrix": (2 * m, 2 * m), "whole": (2 * m, 2 * m), "basis": (2 * m + 1, 2 * m), "before": (n,),
         "share": (m,), "bias": (m,), "leave": (m,), "lowest": (m,), "fastest": (m,), "creep": (m,),
-        "weight": (2 * m,), "wanted": (2 * m,), "multiplier": (2 * m,),
+        "weight": (2 * m,), "wanted": (2 * m,), "multiplier": (2 * m,), "terms": (2 * m,),
         "state": (width,), "state_new": (width,), "y": (width,), "y_dense": (width,), "dy": (width,),
         "stage": (STAGES, width), "phi": (2 * m,), "phi0": (2 * m,), "phi1": (2 * m,), "nodes": (5, 2 * m),
         "stack": (128, 7), "clock": (7,),

@@ -26,6 +26,7 @@ def change_alone(A, b, lane, j):
             size = limit - A[b + (ROW_PHI + j) * WIDTH + lane]
             held = size if held > 0.0 else -size
         A[b + (ROW_HOLD + j * CONTACTS + j) * WIDTH + lane] = 0.0
+        stop(A, b, lane, j, contact_speed(A, b, lane, j) / g)  # what it drifted while it stuck
         slip_on(A, b, lane, j, 1.0 if held > 0.0 else -1.0, held, sliding)
         return True
     before = mode * sliding

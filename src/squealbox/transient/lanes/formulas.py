@@ -23,9 +23,8 @@ VECTOR_FUNCTIONS = ("where", "minimum", "maximum", "sqrt", "exp", "sin", "cos", 
 def formulas(shape: Shape) -> list[str]:
     """The laws, schedules and observers of a kernel as functions of lanes."""
     parts: list[str] = []
-    laws = [*(inspect.getsource(law.formula) for law in LAWS), *(mu for mu, _ in shape.own)]
     for kind in sorted({kind for kind, _ in shape.laws}):
-        parts.append(lane_function(laws[kind], f"lane_mu_{kind}", in_memory(kind, shape.own)))
+        parts.append(lane_function(law_text(kind, shape.own), f"lane_mu_{kind}", in_memory(kind, shape.own)))
     for kind in sorted({kind - 1 for kind in shape.smooth if kind > 0}):
         law = SMOOTH[kind]
         for name, formula in (("creep", law.creep_formula), ("grip", law.grip_formula)):
@@ -44,6 +43,16 @@ def formulas(shape: Shape) -> list[str]:
 def is_table(kinds: Sequence[type], kind: int) -> bool:
     """Whether it is a table, whose coefficients are as many as its points; kinds after the known ones are own laws."""
     return kind < len(kinds) and kinds[kind] in (friction.Table, schedules.Table)
+
+
+def law_text(kind: int, own: Sequence[tuple[str, str]]) -> str:
+    """The source of a law's formula."""
+    return own[kind - len(LAWS)][0] if kind >= len(LAWS) else inspect.getsource(LAWS[kind].formula)
+
+
+def smooth_text(kind: int) -> str:
+    """The sources of the formulas of a law without events."""
+    return "".join(inspect.getsource(each) for each in (SMOOTH[kind].creep_formula, SMOOTH[kind].grip_formula) if each)
 
 
 def in_memory(kind: int, own: Sequence[tuple[str, str]]) -> bool:

@@ -11,9 +11,12 @@ from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
 from squealbox.system import InvalidSystem
 from squealbox.transient.lanes.equation_text import CALLED, EquationText
-from squealbox.transient.lanes.formulas import is_table
+from squealbox.transient.lanes.formulas import is_table, law_text, smooth_text
 from squealbox.transient.lanes.shape import ORDER, PARTS, UNIT_OF_WINDOW, WORK_ORDER, Shape
 from squealbox.transient.rows import ALGEBRAIC, FIRST_ORDER, WITH_MASS
+
+JUDGED = (0.35, 0.7, 0.999999)  # shares of a step at which laws are compared; the last before a kink that ends it
+AMISS = 10.0  # tolerances by which what is amiss then may move a row: some twenty times what the series' end leaves
 
 CALLED_BY_MODE = """
 
@@ -170,12 +173,63 @@ class TaylorStep(EquationText):
         safe += ["(x < 0.0)"] * any(self.shape.unilateral)
         self.put(f"safe = {' & '.join(safe) or 'x > 0.0'}")
         self.put(f"found = step_end(({watched}), kinks, safe, x, {largest}, {ORDER})")
-        self.put("end, event, target = found.end, (found.event > 0.5) & fine, found.target")
+        self.put("end, event, target, longest = found.end, (found.event > 0.5) & fine, found.target, found.next_limit")
+        self.judge(found)
         for c in range(0 if self.gliding else m):
             two = f"(target > {m + c - 0.5}) & (target < {m + c + 0.5})"
             self.put(f"target = where({two} & ({self.sticks(c)} > 0.5), {float(c)}, target)")
         self.put("moved = fine & (end > 0.0)")
-        self.put("t1 = where((found.whole > 0.5) & last, t_end_, minimum(t_ + end * unit, t_end_))")
+        self.put("t1 = where((found.whole > 0.5) & last & moved, t_end_, minimum(t_ + end * unit, t_end_))")
+
+    def judge(self, found: dict[str, list[str]]) -> None:
+        """Take no step inside or at the end of which a law is not what its series says, and half of it next time.
+
+        A law that falls exponentially is hidden in its series where its share there is below round-off.
+        """
+        # what is amiss in the rate of each row
+        moving: dict[int, list[str]] = {i: [] for i in self.shape.of(WITH_MASS, FIRST_ORDER)}
+        for c in (c for c in range(self.shape.m) if self.hides(c)):
+            row = self.shape.memories[c] if self.shape.memories else -1
+            for j, share in enumerate(JUDGED):
+                self.put(f"away = end * {share!r}")
+                self.put(f"slide = value({found['speed'][c]}, away, {ORDER})")
+                force, creep = self.compared(c, row, found)
+                self.put(f"amiss{c}_{j} = abs({force})")
+                for i, parts in moving.items():
+                    push = self.entry(f"md{c}_{i}")
+                    parts += [f"abs({push}) * amiss{c}_{j}"] if push else []
+                    parts += [f"abs({creep})"] if i == row else []
+        faults = [
+            f"((unit * end * {'unit * ' * (i in self.shape.of(WITH_MASS))}({' + '.join(parts)})) > {AMISS!r} * size{i})"
+            for i, parts in moving.items()
+            if parts
+        ]
+        if faults:
+            self.put(f"misjudged = {' | '.join(faults)}")
+            self.put("longest = where(misjudged, 0.5 * end, longest)")
+            self.put("end, event = where(misjudged, 0.0, end), event & ~misjudged")
+
+    def hides(self, c: int) -> bool:
+        """Whether the law of a contact has an exponential."""
+        smooth = self.shape.is_smooth(c)
+        text = smooth_text(self.shape.smooth[c] - 1) if smooth else law_text(self.shape.laws[c][0], self.shape.own)
+        return "exp(" in text or "tanh(" in text
+
+    def compared(self, c: int, row: int, found: dict[str, list[str]]) -> tuple[str, str]:
+        """Force, and rate of the memory, by the series and by the law itself at `away`, one less the other."""
+        p, k = self.given(f"law{c}_", self.shape.laws[c][1], False, 1), self.tag
+        normal = f"value({found['normal'][c]}, away, {ORDER})"
+        if not self.shape.is_smooth(c):
+            mu = f"lane_mu_{self.shape.laws[c][0]}(maximum({self.row(f's{c}')} * slide, 0.0 * t_), {p})"
+            return f"(value(mu{c}_{k}, away, {ORDER}) - {mu}) * {normal}", ""
+        kind, z, rate = self.shape.smooth[c] - 1, "0.0", "0.0"
+        if row >= 0:
+            self.put(f"z, rate = value(q{row}s, away, {ORDER}), 0.0")
+            self.put(f"rate = lane_creep_{kind}(slide, z, {p})")
+            z, rate = "z", "rate"
+        shut = f" * (1.0 - {self.openness(c, normal)})" if self.shape.unilateral[c] else ""
+        force = f"value(f{c}_{k}, away, {ORDER - 1}) - lane_grip_{kind}(slide, {z}, {rate}, {p}) * {normal}{shut}"
+        return force, f"value(creep{c}_{k}, away, {ORDER - 1}) - rate" if row >= 0 else ""
 
     def ready(self, found: dict[str, list[str]]) -> None:
         """All that both the branch of the events and the rest read."""
@@ -308,7 +362,7 @@ class TaylorStep(EquationText):
         self.keep("taken", f"{self.row('taken')} + 1.0 * moved")
         self.put(f"tried = {self.row('tries')} + 1.0")
         self.keep("tries", "tried")
-        self.keep("h", "found.next_limit * unit")
+        self.keep("h", "longest * unit")
         self.put("done = t_now >= t_end_")
         self.put(f"lost = ~fine | (reached * unit <= {self.row('least')} + 4e-16 * t_)")
         self.put(f"over = tried >= {self.row('most')}")
