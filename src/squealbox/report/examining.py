@@ -38,10 +38,10 @@ Progress = Callable[[str], None]
 PERIODS = 200  # of the worst mode, followed where the file does not say how long
 MAP_POINTS = 81
 MOST_MAP_POINTS = 151
-ONE_MODE = "a model of few degrees of freedom about the mode, or harmonic balance with a start of its own, does"
+CYCLE = "squealbox cycle looks for it, in its own time"
 HEARD = 2.0  # seconds of motion that are made audible
 SAMPLING = 88_200.0  # [Hz] of that motion
-LARGE = 100  # coordinates from which no motion is followed unasked, and no cycle looked for
+LARGE = 5_000  # coordinates times contacts from which no motion is followed unasked, and no cycle looked for
 OF_LARGE = (0.05, 1.6)  # shares of its friction over which a finite-element brake is looked at
 SPECTRA = 61  # values at which modes of a reduced brake are drawn
 COARSE = 11  # points along each axis of a reduced brake's map
@@ -170,12 +170,12 @@ class _Work:
         if self.modes.exists:
             with self.part("hopf", "how the cycle is born"):
                 varied = self.found.get("varied")
-                self._not_too_large("how a cycle is born", ONE_MODE)
+                self._not_too_large("the birth of a cycle", CYCLE)
                 if varied is not None:
                     self.found["hopf"] = hopf_point(self.design, varied.name, (varied.low, varied.high))
         tried: list[str] = []
         with self.part("cycle", "limit cycle"):
-            self._not_too_large("a limit cycle", ONE_MODE)
+            self._not_too_large("a limit cycle", CYCLE)
             for name, start in self._starts():
                 tried.append(name)
                 found = shooting(self.moving, start)
@@ -189,7 +189,7 @@ class _Work:
 
     def _not_too_large(self, what: str, way_out: str) -> None:
         """Raise `InvalidSystem` where this would run for minutes."""
-        if self.system.size > LARGE:
+        if self.system.size * len(self.system.contacts) > LARGE:
             raise InvalidSystem(
                 f"{what} of {self.system.size} coordinates and {len(self.system.contacts)} contacts takes minutes and "
                 f"is not looked for unasked: {way_out}"
