@@ -5,6 +5,7 @@
     python benchmarks/finite_elements.py published FOLDER   the published brake of 4,669 degrees of freedom
     ... full                                                beside the full quadratic problem
     ... hidden                                              20 modes hidden and 20 times none
+    python benchmarks/finite_elements.py contacts           60 coordinates with 100, 300 and 1,000 contacts
 
 One process, one thread; times are processor time. The last line is the peak memory.
 """
@@ -20,7 +21,17 @@ import time
 
 import numpy as np
 
-from squealbox import PublishedDiscBrake, complex_modes, reduce
+from squealbox import (
+    Contact,
+    Coulomb,
+    PublishedDiscBrake,
+    System,
+    complex_modes,
+    linearise,
+    reduce,
+    simulate,
+    simulate_ensemble,
+)
 from squealbox.fe import certificate, full_modes, pencil_of
 from squealbox.fe.disc_brake import DiscBrake
 from squealbox.stability.band_modes import known_eigenvalues
@@ -79,6 +90,28 @@ def hidden_modes(pencil, found, clock: Clock) -> None:
     print(f"  found {right} of 20, at most {most} factorisations")
 
 
+def many_contacts(clock: Clock) -> None:
+    """Steady sliding, motion and ensembles of a brake of modal coordinates, in contacts."""
+    random, rate = np.random.default_rng(1), 2.0 * np.pi * np.linspace(500.0, 8000.0, 60)
+    push, many = np.r_[0.05, np.zeros(59)], {"friction.static": np.linspace(0.3, 0.5, 4)}
+    for count in (100, 300, 1000):
+        n, t = random.standard_normal((count, 60)), 0.3 * random.standard_normal((count, 60))
+        how = {"N0": 5e3 / count, "V": 2.0, "law": Coulomb(0.4), "unilateral": True}
+        contacts = [Contact(n=1e6 / count * a, d=b, t=b, normal=a, **how) for a, b in zip(n, t, strict=True)]
+        stiffness = np.diag(rate**2) + 1e6 / count * n.T @ n
+        brake = System(np.eye(60), np.diag(0.006 * rate), stiffness, 0.0, contacts)
+        clock.lap(f"{count} contacts made")
+        start = linearise(brake).equilibrium.q, push
+        clock.lap(f"{count} contacts: equilibrium and linearisation")
+        for contact in ("exact", "time-stepping") if count == 100 else ("time-stepping",):
+            for turn in ("first", "again"):
+                simulate(brake, 1e-3, start, contact=contact)
+                clock.lap(f"{count} contacts: 1 ms by {contact} contact, {turn}")
+        if count == 100:
+            simulate_ensemble(brake, many, 1e-3, start=start)
+            clock.lap("100 contacts: 1 ms of an ensemble of 4, compilation among it")
+
+
 def main(words: list[str]) -> None:
     clock = Clock()
     if "published" in words:
@@ -112,4 +145,4 @@ def main(words: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    many_contacts(Clock()) if "contacts" in sys.argv[1:] else main(sys.argv[1:])

@@ -5,6 +5,7 @@ import pytest
 
 from squealbox import (
     PID,
+    Contact,
     Controlled,
     Coulomb,
     Hyperbolic,
@@ -74,3 +75,18 @@ def test_members_of_other_sizes_are_no_ensemble():
     two = System(np.eye(2), np.zeros((2, 2)), np.eye(2))
     with pytest.raises(InvalidSystem, match="other degrees of freedom"):
         simulate_ensemble([two, System([[1.0]], [[0.0]], [[1.0]])], None, 1.0)
+
+
+def test_a_brake_too_large_for_a_kernel_runs_member_by_member():
+    """60 coordinates and 100 contacts: the text of a kernel would spell out 20,000 products and compile for minutes."""
+    random, rate = np.random.default_rng(1), 2.0 * np.pi * np.linspace(500.0, 8000.0, 60)
+    n, t = random.standard_normal((100, 60)), 0.3 * random.standard_normal((100, 60))
+    contacts = [
+        Contact(n=1e4 * a, d=b, t=b, N0=50.0, V=2.0, law=Coulomb(0.4), unilateral=True, normal=a)
+        for a, b in zip(n, t, strict=True)
+    ]
+    brake = System(np.eye(60), np.diag(0.006 * rate), np.diag(rate**2) + 1e4 * n.T @ n, 0.0, contacts)
+    found = simulate_ensemble(brake, {"friction.static": [0.3, 0.4]}, 2e-5)
+    assert found.settings["one_by_one"]
+    alone = simulate(brake.replace({"friction.static": 0.3}), 2e-5)
+    assert np.max(np.abs(found.q[0] - alone.q[-1])) < 1e-9 * np.max(np.abs(alone.q[-1]))

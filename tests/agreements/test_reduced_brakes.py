@@ -6,6 +6,7 @@ import pytest
 from fe_brakes import PUBLISHED, dense, pad_brake
 from squealbox import (
     Coulomb,
+    DiscBrake,
     ParameterError,
     PublishedDiscBrake,
     Result,
@@ -15,10 +16,14 @@ from squealbox import (
     mechanism,
     mode_energy,
     reduce,
+    silence,
     simulate,
     sweep,
     tracked_modes,
 )
+from squealbox.files.analyses import Axis
+from squealbox.report.examining import examine
+from squealbox.stability import critical_values, family, stability_boundary, stability_map
 from squealbox.stability.eigenvalues import modes_of
 from squealbox.system import InvalidSystem, linearise
 
@@ -66,9 +71,58 @@ def test_steady_sliding_is_that_of_the_full_brake_with_the_same_contacts_open(sm
 def test_onset_and_mechanism(small):
     direct = critical_value(lambda mu: full_at(mu, across=False, unilateral=True), "mu", (0.1, 0.5), points=9)
     found = critical_value(small, "friction.static", (0.1, 0.5), points=41)
-    assert float(found.value) == pytest.approx(float(direct.value), rel=2e-3)
+    assert abs(float(found.value) - float(direct.value)) < found.uncertainty < 1e-5
     assert found.mechanism == direct.mechanism == "flutter"
     assert mechanism(small.replace({"friction.static": 0.5})).name == "flutter"
+
+
+@pytest.fixture(scope="module")
+def meshed():
+    brake = DiscBrake(element_size=0.05)
+    return brake, reduce(brake, (2500.0, 5000.0), varying={"friction.static": (0.2, 0.6)})
+
+
+def test_the_critical_friction_of_a_meshed_brake_is_that_of_its_1656_freedoms(meshed, monkeypatch):
+    monkeypatch.setattr(family, "linearise", None)  # no dense matrix is linearised on the way
+    brake, small = meshed
+    every = critical_values(small, "friction.static", (0.2, 0.6))
+    found = next(iter(every))
+    assert every.unstable_below.tolist() == [1, 2]
+    assert found.mechanism == "flutter"
+    assert found.direction == "destabilising"
+    growth = []
+    for share in (-1.0, 1.0):
+        there = brake.replace({"friction.static": float(found.value + share * found.uncertainty)})
+        near = complex_modes(there, band=(found.frequency - 20.0, found.frequency + 20.0), method="full")
+        growth.append(float(near.largest_growth_rate))
+    assert growth[0] < 0.0 < growth[1]
+    assert found.uncertainty < 1e-4
+
+
+def test_a_map_and_an_array_of_values_are_the_modes_of_the_band_at_each(meshed):
+    brake, small = meshed
+    values = np.array([0.25, 0.35, 0.5])
+    together = complex_modes(small.replace({"friction.static": values}))
+    found = stability_map(small, {"friction.static": values})
+    for i, value in enumerate(values):
+        alone = complex_modes(small.replace({"friction.static": value}))
+        np.testing.assert_array_equal(together.eigenvalues[i][np.isfinite(together.eigenvalues[i])], alone.eigenvalues)
+        full = complex_modes(brake.replace({"friction.static": float(value)}), band=small.band)
+        assert found.growth_rate[i] == pytest.approx(np.max(full.corrected.real), abs=0.5)
+        assert found.unstable_modes[i] == full.unstable_modes
+    assert list(found.mechanism) == [1, 1, 1]
+
+
+def test_what_would_run_for_minutes_says_so_and_the_way_out(meshed):
+    _, small = meshed
+    with pytest.raises(InvalidSystem, match="local_sensitivity"):
+        silence(small)
+    with pytest.raises(InvalidSystem, match="map_boundary"):
+        stability_boundary(small, {"friction.static": (0.2, 0.6), "friction.kinetic": (0.2, 0.6)})
+    found = examine(small, onset=Axis("friction.static", 0.2, 0.6))
+    assert len(found.crossings) == 2
+    assert "[simulate] in the file" in found.missing["transient"]
+    assert "squealbox cycle" in found.missing["cycle"]
 
 
 @pytest.mark.parametrize("mu", [0.1, 0.22, 0.45])

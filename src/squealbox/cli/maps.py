@@ -11,7 +11,8 @@ from squealbox.cli.inputs import AllowCode, Changes, Option, axis, folder, read,
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
-from squealbox.stability import Boundary, StabilityMap, stability_boundary, stability_map
+from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.stability import Boundary, StabilityMap, map_boundary, stability_boundary, stability_map
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from squealbox.files import DesignFile
     from squealbox.files.analyses import Axis
 
+COARSE = 11  # points along each axis of a reduced brake's map, unless more are asked for
+CLOSE = 0.02  # share of a cell to which its boundary is located
 Span = Annotated[tuple[str, str, str] | None, Parameter(negative="")]
 ACROSS, UP = Option("--x", "--x NAME LOW HIGH"), Option("--y", "--y NAME LOW HIGH")
 
@@ -61,12 +64,19 @@ def map_(
     if out is not None:
         folder(out, "map", "boundary")
     found = small(found, across, up)
+    reduced = isinstance(found.design, ReducedBrake)
+    if reduced and points is None:
+        across, up = (each.replace(points=min(int(each.points), COARSE)) for each in (across, up))
+        print(
+            f"{int(across.points)} x {int(up.points)} points, each with a spectrum of its own: --points asks for more"
+        )
     with Progress(f"{int(across.points)} x {int(up.points)} points") as progress:
         grid = stability_map(found.design, {each.name: each.values for each in (across, up)})
         if not grid.outcome.ok:
             raise ComputationFailed(grid.outcome)
         progress("following the boundary")
-        edge = stability_boundary(found.design, {each.name: (each.low, each.high) for each in (across, up)})
+        ends = {each.name: (each.low, each.high) for each in (across, up)}
+        edge = map_boundary(grid, close=CLOSE) if reduced else stability_boundary(found.design, ends)
     plane = Plane(found.design, across, up)
     keep(grid, edge)
     print(f"{found.design.title}, {file}\n{_map_summary(grid, plane)}\n{_edge_summary(edge, plane)}")

@@ -11,6 +11,7 @@ from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, 
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability import (
     ComplexModes,
     CriticalValue,
@@ -20,6 +21,8 @@ from squealbox.stability import (
     mechanism,
     mode_energy,
 )
+
+SPECTRA = 61  # values at which the modes of a reduced brake are drawn
 
 if TYPE_CHECKING:
     from squealbox.designs import Design
@@ -181,6 +184,8 @@ def _onset_files(found: "DesignFile", varied: "Axis", crossings: CriticalValues,
     """The crossings, and a figure and table of the modes over the range with the crossings among its points."""
     from squealbox import plots
 
+    if isinstance(found.design, ReducedBrake):
+        varied = varied.replace(points=min(int(varied.points), SPECTRA))
     points = np.append(varied.values, crossings.value)
     spectra = complex_modes(found.design.replace({varied.name: np.sort(points)}))
     values, unit = readable(found.design, varied, np.sort(points))

@@ -8,7 +8,7 @@ import numpy as np
 
 from squealbox.factorisation import Factor
 from squealbox.fe.growing_basis import ROWS, GrowingBasis
-from squealbox.fe.pencil import Pencil, pencil_of
+from squealbox.fe.pencil import SlidingPencil, pencil_of
 from squealbox.fe.projection import Projected, modes_on, with_shapes
 from squealbox.sparse_sliding import Start
 from squealbox.system import InvalidSystem, System, as_system
@@ -30,7 +30,7 @@ class FullBrake:
         """The full system at other parameters."""
         return full_system(self.design, values)
 
-    def pencil(self, values: Mapping[str, Any]) -> Pencil:
+    def pencil(self, values: Mapping[str, Any]) -> SlidingPencil:
         """The full matrices about steady sliding at other parameters."""
         return pencil_of(self.system(values), self.time, start=Start(self.steady, self.base))
 
@@ -38,6 +38,22 @@ class FullBrake:
         """Modes on the basis, with the error against the full brake."""
         onto = GrowingBasis([self.pencil(values)], self.basis)
         return with_shapes(onto, modes_on(onto, 0, self.base, band)[0])
+
+    def missed(self, values: Mapping[str, Any], eigenvalue: complex, x: Any, y: Any, like: Any) -> complex | None:
+        """The estimate [1/s] of the full brake's eigenvalue less this one's, for its right and left shape x and y (m,).
+
+        To first order what the matrices on the basis lack, to second what the basis does, as `projection` has it. None
+        where the contacts are not `like` these: whether they have a cross direction, and the kind of their law.
+        """
+        pencil, back = self.pencil(values), np.conj(eigenvalue)
+        table = pencil.sliding.system.contacts
+        if (table.across is not None, type(table.law)) != like:
+            return None
+        right, left = self.basis @ x, self.basis @ y
+        lacks = pencil.residual(eigenvalue, right)
+        lacks_left = pencil.K.T @ left + back * (pencil.C.T @ left) + back**2 * (pencil.M @ left)
+        slope = np.vdot(left, 2.0 * eigenvalue * (pencil.M @ right) + pencil.C @ right)
+        return complex((np.vdot(lacks_left, self.base.solve(lacks)) - np.vdot(left, lacks)) / slope)
 
     def projected_arrays(self, system: System, known: Mapping[str, Any] | None = None) -> dict[str, Any]:
         """Every field of a system on the basis, measured from q0; what is `known` of it is not computed again."""

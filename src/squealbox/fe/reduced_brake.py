@@ -16,7 +16,7 @@ from squealbox.contacts import Contact
 from squealbox.designs.base import Design
 from squealbox.fe.band_spectrum import Pairs, band_pairs
 from squealbox.fe.full_brake import FullBrake
-from squealbox.fe.reduced_sliding import steady_small
+from squealbox.fe.reduced_sliding import steady_small, without_friction
 from squealbox.fe.small import Small
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, known_names
@@ -216,18 +216,41 @@ class ReducedBrake(Design):
         return System(rows["M"], rows["C"], rows["K"], rows["load"], tuple(contacts))
 
     def band_modes(
-        self, band: tuple[float, float] | None = None, time: float = 0.0
+        self, band: tuple[float, float] | None = None, time: float = 0.0, *, rough: bool = False
     ) -> tuple[Pairs, Equilibrium] | None:
         """The modes in a band, by default its own, and steady sliding, at a small part of the price of a spectrum.
 
         The damping that was added above the band has no part in them; those whose damping ratio is above 0.1 are left
         out. None where they are not had this way: several values at once, laws that differ or remember, a band beyond
-        its own, no steady sliding, or modes that did not settle.
+        its own, no steady sliding, or modes that did not settle. `rough`: only eigenvalues, to 1e-8.
         """
         low, high = band or self.band
-        found = None if high > self.band[1] * (1.0 + 1e-9) else self._quickly(self.reduction.arrays.get("high", 0.0))
-        pairs = None if found is None else band_pairs(found[0], (low, high))
+        found = None if high > self.band[1] * (1.0 + 1e-9) else self._quickly(self._added)
+        pairs = None if found is None else band_pairs(found[0], (low, high), rough=rough)
         return None if found is None or pairs is None else (pairs, found[1])
+
+    def parts(self) -> tuple[Small, Equilibrium, Any, Any] | None:
+        """M, C_eff and K_eff with steady sliding, and C and the symmetric part of K without friction, (m, m) each.
+
+        The damping that was added above the band is left out; None where `band_modes` has none for its reasons.
+        """
+        found = self._quickly(self._added)
+        if found is None:
+            return None
+        rows = {field: self.array(field) for field in ("C", "d", "n", "across")}
+        rows["C"] = rows["C"] - self._added
+        return (*found, *without_friction(rows, np.asarray(self.reduction.unilateral), *found))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Leading axes of its values: () for one brake."""
+        return np.broadcast_shapes(*(np.shape(value) for _, _, value in self.leaves() if value is not None))
+
+    def entry(self, index: tuple[int, ...]) -> Self:
+        """One brake out of several."""
+        shape = self.shape
+        arrays = {name: value for name, _, value in self.leaves() if np.ndim(value)}
+        return self.replace({name: float(np.broadcast_to(value, shape)[index]) for name, value in arrays.items()})
 
     def linearised(self, time: float = 0.0) -> Small | None:
         """M, C_eff and K_eff about steady sliding; None where there is none."""
@@ -236,6 +259,11 @@ class ReducedBrake(Design):
             return found[0]
         about = linearise(self.system(), time)
         return Small(about.M, about.C, about.K) if about.equilibrium.exists else None
+
+    @property
+    def _added(self) -> Any:
+        """What was added to C above the band."""
+        return self.reduction.arrays.get("high", 0.0)
 
     def _quickly(self, without: Any) -> tuple[Small, Equilibrium] | None:
         """Linearised from tables of contacts, less some damping; None where that road does not go."""
@@ -268,11 +296,25 @@ class ReducedBrake(Design):
         values are parameters of the full brake with `_` for `.`, or none: the present ones. Returns a `Projected`.
         """
         named = {self._full_name(name): value for name, value in values.items()}
+        return self._attached().checked(self._present(named), self.band)
+
+    def missed(self, eigenvalue: complex, x: Any, y: Any) -> complex | None:
+        """The estimate [1/s] of the full brake's eigenvalue less one found here, with right and left shape (m,).
+
+        None where the full brake is not kept, or is another one: without its cross direction, or with another law.
+        """
+        if self.full is None:
+            return None
+        like = self.reduction.arrays["across"] is not None, type(self.friction)
+        return self._attached().missed(self._present({}), eigenvalue, x, y, like)
+
+    def _present(self, named: Mapping[str, Any]) -> dict[str, Any]:
+        """Parameters of the full brake at the present values, but for those named."""
         present = {**{axis.name: self.values[axis.name] for axis in self.reduction.axes}, **named}
         if self.friction is not None:
             inner = {f"friction.{name}": value for name, _, value in self.friction.leaves() if isinstance(value, float)}
             present = {**inner, **present}
-        return self._attached().checked(present, self.band)
+        return present
 
     def _full_name(self, name: str) -> str:
         matches = [known for known in self._names() if known in (name, name.replace("_", ".", 1))]

@@ -94,6 +94,19 @@ def steady_small(rows: dict[str, Any], law: Any, unilateral: Any) -> tuple[Small
     return Small(rows["M"], damping, stiffness), state
 
 
+def without_friction(rows: dict[str, Any], unilateral: Any, small: Small, state: Equilibrium) -> tuple[Any, Any]:
+    """C with the damping across the sliding direction, and the symmetric part of K less open contacts, (m, m) each.
+
+    Of what `steady_small` found; friction's stiffness is in neither.
+    """
+    closed = (state.normal_force > 0.0) | ~unilateral
+    drag = np.where(closed, state.friction * np.sign(state.sliding_speed), 0.0)
+    elastic = small.K + (rows["d"] * drag[:, None]).T @ rows["n"]
+    turning = state.normal_force * state.friction / np.abs(state.sliding_speed)
+    damping = rows["C"] if rows["across"] is None else rows["C"] + _square(rows["across"], turning)
+    return damping, 0.5 * (elastic + elastic.T)
+
+
 def _square(rows: Any, weight: Any) -> Any:
     """A' diag(w) A for w >= 0, by a product that knows it is symmetric."""
     if np.any(weight < 0.0):

@@ -11,6 +11,7 @@ from squealbox.control import closed_loop
 from squealbox.countermeasures import Controlled, Countermeasure, Dithered
 from squealbox.countermeasures.loss import growth_of
 from squealbox.designs.base import Design
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.parameters import ParameterError
 from squealbox.remedies.candidates import Candidate, candidates_for, more_friction
 from squealbox.remedies.production import ASSUMED, usual_scatter
@@ -150,6 +151,12 @@ def silence(
     """
     if not (np.isfinite(margin) and margin >= 0.0):
         raise ParameterError("silence", "margin", margin, "a finite number of at least 0")
+    if isinstance(brake, ReducedBrake):
+        raise InvalidSystem(
+            "the coordinates of a reduced brake are modes, on which no damper or absorber can be put: "
+            "local_sensitivity(brake, mode) of the full brake says where a gram, a spring, a damper or a modulus calms "
+            "a mode, squealbox onset and map how far its parameters do"
+        )
     assumed = scatter is None
     scatter = usual_scatter(brake) if scatter is None else scatter
     if not isinstance(scatter, Scatter):

@@ -38,8 +38,14 @@ Progress = Callable[[str], None]
 PERIODS = 200  # of the worst mode, followed where the file does not say how long
 MAP_POINTS = 81
 MOST_MAP_POINTS = 151
+CYCLE = "squealbox cycle looks for it, in its own time"
 HEARD = 2.0  # seconds of motion that are made audible
 SAMPLING = 88_200.0  # [Hz] of that motion
+LARGE = 5_000  # coordinates times contacts from which no motion is followed unasked, and no cycle looked for
+OF_LARGE = (0.05, 1.6)  # shares of its friction over which a finite-element brake is looked at
+SPECTRA = 61  # values at which modes of a reduced brake are drawn
+COARSE = 11  # points along each axis of a reduced brake's map
+CLOSE, EXACT = 0.02, 1e-13  # share of a cell to which the boundary on it is located, and of any other brake
 PUSHES = (1.0, 3.0)  # velocities at the contacts, over the sliding speed, from which a cycle is looked for
 
 
@@ -84,6 +90,7 @@ class _Work:
         self.design, self.time, self.progress = design, time, progress
         self.system = design.system()
         self.moving = design.sliding_one_way().system() if isinstance(design, ReducedBrake) else self.system
+        self.reduced = isinstance(design, ReducedBrake)
         self.modes = complex_modes(design, time)
         self.found: dict[str, Any] = {}
         self.missing: dict[str, str] = {}
@@ -115,9 +122,10 @@ class _Work:
             self.found["crossings"] = crossings = critical_values(
                 self.design, varied.name, (varied.low, varied.high), time=self.time
             )
-            values = np.sort(np.append(varied.values, crossings.value))
+            drawn = varied.replace(points=min(int(varied.points), SPECTRA)) if self.reduced else varied
+            values = np.sort(np.append(drawn.values, crossings.value))
             self.found["spectra"] = complex_modes(self.design.replace({varied.name: values}), self.time)
-            self.found["varied"] = varied
+            self.found["varied"] = drawn
 
     def margins(self, plane: Map | None) -> None:
         """The map over two parameters with its boundary."""
@@ -125,13 +133,18 @@ class _Work:
             return
         with self.part("map", "map over two parameters"):
             self.found["plane"] = chosen = plane or self._usual_plane()
-            points = [np.linspace(a.low, a.high, min(int(a.points), MOST_MAP_POINTS)) for a in (chosen.x, chosen.y)]
+            most = COARSE if self.reduced else MOST_MAP_POINTS
+            points = [np.linspace(a.low, a.high, min(int(a.points), most)) for a in (chosen.x, chosen.y)]
             names = (chosen.x.name, chosen.y.name)
             self.found["map"] = stability_map(self.design, dict(zip(names, points, strict=True)), time=self.time)
-            self.found["boundary"] = map_boundary(self.found["map"])  # ends for every design; tracing corners may not
+            close = CLOSE if self.reduced else EXACT
+            # ends for every design; tracing corners may not
+            self.found["boundary"] = map_boundary(self.found["map"], close=close)
 
     def transient(self, simulate: Simulate | None) -> None:
         with self.part("transient", "transient (the first run compiles the engine)"):
+            if simulate is None:
+                self._not_too_large("a motion", "[simulate] in the file asks for one, and for how long")
             self.found["settings"] = settings = simulate or Simulate(duration=PERIODS * self._period())
             moving = self.system if settings.contact == TIME_STEPPING else self.moving
             self.found["motion"] = motion = run_closely(moving, settings)
@@ -148,6 +161,7 @@ class _Work:
             pitch = float(self.found["verdicts"][dof].frequency)
             if not 20.0 <= pitch <= 20e3:
                 raise SignalError(f"its frequency, {pitch:.4g} Hz, is not one people hear")
+            self._not_too_large("two seconds of motion to be heard", "squealbox listen makes sound of a recording")
             longer = settings.replace({"duration": max(HEARD, settings.duration)})
             self.found["heard"] = run(moving, longer, points=int(longer.duration * SAMPLING) + 1)
 
@@ -156,10 +170,12 @@ class _Work:
         if self.modes.exists:
             with self.part("hopf", "how the cycle is born"):
                 varied = self.found.get("varied")
+                self._not_too_large("the birth of a cycle", CYCLE)
                 if varied is not None:
                     self.found["hopf"] = hopf_point(self.design, varied.name, (varied.low, varied.high))
         tried: list[str] = []
         with self.part("cycle", "limit cycle"):
+            self._not_too_large("a limit cycle", CYCLE)
             for name, start in self._starts():
                 tried.append(name)
                 found = shooting(self.moving, start)
@@ -170,6 +186,14 @@ class _Work:
                     self.found["cycle"] = found
                     break
         self.found["tried"] = tuple(tried)
+
+    def _not_too_large(self, what: str, way_out: str) -> None:
+        """Raise `InvalidSystem` where this would run for minutes."""
+        if self.system.size * len(self.system.contacts) > LARGE:
+            raise InvalidSystem(
+                f"{what} of {self.system.size} coordinates and {len(self.system.contacts)} contacts takes minutes and "
+                f"is not looked for unasked: {way_out}"
+            )
 
     def _starts(self) -> Iterator[tuple[str, Any]]:
         yield "the worst mode", None
@@ -209,6 +233,8 @@ class _Work:
 
     def _usual_plane(self) -> Map:
         varied: Axis = self.found["varied"]
+        if self.reduced:
+            raise InvalidSystem("a finite-element brake is reduced for what it varies, which [map] in the file says")
         other = self._about(self._strongest([varied.name]), 0.5, 1.5)
         x = varied.replace(points=MAP_POINTS)
         return Map(x, other.replace(points=MAP_POINTS))
@@ -221,10 +247,20 @@ class _Work:
         return names[0]
 
     def _about(self, name: str, low: float, high: float) -> Axis:
-        """A range about the design's own value in shares of it, inside what the parameter may be."""
-        value, about = float(self.design.value_of(name)), quantity_of(self.design, name)
-        ends = sorted((low * value, high * value))
-        ends = [float(np.clip(end, about.low, about.high)) for end in ends]
-        if about.low_open and ends[0] == about.low:
-            ends[0] += 1e-3 * abs(value)
-        return Axis(name, ends[0], ends[1])
+        return _about(self.design, name, low, high)
+
+
+def usual_friction(design: Design, shares: tuple[float, float]) -> Axis | None:
+    """The friction at rest over shares of its own value; None of a design that has none, or several."""
+    known = scalar_parameters(design)
+    return _about(design, "friction.static", *shares) if "friction.static" in known else None
+
+
+def _about(design: Design, name: str, low: float, high: float) -> Axis:
+    """A range about the design's own value in shares of it, inside what the parameter may be."""
+    value, about = float(design.value_of(name)), quantity_of(design, name)
+    ends = sorted((low * value, high * value))
+    ends = [float(np.clip(end, about.low, about.high)) for end in ends]
+    if about.low_open and ends[0] == about.low:
+        ends[0] += 1e-3 * abs(value)
+    return Axis(name, ends[0], ends[1])

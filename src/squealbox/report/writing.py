@@ -12,7 +12,7 @@ from squealbox.files.reduced import ONE_WAY, dense, promise
 from squealbox.report.blocks import Page, ReportError
 from squealbox.report.design_page import design_page
 from squealbox.report.examination import Examination
-from squealbox.report.examining import Progress, examine
+from squealbox.report.examining import OF_LARGE, Progress, examine, usual_friction
 from squealbox.report.page import write_page
 from squealbox.report.results import folder_page, result_page
 from squealbox.result import Result
@@ -83,10 +83,19 @@ def _page_at(path: Path, allow_code: bool, progress: Progress) -> Page:
 
 
 def _file_page(found: DesignFile, progress: Progress) -> Page:
-    whole, found = found.design, dense(found)
+    whole, asked = found.design, found.simulate
+    varied = found.onset or (None if isinstance(whole, ReducedBrake) else usual_friction(whole, OF_LARGE))
+    sparse = whole.system().is_sparse
+    found = dense(found, [varied] if sparse and varied is not None else ())
+    large = isinstance(found.design, ReducedBrake)
     time = found.modes.time if found.modes else 0.0
     about = examine(
-        found.design, onset=found.onset, plane=found.map, simulate=found.simulate, time=time, progress=progress
+        found.design,
+        onset=varied if large else found.onset,
+        plane=found.map,
+        simulate=found.simulate if asked is not None or not large else None,
+        time=time,
+        progress=progress,
     )
     title = f"{found.design.title}: {found.path.name}"
     name = found.path.name

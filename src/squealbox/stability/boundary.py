@@ -15,12 +15,14 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.cells import Crossing, Samples, crossings
 from squealbox.stability.family import Family, Steady
 from squealbox.stability.scan import coalescence, is_neutral, on_divergence
 from squealbox.stability.sides import lying_on_a_side
 from squealbox.stability.state_matrix import spectrum
+from squealbox.system import InvalidSystem
 
 STEPS = tuple(  # ever shorter towards a corner
     StepControl(first=longest / 10.0, smallest=2e-6, largest=longest, tolerance=1e-8, largest_turn=0.2, most_points=60)
@@ -87,6 +89,11 @@ def stability_boundary(
     Returns a `Boundary`. The outcome is "no_boundary" when the whole rectangle is stable or unstable. Raises
     `ValueError` unless `bounds` names two parameters with low < high.
     """
+    if isinstance(design, ReducedBrake):
+        raise InvalidSystem(
+            f"a boundary of its own takes some ten thousand spectra, too many of {len(design.reduction.arrays['M'])} "
+            "coordinates: of a reduced brake map_boundary follows it on the grid of a coarse stability_map"
+        )
     rectangle = _Rectangle(design, bounds, time)
     edges = crossings(rectangle.sample, cells)
     along, edges = lying_on_a_side(edges, rectangle.level)

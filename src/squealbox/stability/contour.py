@@ -14,6 +14,7 @@ import numpy as np
 from squealbox.result import Outcome
 from squealbox.stability.boundary import Boundary
 from squealbox.stability.family import Family
+from squealbox.stability.in_band import largest_in_band
 from squealbox.stability.maps import CHUNK, StabilityMap
 from squealbox.stability.spectra import Engine, largest_growth
 
@@ -113,7 +114,10 @@ def _exact(family: Family, axes: list[Any], nodes: Any, close: float, engine: En
     found = elementwise.find_root(
         level, (np.zeros(len(nodes)), np.ones(len(nodes))), args=(index,), tolerances=tolerances
     )
-    points = (first + np.where(found.success, found.x, np.nan) * way).T
+    share = found.x
+    if family.band is not None:  # located roughly: where the mode grows, its frequency is the largest growth rate's
+        share = np.where(found.f_bracket[1] > 0.0, found.bracket[1], found.bracket[0])
+    points = (first + np.where(found.success, share, np.nan) * way).T
     growth, omega, _ = _growth(family, points.T, engine)
     return points, growth, omega
 
@@ -121,6 +125,8 @@ def _exact(family: Family, axes: list[Any], nodes: Any, close: float, engine: En
 def _growth(family: Family, place: Any, engine: Engine) -> tuple[Any, Any, Any]:
     """Largest growth rate, angular frequency and growing modes at points (2, k); NaN where a point is unknown."""
     known = np.all(np.isfinite(place), axis=0)
+    if family.band is not None:
+        return largest_in_band(family, *place)
     parts = [np.full(len(known), np.nan), np.full(len(known), np.nan), np.zeros(len(known), dtype=np.int64)]
     which = np.nonzero(known)[0]
     for start in range(0, len(which), CHUNK):

@@ -12,6 +12,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.cautions import out_of_range, pulling
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.loops.held import aliased
 from squealbox.result import COMPLETED, Array, Outcome, Result, batched, quantity
 from squealbox.stability.deflation import special_modes, uncertain, vibrating
@@ -221,7 +222,11 @@ def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None,
 
 def _of_reduced(design: Any, time: float, band: Any) -> ComplexModes | None:
     """The modes of a reduced brake in its band, which it knows how to find at a small part of the price."""
-    found = design.band_modes(band, time) if hasattr(design, "band_modes") else None
+    if not isinstance(design, ReducedBrake):
+        return None
+    if design.shape:
+        return _stacked([complex_modes(design.entry(at), time, band=band) for at in np.ndindex(design.shape)], design)
+    found = design.band_modes(band, time)
     if found is None:
         return None
     pairs, state = found
@@ -239,6 +244,32 @@ def _of_reduced(design: Any, time: float, band: Any) -> ComplexModes | None:
         contacts=design.reduction.contact_names,
         inputs={"system": design, "time": time},
         caution="; ".join(said),
+    )
+
+
+def _stacked(every: list[ComplexModes], design: Any) -> ComplexModes:
+    """Modes of several brakes as one result with their leading axes, filled up by NaN where one has fewer."""
+    most = max(one.eigenvalues.shape[-1] // 2 for one in every)
+
+    def joined(name: str, fill: Any = None) -> Any:
+        parts = [np.asarray(getattr(one, name)) for one in every]
+        if fill is not None:  # both halves are filled up at their ends
+            halves = [np.split(part, 2, axis=-1) for part in parts]
+            wide = [[(0, 0)] * (part.ndim - 1) + [(0, most - part.shape[-1] // 2)] for part in parts]
+            parts = [
+                np.concatenate([np.pad(half, width, constant_values=fill) for half in pair], axis=-1)
+                for pair, width in zip(halves, wide, strict=True)
+            ]
+        return np.stack(parts).reshape(design.shape + parts[0].shape)
+
+    worst = next((one.outcome for one in every if not one.outcome.ok), Outcome())
+    return ComplexModes(
+        **{name: joined(name, np.nan) for name in ("eigenvalues", "right", "left", "condition")},
+        **{name: joined(name) for name in ("steady", "exists", "normal_force", "floating")},
+        contacts=every[0].contacts,
+        inputs={**every[0].inputs, "system": design},
+        outcome=worst,
+        caution="; ".join(dict.fromkeys(one.caution for one in every if one.caution)),
     )
 
 

@@ -20,9 +20,10 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.memory_rows import no_memory
 from squealbox.result import Array, Result, quantity
-from squealbox.stability.eigenvalues import Mode, modes_of
+from squealbox.stability.eigenvalues import Mode, complex_modes, modes_of
 from squealbox.stability.family import across_dampers, steady_sliding
 from squealbox.system import System, as_system, linearise
 
@@ -144,7 +145,7 @@ def mode_energy(design_or_system: Any, mode: Mode | int | None = None, time: flo
     steady = steady_sliding(system, time)
     if steady.K.ndim > 2:
         raise ValueError(f"leading axes {steady.K.shape[:-2]}: mode_energy() is for one system")
-    modes = modes_of(steady)
+    modes = complex_modes(design_or_system, time) if isinstance(design_or_system, ReducedBrake) else modes_of(steady)
     chosen = mode if isinstance(mode, Mode) else modes.most_unstable if mode is None else modes.mode(mode)
     value, u = chosen.eigenvalue, chosen.shape
     velocity = value * u

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.system import Equilibrium, Linearised, System, as_system, linearise
 
 
@@ -23,6 +24,10 @@ class Steady(Linearised):
 
 def steady_sliding(design_or_system: Any, time: float = 0.0) -> Steady:
     """M, C_eff, K_eff and the structure's own C about steady sliding at `time` [s]."""
+    quick = design_or_system.parts() if isinstance(design_or_system, ReducedBrake) else None
+    if quick is not None:
+        small, state, damping, elastic = quick
+        return Steady(small.M, small.C, small.K, state, damping, elastic)
     system: System = as_system(design_or_system, linear=True)
     if system.is_sparse:
         as_system(system)  # says what to do instead
@@ -83,6 +88,17 @@ class Family:
             self.recipe = design
 
     @property
+    def band(self) -> tuple[float, float] | None:
+        """The band [Hz] of a reduced brake: above it, it has modes that are none of the full one. None of any other."""
+        return self.design.band if isinstance(self.design, ReducedBrake) else None
+
+    def one(self, *values: float) -> Any:
+        """The design at one value of each parameter."""
+        if self.recipe is not None:
+            return self.recipe(*values)
+        return self.design.replace(dict(zip(self.parameters, values, strict=True)))
+
+    @property
     def inputs(self) -> dict[str, Any]:
         """What a result keeps of the family; a callable cannot be written to a file and is left out."""
         return {"system": None if self.recipe else self.design, "parameters": list(self.parameters), "time": self.time}
@@ -91,14 +107,14 @@ class Family:
         """The matrices at arrays of values, one array for each parameter, broadcast to a common shape."""
         arrays = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in values))
         shape = arrays[0].shape
-        if self.recipe is None:
+        if self.recipe is None and self.band is None:
             named = dict(zip(self.parameters, arrays, strict=True))
             steady = steady_sliding(self.design.replace(named), self.time)
             if steady.K.shape[:-2] == shape:
                 return steady
             return _joined([steady], lambda parts, rank: np.broadcast_to(parts[0], shape + _tail(parts[0], rank)))
         points = zip(*(array.ravel() for array in arrays), strict=True)
-        parts = [steady_sliding(self.recipe(*(float(x) for x in point)), self.time) for point in points]
+        parts = [steady_sliding(self.one(*(float(x) for x in point)), self.time) for point in points]
         return _joined(parts, lambda parts, rank: np.stack(parts).reshape(shape + _tail(parts[0], rank)))
 
 

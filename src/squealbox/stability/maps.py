@@ -15,10 +15,12 @@ from squealbox.labelled import Labelled, Labels
 from squealbox.parameters import DataSheet
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.eigenvalues import MARGINAL
-from squealbox.stability.family import Family, Steady, entry
+from squealbox.stability.family import Family, Steady, entry, steady_sliding
+from squealbox.stability.in_band import largest_in_band
 from squealbox.stability.mechanism import NAMES, STEPS, contributions, mechanism_codes
 from squealbox.stability.spectra import Engine, largest_growth
 
+STEPS_IN_BAND = 2  # of a mechanism's split at a point of a reduced brake's map
 CHUNK = 1 << 15  # points computed together: their arrays stay in the processor's cache
 
 
@@ -95,6 +97,8 @@ def stability_map(
     steps : of the mechanism's split, see `squealbox.stability.mechanism`
     engine : "auto" (compiled kernels for large maps), "numpy" or "compiled"
 
+    Of a reduced brake the modes in its band are looked at, one point at a time: some 0.1 s for each at 250 coordinates.
+
     Raises `ParameterError` for a name or value the design refuses, `ValueError` for an empty axis.
     """
     names = list(axes)
@@ -111,8 +115,11 @@ def stability_map(
     columns |= {"unstable_modes": np.empty(count, dtype=np.int64), "mechanism": np.empty(count, dtype=np.int8)}
     worst = Outcome()
     chosen = "compiled" if engine == "auto" and count > CHUNK else engine
-    for start in range(0, count, CHUNK):
+    for start in range(0, count, CHUNK if family.band is None else count):
         places = np.unravel_index(np.arange(start, min(start + CHUNK, count)), shape)
+        if family.band is not None:
+            columns |= _in_band(family, [array[i] for array, i in zip(values, places, strict=True)], mechanism, steps)
+            break
         steady = family.at(*(array[i] for array, i in zip(values, places, strict=True)))
         worst = worst if steady.equilibrium.outcome.ok or not worst.ok else steady.equilibrium.outcome
         for name, part in _block(steady, mechanism, steps, chosen).items():
@@ -122,6 +129,26 @@ def stability_map(
     settings = {"mechanism": mechanism, "steps": steps, "engine": engine}
     named = dict(zip(names, values, strict=True))
     return StabilityMap(**arrays, axes=named, inputs=family.inputs, settings=settings, outcome=outcome)
+
+
+def _in_band(family: Family, values: list[Any], mechanism: bool, steps: int) -> dict[str, Any]:
+    """The columns of a reduced brake, from the modes of its band, point by point."""
+    growth, omega, growing = largest_in_band(family, *values)
+    circulation, slope = np.zeros(growth.shape), np.zeros(growth.shape)
+    for i in np.flatnonzero(growing > 0) if mechanism else ():
+        steady = steady_sliding(family.one(*(float(x[i]) for x in values)), family.time)
+        _, circulation[i], slope[i] = contributions(steady, steps=min(steps, STEPS_IN_BAND), band=family.band)
+    unstable = growing > 0
+    codes = mechanism_codes(np.where(unstable, omega, np.where(np.isfinite(growth), -omega, np.nan)), omega,
+                            circulation, slope, omega * (1.0 - MARGINAL))  # fmt: skip
+    return {
+        "growth_rate": growth,
+        "frequency": omega / (2.0 * np.pi),
+        "circulation": circulation,
+        "slope": slope,
+        "unstable_modes": growing,
+        "mechanism": codes if mechanism else np.where(unstable, -1, codes),
+    }
 
 
 def _block(steady: Steady, mechanism: bool, steps: int, engine: Engine) -> dict[str, Any]:

@@ -26,8 +26,11 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe.small import Small
 from squealbox.stability.eigenvalues import MARGINAL
 from squealbox.stability.family import Steady, steady_sliding
+from squealbox.stability.in_band import IDLE, eigenvalues_in_band, ranked_in_band, worst_in_band
 from squealbox.stability.spectra import Engine, compiled, growth_of_parts, largest_growth
 from squealbox.stability.state_matrix import spectrum
 from squealbox.system import Linearised
@@ -74,15 +77,25 @@ def share(circulation: Any, slope: Any) -> Any:
 
 
 def contributions(
-    steady: Steady, *, rank: int = 0, steps: int = STEPS, engine: Engine = "auto"
+    steady: Steady,
+    *,
+    rank: int = 0,
+    steps: int = STEPS,
+    engine: Engine = "auto",
+    band: tuple[float, float] | None = None,
 ) -> tuple[Any, Any, Any]:
-    """Base, circulation and slope [1/s], (...) each: the terms of the `rank`-th largest growth rate."""
+    """Base, circulation and slope [1/s], (...) each: the terms of the `rank`-th largest growth rate.
+
+    Of one reduced brake, of those in its band [Hz].
+    """
     base_stiffness = passive_stiffness(steady)
     coupling = steady.K - base_stiffness
     passive = steady.structural - negative_part(0.5 * (steady.structural + np.swapaxes(steady.structural, -1, -2)))
     rest = steady.C - passive
 
     def plain(x: float, y: float) -> Any:
+        if band is not None:
+            return ranked_in_band(Small(steady.M, passive + y * rest, base_stiffness + x * coupling), band, rank)
         part = Linearised(steady.M, passive + y * rest, base_stiffness + x * coupling, steady.equilibrium)
         return ranked_growth(part, rank, engine)
 
@@ -90,6 +103,8 @@ def contributions(
     growth = growth_of_parts(steady, passive, base_stiffness) if fast else plain
     base = before = growth(0.0, 0.0)
     circulation, slope = np.zeros(base.shape), np.zeros(base.shape)
+    if not np.any(rest):  # one part alone: its steps add up to the whole
+        return base, growth(1.0, 1.0) - base, slope
     for i in range(steps):
         low, high = i / steps, (i + 1) / steps
         after, first, second = growth(high, high), growth(high, low), growth(low, high)
@@ -122,12 +137,23 @@ def mechanism_codes(growth: Any, angular_frequency: Any, circulation: Any, slope
     return np.select(conditions, [UNKNOWN, STABLE, DIVERGENCE, FLUTTER, NEGATIVE_SLOPE], MIXED).astype(np.int8)
 
 
-def mechanism_at(steady: Steady, angular_frequency: float, *, rank: int = 0, steps: int = STEPS) -> Mechanism:
-    """The mechanism by which the `rank`-th mode of one system grows, also at the onset where it only just does."""
+def mechanism_at(
+    steady: Steady,
+    angular_frequency: float,
+    *,
+    rank: int = 0,
+    steps: int = STEPS,
+    band: tuple[float, float] | None = None,
+) -> Mechanism:
+    """The mechanism by which the `rank`-th mode of one system grows, also at the onset where it only just does.
+
+    Of a reduced brake, the `rank`-th of its band [Hz].
+    """
     if not np.all(np.isfinite(steady.structural)):  # held between samples, no part of the matrices is friction's
         return Mechanism("unknown", *(float("nan"),) * 3)
-    base, circulation, slope = (float(x) for x in contributions(steady, rank=rank, steps=steps, engine="numpy"))
-    scale = float(np.nanmax(np.abs(spectrum(steady)), initial=0.0))
+    parts = contributions(steady, rank=rank, steps=steps, engine="numpy", band=band)
+    base, circulation, slope = (float(x) for x in parts)
+    scale = angular_frequency if band is not None else float(np.nanmax(np.abs(spectrum(steady)), initial=0.0))
     code = mechanism_codes(np.float64(scale), np.float64(angular_frequency), circulation, slope, scale)
     return Mechanism(NAMES[int(code)], base, circulation, slope)
 
@@ -146,12 +172,16 @@ def mechanism(design_or_system: Any, time: float = 0.0) -> Mechanism:
     steady = steady_sliding(design_or_system, time)
     if steady.K.ndim > 2:
         raise ValueError(f"leading axes {steady.K.shape[:-2]}: mechanism() is for one system, stability_map() for many")
-    growth, omega, _ = (float(x) for x in largest_growth(steady, "numpy"))
+    band = design_or_system.band if isinstance(design_or_system, ReducedBrake) else None
+    if band is not None:
+        growth, omega, _ = worst_in_band(eigenvalues_in_band(design_or_system, time))
+    else:
+        growth, omega, _ = (float(x) for x in largest_growth(steady, "numpy"))
     if not np.isfinite(growth):
         return Mechanism("unknown", *(float("nan"),) * 3)
-    found = mechanism_at(steady, omega)
-    scale = float(np.nanmax(np.abs(spectrum(steady)), initial=0.0))
-    return found if growth > MARGINAL * scale else Mechanism("stable", found.base, found.circulation, found.slope)
+    found = mechanism_at(steady, omega, band=band)
+    idle = IDLE * omega if band is not None else MARGINAL * float(np.nanmax(np.abs(spectrum(steady)), initial=0.0))
+    return found if growth > idle else Mechanism("stable", found.base, found.circulation, found.slope)
 
 
 def passive_stiffness(steady: Steady) -> Any:

@@ -8,14 +8,17 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.result import Array, Outcome, Result, quantity
+from squealbox.stability.crossing_in_band import crossings_between
 from squealbox.stability.deflation import vibrating
 from squealbox.stability.eigenvalues import OneEigenvalue, modes_of
 from squealbox.stability.family import Family, entry
+from squealbox.stability.in_band import POINTS as POINTS_IN_BAND
 from squealbox.stability.mechanism import Mechanism, mechanism_at
 from squealbox.stability.polishing import Polished, polished
 from squealbox.stability.scan import Scan, merging, scan
 from squealbox.stability.state_matrix import spectrum
 
+POINTS = 401  # values of a scan
 ASIDE = 1e-13  # share of the range by which a singular point is stepped aside
 POINT = 1e-9  # share of the range up to which a stretch without an answer is a single value
 SPLIT = 1e-4  # share of the largest |lambda|: a mode that grows or decays by more does not cross
@@ -116,7 +119,7 @@ class CriticalValues(Result):
 
 @public()
 def critical_value(
-    design: Any, parameter: str, bounds: tuple[float, float], *, points: int = 401, time: float = 0.0
+    design: Any, parameter: str, bounds: tuple[float, float], *, points: int | None = None, time: float = 0.0
 ) -> CriticalValue:
     """The first value from below, between `bounds`, at which steady sliding changes its stability.
 
@@ -126,10 +129,12 @@ def critical_value(
         design or a system
     parameter : dotted name, such as "friction.static"; for a function, what the result calls it
     bounds : (low, high) in the parameter's own unit
-    points : number of values scanned before narrow windows are looked for
+    points : number of values scanned before narrow windows are looked for; None takes 401, of a reduced brake 81
     time : instant of schedules [s]
 
-    Of a reduced brake only modes in its band count: above it, it has modes that are none of the full brake.
+    Of a reduced brake only modes in its band count: above it, it has modes that are none of the full brake. The value
+    is that of the full brake as far as the estimate of the eigenvalue's error there says, and `uncertainty` is what
+    this estimate makes of it.
 
     Returns a `CriticalValue`, good to its `uncertainty`: 1e-13 of the value, more where the growth rate hardly
     changes with the parameter. Without a change the outcome is "no_onset", with the growth rates
@@ -147,7 +152,7 @@ def critical_value(
 
 @public()
 def critical_values(
-    design: Any, parameter: str, bounds: tuple[float, float], *, points: int = 401, time: float = 0.0
+    design: Any, parameter: str, bounds: tuple[float, float], *, points: int | None = None, time: float = 0.0
 ) -> CriticalValues:
     """Every value between `bounds` at which any mode crosses zero growth; arguments as for :func:`critical_value`.
 
@@ -156,22 +161,24 @@ def critical_values(
     return _crossings(Family(design, [parameter], time), bounds, points, first=False)
 
 
-def _crossings(family: Family, bounds: tuple[float, float], points: int, *, first: bool) -> CriticalValues:
+def _crossings(family: Family, bounds: tuple[float, float], points: int | None, *, first: bool) -> CriticalValues:
+    points = (POINTS if family.band is None else POINTS_IN_BAND) if points is None else points
     low, high = _checked(bounds, points)
     found = scan(family, low, high, points)
     rows, hidden = [], [(i, j) for i, j, k in found.jumps() if k == 0 or not first]
-    band = getattr(family.design, "band", None)
-    for i, k in found.brackets():
-        if first and k > 0 and band is None:
+    band = family.band
+    brackets = found.brackets() if band is None else iter(())
+    for i, k in brackets:
+        if first and k > 0:
             continue
         row = _crossing(found, i, k, high - low)
         if not found.neutral and abs(row["eigenvalue"].real) > SPLIT * row["fastest"]:
             continue  # a growing pair became two real eigenvalues: one mode more grows, and none crossed
-        if band is not None and not _inside(row["eigenvalue"], band):
-            continue  # of a reduced brake: above its band it has modes that are none of the full one
         rows.append(row)
         if first:
             break
+    if band is not None:
+        rows = _rows_in_band(found, first)
     wide = []
     for i, j in hidden:
         a, b = float(found.values[i]), float(found.values[j])
@@ -202,10 +209,15 @@ def _crossings(family: Family, bounds: tuple[float, float], points: int, *, firs
     )
 
 
-def _inside(eigenvalue: Any, band: tuple[float, float]) -> Any:
-    """True for eigenvalues [1/s] whose frequency is in the band [Hz]."""
-    hertz = np.abs(np.imag(eigenvalue)) / (2.0 * np.pi)
-    return (hertz >= band[0]) & (hertz <= band[1])
+def _rows_in_band(found: Scan, first: bool) -> list[dict[str, Any]]:
+    """The crossings of a reduced brake; a growing mode that only comes into its band, or leaves it, is none."""
+    rows: list[dict[str, Any]] = []
+    for i in sorted({i for i, _ in found.brackets()}):
+        rows += crossings_between(found, i)
+        changes = [row for row in rows if 0 in (row["unstable_below"], row["unstable_above"])]
+        if first and changes:
+            return changes[:1]
+    return [] if first else rows
 
 
 def _gaps(found: Scan) -> str:
@@ -257,9 +269,6 @@ def _described(found: Scan, value: float, beside: float, k: int, rising: bool, i
             further = found.family.at(np.array([value + (BESIDE if rising else -BESIDE) * width]))
             if further.equilibrium.exists[0]:
                 why = mechanism_at(entry(further, (0,)), eigenvalue.imag, rank=rank)
-        band = getattr(found.family.design, "band", None)
-        if band is not None:
-            k = int(np.sum((growth > growth[place]) & ~rigid & _inside(modes.eigenvalues[0, :half], band)))
         counts = (k, k + 1) if rising else (k + 1, k)
     exact = _exact(found, value, beside, eigenvalue, k, i)
     return {
@@ -308,12 +317,11 @@ def _no_onset(family: Family, found: Scan, low: float, high: float) -> Outcome:
     known = np.isfinite(found.functions)
     if not np.any(known):
         return Outcome("no_equilibrium", f"no steady sliding in the range: {ends.equilibrium.outcome.message}")
-    values, band = spectrum(ends), getattr(family.design, "band", None)
-    if band is not None:
-        values = np.where(_inside(values, band), values, np.nan)
-    growth = [float(g) for g in vibrating(values, ends.equilibrium.floating)]
-    grows = found.functions[known] if band is None else np.array(growth)  # in the band no mode has crossed
-    state = "unstable" if np.any(grows > 0.0) else "stable"
+    if family.band is None:
+        growth = [float(g) for g in vibrating(spectrum(ends), ends.equilibrium.floating)]
+    else:
+        growth = [float(g) for g in found.functions[[0, -1], 0]]
+    state = "unstable" if np.any(found.functions[known] > 0.0) else "stable"
     where = f"{state} wherever there is steady sliding; {_gaps(found)}" if found.gaps else f"{state} in the whole range"
     evidence: dict[str, Any] = {"without_answer": [list(gap) for gap in found.gaps]} if found.gaps else {}
     return Outcome("no_onset", where, growth_rate_low=growth[0], growth_rate_high=growth[1], **evidence)

@@ -14,13 +14,15 @@ from typing import Any
 import numpy as np
 
 from squealbox.stability.family import Family
+from squealbox.stability.in_band import growth_in_band
 from squealbox.stability.state_matrix import spectrum
 from squealbox.system import Linearised
 
 NEUTRAL = 1e-11  # |Re lambda| below this share of the largest |lambda|, at all values, is a mode without damping
 EDGE = 52  # halvings towards a value without an answer
 ROUND_OFF = 1e-13  # two modes that only pass each other come out as a pair apart by the root of the round-off
-DETAIL = 17  # values on which a suspicious stretch is scanned again
+DETAIL, DETAIL_IN_BAND = 17, 5  # values on which a suspicious stretch is scanned again
+NEAR, NEAR_IN_BAND = 2.0, 0.5  # times the swing of a bend from which zero may lie behind it; a parabola reaches 1/8
 
 
 @dataclass(frozen=True)
@@ -30,12 +32,20 @@ class Scan:
     family: Family
     values: Any
     functions: Any
-    neutral: bool
-    undamped: int
+    neutral: bool = False
+    undamped: int = 0
 
     def at(self, value: float) -> Any:
         """The functions at one value."""
-        return _functions(self.family.at(np.array([value])), self.neutral, self.undamped)[0]
+        return self.functions_at(np.array([value]))[0]
+
+    def functions_at(self, values: Any) -> Any:
+        """The functions at several values, of a reduced brake the growth rates in its band."""
+        if self.family.band is None:
+            return _functions(self.family.at(values), self.neutral, self.undamped)
+        found = growth_in_band(self.family, values)
+        missing = max(self.functions.shape[-1] - found.shape[-1], 0)
+        return np.pad(found, ((0, 0), (0, missing)), constant_values=np.nan)
 
     @property
     def answered(self) -> Any:
@@ -87,12 +97,7 @@ class Scan:
 def scan(family: Family, low: float, high: float, points: int, refinements: int = 3) -> Scan:
     """The functions on `points` values from low to high, and on more of them wherever two crossings may hide."""
     values = np.linspace(low, high, points)
-    about = family.at(values)
-    eigenvalues = spectrum(about)
-    known = np.asarray(about.equilibrium.exists) & np.any(np.isfinite(eigenvalues), axis=-1)
-    neutral = bool(np.all(is_neutral(about)[known])) if np.any(known) else False
-    undamped = _left_out(about, eigenvalues, known, neutral)
-    found = Scan(family, values, _functions(about, neutral, undamped), neutral, undamped)
+    found = _first(family, values) if family.band is None else Scan(family, values, growth_in_band(family, values))
     found = _with(found, _beside_gaps(found))
     for _ in range(refinements):
         more = _suspicious(found)
@@ -102,14 +107,24 @@ def scan(family: Family, low: float, high: float, points: int, refinements: int 
     return found
 
 
+def _first(family: Family, values: Any) -> Scan:
+    about = family.at(values)
+    eigenvalues = spectrum(about)
+    known = np.asarray(about.equilibrium.exists) & np.any(np.isfinite(eigenvalues), axis=-1)
+    neutral = bool(np.all(is_neutral(about)[known])) if np.any(known) else False
+    undamped = _left_out(about, eigenvalues, known, neutral)
+    return Scan(family, values, _functions(about, neutral, undamped), neutral, undamped)
+
+
 def _with(found: Scan, more: Any) -> Scan:
     """The scan with more values."""
     more = np.setdiff1d(more, found.values)
     if more.size == 0:
         return found
     values = np.concatenate([found.values, more])
-    about = found.family.at(more)
-    functions = np.concatenate([found.functions, _functions(about, found.neutral, found.undamped)])
+    new = found.functions_at(more)
+    wider = ((0, 0), (0, new.shape[-1] - found.functions.shape[-1]))
+    functions = np.concatenate([np.pad(found.functions, wider, constant_values=np.nan), new])
     order = np.argsort(values, kind="stable")
     return Scan(found.family, values[order], functions[order], found.neutral, found.undamped)
 
@@ -236,12 +251,13 @@ def _undamped(eigenvalues: Any) -> int:
 def _suspicious(found: Scan) -> Any:
     """New values around extrema that come near zero from one side: a narrow window may cross it twice unseen."""
     functions, values = found.functions, found.values
+    detail, share = (DETAIL, NEAR) if found.family.band is None else (DETAIL_IN_BAND, NEAR_IN_BAND)
     middle, before, after = functions[1:-1], functions[:-2], functions[2:]
     with np.errstate(invalid="ignore"):
         bends = (middle - before) * (after - middle) <= 0.0
         swing = np.maximum(np.abs(middle - before), np.abs(after - middle))
         towards = np.sign(middle) != np.sign(2.0 * middle - before - after)  # the peak points at zero
-        near = bends & towards & (np.abs(middle) <= 2.0 * swing) & (swing > 0.0)
+        near = bends & towards & (np.abs(middle) <= share * swing) & (swing > 0.0)
     places = np.nonzero(np.any(near, axis=-1))[0]
-    spans = [np.linspace(values[i], values[i + 2], DETAIL)[1:-1] for i in places]
+    spans = [np.linspace(values[i], values[i + 2], detail)[1:-1] for i in places]
     return np.setdiff1d(np.concatenate(spans), values) if spans else np.array([])

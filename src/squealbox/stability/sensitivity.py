@@ -20,8 +20,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.result import Array, Result, quantity
-from squealbox.stability.eigenvalues import NEAR_DEFECTIVE, Mode, modes_of
+from squealbox.stability.eigenvalues import NEAR_DEFECTIVE, Mode, complex_modes, modes_of
 from squealbox.stability.family import Family, steady_sliding
 
 CENTRAL = np.arange(-3.0, 4.0)
@@ -96,7 +97,7 @@ def sensitivity(
     steady = steady_sliding(design, time)
     if steady.K.ndim > 2:
         raise ValueError(f"leading axes {steady.K.shape[:-2]}: sensitivity() is for one design")
-    modes = modes_of(steady)
+    modes = complex_modes(design, time) if isinstance(design, ReducedBrake) else modes_of(steady)
     chosen = mode if isinstance(mode, Mode) else modes.most_unstable if mode is None else modes.mode(mode)
     names = tuple(parameters) if parameters is not None else free_parameters(design)
     values = np.array([float(design.value_of(name)) for name in names])

@@ -1,8 +1,9 @@
 """Ensembles whose members no kernel carries together: each is a run of `simulate`, looked at by the same observers.
 
-Such are loops that are sampled or late, limits that vary, rigid contacts, and designs of one size but of other
-structure. Observers see the rows of a run, at most `STEP` of its fastest swing apart, with q'' of the cubic through q
-and q' of both ends.
+Such are loops that are sampled or late, limits that vary, rigid contacts, designs of one size but of other structure,
+and brakes with more freedoms and contacts than a kernel's text can spell out (60 coordinates with 100 contacts).
+Observers see the rows of a run, at most `STEP` of its fastest swing apart, with q'' of the cubic through q and q' of
+both ends.
 """
 
 import dataclasses

@@ -7,12 +7,14 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability import Boundary, StabilityMap, map_boundary, stability_map
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, axis_of
 
 POINTS = 101
 FEWER = 51  # along each axis, for designs of more than two degrees of freedom
+FEWEST = 11  # the same of reduced brakes, with a spectrum of its own for each point
 CLOSE = 1e-6  # of a cell, a hundredth of that of the axis: numbers travel with seven digits
 BLOCKS = 8  # parts of a map between which it can be stopped
 
@@ -26,7 +28,8 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     show = options.word("show", ("growth", "frequency", "mechanism"))
     spans = [options.span(name, design, parameter) for name, parameter in (("xspan", across), ("yspan", up))]
     few = design.system().size > 2
-    points = int(options.number("points", FEWER if few else POINTS, 11, 401))
+    usual = FEWEST if isinstance(design, ReducedBrake) else FEWER if few else POINTS
+    points = int(options.number("points", usual, FEWEST, 401))
     values = [np.linspace(*span, points) for span in spans]
     parts, text = [], "computing the map"
     if "numba" not in sys.modules:

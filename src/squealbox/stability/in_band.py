@@ -1,0 +1,67 @@
+"""A reduced brake along its parameters by the modes of its band alone, one value at a time.
+
+Above its band a reduced brake has modes that are none of the full one, and the whole spectrum costs many times what the
+band does. So scans, maps and what feeds a mode look at the band; the growth rates there are those of the full brake to
+`ReducedBrake.error`, where that was checked.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from squealbox.fe.band_spectrum import condensed
+from squealbox.fe.pencil import vibrating
+from squealbox.fe.small import Small
+from squealbox.stability.eigenvalues import complex_modes
+from squealbox.stability.family import Family
+
+POINTS = 81  # values of a scan; narrow windows are looked for between them as ever
+IDLE = 1e-9  # share of |lambda| up to which a growth rate is round-off
+
+
+def eigenvalues_along(family: Family, *values: Any) -> Iterator[Any]:
+    """The eigenvalues with Im > 0 in the band at each of the values (k,), NaN where there is no steady sliding."""
+    for point in zip(*(np.ravel(value) for value in values), strict=True):
+        yield eigenvalues_in_band(family.one(*(float(x) for x in point)), family.time)
+
+
+def eigenvalues_in_band(design: Any, time: float) -> Any:
+    """The same of one brake, good to 1e-8."""
+    found = design.band_modes(None, time, rough=True)
+    if found is not None:
+        return found[0].values
+    modes = complex_modes(design, time)
+    return modes.eigenvalues[: len(modes.eigenvalues) // 2] if modes.exists else np.array([complex(np.nan)])
+
+
+def growth_in_band(family: Family, values: Any) -> Any:
+    """Growth rates less round-off [1/s] (values, modes), the largest first; NaN where there is no mode more."""
+    rows = [-np.sort(-(found.real - IDLE * np.abs(found))) for found in eigenvalues_along(family, values)]
+    most = max((len(row) for row in rows), default=0)
+    return np.stack([np.pad(row, (0, most - len(row)), constant_values=np.nan) for row in rows])
+
+
+def largest_in_band(family: Family, *values: Any) -> tuple[Any, Any, Any]:
+    """Largest growth rate [1/s], angular frequency of its mode [rad/s] and growing modes, (k,); as `largest_growth`."""
+    growth, omega, growing = np.array([worst_in_band(found) for found in eigenvalues_along(family, *values)]).T
+    return growth, omega, growing.astype(np.int64)
+
+
+def worst_in_band(eigenvalues: Any) -> tuple[float, float, int]:
+    """The same of the eigenvalues of one brake; NaN, NaN and 0 without a mode."""
+    known = eigenvalues[np.isfinite(eigenvalues)]
+    if not len(known):
+        return np.nan, np.nan, 0
+    worst = known[np.argmax(known.real)]
+    return float(worst.real), abs(float(worst.imag)), int(np.sum(known.real > IDLE * np.abs(known)))
+
+
+def ranked_in_band(small: Small, band: tuple[float, float], rank: int) -> Any:
+    """The `rank`-th largest growth rate [1/s] in the band, the fast coordinates following statically."""
+    slow = condensed(small, band[1])
+    values = (small if slow is None else slow.small).eigenvalues()
+    low, high = (2.0 * np.pi * f for f in band)
+    inside = (values.imag >= low) & (values.imag <= high) & vibrating(values)
+    growth = -np.sort(-values[inside].real)
+    return np.asarray(growth[min(rank, len(growth) - 1)] if len(growth) else np.nan)
