@@ -19,7 +19,7 @@ from squealbox import schedules
 
 STICK, OPEN = 0, 2
 PLACES = np.linspace(0.0, 1.0, 13)
-MOST = 600  # looks for new modes, after which the slow integrator gives up
+MOST = 600  # looks for new modes, or steps between two, after which the slow integrator gives up
 NOTHING = 1e-30  # N of a closed floor that carries nothing
 CLOSED = 1e-6  # share of the fastest landing below which a rebound counts as none: a convention of the program
 
@@ -331,10 +331,13 @@ class Slow:
 
     def until_event(self, t, y, end):
         """March with fixed modes to the first event or the end."""
-        modes, first = list(self.modes), True
+        modes, first, steps = list(self.modes), True, 0
         solver = DOP853(lambda s, x: self.motion(s, x, modes)[0], t, y, end, max_step=self.step, rtol=1e-12, atol=1e-14)
         while solver.status == "running":
             solver.step()
+            steps += 1
+            if steps > MOST:
+                raise EndlessEvents(f"more than {MOST} steps to t = {solver.t:.6g} s without an event")
             dense, a, h = solver.dense_output(), solver.t_old, solver.t - solver.t_old
 
             def values(x, dense=dense, a=a, h=h):
