@@ -27,7 +27,7 @@ endif
 # Tests start some hundred processes: each would translate the sources anew where no compiled modules may be kept.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help demo test lint floors types tests fuzz format docs picture bench fortran clean
+.PHONY: help demo test lint floors types tests browser fuzz format docs picture bench fortran clean
 .DEFAULT_GOAL := help
 
 help:
@@ -50,8 +50,11 @@ floors: $(VENV)/.installed-dev
 types: $(VENV)/.installed-dev
 	$(BIN)/mypy
 
-tests: $(VENV)/.installed-dev
+tests: $(VENV)/.installed-dev browser
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
+
+browser:
+	@.ci/browser
 
 fuzz: $(VENV)/.installed-dev
 	SQUEALBOX_FUZZ=$(FUZZ) $(BIN)/python -m pytest -q -n $(WORKERS) tests/properties/test_physics_fuzz.py

@@ -4,6 +4,7 @@ import base64
 import io
 import re
 import sys
+import shutil
 import tempfile
 import wave
 
@@ -47,7 +48,7 @@ def browser():
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as profile:
         context = playwright.chromium.launch_persistent_context(
             profile,
-            executable_path="/usr/bin/chromium",
+            executable_path=shutil.which("chromium"),
             args=FLAGS,
             offline=True,
             viewport={"width": 1280, "height": 800},

@@ -67,10 +67,7 @@ class Late:
         e = np.concatenate([np.full(len(right), delay) for delay, _, right in self.split])
         with np.errstate(all="ignore"):  # at an eigenvalue of A, and where exp is beyond all numbers: the other way
             small = np.eye(size) - ((1.0 / gap) @ self.way).reshape(-1, size, size) * np.exp(-s[:, None] * e)[:, None]
-            if size == 1:
-                small = small[:, 0, 0]
-            else:
-                small = small[:, 0, 0] * small[:, 1, 1] - small[:, 0, 1] * small[:, 1, 0] if size == 2 else np.linalg.det(small)
+            small = small[:, 0, 0] if size == 1 else np.linalg.det(small)
             found = np.prod(gap / np.abs(gap), axis=1) * small / np.abs(small)
         lost = ~np.isfinite(found)
         found[lost] = np.linalg.slogdet(self.matrix(s[lost]))[0]
