@@ -3,8 +3,8 @@
 import base64
 import io
 import re
-import sys
 import shutil
+import sys
 import tempfile
 import wave
 
