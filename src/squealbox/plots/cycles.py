@@ -193,11 +193,8 @@ def _estimates(panel: Any, curves: Sequence[EstimateCurve], dof: int, factor: fl
     """Each kind in a look of its own; the legend says how far it is off the cycles."""
     for label in dict.fromkeys(curve.label for curve in curves):
         alike = [curve for curve in curves if curve.label == label]
-        off = [100.0 * curve.off for curve in alike if np.isfinite(curve.off)]
-        text = label.replace(" (", "\n(")
-        if off:
-            least, most = number(min(off), 2), number(max(off), 2)
-            text += f"\n{least} % off in the median" if least == most else f"\n{least} to {most} % off in the median"
+        worst = max(alike, key=lambda curve: np.nan_to_num(curve.most, nan=-1.0))
+        text = label.replace(" (", "\n(") + (f"\n{worst.beside}" if np.isfinite(worst.most) else "")
         colour, dash = ESTIMATES.get(label, ("#0072B2", ":"))
         for i, curve in enumerate(alike):
             panel.plot(curve.value / scale, curve.amplitude[:, dof] / factor, dash, color=colour, linewidth=1.2,
