@@ -60,9 +60,9 @@ def test_in_stick_slip_one_harmonic_moves_as_fast_as_the_belt(cycles, curves):
 
 
 def test_points_packed_at_one_end_do_not_make_a_curve_right():
-    """20 % off over its length, right at a hundred points on a thousandth of it; `most` is where it is worst."""
+    """20 % off over its length, right at a hundred points on a thousandth of it; nine tenths are within 30 %."""
     value = np.append(np.linspace(0.0, 0.001, 100), np.linspace(0.01, 1.0, 20))
-    share = np.where(value > 0.001, np.where(value > 0.9, 1.3, 1.2), 1.0)
+    share = np.where(value > 0.001, np.where(value > 0.7, 1.3, 1.2), 1.0)
     size = np.array([1.0, 1.0])
     ends = Branch(
         value=np.array([-1.0, 2.0]), period=np.ones(2), lowest=-size[:, None], highest=size[:, None],

@@ -34,7 +34,7 @@ class EstimateCurve:
     """A quick estimate over a parameter: its name, values (k,), amplitudes (k, dof) [m], and where it may be trusted.
 
     off, most : |amplitude / amplitude of the nearest cycle followed - 1|, of the degree of freedom that moves most:
-        half of the length of the curve, as it is drawn, is within `off`, all of it within `most`; NaN where no cycle
+        half of the length of the curve, as it is drawn, is within `off`, nine tenths within `most`; NaN where no cycle
         was followed at its values
     """
 
@@ -51,7 +51,8 @@ class EstimateCurve:
     @property
     def beside(self) -> str:
         """How far the curve is from the cycles followed, in words."""
-        return f"half within {100.0 * self.off:.2g} %, all within {100.0 * self.most:.2g} % of the cycles"
+        half, most = (float(f"{100.0 * share:.2g}") for share in (self.off, self.most))
+        return f"half within {half:g} %, nine tenths within {most:g} % of the cycles"
 
 
 @public()
@@ -148,7 +149,7 @@ def _near(curve: EstimateCurve, value: float, size: Any, bounds: tuple[float, fl
 
 
 def _off(curve: EstimateCurve, branches: Sequence[Branch]) -> tuple[float, float]:
-    """How far half of the curve, and all of it, is from the nearest cycles followed at its values.
+    """How far half of the curve, and nine tenths, are from the nearest cycles followed at its values.
 
     Points weigh by the length of the curve about them: they are packed where it turns or goes straight up.
     """
@@ -164,8 +165,8 @@ def _off(curve: EstimateCurve, branches: Sequence[Branch]) -> tuple[float, float
     if not away:
         return float("nan"), float("nan")
     errors, weights = np.array(sorted(away)).T
-    half = int(np.searchsorted(np.cumsum(weights), 0.5 * np.sum(weights)))
-    return float(errors[half]), float(errors[-1])
+    half, most = np.searchsorted(np.cumsum(weights), np.array([0.5, 0.9]) * np.sum(weights))
+    return float(errors[half]), float(errors[most])
 
 
 def _at(one: Branch, value: float, dof: int, slips: bool) -> list[float]:
