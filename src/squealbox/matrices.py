@@ -16,6 +16,12 @@ class InvalidSystem(ValueError):
     """Matrices, vectors or contacts do not make a system; the message names array, shape and what was expected."""
 
 
+def runs_of_true(inside: Any) -> list[tuple[int, int]]:
+    """Indices of the first and the last of each run of True in a row (k,)."""
+    edges = np.diff(np.r_[False, np.asarray(inside, dtype=bool), False].astype(int))
+    return list(zip(np.flatnonzero(edges == 1).tolist(), (np.flatnonzero(edges == -1) - 1).tolist(), strict=True))
+
+
 def coupled(left: Any, factor: Any, right: Any) -> Any:
     """sum_c left_c factor_c right_c' of rows (..., contacts, n), shape (..., n, n); factor is (..., contacts)."""
     if len(np.shape(factor)) == 1 and len(factor) > FEW and np.ndim(left) == 2 and np.ndim(right) == 2:

@@ -10,6 +10,7 @@ from squealbox.designs import DrumBrake
 from squealbox.plots import coalescence, mechanism_map, plot, root_locus
 from squealbox.plots.style import drawn
 from squealbox.stability import (
+    critical_value,
     mode_energy,
     sensitivity,
     stability_boundary,
@@ -32,6 +33,23 @@ def test_figures_of_tracks() -> None:
     locus = root_locus(tracked).axes[0]
     drawn = np.concatenate([line.get_xdata() for line in locus.get_lines()])
     assert np.nanmax(drawn) == pytest.approx(np.max(tracked.growth_rate))
+
+
+@pytest.mark.parametrize(("traced", "within"), [(True, 1e-3), (False, 1e-3)])
+def test_colour_ends_at_the_boundary(traced, within) -> None:
+    """Stable up to the critical friction; a cell is 0.05 wide."""
+    axes = {"friction.static": np.linspace(0.1, 0.6, 11), "load": np.linspace(500.0, 2e3, 7)}
+    spans = {name: (float(x[0]), float(x[-1])) for name, x in axes.items()}
+    boundary = stability_boundary(DrumBrake(), spans) if traced else None
+    panel = mechanism_map(stability_map(DrumBrake(), axes), boundary=boundary).axes[0]
+    assert "boundary" in [text.get_text() for text in panel.get_legend().get_texts()]
+    outline = next(each.get_clip_path() for each in panel.collections if getattr(each, "hatches", [None]) != [None])
+    path, _ = outline.get_transformed_path_and_affine()  # in the units of the axes
+    for load in axes["load"][1:-1]:
+        edge = critical_value(DrumBrake().replace({"load": load}), "friction.static", spans["friction.static"]).value
+        beside = np.linspace(edge - 0.05, edge + 0.05, 201)
+        inside = [path.contains_point((x, load)) for x in beside]
+        assert beside[np.argmax(inside)] == pytest.approx(edge, abs=within)
 
 
 def test_map_with_its_boundary() -> None:

@@ -1,11 +1,21 @@
 """Parameters from measured numbers: closed forms, coverage, and what data cannot tell."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from squealbox import Coulomb, DrumBrake, LinearSlope, MassOnBelt, Measured, System, calibrate, complex_modes
-from squealbox.calibration import compare, from_events, from_friction, from_signal, modal_assurance, read_mode_table
+from squealbox import Coulomb, DrumBrake, LinearSlope, MassOnBelt, Measured, System, calibrate, complex_modes, plots
+from squealbox.calibration import (
+    Comparison,
+    compare,
+    from_events,
+    from_friction,
+    from_signal,
+    modal_assurance,
+    read_mode_table,
+)
 from squealbox.parameters import ParameterError
 from squealbox.result import Result
 from squealbox.signals import Recording, SignalError, squeal_events
@@ -144,6 +154,35 @@ def test_a_signal_is_two_measured_numbers_and_a_comparison_a_table():
     assert table.simulated[0] == pytest.approx(2078.0, rel=0.02)
     with pytest.raises(SignalError, match="expected one of 1 events"):
         compare(complex_modes(DrumBrake()), events, event=3)
+
+
+def test_growth_of_an_onset_is_set_beside_that_of_an_onset():
+    """A cycle of 1, reached from 1e-6 at 300/s: 1/sqrt(1 + (1e12 - 1) exp(-600 t)); one that was there has no onset."""
+    t = np.arange(9600) / 48000.0
+    wave = np.sin(2.0 * np.pi * 2000.0 * t)
+    late = np.arange(48000) / 48000.0
+    grown = np.exp(150.0 * np.clip(late - 0.5, -0.06, 0.0)) * np.sin(2.0 * np.pi * 2000.0 * late) * (late > 0.3)
+    events = squeal_events(grown + 1e-4 * np.random.default_rng(0).standard_normal(late.size), 48000.0)
+    reached = wave / np.sqrt(1.0 + (1e12 - 1.0) * np.exp(-600.0 * t))
+    found = compare(SimpleNamespace(t=t, q=reached[:, None]), events)
+    assert found.simulated[1] == pytest.approx(300.0, rel=0.02)
+    assert found.simulated[0] == pytest.approx(2000.0, rel=1e-6)
+    there = compare(SimpleNamespace(t=t, q=wave[:, None]), events)
+    assert np.isnan(there.simulated[1])
+    assert "no onset" in there.summary()
+
+
+def test_a_distance_is_in_sd_only_where_an_error_can_be_its_reason():
+    values = np.array([1010.0, 103.0, 5.0]), np.array([1000.0, 100.0, 4.0]), np.array([0.02, 3.92, np.nan])
+    away = (values[0] - values[1]) / (values[2] / 1.96)
+    settings = {"rows": ["a", "b", "c"], "units": ["Hz", "1/s", "dB"], "notes": []}
+    one = Comparison(simulated=values[0], measured=values[1], error=values[2], away=away, settings=settings)
+    lines = one.summary().splitlines()[1:]
+    assert [line.split("  ")[-2] for line in lines] == ["+1 %", "+1.5 sd", "+1"]
+    figure = plots.plot(Comparison(simulated=values[0], measured=np.array([1000.0, 100.0, np.nan]), error=values[2],
+                                   away=away, settings=settings))  # fmt: skip
+    marks = figure.axes[0].lines[1].get_xdata()
+    assert list(np.isfinite(marks)) == [True, True, False]
 
 
 def test_modal_assurance_of_the_same_and_of_other_shapes():

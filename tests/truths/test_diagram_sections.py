@@ -122,7 +122,7 @@ def test_the_command_draws_and_tabulates(brake, tmp_path, capsys):
     assert main(["diagram", str(brake), *words, "--sweeps", "up", "down", "--out", str(out)]) == DONE
     said = capsys.readouterr().out
     assert "y at its maxima" in said
-    assert "Rest and vibration coexist at 6 values, 0.18 to 0.33" in said
+    assert "Rest and vibration coexist at 6 values, from 0.18 to 0.33" in said
     assert {path.name for path in out.iterdir()} == {
         "diagram.png", "diagram.svg", "diagram.csv", "section.csv", "diagram.nc"
     }  # fmt: skip

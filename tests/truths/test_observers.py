@@ -9,7 +9,7 @@ from squealbox.transient.observers import energy, poincare, settled, sticking
 
 # x'' + 2 d x' + w0^2 x = 0 from (1, 0): x = e^(-d t)(cos w t + d/w sin w t), x' = -(w0^2/w) e^(-d t) sin w t, and
 # extremes (-1)^k e^(-d k pi/w) at t = k pi/w, with w^2 = w0^2 - d^2.
-NATURAL, DAMPING, LENGTH, LEVEL = 2.0, np.array([0.1, 0.2]), 19.0, 0.05
+NATURAL, DAMPING, LENGTH, LEVEL = 2.0, np.array([0.1, 0.2]), 19.0, 0.1
 DAMPED = np.sqrt(NATURAL**2 - DAMPING**2)
 STEP = 0.02  # the largest step, to which `settled` can tell an instant
 
@@ -59,11 +59,20 @@ def test_settled(oscillators):
     instants = np.linspace(0.0, LENGTH, 2_000_001)
     for k, (d, w) in enumerate(zip(DAMPING, DAMPED, strict=True)):
         last = instants[np.abs(closed(instants, d, w)[1]) > LEVEL]
-        if last[-1] > LENGTH - STEP:
+        if last[-1] > LENGTH - np.pi / w:  # no whole swing was seen since
             assert oscillators["settled"][k, 0] == np.inf
         else:
             assert last[-1] - STEP <= oscillators["settled"][k, 0] <= last[-1] + 1e-5
     assert np.array_equal(np.isinf(oscillators["settled"][:, 0]), [True, False])  # one rings on, one has come to rest
+
+
+@pytest.mark.parametrize("end", [0.5, 0.5003, 0.5005, 0.501])
+def test_what_grows_has_not_settled(end):
+    """500 Hz, 5/s up and 10/s down, from 1 um: 12 um at the end, or below 1e-4 m/s from ln(31.4)/10 s on."""
+    systems = [System([[1.0]], [[-2.0 * rate]], [[(1000.0 * np.pi) ** 2]], 0.0) for rate in (5.0, -10.0)]
+    grown, fallen = simulate_ensemble(systems, None, end, observe="settled", start=([1e-6], [0.0]))["settled"][:, 0]
+    assert grown == np.inf
+    assert fallen == pytest.approx(np.log(1e-6 * 1000.0 * np.pi / 1e-4) / 10.0, abs=1e-3)  # a half period
 
 
 @pytest.fixture(scope="module")

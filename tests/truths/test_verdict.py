@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from squealbox import Coulomb, MassOnBelt, simulate
 from squealbox.result import Outcome
 from squealbox.signals import SignalError
 from squealbox.transient.verdict import Verdict, verdict
@@ -104,6 +105,64 @@ def test_coarse_and_unequal_samples_keep_the_amplitude():
     found = verdict(run)
     assert (found.kind, found.amplitude) == ("settles_on_cycle", pytest.approx(A, rel=0.01))
     assert found.frequency == pytest.approx(2000.0, rel=1e-4)
+
+
+@pytest.mark.parametrize(("seconds", "periods"), [(2.0, 0.62), (3.0, 0.93), (5.0, 1.5), (12.0, 3.7)])
+def test_two_periods_are_enough_for_amplitude_and_frequency(seconds, periods):
+    """Stick-slip on a belt of 0.1 m/s: it slips for 2 (pi - atan(s omega / V)) / omega, s = 20 mm."""
+    belt = MassOnBelt(m=1.0, c=0.0, k=100.0, load=10.0, sliding_speed=0.1, friction=Coulomb(0.5, 0.3))
+    step, omega, speed = 0.02, 10.0, 0.1
+    slip = 2.0 * (np.pi - np.arctan(step * omega / speed)) / omega
+    period, amplitude = slip + 2.0 * step / speed, np.hypot(step, speed / omega)
+    found = verdict(simulate(belt, seconds, times=2001))
+    assert found.kind == "not_decided"
+    assert float(found.frequency) == pytest.approx(1.0 / period, rel=1e-6)
+    assert float(found.amplitude) == pytest.approx(amplitude, rel=1e-6)
+    assert f"the last {seconds / 4:.3g} s".replace("0.5 s", "500 ms").replace("0.75 s", "750 ms") in found.text
+    assert f"hold only {periods:g} periods" in found.text
+
+
+@pytest.mark.parametrize("cycles", [1.3, 1.7, 1.99])
+def test_less_than_two_periods_tell_no_frequency(cycles):
+    t = np.linspace(0.0, cycles / 100.0, 3001)
+    x = 1e-3 * np.sin(2.0 * np.pi * 100.0 * t + 0.3)
+    found, last = verdict(x, t), x[t >= 0.7499 * t[-1]]
+    assert found.kind == "not_decided"
+    assert np.isnan(found.frequency)
+    assert float(found.amplitude) == pytest.approx(0.5 * np.ptp(last), rel=2e-3)
+
+
+@pytest.mark.parametrize("cycles", [2.01, 2.6, 4.4, 5.5])
+def test_a_sine_of_few_periods_keeps_its_frequency(cycles):
+    t = np.linspace(0.0, cycles / 100.0, 3001)
+    found = verdict(1e-3 * np.sin(2.0 * np.pi * 100.0 * t + 0.3), t)
+    assert float(found.frequency) == pytest.approx(100.0, rel=1e-6)
+    assert float(found.amplitude) == pytest.approx(1e-3, rel=1e-4)
+
+
+def test_an_interval_that_holds_zero_is_no_growth():
+    """A cycle reached from below at half the record, whose amplitude still falls by 6 % towards its end."""
+    late = np.clip(T - 0.03, 0.0, None)
+    x = np.minimum(np.exp(300.0 * (T - 0.03)), 1.0) * (0.85 + 0.15 * np.exp(-60.0 * late)) * A * WAVE
+    found = verdict(x, T)
+    assert found.kind == "not_decided"
+    assert "still settling" in found.text
+    for share in (2.0, 30.0, 100.0):
+        grown = verdict(1e-9 * np.exp(share * T) * WAVE, T)
+        assert grown.kind == "grows"
+        assert float(grown.growth_rate) > float(grown.growth_rate_error)
+
+
+def test_a_block_that_rides_on_its_belt_does_not_grow():
+    """It is caught after 0.2 s at 1 m/s2, and rides at 0.2 m/s until the spring pulls it loose."""
+    held = verdict(simulate(MassOnBelt(), 0.9, times=2001))
+    assert held.kind == "not_decided"
+    assert "belt sticks through the last part" in held.text
+    assert np.isnan(held.growth_rate)
+    assert float(held.amplitude) == pytest.approx(0.5 * 0.25 * 0.9 * 0.2, rel=1e-3)
+    caught = verdict(simulate(MassOnBelt(), 0.05, times=2001))
+    assert caught.kind == "not_decided"
+    assert np.isnan(caught.growth_rate)
 
 
 def test_a_stretch_is_judged_alone():

@@ -47,10 +47,10 @@ def test_limit_cycles_beside_stable_sliding_are_marked(page):
     page.drawn("branch")
     onset = float(hopf_point(brake(), "friction.static", (0.1, 0.6)).value)
     together = json.loads(page.page.get_attribute("section[data-panel=branch]", "data-together"))
-    # the stable cycle ends in a fold at 0.17749, where shooting with 400 points ends; told on 201 values of the axis
+    # the stable cycle ends in a fold at 0.17749, where shooting with 400 points ends, stable sliding at the onset
     ((low, high),) = together
-    assert low == pytest.approx(0.17749, abs=0.005)
-    assert 0.3 < high <= onset
+    assert low == pytest.approx(0.17749, abs=5e-6)
+    assert high == pytest.approx(onset, rel=1e-9)
     layers = page.numbers("branch", "branch")["layers"]
     born = next(layer for layer in layers if layer["column"] == "onset")
     assert born["x"] == pytest.approx([onset], rel=FLOAT32)

@@ -11,7 +11,10 @@ from squealbox.signals import SignalError, dominant_frequency, growth_rate, soun
 from squealbox.signals.events import BELOW
 from squealbox.stability.mode import modal_assurance
 from squealbox.system import as_system
+from squealbox.transient.verdict import verdict
 
+FAR = 10.0  # standard deviations: what is farther away is no error of the measurement
+ONSET = 0.1, 0.02  # of the last amplitude: up to the one it grows freely, below the other it must begin
 ROWS, UNITS = ("frequency", "growth rate", "level"), ("Hz", "1/s")  # the level has the unit of the recording
 
 
@@ -37,17 +40,19 @@ class Comparison(Result):
                 "-".rjust(w) if not np.isfinite(x) else f"{x:{w}.{p}g}"
                 for x, w, p in ((self.simulated[i], 12, 7), (self.measured[i], 12, 7), (self.error[i], 10, 2))
             )
-            away = (
-                f"{self.away[i]:+.1f} sd"
-                if np.isfinite(self.away[i])
-                else f"{self.simulated[i] - self.measured[i]:+.3g}"
-            )
-            lines.append(
-                f"{name:12}  {numbers}  {away if np.isfinite(self.simulated[i] - self.measured[i]) else '-'}"
-                f"  {self.settings['units'][i]}"
-            )
+            lines.append(f"{name:12}  {numbers}  {self._distance(i)}  {self.settings['units'][i]}")
         head = [] if self.outcome.ok else [f"{self.outcome}: {self.outcome.message}"]
         return "\n".join([*head, *lines, *self.settings["notes"]])
+
+    def _distance(self, i: int) -> str:
+        """In standard deviations where they can be the reason, else in per cent; as it is without an error."""
+        change = self.simulated[i] - self.measured[i]
+        if not np.isfinite(change):
+            return "-"
+        if np.abs(self.away[i]) <= FAR:
+            return f"{self.away[i]:+.1f} sd"
+        known = np.isfinite(self.away[i]) and self.measured[i] != 0.0
+        return f"{100.0 * change / abs(self.measured[i]):+.3g} %" if known else f"{change:+.3g}"
 
     def __repr__(self) -> str:
         return self.summary()
@@ -58,8 +63,9 @@ def compare(simulated: Any, events: Any, *, event: int | None = None, dof: int |
 
     Parameters
     ----------
-    simulated : a trajectory (its frequency over the last quarter, its growth over all of it and the level it would
-        make), a limit cycle (its frequency), or complex modes (frequency and growth of the one that grows fastest)
+    simulated : a trajectory (its frequency over the last quarter, its growth, of one that settles that of its onset,
+        and the level it would make), a limit cycle (its frequency), or complex modes (frequency and growth of the one
+        that grows fastest)
     events : `SquealEvents`; or, beside modes, a `ModeTable` of a test or of another code
     event : which of them; left out, the loudest
     dof : of a motion, the degree of freedom that is heard
@@ -147,13 +153,25 @@ def _said(simulated: Any, dof: int | str, notes: list[str]) -> list[float]:
     found = [np.nan] * 3
     try:
         found[0] = dominant_frequency(simulated, dof=dof, begin=late)
-        growth = growth_rate(simulated, dof=dof)
-        if growth.steady:
-            found[1] = growth.rate
-        else:
-            notes.append("the motion has no one growth rate")
+        found[1], why = _growth(simulated, dof)
+        notes += [why] if why else []
         if hasattr(simulated, "qd"):
             found[2] = float(sound_level(simulated, dof=dof, begin=late).weighted)
     except SignalError as error:
         notes.append(str(error))
     return found
+
+
+def _growth(motion: Any, dof: int | str) -> tuple[float, str]:
+    """The growth rate of a motion, of one that settles that of its onset; NaN and why where it has none."""
+    judged = verdict(motion, dof=dof)
+    if judged.kind != "settles_on_cycle":
+        growth = growth_rate(motion, dof=dof)
+        return (growth.rate, "") if growth.steady else (np.nan, "the motion has no one growth rate")
+    upto, below = (share * float(judged.amplitude) for share in ONSET)
+    grown = int(np.argmax(judged.envelope >= upto))
+    small = np.flatnonzero(judged.envelope[:grown] <= below)
+    if not small.size:
+        return np.nan, "the motion begins as large as it ends: it has no onset whose growth could be compared"
+    begin, end = (float(judged.envelope_time[i]) for i in (small[0], grown))
+    return growth_rate(motion, dof=dof, begin=begin, end=end).rate, ""

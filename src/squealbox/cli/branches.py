@@ -10,11 +10,20 @@ from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, 
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.tables import write_csv, written
-from squealbox.limit_cycles import Branch, EstimateCurve, HopfPoint, estimate_curves, hopf_point, isolated_branches
+from squealbox.limit_cycles import (
+    Branch,
+    EstimateCurve,
+    HopfPoint,
+    beside_sliding,
+    estimate_curves,
+    hopf_point,
+    isolated_branches,
+    stable_sliding,
+    stretches,
+)
 from squealbox.limit_cycles import branch as followed
 from squealbox.matrices import liveliest
 from squealbox.result import Outcome
-from squealbox.stability import complex_modes
 
 if TYPE_CHECKING:
     from squealbox.designs import Design
@@ -81,9 +90,10 @@ def branch(
             f"{born.kind} Hopf point at {varied.name} = {float(value):.8g} {unit}".rstrip()
             + f", {born.frequency:.6g} Hz"
         )
+    quiet = stable_sliding(found.design, varied.name, (varied.low, varied.high))
     for i, one in enumerate(several, 1):
-        print(_said(f"Branch {i}", one, found.design, varied))
-    print(_coexistence(several, born, found.design, varied))
+        print(_said(f"Branch {i}", one, quiet, found.design, varied))
+    print(_coexistence(several, quiet, found.design, varied))
     curves = estimate_curves(found.design, varied.name, (varied.low, varied.high), several) if estimates else ()
     for curve in curves:
         print(f"Estimate beside them: {curve}")
@@ -108,14 +118,7 @@ def all_branches(
     return born, several
 
 
-def _stretches(one: Branch) -> list[tuple[float, float, bool]]:
-    """(lowest, highest value, stable) of each stretch of a branch, in the order walked."""
-    cuts = np.flatnonzero(one.stable[1:] != one.stable[:-1]) + 1
-    pieces = np.split(np.arange(len(one.value)), cuts)
-    return [(float(np.min(one.value[i])), float(np.max(one.value[i])), bool(one.stable[i[0]])) for i in pieces]
-
-
-def _said(name: str, one: Branch, design: "Design", varied: "Axis") -> str:
+def _said(name: str, one: Branch, quiet: list[tuple[float, float]], design: "Design", varied: "Axis") -> str:
     def shown(value: float) -> str:
         number, unit = readable(design, varied, value)
         return f"{float(number):.7g} {unit}".rstrip()
@@ -126,7 +129,7 @@ def _said(name: str, one: Branch, design: "Design", varied: "Axis") -> str:
     over = f"{varied.name} {shown(np.min(one.value))} to {shown(np.max(one.value))}"
     pitch = f"{1.0 / np.max(one.period):.5g} to {1.0 / np.min(one.period):.5g} Hz"
     lines = [f"{name}: {len(one.value)} cycles, {over}, {pitch}, amplitude {', '.join(sizes)}"]
-    for low, high, stable in _stretches(one):
+    for low, high, stable in stretches(one, [end for each in quiet for end in each]):
         lines.append(f"  {'stable' if stable else 'unstable'} from {shown(low)} to {shown(high)}")
     for kind, value in zip(one.special_kind, one.special_value, strict=True):
         lines.append(f"  {str(kind).replace('_', ' ')} at {shown(value)}")
@@ -135,21 +138,19 @@ def _said(name: str, one: Branch, design: "Design", varied: "Axis") -> str:
     return "\n".join(lines)
 
 
-def _coexistence(several: tuple[Branch, ...], born: HopfPoint, design: "Design", varied: "Axis") -> str:
-    """Where a stable cycle exists beside stable steady sliding, as no eigenvalue shows."""
-    values = np.concatenate([one.value[one.stable] for one in several])
-    both = [v for v in values if complex_modes(design.replace({varied.name: float(v)})).stable]
+def _coexistence(
+    several: tuple[Branch, ...], quiet: list[tuple[float, float]], design: "Design", varied: "Axis"
+) -> str:
+    """Where a stable cycle exists beside stable steady sliding."""
+    both = beside_sliding(several, quiet)
     if not both:
         return "No stable cycle was found where steady sliding is stable."
-    turns = np.concatenate([[float(born.value)] if born.outcome.ok else [], *(one.special_value for one in several)])
-    followed = np.concatenate([one.value for one in several])
-    low, high = min(both), max(both)
-    below = [v for v in turns if v < low and not np.any((followed > v) & (followed < low))]
-    above = [v for v in turns if v > high and not np.any((followed < v) & (followed > high))]
-    span = np.array([max(below, default=low), min(above, default=high)])  # the onset or fold itself, not a point by it
-    ends, unit = readable(design, varied, span)
-    over = f"{varied.name} from {ends[0]:.7g} to {ends[1]:.7g} {unit}".rstrip()
-    return f"Stable sliding and a stable cycle coexist: {over}. A run there ends in either, by its start."
+    ends, unit = readable(design, varied, np.array(both))
+    over = " and ".join(f"from {low:.7g} to {high:.7g}" for low, high in ends)
+    return (
+        f"Stable sliding and a stable cycle coexist: {varied.name} {over} {unit}".rstrip()
+        + ". A run there ends in either, by its start."
+    )
 
 
 def _files(

@@ -156,15 +156,15 @@ def _said(result: BifurcationDiagram, design: "Design", varied: "Axis") -> str:
         counts = ", ".join(
             f"{int(np.sum(kind == code))} {KINDS[code]}" for code in (1, 2, 0, -1) if np.any(kind == code)
         )
-        moves = result.value[(kind == 2) | (kind == 0)]
-        where = f"; vibrates from {shown(moves.min())} to {shown(moves.max())}" if moves.size else ""
+        moves = result.stretches((kind == 2) | (kind == 0), shown)
+        where = f"; vibrates {moves}" if moves else ""
         units = _units(result)
         about = zip(units.items(), size.T, strict=True)
         most = ", ".join(f"{each} {np.nanmax(a):.3g} {unit}" for (each, unit), a in about)
         lines.append(f"{sweep}: {counts}{where}; largest amplitude {most}")
-    both = result.value[result.coexist]
-    if both.size:
-        lines.append(f"Rest and vibration coexist at {both.size} values, {shown(both.min())} to {shown(both.max())}.")
+    if np.any(result.coexist):
+        over = result.stretches(result.coexist, shown)
+        lines.append(f"Rest and vibration coexist at {int(np.sum(result.coexist))} values, {over}.")
     lines += [f"Caution: {result.caution}"] if result.caution else []
     if not result.outcome.ok:
         lines.append(f"Note: {result.outcome.message}")

@@ -13,12 +13,10 @@ from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files.analyses import Simulate
-from squealbox.files.runs import start_of
+from squealbox.files.runs import start_of, usual_duration
 from squealbox.matrices import liveliest
 from squealbox.system import as_system
 from squealbox.transient import Ensemble, simulate_ensemble
-
-DURATION = "0.05 s"
 
 
 def ensemble(
@@ -27,7 +25,7 @@ def ensemble(
     x: Span = None,
     y: Span = None,
     points: int | None = None,
-    duration: str = DURATION,
+    duration: str | None = None,
     changes: Changes = (),
     allow_code: AllowCode = False,
     out: Path | None = None,
@@ -48,7 +46,7 @@ def ensemble(
     points
         number of values along each axis
     duration
-        length of each transient
+        length of each transient; left out, 200 periods of the worst mode of the brake in the file
     changes
         other values for this run: --set friction.static=0.4 load="2 kN"
     allow_code
@@ -58,7 +56,7 @@ def ensemble(
     """
     found = read(file, changes, allow_code)
     across, up = axes_of(found, x, y, points)
-    seconds = time_of("--duration", duration)
+    seconds = usual_duration(found.design) if duration is None else time_of("--duration", duration)
     if not seconds > 0.0:
         raise UsageError(f"--duration {duration}: expected a time above 0 s")
     if out is not None:

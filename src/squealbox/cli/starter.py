@@ -126,11 +126,10 @@ def _second_axis(design: "Design") -> tuple[str, str]:
 
 
 def _duration(design: "Design") -> str:
-    """Long enough for a hundred periods of the slowest mode."""
-    from squealbox.stability import complex_modes
+    """The usual one, in round numbers."""
+    from squealbox.files.runs import usual_duration
 
-    slowest = float(np.min(complex_modes(design).frequency))
-    return f"{float(f'{100e3 / slowest:.1g}'):g} ms"
+    return f"{float(f'{1e3 * usual_duration(design):.1g}'):g} ms"
 
 
 def _example(brake: str) -> "Design":

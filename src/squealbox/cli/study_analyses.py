@@ -33,9 +33,11 @@ def analysis_of(found: "StudyFile") -> Callable[..., Any]:
 
             return functools.partial(judged_motion, settings=brake.simulate or Simulate())
         case "ensemble":
+            from squealbox.files.runs import usual_duration
             from squealbox.transient import simulate_ensemble
 
-            return functools.partial(simulate_ensemble, duration=found.study.duration, observe=found.observe)
+            seconds = found.study.duration or usual_duration(brake.design)
+            return functools.partial(simulate_ensemble, duration=seconds, observe=found.observe)
         case _:
             from squealbox.limit_cycles import shooting
 

@@ -10,7 +10,7 @@ from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files.analyses import Simulate
-from squealbox.files.runs import run, start_of
+from squealbox.files.runs import lasting, run, start_of
 from squealbox.parameters import ParameterError
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def simulate(
     out
         folder for the verdict, figures (PNG and SVG), motion.csv, motion.nc, and motion.wav where it can be heard
     duration
-        how long the motion is followed: 50ms
+        how long the motion is followed: 50ms; left out, 200 periods of the worst mode of steady sliding
     start
         rest (loads applied suddenly) or sliding
     method
@@ -57,7 +57,7 @@ def simulate(
     options = {"start": start, "method": method, "contact": contact}
     settings = _settings(found.simulate or Simulate(), duration, options)
     found = in_motion(dataclasses.replace(found, simulate=settings), contact=settings.contact)
-    settings = found.simulate or settings
+    settings = lasting(found.design, found.simulate or settings)
     system = found.design.system()
     start_of(system, settings)  # what cannot be started is said before a folder is made
     if out is not None:

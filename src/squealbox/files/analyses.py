@@ -32,7 +32,10 @@ class Modes(DataSheet):
 class Simulate(DataSheet):
     """[simulate]: a transient."""
 
-    duration: float = parameter("s", 0.0, low_open=True, default=0.05, meaning="how long the motion is followed")
+    duration: float | None = parameter(
+        "s", 0.0, low_open=True, default=None, optional=True,
+        meaning="how long the motion is followed; left out, 200 periods of the worst mode",
+    )  # fmt: skip
     start: str = choice("rest", "sliding", default="rest", meaning="where it starts: at zero, or in steady sliding")
     q: Vector = parameter("m", default=None, optional=True, meaning="displacement added at the start; left out, none")
     qd: Vector = parameter("m/s", default=None, optional=True, meaning="velocity at the start; left out, zero")

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.files.analyses import Simulate
-from squealbox.system import InvalidSystem, System, equilibrium
+from squealbox.system import InvalidSystem, System, as_system, equilibrium
 from squealbox.transient import Trajectory, simulate
 
 
@@ -23,8 +23,24 @@ def start_of(system: System, settings: Simulate) -> tuple[Any, Any]:
     return q + (0.0 if settings.q is None else settings.q), qd + (0.0 if settings.qd is None else settings.qd)
 
 
+PERIODS = 200.0  # of the worst mode, followed where nobody says how long
 SAMPLES = 12  # kept in a period of the quickest mode, at least, of a run that is judged
 MOST_NUMBERS = 40_000_000  # kept of one run: displacements and velocities together
+
+
+def usual_duration(design: Any, time: float = 0.0, periods: float = PERIODS) -> float:
+    """So many periods [s] of the worst mode about steady sliding, or of the quickest without friction; else 1 s."""
+    from squealbox.stability import complex_modes
+
+    modes = complex_modes(design, time)
+    worst = float(modes.most_unstable.frequency) if bool(modes.exists) else 0.0
+    hertz = worst if worst > 0.0 else _quickest(as_system(design))
+    return periods / hertz if hertz > 0.0 else 1.0
+
+
+def lasting(design: Any, settings: Simulate) -> Simulate:
+    """The section with a duration: its own, or the usual one of the brake."""
+    return settings.replace({"duration": settings.duration or usual_duration(design, settings.begin)})
 
 
 def run_closely(system: System, settings: Simulate) -> Trajectory:
@@ -33,7 +49,8 @@ def run_closely(system: System, settings: Simulate) -> Trajectory:
     The instants somebody keeps are his, those of a verdict follow from the brake: `SAMPLES` in a period of the quickest
     mode. Where so many do not fit in memory, the last stretch that fits is kept.
     """
-    quickest = _quickest(system)
+    settings, quickest = lasting(system, settings), _quickest(system)
+    assert settings.duration is not None
     needed = int(np.ceil(SAMPLES * quickest * settings.duration)) + 1 if np.isfinite(quickest) else 0
     most = max(MOST_NUMBERS // (2 * system.size), 1000)
     if needed <= int(settings.points):
@@ -56,7 +73,7 @@ def run(system: System, settings: Simulate, *, points: Any = None) -> Trajectory
     """The motion at `points`, a number of equal steps or the instants; by default as many as the section says."""
     return simulate(
         system,
-        settings.duration,
+        settings.duration or usual_duration(system, settings.begin),
         start=start_of(system, settings),
         times=int(settings.points) if points is None else points,
         method=None if settings.method == "usual" else settings.method,

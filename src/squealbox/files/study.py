@@ -44,7 +44,10 @@ class Study(DataSheet):
     time_limit: float | None = parameter(
         "s", 0.0, low_open=True, default=None, optional=True, meaning="of a block that a worker computes"
     )
-    duration: float = parameter("s", 0.0, low_open=True, default=0.05, meaning="of each transient of an ensemble")
+    duration: float | None = parameter(
+        "s", 0.0, low_open=True, default=None, optional=True,
+        meaning="of each transient of an ensemble; left out, 200 periods of the worst mode of the file's brake",
+    )  # fmt: skip
 
 
 class Refine(DataSheet):

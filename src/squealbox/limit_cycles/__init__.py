@@ -17,6 +17,7 @@ from squealbox.limit_cycles.branches.isolated import isolated_branches, settled_
 from squealbox.limit_cycles.branches.joined import joined
 from squealbox.limit_cycles.branches.point_curves import point_curve
 from squealbox.limit_cycles.branches.special_points import BranchPoint
+from squealbox.limit_cycles.branches.stretches import beside_sliding, stable_sliding, stretches
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.limit_cycles.cycles.forced import ForcedCycle, forced_branch, forced_cycle, forced_path
 from squealbox.limit_cycles.cycles.harmonic_balance import harmonic_balance
@@ -48,6 +49,7 @@ __all__ = [
     "averaged_limit",
     "averaged_swings",
     "basin",
+    "beside_sliding",
     "bifurcation_diagram",
     "branch",
     "coexistence",
@@ -71,5 +73,7 @@ __all__ = [
     "return_gap",
     "settled_cycles",
     "shooting",
+    "stable_sliding",
     "stick_slip_limit",
+    "stretches",
 ]

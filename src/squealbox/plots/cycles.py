@@ -13,6 +13,7 @@ from squealbox.parameters import DataSheet, ParameterError
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import read_of, unit_at
 from squealbox.plots.style import (
+    LOOK,
     WIDTH,
     cautioned,
     drawing,
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 APART = 10.0  # times as large: branches that differ by more do not share a linear axis
 NARROWEST = 1e-6  # of its values: half the least width of the axis of a parameter
 BESIDE = 4  # entries; a longer legend stands beside the panel
+ENTRY = 0.15  # inches, of a line of a legend
 # Marks of the special points: shape, and what the legend calls them.
 MARKS = {
     "fold": ("o", "fold"),
@@ -193,11 +195,10 @@ def _estimates(panel: Any, curves: Sequence[EstimateCurve], dof: int, factor: fl
     """Each kind in a look of its own; the legend says how far it is off the cycles."""
     for label in dict.fromkeys(curve.label for curve in curves):
         alike = [curve for curve in curves if curve.label == label]
-        off = [100.0 * curve.off for curve in alike if np.isfinite(curve.off)]
-        text = label.replace(" (", "\n(")
-        if off:
-            least, most = number(min(off), 2), number(max(off), 2)
-            text += f"\n{least} % off in the median" if least == most else f"\n{least} to {most} % off in the median"
+        worst = max(alike, key=lambda curve: np.nan_to_num(curve.most, nan=-1.0))
+        text = label.replace(" (", "\n(") + (
+            f"\n{worst.beside}".replace(", ", ",\n") if np.isfinite(worst.most) else ""
+        )
         colour, dash = ESTIMATES.get(label, ("#0072B2", ":"))
         for i, curve in enumerate(alike):
             panel.plot(curve.value / scale, curve.amplitude[:, dof] / factor, dash, color=colour, linewidth=1.2,
@@ -205,12 +206,19 @@ def _estimates(panel: Any, curves: Sequence[EstimateCurve], dof: int, factor: fl
 
 
 def _legend(panel: Any, alone: bool) -> None:
-    """Within the panel, or beside it where a long one would hide the curves and the figure is ours."""
+    """Within the panel; of a figure of ours a long one beside it, or above it where a width was asked for."""
     handles, texts = panel.get_legend_handles_labels()
     if alone and len(texts) > BESIDE:
         figure = figure_of(panel)
-        figure.set_size_inches(WIDTH, figure.get_size_inches()[1])
-        figure.legend(handles, texts, loc="outside right upper")
+        width, height = figure.get_size_inches()
+        if LOOK.get().width is None:
+            figure.set_size_inches(WIDTH, height)
+            figure.legend(handles, texts, loc="outside right upper")
+            return
+        lines = sum(1 + text.count("\n") for text in texts)
+        if LOOK.get().height is None:
+            figure.set_size_inches(width, height + ENTRY * lines)
+        figure.legend(handles, texts, loc="outside upper center")
     elif texts:
         panel.legend(loc="best")
 

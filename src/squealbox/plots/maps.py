@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.plots.style import drawing, figure_of, quantity_label
+from squealbox.plots.style import drawing, figure_of, quantity_label, scaled
 
 HATCH = "\\\\\\\\"  # against the slope that bands of coalescence usually have
 PALE = "#f6e6da"
@@ -115,7 +115,9 @@ def amplitude_map(
     title: str = "",
     axes: Any = None,
 ) -> "Figure":
-    """What transients end in, over two parameters, on a logarithmic scale of four decades below all but a hundredth.
+    """What transients end in, over two parameters: colour by the square root, from zero to all but a hundredth.
+
+    So the sizes of squeal differ in colour, and what has nearly decayed still differs from what has.
 
     Parameters
     ----------
@@ -124,14 +126,15 @@ def amplitude_map(
     unit, name : of what is drawn, by default an amplitude in m
     """
     x, y, grid = _checked("amplitude", x, y, np.asarray(amplitude, dtype=float))
-    from matplotlib.colors import LogNorm
+    from matplotlib.colors import PowerNorm
 
-    known = grid[np.isfinite(grid) & (grid > 0.0)]
-    top = float(np.quantile(known, 0.99)) if known.size else 1.0
+    known = grid[np.isfinite(grid)]
+    factor, read = scaled(unit, known)
+    top = float(np.quantile(known, 0.99)) / factor if np.any(known > 0.0) else 1.0
     with drawing(axes, width=4.4, height=3.4) as panel:
         panel.set_facecolor("#bbbbbb")
-        shown = np.ma.masked_invalid(np.where(np.isfinite(grid), np.maximum(grid, 1e-4 * top), grid))
-        mesh = panel.pcolormesh(x, y, shown, norm=LogNorm(1e-4 * top, top), cmap="magma_r", rasterized=True)
-        panel.figure.colorbar(mesh, ax=panel, label=quantity_label(name, unit), extend="both")
+        shown = np.ma.masked_invalid(grid / factor)
+        mesh = panel.pcolormesh(x, y, shown, norm=PowerNorm(0.5, 0.0, top), cmap="magma_r", rasterized=True)
+        panel.figure.colorbar(mesh, ax=panel, label=quantity_label(name, read), extend="max")
         panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
         return figure_of(panel)

@@ -121,8 +121,9 @@ def model_beside_measurement(found: Comparison, *, title: str = "", axes: Any = 
     with drawing(axes, width=1.5 * COLUMN, height=0.9 + NARROW * len(found.names)) as panel:
         rows = np.arange(len(found.names))
         panel.axvline(0.0, color="black", linewidth=0.6)
-        panel.errorbar(np.zeros(rows.size), rows, xerr=np.nan_to_num(share), fmt="s", color="#000000", markersize=4,
-                       capsize=3, linewidth=1.0, label="measured, 95 %")  # fmt: skip
+        both = np.isfinite(off)  # without a reference there is nothing to stand at zero
+        panel.errorbar(np.where(both, 0.0, np.nan), rows, xerr=np.nan_to_num(share), fmt="s", color="#000000",
+                       markersize=4, capsize=3, linewidth=1.0, label="measured, 95 %")  # fmt: skip
         panel.plot(off, rows, "o", color="#D55E00", markersize=5, label="simulated")
         numbers = zip(found.names, found.simulated, found.measured, strict=True)
         panel.set_yticks(rows, [f"{name}\n{_or_dash(a)} for {_or_dash(b)}" for name, a, b in numbers], fontsize=7)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.matrices import liveliest
+from squealbox.parameters import known_names
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import unit_of
 from squealbox.plots.maps import amplitude_map
@@ -17,23 +18,40 @@ if TYPE_CHECKING:
 
 
 @drawn_by.register(Ensemble)
-def ensemble_overview(found: Ensemble, *, observer: str | None = None, title: str = "", axes: Any = None) -> "Figure":
+def ensemble_overview(
+    found: Ensemble,
+    *,
+    observer: str | None = None,
+    dof: int | str | None = None,
+    title: str = "",
+    axes: Any = None,
+) -> "Figure":
     """What an observer saw over the parameters: a map over two, points over one, else sorted by size.
 
-    `observer` names it, by default the first. Of several degrees of freedom the one that moves most is drawn and named,
-    of several values the largest. Runs that did not end are left out.
+    `observer` names it, by default the first. Of several degrees of freedom `dof` is drawn, by default the one that
+    moves most, and named; of several values the largest. Runs that did not end are left out.
     """
     name = observer or next(iter(found.observed), "")
     seen = found[name] if name else np.abs(found.q)
     of, unit = found.settings["observed"][name] if name else ("dof", "m")
     seen = np.asarray(seen, dtype=float)
     label = name.replace("_", " ") or "displacement"
-    if of == "dof" and unit == "m":  # displacements and rotations do not compare: what moves most is drawn, by name
+    if of == "dof" and (
+        unit == "m" or dof is not None
+    ):  # displacements and rotations do not compare: what moves most is drawn, by name
         system = as_system(found.inputs["system"])
         sizes = np.where(np.isfinite(seen), seen, 0.0)
-        dof = liveliest(np.max(sizes.reshape(-1, system.size), axis=0), system.units)
-        seen, unit = seen.reshape(*found.shape, -1, system.size)[..., dof], system.units[dof]
-        label += f" {system.names[dof]}" if system.size > 1 else ""
+        names = list(system.names)
+        if isinstance(dof, str) and dof not in names:
+            raise ValueError(f"dof = {dof!r}: expected {known_names(dof, names)}")
+        each = sizes.reshape(-1, system.size, sizes[(0,) * len(found.shape)].size // system.size)
+        largest = liveliest(np.max(each, axis=(0, 2)), system.units)
+        place = largest if dof is None else names.index(dof) if isinstance(dof, str) else dof
+        seen, unit = (
+            seen.reshape(*found.shape, system.size, -1)[..., place, :],
+            unit if unit != "m" else system.units[place],
+        )
+        label += f" {names[place]}" if system.size > 1 else ""
     values = seen.reshape(*found.shape, -1)
     values = np.max(np.where(np.isfinite(values), values, -np.inf), axis=-1)
     values = np.where(np.isfinite(values) & (found.ended == "completed"), values, np.nan)

@@ -23,12 +23,14 @@ from squealbox.stability import (
     StabilityMap,
     TrackedModes,
     TransientGrowth,
+    map_boundary,
 )
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Scales = Mapping[str, tuple[float, str]] | None
+NEUTRAL = 1e-3  # of the largest growth rate: how far below zero a stable point of an undamped brake is drawn
 # Shade and hatch of each mechanism: they differ in grey as well as in colour.
 AREAS = {
     "flutter": ("#f0b27a", "////"),
@@ -94,43 +96,102 @@ def tracked_modes(tracked: TrackedModes, **keywords: Any) -> "Figure":
 def mechanism_map(
     found: StabilityMap, *, boundary: Boundary | None = None, scales: Scales = None, title: str = "", axes: Any = None
 ) -> "Figure":
-    """Stable and unstable regions over two parameters, shaded and hatched by mechanism, with traced boundary curves.
+    """Stable and unstable regions over two parameters, shaded and hatched by mechanism, up to the boundary.
+
+    Without `boundary` it is the map's own (:func:`stability.map_boundary`), of a map that does not keep what it was
+    computed for where the growth rate between its points is zero.
 
     A map of more or fewer than two parameters raises `ValueError`.
     """
+    from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     if len(found.axes) != 2:
         raise ValueError(f"a map over {list(found.axes)}: expected two parameters")
     (x_name, x), (y_name, y) = ((name, np.asarray(values)) for name, values in found.axes.items())
     (x_factor, x_unit), (y_factor, y_unit) = (_scale(found, name, scales) for name in (x_name, y_name))
-    handles = [Patch(facecolor="white", edgecolor="#000000", linewidth=0.5, label="stable")]
+    if boundary is None and found.inputs.get("system") is not None and min(x.size, y.size) > 1:
+        boundary = map_boundary(found)
+    boundary = boundary if boundary is not None and boundary.outcome.ok and len(boundary.x) else None
+    handles: list[Any] = [Patch(facecolor="white", edgecolor="#000000", linewidth=0.5, label="stable")]
+    x, y = x_factor * x, y_factor * y
     with drawing(axes, width=4.0, height=3.4) as panel:
+        unstable = _unstable(panel, found, x, y, boundary, (x_factor, y_factor))
+        nearest = _nearest_unstable(found)
         for name, (colour, hatch) in AREAS.items():
-            inside = (found.mechanism == found.mechanism_names.index(name)).T
-            if not np.any(inside):
+            inside = (nearest == found.mechanism_names.index(name)).T
+            if unstable is None or not np.any(inside):
                 continue
-            panel.contourf(
-                x_factor * x, y_factor * y, inside.astype(float), levels=[0.5, 1.5], colors=[colour], hatches=[hatch]
-            )
+            area = panel.contourf(x, y, inside.astype(float), levels=[0.5, 1.5], colors=[colour], hatches=[hatch])
+            area.set_clip_path(unstable, panel.transData)
             label = name.replace("_", " ")
             handles.append(Patch(facecolor=colour, hatch=hatch, edgecolor="#000000", linewidth=0.5, label=label))
         if not np.all(found.exists):
-            panel.contourf(
-                x_factor * x, y_factor * y, (~found.exists).T.astype(float), levels=[0.5, 1.5], colors=["#eeeeee"]
-            )
+            panel.contourf(x, y, (~found.exists).T.astype(float), levels=[0.5, 1.5], colors=["#eeeeee"])
             handles.append(Patch(facecolor="#eeeeee", label="no steady sliding"))
-        if boundary is None:
-            level = np.ma.masked_invalid(found.growth_rate.T)
-            if np.nanmin(found.growth_rate) < 0.0 < np.nanmax(found.growth_rate):
-                panel.contour(x_factor * x, y_factor * y, level, levels=[0.0], colors=["#000000"], linewidths=1.0)
-        else:
+        if boundary is not None:
             _curves(panel, boundary, x_factor, y_factor)
+        elif unstable is not None and np.any(_signed(found) < 0.0):
+            panel.contour(x, y, np.ma.masked_invalid(_signed(found).T), levels=[0.0], colors=["#000000"],
+                          linewidths=1.0)  # fmt: skip
+        if unstable is not None:
+            handles.append(Line2D([], [], color="#000000", linewidth=1.0, label="boundary"))
         panel.legend(handles=handles, loc="best", handlelength=2.0)
         panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
         # a map that is stable all over draws nothing else, and would keep the axes of an empty figure
-        panel.set(xlim=x_factor * x[[0, -1]], ylim=y_factor * y[[0, -1]])
+        panel.set(xlim=x[[0, -1]], ylim=y[[0, -1]])
         return figure_of(panel)
+
+
+def _signed(found: StabilityMap) -> Any:
+    """Growth rates, below zero at every stable point: those of an undamped brake are round-off there."""
+    stable = found.exists & ~np.isin(found.mechanism, [found.mechanism_names.index(name) for name in AREAS])
+    largest = float(np.nanmax(np.abs(found.growth_rate), initial=0.0)) or 1.0
+    return np.where(stable, np.minimum(found.growth_rate, -NEUTRAL * largest), found.growth_rate)
+
+
+def _nearest_unstable(found: StabilityMap) -> Any:
+    """The mechanism of each point, of a stable one that of the nearest unstable: areas reach the boundary."""
+    from scipy.ndimage import distance_transform_edt
+
+    known = np.isin(found.mechanism, [found.mechanism_names.index(name) for name in AREAS])
+    if not np.any(known):
+        return found.mechanism
+    nearest = distance_transform_edt(~known, return_distances=False, return_indices=True)
+    return found.mechanism[tuple(nearest)]
+
+
+def _unstable(panel: Any, found: StabilityMap, x: Any, y: Any, boundary: Boundary | None, factors: Any) -> Any:
+    """The outline of the unstable area: to the traced boundary, else to zero between the points; None without one."""
+    from matplotlib.tri import Triangulation
+
+    growth = _signed(found).T
+    if not np.nanmax(growth, initial=-1.0) > 0.0:
+        return None
+    levels = [0.0, 2.0 * float(np.nanmax(growth))]
+    if boundary is None:
+        area = panel.contourf(x, y, np.ma.masked_invalid(growth), levels=levels)
+    else:
+        ends = np.array([[x[0], x[-1]], [y[0], y[-1]]])
+        size = np.array([len(x), len(y)]) / np.ptp(ends, axis=1)  # cells in a unit
+        traced = [_dense(np.array(factors) * points, size) for points in boundary.curves]
+        nodes = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        at = np.concatenate([nodes, *traced])
+        value = np.append(growth.ravel(), np.zeros(len(at) - len(nodes)))
+        triangles = Triangulation(size[0] * at[:, 0], size[1] * at[:, 1]).get_masked_triangles()
+        known = triangles[np.all(np.isfinite(value)[triangles], axis=1)]
+        area = panel.tricontourf(Triangulation(at[:, 0], at[:, 1], known), np.nan_to_num(value), levels=levels)
+    outline = area.get_paths()[0]
+    area.remove()
+    return outline
+
+
+def _dense(points: Any, size: Any) -> Any:
+    """A curve (k, 2) with a point in every tenth of a cell, so that triangles do not reach across it."""
+    steps = np.maximum(np.ceil(10.0 * np.max(np.abs(np.diff(points, axis=0)) * size, axis=1)), 1.0)
+    place = np.append(0.0, np.cumsum(steps))
+    every = np.arange(place[-1] + 1.0)
+    return np.column_stack([np.interp(every, place, points[:, k]) for k in range(2)])
 
 
 @drawn_by.register(Boundary)

@@ -49,7 +49,7 @@ def squeal_probability(found: SquealProbability, *, title: str = "", axes: Any =
             panel.plot(middles / factor, share, **line(0), marker="o")
             panel.set_ylim(-0.03 * top, 1.03 * top)
             panel.set_xlabel(quantity_label(found.names[i], unit))
-            if place == 0:
+            if place == 0 or panel.get_gridspec().ncols == 1:  # below each other nothing is shared
                 panel.set_ylabel("share of squeal, 95 % band")
             else:
                 panel.tick_params(labelleft=False)

@@ -13,7 +13,7 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files.analyses import Axis, Map, Simulate, quantity_of, scalar_parameters
-from squealbox.files.runs import run, run_closely
+from squealbox.files.runs import lasting, run, run_closely, usual_duration
 from squealbox.limit_cycles import hopf_point, shooting
 from squealbox.matrices import liveliest
 from squealbox.parameters import ParameterError
@@ -35,7 +35,6 @@ from squealbox.transient import verdict
 from squealbox.transient.simulate import TIME_STEPPING
 
 Progress = Callable[[str], None]
-PERIODS = 200  # of the worst mode, followed where the file does not say how long
 MAP_POINTS = 81
 MOST_MAP_POINTS = 151
 CYCLE = "squealbox cycle looks for it, in its own time"
@@ -145,7 +144,9 @@ class _Work:
         with self.part("transient", "transient (the first run compiles the engine)"):
             if simulate is None:
                 self._not_too_large("a motion", "[simulate] in the file asks for one, and for how long")
-            self.found["settings"] = settings = simulate or Simulate(duration=PERIODS * self._period())
+            self.found["settings"] = settings = lasting(
+                self.design, simulate or Simulate(duration=usual_duration(self.design, self.time))
+            )
             moving = self.system if settings.contact == TIME_STEPPING else self.moving
             self.found["motion"] = motion = run_closely(moving, settings)
             if not motion.outcome.ok:
@@ -162,8 +163,8 @@ class _Work:
             if not 20.0 <= pitch <= 20e3:
                 raise SignalError(f"its frequency, {pitch:.4g} Hz, is not one people hear")
             self._not_too_large("two seconds of motion to be heard", "squealbox listen makes sound of a recording")
-            longer = settings.replace({"duration": max(HEARD, settings.duration)})
-            self.found["heard"] = run(moving, longer, points=int(longer.duration * SAMPLING) + 1)
+            longer = settings.replace({"duration": max(HEARD, settings.duration or 0.0)})
+            self.found["heard"] = run(moving, longer, points=int((longer.duration or HEARD) * SAMPLING) + 1)
 
     def cycle(self) -> None:
         """A limit cycle: from the usual start, the end of the transient, and pushes about steady sliding."""
@@ -217,13 +218,6 @@ class _Work:
         numbers = [name for name, _, value in self.design.leaves() if isinstance(value, float) and value != 0.0]
         known = scalar_parameters(self.design)
         return tuple(name for name in numbers if name in known and name.partition(".")[0] not in heads)
-
-    def _period(self) -> float:
-        """Period [s] of the worst mode, else of the fastest undamped one."""
-        if self.modes.exists and self.modes.most_unstable.frequency > 0.0:
-            return 1.0 / self.modes.most_unstable.frequency
-        rates = np.sqrt(np.abs(np.linalg.eigvals(np.linalg.solve(self.system.M, self.system.K))))
-        return 2.0 * np.pi / float(np.max(rates)) if np.max(rates) > 0.0 else 1.0
 
     def _usual_axis(self) -> Axis:
         known = scalar_parameters(self.design)

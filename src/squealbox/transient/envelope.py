@@ -13,6 +13,7 @@ from squealbox.signals import LEAST, SignalError, column, values
 
 PERIODS = 2  # in a window: one holds a crest and a trough; the second leaves room for an error of the period
 LONGEST = 6  # periods of the dominant frequency after which a cycle may repeat: subharmonics down to a sixth
+RETURNS = 0.1  # a motion that misses itself by more after its period is no cycle; 2 % of change adds 0.02
 WINDOWS = 400  # at most, however long the run
 
 
@@ -123,6 +124,38 @@ def repetition(curve: Curve, left: float, right: float, frequency: float) -> tup
         return 1, 1.0
     best = next(i for i, misfit in enumerate(misfits) if misfit <= 1.1 * min(misfits) + 0.02)
     return best + 1, misfits[best]
+
+
+def last_period(curve: Curve) -> tuple[float, float]:
+    """The shortest time [s] after which the motion repeats itself at its end, and how badly it then does.
+
+    The misfit is that of :func:`repetition`, of the last period and the one before it, so that two periods are enough:
+    a transform resolves no frequency of so few. (NaN, NaN) where no period, down to the hundredth part of the record,
+    is the nearest return of its surroundings and misses by less than `RETURNS`.
+    """
+    from scipy.optimize import minimize_scalar
+
+    share, length = np.linspace(0.0, 1.0, 257), curve.end - curve.begin
+
+    def misfit(period: Any) -> Any:
+        early = curve.end - np.multiply.outer(period, 2.0 - share)
+        before, after = curve.spline(early), curve.spline(early + np.expand_dims(period, -1))
+        strength = np.sqrt(2.0) * np.std(np.concatenate([before, after], axis=-1), axis=-1)
+        return np.sqrt(np.mean((after - before) ** 2, axis=-1)) / np.maximum(strength, 1e-12 * np.ptp(curve.heights))
+
+    periods = np.geomspace(0.01, 0.5, 400) * length
+    found = misfit(periods)
+    lowest = np.flatnonzero((found[1:-1] < found[:-2]) & (found[1:-1] <= found[2:]) & (found[1:-1] < 0.5)) + 1
+    returns = []
+    for i in lowest:
+        best = minimize_scalar(
+            misfit, bounds=periods[[i - 1, i + 1]], method="bounded", options={"xatol": 1e-9 * periods[i]}
+        )
+        returns.append((float(best.x), float(best.fun)))
+    least = min((miss for _, miss in returns), default=np.inf)
+    if least >= RETURNS:
+        return np.nan, np.nan
+    return next(each for each in returns if each[1] <= 1.1 * least + 0.02)
 
 
 def envelope(curve: Curve, frequency: float, repeat: int = 1) -> tuple[Any, Any, Any]:

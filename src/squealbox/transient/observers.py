@@ -180,20 +180,35 @@ def _slope(memory: Any) -> Any:
 
 
 def settled_update(memory: Any, p: Any, before: Any, after: Any) -> Memory:
-    """The last instant at which |q'| exceeds p[1], and the last instant of all."""
-    return (np.where(abs(after.qd) > p[1], after.t, memory[0]), after.t)
+    """The last instant seen at which |q'| exceeds p[1], the last of all, the last turn of q and its longest swing."""
+    turns, at, _ = extreme(before, after)
+    swing = np.where(turns & (memory[2] > -1e300), at - memory[2], 0.0)
+    peaks = before.qdd * after.qdd < 0.0
+    x = np.where(peaks, before.qdd / np.where(peaks, before.qdd - after.qdd, 1.0), 1.0)
+    h, y = after.t - before.t, 1.0 - x
+    inside = y * y * ((1.0 + 2.0 * x) * before.qd + x * h * before.qdd)
+    inside = inside + x * x * ((1.0 + 2.0 * y) * after.qd - y * h * after.qdd)
+    seen = np.where(abs(inside) > p[1], before.t + x * h, memory[0])
+    return (
+        np.where(abs(after.qd) > p[1], after.t, seen),
+        after.t,
+        np.where(turns, at, memory[2]),
+        np.maximum(memory[3], swing),
+    )
 
 
 def settled(level: float = 1e-4) -> Observer:
     """When |q'| of each degree of freedom fell below `level` [m/s] for good [s]; inf when it had not at the end.
 
-    It is looked at where steps end, so the instant is early by up to a step.
+    For good is longer than the longest swing from turn to turn: every oscillation is slow where it turns. It is looked
+    at where steps end and where q' peaks inside, so the instant is early by up to a step.
     """
-    return Observer("settled", settled_update, (0.0, 0.0), "dof", _when, 1.0, (level,), unit="s")
+    return Observer("settled", settled_update, (0.0, 0.0, -2e300, 0.0), "dof", _when, 1.0, (level,), unit="s")
 
 
 def _when(memory: Any) -> Any:
-    return np.where(memory[..., 0] < memory[..., 1], memory[..., 0], np.inf)
+    still = memory[..., 1] - memory[..., 0]
+    return np.where((still > 0.0) & (still >= memory[..., 3]), memory[..., 0], np.inf)
 
 
 def energy_update(memory: Any, p: Any, before: Any, after: Any) -> Memory:

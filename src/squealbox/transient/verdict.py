@@ -12,14 +12,14 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.matrices import liveliest
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.signals import LEAST, highest_line, slope, with_error
-from squealbox.transient.envelope import Curve, envelope, repetition, smooth_curve
+from squealbox.signals import LEAST, with_error
+from squealbox.transient.course import Course, course_of, held_since, nothing, sticking
+from squealbox.transient.envelope import RETURNS, smooth_curve
 from squealbox.transient.resolution import resolved
 from squealbox.transient.trajectory import Trajectory
 
 DECAYS, GROWS, SETTLES_ON_CYCLE, NOT_DECIDED = "decays", "grows", "settles_on_cycle", "not_decided"
-MISFIT = 0.1  # a motion that misses itself by more after its period is no cycle; 2 % of change adds 0.02
-STILL = 1e-9  # of the whole swing: what moves less in the last part is at rest
+FLAT = 0.1  # of the amplitude: what changes by less in the last part settles
 ONE_RATE = 0.8  # a decay at one rate keeps it from one part to the next; an approach to a cycle slows down
 
 
@@ -31,9 +31,11 @@ class Verdict(Result):
     run that failed is not decided, and the numbers tell what was reached. A number that does not apply is NaN.
     """
 
-    amplitude: Any = quantity("", "m", "half peak to peak over the last part")
+    amplitude: Any = quantity("", "m", "half peak to peak over the last part, which holds two periods")
     frequency: Any = quantity("", "Hz", "dominant frequency in the last part")
-    growth_rate: Any = quantity("", "1/s", "growth rate of the amplitude in the last half")
+    growth_rate: Any = quantity(
+        "", "1/s", "growth rate of the amplitude in the last half; of a beat, up to or from its top"
+    )
     growth_rate_error: Any = quantity("", "1/s", "95 % half-width of the growth rate")
     settled_at: Any = quantity("", "s", "when the amplitude came to stay near its last value, or near zero")
     offset: Any = quantity("", "m", "mean over the last part")
@@ -82,7 +84,8 @@ def verdict(
         decays). 5 % is the usual settling band
     gone : share of the largest amplitude below which nothing is left. An integrator at its usual tolerance of 1e-3
         leaves that much
-    least_periods : fewer periods than this in the last part decide nothing
+    least_periods : fewer periods than this in the last part decide nothing; amplitude and frequency are then those of
+        the last two periods, or without a frequency where the record holds none
 
     Returns
     -------
@@ -105,11 +108,13 @@ def verdict(
             motion = closer
     dof, name, unit = _judged_dof(motion, dof)
     if not outcome.ok and np.size(motion.t) < LEAST:
-        course = _nothing(motion)
+        course = nothing(motion)
     else:
-        course = _course(smooth_curve(motion, t, dof=dof, begin=begin, end=end), part, gone, held=_held(motion))
+        curve = smooth_curve(motion, t, dof=dof, begin=begin, end=end)
+        late = curve.end - part * (curve.end - curve.begin)
+        course = course_of(curve, part, gone, held_since(motion), sticking(motion, dof, late))
     if outcome.ok:
-        kind, why = _judged(course, part, steady, gone, least_periods)
+        kind, why, course = _judged(course, steady, gone, least_periods)
     else:
         kind, why = NOT_DECIDED, f"the run ended early, {outcome}: {outcome.message}"
     settled = _settled_at(course, kind, band)
@@ -141,180 +146,88 @@ def _judged_dof(motion: Any, dof: int | str | None) -> tuple[int | str, str, str
     return dof, name, motion.system.units[names.index(name)] if name in names else "m"
 
 
-@dataclass(frozen=True)
-class _Course:
-    """What was measured: the envelope and what it says of the last part and the last half."""
-
-    begin: float
-    end: float
-    late: float
-    time: Any
-    envelope: Any
-    centre: Any
-    amplitude: float
-    frequency: float
-    rate: float
-    rate_error: float
-    offset: float
-    turns: int
-    misfit: float
-    rest: float = float("nan")
-
-    def stretch(self, left: float, right: float) -> tuple[float, float]:
-        """Rate and error of the logarithm of the envelope between shares `left` and `right` of the run."""
-        share = (self.time - self.begin) / (self.end - self.begin)
-        inside = (share >= left) & (share <= right) & (self.envelope > 0.0)
-        return slope(self.time[inside], np.log(self.envelope[inside]))
-
-
-def _held(motion: Any) -> float:
-    """The instant [s] of the last event of a motion that ends with a contact that sticks; NaN of any other."""
-    sticks = isinstance(motion, Trajectory) and motion.mode.size and np.any(motion.mode[-1] == 0)
-    return (float(motion.event_time[-1]) if len(motion.event_time) else float(motion.t[0])) if sticks else float("nan")
-
-
-def _course(curve: Curve, part: float, gone: float, *, held: float) -> _Course:
-    late = curve.end - part * (curve.end - curve.begin)
-    half = 0.5 * (curve.begin + curve.end)
-    turns = int(np.count_nonzero(curve.turns > late))
-    still = float(np.ptp(curve.x)) <= 1e-12 * float(np.max(np.abs(curve.x), initial=0.0))  # rounding of a constant
-    if still or np.count_nonzero(curve.turns > half) < 2:
-        return _without_oscillation(curve, late, half, turns)
-    overall = _frequency(curve, curve.begin, curve.end)
-    time, heights, centre = envelope(curve, overall)
-    frequency, repeat, misfit = overall, 1, 1.0
-    if np.max(heights[time > late]) > gone * np.max(heights):
-        frequency = _frequency(curve, late, curve.end)
-        repeat, misfit = repetition(curve, late, curve.end, frequency)
-        time, heights, centre = envelope(curve, min(frequency, overall), repeat)
-    if np.isfinite(held) and float(np.ptp(curve.spline(np.linspace(late, curve.end, 257)))) <= STILL * float(
-        np.ptp(curve.heights)
-    ):
-        return _stopped(curve, late, turns, held, time, heights, centre)
-    strong = (time > half) & (heights > gone * np.max(heights))
-    rate, error = slope(time[strong], np.log(heights[strong])) if np.count_nonzero(strong) > 2 else (np.nan, np.nan)
-    return _Course(
-        begin=curve.begin,
-        end=curve.end,
-        late=late,
-        time=time,
-        envelope=heights,
-        centre=centre,
-        amplitude=float(curve.swing(late, curve.end, 1.0 / frequency)[0]),
-        frequency=frequency,
-        rate=rate,
-        rate_error=error,
-        offset=float(curve.mean(late, curve.end)),
-        turns=turns,
-        misfit=misfit,
-    )
-
-
-def _stopped(curve: Curve, late: float, turns: int, rest: float, time: Any, heights: Any, centre: Any) -> _Course:
-    """A motion that friction has stopped: it has no frequency any more, and its envelope ends where it came to rest."""
-    none = float("nan")
-    return _Course(curve.begin, curve.end, late, time, heights, centre, 0.0, none, none, none,
-                   float(curve.mean(late, curve.end)), turns, none, rest)  # fmt: skip
-
-
-def _nothing(motion: Any) -> _Course:
-    """A run that failed before there was anything to measure."""
-    begin, end = (float(motion.t[i]) for i in (0, -1)) if np.size(motion.t) else (np.nan, np.nan)
-    none = np.empty(0)
-    return _Course(begin, end, np.nan, none, none, none, np.nan, np.nan, np.nan, np.nan, np.nan, 0, np.nan)
-
-
-def _frequency(curve: Curve, left: float, right: float) -> float:
-    times, x = curve.even(left, right)
-    return highest_line(x, times)
-
-
-def _without_oscillation(curve: Curve, late: float, half: float, turns: int) -> _Course:
-    """A motion that runs one way: its rate is that of its velocity, which knows no offset."""
-    times, x = curve.even(curve.begin, curve.end)
-    speed = np.abs(curve.spline.derivative()(times))
-    moving = (times > half) & (speed > 0.0)
-    rate, error = slope(times[moving], np.log(speed[moving])) if np.ptp(x) > 0.0 else (np.nan, np.nan)
-    return _Course(
-        begin=curve.begin,
-        end=curve.end,
-        late=late,
-        time=times,
-        envelope=speed,
-        centre=x,
-        amplitude=0.5 * float(np.ptp(x[times > late])),
-        frequency=np.nan,
-        rate=rate,
-        rate_error=error,
-        offset=float(curve.mean(late, curve.end)),
-        turns=turns,
-        misfit=np.nan,
-    )
-
-
-def _judged(course: _Course, part: float, steady: float, gone: float, least_periods: float) -> tuple[str, str]:
+def _judged(course: Course, steady: float, gone: float, least_periods: float) -> tuple[str, str, Course]:
+    """The fate, why, and the course with the rate that it rests on."""
     top = float(np.max(course.envelope))
-    last = course.envelope[course.time > course.late]
+    last = course.envelope[course.time > course.end - course.last]
     if top == 0.0:
-        return DECAYS, "it stays at rest"
+        return DECAYS, "it stays at rest", course
     if np.isfinite(course.rest):
-        return DECAYS, f"it comes to rest at {_read(course.rest, 's')}" if course.rest > 0.0 else "it stays at rest"
+        why = f"it comes to rest at {_read(course.rest, 's')}" if course.rest > 0.0 else "it stays at rest"
+        return DECAYS, why, course
     if np.max(last) <= gone * top:
-        return DECAYS, "nothing is left of it"
+        return DECAYS, "nothing is left of it", course
     if np.isnan(course.frequency):
         return _one_way(course)
-    periods = course.frequency * (course.end - course.late)
+    periods = course.frequency * course.last
     if periods < least_periods:
-        return NOT_DECIDED, f"the last part holds only {periods:.2g} periods"
-    now, error = course.stretch(1.0 - part, 1.0)
-    change = now * (course.end - course.late)
+        return NOT_DECIDED, f"the last {_read(course.last, 's')} hold only {periods:.2g} periods", course
+    now = course.stretch(1.0 - course.part, 1.0)
+    change = now[0] * course.last
     if abs(change) <= steady and np.ptp(last) <= 2.0 * steady * np.mean(last):
-        before, before_error = course.stretch(1.0 - 2.0 * part, 1.0 - part)
-        one_rate = abs(now) > error and abs(before) > before_error and ONE_RATE < before / now < 1.0 / ONE_RATE
+        before = course.stretch(1.0 - 2.0 * course.part, 1.0 - course.part)
+        one_rate = _clear(*now) and _clear(*before) and ONE_RATE < before[0] / now[0] < 1.0 / ONE_RATE
         if one_rate and abs(change) > gone:
-            return (DECAYS if now < 0.0 else GROWS), "slowly, at one rate"
-        if course.misfit > MISFIT:
-            return NOT_DECIDED, "its amplitude is steady, but the motion does not repeat"
-        return SETTLES_ON_CYCLE, ""
-    if _slows(course, part, ONE_RATE) and _slows(course, 0.5 * part, np.sqrt(ONE_RATE)):
-        return NOT_DECIDED, f"its amplitude is still settling, by {100.0 * change:+.2g} % over the last part"
-    return _trend(course)
+            return (DECAYS if now[0] < 0.0 else GROWS), "slowly, at one rate", course.at_rate(*now)
+        if course.misfit > RETURNS:
+            return NOT_DECIDED, "its amplitude is steady, but the motion does not repeat", course
+        return SETTLES_ON_CYCLE, "", course
+    settling = f"its amplitude is still settling, by {100.0 * change:+.2g} % over the last part"
+    if _slows(course, course.part, ONE_RATE) and _slows(course, 0.5 * course.part, np.sqrt(ONE_RATE)):
+        return NOT_DECIDED, settling, course
+    kind, rate = _trend(course, steady)
+    if kind == NOT_DECIDED:
+        flat = np.ptp(last) <= FLAT * np.mean(last)
+        why = settling if flat else "its amplitude rises and falls, and no trend stands out"
+        return kind, why, course
+    return (kind, "", course) if rate is None else (kind, "while beating", course.at_rate(*rate))
 
 
-def _slows(course: _Course, part: float, share: float) -> bool:
+def _clear(rate: float, error: float) -> bool:
+    """True of a rate whose interval, as it is printed, does not hold zero."""
+    if not abs(rate) > error:
+        return False
+    told, about = with_error(abs(rate), error).split(" +- ")
+    return float(told) > float(about)
+
+
+def _slows(course: Course, part: float, share: float) -> bool:
     """True when the rate in the last part is surely less than `share` of the rate in the part before, same sign."""
     now, now_error = course.stretch(1.0 - part, 1.0)
     before, before_error = course.stretch(1.0 - 2.0 * part, 1.0 - part)
     return now * before > 0.0 and abs(now) + now_error < share * (abs(before) - before_error)
 
 
-def _trend(course: _Course) -> tuple[str, str]:
-    """Growth or decay over the last half; where it beats, from the largest amplitude on, or up to it."""
-    rate, error = course.stretch(0.5, 1.0)
-    if rate + error < 0.0:
-        return DECAYS, ""
-    if rate - error > 0.0:
-        return GROWS, ""
+def _trend(course: Course, steady: float) -> tuple[str, tuple[float, float] | None]:
+    """Growth or decay over the last half; where it beats, from the largest amplitude on, or up to it, with its rate."""
+    if _clear(course.rate, course.rate_error):
+        return (DECAYS if course.rate < 0.0 else GROWS), None
     peak = int(np.argmax(course.envelope))
     share = (course.time[peak] - course.begin) / (course.end - course.begin)
-    after, after_error = course.stretch(share, 1.0)
-    if share < 0.5 and after + after_error < 0.0:
-        return DECAYS, "while beating"
-    until, until_error = course.stretch(0.0, share)
-    if share > 0.5 and until - until_error > 0.0:
-        return GROWS, "while beating"
-    return NOT_DECIDED, "its amplitude rises and falls, and no trend stands out"
+    after = course.stretch(share, 1.0)
+    if share < 0.5 and after[0] < 0.0 and _clear(*after):
+        return DECAYS, after
+    until, three_quarters = course.stretch(0.0, share), course.end - 0.25 * (course.end - course.begin)
+    rises = course.envelope[peak] > (1.0 + steady) * np.max(course.envelope[course.time < three_quarters])
+    if rises and until[0] > 0.0 and _clear(*until):
+        return GROWS, until
+    return NOT_DECIDED, None
 
 
-def _one_way(course: _Course) -> tuple[str, str]:
-    if course.turns == 0 and course.rate - course.rate_error > 0.0:
-        return GROWS, "without oscillation"
-    if course.turns == 0 and course.rate + course.rate_error < 0.0:
-        return DECAYS, "without oscillation"
-    return NOT_DECIDED, "it neither oscillates nor runs one way"
+def _one_way(course: Course) -> tuple[str, str, Course]:
+    if course.turns:
+        return NOT_DECIDED, "it does not run one way, and the record is too short to tell a period", course
+    if course.sticks:
+        return NOT_DECIDED, f"{course.sticks} sticks through the last part", course
+    before, now = (course.stretch(1.0 - k * course.part, 1.0 - (k - 1) * course.part)[0] for k in (2, 1))
+    if 0.0 < now < ONE_RATE * before:
+        return NOT_DECIDED, "it runs one way, but not at one rate", course.at_rate(np.nan, np.nan)
+    if _clear(course.rate, course.rate_error):
+        return (GROWS if course.rate > 0.0 else DECAYS), "without oscillation", course
+    return NOT_DECIDED, "it neither oscillates nor clearly runs away or towards rest", course
 
 
-def _settled_at(course: _Course, kind: str, band: float) -> float:
+def _settled_at(course: Course, kind: str, band: float) -> float:
     if np.isfinite(course.rest):
         return course.rest
     if kind == SETTLES_ON_CYCLE:
@@ -329,7 +242,7 @@ def _settled_at(course: _Course, kind: str, band: float) -> float:
     return float(course.time[after]) if after < course.time.size else np.nan
 
 
-def _sentence(kind: str, why: str, course: _Course, settled: float, name: str, unit: str) -> str:
+def _sentence(kind: str, why: str, course: Course, settled: float, name: str, unit: str) -> str:
     words = {DECAYS: "Decays", GROWS: "Grows", SETTLES_ON_CYCLE: "Settles on a cycle", NOT_DECIDED: "Not decided"}
     text = words[kind] + (f" ({why})" if why else "")
     if np.isfinite(course.rate) and kind != SETTLES_ON_CYCLE:

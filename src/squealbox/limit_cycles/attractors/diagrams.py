@@ -7,7 +7,7 @@ sliding; all of it is one ensemble. Where up and down differ, attractors coexist
 motion comes from a run of its own, after the motion has settled.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -29,6 +29,7 @@ from squealbox.limit_cycles.attractors.settling import (
 )
 from squealbox.limit_cycles.branches.isolated import drawn_states
 from squealbox.limit_cycles.cycles.remembering import field_of
+from squealbox.matrices import runs_of_true
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import complex_modes
@@ -80,15 +81,20 @@ class BifurcationDiagram(Result):
         rests = self.kind == RESTS
         return np.any(rests, axis=0) & np.any(~rests & (self.kind != FAILED), axis=0)
 
+    def stretches(self, inside: Any, shown: Callable[[float], str]) -> str:
+        """The values of `inside` (point,) in words, a stretch of neighbours at a time."""
+        ends = [(shown(float(self.value[i])), shown(float(self.value[j]))) for i, j in runs_of_true(inside)]
+        return " and ".join(f"at {low}" if low == high else f"from {low} to {high}" for low, high in ends)
+
     def summary(self) -> str:
         """A line for each sweep, and where sliding and vibration coexist."""
         lines = []
         for name, kind in zip(self.sweeps, self.kind, strict=True):
             counts = ", ".join(f"{int(np.sum(kind == code))} {KINDS[code]}" for code in (1, 2, 0, -1))
             lines.append(f"{name}: {len(self.value)} values of {self.parameter}: {counts}")
-        here = self.value[self.coexist]
-        if here.size:
-            lines.append(f"rest and vibration coexist at {here.size} values, {here.min():.5g} to {here.max():.5g}")
+        if np.any(self.coexist):
+            over = self.stretches(self.coexist, lambda value: f"{value:.5g}")
+            lines.append(f"rest and vibration coexist at {int(np.sum(self.coexist))} values, {over}")
         lines += [f"Caution: {self.caution}"] if self.caution else []
         return "\n".join(lines)
 

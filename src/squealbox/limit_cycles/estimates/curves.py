@@ -33,8 +33,9 @@ AVERAGED = "averaging (Thomsen-Fidlin), slip only"
 class EstimateCurve:
     """A quick estimate over a parameter: its name, values (k,), amplitudes (k, dof) [m], and where it may be trusted.
 
-    off : median of |amplitude / amplitude of the nearest cycle followed - 1|, of the degree of freedom that moves most;
-        NaN where no cycle was followed at its values
+    off, most : |amplitude / amplitude of the nearest cycle followed - 1|, of the degree of freedom that moves most:
+        half of the length of the curve, as it is drawn, is within `off`, nine tenths within `most`; NaN where no cycle
+        was followed at its values
     """
 
     label: str
@@ -42,10 +43,16 @@ class EstimateCurve:
     amplitude: Any
     validity: str
     off: float = float("nan")
+    most: float = float("nan")
 
     def __repr__(self) -> str:
-        beside = f"; {100.0 * self.off:.2g} % off the cycles followed, in the median" if np.isfinite(self.off) else ""
-        return f"{self.label}: {self.validity}{beside}"
+        return f"{self.label}: {self.validity}" + (f"; {self.beside}" if np.isfinite(self.off) else "")
+
+    @property
+    def beside(self) -> str:
+        """How far the curve is from the cycles followed, in words."""
+        half, most = (float(f"{100.0 * share:.2g}") for share in (self.off, self.most))
+        return f"half within {half:g} %, nine tenths within {most:g} % of the cycles"
 
 
 @public()
@@ -78,7 +85,7 @@ def estimate_curves(
     if len(values):
         validity = "holds for damping and friction small against the spring"
         found.append(EstimateCurve(AVERAGED, values, sizes[:, None], validity))
-    return tuple(EstimateCurve(c.label, c.value, c.amplitude, c.validity, _off(c, branches)) for c in found)
+    return tuple(EstimateCurve(c.label, c.value, c.amplitude, c.validity, *_off(c, branches)) for c in found)
 
 
 def _through(
@@ -141,15 +148,25 @@ def _near(curve: EstimateCurve, value: float, size: Any, bounds: tuple[float, fl
     return bool(len(there) and np.min(np.linalg.norm(there - here, axis=1)) < SAME)
 
 
-def _off(curve: EstimateCurve, branches: Sequence[Branch]) -> float:
-    """How far the curve is from the nearest cycles followed at its values, in the median."""
+def _off(curve: EstimateCurve, branches: Sequence[Branch]) -> tuple[float, float]:
+    """How far half of the curve, and nine tenths, are from the nearest cycles followed at its values.
+
+    Points weigh by the length of the curve about them: they are packed where it turns or goes straight up.
+    """
     slips, away = curve.label == AVERAGED, []
-    for value, size in zip(curve.value, curve.amplitude, strict=True):
+    drawn = np.column_stack([curve.value, np.max(curve.amplitude, axis=1)])
+    steps = np.linalg.norm(np.diff(drawn / np.maximum(np.ptp(drawn, axis=0), 1e-300), axis=0), axis=1)
+    lengths = 0.5 * (np.append(steps, 0.0) + np.append(0.0, steps))
+    for value, size, length in zip(curve.value, curve.amplitude, lengths, strict=True):
         dof = int(np.argmax(size))
         cycles = [a for one in branches for a in _at(one, float(value), dof, slips)]
         if cycles and size[dof] > 0.0:
-            away.append(min(abs(size[dof] / a - 1.0) for a in cycles))
-    return float(np.median(away)) if away else float("nan")
+            away.append((min(abs(size[dof] / a - 1.0) for a in cycles), length))
+    if not away:
+        return float("nan"), float("nan")
+    errors, weights = np.array(sorted(away)).T
+    half, most = np.searchsorted(np.cumsum(weights), np.array([0.5, 0.9]) * np.sum(weights))
+    return float(errors[half]), float(errors[most])
 
 
 def _at(one: Branch, value: float, dof: int, slips: bool) -> list[float]:

@@ -11,7 +11,17 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.limit_cycles import Branch, Cycle, HopfPoint, branch, hopf_point, shooting
+from squealbox.limit_cycles import (
+    Branch,
+    Cycle,
+    HopfPoint,
+    beside_sliding,
+    branch,
+    hopf_point,
+    shooting,
+    stable_sliding,
+)
+from squealbox.limit_cycles.branches.stretches import NEUTRAL
 from squealbox.parameters import ParameterError
 from squealbox.plots.facts import unit_at
 from squealbox.plots.style import scaled
@@ -26,9 +36,7 @@ EDGE = (
     0.01  # share of the range left out at its lower end, where friction or load may be zero and derivatives are taken
 )
 ROOM = 0.005  # share of the range about an onset in which it is solved for
-NEUTRAL = 1e-6  # of a multiplier from the unit circle within which a cycle neither attracts nor repels
 UPRIGHT = 1e-5  # share of the range within which a walk stands at one value
-GRID = 201  # values at which steady sliding is looked at
 PUSHES = (0.5, 1.0, 3.0, 10.0)  # of the contacts' velocity over the sliding speed, from which a cycle is looked for
 Make = Callable[[float], System]
 
@@ -141,8 +149,7 @@ def _drawn(
 ) -> Answer:
     axis, own = axis_of(design, parameter), unit_at(design.system(), dof)
     metre, unit = scaled(own, *(walk.amplitude[:, dof] for walk in walks)) if walks else (1.0, own)
-    grid = np.linspace(*span, GRID)
-    quiet = np.asarray(complex_modes(design.replace({parameter: grid})).stable)
+    quiet = stable_sliding(design, parameter, span)
     data: dict[str, Any] = {
         "axis": axis,
         "span": [end / axis["factor"] for end in span],
@@ -154,8 +161,8 @@ def _drawn(
         "start": start,
         "centre": centre,
         "walks": [_walk(walk, span, dof, axis["factor"], metre) for walk in walks],
-        "quiet": [[a / axis["factor"], b / axis["factor"]] for a, b in _stretches(grid, quiet)],
-        "together": [[a / axis["factor"], b / axis["factor"]] for a, b in _together(walks, grid, quiet)],
+        "quiet": [[a / axis["factor"], b / axis["factor"]] for a, b in quiet],
+        "together": [[a / axis["factor"], b / axis["factor"]] for a, b in beside_sliding(walks, quiet)],
     }
     arrays: dict[str, Any] = {}
     for i, walk in enumerate(walks):
@@ -172,26 +179,3 @@ def _walk(walk: Branch, span: tuple[float, float], dof: int, factor: float, metr
     if np.ptp(walk.value) <= UPRIGHT * (span[1] - span[0]):
         specials = []  # it stands at one value: each of its points looks special, by round-off
     return {"specials": specials, "ended": f"{walk.outcome} {walk.outcome.message}".strip()}
-
-
-def _together(walks: list[Branch], grid: Any, quiet: Any) -> list[tuple[float, float]]:
-    """Stretches in which a stable cycle and stable sliding exist at the same value."""
-    cycles = np.zeros(grid.size, dtype=bool)
-    for walk in walks:
-        attracts = _attracting(walk)
-        for i in np.nonzero(attracts[:-1] & attracts[1:])[0]:
-            low, high = sorted((walk.value[i], walk.value[i + 1]))
-            cycles |= (grid >= low) & (grid <= high)
-    return _stretches(grid, cycles & quiet)
-
-
-def _attracting(walk: Branch) -> Any:
-    """Which cycles draw neighbours in: about the neutral centre of an undamped design there is one everywhere."""
-    return np.all(np.abs(walk.multipliers[:, 1:]) < 1.0 - NEUTRAL, axis=1)
-
-
-def _stretches(grid: Any, inside: Any) -> list[tuple[float, float]]:
-    """First and last value of each run of True."""
-    edges = np.diff(np.r_[False, inside, False].astype(int))
-    begins, ends = np.nonzero(edges == 1)[0], np.nonzero(edges == -1)[0] - 1
-    return [(float(grid[a]), float(grid[b])) for a, b in zip(begins, ends, strict=True)]

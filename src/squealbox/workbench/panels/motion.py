@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.files.runs import usual_duration
 from squealbox.plots.facts import unit_at
 from squealbox.plots.style import scaled
 from squealbox.signals import SignalError, dominant_frequency, peaks, spectrogram, spectrum
-from squealbox.stability import complex_modes
 from squealbox.transient import Trajectory, verdict
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.following import followed
@@ -29,7 +29,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     system = design.system()
     start, dof = start_and_dof(design, options)
     contact = options.word("contact", CONTACTS)
-    duration = options.number("duration", 0.0, 0.0, 1e6) or usual_duration(design)
+    duration = options.number("duration", 0.0, 0.0, 1e6) or usual_duration(design, periods=PERIODS)
     motion = followed(system, duration, work, 0.6, start=start, times=SAMPLES, contact=contact)
     work.progress(0.6, "spectrum")
     data = {
@@ -44,17 +44,6 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     if motion.t.size < 64:
         return Answer({**data, "short": True})
     return _signals(motion, dof, data)
-
-
-def usual_duration(design: Design) -> float:
-    """A hundred periods of the mode that grows first, or of the slowest mode where none does [s]."""
-    modes = complex_modes(design)
-    if not bool(modes.exists):
-        return 1.0
-    half = modes.eigenvalues.shape[-1] // 2
-    hertz = modes.frequency[:half]
-    chosen = modes.most_unstable.frequency if not modes.stable else float(np.min(hertz))
-    return PERIODS / chosen if chosen > 0.0 else 1.0
 
 
 def _signals(motion: Trajectory, dof: int, data: dict[str, Any]) -> Answer:
