@@ -146,6 +146,9 @@ def declared(design: Any, path: str) -> list[Parameter]:
         found = [about for name in names if hasattr(design, name) for about in declared(getattr(design, name), rest)]
     else:
         found = [design.parameters()[name] for name in names if name in design.parameters()]
+    held = getattr(design, "brake", None)
+    if isinstance(held, DataSheet) and names[0] not in design.field_names():
+        return declared(held, path)  # within countermeasures a parameter of the brake keeps its name
     return found or [about for name, about, _ in design.leaves() if name == path]
 
 
