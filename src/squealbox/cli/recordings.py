@@ -261,5 +261,3 @@ def _named(path: Path) -> Iterator[None]:
         yield
     except SignalError as error:
         raise UsageError(f"{path.name}: {error}" if path.name not in str(error) else str(error)) from error
-    except ImportError as error:
-        raise UsageError(str(error)) from error
