@@ -35,10 +35,12 @@ from squealbox import (
     write_design,
 )
 from squealbox.cli import main
+from squealbox.cli.inputs import changed
 from squealbox.countermeasures import COUNTERMEASURES
 from squealbox.countermeasures.loss import growth_of
 from squealbox.designs import DESIGNS
-from squealbox.files import json_schema
+from squealbox.files import json_schema, read_text
+from squealbox.files.writing import cure_text, design_text
 from squealbox.loops import LOOPS
 from squealbox.parameters import from_plain, to_plain
 from squealbox.plots import loop_locus, nyquist_curve
@@ -158,6 +160,9 @@ def test_commands(tmp_path, capsys):
     assert main(["absorber", str(plain), "--on", "y", "--mass", "50 g", "--out", str(tmp_path / "absorber")]) == 0
     assert "tune to" in capsys.readouterr().out
     assert read_design(tmp_path / "absorber" / "with_absorber.toml").mass == 0.05
+    for name in (*COUNTERMEASURES, *LOOPS, "reduced"):
+        assert main(["list", name]) == 0
+        assert f"{name}: " in capsys.readouterr().out
     assert main(["silence", str(plain), "--samples", "0"]) == 2
     assert "--samples 0" in capsys.readouterr().err
 
@@ -169,6 +174,30 @@ def test_cures_that_are_other_values_say_which(table):
         else:
             assert not str(table.line[row]).startswith("brake.replace")
     assert sum(map(bool, table.values)) >= 5
+
+
+def test_the_lines_of_a_cure_in_a_file_make_it(table):
+    """What `silence` says for a file, pasted behind the brake or given by --set, is the brake of the table's row."""
+    whole, told = design_text(DRUM), 0
+    for row in range(len(table)):
+        lines = cure_text(table.design(row), DRUM, table.values[row])
+        if table.values[row]:
+            cured = changed(DRUM, lines.replace('"', "").splitlines())
+        else:
+            assert lines.startswith(("[[countermeasures]]\nkind = ", "[[loops]]\nkind = "))
+            cured = read_text(f"{whole}\n{lines}", "brake.toml").design
+            told += 1
+        assert float(growth_of(cured)) == pytest.approx(float(table.growth[row]), rel=1e-9, abs=1e-6)
+    assert told > 10
+
+
+def test_the_lines_of_a_cure_of_a_cured_brake_are_the_new_ones():
+    brake = TunedMass(DRUM, "y", 0.05, 1906.0, 0.013)
+    cured = AddedDamping(AddedMass(brake, "x", 0.1), "x", 7.0)
+    lines = cure_text(cured, brake)
+    assert lines.count("[[countermeasures]]") == 2
+    assert "tuned_mass" not in lines
+    assert read_text(f"{design_text(brake)}\n{lines}", "brake.toml").design == cured
 
 
 @pytest.mark.parametrize("kind", ["block_chain", "pad_on_disc", "drum_brake_shoes"])
