@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.arguments import public
+from squealbox.arguments import public, with_parameters
 from squealbox.countermeasures.loss import at_the_window, first_loss, growth_of
 from squealbox.countermeasures.mechanical import TunedMass
 from squealbox.designs.base import Design
@@ -74,7 +74,7 @@ class BestAbsorber(Result):
         return self.summary()
 
 
-@public(bounds=None)
+@public(bounds=None, brake=with_parameters)
 def best_absorber(
     brake: Design,
     on: str,

@@ -12,6 +12,7 @@ import numpy as np
 
 from squealbox.parameters import DataSheet, Parameter, ParameterError
 
+MAKERS = "squealbox.quantities"  # its functions make quantities
 BLOCK = 1 << 17  # points computed together
 
 
@@ -72,6 +73,8 @@ def as_quantity(given: Any) -> Quantity:
     if not callable(given):
         raise ParameterError("study", "quantity", given, "a function of a design, or a Quantity")
     name = getattr(given, "__name__", type(given).__name__)
+    if getattr(given, "__module__", "") == MAKERS:
+        raise ParameterError("study", "quantity", f"{name}, not called", f"{name}(...), which makes the quantity")
     return Quantity(given, "quantity" if name == "<lambda>" else name.replace("_", " "))
 
 
