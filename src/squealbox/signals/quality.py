@@ -72,7 +72,7 @@ def sound_quality(
     with contextlib.redirect_stdout(io.StringIO()):  # it prints what it does
         total, specific, bark = loudness_zwst(x, RATE)
         sharpness = sharpness_din_from_loudness(total, specific)
-        rough, *_ = roughness_dw(x, RATE)
+        rough, *_ = roughness_dw(x, RATE, overlap=0.0)  # frames side by side: half the time for as much sound
     return SoundQuality(
         loudness=np.asarray(float(total)), loudness_level=np.asarray(float(sone_to_phon(total))),
         sharpness=np.asarray(float(np.squeeze(sharpness))), roughness=np.asarray(float(np.mean(rough))),
