@@ -12,7 +12,7 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
-from squealbox.parameters import DataSheet, Parameter, ParameterError, known_names
+from squealbox.parameters import DataSheet, Missing, Parameter, ParameterError, known_names
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -66,8 +66,20 @@ def design(value: Any) -> str:
         return f"a design made from it, {value.__name__}(...)"
     if isinstance(value, (str, os.PathLike)):
         return "a design; read_design(path) reads a file"
-    good = callable(value) or callable(getattr(value, "system", None)) or hasattr(value, "contacts")
+    good = (
+        callable(value)
+        or callable(getattr(value, "system", None))
+        or (hasattr(value, "contacts") and hasattr(value, "M"))
+    )
     return "" if good else "a design or a System"
+
+
+def with_parameters(value: Any) -> str:
+    """A design: what has parameters by name, which a System has not."""
+    told = design(value)
+    if told or callable(getattr(value, "system", None)):
+        return told
+    return "a design, whose parameters have names; OwnBrake(M, C, K, contacts) makes one of matrices"
 
 
 def designs(value: Any) -> str:
@@ -80,6 +92,16 @@ def named(value: Any) -> str:
     """Values by the names of parameters."""
     good = isinstance(value, (Mapping, DataSheet)) or hasattr(value, "names")
     return "" if good else 'a dictionary by parameter, such as {"friction.static": ...}'
+
+
+def word(value: Any) -> str:
+    """The name of a parameter."""
+    return "" if isinstance(value, str) else 'the name of a parameter, such as "friction.static"'
+
+
+def asked(value: Any) -> str:
+    """A number of a design."""
+    return "" if callable(value) else "a function of a design, or a quantity such as quantities.growth_rate()"
 
 
 def path(value: Any) -> str:
@@ -100,13 +122,15 @@ KINDS: dict[str, Kind] = {
     **dict.fromkeys(("design", "design_or_system", "brake", "system"), design),
     **dict.fromkeys(("scatter", "variables", "parameters"), named),
     "path": path,
+    "parameter": word,
+    "quantity": asked,
 }
 
 
 def public(**kinds: Kind | None) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """A function whose arguments are looked at first, by `KINDS` and by `kinds` of its own (None: not this one).
 
-    None passes where it is the default.
+    None passes where it is the default. What a function calls its owner "" is told under the function's own name.
 
     Raises `ParameterError` for an argument that is not what it shall be and, with the nearest name, for one that the
     function does not have.
@@ -126,6 +150,7 @@ def public(**kinds: Kind | None) -> Callable[[Callable[P, R]], Callable[P, R]]:
         looked = {name: kinds.get(name, KINDS.get(name)) for name in names}
         at = [(i, name, kind, given[name].default) for i, (name, kind) in enumerate(looked.items()) if kind is not None]
         owner = function.__name__
+        must = [name for name in names if given[name].default is inspect.Parameter.empty]
 
         @functools.wraps(function)
         def call(*args: P.args, **keywords: P.kwargs) -> R:
@@ -143,7 +168,17 @@ def public(**kinds: Kind | None) -> Callable[[Callable[P, R]], Callable[P, R]]:
                     continue
                 if (expected := kind(value)) != "":
                     raise ParameterError(owner, name, value, expected)
-            return function(*args, **keywords)
+            if len(args) + len(keywords) < len(must):
+                lacking = next((name for name in must[len(args) :] if name not in keywords), None)
+                if lacking is not None:
+                    about = looked[lacking]
+                    raise Missing(owner, lacking, about(None) if about else "")
+            try:
+                return function(*args, **keywords)
+            except ParameterError as error:
+                if error.named or error.name not in given:
+                    raise
+                raise error.of(owner) from error
 
         call.looked_at = tuple(name for _, name, _, _ in at)  # type: ignore[attr-defined]
         return call

@@ -1,5 +1,6 @@
 """Where a motion leaves the range of its model: friction that drives, contacts that pull, laws beyond their data."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -167,3 +168,9 @@ def _leaves(name: str, contact: Contact, looked: Any, fastest: float) -> list[st
     if contact.law.has_memory and np.any(contact.law.feeds(looked)):  # type: ignore[attr-defined]
         said.append(FEEDS.format(name=name, speed=fastest))
     return said
+
+
+def told_place(parameter: str, value: float, unit: str) -> str:
+    """Where a caution is about, with its unit, angles in degrees as well: "theta1 = 0.5 rad (28.65 deg),"."""
+    degrees = f" ({math.degrees(value):.4g} deg)" if unit == "rad" else ""
+    return f"{parameter} = {value:.6g}{f' {unit}' if unit else ''}{degrees},"

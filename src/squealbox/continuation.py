@@ -98,7 +98,7 @@ class Follower:
         for _ in range(self.control.most_points - 1):
             advanced = self._advance(point, step)
             if advanced is None:
-                message = f"no step above {self.control.smallest:g} could be taken at p = {point.p:.10g}"
+                message = f"no step above {self.control.smallest:g} could be taken at {point.p:.10g}"
                 self.outcome = Outcome("step_underflow", message, p=point.p, arclength=point.arclength)
                 return
             previous, (point, step) = point, advanced
@@ -111,7 +111,7 @@ class Follower:
                 return
             furthest = max(furthest, distance)
             yield point
-        self.outcome = Outcome("most_points", f"ended after {self.control.most_points} points", p=point.p)
+        self.outcome = Outcome("most_points", f"stopped after {self.control.most_points} points", p=point.p)
 
     def _first(self) -> PathPoint | None:
         fixed_p = np.append(np.zeros(self.start.size - 1), 1.0)
@@ -155,7 +155,7 @@ class Follower:
     def _landing(self, previous: PathPoint, beyond: PathPoint) -> Iterator[PathPoint]:
         """The point on the bound that was stepped over."""
         bound = self.bounds[0] if beyond.p < self.bounds[0] else self.bounds[1]
-        self.outcome = Outcome(COMPLETED, f"reached the bound p = {bound:.10g}", bound=bound)
+        self.outcome = Outcome(COMPLETED, f"reached the bound {bound:.10g}", bound=bound)
         if previous.p == bound:
             return
         share = (bound - previous.p) / (beyond.p - previous.p)
@@ -165,7 +165,7 @@ class Follower:
         fixed_p = np.append(np.zeros(guess.size - 1), 1.0)
         y, iterations, size = self._correct(guess, fixed_p, 2 * self.control.newton_steps)
         if y is None:
-            message = f"Newton's method found no root on the bound p = {bound:.10g}"
+            message = f"Newton's method found no root on the bound {bound:.10g}"
             self.outcome = Outcome("no_landing", message, p=previous.p, residual=size)
             return
         tangent, sign = self._tangent(y, previous.tangent)

@@ -2,6 +2,7 @@
 
 import dataclasses
 import difflib
+import functools
 import math
 from typing import Any
 
@@ -42,6 +43,10 @@ class Parameter:
         return bool(np.all(np.isfinite(value) & above & below))
 
 
+UNSAID = object()
+"""Stands for the value in an error about a name that was asked for, for which none was given."""
+
+
 class ParameterError(ValueError):
     """A parameter is unknown, not a finite number, or outside its range.
 
@@ -50,8 +55,16 @@ class ParameterError(ValueError):
 
     def __init__(self, owner: str, name: str, value: object, expected: str) -> None:
         self.owner, self.name, self.value, self.expected = owner, name, value, expected
-        given = "" if expected.startswith("did you mean") and np.ndim(value) else f" = {_shown(value)}"  # type: ignore[arg-type]
+        self.named = bool(owner)  # else an argument of the function that was asked, which says its own name
+        unsaid = value is UNSAID or (expected.startswith("did you mean") and np.ndim(value) > 0)  # type: ignore[arg-type]
+        given = "" if unsaid else f" = {shown(value)}"
         super().__init__(f"{owner}.{name}{given}: {self.expectation}")
+
+    def of(self, owner: str) -> "ParameterError":
+        """The same about an argument of the function of that name, which may be asked by another in turn."""
+        found = ParameterError(owner, self.name, self.value, self.expected)
+        found.named = False
+        return found
 
     @property
     def expectation(self) -> str:
@@ -61,6 +74,35 @@ class ParameterError(ValueError):
         angle = self.value if self.expected.endswith(" rad") and isinstance(self.value, (int, float)) else math.inf
         degrees = f"; {angle:g} deg are {math.radians(angle):.5g} rad" if 3.0 < abs(angle) <= 360.0 else ""
         return f"expected {self.expected}{degrees}"
+
+
+class Missing(ParameterError, TypeError):
+    """Something that must be given was not; a `TypeError`, too, as Python has it."""
+
+    def __init__(self, owner: str, name: str, expected: str) -> None:
+        super().__init__(owner, name, None, expected)
+        self.args = (f"{owner}.{name} is missing{f': expected {expected}' if expected else ''}",)
+
+
+def complete(made: Any) -> Any:
+    """The maker of a sheet that says what is missing with its unit, range and meaning."""
+
+    @functools.wraps(made)
+    def init(self: Any, *args: Any, **given: Any) -> None:
+        try:
+            made(self, *args, **given)
+        except TypeError:
+            fields = dataclasses.fields(self)
+            must = [each for each in fields if each.default is each.default_factory is dataclasses.MISSING]
+            names = [each.name for each in fields[: len(args)]]
+            for each in must:
+                if each.name not in given and each.name not in names:
+                    about = each.metadata.get("parameter")
+                    said = f"{about.expected} ({about.meaning})" if about else self.told.get(each.name, ("", ""))[1]
+                    raise Missing(type(self).__name__, each.name, said) from None
+            raise
+
+    return init
 
 
 def parameter(
@@ -104,8 +146,11 @@ def known_names(given: str, names: list[str]) -> str:
     return f"{hint}one of {', '.join(names)}"
 
 
-def _shown(value: object) -> str:
+def shown(value: object) -> str:
+    """A value as an error says it: in 60 letters, a class or a whole table by its name."""
     if isinstance(value, type):
         return f"the class {value.__name__}"
     text = repr(value) if not isinstance(value, (float, int)) else f"{value:g}"
+    if "\n" in text and not isinstance(value, np.ndarray):
+        return f"a {type(value).__name__}"  # a whole table, or a sheet of arrays
     return text if len(text) <= 60 else text[:57] + "..."

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.friction import Coulomb, Cubic, ElastoPlastic, FrictionLaw, Hyperbolic, LinearSlope, LuGre, Stribeck
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
@@ -118,6 +119,7 @@ class FrictionFit(Result):
         return "\n".join(lines)
 
 
+@public()
 def fit_friction(
     speeds: Any, values: Any, law: str | Sequence[str] | None = None, *, level: float = 0.95
 ) -> FrictionFit:

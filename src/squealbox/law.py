@@ -47,11 +47,17 @@ class FrictionLaw(DataSheet):
 
     def mu(self, velocity: Any) -> Any:
         """Friction coefficient [-] at sliding velocity [m/s] of either sign; array in, array out."""
-        return type(self).formula(np.abs(velocity), self.coefficients())
+        return type(self).formula(self._speed(velocity), self.coefficients())
 
     def slope_at(self, velocity: Any) -> Any:
         """Slope dmu/d|v| [s/m] at sliding velocity [m/s] of either sign; negative means weakening."""
-        return type(self).slope_formula(np.abs(velocity), self.coefficients())
+        return type(self).slope_formula(self._speed(velocity), self.coefficients())
+
+    def _speed(self, velocity: Any) -> Any:
+        try:
+            return np.abs(velocity)
+        except TypeError as error:
+            raise ParameterError(type(self).__name__, "velocity", velocity, "numbers [m/s]") from error
 
     def direct_slope(self, velocity: Any) -> Any:
         """What the force follows the speed with at once [s/m]; all of the slope where there is no memory."""

@@ -59,6 +59,8 @@ def check_mass(mass: Any) -> None:
 
 def checked_names(names: Any, size: int) -> tuple[str, ...]:
     """Names of the degrees of freedom, by default q1, q2, ...; `InvalidSystem` for a wrong number or one twice."""
+    if isinstance(names, str):
+        raise InvalidSystem(f"names = {names!r}: expected a name for each degree of freedom, such as ('x', 'y')")
     names = tuple(names) or tuple(f"q{i + 1}" for i in range(size))
     if len(names) != size:
         raise InvalidSystem(f"names = {names}: {len(names)} names, expected {size}, one for each degree of freedom")

@@ -14,11 +14,22 @@ from typing import Any, ClassVar, Self, dataclass_transform
 
 import numpy as np
 
-from squealbox.declarations import Choice, Parameter, ParameterError, choice, known_names, parameter
+from squealbox.declarations import (  # what stands here is known by this room's name, too
+    UNSAID,
+    Choice,
+    Missing,
+    Parameter,
+    ParameterError,
+    choice,
+    complete,
+    known_names,
+    parameter,
+    shown,
+)  # fmt: skip
 
 __all__ = [
-    "Choice", "DataSheet", "Parameter", "ParameterError", "choice", "from_plain", "known_names", "load_kind", "members",
-    "parameter", "to_plain",
+    "Choice", "DataSheet", "Missing", "Parameter", "ParameterError", "choice", "from_plain", "known_names", "load_kind",
+    "members", "parameter", "shown", "to_plain",
 ]  # fmt: skip
 DRAWN_BY = "squealbox.plots"  # by name, when asked: a sheet may know that it can be drawn, but not by whom
 MOST_LINES = 30  # of a summary
@@ -58,6 +69,8 @@ class DataSheet:
         if "__repr__" not in cls.__dict__:
             cls.__repr__ = DataSheet.__repr__  # type: ignore[method-assign]  # a dataclass would print every array
         dataclasses.dataclass(frozen=True, eq=False)(cls)
+        if "__init__" in cls.__dict__:
+            cls.__init__ = complete(cls.__init__)  # type: ignore[method-assign]
         _SHEETS[cls.kind()] = cls
 
     def __post_init__(self) -> None:
@@ -118,7 +131,7 @@ class DataSheet:
                 if rest:
                     nested.setdefault(name, {})[rest] = value
                 else:
-                    flat[name] = value
+                    flat[name] = self._whole(name, value)
         for name, inner in nested.items():
             part = flat.get(name, getattr(self, name))
             if not (isinstance(part, DataSheet) or members(part)):
@@ -126,16 +139,26 @@ class DataSheet:
             flat[name] = part.replace(inner) if isinstance(part, DataSheet) else self._with_members(name, part, inner)
         return dataclasses.replace(self, **flat)  # type: ignore[type-var]
 
+    def _whole(self, name: str, value: Any) -> Any:
+        """The value for a field; numbers do not stand for a whole law, whose own numbers have names."""
+        held = getattr(self, name)
+        if hasattr(held, "mu") and np.asarray(value).dtype.kind in "iuf":
+            inner = ", ".join(f"{name}.{each}" for each in held.parameters())
+            raise ParameterError(type(self).__name__, name, value, f"a friction law, or a number of it, {inner}")
+        return value
+
     def value_of(self, path: str) -> Any:
         """The value behind a dotted name; an alias gives the value of its first field."""
         name, _, rest = self._paths(path)[0].partition(".")
-        self._check_known(path, path.partition(".")[0], name, None)
+        self._check_known(path, path.partition(".")[0], name, UNSAID)
         value = getattr(self, name)
         if rest and members(value):
             key, _, rest = rest.partition(".")
             value = value[self._place(name, value, key)]
         if rest and not isinstance(value, DataSheet):
-            raise ParameterError(type(self).__name__, path, None, f"a name without a part: {name} holds no parameters")
+            raise ParameterError(
+                type(self).__name__, path, UNSAID, f"a name without a part: {name} holds no parameters"
+            )
         return value.value_of(rest) if rest else value
 
     def unit_of(self, path: str) -> str:
@@ -176,7 +199,7 @@ class DataSheet:
         if key.isdigit() and 1 <= int(key) <= len(known):
             return int(key) - 1
         if key not in known:
-            raise ParameterError(type(self).__name__, f"{name}.{key}", None, known_names(key, list(known)))
+            raise ParameterError(type(self).__name__, f"{name}.{key}", UNSAID, known_names(key, list(known)))
         return known.index(key)
 
     def _check_known(self, path: str, head: str, name: str, value: Any) -> None:
@@ -232,7 +255,7 @@ def members(value: Any) -> list[str]:
     if not (isinstance(value, tuple) and value and all(isinstance(each, DataSheet) for each in value)):
         return []
     names = [str(getattr(each, "name", "")) for each in value]
-    plain = [bool(re.fullmatch(r"[A-Za-z_]\w*", name)) and names.count(name) == 1 for name in names]
+    plain = [bool(re.fullmatch(r"[^\W\d][^.=]*", name)) and names.count(name) == 1 for name in names]
     return [name if good else str(i) for i, (name, good) in enumerate(zip(names, plain, strict=True), start=1)]
 
 
@@ -334,22 +357,27 @@ def _hashable(value: Any) -> Any:
     return tuple(_hashable(item) for item in value) if isinstance(value, tuple) else value
 
 
-def _told(sheet: DataSheet, indent: str = "  ") -> Iterator[str]:
-    declared = sheet.parameters()
+def _told(sheet: DataSheet, indent: str = "  ", usual: Mapping[str, Any] | None = None) -> Iterator[str]:
+    """The lines of a summary, short lists of sheets before long ones; of what is in a list, no value of `usual`."""
+    declared, several = sheet.parameters(), []
     for name in sheet.field_names():
         value, about = getattr(sheet, name), declared.get(name)
         unit, meaning = (about.unit, about.meaning) if about else sheet.told.get(name, ("", ""))
-        inner = {name: value} if isinstance(value, DataSheet) else {}
-        inner |= {
-            f"{name}.{key}": each for key, each in zip(members(value), value if members(value) else (), strict=True)
-        }
-        for title, each in inner.items():
-            yield f"{indent}{title}: {type(each).__name__}"
-            yield from _told(each, indent + "  ")
-        left_out = (value is None and about is None) or (isinstance(value, (str, tuple)) and not value)
-        if not inner and not left_out:
-            unit = "" if unit in ("", "-") else f" {unit}"
+        if members(value):
+            several.append([line for key, each in zip(members(value), value, strict=True) for line in [
+                f"{indent}{name}.{key}: {type(each).__name__}",
+                *_told(each, indent + "  ", {field.name: field.default for field in dataclasses.fields(each)}),
+            ]])  # fmt: skip
+        elif isinstance(value, DataSheet):
+            yield f"{indent}{name}: {type(value).__name__}"
+            yield from _told(value, indent + "  ")
+        elif not ((value is None and about is None) or (isinstance(value, (str, tuple)) and not value)) and not (
+            usual and name in usual and _same(value, usual[name])
+        ):
+            unit = "" if unit in ("", "-") or value is None else f" {unit}"
             yield f"{indent}{name:<14s} {_compact(value) + unit:<28s} {meaning}".rstrip()
+    for lines in sorted(several, key=len):
+        yield from lines
 
 
 def _compact(value: object) -> str:
@@ -363,6 +391,6 @@ def _brief(value: object) -> str:
     """As `repr`, but what is long is told by its size: a print of a system of a thousand contacts is a line."""
     if isinstance(value, np.ndarray) and value.size > MOST_ENTRIES:
         return f"<{' x '.join(map(str, value.shape))} numbers>"
-    if isinstance(value, tuple) and len(value) > MOST_ENTRIES // 2:
+    if isinstance(value, tuple) and len(value) > (1 if members(value) else MOST_ENTRIES // 2):
         return f"<{len(value)} of {type(value[0]).__name__}>"
-    return repr(value)
+    return " ".join(repr(value).split()) if isinstance(value, np.ndarray) else repr(value)

@@ -207,17 +207,15 @@ class Result:
     def to_dataframe(self) -> Any:
         """One row for each entry of what the result runs over (instants, points, trajectories), as a `pandas` table.
 
-        Columns are the arrays over it; what runs over more gives a column each: ``q[x]``, ``q[y]``. An array that
-        would give more than 100 is left out, and so are those over something else: `to_dataset` has all.
+        Columns are the arrays over it; what runs over more gives a column each: ``q[x]``, ``q[y]``. Arrays of more than
+        100, or over something else, are left out: `to_dataset` has all. ``attrs["units"]`` has the unit of each column.
         """
         dataset = self.to_dataset()
         first: tuple[Any, ...] = self.table_over or next(
             iter(dataset[field.name].dims for field in _quantities(type(self))), ()
         )
         first = tuple(dim for dim in first if dim in dataset.dims)
-        twice = {
-            name: f"{name} values" for name in dataset.coords if dataset[name].ndim > 1
-        }  # as a dimension is called
+        twice = {name: f"{name} values" for name in dataset.coords if dataset[name].ndim > 1}  # named as a dimension
         dataset = dataset.rename_vars(twice).reset_coords([*twice.values()])
         table = dataset.drop_vars([name for name in dataset.coords if name not in first])
         columns: dict[str, Any] = {}
@@ -231,7 +229,9 @@ class Result:
                 own = f"{name}[{','.join(labels)}]" if labels else str(name)
                 columns[own] = variable.isel(dict(zip(more, at, strict=True)))
         frame = table.drop_vars(list(table.data_vars)).assign(columns)
-        return frame.to_dataframe() if first else frame.expand_dims("row").to_dataframe()
+        made = frame.to_dataframe() if first else frame.expand_dims("row").to_dataframe()
+        made.attrs["units"] = {name: str(frame[name].attrs.get("units", "")) for name in made.columns}
+        return made
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the result to a NetCDF file, whole or not at all; returns the path."""
@@ -241,6 +241,8 @@ class Result:
                 f"{path.name}: a result is saved as NetCDF, in a file whose name ends in .nc; to_dataframe() makes a "
                 "table, with to_csv(...) and to_excel(...)"
             )
+        if not path.parent.is_dir():
+            raise ResultFileError(f"{path}: there is no folder {path.parent}, expected one that is there")
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
         os.close(handle)
         try:

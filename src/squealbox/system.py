@@ -39,7 +39,7 @@ from squealbox.matrices import (
     felt,
 )
 from squealbox.memory_rows import no_memory, remembering, with_memory
-from squealbox.parameters import DataSheet
+from squealbox.parameters import DataSheet, shown
 from squealbox.result import Outcome
 from squealbox.schedules import MOVES, Schedule, swinging, value_at
 from squealbox.static_deflection import ended, modulo_rigid_motion, solve
@@ -217,7 +217,7 @@ def _system_of(given: Any) -> System:
     if isinstance(given, System):
         return folded(given)
     if isinstance(given, type) or not callable(getattr(given, "system", None)):
-        raise InvalidSystem(f"{repr(given)[:60]}: expected {design(given) or 'a System or a design'}")
+        raise InvalidSystem(f"{shown(given)}: expected {design(given) or 'a System or a design'}")
     system: System = given.system()
     return folded(system)
 

@@ -12,13 +12,18 @@ from squealbox import (
     Coulomb,
     DrumBrake,
     MassOnBelt,
+    Method,
     ParameterError,
     Result,
+    Scatter,
+    Stribeck,
     System,
     TunedMass,
+    best_absorber,
     branch,
     calibrate,
     closed_loop,
+    compare,
     complex_modes,
     critical_value,
     fit_friction,
@@ -26,6 +31,9 @@ from squealbox import (
     mechanism,
     mode_energy,
     optimise,
+    peaks,
+    plot,
+    quantities,
     reduce,
     sensitivity,
     shooting,
@@ -49,10 +57,12 @@ from squealbox.arguments import KINDS
 from squealbox.limit_cycles import basin, bifurcation_diagram
 from squealbox.result import ResultFileError
 from squealbox.signals import SignalError, growth_rate
+from squealbox.studies import Normal
 from squealbox.system import InvalidSystem
 
 DRUM = DrumBrake()
 FRICTION = {"friction.static": (0.2, 0.4)}
+SCATTER = Scatter({"k3": Normal(1.9e8, 1e7)})
 ROW = {"n": [0.0], "d": [1.0], "t": [1.0]}
 
 
@@ -107,7 +117,7 @@ MISTAKES = {
     "time nan": (lambda: complex_modes(DRUM, time=np.nan), "complex_modes.time = nan"),
     "width 0": (lambda: simulate(DRUM, 1e-3, contact="smooth", width=0.0), "simulate.width = 0"),
     "half a sample": (
-        lambda: squeal_probability(DRUM, {}, None, samples=0.5),
+        lambda: squeal_probability(DRUM, {}, np.sum, samples=0.5),
         "squeal_probability.samples = 0.5: expected a whole number of at least 1",
     ),
     "a seed below 0": (lambda: silence(DRUM, seed=-1), "silence.seed = -1: expected a whole number of at least 0"),
@@ -184,7 +194,7 @@ MISTAKES = {
     # words
     "a method by another name": (
         lambda: simulate(DRUM, 1e-3, method="rk45"),
-        "'rk45': expected one of bogacki-shampine, dormand-prince",
+        "'rk45': did you mean 'dormand-prince'? one of bogacki-shampine, dormand-prince",
     ),
     "a scheme by a typo": (
         lambda: simulate(DRUM, 1e-3, contact="exakt"),
@@ -223,6 +233,74 @@ MISTAKES = {
     "stiffness 0": (lambda: DrumBrake(k1=0.0), "DrumBrake.k1 = 0: expected a finite number in (0, inf) N/m"),
     "a load with kN": (lambda: DRUM.replace(load="1 kN"), "DrumBrake.load1 = '1 kN': expected a finite number"),
     "a speed as a list of texts": (lambda: MassOnBelt(sliding_speed=["1 m/s"]), "MassOnBelt.sliding_speed"),
+    # one thing in the place of another
+    "a number as parameter": (
+        lambda: critical_value(DRUM, 0.3, (0.0, 1.0)),
+        'critical_value.parameter = 0.3: expected the name of a parameter, such as "friction.static"',
+    ),
+    "a law as parameter": (
+        lambda: critical_value(DRUM, "friction", (0.0, 1.0)),
+        "expected a friction law, or a number of it, friction.static, friction.slope, friction.floor",
+    ),
+    "a map over a law": (lambda: stability_map(DRUM, {"friction": [0.1, 0.2], "k3": [1e8, 2e8]}), "friction.static"),
+    "silence a system": (lambda: silence(plain()), "OwnBrake(M, C, K, contacts) makes one of matrices"),
+    "an absorber on a system": (lambda: best_absorber(plain(), "q1", 0.1), "best_absorber.brake = System("),
+    "compare modes with modes": (
+        lambda: compare(complex_modes(DRUM), complex_modes(DRUM)),
+        "a ComplexModes: expected squeal_events(recording)",
+    ),
+    "peaks of a motion": (
+        lambda: peaks(simulate(DRUM, 1e-3)),
+        "a Trajectory is no spectrum: expected spectrum(signal)",
+    ),
+    "a quantity not called": (
+        lambda: sobol_indices(DRUM, SCATTER, quantities.growth_rate),
+        "growth_rate, not called': expected growth_rate(...)",
+    ),
+    "a quantity left out": (
+        lambda: squeal_probability(DRUM, SCATTER),
+        "squeal_probability.quantity is missing: expected a function of a design, or a quantity such as "
+        "quantities.growth_rate()",
+    ),
+    "bounds left out": (
+        lambda: critical_value(DRUM, "k3"),
+        "critical_value.bounds is missing: expected two finite numbers",
+    ),
+    "a figure's option by a typo": (
+        lambda: plot(complex_modes(DRUM), wdth=3.4),
+        "plot.wdth = 3.4: did you mean 'width'? one of ",
+    ),
+    "a degree of freedom of an ensemble's figure": (
+        lambda: plot(simulate_ensemble(DRUM, {"k3": [1e8, 2e8]}, 1e-3), dofs="y"),
+        "plot.dofs = 'y': ",
+    ),
+    "a fit's option by a typo": (
+        lambda: fit_friction([0.0, 1.0], [0.3, 0.3], laws="stribeck"),
+        "fit_friction.laws = 'stribeck': did you mean 'law'?",
+    ),
+    "a folder not there": (
+        lambda: complex_modes(DRUM).save("/nowhere/x/m.nc"),
+        "/nowhere/x/m.nc: there is no folder /nowhere/x",
+    ),
+    "a text as speed": (lambda: Coulomb(0.3).mu("a"), "Coulomb.velocity = 'a': expected numbers [m/s]"),
+    "a branch from a word": (
+        lambda: branch(DRUM, "friction.static", (0.0, 0.6), "hopf"),
+        "branch.start = 'hopf': expected",
+    ),
+    "derivatives of modes": (
+        lambda: sensitivity(complex_modes(DRUM)),
+        "sensitivity.design = a ComplexModes: expected a design or a System",
+    ),
+    "a method of another program": (lambda: Method("tsit5"), "Method.tableau = 'tsit5': did you mean 'tsitouras'?"),
+    "a system without damping": (lambda: System(M=[[1.0]], K=[[4.0]]), "System.C is missing: expected damping"),
+    "a law half made": (
+        lambda: Stribeck(0.4),
+        "Stribeck.kinetic is missing: expected a finite number in [0, 10] (coefficient at high sliding speed)",
+    ),
+    "a word as names": (
+        lambda: plain(M=np.eye(2), C=np.eye(2), K=np.eye(2), names="xy"),
+        "names = 'xy': expected a name for each degree of freedom, such as ('x', 'y')",
+    ),
     # signals
     "verdict of modes": (lambda: verdict(complex_modes(DRUM)), "a ComplexModes is no signal: expected a motion"),
     "spectrum of a brake": (lambda: spectrum(DRUM), "a DrumBrake is no signal"),

@@ -77,7 +77,7 @@ def test_bad_words_get_one_sentence(words, sentence, said, tmp_path, monkeypatch
         (["modes", "--set", "reading=eq4"], "--set reading=eq4: did you mean 'eq3'?"),
         (["modes", "--set", "friction=3"], "--set friction=3: unknown parameter"),
         (["onset", "--parameter", "m"], "nothing says over which range"),
-        (["onset", "--parameter", "x", "--range", "0", "1"], "--range: unknown parameter"),
+        (["onset", "--parameter", "x", "--range", "0", "1"], "--parameter x: unknown parameter"),
         (["onset", "--range", "1", "0"], "--range 1 0: expected the lower value first"),
         (["onset", "--range", "0", "20"], "--range 0 20: expected finite numbers in [0, 10]"),
         (["onset", "--range", "0 kg", "1"], "'0 kg' has the unit kg (a mass), expected a plain number"),

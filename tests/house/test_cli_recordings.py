@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.io.wavfile
 from scipy.signal import lfilter
 
 from squealbox import complex_modes, plots, squeal_events
@@ -139,3 +140,18 @@ def test_damping_and_quality(tmp_path, said):
     code, out, err = said("quality", files[0], "--rate", "4kHz", "--full-scale", "0.001")
     assert (code, err) == (0, "")
     assert "sone" in out
+
+
+def test_low_squeal_has_the_hint_on_the_band_in_compare_as_in_events(said, tmp_path):
+    """`events` named the band that holds a tone below it; `compare`, which has --band too, did not."""
+    t = np.arange(48000) / 48000.0
+    sound = 2e3 * np.sin(2.0 * np.pi * 1900.0 * t) + 30.0 * np.random.default_rng(1).standard_normal(t.size)
+    scipy.io.wavfile.write(tmp_path / "low.wav", 48000, sound.astype(np.int16))
+    (tmp_path / "drum.toml").write_text('brake = "drum_brake"\n')
+    hint = "a tone stands below the band, at 1900 Hz: a band from 1000 Hz holds it"
+    assert hint in said("events", tmp_path / "low.wav")[1]
+    code, _, err = said("compare", tmp_path / "drum.toml", tmp_path / "low.wav")
+    assert code == 2
+    assert hint in err
+    assert "no calibration" not in err
+    assert said("compare", tmp_path / "drum.toml", tmp_path / "low.wav", "--band", "1kHz", "16kHz")[0] == 0

@@ -127,3 +127,39 @@ def test_systems_contacts_and_laws_have_a_summary_and_a_card():
         assert type(sheet).__name__ in card
         assert "<script" not in card
     assert "Without friction" in WHOLE._repr_html_()
+
+
+def test_a_name_with_a_space_addresses_a_contact(tmp_path):
+    """It was refused, and `leaves` told a number in its place; the gallery's own contacts are called "shoe 1"."""
+    pads = tuple(
+        OwnContact(n=[2.0, 0.0], d=[0.0, 1.0], name=f"pad {side}", friction=Coulomb(0.3)) for side in ("left", "right")
+    )
+    brake = OwnBrake(M=np.eye(2), K=[[2.0, 1.0], [1.0, 2.5]], contacts=pads, sliding_speed=1.0, normal_force=1.0)
+    name = "contacts.pad left.friction.static"
+    assert name in [each for each, _, _ in brake.leaves()]
+    assert brake.replace({name: 0.5}).contacts[0].friction.static == 0.5
+    assert brake.replace({name: 0.5}).contacts[1].friction.static == 0.3
+    # (K11 - K22)^2 = -4 K12 (K21 - 2 (mu1 + mu2)) where the two modes meet
+    onset = float(critical_value(brake, name, (0.0, 2.0)).value)
+    assert onset == pytest.approx((1.0 + 0.25 / 4.0) / 2.0 - 0.3, rel=1e-9)
+    assert onset == float(critical_value(brake, "contacts.1.friction.static", (0.0, 2.0)).value)
+    assert "contacts.pad left: OwnContact" in brake.summary()
+    with pytest.raises(ParameterError) as caught:
+        brake.value_of("contacts.pad leftt.friction.static")
+    assert str(caught.value) == "OwnBrake.contacts.pad leftt: did you mean 'pad left'? one of pad left, pad right"
+    assert read_design(write_design(brake, tmp_path / "own.toml")) == brake
+    assert main(["modes", str(tmp_path / "own.toml"), "--set", f"{name}=0.1"]) == 0
+
+
+def test_the_summary_of_a_brake_of_ones_own_shows_its_named_numbers():
+    """It stopped at a screenful of contacts, before the parts, and told units of what is left out."""
+    pads = tuple(OwnContact(n=[2.0, 0.0], d=[0.0, 1.0], name=f"pad_{i}") for i in range(12))
+    parts = (Part("k_pad", 3e6, K=np.eye(2)), Part("c_pad", 3.0, C=np.eye(2)))
+    brake = OwnBrake(M=np.eye(2), K=np.eye(2), contacts=pads, parts=parts)
+    told = brake.summary()
+    assert "parts.k_pad" in told
+    assert "parts.c_pad" in told
+    assert "None N" not in told
+    assert len(told.splitlines()) <= 30
+    assert "\n" not in repr(brake)
+    assert len(repr(brake)) < 400

@@ -7,7 +7,7 @@ import numpy as np
 
 from squealbox.calibration.mode_tables import ModeTable
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.signals import SignalError, dominant_frequency, growth_rate, sound_level
+from squealbox.signals import SignalError, SquealEvents, dominant_frequency, growth_rate, sound_level
 from squealbox.signals.events import BELOW
 from squealbox.stability.mode import modal_assurance
 from squealbox.system import as_system
@@ -75,12 +75,15 @@ def compare(simulated: Any, events: Any, *, event: int | None = None, dof: int |
     """
     if isinstance(events, ModeTable):
         return _of_table(simulated, events)
+    if not isinstance(events, SquealEvents):
+        raise SignalError(f"a {type(events).__name__}: expected squeal_events(recording), or a ModeTable beside modes")
+    notes = [note for note in events.settings.get("notes", ()) if BELOW in note]
     if events.count == 0:
-        raise SignalError(f"there is nothing to compare with: {events.outcome.message or 'no event'}")
+        why = [events.outcome.message or "no event", *notes]
+        raise SignalError(f"there is nothing to compare with: {'; '.join(why)}")
     index = int(np.argmax(events.level)) if event is None else event
     if not 0 <= index < events.count:
         raise SignalError(f"event = {event}: expected one of {events.count} events")
-    notes = [note for note in events.settings.get("notes", ()) if BELOW in note]
     model = _said(simulated, dof, notes)
     measured = [float(events.frequency[index]), float(events.growth_rate[index]), float(events.level[index])]
     errors = [float(events.frequency_error[index]), float(events.growth_error[index]), np.nan]

@@ -83,7 +83,11 @@ def plain(result: Result) -> dict[str, Any]:
         "message": result.outcome.message,
         "caution": getattr(result, "caution", "") or "",
         "values": {
-            name: {"value": _plain(column.values), "unit": column.unit, "dims": list(column.dims)}
+            name: {
+                "value": _plain(column.values),
+                "unit": "" if column.unit == "1" else column.unit,
+                "dims": list(column.dims),
+            }
             for name, column in result.columns().items()
         },
     }

@@ -16,7 +16,7 @@ from squealbox.limit_cycles import Basin, basin, dangerous_push
 from squealbox.limit_cycles.attractors.basins import half_widths
 from squealbox.limit_cycles.attractors.sections import state_names
 
-Two = Annotated[tuple[str, str] | None, Parameter(negative="", allow_leading_hyphen=True)]
+Two = Annotated[tuple[str, str] | None, Parameter(negative="")]
 Push = Annotated[bool, Parameter(negative="")]
 
 

@@ -1,20 +1,30 @@
 """`squealbox list`: what there is, and what each thing is made of."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from squealbox.cli.running import UsageError
 from squealbox.parameters import DataSheet, Parameter, known_names
 
+READ_TITLES = {  # brakes that files beside the design describe
+    "assembled": "A finite-element brake from matrices of a code, with labels (docs/finite_elements.md)",
+    "reduced": "A reduced brake, as squealbox reduce writes it",
+}
+NAMED = {
+    "on": "degree of freedom", "to": "the other degree of freedom; left out, the frame",
+    "against": "the other degree of freedom", "at": "contact", "along": "contacts that are shaken; left out, all",
+    "sense": "degree of freedom that is measured; left out, the one it acts on",
+}  # fmt: skip
+
 
 def list_(name: str | None = None) -> None:
-    """Print what there is: designs, friction laws, schedules, methods and papers.
+    """Print what there is: designs, friction laws, schedules, methods, countermeasures, loops and papers.
 
     Parameters
     ----------
     name
-        a design, law or schedule, to see its parameters with unit, default, range, meaning and source
+        a design, law, schedule, countermeasure or loop, to see its parameters with unit, default, range and meaning
     """
     print("\n".join(_overview() if name is None else _sheet(name)))
 
@@ -24,7 +34,7 @@ def _overview() -> Iterator[str]:
     from squealbox.files.sheets import SCHEDULE_NAMES
     from squealbox.transient.methods import TABLEAUX, TAYLOR
 
-    yield from _section("designs (brake = ...)", {name: sheet.title for name, sheet in BRAKES.items()})
+    yield from _section("designs (brake = ...)", {name: sheet.title for name, sheet in BRAKES.items()} | READ_TITLES)
     yield from _section("friction laws (law = ...)", {name: _first_line(sheet) for name, sheet in _laws().items()})
     yield from _section(
         "schedules, in place of a number", {n: _first_line(sheet) for n, sheet in SCHEDULE_NAMES.items()}
@@ -39,8 +49,18 @@ def _overview() -> Iterator[str]:
         "time-stepping": "fixed steps, for many contacts and for sliding in a plane",
     }  # fmt: skip
     yield from _section("contact (contact = ...)", schemes)
+    for word, sheets in _around().items():
+        yield from _section(f"{word} ([[{word}]], kind = ...)", {n: _first_line(sheet) for n, sheet in sheets.items()})
     yield from _section("papers (squealbox paper ...)", _papers())
-    yield "squealbox list NAME shows the parameters of a design, law or schedule"
+    yield "squealbox list NAME shows the parameters of any of them but methods and papers"
+
+
+def _around() -> dict[str, dict[str, type[DataSheet]]]:
+    """What a file puts around a brake, by the section that holds it."""
+    from squealbox.countermeasures import COUNTERMEASURES
+    from squealbox.loops import LOOPS
+
+    return {"countermeasures": {**COUNTERMEASURES}, "loops": {**LOOPS}}
 
 
 def _laws() -> dict[str, type[DataSheet]]:
@@ -69,10 +89,14 @@ def _sheet(name: str) -> Iterator[str]:
     from squealbox.files import BRAKES
     from squealbox.files.sheets import LAW_NAMES, SCHEDULE_NAMES
 
-    known: dict[str, type[DataSheet]] = {**SCHEDULE_NAMES, **LAW_NAMES, **BRAKES}
+    kinds: tuple[Mapping[str, type[DataSheet]], ...] = (BRAKES, LAW_NAMES, SCHEDULE_NAMES, *_around().values())
+    known = [each for sheets in kinds for each in sheets]
+    if name in READ_TITLES:
+        yield f"{name}: {READ_TITLES[name]}"
+        return
     if name not in known:
-        raise UsageError(f"{name[:40]!r} is not listed: {known_names(name[:40], list(known))}")
-    both = [sheets[name] for sheets in (BRAKES, LAW_NAMES, SCHEDULE_NAMES) if name in sheets]
+        raise UsageError(f"{name[:40]!r} is not listed: {known_names(name[:40], known)}")
+    both = [sheets[name] for sheets in kinds if name in sheets]
     for sheet in both:
         yield from _parameters(name, sheet)
 
@@ -82,6 +106,8 @@ def _parameters(name: str, sheet: type[DataSheet]) -> Iterator[str]:
     source = getattr(sheet, "source", "")
     yield f"{name}: {title}" + (f" [{source}]" if source else "")
     rows = [("parameter", "default", "range", "meaning")]
+    if name in {each for sheets in _around().values() for each in sheets}:
+        rows += [(f, _default(sheet, f) or "none", "a name", NAMED[f]) for f in sheet.field_names() if f in NAMED]
     rows += [
         (field, _default(sheet, field), about.range, _meaning(about)) for field, about in sheet.parameters().items()
     ]

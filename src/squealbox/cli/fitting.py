@@ -16,12 +16,13 @@ def fit(file: Path, *, law: tuple[str, ...] = (), level: float = 0.95, out: Path
     Parameters
     ----------
     file
-        CSV file of two columns, sliding speed in m/s and friction coefficient; a first line of names is skipped
+        CSV file of two columns, sliding speed and friction coefficient; a first line of names may tell their units,
+        "v [km/h], mu [%]", else they are m/s and 1; decimal commas and a byte order mark are read
     law
         laws to try: coulomb, linear_slope, stribeck, hyperbolic, cubic, which are all when left out; lugre and
         elasto_plastic by their curve of steady sliding
     level
-        confidence level of the bands
+        confidence level of the bands, and of what stands behind +-
     out
         folder for the figure, the curves and fit.nc
     """

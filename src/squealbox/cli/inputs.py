@@ -15,14 +15,14 @@ from squealbox.cli.running import UsageError
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files import DesignFile, read_file
-from squealbox.files.analyses import Axis, quantity_of
+from squealbox.files.analyses import Axis, quantity_of, words_of
 from squealbox.files.units import UnitError, in_si
 from squealbox.parameters import Parameter, ParameterError
 from squealbox.transient.simulate import TIME_STEPPING
 
 Changes = Annotated[tuple[str, ...], cyclopts.Parameter(name="--set", negative="", show_default=False)]
 AllowCode = Annotated[bool, cyclopts.Parameter(name="--allow-code", negative="")]
-Ends = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="", allow_leading_hyphen=True)]
+Ends = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
 
 
 def read(file: Path, changes: Sequence[str] = (), allow_code: bool = False) -> DesignFile:
@@ -91,7 +91,7 @@ def axis(design: Design, given: Axis | None, name: str | None, ends: tuple[str, 
             raise UsageError(f"nothing says over which range: give {option.usage}")
         return given
     label = f"{option.word} {' '.join(ends)[:60]}"
-    about = _quantity(design, name, option.word)
+    about = _quantity(design, name, f"{option.usage.partition(' ')[0]} {name[:60]}")
     low, high = (number(end, about.unit, label) for end in ends)
     if not about.accepts(np.array([low, high])):
         raise UsageError(f"{label}: expected finite numbers in {about.range}")
@@ -139,7 +139,7 @@ def free(*paths: Path) -> None:
 def _changed(design: Design, name: str, text: str, change: str) -> Design:
     label = f"--set {change[:60]}"
     try:
-        if name in design.choices():
+        if name in words_of(design):
             return design.replace({name: text})
         about = _quantity(design, name, label)
         return design.replace({name: number(text, about.unit, label)})

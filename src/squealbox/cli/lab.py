@@ -45,11 +45,6 @@ def lab(
             Path(file), allow_code=allow_code
         ).design  # says all that is wrong with it before anything is served
         text = Path(file).read_text(encoding="utf-8")
-    try:
-        from squealbox.workbench.lab import serve
+    from squealbox.workbench.lab import serve
 
-        serve(text, port, design=design, browser=browser, fragment=fragment)
-    except ModuleNotFoundError as error:
-        if str(error.name).startswith("squealbox"):
-            raise
-        raise UsageError(f"{error.name} is missing: install it with pip install 'squealbox[workbench]'") from error
+    serve(text, port, design=design, browser=browser, fragment=fragment)

@@ -10,6 +10,7 @@ import numpy as np
 
 from squealbox.cli.answers import show
 from squealbox.cli.inputs import number
+from squealbox.cli.progress import Progress
 from squealbox.cli.running import UsageError
 from squealbox.signals import (
     Recording,
@@ -221,7 +222,9 @@ def quality(
     for path in recordings:
         with _named(path):
             sound = _sound(path, "Pa", full_scale, rate)
-            show(str(path), sound_quality(sound, channel=_place(channel), begin=ends[0], end=ends[1]))
+            with Progress(f"{path.name}: roughness takes some seconds for each second of sound"):
+                found = sound_quality(sound, channel=_place(channel), begin=ends[0], end=ends[1])
+            show(str(path), found)
 
 
 def _found(
@@ -261,5 +264,3 @@ def _named(path: Path) -> Iterator[None]:
         yield
     except SignalError as error:
         raise UsageError(f"{path.name}: {error}" if path.name not in str(error) else str(error)) from error
-    except ImportError as error:
-        raise UsageError(str(error)) from error

@@ -6,10 +6,14 @@ import os
 import re
 import sys
 from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
 
 from squealbox.cli import BAD_INPUT, DONE, FAILED, OPTIONS, STOPPED, Command, UsageError
 from squealbox.result import Outcome
 
+QUANTITY = re.compile(r"-[.\d]+\D")  # "-90deg" is a value, which would be taken for an option
+SIGN = "\N{MINUS SIGN}"  # stands for its hyphen while the words are told apart
 TRACEBACK = "SQUEALBOX_TRACEBACK"  # set in the environment, an error inside the program shows where it arose
 
 
@@ -70,14 +74,23 @@ def _call(name: str, command: Command, words: Sequence[str]) -> int:
     app.default(function)
     app["--help"].group = "Parameters"
     try:
-        code = app(ordered([*figures(words)]), exit_on_error=False, print_error=False)
+        told = [SIGN + word[1:] if QUANTITY.match(word) else word for word in ordered([*figures(words)])]
+        call, given, _ = app.parse_args(told, exit_on_error=False, print_error=False)
     except cyclopts.UnusedCliTokensError as error:
         raise UsageError(f"unexpected words: {' '.join(error.unused_tokens or ())[:60]}") from error
     except cyclopts.MissingArgumentError as error:
         raise UsageError(_missing(name, str(error), function)) from error
     except cyclopts.CycloptsError as error:
-        raise UsageError(_one_sentence(str(error))) from error
+        raise UsageError(_one_sentence(str(error).replace(SIGN, "-"))) from error
+    code = call(*map(_as_typed, given.args), **{name: _as_typed(value) for name, value in given.kwargs.items()})
     return code if isinstance(code, int) else DONE
+
+
+def _as_typed(value: Any) -> Any:
+    """What an option was given, with the sign of negative quantities as it was typed."""
+    if isinstance(value, tuple):
+        return tuple(_as_typed(each) for each in value)
+    return type(value)(str(value).replace(SIGN, "-")) if isinstance(value, (str, Path)) else value
 
 
 def _missing(name: str, text: str, function: Callable[..., object]) -> str:
@@ -114,6 +127,7 @@ def ordered(words: Sequence[str]) -> list[str]:
 
 def _explain(name: str, error: Exception) -> tuple[int, str]:
     """Say what was wrong; only errors of kinds that are about the input are put down to the user."""
+    from squealbox.extras import MissingExtra
     from squealbox.files import DesignFileError, NotWritable
     from squealbox.parameters import ParameterError
     from squealbox.result import ResultFileError
@@ -129,6 +143,7 @@ def _explain(name: str, error: Exception) -> tuple[int, str]:
         return _say(name, str(error), FAILED)
     asked = (
         UsageError,
+        MissingExtra,
         ParameterError,
         InvalidSystem,
         NotWritable,

@@ -9,6 +9,9 @@ from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read
 from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
+from squealbox.files import NotWritable
+from squealbox.files.writing import cure_text
+from squealbox.remedies import Remedies
 from squealbox.remedies import silence as silenced
 
 
@@ -56,13 +59,26 @@ def silence(
         lot = found.scatter.scatter if found.scatter is not None else None
         table = silenced(brake, lot, margin=margin, samples=samples, seed=seed)
     print(f"{found.design.title}, {file}\n{table.summary(len(table))}")
+    lines = [_in_a_file(table, row) for row in range(len(table))]
+    if lines:
+        where = "with these values" if table.values[0] else "with these lines at its end"
+        print(f"{table.name[0]}: {file.name} {where}\n\n{lines[0]}")
     keep(table)
     if out is not None:
         from squealbox import plots
 
         columns = {name: np.array(column) for name, *column in zip(table.heads(), *table.rows(), strict=True)}
-        columns["python"] = table.line
+        columns["python"], columns["toml"] = table.line, np.array(lines)
         paths = [table.save(out / "silence.nc"), write_csv(out / "silence.csv", columns)]
         print(written(*paths, *plots.save(plots.plot(table, title=found.path.name), out / "silence")))
     if not table.outcome.ok:
         raise ComputationFailed(table.outcome)
+
+
+def _in_a_file(table: Remedies, row: int) -> str:
+    """The lines of a design file that make the cure of a row."""
+    brake = table.inputs["system"]
+    try:
+        return cure_text(table.design(row), brake, table.values[row])
+    except NotWritable as error:
+        return f"# not in a file: {error}"

@@ -135,12 +135,18 @@ def _duration(design: "Design") -> str:
 def _example(brake: str) -> "Design":
     from squealbox.designs import DrumBrake
     from squealbox.files import BRAKES, OwnBrake, OwnContact, OwnMechanism
+    from squealbox.files.reading import READERS
     from squealbox.friction import Coulomb, LinearSlope
 
     if brake == "disc_brake":
         raise UsageError(
             '--brake disc_brake: a file of one line, brake = "disc_brake", beside a section [modes] with its band; '
             "examples/caliper begins from exported matrices"
+        )
+    if brake in READERS:
+        raise UsageError(
+            f"--brake {brake}: its file names files of your own, docs/finite_elements.md shows one; examples/caliper "
+            "begins from exported matrices, squealbox reduce writes a reduced brake"
         )
     if brake not in BRAKES:
         raise UsageError(f"--brake {brake[:40]}: {known_names(brake[:40], list(BRAKES))}")

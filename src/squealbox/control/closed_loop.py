@@ -9,6 +9,7 @@ from squealbox.arguments import public
 from squealbox.control import margins, sampled
 from squealbox.control.plant import Plant, plant
 from squealbox.control.poles import Late, late_poles
+from squealbox.extras import extra
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 
@@ -138,7 +139,8 @@ class ClosedLoop(Result):
 
         Delay and sampling are not in it. Needs the package `control`.
         """
-        import control
+        with extra("control"):
+            import control
 
         found = self.plant
         return control.ss(found.A, found.B, found.H, np.zeros((len(found.loops), len(found.loops))))

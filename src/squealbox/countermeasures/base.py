@@ -5,14 +5,14 @@ is looked for in it too, so "friction.static" names the same parameter through a
 analysis that varies it works unchanged.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Self
 
 import numpy as np
 
 from squealbox.designs.base import Design
 from squealbox.loops.rows import padded_load
-from squealbox.parameters import ParameterError, known_names
+from squealbox.parameters import Parameter, ParameterError, known_names
 from squealbox.system import Contact, System
 
 
@@ -46,6 +46,11 @@ class Countermeasure(Design):
         """The unit of a dotted name, the countermeasure's own or the brake's."""
         return super().unit_of(path) or self.brake.unit_of(path)
 
+    def leaves(self, prefix: str = "") -> Iterator[tuple[str, Parameter, Any]]:
+        """Every declared parameter, those of the brake under their own names as long as these mean the same."""
+        for name, about, value in super().leaves():
+            yield prefix + short_name(self, name), about, value
+
     def cautions(self) -> tuple[str, ...]:
         """Where what is done to the brake may make it worse, in sentences."""
         return self.brake.cautions() if isinstance(self.brake, Countermeasure) else ()
@@ -57,6 +62,22 @@ class Countermeasure(Design):
         while isinstance(held, Countermeasure):
             held = held.brake
         return held
+
+
+def short_name(design: Design, path: str) -> str:
+    """A dotted name without the countermeasures in front of it, as long as it then still means the same.
+
+    >>> from squealbox import AddedMass, DrumBrake
+    >>> short_name(AddedMass(DrumBrake(), "x", 0.1), "brake.friction.static")
+    'friction.static'
+    """
+    held, tail, passed = design, path, []
+    while isinstance(held, Countermeasure) and tail.startswith("brake."):
+        passed.append(held.field_names())
+        held, tail = held.brake, tail.removeprefix("brake.")
+    head = tail.partition(".")[0]
+    kept = max((i + 1 for i, names in enumerate(passed) if head in names), default=0)
+    return "brake." * kept + tail
 
 
 def direction(owner: str, field: str, system: System, on: str | Sequence[float]) -> Any:

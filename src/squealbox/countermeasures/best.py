@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.arguments import public
+from squealbox.arguments import public, with_parameters
 from squealbox.countermeasures.loss import at_the_window, first_loss, growth_of
 from squealbox.countermeasures.mechanical import TunedMass
 from squealbox.designs.base import Design
@@ -26,8 +26,10 @@ from squealbox.studies.uncertainty.scatter import Scatter
 AIMS = ("decay", "margin", "probability")
 FREQUENCIES, DAMPINGS = 21, 14  # of the detuning map
 BEYOND, HEAVIEST = 2.0, 5.0  # times the ends of the map, and the largest damping ratio, that are looked at
-ZOOMS, ZOOMED = 5, 9  # maps of a quick tuning, and points of each but the first along both axes
+LIGHTEST = 1e-5  # damping ratio below which it is tried without any
+ALIKE = 1e-13  # of the largest value of the map: closer than round-off none is better
 POLISHED = 3  # best points of the map from which the search goes on
+FAR = 5.0  # in logarithms, from the best tuning to where two modes meet
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -72,7 +74,7 @@ class BestAbsorber(Result):
         return self.summary()
 
 
-@public(bounds=None)
+@public(bounds=None, brake=with_parameters)
 def best_absorber(
     brake: Design,
     on: str,
@@ -134,6 +136,9 @@ def best_absorber(
             [best, *at_the_window(start, best, parameter, _limits(start, parameter, bounds))], key=lambda each: each[0]
         )
     value, frequency, damping = best
+    undamped = float(np.ravel(judge(np.array([frequency]), np.zeros(1)))[0])
+    if undamped <= value:
+        value, damping = undamped, 0.0
     if aim == "probability":  # without what decided between equal shares
         value, grid = float(np.floor(value * samples + 1e-9)) / samples, np.floor(grid * samples + 1e-9) / samples
     sign = -1.0 if aim == "margin" else 1.0
@@ -146,25 +151,6 @@ def best_absorber(
         growth_map=sign * grid,
         band=_band(start.replace(frequency=frequency, damping=damping)), aim=aim, inputs=inputs, settings=settings,
     )  # fmt: skip
-
-
-def quick_tuning(brake: Design, on: str, mass: float) -> tuple[float, float]:
-    """Frequency [Hz] and damping ratio with the least growth, by maps around the best of the last: to rank by."""
-    modes = complex_modes(brake)
-    centre = float(modes.most_unstable.frequency) or float(np.max(modes.frequency))
-    start = TunedMass(brake, on, mass, centre, 0.1)
-    frequencies = centre * np.exp(np.linspace(-1.0, 1.0, FREQUENCIES) ** 3 * np.log(1.6))
-    dampings = np.geomspace(2e-3, 0.5, DAMPINGS)
-    for _ in range(ZOOMS):
-        f, z = np.meshgrid(frequencies, dampings, indexing="ij")
-        growth = growth_of(start.replace(frequency=f.ravel(), damping=z.ravel()))
-        i, k = divmod(int(np.argmin(growth)), len(dampings))
-        best = float(f[i, k]), float(z[i, k])
-        frequencies, dampings = (
-            np.geomspace(each[max(at - 1, 0)], each[min(at + 1, len(each) - 1)], ZOOMED)
-            for each, at in ((frequencies, i), (dampings, k))
-        )
-    return best
 
 
 Judge = Callable[[Any, Any], Any]
@@ -211,7 +197,7 @@ def _searched(judge: Judge, frequencies: Any, dampings: Any, grid: Any, most: in
 
     def judged(x: Any) -> float:
         frequency, damping = np.exp(x)
-        if not (frequencies[0] / BEYOND < frequency < BEYOND * frequencies[-1] and damping < HEAVIEST):
+        if not (frequencies[0] / BEYOND < frequency < BEYOND * frequencies[-1] and LIGHTEST < damping < HEAVIEST):
             return float("inf")
         return float(np.ravel(judge(np.exp(x[:1]), np.exp(x[1:])))[0])
 
@@ -220,12 +206,13 @@ def _searched(judge: Judge, frequencies: Any, dampings: Any, grid: Any, most: in
     valleys = np.argwhere(grid <= np.min(neighbours, axis=0))
     valleys = valleys[np.argsort(grid[tuple(valleys.T)])][:POLISHED]
     best = (np.inf, 0.0, 0.0)
+    alike = ALIKE * float(np.max(np.abs(grid), where=np.isfinite(grid), initial=0.0))
     for i, k in valleys:
         simplex = np.log([frequencies[i], dampings[k]]) + np.array([[0.0, 0.0], [0.02, 0.0], [0.0, 0.3]])
         for _ in range(2):  # begun again from where it ended: it may have become flat
             found = minimize(
                 judged, simplex[0], method="Nelder-Mead",
-                options={"initial_simplex": simplex, "xatol": 1e-10, "fatol": 1e-14, "maxfev": most},
+                options={"initial_simplex": simplex, "xatol": 1e-10, "fatol": alike, "maxfev": most},
             )  # fmt: skip
             simplex = found.x + np.array([[0.0, 0.0], [1e-3, 0.0], [0.0, 1e-2]])
             if found.fun < best[0]:
@@ -238,7 +225,8 @@ def _meetings(start: Any, near: tuple[float, float]) -> list[tuple[float, float,
     from scipy.optimize import root
 
     def apart(x: Any) -> Any:
-        values = spectrum(steady_sliding(start.replace(frequency=float(np.exp(x[0])), damping=float(np.exp(x[1])))))
+        frequency, damping = np.exp(np.clip(x, np.log(near) - FAR, np.log(near) + FAR))  # a step may go anywhere
+        values = spectrum(steady_sliding(start.replace(frequency=float(frequency), damping=float(damping))))
         upper = np.sort_complex(-values[: len(values) // 2])[: max(len(values) // 2, 2)]
         squares = np.array([(a - b) ** 2 for i, a in enumerate(upper) for b in upper[:i]]) / np.max(np.abs(upper)) ** 2
         least = squares[int(np.argmin(np.abs(squares)))]

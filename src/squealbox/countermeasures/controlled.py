@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar, Self
 
 from squealbox.countermeasures.base import Countermeasure
+from squealbox.declarations import UNSAID
 from squealbox.loops import Loop, check_loops
 from squealbox.parameters import ParameterError
 from squealbox.system import System
@@ -69,5 +70,5 @@ class Controlled(Countermeasure):
     def _loop(self, path: str) -> tuple[int, str]:
         place, _, inner = path.removeprefix("loops.").partition(".")
         if not place.isdigit() or int(place) >= len(self.loops) or not inner:
-            raise ParameterError("Controlled", path, None, f"loops.0.NAME to loops.{len(self.loops) - 1}.NAME")
+            raise ParameterError("Controlled", path, UNSAID, f"loops.0.NAME to loops.{len(self.loops) - 1}.NAME")
         return int(place), inner

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.extras import extra
 from squealbox.fe.grids import Body
 from squealbox.fe.meshed import MeshedBrake
 
@@ -39,7 +40,8 @@ def write_shape(brake: MeshedBrake, shape: Any, eigenvalue: complex, path: str |
     cells = np.concatenate([cell + offset for (_, _, cell), offset in zip(parts, offsets[:-1], strict=True)])
     bodies = np.concatenate([np.full(len(cell), i) for i, (_, _, cell) in enumerate(parts)])
     if path.suffix == ".vtu":
-        import meshio
+        with extra("fe"):
+            import meshio
 
         data = {"real": moved.real, "imag": moved.imag, "size": np.linalg.norm(moved, axis=1)}
         mesh = meshio.Mesh(places, [("hexahedron", cells)], point_data=data, cell_data={"body": [bodies]})
@@ -61,7 +63,8 @@ VTK = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 
 
 
 def _write_universal(path: Path, places: Any, moved: Any, eigenvalue: complex) -> None:
-    import pyuff
+    with extra("fe"):
+        import pyuff
 
     numbers = np.arange(1, len(places) + 1)
     nodes = {

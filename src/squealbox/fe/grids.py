@@ -18,16 +18,15 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
+from squealbox.extras import extra
+
 QUADRATURE = 4  # order that quadratic elements need for stiffness, mass and faces
-MISSING = "a brake meshed here needs scikit-fem: it comes with the extra fe, pip install 'squealbox[fe]'"
 
 
 def skfem() -> Any:
     """scikit-fem, or a sentence where it is not installed."""
-    try:
+    with extra("fe"):
         import skfem as library
-    except ModuleNotFoundError as error:
-        raise ModuleNotFoundError(MISSING) from error
     return library
 
 

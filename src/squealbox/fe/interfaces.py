@@ -23,6 +23,11 @@ from squealbox.fe.units import unit_system
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, choice, parameter
 
+NO_LABELS = (
+    "labels of the rows, to find the nodes of pairs: a .mat has none, a .npz may hold them beside the matrix, "
+    "labels (n, 2) of node and direction"
+)
+
 
 class Rotation(DataSheet):
     """Masters that turn about an axis: they slide over a slave at x by omega e x (x - point), less what is normal."""
@@ -134,7 +139,7 @@ class _Rows:
     def __init__(self, structure: Structure, systems: tuple[CoordinateSystem, ...]) -> None:
         self.structure = structure
         if structure.labels is None:
-            raise ParameterError("structure", "labels", None, "labels of the rows, to find the nodes of pairs")
+            raise ParameterError("structure", "labels", None, NO_LABELS)
         self.where = {(int(a), int(b)): i for i, (a, b) in enumerate(structure.labels)}
         self.known = set(structure.labels[:, 0].tolist())
         self.turned = {int(node): system for system in systems for node in system.nodes}

@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.extras import extra
 from squealbox.fe.structure import Structure
 from squealbox.parameters import ParameterError
-
-MISSING = "{0} is missing: pip install {0}"
 
 
 def displacements(structure: Structure, shapes: Any) -> tuple[Any, Any, Any]:
@@ -31,10 +30,8 @@ def displacements(structure: Structure, shapes: Any) -> tuple[Any, Any, Any]:
 
 def write_vtu(path: str | os.PathLike[str], structure: Structure, eigenvalues: Any, shapes: Any) -> Path:
     """Every mode's real and imaginary displacement at the nodes, as a cloud of points; needs meshio."""
-    try:
+    with extra("fe"):
         import meshio
-    except ModuleNotFoundError as error:
-        raise ModuleNotFoundError(MISSING.format("meshio"), name="meshio") from error
     _, places, moved = displacements(structure, shapes)
     data = {}
     for i, value in enumerate(eigenvalues):
@@ -47,10 +44,8 @@ def write_vtu(path: str | os.PathLike[str], structure: Structure, eigenvalues: A
 
 def write_uff(path: str | os.PathLike[str], structure: Structure, eigenvalues: Any, shapes: Any) -> Path:
     """Nodes (dataset 15) and complex modes (dataset 55, with their eigenvalues) of a universal file; needs pyuff."""
-    try:
+    with extra("fe"):
         import pyuff
-    except ModuleNotFoundError as error:
-        raise ModuleNotFoundError(MISSING.format("pyuff"), name="pyuff") from error
     numbers, places, moved = displacements(structure, shapes)
     Path(path).unlink(missing_ok=True)
     file = pyuff.UFF(str(path))

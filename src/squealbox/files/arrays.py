@@ -28,6 +28,7 @@ Vector = Annotated[Any, 1]  # how a data sheet declares a field that a file may 
 Matrix = Annotated[Any, 2]
 
 TRIANGLES = ("mirrored", "as_given")
+MATLAB = "; numpy.save('K.npy', scipy.io.loadmat('{}')['K']) makes one of the matrix K (sparse: K.toarray())"
 LARGEST_FILE = 64_000_000  # bytes
 MOST_ROWS = 2_000  # degrees of freedom; a larger finite-element model is reduced before it comes here
 
@@ -129,7 +130,10 @@ def load_array(path: Path) -> np.ndarray:
     """The real numbers of a `.npy`, `.mtx` or `.csv` file; `ArrayFileError` names what is wrong with it."""
     readers = {".npy": _npy, ".mtx": read_matrix_market, ".csv": read_csv}
     if path.suffix not in readers:
-        raise ArrayFileError(f"{shown(path.name)} has the ending {shown(path.suffix)}, expected .npy, .mtx or .csv")
+        matlab = MATLAB.format(path.name) if path.suffix.lower() == ".mat" else ""
+        raise ArrayFileError(
+            f"{shown(path.name)} has the ending {shown(path.suffix)}, expected .npy, .mtx or .csv{matlab}"
+        )
     try:
         raw = read_bytes(path, LARGEST_FILE)
     except FileNotFoundError as error:

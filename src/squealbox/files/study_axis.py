@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.files.analyses import read_ends, scalar_parameters
+from squealbox.files.analyses import read_ends, scalar_parameters, words_of
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
@@ -201,7 +201,7 @@ def _parameter(
         return "", None
     if design is None:
         return name, None
-    known: dict[str, Parameter | Choice] = {**scalar_parameters(design), **design.choices()}
+    known: dict[str, Parameter | Choice] = {**scalar_parameters(design), **words_of(design)}
     if name not in known:
         document.problem((*key, "parameter"), f"unknown parameter {name[:60]!r}, {known_names(name[:60], list(known))}")
         return name, None

@@ -6,7 +6,7 @@ import os
 import tempfile
 import textwrap
 import typing
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +51,8 @@ def write_design(design: Design, path: str | os.PathLike[str], *, sections: str 
     Raises `NotWritable` for what a file cannot hold.
     """
     path = Path(path)
+    if not path.parent.is_dir():
+        raise NotWritable(f"{path}: there is no folder {path.parent}, expected one that is there")
     handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
     try:
         with os.fdopen(handle, "w", encoding="utf-8") as stream:
@@ -77,6 +79,24 @@ def design_text(design: Design) -> str:
     if len(text.encode()) > LARGEST:
         raise NotWritable("its matrices are too large for a design file: save each with numpy.save and name the files")
     return text
+
+
+def cure_text(cured: Design, brake: Design, values: Mapping[str, float] | None = None) -> str:
+    """What makes the file of `brake` that of `cured`: its last tables, or other `values` of parameters it has.
+
+    Raises `NotWritable` for what a file cannot hold.
+    """
+    if values:
+        units = {name: brake.unit_of(name) for name in values}
+        return "".join(f"{name} = {_text(value, units[name] or '-', name)}\n" for name, value in values.items())
+    before = wrapped_text(brake, _nothing, _text, NotWritable) if isinstance(brake, Countermeasure) else "\n"
+    if not isinstance(cured, Countermeasure):
+        raise NotWritable(f"{type(cured).__name__} holds no other brake: expected a countermeasure")
+    return wrapped_text(cured, _nothing, _text, NotWritable)[len(before) :].lstrip("\n")
+
+
+def _nothing(design: Design) -> str:
+    return ""
 
 
 def _tables(name: str, value: Any) -> Iterator[str]:

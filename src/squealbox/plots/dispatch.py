@@ -1,10 +1,11 @@
 """One door to every figure: `plot` looks at the kind of result and calls the function that draws it."""
 
+import inspect
 from functools import singledispatch
 from typing import TYPE_CHECKING, Any
 
 from squealbox.arguments import public, real
-from squealbox.declarations import Parameter
+from squealbox.declarations import Parameter, ParameterError, known_names
 from squealbox.plots.style import LOOK, Look, styled
 
 if TYPE_CHECKING:
@@ -44,7 +45,14 @@ def plot(
     token = LOOK.set(Look(width, height, style))
     try:
         with styled():
-            return drawn_by(result, **keywords)
+            draw = drawn_by.dispatch(type(result))
+            known = inspect.signature(draw).parameters
+            if all(each.kind is not each.VAR_KEYWORD for each in known.values()):
+                names = [*list(known)[1:], "width", "height", "style"]
+                for name in keywords:
+                    if name not in known:
+                        raise ParameterError("plot", name, keywords[name], known_names(name, names))
+            return draw(result, **keywords)
     finally:
         LOOK.reset(token)
 

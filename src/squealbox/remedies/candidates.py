@@ -16,8 +16,8 @@ from squealbox.countermeasures import (
     LayerDamping,
     Shim,
     TunedMass,
+    best_absorber,
 )
-from squealbox.countermeasures.best import quick_tuning
 from squealbox.designs.base import Design
 from squealbox.friction import FrictionLaw
 from squealbox.loops import PID, ActiveForce
@@ -52,15 +52,21 @@ class Candidate:
 
 
 def candidates_for(brake: Design, friction: Any) -> list[Candidate]:
-    """Every candidate the brake itself suggests; `friction` is the brake at the friction it shall be quiet at."""
+    """Every candidate the brake itself suggests; `friction` is the brake at the friction it shall be quiet at.
+
+    Absorbers are those of `best_absorber`, tuned to the brake as it is.
+    """
     names = _freedoms(brake)
     masses = {name: float(brake.system().M[i, i]) for i, name in enumerate(brake.system().names)}
     springs = {name: float(brake.system().K[i, i]) for i, name in enumerate(brake.system().names)}
     modes = complex_modes(friction)
     rate = 2.0 * np.pi * float(modes.most_unstable.frequency or np.max(modes.frequency))
     found = [*_parameters(brake)]
+    tuned = {
+        (name, share): best_absorber(brake, name, share * masses[name]).design for name in names for share in SHARES
+    }
     for name in names:
-        found += [_absorber(brake, friction, name, share * masses[name]) for share in SHARES]
+        found += [_absorber(tuned[name, share]) for share in SHARES]
         found += [
             _added(
                 AddedDamping, "damping", brake, name, 3.0 * masses[name] * rate, "N s/m", "a damper or damping layer"
@@ -69,11 +75,12 @@ def candidates_for(brake: Design, friction: Any) -> list[Candidate]:
             _added(AddedStiffness, "stiffness", brake, name, 0.5 * springs[name], "N/m", "a stiffer support"),
             _layer(brake, name, rate / (2.0 * np.pi)),
         ]
-    found.append(_absorber_and_damper(brake, friction, names, masses, rate))
+    light = tuned[names[0], SHARES[0]]
+    found.append(_absorber_and_damper(light, names[-1 if len(names) == 1 else 1], masses, rate))
     if len(names) > 1:
         found.append(_dampers(brake, names, 3.0 * max(masses[n] for n in names) * rate))
         found.append(_asymmetry(brake, names, 0.3 * min(springs[n] for n in names)))
-        found.append(_two_absorbers(brake, friction, names, masses))
+        found.append(_two_absorbers(light, best_absorber(light, names[1], SHARES[0] * masses[names[1]]).design))
     found += _shims(brake, rate)
     bandwidth = min(BANDWIDTH, FASTER * rate / (2.0 * np.pi))
     found.append(_feedback(brake, names, 3.0 * max(masses[n] for n in names) * rate, bandwidth))
@@ -139,8 +146,8 @@ def _added(kind: Any, field: str, brake: Design, on: str, most: float, unit: str
     )  # fmt: skip
 
 
-def _absorber(brake: Design, friction: Any, on: str, mass: float) -> Candidate:
-    frequency, damping = quick_tuning(friction, on, mass)
+def _absorber(tuned: TunedMass) -> Candidate:
+    brake, on, mass, frequency, damping = tuned.brake, tuned.on, tuned.mass, tuned.frequency, tuned.damping
     return Candidate(
         f"absorber {1e3 * mass:.3g} g on {on}", lambda dose: TunedMass(brake, on, dose, frequency, damping),
         np.array([mass]), "kg",
@@ -189,35 +196,27 @@ def _layer(brake: Design, on: str, hertz: float) -> Candidate:
     )  # fmt: skip
 
 
-def _absorber_and_damper(
-    brake: Design, friction: Any, names: list[str], masses: dict[str, float], rate: float
-) -> Candidate:
+def _absorber_and_damper(light: TunedMass, other: str, masses: dict[str, float], rate: float) -> Candidate:
     """A light absorber on what moves most, with a damper on the other freedom."""
-    on, other = names[0], names[-1 if len(names) == 1 else 1]
-    mass = SHARES[0] * masses[on]
-    frequency, damping = quick_tuning(friction, on, mass)
-    inner = f"TunedMass(brake, {on!r}, {mass!r}, {frequency!r}, {damping!r})"
+    inner = f"TunedMass(brake, {light.on!r}, {light.mass!r}, {light.frequency!r}, {light.damping!r})"
     return Candidate(
-        f"absorber on {on} and damper on {other}",
-        lambda dose: AddedDamping(TunedMass(brake, on, mass, frequency, damping), other, dose),
+        f"absorber on {light.on} and damper on {other}",
+        lambda dose: AddedDamping(light, other, dose),
         np.geomspace(1e-3, 1.0, DOSES) * masses[other] * rate, "N s/m",
         lambda dose: f"AddedDamping({inner}, {other!r}, {float(dose)!r})",
-        lambda dose: f"{1e3 * mass:.3g} g and {dose:.4g} N s/m", tuned="brake.frequency",
+        lambda dose: f"{1e3 * light.mass:.3g} g and {dose:.4g} N s/m", tuned="brake.frequency",
     )  # fmt: skip
 
 
-def _two_absorbers(brake: Design, friction: Any, names: list[str], masses: dict[str, float]) -> Candidate:
-    on, other = names[:2]
-    mass, second = SHARES[0] * masses[on], SHARES[0] * masses[other]
-    frequency, damping = quick_tuning(friction, on, mass)
-    again, ratio = quick_tuning(TunedMass(friction, on, mass, frequency, damping), other, second)
-    inner = f"TunedMass(brake, {on!r}, {mass!r}, {frequency!r}, {damping!r})"
+def _two_absorbers(light: TunedMass, both: TunedMass) -> Candidate:
+    other, frequency, damping = both.on, both.frequency, both.damping
+    inner = f"TunedMass(brake, {light.on!r}, {light.mass!r}, {light.frequency!r}, {light.damping!r})"
     return Candidate(
-        f"absorbers on {on} and {other}",
-        lambda dose: TunedMass(TunedMass(brake, on, mass, frequency, damping), other, dose, again, ratio),
-        np.array([second]), "kg",
-        lambda dose: f"TunedMass({inner}, {other!r}, {float(dose)!r}, {again!r}, {ratio!r})",
-        lambda dose: f"{1e3 * (mass + dose):.3g} g in all", ("two absorbers to be tuned",), tuned="frequency",
+        f"absorbers on {light.on} and {other}",
+        lambda dose: TunedMass(light, other, dose, frequency, damping),
+        np.array([both.mass]), "kg",
+        lambda dose: f"TunedMass({inner}, {other!r}, {float(dose)!r}, {frequency!r}, {damping!r})",
+        lambda dose: f"{1e3 * (light.mass + dose):.3g} g in all", ("two absorbers to be tuned",), tuned="frequency",
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.arguments import public
+from squealbox.arguments import public, with_parameters
 from squealbox.control import closed_loop
 from squealbox.countermeasures import Controlled, Countermeasure, Dithered
 from squealbox.countermeasures.loss import growth_of
@@ -118,7 +118,7 @@ class Remedies(Result):
         return "\n".join([self.without(), *lines, "", *cautions, *said])
 
 
-@public(scatter=None)
+@public(scatter=None, brake=with_parameters)
 def silence(
     brake: Design,
     scatter: Scatter | None = None,

@@ -24,7 +24,7 @@ DENSEST = 512  # samples a byte of a file can stand for, at most: FLAC of silenc
 BLOCK = 1 << 20  # frames read at once
 HUGE = 1e100  # no unit is so small that a value has to be so large
 CLIPPED = 3  # neighbours at the largest value, from which it is called clipped
-INSTALL = "pip install squealbox[recordings]"
+INSTALL = "pip install 'squealbox[recordings]'"
 
 
 @dataclass(frozen=True, eq=False)

@@ -131,6 +131,8 @@ def peaks(spectrum: Spectrum, count: int | None = None, *, least: float = 0.03) 
     """
     from scipy.signal import find_peaks
 
+    if not isinstance(spectrum, Spectrum):
+        raise SignalError(f"a {type(spectrum).__name__} is no spectrum: expected spectrum(signal)")
     amplitude, frequency = spectrum.amplitude, spectrum.frequency
     step = frequency[1] - frequency[0]
     apart = max(1, round(spectrum.resolution / step))

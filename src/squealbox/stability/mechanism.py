@@ -65,7 +65,8 @@ class Mechanism:
     def __str__(self) -> str:
         if self.name in ("stable", "divergence", "unknown") or not np.isfinite(self.flutter_share):
             return self.name
-        shares = f"{self.flutter_share:.0%} circulation, {self.negative_slope_share:.0%} negative slope"
+        parts = {"flutter": self.flutter_share, "negative slope": self.negative_slope_share}
+        shares = ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in parts.items())
         return f"{self.name.replace('_', ' ')} ({shares})"
 
 

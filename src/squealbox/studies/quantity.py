@@ -12,6 +12,7 @@ import numpy as np
 
 from squealbox.parameters import DataSheet, Parameter, ParameterError
 
+MAKERS = "squealbox.quantities"  # its functions make quantities
 BLOCK = 1 << 17  # points computed together
 
 
@@ -72,6 +73,8 @@ def as_quantity(given: Any) -> Quantity:
     if not callable(given):
         raise ParameterError("study", "quantity", given, "a function of a design, or a Quantity")
     name = getattr(given, "__name__", type(given).__name__)
+    if getattr(given, "__module__", "") == MAKERS:
+        raise ParameterError("study", "quantity", f"{name}, not called", f"{name}(...), which makes the quantity")
     return Quantity(given, "quantity" if name == "<lambda>" else name.replace("_", " "))
 
 
@@ -146,6 +149,9 @@ def declared(design: Any, path: str) -> list[Parameter]:
         found = [about for name in names if hasattr(design, name) for about in declared(getattr(design, name), rest)]
     else:
         found = [design.parameters()[name] for name in names if name in design.parameters()]
+    held = getattr(design, "brake", None)
+    if isinstance(held, DataSheet) and names[0] not in design.field_names():
+        return declared(held, path)  # within countermeasures a parameter of the brake keeps its name
     return found or [about for name, about, _ in design.leaves() if name == path]
 
 

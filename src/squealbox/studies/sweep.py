@@ -311,8 +311,9 @@ def _declared(design: Any) -> Iterator[tuple[str, tuple[str, str]]]:
         return
     for name, about, _ in design.leaves():
         yield name, (about.unit if about.unit != "-" else "1", about.meaning)
-    for alias, names in design.aliases.items():
-        first = design.parameters().get(names[0])
+    brake = getattr(design, "innermost", design)  # of a brake within countermeasures
+    for alias, names in brake.aliases.items():
+        first = brake.parameters().get(names[0])
         if first is not None:
             yield alias, (first.unit if first.unit != "-" else "1", first.meaning)
 

@@ -63,7 +63,7 @@ class Ensemble(Result):
 
     coordinates: ClassVar = {"instant": "sample_time"}
 
-    def __getitem__(self, name: str) -> Any:
+    def __getitem__(self, name: str) -> Array:
         """The values of an observer."""
         if name not in self.observed:
             raise KeyError(f"{name!r} was not observed: there is {', '.join(self.observed) or 'nothing'}")

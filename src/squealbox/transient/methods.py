@@ -10,6 +10,10 @@ from squealbox.parameters import ParameterError, known_names
 from squealbox.transient import _dop853
 
 TAYLOR = "taylor"  # the solution's own series
+ELSEWHERE = {  # what other programs call them
+    "rk23": "bogacki-shampine", "bs3": "bogacki-shampine", "rk45": "dormand-prince", "dopri5": "dormand-prince",
+    "tsit5": "tsitouras", "dop853": "dormand-prince-8",
+}  # fmt: skip
 USUAL_RTOL = {
     "bogacki-shampine": 1e-6, "dormand-prince": 1e-8, "tsitouras": 1e-8, "dormand-prince-8": 3e-10, TAYLOR: 1e-10,
 }  # fmt: skip
@@ -69,8 +73,9 @@ class Method:
 
     def __post_init__(self) -> None:
         if self.tableau not in (*TABLEAUX, TAYLOR):
-            names = [*TABLEAUX, TAYLOR]
-            raise ParameterError("Method", "tableau", self.tableau, known_names(str(self.tableau), names))
+            word = str(self.tableau)
+            asked = ELSEWHERE.get(word.lower(), word)
+            raise ParameterError("Method", "tableau", self.tableau, known_names(asked, [*TABLEAUX, TAYLOR]))
         if self.rtol is None:
             object.__setattr__(self, "rtol", USUAL_RTOL[self.tableau])
         if not 1e-15 <= self.rtol < 1.0:

@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+from squealbox.extras import need
+
 HOST = "127.0.0.1"
 PORT = 8642
 TRIES = 20  # ports after the usual one that are tried
@@ -28,8 +30,9 @@ def serve(
     browser : open the page in the browser
     fragment : what stands behind the # of the page's address: a design shared by its link
 
-    Raises `OSError` where the port is taken.
+    Raises `OSError` where the port is taken, `MissingExtra` before anything is served.
     """
+    need("workbench", "uvicorn", "starlette", "websockets")
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")  # many small matrices: threads of the algebra only stand in each other's way
     listening = listen(port)

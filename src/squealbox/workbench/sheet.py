@@ -31,7 +31,7 @@ STEPS = 500  # of a slider
 
 def sheet(design: Design) -> dict[str, Any]:
     """The fields of a design in order, the parameters a study can vary, and its aliases."""
-    known, brake = varied(design), getattr(design, "innermost", design)
+    known, brake = scalar_parameters(design), getattr(design, "innermost", design)
     title = brake.title or type(brake).__name__
     return {
         "title": title if brake is design else f"{title}, with {', '.join(_layers(design))}",
@@ -41,30 +41,6 @@ def sheet(design: Design) -> dict[str, Any]:
         "varied": list(known),
         "aliases": {alias: list(names) for alias, names in brake.aliases.items() if alias in known},
     }
-
-
-def varied(design: Design) -> dict[str, Parameter]:
-    """The parameters a study can vary, under the names the page has for them (`page_name`)."""
-    known = {page_name(design, name): about for name, about in scalar_parameters(design).items()}
-    brake = getattr(design, "innermost", design)
-    own = {} if brake is design else scalar_parameters(brake)
-    return known | {alias: own[alias] for alias in brake.aliases if alias in own and alias not in known}
-
-
-def page_name(design: Design, name: str) -> str:
-    """A dotted name without the countermeasures in front of it, as long as it then still means the same.
-
-    >>> from squealbox import AddedMass, DrumBrake
-    >>> page_name(AddedMass(DrumBrake(), "x", 0.1), "brake.friction.static")
-    'friction.static'
-    """
-    held, tail, passed = design, name, []
-    while isinstance(held, Countermeasure) and tail.startswith("brake."):
-        passed.append(held.field_names())
-        held, tail = held.brake, tail.removeprefix("brake.")
-    head = tail.partition(".")[0]
-    kept = max((i + 1 for i, names in enumerate(passed) if head in names), default=0)
-    return "brake." * kept + tail
 
 
 def _layers(design: Design) -> list[str]:

@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.cautions import along
+from squealbox.cautions import along, told_place
 from squealbox.limit_cycles.attractors.sections import Section, passages
 from squealbox.limit_cycles.attractors.settling import (
     FAILED,
@@ -33,6 +33,7 @@ from squealbox.matrices import runs_of_true
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import complex_modes
+from squealbox.studies.quantity import unit_of
 
 SWEEPS = ("up", "down", "rest")
 NUDGE = 1e-3  # of V, on every velocity
@@ -179,11 +180,12 @@ def bifurcation_diagram(
         state=np.array([np.concatenate([each.q, each.qd], axis=-1) for each in ends]),
         crossings=np.array(read),
         dofs=tuple(batch.system.names), read="" if section is None else section.read,
-        section="" if section is None else str(section), caution=_caution(batch, ends, parameter, values, threads),
+        section="" if section is None else str(section),
+        caution=_caution(batch, ends, parameter, values, threads, unit_of(design, parameter)),
     )  # fmt: skip
 
 
-def _caution(batch: Batch, ends: list[Settled], parameter: str, values: Any, threads: Any) -> str:
+def _caution(batch: Batch, ends: list[Settled], parameter: str, values: Any, threads: Any, unit: str) -> str:
     """Where the motions leave the range of their model: the largest of each sweep, over some of its periods."""
     largest: dict[int, Settled] = {}
     for each in ends:
@@ -197,7 +199,7 @@ def _caution(batch: Batch, ends: list[Settled], parameter: str, values: Any, thr
         times = _instants(each.take(at), part.system, SEEN)
         _, q, qd = part.sampled(each.q[at], each.qd[at], times, threads)
         for one in along(part.one, q[0], qd[0]):
-            said[f"at {parameter} = {values[i]:.6g} {one}"] = None
+            said[f"at {told_place(parameter, values[i], unit)} {one}"] = None
     return "; ".join(said)
 
 

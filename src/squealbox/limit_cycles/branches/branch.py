@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.cautions import along
+from squealbox.cautions import along, told_place
 from squealbox.continuation import PathPoint, StepControl, follow
 from squealbox.limit_cycles.branches.doubling import doubled
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
@@ -28,6 +28,7 @@ from squealbox.limit_cycles.cycles.harmonic_balance import Grid, harmonic_balanc
 from squealbox.limit_cycles.cycles.shooting import CONTACTS, shooting
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
+from squealbox.studies.quantity import unit_of
 
 METHODS = ("harmonic_balance", "shooting")
 METHODS_FROM_HOPF = (("harmonic_balance", "exact"), ("shooting", "exact"))
@@ -82,7 +83,7 @@ class Branch(Result):
             return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
         low, high = np.min(self.value), np.max(self.value)
         walked = f"{len(self.value)} cycles, {self.parameter} from {low:.6g} to {high:.6g}"
-        ended = f"{self.outcome} {self.outcome.message}".rstrip()
+        ended = self.outcome.message or str(self.outcome)
         lines = [f"{walked}, {int(np.sum(self.stable))} stable; ended: {ended}"]
         if len(self.value) > 2 and high - low < STRAIGHT * max(abs(low), abs(high)):
             lines += [f"it goes straight up: cycles of every amplitude at {self.parameter} = {low:.8g}"]
@@ -174,10 +175,10 @@ def branch(
         done.drop_last()
         done.outcome = _grazing_outcome(specials, done.visited[-1].p)
     found = _collect(done.visited, done.seen, specials, done.outcome, parameter, settings, make(middle), design)
-    return replace(found, caution=_caution(path, done.visited, found))
+    return replace(found, caution=_caution(path, done.visited, found, unit_of(design, parameter)))
 
 
-def _caution(path: Any, visited: list[PathPoint], found: Branch) -> str:
+def _caution(path: Any, visited: list[PathPoint], found: Branch, unit: str) -> str:
     """Where the cycles leave the range of their model: at both ends of the branch and where they are largest."""
     if not visited:
         return ""
@@ -187,8 +188,9 @@ def _caution(path: Any, visited: list[PathPoint], found: Branch) -> str:
     said: dict[str, str] = {}  # the contact or freedom, and what is said of the largest cycle first
     for i in sorted(places, key=lambda i: -float(np.max(ranks[i]))):
         cycle = path.cycle(visited[i].x, visited[i].p)
+        place = told_place(found.parameter, visited[i].p, unit)
         for each in along(cycle.system, cycle.q, cycle.qd):
-            said.setdefault(each.split(":")[0] + each[-20:], f"at {found.parameter} = {visited[i].p:.6g} {each}")
+            said.setdefault(each.split(":")[0] + each[-20:], f"at {place} {each}")
     return "; ".join(said.values())
 
 

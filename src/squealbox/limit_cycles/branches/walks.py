@@ -90,7 +90,7 @@ def walked(path: Any, walk: Follower, control: StepControl, bounds: tuple[float,
                 done.outcome = done.born()
                 return done
             if len(done.visited) >= control.most_points:
-                done.outcome = Outcome("most_points", f"ended after {control.most_points} points", p=point.p)
+                done.outcome = Outcome("most_points", f"stopped after {control.most_points} points", p=point.p)
                 return done
             if done.stalls():
                 break

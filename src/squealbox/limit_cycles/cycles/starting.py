@@ -152,19 +152,19 @@ def state_of(field: Autonomous, start: Any) -> Any:
     if isinstance(start, str):
         if start == "rest":
             return field.state(*np.zeros((2, field.system.size)))
-        raise ParameterError("limit_cycles", "start", start, '"rest", a mode, (q, qd), a trajectory or a cycle')
+        raise ParameterError("", "start", start, '"rest", a mode, (q, qd), a trajectory or a cycle')
     try:
         q, qd = start
     except (TypeError, ValueError) as error:
         expected = '"rest", a mode, (q, qd), (q, qd, period), a trajectory or a cycle'
-        raise ParameterError("limit_cycles", "start", start, expected) from error
+        raise ParameterError("", "start", start, expected) from error
     return field.state(_vector(field, q), _vector(field, qd))
 
 
 def _vector(field: Autonomous, value: Any) -> Any:
     array = np.asarray(value, dtype=float)
     if array.shape != (field.system.size,) or not np.all(np.isfinite(array)):
-        raise ParameterError("limit_cycles", "start", value, f"{field.system.size} finite numbers")
+        raise ParameterError("", "start", value, f"{field.system.size} finite numbers")
     return array
 
 

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.extras import extra
 from squealbox.studies.optimisation.goals import Candidates, Constraint, Goal
 
 FEASIBLE = 1e-6  # relative violation of a constraint that still counts as kept
@@ -104,9 +105,10 @@ def pareto_front(
     candidates: Candidates, goals: list[Goal], constraints: list[Constraint], box: Any, effort: Effort
 ) -> Any:
     """Designs none of which betters another in every goal, shape (designs, variables), by NSGA-II."""
-    from pymoo.algorithms.moo.nsga2 import NSGA2
-    from pymoo.core.problem import Problem
-    from pymoo.optimize import minimize
+    with extra("studies"):
+        from pymoo.algorithms.moo.nsga2 import NSGA2
+        from pymoo.core.problem import Problem
+        from pymoo.optimize import minimize
 
     population, generations, seed = effort
 

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.extras import extra
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import Quantity, as_quantity, evaluate, input_of
@@ -243,7 +244,8 @@ def _expansion(
 
 def _fit(germ: Any, values: Any, hermite: Any, degree: int) -> tuple[Any, Any]:
     """Coefficients and degrees of the terms that least angle regression chooses."""
-    import openturns as ot
+    with extra("studies"):
+        import openturns as ot
 
     ot.Log.Show(ot.Log.NONE)
     size = len(hermite)

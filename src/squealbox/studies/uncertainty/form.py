@@ -17,6 +17,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.extras import extra
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, input_of, unit_of
@@ -162,7 +163,8 @@ def form(
 
 def _search(state: LimitState, iterations: int, seed: int, start: Any) -> tuple[Any, Outcome | None]:
     """z*, and the outcome when the search broke down."""
-    import openturns as ot
+    with extra("studies"):
+        import openturns as ot
 
     with seeded(seed):
         search = ot.AbdoRackwitz()

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.extras import extra
 from squealbox.studies.quantity import Quantity, evaluate
 from squealbox.studies.uncertainty.scatter import Scatter
 
@@ -51,7 +52,8 @@ class LimitState:
 
     def event(self) -> Any:
         """The event g < 0 for OpenTURNS."""
-        import openturns as ot
+        with extra("studies"):
+            import openturns as ot
 
         function = ot.PythonFunction(
             self.dimension,
@@ -66,7 +68,8 @@ class LimitState:
 @contextmanager
 def seeded(seed: int) -> Iterator[None]:
     """OpenTURNS with this seed and silent; its global generator is as it was afterwards."""
-    import openturns as ot
+    with extra("studies"):
+        import openturns as ot
 
     state, said = ot.RandomGenerator.GetState(), ot.Log.Flags()
     ot.RandomGenerator.SetSeed(int(seed))

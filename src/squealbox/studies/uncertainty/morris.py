@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.extras import extra
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
@@ -77,8 +78,9 @@ def morris_effects(
     >>> np.round(found.direction, 6).tolist()  # 99 % of each range
     [2.97, -0.99]
     """
-    from SALib.analyze import morris as analysis
-    from SALib.sample import morris as sampling
+    with extra("studies"):
+        from SALib.analyze import morris as analysis
+        from SALib.sample import morris as sampling
 
     asked = as_quantity(quantity)
     need_independent(scatter, "morris_effects")

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.extras import extra
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, input_of
@@ -142,7 +143,8 @@ def _outcome(state: LimitState, lost: int, runs: int, smallest: float) -> Outcom
 
 def _run(state: LimitState, samples: int, seed: int, smallest: float) -> tuple[float, float, Any, Any]:
     """P, its stated variation, the thresholds of g and the probabilities of one run."""
-    import openturns as ot
+    with extra("studies"):
+        import openturns as ot
 
     with seeded(seed):
         algorithm = ot.SubsetSampling(state.event())

@@ -5,12 +5,12 @@ from typing import Any
 from squealbox.calibration import calibrate
 from squealbox.calibration.measured import from_events
 from squealbox.designs import Design
+from squealbox.files.analyses import scalar_parameters
 from squealbox.parameters import ParameterError
 from squealbox.signals import SignalError
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, axis_of, try_value
 from squealbox.workbench.panels.recording import heard
-from squealbox.workbench.sheet import varied
 
 MOST = 4  # parameters
 
@@ -18,7 +18,7 @@ MOST = 4  # parameters
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """Values, 95 % intervals, predictions beside the measured numbers, and words."""
     names = options.given.get("parameters")
-    known = varied(design)
+    known = scalar_parameters(design)
     if not isinstance(names, list) or not 0 < len(names) <= MOST or any(name not in known for name in names):
         raise OptionError(f"parameters: expected one to {MOST} names of parameters of this design")
     share = options.number("share", 0.3, 0.001, 0.9)

@@ -9,8 +9,9 @@ import numpy as np
 
 from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
+from squealbox.files.analyses import scalar_parameters
 from squealbox.parameters import ParameterError
-from squealbox.workbench.sheet import read_in, slider, usual_value, varied
+from squealbox.workbench.sheet import read_in, slider, usual_value
 
 
 class OptionError(ValueError):
@@ -109,7 +110,7 @@ class Options:
 
     def parameter(self, name: str, design: Design, *usual: str) -> str:
         """The name of a parameter a study can vary; left out, the first of `usual` that the design has."""
-        known = varied(design)
+        known = scalar_parameters(design)
         value = self.given.get(name)
         if value is None:
             return next((each for each in usual if each in known), next(iter(known)))
@@ -119,7 +120,7 @@ class Options:
 
     def span(self, name: str, design: Design, parameter: str) -> tuple[float, float]:
         """The ends [SI] of an axis: those given as ``[low, high]`` or where the parameter's slider runs."""
-        about, value = varied(design)[parameter], float(design.value_of(parameter) or 0.0)
+        about, value = scalar_parameters(design)[parameter], float(design.value_of(parameter) or 0.0)
         given = self.given.get(name)
         if given is None:
             low, high = slider(value, about)
@@ -134,7 +135,7 @@ class Options:
 
 def axis_of(design: Design, parameter: str) -> dict[str, Any]:
     """How an axis of this parameter is read: its name, unit and factor to SI."""
-    about = varied(design)[parameter]
+    about = scalar_parameters(design)[parameter]
     head, _, name = parameter.rpartition(".")
     owner = design.value_of(head) if head else design
     while isinstance(owner, Countermeasure) and name not in owner.field_names():

@@ -14,7 +14,6 @@ from squealbox.remedies import Candidate, Remedies, candidates_for, silence
 from squealbox.remedies.candidates import more_friction
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
-from squealbox.workbench.sheet import page_name
 
 SAMPLES = 1024  # brakes of the lot
 READ_IN = {"rad": ("deg", np.pi / 180.0), "N/m": ("kN/mm", 1e6), "m/N": ("mm/kN", 1e-6)}
@@ -61,13 +60,8 @@ def _row(table: Remedies, i: int) -> dict[str, Any]:
         "python": str(table.line[i]),
     }  # fmt: skip
     if table.values[i]:
-        return row | {"values": _page_names(table.inputs["system"], table.values[i])}
+        return row | {"values": table.values[i]}
     try:
         return row | {"text": design_text(table.design(i))}
     except NotWritable as error:
         return row | {"refused": str(error)}
-
-
-def _page_names(design: Any, values: dict[str, float]) -> dict[str, float]:
-    """The values under the names the fields of the page have: those of the brake inside its countermeasures."""
-    return {page_name(design, name): value for name, value in values.items()}
