@@ -19,6 +19,7 @@ from squealbox.transient._motion import (
     derivative,
     evaluate_signals,
     force_noise,
+    opening,
     slip_acceleration,
 )
 from squealbox.transient._runge_kutta import dense_stages, interpolate, take_step
@@ -178,24 +179,15 @@ def start_power(p, h, mode, s, stage, c):
     rate, noise = start_rate(p, mode, s, stage, c)
     if abs(rate) > noise:
         return 1, h * rate
-    power = 2
-    if mode[c] == OPEN:
+    power = 3 if mode[c] == OPEN else 2
+    if power == 3:
         rate = opening(p, stage, c)
         if abs(rate) > s.leave[c]:
             return 2, 0.5 * h * h * rate
-        power = 3
     value = 0.0
     for i in range(1, 5):
         value += (0.0, 4.0, -6.0, 4.0, -1.0)[i] * s.nodes[i, c] * (4.0 / i) ** power
     return power, value
-
-
-def opening(p, stage, c):
-    """Acceleration with which the gap of an open rigid contact begins to open."""
-    rate = 0.0
-    for i in range(p.mk.shape[0]):
-        rate -= p.w[c, i] * stage[0, p.mk.shape[0] + i]
-    return rate
 
 
 def start_rate(p, mode, s, stage, c):
@@ -218,8 +210,8 @@ def lowest_power(p, r, mode, s, stage, c):
         rate, noise = start_rate(p, mode, s, stage, c)
         if abs(rate) > noise:
             return 1
-    if p.rigid[c] and mode[c] == OPEN:
-        return 2 if abs(opening(p, stage, c)) > s.leave[c] else 3
+        if mode[c] == OPEN:
+            return 2 if abs(opening(p, stage, c)) > s.leave[c] else 3
     size = 0.0
     for k in range(r.degree + 1):
         size = max(size, abs(s.poly[k]))

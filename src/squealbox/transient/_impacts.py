@@ -29,6 +29,16 @@ def touches(p, c, y, s):
     return gap <= TOUCH * total
 
 
+def on_one_gap(p, c, e):
+    """Whether two rigid contacts close the same gap: what presses is shared between them, and neither opens alone."""
+    own, other, both = 0.0, 0.0, 0.0
+    for i in range(p.mk.shape[0]):
+        own += p.w[c, i] * p.mw[c, i]
+        other += p.w[e, i] * p.mw[e, i]
+        both += p.w[c, i] * p.mw[e, i]
+    return both > 0.0 and both * both >= (1.0 - 1e-12) * own * other
+
+
 def gap_rate(p, c, y):
     """(g', round-off of its terms) of rigid contact c, g' = -w . q'."""
     rate = 0.0

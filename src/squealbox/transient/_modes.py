@@ -8,18 +8,20 @@ together: each sticks with |force| <= static N, or slips with the acceleration o
 
 import numpy as np
 
-from squealbox.transient._impacts import gap_rate, impact, project, touches
+from squealbox.transient._impacts import gap_rate, impact, on_one_gap, project, touches
 from squealbox.transient._motion import (
     OPEN,
     STICK,
     contact_kinematics,
     derivative,
     evaluate_signals,
+    event_tolerance,
     force_noise,
     list_sticking,
     normal_noise,
     rate_terms,
     slip_acceleration,
+    slip_tolerance,
 )
 from squealbox.transient._sharing import RISES, contact_matrix, share_out, solve, weigh_sticking
 
@@ -29,35 +31,6 @@ UNPRESSED = 1e-11  # share of the limit of another contact up to which one holds
 JUMPED = 1e-5  # share of its limit by which the force of a contact lies beyond it after a jump
 EVENED = 400  # turns of the rule that evens out what contacts carry
 NEARLY = 1e-10  # of 1
-SWING = 160.0  # windows of time make one over the highest angular frequency
-
-
-def slip_tolerance(p, c, y, s):
-    """Speed below which a contact counts as being at zero together with another: round-off of its own terms.
-
-    None, -1, for a contact without static friction: it never sticks, and nothing happens when it reverses.
-    """
-    if p.static[c] == 0.0:
-        return -1.0
-    total = abs(s.signal[c])
-    for i in range(p.mk.shape[0]):
-        total += abs(p.t[c, i] * y[p.mk.shape[0] + i])
-    return 1e-12 * total
-
-
-def event_tolerance(p, c, y, s, reference):
-    """As `slip_tolerance` at an event, when s.dy holds the accelerations: where all speeds are zero they give a scale.
-
-    `reference` is what is left of the speed that should be zero: another contact on the same motion has no less.
-    """
-    least = slip_tolerance(p, c, y, s)
-    if least < 0.0:
-        return least
-    rates = abs(s.signal[p.signals + c])
-    for i in range(p.mk.shape[0]):
-        rates += abs(p.t[c, i] * s.dy[p.mk.shape[0] + i])
-    least += 1e-12 * SWING * p.window * rates
-    return least + min(10.0 * abs(reference), 1e6 * least)
 
 
 def apply_event(p, t, y, mode, s, j):
@@ -376,16 +349,6 @@ def wanted_mode(p, c, y, mode, s):
     if mode[c] * slip_acceleration(p, c, s.dy, s) >= -CLEAR * force_noise(p, c, y, s) * max(abs(p.g[c, c]), 1e-300):
         return mode[c]
     return STICK if s.normal[c] >= -normal_noise(p, c, y, s) else -mode[c]
-
-
-def on_one_gap(p, c, e):
-    """Whether two rigid contacts close the same gap: what presses is shared between them, and neither opens alone."""
-    own, other, both = 0.0, 0.0, 0.0
-    for i in range(p.mk.shape[0]):
-        own += p.w[c, i] * p.mw[c, i]
-        other += p.w[e, i] * p.mw[e, i]
-        both += p.w[c, i] * p.mw[e, i]
-    return both > 0.0 and both * both >= (1.0 - 1e-12) * own * other
 
 
 def enumerate_modes(p, t, y, mode, s):

@@ -21,6 +21,7 @@ RAW, EXACT, TANH, ARCTAN = 0, 1, 2, 3  # WITH_EVENTS is true in the file compile
 STICK, OPEN = 0, 2
 ALGEBRAIC, FIRST_ORDER = 0, 1  # kinds of rows without mass, as of `rows`
 ROUND_OFF = 2e-14  # of a sum, as a share of its terms
+SWING = 160.0  # windows of time make one over the highest angular frequency
 # s.clock: time, proposed step, logarithm of the previous error, end of the smooth piece, start of the window in which
 # events are counted, last instant inside the piece, fastest landing on a rigid contact so far
 TIME, STEP, LOG_ERROR, PIECE, WINDOW, INSIDE, FASTEST = 0, 1, 2, 3, 4, 5, 6
@@ -108,6 +109,14 @@ def slip_acceleration(p, c, dy, s):
     rate = s.signal[p.signals + c]
     for i in range(p.mk.shape[0]):
         rate -= p.t[c, i] * dy[p.mk.shape[0] + i]
+    return rate
+
+
+def opening(p, stage, c):
+    """Acceleration with which the gap of an open rigid contact begins to open."""
+    rate = 0.0
+    for i in range(p.mk.shape[0]):
+        rate -= p.w[c, i] * stage[0, p.mk.shape[0] + i]
     return rate
 
 
@@ -278,6 +287,34 @@ def rate_terms(p, c, y, s, lifts):
                 terms += abs(p.md[e, i] * s.force[e])
             total += row * terms
     return total
+
+
+def slip_tolerance(p, c, y, s):
+    """Speed below which a contact counts as being at zero together with another: round-off of its own terms.
+
+    None, -1, for a contact without static friction: it never sticks, and nothing happens when it reverses.
+    """
+    if p.static[c] == 0.0:
+        return -1.0
+    total = abs(s.signal[c])
+    for i in range(p.mk.shape[0]):
+        total += abs(p.t[c, i] * y[p.mk.shape[0] + i])
+    return 1e-12 * total
+
+
+def event_tolerance(p, c, y, s, reference):
+    """As `slip_tolerance` at an event, when s.dy holds the accelerations: where all speeds are zero they give a scale.
+
+    `reference` is what is left of the speed that should be zero: another contact on the same motion has no less.
+    """
+    least = slip_tolerance(p, c, y, s)
+    if least < 0.0:
+        return least
+    rates = abs(s.signal[p.signals + c])
+    for i in range(p.mk.shape[0]):
+        rates += abs(p.t[c, i] * s.dy[p.mk.shape[0] + i])
+    least += 1e-12 * SWING * p.window * rates
+    return least + min(10.0 * abs(reference), 1e6 * least)
 
 
 def force_noise(p, c, y, s):
