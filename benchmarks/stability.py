@@ -163,7 +163,7 @@ def poles_under_delay(count=200):
         rival.append(least(partial(np.linalg.eigvals, rng.normal(size=(size, size))), 1))
     print(
         f"poles of {count} systems under delay: median {1e3 * np.median(spent):.1f} ms, longest "
-        f"{1e3 * max(spent):.1f} ms, {missed} missed (eigenvalues of 100 points a delay: {1e3 * np.median(rival):.1f} ms)"
+        f"{1e3 * max(spent):.1f} ms, {missed} missed (eigenvalues of 100 points each: {1e3 * np.median(rival):.1f} ms)"
     )
 
 
