@@ -165,7 +165,7 @@ class Slow:
                 out[c, 0] = gap[c] if self.rigid[c] else -normal[c]
                 continue
             if modes[c] == STICK:
-                out[c, 0] = self.static[c] * normal[c] - abs(force[c]) if normal[c] > 1e-12 else 1.0
+                out[c, 0] = self.spared(c, modes, force, normal) if normal[c] > 1e-12 else 1.0
                 asked, got = float(self.speed_given[c][1](t)), self.t[c] * a
                 parted = abs(np.sum(got) - asked) > 1e-7 * (abs(asked) + np.sum(np.abs(got)) + 1e-3)
                 out[c, 0] = -1.0 if parted else out[c, 0]  # two speeds on one motion do not stick together
@@ -174,6 +174,17 @@ class Slow:
             if self.unilateral[c]:
                 out[c, 1] = normal[c]
         return out.ravel()
+
+    def spared(self, c, modes, force, normal):
+        """How far the contacts that stick on the motion of one are below what they can carry together."""
+        total, limit, own = force[c], self.static[c] * normal[c], np.linalg.norm(self.d[c])
+        for a, b, sign in self.alike:
+            other = a if b == c else b if a == c else -1
+            if other >= 0 and modes[other] == STICK:
+                lever = np.linalg.norm(self.d[other]) / own
+                total += sign * lever * force[other]
+                limit += lever * self.static[other] * max(normal[other], 0.0)
+        return limit - abs(total)
 
     def choices(self, t, y):
         """What each contact may do now."""
@@ -347,7 +358,9 @@ class Slow:
             if first:  # what has just changed starts at zero
                 soon = min(1e-4 * self.step, 0.1 * self.flight(a, dense(a), modes), 0.01 * max(a - self.last, 1e-9))
                 begin = values(0.0)
-                early = np.geomspace(np.clip(soon / h, 1e-9, 0.5 * PLACES[1]), PLACES[1], 16)  # short flights
+                early = np.geomspace(
+                    np.clip(soon / h, 1e-9, 0.5 * PLACES[1]), PLACES[1], 16
+                )  # short flights
                 places = np.concatenate([early[:-1], PLACES[1:]])
                 first = False
             table = np.array([values(x) for x in places])
