@@ -358,9 +358,7 @@ class Slow:
             if first:  # what has just changed starts at zero
                 soon = min(1e-4 * self.step, 0.1 * self.flight(a, dense(a), modes), 0.01 * max(a - self.last, 1e-9))
                 begin = values(0.0)
-                early = np.geomspace(
-                    np.clip(soon / h, 1e-9, 0.5 * PLACES[1]), PLACES[1], 16
-                )  # short flights
+                early = np.geomspace(np.clip(soon / h, 1e-9, 0.5 * PLACES[1]), PLACES[1], 16)  # short flights
                 places = np.concatenate([early[:-1], PLACES[1:]])
                 first = False
             table = np.array([values(x) for x in places])
