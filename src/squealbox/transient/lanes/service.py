@@ -28,6 +28,7 @@ from squealbox.transient._motion import (
     OPEN,
     STICK,
     derivative,
+    event_tolerance,
     force_noise,
     list_sticking,
 )
@@ -204,8 +205,13 @@ def next_piece(A, b, lane, end, p, s, events, count):
         s.fresh[c] = 0
     refresh(A, b, lane, t, p, s)
     if EXACT_CONTACT:
+        fastest = 0.0
         for c in range(CONTACTS):
-            if s.mode[c] == STICK and s.phi[c] < 0.0:
+            fastest = max(fastest, abs(s.speed[c]))
+        for c in range(CONTACTS):  # its limit may have jumped, or a belt has just come to rest below it
+            slips = s.mode[c] != STICK and s.mode[c] != OPEN
+            rests = slips and abs(s.speed[c]) <= event_tolerance(p, c, s.state, s, 0.0) + 1e-12 * fastest
+            if rests or (s.mode[c] == STICK and s.phi[c] < 0.0):
                 A[b + ROW_RESUME * WIDTH + lane] = A[b + ROW_H * WIDTH + lane]
                 A[b + (ROW_FORCE + c) * WIDTH + lane] = s.force[c]
                 return change_modes(A, b, lane, c, p, s, events, count)
