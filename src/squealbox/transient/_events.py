@@ -23,6 +23,7 @@ from squealbox.transient._motion import (
     slip_acceleration,
 )
 from squealbox.transient._runge_kutta import dense_stages, interpolate, take_step
+from squealbox.transient._sharing import RISES
 
 NO_EVENT = 2.0  # any theta above 1
 RETRY = -1.0  # a shorter step must tell
@@ -51,6 +52,8 @@ def event_values(p, t, y, mode, s, phi):
                 phi[c] += force_noise(p, c, y, s)
             if p.rigid[c]:
                 phi[m + c] = s.normal[c] + 1e-12 * s.size[c] + 1e-300
+            elif p.unilateral[c] and p.static[c] <= RISES:  # held by another: no force of its own lets it go
+                phi[m + c] = s.normal[c]
         else:
             phi[c] = mode[c] * s.speed[c] if p.static[c] > 0.0 else 1.0
             if p.rigid[c]:
@@ -85,7 +88,7 @@ def is_watched(p, j, mode, s):
     """Whether event function j can have a root in this step at all."""
     c = j if j < p.contacts else j - p.contacts
     if j >= p.contacts:  # a sprung contact that sticks is released before its normal force can turn
-        lifts = mode[c] != OPEN and (mode[c] != STICK or p.rigid[c] != 0)
+        lifts = mode[c] != OPEN and (mode[c] != STICK or p.rigid[c] != 0 or p.static[c] <= RISES)
         return s.noisy[c] != 0 and p.unilateral[c] != 0 and lifts
     return s.noisy[c] != 0 and (mode[c] == OPEN or p.static[c] > 0.0)
 
@@ -100,8 +103,7 @@ def first_event(p, r, t, h, y, y_new, mode, s, stage):
     for c in range(m):
         if not s.fresh[c] and not s.phi0[c] > 0.0:
             return 0.0, c
-    noisy = False
-    interpolated = False
+    noisy, interpolated = False, False
     for c in range(m):
         s.noisy[c] = not quiet(p, c, h, mode, s, stage, r.stages)
         noisy = noisy or s.noisy[c] != 0
@@ -116,8 +118,7 @@ def first_event(p, r, t, h, y, y_new, mode, s, stage):
             event_values(p, t + 0.25 * i * h, s.y_dense, mode, s, s.phi)
             for j in range(2 * m):
                 s.nodes[i, j] = s.phi[j]
-    theta = NO_EVENT
-    which = -1
+    theta, which = NO_EVENT, -1
     for j in range(2 * m):
         if is_watched(p, j, mode, s):
             s.nodes[0, j] = s.phi0[j]
@@ -272,9 +273,7 @@ def first_root(p, r, t, h, y, mode, s, stage, j):
 
 def bernstein(r, row):
     """(sign changes, least) of the Bernstein coefficients of the quartic through the five values of a stack row."""
-    lowest = np.inf
-    changes = 0
-    before = 0.0
+    lowest, changes, before = np.inf, 0, 0.0
     for i in range(5):
         total = 0.0
         for k in range(5):

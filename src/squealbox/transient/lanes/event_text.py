@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.transient._sharing import RISES
 from squealbox.transient.lanes.equation_text import EquationText, minus
 
 
@@ -191,7 +192,8 @@ class EventText(EquationText):
         if not self.shape.unilateral[c]:
             return "1.0 + 0.0 * t_", "0.0 * t_", "0.0 * t_"
         s = self.row(f"s{c}")
-        slips = f"({s} * {s})"
+        # held by another contact, one whose friction rises from zero lifts off with N as one that slips does
+        slips = f"({s} * {s} + {self.sticks(c)} * ({self.row(f'law{c}_0')} <= {RISES!r}))"
         rates = [f"{slips} * {self.normal_rate(c, x, at)}" for x, at in ((v, "t_"), (v1, "t_ + hh"))]
         return f"where({slips} > 0.5, {end['normal'][c]}, 1.0)", rates[0], rates[1]
 

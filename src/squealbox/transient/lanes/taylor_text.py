@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
 from squealbox.system import InvalidSystem
+from squealbox.transient._sharing import RISES
 from squealbox.transient.lanes.equation_text import CALLED, EquationText
 from squealbox.transient.lanes.formulas import is_table, law_text, smooth_text
 from squealbox.transient.lanes.shape import ORDER, PARTS, UNIT_OF_WINDOW, WORK_ORDER, Shape
@@ -177,7 +178,9 @@ class TaylorStep(EquationText):
         self.judge(found)
         for c in range(0 if self.gliding else m):
             two = f"(target > {m + c - 0.5}) & (target < {m + c + 0.5})"
-            self.put(f"target = where({two} & ({self.sticks(c)} > 0.5), {float(c)}, target)")
+            holds = f"({self.sticks(c)} > 0.5)"
+            holds += f" & ({self.row(f'law{c}_0')} > {RISES!r})" if self.shape.unilateral[c] else ""
+            self.put(f"target = where({two} & {holds}, {float(c)}, target)")
         self.put("moved = fine & (end > 0.0)")
         self.put("t1 = where((found.whole > 0.5) & last & moved, t_end_, minimum(t_ + end * unit, t_end_))")
 
@@ -249,7 +252,10 @@ class TaylorStep(EquationText):
         else:
             self.put(f"phi{c} = {s} * {s}{wide}")
         slips = f"where({s} * {s} > 0.5, {normal}, 1.0)" if wide else "1.0"
-        self.put(f"psi{c} = {slips if self.gliding else f'where({stick} > 0.5, above{c}, {slips})'}")
+        above = f"above{c}"
+        if wide and not self.gliding:  # held by another contact, one whose friction rises from zero lifts off with N
+            above = f"where({self.row(f'law{c}_0')} > {RISES!r}, above{c}, {normal})"
+        self.put(f"psi{c} = {slips if self.gliding else f'where({stick} > 0.5, {above}, {slips})'}")
         return f"phi{c}", f"psi{c}"
 
     def observe_parts(self, found: dict[str, list[str]], q: list[str], v: list[str]) -> None:
