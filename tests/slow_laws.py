@@ -6,6 +6,10 @@ from scipy.interpolate import PchipInterpolator
 from squealbox import friction, schedules
 
 
+class EndlessEvents(RuntimeError):
+    """A row of events, as of rebounds that shrink, that the slow integrator does not get through."""
+
+
 def own_coefficient(law):
     """mu(v) of a law from its data sheet, written anew."""
     if isinstance(law, friction.Coulomb):

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.integrate import DOP853, solve_ivp
 from scipy.optimize import brentq, minimize_scalar
 
-from slow_laws import own_coefficient, own_schedule, scheduled
+from slow_laws import EndlessEvents, own_coefficient, own_schedule, scheduled
 from squealbox import schedules
 
 STICK, OPEN = 0, 2
@@ -22,10 +22,6 @@ PLACES = np.linspace(0.0, 1.0, 13)
 MOST = 600  # looks for new modes, or steps between two, after which the slow integrator gives up
 NOTHING = 1e-30  # N of a closed floor that carries nothing
 CLOSED = 1e-6  # share of the fastest landing below which a rebound counts as none: a convention of the program
-
-
-class EndlessEvents(RuntimeError):
-    """A row of events, as of rebounds that shrink, that the slow integrator does not get through."""
 
 
 class Slow:
@@ -247,9 +243,9 @@ class Slow:
         """Sticking contacts put exactly on their speed, closed rigid ones on their floor."""
         stuck = [c for c in range(self.m) if modes[c] == STICK]
         closed = [c for c in range(self.m) if self.rigid[c] and modes[c] != OPEN]
-        if not stuck and not closed:
-            return y
         out = y.copy()
+        if not stuck and not closed:
+            return out
         if closed:
             column = self.inverse @ self.w[closed].T
             gap = self.gap(out[: self.n])[closed]
@@ -314,8 +310,7 @@ class Slow:
 
     def run(self, duration, q, v):
         """q, v, and the events (time, contact, mode) of the whole run."""
-        turns = 0
-        t, y, events = 0.0, np.concatenate([np.asarray(q, float), np.asarray(v, float)]), []
+        t, y, events, turns = 0.0, np.concatenate([np.asarray(q, float), np.asarray(v, float)]), [], 0
         before = -np.inf  # the event before the last: intervals that shrink are followed as they do
         kinks = [duration]
         for value in scheduled(self.system):
@@ -323,8 +318,7 @@ class Slow:
         for end in sorted(set(kinks)):
             self.inside = np.nextafter(end, 0.0)  # the end of a piece sees the slopes before its kink
             while t < end:
-                turns += 1
-                if turns > MOST:
+                if (turns := turns + 1) > MOST:
                     raise EndlessEvents(f"more than {MOST} turns to t = {t:.6g} s")
                 landed = []
                 if np.any(self.rigid):
@@ -346,9 +340,8 @@ class Slow:
         solver = DOP853(lambda s, x: self.motion(s, x, modes)[0], t, y, end, max_step=self.step, rtol=1e-12, atol=1e-14)
         while solver.status == "running":
             solver.step()
-            steps += 1
-            if steps > MOST:
-                raise EndlessEvents(f"more than {MOST} steps to t = {solver.t:.6g} s without an event")
+            if (steps := steps + 1) > MOST:
+                raise EndlessEvents(f"{MOST} steps to t = {solver.t:.6g} s")
             dense, a, h = solver.dense_output(), solver.t_old, solver.t - solver.t_old
 
             def values(x, dense=dense, a=a, h=h):

@@ -2,6 +2,7 @@
 
 import importlib
 import inspect
+import subprocess
 import sys
 
 import numpy as np
@@ -111,18 +112,17 @@ WITHOUT = {  # words of a command, what is not installed, and the extra that bri
 
 
 @pytest.mark.parametrize("case", WITHOUT)
-def test_a_missing_extra_is_one_sentence_with_its_command(said, tmp_path, monkeypatch, case):
+def test_a_missing_extra_is_one_sentence_with_its_command(tmp_path, case):
     """It was told as a mistake inside the program, and the workbench printed its address before it failed."""
     words, library, extra = WITHOUT[case]
-    monkeypatch.chdir(tmp_path)
     (tmp_path / "disc.toml").write_text(DISC)
     scipy.io.wavfile.write(tmp_path / "stop.wav", 8000, (1e4 * np.sin(np.arange(4000.0))).astype(np.int16))
-    for name in [name for name in sys.modules if name.partition(".")[0] == library]:
-        monkeypatch.setitem(sys.modules, name, None)
-    for name in [name for name in sys.modules if name.startswith("squealbox.fe.")]:
-        monkeypatch.delitem(sys.modules, name)  # whoever has it already would not ask for it again
-    monkeypatch.setitem(sys.modules, library, None)  # blocks the import
-    code, out, err = said(*words)
+    block = f"import sys; sys.modules[{library!r}] = None; from squealbox.cli import main; "  # in a process of its own,
+    run = f"sys.exit(main({[str(word) for word in words]!r}))"  # where no other test has imported it before
+    done = subprocess.run(
+        [sys.executable, "-c", block + run], capture_output=True, text=True, cwd=tmp_path, timeout=900
+    )
+    code, out, err = done.returncode, done.stdout, done.stderr
     assert code == 2
     assert err.count("\n") == 1
     assert "an error inside" not in err
