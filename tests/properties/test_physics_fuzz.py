@@ -15,17 +15,10 @@ from squealbox import friction, simulate
 from squealbox.system import InvalidSystem
 
 SEEDS = (0, 4, 8, 10, 11, 40, 46, 1188, 2378, 2569)
+# Of few freedoms, or with a rigid contact: compiled soon.
 WIDE = (
-    2,
-    4,
-    11,
-    16,
-    30,
-    44,
-    1951,
-    3968,
-    3970,
-)  # of one and two freedoms or with a rigid contact, whose code is compiled soon
+    2, 4, 11, 16, 30, 44, 1951, 1960, 1967, 1970, 2478, 2492, 2500, 2515, 3350, 3356, 3359, 3362, 3364, 3968, 3970,
+)  # fmt: skip
 BEGIN = FAMILIES + FAMILY * int(os.environ.get("SQUEALBOX_FUZZ_FROM", "0"))
 LONG = range(BEGIN, BEGIN + int(os.environ.get("SQUEALBOX_FUZZ", "0")) // 2)
 
