@@ -114,6 +114,16 @@ def test_poles_of_a_delay_are_lambert_s():
     assert np.max(np.abs(found[found.imag > 0.0] - expected)) < 1e-9
 
 
+@pytest.mark.parametrize("gain", [0.0, 0.2])
+def test_a_late_loop_without_gain_leaves_the_poles(gain):
+    """Alone, and beside a loop that has one."""
+    beside = [PID(on="q1", derivative=gain)] * (gain > 0.0)
+    found = closed_loop(block(0.1, PID(on="q1", derivative=0.0, delay=0.5), *beside))
+    expected = np.roots([1.0, 0.1 + gain, 1.0])
+    assert found.counted == len(found.poles) == 2
+    assert np.sort_complex(found.poles) == pytest.approx(np.sort_complex(expected), abs=1e-12)
+
+
 def test_no_pole_of_random_delayed_systems_is_missed():
     from squealbox.control.poles import Late, late_poles
 

@@ -38,7 +38,7 @@ SPEC = """([name, figure]) => import('/static/app.js').then(({ app }) => {
 def launched():
     """A headless Chromium with a new profile."""
     path = shutil.which("chromium")
-    assert path, "chromium is not installed; .ci/run installs it"
+    assert path, "chromium is not installed; make test installs it"
     with sync_playwright() as playwright:
         running = playwright.chromium.launch(executable_path=path, args=FLAGS)
         yield running

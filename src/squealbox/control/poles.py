@@ -37,7 +37,8 @@ class Late:
         self.own, self.sizes = _norm(self.A), [_norm(part) for _, part in self.parts]
         self.split = [(delay, *_halves(part)) for delay, part in self.parts]
         values, vectors = np.linalg.eig(self.A)
-        self.values, self.known = values, bool(np.linalg.cond(vectors) < WELL)
+        heard = any(len(right) for *_, right in self.split)  # else no loop has a gain
+        self.values, self.known = values, heard and bool(np.linalg.cond(vectors) < WELL)
         if self.known:
             into = np.linalg.solve(vectors, np.hstack([left for _, left, _ in self.split]))
             out = np.vstack([right for _, _, right in self.split]) @ vectors
