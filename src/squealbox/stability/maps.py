@@ -138,17 +138,7 @@ def _in_band(family: Family, values: list[Any], mechanism: bool, steps: int) -> 
     for i in np.flatnonzero(growing > 0) if mechanism else ():
         steady = steady_sliding(family.one(*(float(x[i]) for x in values)), family.time)
         _, circulation[i], slope[i] = contributions(steady, steps=min(steps, STEPS_IN_BAND), band=family.band)
-    unstable = growing > 0
-    codes = mechanism_codes(np.where(unstable, omega, np.where(np.isfinite(growth), -omega, np.nan)), omega,
-                            circulation, slope, omega * (1.0 - MARGINAL))  # fmt: skip
-    return {
-        "growth_rate": growth,
-        "frequency": omega / (2.0 * np.pi),
-        "circulation": circulation,
-        "slope": slope,
-        "unstable_modes": growing,
-        "mechanism": codes if mechanism else np.where(unstable, -1, codes),
-    }
+    return _columns(growth, omega, growing, omega, circulation, slope, mechanism)
 
 
 def _block(steady: Steady, mechanism: bool, steps: int, engine: Engine) -> dict[str, Any]:
@@ -160,15 +150,20 @@ def _block(steady: Steady, mechanism: bool, steps: int, engine: Engine) -> dict[
     )
     if mechanism and np.any(unstable):
         _, circulation[unstable], slope[unstable] = contributions(entry(steady, unstable), steps=steps, engine=engine)
-    scale = np.hypot(growth, omega)
+    return _columns(growth, omega, growing, np.hypot(growth, omega), circulation, slope, mechanism)
+
+
+def _columns(
+    growth: Any, omega: Any, growing: Any, scale: Any, circulation: Any, slope: Any, mechanism: bool
+) -> dict[str, Any]:
+    """The columns of a map; `scale` [rad/s] is the size of the worst eigenvalue, NaN where there is none."""
+    unstable = growing > 0
     codes = mechanism_codes(np.where(unstable, scale, -scale), omega, circulation, slope, scale * (1.0 - MARGINAL))
-    if not mechanism:
-        codes = np.where(unstable, -1, codes)
     return {
         "growth_rate": growth,
         "frequency": omega / (2.0 * np.pi),
         "circulation": circulation,
         "slope": slope,
         "unstable_modes": growing,
-        "mechanism": codes,
+        "mechanism": codes if mechanism else np.where(unstable, -1, codes),
     }

@@ -180,11 +180,11 @@ def start_power(p, h, mode, s, stage, c):
     rate, noise = start_rate(p, mode, s, stage, c)
     if abs(rate) > noise:
         return 1, h * rate
-    power = 3 if mode[c] == OPEN else 2
-    if power == 3:
+    if mode[c] == OPEN:
         rate = opening(p, stage, c)
         if abs(rate) > s.leave[c]:
             return 2, 0.5 * h * h * rate
+    power = 3 if mode[c] == OPEN else 2
     value = 0.0
     for i in range(1, 5):
         value += (0.0, 4.0, -6.0, 4.0, -1.0)[i] * s.nodes[i, c] * (4.0 / i) ** power

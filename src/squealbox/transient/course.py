@@ -25,12 +25,12 @@ class Course:
     envelope: Any
     centre: Any
     amplitude: float
-    frequency: float
-    rate: float
-    rate_error: float
     offset: float
     turns: int
-    misfit: float
+    frequency: float = float("nan")
+    rate: float = float("nan")
+    rate_error: float = float("nan")
+    misfit: float = float("nan")
     rest: float = float("nan")
     sticks: str = ""
 
@@ -93,36 +93,28 @@ def course_of(curve: Curve, part: float, gone: float, held: float, sticks: str) 
         return _stopped(curve, part, turns, held, time, heights, centre)
     strong = (time > half) & (heights > gone * np.max(heights))
     rate, error = slope(time[strong], np.log(heights[strong])) if np.count_nonzero(strong) > 2 else (np.nan, np.nan)
-    return Course(
-        begin=curve.begin,
-        end=curve.end,
-        part=part,
-        late=late,
-        time=time,
-        envelope=heights,
-        centre=centre,
-        amplitude=float(curve.swing(late, curve.end, 1.0 / frequency if np.isfinite(frequency) else length)[0]),
-        frequency=frequency,
-        rate=rate,
-        rate_error=error,
-        offset=float(curve.mean(late, curve.end)),
-        turns=turns,
-        misfit=misfit,
-    )
+    swing = curve.swing(late, curve.end, 1.0 / frequency if np.isfinite(frequency) else length)[0]
+    return _measured(curve, part, late, turns, time=time, envelope=heights, centre=centre, amplitude=float(swing),
+                     frequency=frequency, rate=rate, rate_error=error, misfit=misfit)  # fmt: skip
+
+
+def _measured(curve: Curve, part: float, late: float, turns: int, **seen: Any) -> Course:
+    """The course of a curve with what was seen of it."""
+    offset = float(curve.mean(late, curve.end))
+    return Course(begin=curve.begin, end=curve.end, part=part, late=late, offset=offset, turns=turns, **seen)
 
 
 def _stopped(curve: Curve, part: float, turns: int, rest: float, time: Any, heights: Any, centre: Any) -> Course:
     """A motion that friction has stopped: it has no frequency any more, and its envelope ends where it came to rest."""
-    none, late = float("nan"), curve.end - part * (curve.end - curve.begin)
-    return Course(curve.begin, curve.end, part, late, time, heights, centre, 0.0, none, none, none,
-                   float(curve.mean(late, curve.end)), turns, none, rest)  # fmt: skip
+    late = curve.end - part * (curve.end - curve.begin)
+    return _measured(curve, part, late, turns, time=time, envelope=heights, centre=centre, amplitude=0.0, rest=rest)
 
 
 def nothing(motion: Any) -> Course:
     """A run that failed before there was anything to measure."""
     begin, end = (float(motion.t[i]) for i in (0, -1)) if np.size(motion.t) else (np.nan, np.nan)
-    none = np.empty(0)
-    return Course(begin, end, np.nan, np.nan, none, none, none, np.nan, np.nan, np.nan, np.nan, np.nan, 0, np.nan)
+    none, unknown = np.empty(0), float("nan")
+    return Course(begin, end, unknown, unknown, none, none, none, amplitude=unknown, offset=unknown, turns=0)
 
 
 def _frequency(curve: Curve, left: float, right: float) -> float:
@@ -158,20 +150,6 @@ def _without_oscillation(curve: Curve, part: float, half: float, turns: int, sti
     moving = (times > half) & (speed > 0.0)
     runs = np.ptp(x) > 0.0 and not sticks and turns == 0
     rate, error = slope(times[moving], np.log(speed[moving])) if runs else (np.nan, np.nan)
-    return Course(
-        begin=curve.begin,
-        end=curve.end,
-        part=part,
-        late=late,
-        time=times,
-        envelope=speed,
-        centre=x,
-        amplitude=float(curve.swing(late, curve.end, curve.end - curve.begin)[0]),
-        frequency=np.nan,
-        rate=rate,
-        rate_error=error,
-        offset=float(curve.mean(late, curve.end)),
-        turns=turns,
-        misfit=np.nan,
-        sticks=sticks,
-    )
+    swing = float(curve.swing(late, curve.end, curve.end - curve.begin)[0])
+    return _measured(curve, part, late, turns, time=times, envelope=speed, centre=x, amplitude=swing,
+                     rate=rate, rate_error=error, sticks=sticks)  # fmt: skip

@@ -227,7 +227,7 @@ class TaylorStep(EquationText):
             return f"(value(mu{c}_{k}, away, {ORDER}) - {mu}) * {normal}", ""
         kind, z, rate = self.shape.smooth[c] - 1, "0.0", "0.0"
         if row >= 0:
-            self.put(f"z, rate = value(q{row}s, away, {ORDER}), 0.0")
+            self.put(f"z = value(q{row}s, away, {ORDER})")
             self.put(f"rate = lane_creep_{kind}(slide, z, {p})")
             z, rate = "z", "rate"
         shut = f" * (1.0 - {self.openness(c, normal)})" if self.shape.unilateral[c] else ""
