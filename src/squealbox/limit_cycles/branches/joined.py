@@ -33,7 +33,7 @@ def joined(back: Branch, forth: Branch) -> Branch:
     special: dict[str, Any] = {each.name: np.concatenate([getattr(back, each.name)[::-1], getattr(forth, each.name)])
                for each in fields(Branch) if each.name.startswith("special_")}  # fmt: skip
     special["special_point"] = np.r_[count - 2 - back.special_point[::-1], forth.special_point + count - 1]
-    ends = [f"{one.outcome} {one.outcome.message}".strip() for one in (back, forth)]
+    ends = [one.outcome.message or str(one.outcome) for one in (back, forth)]
     bad = next((one.outcome for one in (back, forth) if not one.outcome.ok), None)
     message = "; ".join(ends)
     outcome = Outcome(message=message) if bad is None else Outcome(str(bad), message, **bad.evidence)
