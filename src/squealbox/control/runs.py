@@ -12,9 +12,9 @@ from squealbox.control.plant import with_loops
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Result, quantity
 from squealbox.system import System, equilibrium
-from squealbox.transient.pieces import driven_brake, in_pieces, start_of
-from squealbox.transient.simulate import simulate
-from squealbox.transient.trajectory import Trajectory
+from squealbox.transient.pieces import Pieces, driven_brake, in_pieces, late_command, start_of
+
+PARTS = 32  # of a piece, over which the work of an actuator with a lag is summed
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,21 +64,39 @@ def run_loops(design_or_system: Any, duration: float, start: Any = None, *, rtol
     if not (np.isfinite(duration) and duration > 0.0):
         raise ParameterError("run_loops", "duration", duration, "a finite number in (0, inf)")
     driven = driven_brake(system)
-
-    def piece(held: System, state: Any, instants: Any, begin: float, end: float) -> Trajectory:
-        return simulate(held, end - begin, state, instants, rtol=rtol, start_time=begin)
-
     begins = start_of(driven, _resting(system.replace(loops=())) if start is None else start)
-    found = in_pieces(driven, begins, 0.0, duration, None, piece)
-    n, q, u = system.size, found.motion.q[found.rows], found.commands
+    found = in_pieces(driven, begins, 0.0, duration, None, ("exact", 1e-3, None, (rtol, None)), parts=PARTS)
+    n, motion, u = system.size, found.motion, found.commands
+    q = motion.q[found.rows]
     limits = np.array([np.inf if loop.limit is None else float(loop.limit) for loop in driven.loops])
     at_limit = np.diff(found.cuts) @ (np.abs(u[: len(found.cuts) - 1]) >= limits)
+    left = np.abs(np.diff(motion.energy.residual[found.rows]))
     return LoopRun(
-        t=found.cuts, q=q[:, :n], qd=found.motion.qd[found.rows][:, :n],
-        force=driven.forces(q, u[: len(found.cuts)]), work=found.work, residual=np.asarray(found.residual),
-        saturated=at_limit / max(float(np.ptp(found.cuts)), 1e-300), outcome=found.motion.outcome,
+        t=found.cuts, q=q[:, :n], qd=motion.qd[found.rows][:, :n],
+        force=driven.forces(q, u[: len(found.cuts)]), work=_work(found), residual=np.asarray(np.sum(left)),
+        saturated=at_limit / max(float(np.ptp(found.cuts)), 1e-300), outcome=motion.outcome,
         inputs={"system": design_or_system}, settings={"duration": duration, "rtol": rtol},
     )  # fmt: skip
+
+
+def _work(found: Pieces) -> Any:
+    """What the actuators have put in at the ends of the pieces [J]."""
+    motion, driven, rows = found.motion, found.driven, found.rows
+    done = np.zeros(len(rows))
+    for a, loop in enumerate(driven.loops):
+        b, power = driven.b[a], motion.qd @ driven.b[a]
+        if not np.any(driven.force[a]) and loop.sampling is not None:  # a force that is held
+            moved = np.diff(motion.q[rows] @ b)
+            done[1:] += np.cumsum(found.commands[: len(moved), a] * moved)
+            continue
+        forces = [motion.q @ driven.force[a]] * 2
+        if not np.any(driven.force[a]):
+            sensed = driven.commands(motion.q, motion.qd)[:, a]
+            forces = [late_command(motion.t, motion.t, sensed, loop.late, 0.0, after) for after in (True, False)]
+        after, before = (force * power for force in forces)
+        whole = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(motion.t) * (after[:-1] + before[1:]))])
+        done += whole[rows]
+    return done
 
 
 def _resting(system: System) -> tuple[Any, Any]:

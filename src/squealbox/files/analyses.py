@@ -18,8 +18,9 @@ from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_number, wrong
 from squealbox.files.sheets import field_type, read_sheet
 from squealbox.parameters import Choice, DataSheet, Parameter, ParameterError, choice, known_names, parameter
+from squealbox.transient.legs import SCHEMES
 from squealbox.transient.methods import TABLEAUX, TAYLOR
-from squealbox.transient.simulate import SCHEMES, TIME_STEPPING
+from squealbox.transient.simulate import TIME_STEPPING
 
 
 class Modes(DataSheet):

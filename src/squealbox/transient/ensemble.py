@@ -18,10 +18,11 @@ from squealbox.transient import _march
 from squealbox.transient.choosing import chosen_method, usual_method
 from squealbox.transient.instants import instants_of
 from squealbox.transient.lanes.work import HEAD, Progress, Work
+from squealbox.transient.legs import MESSAGES, SCHEMES
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.observers import as_observers
 from squealbox.transient.one_by_one import OneByOne
-from squealbox.transient.simulate import MESSAGES, SCHEMES, simulate
+from squealbox.transient.simulate import simulate
 from squealbox.transient.widened import RunApart
 
 if TYPE_CHECKING:

@@ -25,9 +25,10 @@ from squealbox.system import InvalidSystem, System, as_system, equilibrium
 from squealbox.transient import Method, Trajectory
 from squealbox.transient.choosing import usual_method
 from squealbox.transient.lanes.flows import Flows
+from squealbox.transient.legs import SCHEMES
 from squealbox.transient.packing import inverse_mass
 from squealbox.transient.rows import WITH_MASS, row_kinds
-from squealbox.transient.simulate import SCHEMES, system_of
+from squealbox.transient.simulate import system_of
 from squealbox.transient.widened import Widened
 
 OPEN = 2

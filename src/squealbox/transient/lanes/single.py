@@ -1,6 +1,7 @@
 """One motion by the generated step at width 1: rows of output, log of events and energy audit, as by the march."""
 
 import time as clock
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -63,18 +64,32 @@ def numbers(system: System, made: Prepared, method: Method, duration: float, beg
     return fixed
 
 
+def longer(kept: Any) -> Any:
+    """The same rows with room for three times as many more, which takes no memory before it is written to."""
+    out = np.empty((4 * len(kept), *kept.shape[1:]))
+    out[: len(kept)] = kept
+    return out
+
+
 class Single:
     """One run, resumed until it ends."""
 
     def __init__(
         self, system: System, method: Method, q: Any, qd: Any, begin: float, duration: float, times: Any
     ) -> None:
-        self.system, self.method, self.begin = system, method, begin
+        self.system, self.method = system, method
         made = self.made = prepared(system)
-        n, m = system.size, len(system.contacts)
         atol = None if method.atol is None else np.asarray(method.atol, dtype=float).tobytes()
         how = method.rtol, atol, method.first_step, method.largest_step, method.most_steps, duration, begin
         self.fixed = NUMBERS.of(system, how, lambda: numbers(system, made, method, duration, begin)).copy()
+        self.record = made.record.copy()
+        self.scratch = packing.scratch(made.record[0], q, qd, begin, 0.0).base
+        self.restart(q, qd, begin, begin + duration, times)
+
+    def restart(self, q: Any, qd: Any, begin: float, end: float, times: Any) -> None:
+        """Be ready for another run from a start of all rows."""
+        made, n, m = self.made, self.system.size, len(self.system.contacts)
+        self.fixed[:2] = end, begin
         first = made.names["start0"] if n else 0
         self.fixed[first : first + n], self.fixed[first + n : first + 2 * n] = q, qd
         self.lanes = np.zeros(len(made.rows))
@@ -84,11 +99,9 @@ class Single:
         self.events = np.empty((EVENTS + m, 3))
         self.count = np.zeros(2, dtype=np.int64)
         self.out = np.full((1, 5 + 2 * n + 2 * m), RUNNING)
-        spare = np.zeros((1, 1, 1))
-        scratch = packing.scratch(made.record[0], q, qd, begin, 0.0).base
         self.shared = (
-            np.zeros(1, dtype=np.int64), made.jobs.table, made.jobs.varies, self.fixed, self.times, spare,
-            np.zeros(1, dtype=np.int64), 1, self.out, made.record.copy(), packing.rule("dormand-prince-8"), scratch,
+            np.zeros(1, dtype=np.int64), made.jobs.table, made.jobs.varies, self.fixed, self.times, np.zeros((1, 1, 1)),
+            np.zeros(1, dtype=np.int64), 1, self.out, self.record, packing.rule("dormand-prince-8").base, self.scratch,
             np.zeros(1, dtype=np.int64),
         )  # fmt: skip
 
@@ -136,10 +149,54 @@ class Single:
     def _make_room(self) -> None:
         rows, events = self.count
         if not len(self.times) and rows + 3 > len(self.rows):
-            self.rows = np.concatenate([self.rows, np.empty_like(self.rows)])
+            self.rows = longer(self.rows)
         if events + len(self.system.contacts) > len(self.events):
-            self.events = np.concatenate([self.events, np.empty_like(self.events)])
+            self.events = longer(self.events)
 
     def columns(self) -> tuple[Any, Any]:
         """Rows of output and of events, as far as they were written."""
         return self.rows[: self.count[0]], self.events[: self.count[1]]
+
+
+class Pushed:
+    """Runs of one system under constant loads u . columns beside its own: what depends on u is a sum, found once.
+
+    `under` gives the system under a further load (rows,) of its base, with terms for it even where that is zero.
+    """
+
+    def __init__(self, under: Callable[[Any], System], columns: Any, method: Method, duration: float) -> None:
+        none = np.zeros(columns.shape[1])
+        some = 1.0 + 0.618 * np.arange(len(columns))  # that cancel in no row
+        system = under(some @ columns)
+        start = np.zeros(system.size)
+        self.run = Single(system, method, start, start, 0.0, duration, None)
+        without, pack = _numbers_by_name(under(none)), self._packed(under(none))
+        self.rises = np.zeros((len(columns), len(self.run.fixed)))
+        self.fields: dict[str, tuple[Any, dict[int, Any]]] = {}
+        for a, column in enumerate(columns):
+            pushed = under(column)
+            for name, value in _numbers_by_name(pushed).items():
+                self.rises[a, self.run.made.names[name]] = value - without.get(name, 0.0)
+            for name, value in self._packed(pushed).items():
+                if not np.array_equal(value, pack[name]):
+                    self.fields.setdefault(name, (pack[name], {}))[1][a] = value - pack[name]
+        self.origin = self.run.fixed - some @ self.rises
+
+    def _packed(self, system: System) -> dict[str, Any]:
+        record = packing.pack(system, self.run.method, EXACT, 1e-3, False)
+        return {name: record[name].copy() for name in record.dtype.names if record.dtype[name].base.kind == "f"}
+
+    def ready(self, u: Any, q: Any, qd: Any, begin: float, end: float, times: Any) -> Single:
+        """The run from a start of all rows under the loads u (a,)."""
+        self.run.fixed[:] = self.origin + u @ self.rises
+        for name, (value, rises) in self.fields.items():
+            self.run.record[0][name] = value + sum(u[a] * rise for a, rise in rises.items())
+        self.run.restart(q, qd, begin, end, times)
+        return self.run
+
+
+def _numbers_by_name(system: System) -> dict[str, float]:
+    """The numbers of a run that depend on the system alone."""
+    rest = np.zeros(system.size)
+    jobs = tabulate(system, Method(TAYLOR), EXACT, 1e-3, (rest, rest), LONG, 0.0, (), (), False, recorded=True)
+    return dict(zip(parameter_rows(jobs.shape), jobs.fixed[3:].tolist(), strict=True))

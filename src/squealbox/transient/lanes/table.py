@@ -20,7 +20,9 @@ from squealbox.transient.smooth_laws import smooth_kinds
 from squealbox.transient.widened import RunApart
 
 FEW = 3  # freedoms and contacts up to which a single run shares its kernel with other patterns of zeros
-ANGLE = 1.5  # of a schedule in a Taylor step: a series of order 16 leaves out 3e-12 of its swing, tolerances want less
+ANGLE = (
+    2.0  # of a schedule in a Taylor step: a series of order 16 leaves out 4e-10 of its swing; tolerances see the rest
+)
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,10 @@
 """Where a Taylor step must end: the first root of any event function inside it, found on the series in all lanes.
 
 The step is looked at in PARTS equal parts. In each a function is the cubic of its values and slopes at both ends; it
-has no root there while the cubic's Bernstein coefficients exceed what the cubic may err by. The first part in which
-this fails for one function alone, and with a change of sign, holds one root of that function, which Newton's rule finds
-on the series itself. Where it fails otherwise, the step ends before that part, and the next one looks closer.
+has no root there while the cubic's Bernstein coefficients exceed what the cubic may err by. In the first part in which
+this fails, the function whose cubic is first at zero, with a change of sign, has one root, which Newton's rule finds on
+the series itself; the others must surely be free of roots up to there, by the coefficients of their cubics cut off
+there. Where either fails, the step ends before that part, and the next one looks closer.
 """
 
 from dataclasses import dataclass
@@ -21,10 +22,13 @@ BEYOND = 1e-9  # by this angle a step goes beyond a kink of a law, so that the n
 
 @dataclass
 class Part:
-    """A function in a part of the step: values and slopes, per part, at its ends, and what is said of its roots."""
+    """A function in a part of the step: the Bernstein coefficients of its cubic, what that may err by, and what is said
+    of its roots.
+    """
 
-    number: int
-    ends: tuple[Any, Any, Any, Any]
+    number: Any
+    cubic: tuple[Any, ...]
+    room: Any
     doubtful: Any
     crosses: Any
     leaves: Any
@@ -78,11 +82,11 @@ def _parts(watched: list[Any], events: int, part: Lanes, moving: Truth, tiny: Tr
         slack = NEAR_ZERO * (abs(g0) + abs(bend))
         for i in range(1, PARTS + 1):
             f1, g1 = value_and_slope(function, part * float(i), order)
-            ends = (f0, g0 * part, f1, g1 * part)
-            sure, crosses, leaves = _surely(*ends, part, tiny, slack if i == 1 else None)
+            each = _surely(float(number), f0, g0 * part, f1, g1 * part, part, tiny, slack if i == 1 else None)
             if number >= events:
-                sure = sure | (abs(f0) + abs(g0) + abs(f1) + abs(g1) <= 0.0)
-            out[i - 1].append(Part(number, ends, ~sure & moving, crosses, leaves))
+                each.doubtful = each.doubtful & (abs(f0) + abs(g0) + abs(f1) + abs(g1) > 0.0)
+            each.doubtful = each.doubtful & moving
+            out[i - 1].append(each)
             f0, g0 = f1, g1
     return out
 
@@ -91,53 +95,80 @@ def _ended(
     watched: list[Any], events: int, parts: list[list[Part]], part: Lanes, tiny: Truth, clear: Found, order: int
 ) -> tuple[Lanes, ...]:
     """Where the step ends in the lanes in doubt."""
-    first = _first(parts, part)
-    root, sharp = _root(watched, first, part, order)
-    doubt = first.count > 0.5
-    lone = doubt & first.crosses & (((first.count < 1.5) & sharp) | tiny)
-    kink = lone & (first.which > events - 0.5)
-    end = pick(doubt, pick(lone, root, first.low), clear.end)
+    low, doubt, functions = _first(parts, part)
+    first, share = _earliest(functions, part)
+    root, sharp = _root(watched, first, share, low, part, order)
+    share = (root - low) / pick(part > 0.0, part, 1.0)
+    for each in functions:
+        sharp = sharp & (~each.doubtful | (abs(first.number - each.number) < 0.5) | _clear_before(each, share))
+    lone = doubt & first.crosses & (sharp | tiny)
+    kink = lone & (first.number > events - 0.5)
+    end = pick(doubt, pick(lone, root, low), clear.end)
     end = pick(kink, root + BEYOND, end)
-    closer = pick(first.low > 0.0, part, 0.25 * part)
-    return Found(end, 1.0 * (lone & ~kink), first.which, 1.0 * ~doubt, pick(doubt & ~lone, closer, clear.next_limit))
+    closer = pick(low > 0.0, part, 0.25 * part)
+    return Found(end, 1.0 * (lone & ~kink), first.number, 1.0 * ~doubt, pick(doubt & ~lone, closer, clear.next_limit))
 
 
-@dataclass
-class First:
-    """The first part of the step that is in doubt: where it begins, how many functions are, and the first of them."""
+def _chosen(truth: Truth, yes: Part, no: Part) -> Part:
+    """One of two in each lane."""
+    return Part(
+        pick(truth, yes.number, no.number),
+        (*(pick(truth, a, b) for a, b in zip(yes.cubic, no.cubic, strict=True)),),
+        pick(truth, yes.room, no.room),
+        *(
+            (truth & a) | (~truth & b)
+            for a, b in ((yes.doubtful, no.doubtful), (yes.crosses, no.crosses), (yes.leaves, no.leaves))
+        ),
+    )
 
-    low: Any
-    count: Any
-    which: Any
-    ends: Any
-    crosses: Any
-    leaves: Any
 
-
-def _first(parts: list[list[Part]], part: Lanes) -> First:
-    """From the last part to the first, and in each from the last function to the first, so the first one stays."""
-    zero = 0.0 * part
-    false = part != part
-    first = First(zero, zero, zero, (zero, zero, zero, zero), false, false)
+def _first(parts: list[list[Part]], part: Lanes) -> tuple[Lanes, Truth, list[Part]]:
+    """(where the first part that is in doubt begins, whether any is, all functions there)."""
+    low, doubt, there = 0.0 * part, part != part, parts[-1]
     for i, row in reversed(list(enumerate(parts))):
-        count = zero
-        for each in reversed(row):
-            bad = each.doubtful
-            count = count + 1.0 * bad
-            first.which = pick(bad, float(each.number), first.which)
-            first.ends = tuple(pick(bad, a, b) for a, b in zip(each.ends, first.ends, strict=True))
-            first.crosses = (bad & each.crosses) | (~bad & first.crosses)
-            first.leaves = (bad & each.leaves) | (~bad & first.leaves)
-        here = count > 0.5
-        first.low = pick(here, float(i) * part, first.low)
-        first.count = pick(here, count, first.count)
-    return first
+        here = row[0].doubtful
+        for each in row[1:]:
+            here = here | each.doubtful
+        low, doubt = pick(here, float(i) * part, low), doubt | here
+        there = row if i == PARTS - 1 else [_chosen(here, a, b) for a, b in zip(row, there, strict=True)]
+    return low, doubt, there
 
 
-def _surely(f0: Any, g0: Any, f1: Any, g1: Any, part: Any, tiny: Any, slack: Any) -> tuple[Truth, Truth, Truth]:
+def _earliest(functions: list[Part], part: Lanes) -> tuple[Part, Lanes]:
+    """The doubtful function whose cubic is first at zero, and the share of the part at which it is."""
+    first, least = functions[0], 2.0 + 0.0 * part
+    for each in functions:
+        share = pick(each.doubtful, _share(each), 2.0)
+        first, least = _chosen(share < least, each, first), minimum(share, least)
+    return first, least
+
+
+def _share(of: Part) -> Any:
+    """The share of its part at which the cubic of a function that crosses is zero."""
+    f0, left, right, f1 = of.cubic
+    c1, c2, c3 = 3.0 * (left - f0), 3.0 * (f0 - 2.0 * left + right), f1 - 3.0 * right + 3.0 * left - f0
+    fall = f0 - f1
+    share = pick(of.leaves, _second_root(c1, c2, c3), f0 / pick(fall > 0.0, fall, 1.0))
+    for _ in range(2):
+        slope = c1 + share * (2.0 * c2 + share * 3.0 * c3)
+        f = f0 + share * (c1 + share * (c2 + share * c3))
+        share = _within(share - f / pick(slope < 0.0, slope, -1e300), 0.0, 1.0)
+    return share
+
+
+def _clear_before(of: Part, share: Lanes) -> Truth:
+    """Whether the function surely has no root up to a share of the part, by the coefficients of that piece of it."""
+    f0, left, right, f1 = of.cubic
+    a, b, c = f0 + share * (left - f0), left + share * (right - left), right + share * (f1 - right)
+    d, e = a + share * (b - a), b + share * (c - b)
+    there = d + share * (e - d)
+    return (minimum(minimum(f0, a), minimum(d, there)) > of.room) | (of.leaves & (d > 0.0) & (there > 0.0))
+
+
+def _surely(number: float, f0: Any, g0: Any, f1: Any, g1: Any, part: Any, tiny: Any, slack: Any) -> Part:
     """Whether the function has no root in the part; just one; and starts as a root itself. Slopes are per part.
 
-    The cubic errs by h^4 f'''' x^2 (1 - x)^2 / 24, and f'''' is at most the square of the highest frequency times f'':
+    The cubic errs by h^4 f x^2 (1 - x)^2 / 24, and f is at most the square of the highest frequency times f'':
     so `part`, an angle of that frequency, tells by how much. Four times that is taken.
     """
     left, right = f0 + g0 * (1.0 / 3.0), f1 - g1 * (1.0 / 3.0)
@@ -146,11 +177,11 @@ def _surely(f0: Any, g0: Any, f1: Any, g1: Any, part: Any, tiny: Any, slack: Any
     room = 0.0625 * part * part * bend
     least = minimum(minimum(left, right), f1)
     sure = (least > room) | (tiny & (f1 > 0.0))
-    crosses = (f1 <= 0.0) & ~((left <= 0.0) & (right > 0.0))
-    if slack is None:
-        return sure, crosses, f1 > f1
-    leaves = _leaves(f0, left, right, f1, slack)
-    return sure | (leaves & (right > 0.0) & (f1 > 0.0)), crosses | (leaves & (f1 <= 0.0)), leaves
+    crosses, leaves = (f1 <= 0.0) & ~((left <= 0.0) & (right > 0.0)), f1 > f1
+    if slack is not None:
+        leaves = _leaves(f0, left, right, f1, slack)
+        sure, crosses = sure | (leaves & (right > 0.0) & (f1 > 0.0)), crosses | (leaves & (f1 <= 0.0))
+    return Part(number, (f0, left, right, f1), room, ~sure, crosses, leaves)
 
 
 def _leaves(f0: Any, left: Any, right: Any, f1: Any, slack: Any) -> Truth:
@@ -159,27 +190,19 @@ def _leaves(f0: Any, left: Any, right: Any, f1: Any, slack: Any) -> Truth:
     return (abs(f0) <= slack) & ((left > small) | ((left > -small) & (right > small)))
 
 
-def _root(watched: list[Any], first: First, part: Lanes, order: int) -> tuple[Any, Truth]:
-    """The root of the doubtful function in its part, and whether Newton's rule has settled on it."""
-    chosen = Series(lambda k: _select(watched, first.which, k))
-    f0, g0, f1, g1 = first.ends
-    left, right = f0 + g0 * (1.0 / 3.0), f1 - g1 * (1.0 / 3.0)
-    c1, c2, c3 = g0, 3.0 * (f0 - 2.0 * left + right), f1 - 3.0 * right + 3.0 * left - f0
-    fall = f0 - f1
-    share = pick(first.leaves, _second_root(c1, c2, c3), f0 / pick(fall > 0.0, fall, 1.0))
-    for _ in range(2):
-        slope = c1 + share * (2.0 * c2 + share * 3.0 * c3)
-        f = f0 + share * (c1 + share * (c2 + share * c3))
-        share = _within(share - f / pick(slope < 0.0, slope, -1e300), 0.0, 1.0)
-    low, high = first.low, first.low + part
-    t = low + share * part
+def _root(watched: list[Any], first: Part, share: Lanes, low: Lanes, part: Lanes, order: int) -> tuple[Any, Truth]:
+    """The root of the first function, from where its cubic is zero, and whether Newton's rule has settled on it."""
+    chosen = Series(lambda k: _select(watched, first.number, k))
+    high = low + part
+    t = low + _within(share, 0.0, 1.0) * part
     for _ in range(2):
         f, slope = value_and_slope(chosen, t, order)
         falls = slope < 0.0
         inverse = 1.0 / pick(falls, slope, -1e300)
         t = _within(t - f * inverse, low, high)
     step = value(chosen, t, order) * inverse
-    return _within(t - step, low, high), (falls & (abs(step) <= 1e-7 * part)) | ((f0 <= 0.0) & ~first.leaves)
+    settled = (falls & (abs(step) <= 1e-7 * part)) | ((first.cubic[0] <= 0.0) & ~first.leaves)
+    return _within(t - step, low, high), settled
 
 
 def _second_root(c1: Any, c2: Any, c3: Any) -> Any:
