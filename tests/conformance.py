@@ -46,6 +46,7 @@ SCHEDULES = [
     schedules.Ramp(0.7, -0.3, None, 0.5),
     schedules.Sinusoid(0.2, 0.7, 0.4, 0.3),
     schedules.Table([0.2, 1.0, 1.9], [0.1, 0.8, -0.2]),
+    schedules.Polynomial([0.3, -0.5, 0.2, 0.1], 1.1, 0.4),
 ]
 SUM = schedules.Ramp(0.7, -0.3) * 2.0 + schedules.Sinusoid(0.2, 0.7, 0.4)
 SHEETS = [*LAWS, *SCHEDULES, *(design() for design in DESIGNS.values())]

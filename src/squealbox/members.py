@@ -9,6 +9,8 @@ from squealbox import friction, schedules
 from squealbox.parameters import DataSheet
 from squealbox.schedules import Sum
 
+POINTS = (friction.Table, schedules.Table, schedules.Polynomial)
+
 
 def member(system: Any, i: int) -> Any:
     """System i of a batch, counted along its leading axes."""
@@ -40,7 +42,7 @@ class _Cut:
             own = {each.name: getattr(value, each.name) for each in dataclasses.fields(value)}  # type: ignore[arg-type]
             if isinstance(value, Sum):
                 return Sum(tuple((self(w, tail), self(part, 0)) for w, part in own["parts"]))
-            if isinstance(value, (friction.Table, schedules.Table)):  # its arrays are points, not leading axes
+            if isinstance(value, POINTS):  # its arrays are points or weights, not leading axes
                 return value
             changed = {
                 name: self(x, 0)

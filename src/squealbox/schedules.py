@@ -259,7 +259,45 @@ class Table(Schedule):
         return tuple(float(t) for t in self.times)
 
 
-SCHEDULES: tuple[type[Schedule], ...] = (Constant, Ramp, Sinusoid, Table)
+def polynomial(t: Any, p: Any) -> Any:
+    """sum_k w_k x^k, x = (t - middle) pace, p = (middle, pace, w_0 ... w_7)."""
+    x = (t - p[0]) * p[1]
+    return p[2] + x * (p[3] + x * (p[4] + x * (p[5] + x * (p[6] + x * (p[7] + x * (p[8] + x * p[9]))))))
+
+
+def polynomial_rate(t: Any, p: Any) -> Any:
+    """pace sum_k k w_k x^(k - 1)."""
+    x = (t - p[0]) * p[1]
+    steep = 4.0 * p[6] + x * (5.0 * p[7] + x * (6.0 * p[8] + x * (7.0 * p[9])))
+    return p[1] * (p[3] + x * (2.0 * p[4] + x * (3.0 * p[5] + x * steep)))
+
+
+class Polynomial(Schedule):
+    """A smooth course: weights[0] + weights[1] x + weights[2] x^2 ..., x = (t - middle) pace, with up to 8 weights.
+
+    >>> float(Polynomial([1.0, 0.0, -2.0], middle=1.0, pace=0.5).value(2.0))
+    0.5
+    """
+
+    weights: Any = parameter("", meaning="weights of x^0, x^1, ..., x^7; those left out are 0")
+    middle: float = parameter("s", default=0.0, meaning="instant of x = 0")
+    pace: float = parameter("1/s", default=1.0, meaning="x per second")
+
+    formula = staticmethod(polynomial)
+    rate_formula = staticmethod(polynomial_rate)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if np.ndim(self.weights) != 1 or not 1 <= np.size(self.weights) <= 8:
+            raise ParameterError("Polynomial", "weights", self.weights, "one to eight numbers")
+
+    def coefficients(self) -> tuple[Any, ...]:
+        weights = np.zeros(8)
+        weights[: np.size(self.weights)] = self.weights
+        return (self.middle, self.pace, *(float(w) for w in weights))
+
+
+SCHEDULES: tuple[type[Schedule], ...] = (Constant, Ramp, Sinusoid, Table, Polynomial)
 
 
 def as_schedule(value: Any) -> Schedule:

@@ -16,7 +16,7 @@ from squealbox.files import BRAKES, NotWritable, OwnBrake, OwnContact, own_law, 
 from squealbox.files.sheets import LAW_NAMES, SCHEDULE_NAMES
 from squealbox.friction import Dahl, ElastoPlastic, LuGre, Table
 from squealbox.parameters import from_plain, to_plain
-from squealbox.schedules import Constant
+from squealbox.schedules import Constant, Polynomial
 from squealbox.schedules import Table as TimeTable
 
 LAWS = [
@@ -38,6 +38,7 @@ SCHEDULES = [
     Ramp(0.2, -4.0, stop=None, begin=0.01),
     Sinusoid(1.0, 0.1, 50.0, phase=0.3),
     TimeTable([0.0, 1.0], [0.1, 1 / 3]),
+    Polynomial([0.1, 1 / 3, -2.0], 0.5, 4.0),
 ]
 
 

@@ -9,12 +9,13 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.control.plant import with_loops
+from squealbox.loops.driven import Driven
 from squealbox.parameters import ParameterError
-from squealbox.result import Array, Result, quantity
+from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.system import System, equilibrium
-from squealbox.transient.pieces import Pieces, driven_brake, in_pieces, late_command, start_of
+from squealbox.transient.pieces import driven_brake, in_pieces, start_of
 
-PARTS = 32  # of a piece, over which the work of an actuator with a lag is summed
+LAST, MOSTLY = 0.25, 0.5  # share of a run, and share of that at a limit beyond which a loop is saturated
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -51,6 +52,9 @@ def run_loops(design_or_system: Any, duration: float, start: Any = None, *, rtol
     design_or_system : `Controlled(brake, loops)`, some loops of it sampled or late
     start : (q, qd); None is steady sliding without the loops' forces
 
+    The outcome is that of the motion, or "saturated" where the force of a loop was at its limit for more than half of
+    the last quarter. A late command is a polynomial between its kinks, as exact as the motion; see `transient.pieces`.
+
     >>> from squealbox import PID, System
     >>> block = System([[1.0]], [[0.0]], [[1.0]], loops=(PID(on="q1", derivative=0.1, sampling=2.0),))
     >>> len(run_loops(block, 5.0, ([1.0], [0.0])).t)
@@ -65,38 +69,35 @@ def run_loops(design_or_system: Any, duration: float, start: Any = None, *, rtol
         raise ParameterError("run_loops", "duration", duration, "a finite number in (0, inf)")
     driven = driven_brake(system)
     begins = start_of(driven, _resting(system.replace(loops=())) if start is None else start)
-    found = in_pieces(driven, begins, 0.0, duration, None, ("exact", 1e-3, None, (rtol, None)), parts=PARTS)
-    n, motion, u = system.size, found.motion, found.commands
-    q = motion.q[found.rows]
-    limits = np.array([np.inf if loop.limit is None else float(loop.limit) for loop in driven.loops])
-    at_limit = np.diff(found.cuts) @ (np.abs(u[: len(found.cuts) - 1]) >= limits)
+    found = in_pieces(driven, begins, 0.0, duration, None, ("exact", 1e-3, None, (rtol, None)), weighed=True)
+    n, motion, kept = system.size, found.motion, found.marks
+    rows, u = found.rows[kept], found.commands[: len(kept)]
+    size = np.where([loop.sampling is None for loop in driven.loops], np.abs(found.before[1:]), np.inf)
+    at_limit = np.minimum(np.abs(u[:-1]), size) >= driven.limits * (1.0 - 1e-9)
+    lasting = np.diff(found.cuts)
     left = np.abs(np.diff(motion.energy.residual[found.rows]))
     return LoopRun(
-        t=found.cuts, q=q[:, :n], qd=motion.qd[found.rows][:, :n],
-        force=driven.forces(q, u[: len(found.cuts)]), work=_work(found), residual=np.asarray(np.sum(left)),
-        saturated=at_limit / max(float(np.ptp(found.cuts)), 1e-300), outcome=motion.outcome,
+        t=found.cuts[kept], q=motion.q[rows][:, :n], qd=motion.qd[rows][:, :n],
+        force=driven.forces(motion.q[rows], u[kept]), work=found.work[kept], residual=np.asarray(np.sum(left)),
+        saturated=lasting @ at_limit / max(float(np.sum(lasting)), 1e-300),
+        outcome=_outcome(driven, motion.outcome, found.cuts, at_limit),
         inputs={"system": design_or_system}, settings={"duration": duration, "rtol": rtol},
     )  # fmt: skip
 
 
-def _work(found: Pieces) -> Any:
-    """What the actuators have put in at the ends of the pieces [J]."""
-    motion, driven, rows = found.motion, found.driven, found.rows
-    done = np.zeros(len(rows))
-    for a, loop in enumerate(driven.loops):
-        b, power = driven.b[a], motion.qd @ driven.b[a]
-        if not np.any(driven.force[a]) and loop.sampling is not None:  # a force that is held
-            moved = np.diff(motion.q[rows] @ b)
-            done[1:] += np.cumsum(found.commands[: len(moved), a] * moved)
-            continue
-        forces = [motion.q @ driven.force[a]] * 2
-        if not np.any(driven.force[a]):
-            sensed = driven.commands(motion.q, motion.qd)[:, a]
-            forces = [late_command(motion.t, motion.t, sensed, loop.late, 0.0, after) for after in (True, False)]
-        after, before = (force * power for force in forces)
-        whole = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(motion.t) * (after[:-1] + before[1:]))])
-        done += whole[rows]
-    return done
+def _outcome(driven: Driven, outcome: Outcome, cuts: Any, at_limit: Any) -> Outcome:
+    """That of the motion; "saturated" where it completed with a force that is at its limit most of its last part."""
+    last = np.clip(cuts[1:] - np.maximum(cuts[:-1], cuts[-1] - LAST * (cuts[-1] - cuts[0])), 0.0, None)
+    shares = last @ at_limit / max(float(np.sum(last)), 1e-300)
+    if not outcome.ok or not np.any(shares > MOSTLY):
+        return outcome
+    a = int(np.argmax(shares))
+    loop, share = driven.loops[a], float(shares[a])
+    message = (
+        f"the force of the loop on {loop.on} was at its limit of {float(driven.limits[a]):g} N for "
+        f"{100.0 * share:.3g} % of the last quarter: what is commanded no longer acts"
+    )
+    return Outcome("saturated", message, loop=a, share=share)
 
 
 def _resting(system: System) -> tuple[Any, Any]:

@@ -25,10 +25,18 @@ class Driven:
     force: Any
     b: Any
 
+    @property
+    def limits(self) -> Any:
+        """Limits (a,) [N] of the commands, inf without."""
+        return np.array([np.inf if loop.limit is None else float(loop.limit) for loop in self.loops])
+
+    def wanted(self, q: Any, qd: Any) -> Any:
+        """Commands (..., a) at states (..., n), not cut."""
+        return q @ self.P.T + qd @ self.R.T
+
     def commands(self, q: Any, qd: Any) -> Any:
         """Commands (..., a) at states (..., n), cut at their limits."""
-        limits = np.array([np.inf if loop.limit is None else float(loop.limit) for loop in self.loops])
-        return np.clip(q @ self.P.T + qd @ self.R.T, -limits, limits)
+        return np.clip(self.wanted(q, qd), -self.limits, self.limits)
 
     def forces(self, q: Any, u: Any) -> Any:
         """Forces (..., a) [N] of the actuators."""

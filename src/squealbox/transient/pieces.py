@@ -1,13 +1,16 @@
 """Motion under loops that are sampled or late, piece by piece, each piece one exact run with all its events.
 
-Sampled: the command of sample k is held and acts from k h + T on. Late: over the shortest delay the command is known
-from what was sensed before, and is given at instants `record` apart, joined by lines: an error of order record^2.
+Sampled: the command of sample k is held and acts from k h + T on. Late: over a piece no longer than the shortest delay
+the command is known from what was sensed before, and is given as a polynomial through its values at Chebyshev's points.
+Pieces end a delay after each instant at which what was sensed has a kink: an event, a limit reached, the arrival of the
+first value. A kink of the j-th derivative passes the brake and its loop as one of the next, until it is nothing.
 Before the first sensed value has arrived the command is 0. It is cut at the limit, held, and then followed by the
 actuator; actuators and what controllers remember are rows of first order, as those of continuous loops are.
 """
 
 import time as clock
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -16,32 +19,35 @@ from squealbox.loops.driven import Driven, driven_brake
 from squealbox.loops.held import aliased
 from squealbox.loops.rows import size_and_rate
 from squealbox.parameters import ParameterError
-from squealbox.schedules import Constant, Schedule, Table
+from squealbox.schedules import Constant, Polynomial, Schedule
 from squealbox.system import InvalidSystem, System, equilibrium
 from squealbox.transient.legs import Leg, Progress, by_series, leg, told, ways_of
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR
+from squealbox.transient.sensed import ARC, MEANS, NEAR, NODES, WEIGHTS, Sensed, highest_kink, points_of
 from squealbox.transient.trajectory import Trajectory
 from squealbox.transient.widened import parted
 from squealbox.transient.widened import start_of as widened_start
 
-PER_RADIAN = 256  # instants of record in each radian of the brake's motion
-LEAST, MOST = 16, 4096  # of them in a delay
 MOST_PIECES = 200_000
-WORK = 32  # parts of a piece over which the work of an actuator with a lag is summed
 SAME = 1e-12  # share of a piece below which two instants are one
 How = tuple[str, float, Any, tuple[float | None, Any]]  # scheme of contact, width of smoothing, method, tolerances
 
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """The motion as one trajectory; `cuts` its instants between pieces, `rows` where, `commands` (k, a) held there."""
+    """The motion as one trajectory; `cuts` its instants between pieces, `marks` which are samples, arrivals or a number
+    of delays, `rows` where, `commands` (k, a) from there on, `before` up to there, `work` (k,) [J] of actuators.
+    """
 
     motion: Trajectory
     driven: Driven
     cuts: Any
+    marks: Any
     rows: Any
     commands: Any
+    before: Any
+    work: Any
 
 
 def start_of(driven: Driven, start: Any, time: float = 0.0) -> tuple[Any, Any]:
@@ -92,179 +98,208 @@ def motion_of(
 
 def in_pieces(
     driven: Driven, start: tuple[Any, Any], begin: float, duration: float, times: Any, how: How,
-    progress: Progress | None = None, parts: int = 1,
+    progress: Progress | None = None, weighed: bool = False,
 ) -> Pieces:  # fmt: skip
-    """The motion over `duration` [s] from a start of all rows, with output in so many parts of each piece at least."""
-    walk = _Walk(driven, start, begin, duration, how, parts)
-    legs, cuts, commands = walk.whole(times, progress)
-    system, asked = walk.system, parts > 1 or times is None
-    rows = _joined(legs, system, None if asked else times)
-    last = legs[-1]
+    """The motion over `duration` [s] from a start of all rows; the work of its actuators where that is `weighed`."""
+    walk = _Walk(driven, start, begin, duration, how, weighed)
+    legs = walk.whole(times, progress)
+    system, last, cuts = walk.system, legs[-1], np.array(walk.cuts)
     joined = replace(
-        last, rows=rows, events=np.concatenate([each.events for each in legs]),
+        last, rows=_joined(legs, system, times), events=np.concatenate([each.events for each in legs]),
         lowest=np.min([each.lowest for each in legs], axis=0), fastest=np.max([each.fastest for each in legs], axis=0),
         steps=(*map(sum, zip(*(each.steps for each in legs), strict=True)),),
         reversals=sum(each.reversals for each in legs),
         instead_of=next((each.instead_of for each in legs if each.instead_of), ""),
     )  # fmt: skip
-    motion = told(system, walk.ways, start, begin, cuts[-1] - begin, joined)
+    motion = told(system, walk.ways, start, begin, float(cuts[-1]) - begin, joined)
     motion = replace(motion, inputs={"system": driven.system}, settings={**motion.settings, "pieces": len(legs)})
-    places = np.searchsorted(motion.t, np.array(cuts) * (1.0 - SAME)) if asked else np.zeros(0, dtype=int)
-    return Pieces(motion, driven, np.array(cuts), places, np.array(commands))
+    rows = np.searchsorted(motion.t, cuts * (1.0 - SAME)) if times is None else np.zeros(0, dtype=int)
+    commands, before = np.array(walk.after), np.array(walk.before)
+    return Pieces(motion, driven, cuts, np.array(walk.marks), rows, commands, before, np.cumsum(walk.work))
 
 
 class _Walk:
-    def __init__(self, driven: Driven, start: Any, begin: float, duration: float, how: How, parts: int) -> None:
-        self.driven, self.system, self.parts = driven, in_time(driven.system), parts
+    def __init__(self, driven: Driven, start: Any, begin: float, duration: float, how: How, weighed: bool) -> None:
+        self.driven, self.system, self.weighed = driven, in_time(driven.system), weighed
         self.begin, self.end = begin, begin + duration
         self.q, self.qd = start
+        count = len(driven.loops)
         self.steps = np.array([np.inf if x.sampling is None else 1.0 / float(x.sampling) for x in driven.loops])
         self.late = np.array([loop.late for loop in driven.loops])
-        self.flowing = np.isinf(self.steps)  # loops that are late but not sampled
+        self.flowing = [a for a in range(count) if np.isinf(self.steps[a])]  # late but not sampled
         _, rate = size_and_rate(driven.system, ())
-        shortest = float(np.min(self.late[self.flowing], initial=np.inf))
-        self.record = shortest / float(np.clip(np.ceil(PER_RADIAN * rate * shortest), LEAST, MOST)) if (
-            np.isfinite(shortest)) else np.inf  # fmt: skip
-        self.longest = shortest
-        count = duration / min(shortest, float(np.min(self.steps)))
-        if count > MOST_PIECES:
+        self.arc = ARC / max(rate, 1e-300)
+        self.shortest = min(self.late[self.flowing], default=np.inf)
+        self.longest = self.shortest / np.ceil(self.shortest / self.arc) if self.flowing else np.inf
+        if duration / min(self.longest, float(np.min(self.steps))) > MOST_PIECES:
             raise ParameterError("simulate", "duration", duration, f"at most {MOST_PIECES} samples or delays")
-        self.held = np.zeros(len(driven.loops))
+        self.held = np.zeros(count)
         self.arrivals: list[tuple[float, int, float]] = []
-        self.taken = np.zeros(len(driven.loops), dtype=int)
-        self.past: tuple[Any, Any] = (np.zeros(0), np.zeros((0, len(driven.loops))))
+        self.taken = np.zeros(count, dtype=int)
+        limits = driven.limits[self.flowing]
+        most = highest_kink(rate * self.longest) if self.flowing else 0
+        self.sensed = Sensed(begin, self.late[self.flowing], limits, most)
+        self.sensed.kink(begin, 0)
+        self.cuts, self.marks, self.work = [begin], [True], [0.0]
+        self.after: list[Any] = []
+        self.before: list[Any] = []
         self.how, self.ways = how, ways_of(self.system, *how)
         self.pushed: Any = None
-        if self.ways.method.tableau == TAYLOR and not np.any(self.flowing):
+        if self.ways.method.tableau == TAYLOR:
             from squealbox.transient.lanes.single import Pushed
 
-            self.pushed = Pushed(self._under, driven.columns, self.ways.method, duration)
+            self.pushed = Pushed(self._under, count + (NODES + 2) * len(self.flowing), self.ways.method, duration)
 
-    def whole(self, times: Any, progress: Progress | None) -> tuple[list[Leg], list[float], list[Any]]:
-        """Piece after piece to the end: what each wrote, the instants between them and the commands after those."""
+    def whole(self, times: Any, progress: Progress | None) -> list[Leg]:
+        """Piece after piece to the end."""
         legs: list[Leg] = []
-        commands, cuts, now, began = [], [self.begin], self.begin, clock.monotonic()
+        now, began = self.begin, clock.monotonic()
+        self.before.append(self._commanded(now, before=True))
         while now < self.end - SAME * (self.end - self.begin):
             if progress is not None:
                 progress(now, self.end, clock.monotonic() - began)
             self._take(now)
-            until = self._next(now)
+            until, mark = self._next(now)
+            self.after.append(self._commanded(now))
             legs.append(self._piece(now, until, times))
-            commands.append(self._commanded(now, after=True))
             if not legs[-1].outcome.ok:
                 break
-            cuts.append(until)
-            self.q, self.qd = _end_of(self.system, legs[-1])
             now = until
-        commands.append(self._commanded(now, after=False))
-        return legs, cuts, commands
+            self.cuts.append(now)
+            self.marks.append(mark)
+            self.before.append(self._commanded(now, before=True))
+            self.q, self.qd = _end_of(self.system, legs[-1])
+        self.after.append(self.before[-1])
+        return legs
 
     def _take(self, now: float) -> None:
-        """Samples that are due, and commands that arrive."""
-        for a in map(int, np.flatnonzero(~self.flowing)):
+        """Samples that are due, commands that arrive, and what is late."""
+        order = self.sensed.acted(now) if self.flowing else None
+        for a in map(int, np.flatnonzero(np.isfinite(self.steps))):
             due = self.begin + self.taken[a] * self.steps[a]
             if due <= now + SAME * self.steps[a]:
-                self.arrivals.append((due + self.late[a], a, float(self._sensed(self.q, self.qd)[a])))
+                n = self.driven.b.shape[1]
+                u = self.driven.commands(self.q[:n], self.qd[:n])
+                self.arrivals.append((due + self.late[a], a, float(u[a])))
                 self.taken[a] += 1
         self.arrivals.sort(key=lambda each: each[0])
         while self.arrivals and self.arrivals[0][0] <= now + SAME * self.steps[self.arrivals[0][1]]:
             _, a, value = self.arrivals.pop(0)
-            self.held[a] = value
+            self.held[a], order = value, 0
+        if order is not None and self.flowing:
+            self.sensed.kink(now, order + 1)
 
-    def _sensed(self, q: Any, qd: Any) -> Any:
-        """The commands (..., a) at states of all rows (..., n)."""
-        n = self.driven.b.shape[1]
-        return self.driven.commands(q[..., :n], qd[..., :n])
+    def _next(self, now: float) -> tuple[float, bool]:
+        """Where the piece that begins now ends, and whether at a sample, an arrival, or a number of delays."""
+        marks = [self.end, *(instant for instant, _, _ in self.arrivals[:1])]
+        marks += [self.begin + k * h for k, h in zip(self.taken, self.steps, strict=True) if np.isfinite(h)]
+        others = [instant for instant, _ in self.sensed.due]
+        if self.flowing:
+            marks.append(self._on_grid(now, self.shortest))
+            others.append(self._on_grid(now, self.longest))
+        apart = SAME * min(self.longest, self.end - self.begin) + 16.0 * float(np.spacing(abs(now)))
+        ends = [each for each in (*marks, *others) if each > now + apart]
+        until = max(each for each in ends if each <= min(ends) + apart)
+        return until, any(abs(each - until) <= apart for each in marks)
 
-    def _next(self, now: float) -> float:
-        """Where the piece that begins now ends."""
-        ends = [self.end, now + self.longest]
-        ends += [self.begin + k * h for k, h in zip(self.taken, self.steps, strict=True) if np.isfinite(h)]
-        ends += [instant for instant, _, _ in self.arrivals[:1]]
-        ends += [self.begin + late for late in self.late[self.flowing] if self.begin + late > now * (1.0 + SAME)]
-        return float(min(each for each in ends if each > now))
+    def _on_grid(self, now: float, step: float) -> float:
+        return self.begin + (np.floor((now - self.begin) / step + NEAR) + 1.0) * step
 
-    def _commanded(self, now: float, after: bool) -> Any:
-        """The commands that act at an instant, (a,)."""
+    def _commanded(self, now: float, before: bool = False) -> Any:
+        """The commands that act from an instant on, or up to it, (a,)."""
         found = np.array(self.held)
-        for a in map(int, np.flatnonzero(self.flowing)):
-            found[a] = self._earlier(a, np.array([now]), after)[0]
+        for i, a in enumerate(self.flowing):
+            found[a] = self.sensed.commands(i, [now], before)[0]
         return found
-
-    def _earlier(self, a: int, instants: Any, after: bool) -> Any:
-        """The command of a late loop at instants, from what was sensed; 0 before anything had arrived."""
-        known, values = self.past
-        return late_command(instants, known, values[:, a], self.late[a], self.begin, after)
 
     def _piece(self, now: float, until: float, times: Any) -> Leg:
-        instants = self._instants(now, until, times)
-        if self.pushed is not None:
-            found = by_series(self.pushed.ready(self.held, self.q, self.qd, now, until, instants), until)
-            if found.outcome != "step_underflow" or self.ways.named:
-                return found
-        driven, moving = self.driven, []
-        for a in map(int, np.flatnonzero(self.flowing)):
-            if until <= self.begin + self.late[a] * (1.0 + SAME):
-                continue
-            knots = self.past[0] + self.late[a]
-            apart = 1e-9 * self.record
-            inner = knots[(knots > now + apart) & (knots < until - apart) & (np.diff(knots, prepend=-np.inf) > apart)]
-            at = np.concatenate([[now], inner, [until]])
-            moving.append(Table(at, self._earlier(a, at, after=True)) * driven.columns[a])
-        system = self._under(np.where(self.flowing, 0.0, self.held) @ driven.columns, moving)
-        found = leg(system, ways_of(system, *self.how), self.q, self.qd, now, until - now, instants)
-        if np.isfinite(self.record):
-            self._remember(now, found)
+        """March; where an event lies inside and what is sensed must be told, once more with points between events."""
+        numbers = self._numbers(now, until)
+        edges = self._edges(now, until, [])
+        found = self._march(numbers, now, until, _instants(now, until, edges, times))
+        apart = NEAR * (until - now)
+        inside = sorted({t for t in found.events[:, 0].tolist() if now + apart < t < until - apart})
+        if edges and inside and found.outcome.ok:
+            edges = self._edges(now, until, inside)
+            found = self._march(numbers, now, until, _instants(now, until, edges, times))
+        if edges and found.outcome.ok:
+            for instant in inside:
+                self.sensed.kink(instant, 1)
+            self._remember(found, edges, numbers)
+            self.sensed.forget(until - float(np.max(self.late)))
         return found
 
-    def _under(self, constant: Any, moving: Any = ()) -> System:
-        """The brake in time under a further load."""
-        system = self.driven.system
-        return in_time(system.replace(load=_sum(system.load, constant, moving)))
+    def _edges(self, now: float, until: float, inside: list[float]) -> list[float]:
+        """Ends of the stretches in which what is sensed, or the work, is told; empty where neither is wanted."""
+        if not (self.flowing or self.weighed):
+            return []
+        edges, apart = [now], NEAR * (until - now)
+        for instant in (*inside, until):
+            if instant > edges[-1] + apart:
+                parts = int(np.ceil((instant - edges[-1]) / self.arc - NEAR))
+                edges += np.linspace(edges[-1], instant, max(parts, 1) + 1)[1:].tolist()
+        return edges
 
-    def _remember(self, now: float, found: Leg) -> None:
-        """Keep what was sensed, for as long as it is under way."""
-        keep = self.past[0] >= now - float(np.max(self.late)) - self.record
-        known = [part[keep] for part in self.past]
+    def _numbers(self, now: float, until: float) -> Any:
+        """What the load of a piece depends on: the commands that are held, and of each late one its polynomial."""
+        numbers = np.zeros(len(self.held) + (NODES + 2) * len(self.flowing))
+        numbers[: len(self.held)] = self.held
+        for i in range(len(self.flowing)):
+            at = len(self.held) + (NODES + 2) * i
+            values = self.sensed.commands(i, points_of(now, until))
+            numbers[at : at + 2] = 0.5 * (now + until), 2.0 / (until - now)
+            numbers[at + 2 : at + 2 + NODES] = WEIGHTS @ values
+        return numbers
+
+    def _under(self, numbers: Any) -> System:
+        """The brake in time under the load that belongs to such numbers."""
+        system, columns, count = self.driven.system, self.driven.columns, len(self.held)
+        load, held = system.load, numbers[:count] @ columns
+        if not isinstance(load, Schedule) and not self.flowing:
+            return in_time(system.replace(load=load + held))
+        total = load if isinstance(load, Schedule) else Constant(1.0) * load
+        total = total + Constant(1.0) * held
+        for a, p in zip(self.flowing, numbers[count:].reshape(-1, NODES + 2), strict=True):
+            total = total + Polynomial(p[2:], p[0], p[1]) * columns[a]
+        return in_time(system.replace(load=total))
+
+    def _march(self, numbers: Any, now: float, until: float, instants: Any) -> Leg:
+        if self.pushed is not None:
+            found = by_series(self.pushed.ready(numbers, self.q, self.qd, now, until, instants), until)
+            if found.outcome != "step_underflow" or self.ways.named:
+                return found
+        return leg(self._under(numbers), self.ways, self.q, self.qd, now, until - now, instants)
+
+    def _remember(self, found: Leg, edges: list[float], numbers: Any) -> None:
+        """Keep what was sensed, and add up the work of the actuators."""
+        driven, n = self.driven, self.driven.b.shape[1]
         t, q, qd = found.parts(self.system.size)
-        new = slice(1 if len(known[0]) else 0, None)
-        self.past = np.concatenate([known[0], t[new]]), np.concatenate([known[1], self._sensed(q, qd)[new]])
-
-    def _instants(self, now: float, until: float, times: Any) -> Any:
-        """Instants of one piece: those asked for, those of the record, and its parts."""
-        count = self.parts
-        if np.isfinite(self.record):
-            count = max(int(np.ceil((until - now) / self.record - 1e-9)), 1)
-        elif times is None and count == 1:
-            return None
-        instants = np.append(now + (until - now) * np.arange(count) / count, until)
-        if times is None:
-            return instants
-        apart = 1e-9 * (until - now) / count
-        first, last = np.searchsorted(times, [now + apart, until - apart], side="right")
-        asked = times[first:last]
-        if not len(asked):
-            return instants
-        near = np.array([np.any(np.abs(asked - instant) <= apart) for instant in instants])
-        return np.union1d(instants[~near], asked)
+        done = 0.0
+        for begin, end in pairwise(edges):
+            points = points_of(begin, end)
+            rows = np.searchsorted(t, points - NEAR * (end - begin))
+            there, moving = q[rows, :n], qd[rows, :n]
+            if self.flowing:
+                self.sensed.add(begin, end, driven.wanted(there, moving)[:, self.flowing])
+            if self.weighed:
+                u = np.tile(self.held, (NODES, 1))
+                for i, a in enumerate(self.flowing):
+                    u[:, a] = self.sensed.commands(i, points)
+                power = np.sum(driven.forces(there, u) * (moving @ driven.b.T), axis=-1)
+                done += 0.5 * (end - begin) * float(MEANS @ power)
+        self.work.append(done)
 
 
-def late_command(instants: Any, known: Any, values: Any, late: float, begin: float, after: bool) -> Any:
-    """A command at instants, sensed a time `late` before; 0 until it arrives, at that instant as before or after it."""
-    if not len(known):
-        return np.zeros(len(instants))
-    sensed, margin = instants - late, SAME * late
-    return np.where(sensed >= (begin - margin if after else begin + margin), np.interp(sensed, known, values), 0.0)
-
-
-def _sum(load: Any, constant: Any, moving: list[Any]) -> Any:
-    """A load with a constant part and schedules added."""
-    if not isinstance(load, Schedule) and not moving:
-        return load + constant
-    total = load if isinstance(load, Schedule) else Constant(1.0) * load
-    for part in (Constant(1.0) * constant, *moving):
-        total = total + part
-    return total
+def _instants(now: float, until: float, edges: list[float], times: Any) -> Any:
+    """Instants of one piece: those asked for, and the points of its stretches; None for every step."""
+    if times is None and not edges:
+        return None
+    told_at = [points_of(begin, end) for begin, end in pairwise(edges)]
+    instants = np.concatenate([[now], *told_at, [until]])
+    if times is None:
+        return instants
+    first, last = np.searchsorted(times, [now, until], side="left")
+    return np.union1d(instants, times[first:last])
 
 
 def _end_of(system: System, of: Leg) -> tuple[Any, Any]:

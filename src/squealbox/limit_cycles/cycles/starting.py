@@ -12,12 +12,13 @@ from squealbox.result import COMPLETED, Outcome
 from squealbox.schedules import value_at
 from squealbox.stability import Mode, complex_modes
 from squealbox.system import equilibrium
-from squealbox.transient import Trajectory
+from squealbox.transient import Trajectory, simulate
 
 PERIODS = 300.0  # of the lowest mode, of a run that is to settle
 GUESS_RTOL = 1e-9
 UNBOUNDED = 1e100  # [m, m/s]; squares of what is below it are still numbers
 LONG_STEPS = 2_000_000  # of the run that is to settle
+LINGERS = 5.0  # periods of the slowest mode, after which rows of a delay hold what is under way
 STIFF = "one period of the slowest mode takes too many steps: damping, or what is held, is far faster than it"
 DYING = 0.05  # share of the sliding speed; a swing below it that falls goes on falling where sliding is stable
 FALLS = 0.98  # by which a swing falls at least over two thirds of a run that dies down
@@ -38,6 +39,8 @@ def first_guess(field: Autonomous, start: Any, settle: float | None) -> tuple[An
     x = state_of(field, start)
     slowest = _slowest_period(field)
     duration = PERIODS * slowest if settle is None else settle
+    if field.late and duration > 0.0:
+        return _settled_under_a_delay(field, x, duration, slowest)
     if duration > slowest:  # where the first of its periods is out of reach, all are
         run = fly(field, x, slowest, GUESS_RTOL, np.array([slowest]))
         if run.outcome == "step_limit":
@@ -48,6 +51,17 @@ def first_guess(field: Autonomous, start: Any, settle: float | None) -> tuple[An
             return x, slowest, Outcome("no_cycle", f"the first run ended early: {run.outcome.message}")
         x = np.concatenate([run.q[-1], run.qd[-1]])
     return first_return(field, x, slowest)
+
+
+def _settled_under_a_delay(field: Autonomous, x: Any, duration: float, slowest: float) -> tuple[Any, float, Outcome]:
+    """As `first_guess`: a long run under the delay itself, and a short one with its rows, which make steps tiny."""
+    n, size = field.system.size, field.size
+    start = x[:n], x[size : size + n]
+    run = simulate(field.asked, duration, start, [0.0, duration], contact=field.contact, width=field.width)
+    if not run.outcome.ok:
+        return x, slowest, Outcome("no_cycle", f"the first run ended early: {run.outcome.message}")
+    x, _, outcome = _under_way(field, field.state(run.q[-1, :n], run.qd[-1, :n]), LINGERS * slowest)
+    return first_return(field, x, slowest) if outcome.ok else (x, slowest, outcome)
 
 
 def _under_way(field: Autonomous, x: Any, period: float) -> tuple[Any, float, Outcome]:

@@ -159,38 +159,38 @@ class Single:
 
 
 class Pushed:
-    """Runs of one system under constant loads u . columns beside its own: what depends on u is a sum, found once.
+    """Runs of one system under loads that are given by numbers: the rows of a run are sums of those, found once.
 
-    `under` gives the system under a further load (rows,) of its base, with terms for it even where that is zero.
+    `under` gives the system in time that belongs to such numbers (count,), with a term for each even where it is zero.
     """
 
-    def __init__(self, under: Callable[[Any], System], columns: Any, method: Method, duration: float) -> None:
-        none = np.zeros(columns.shape[1])
-        some = 1.0 + 0.618 * np.arange(len(columns))  # that cancel in no row
-        system = under(some @ columns)
+    def __init__(self, under: Callable[[Any], System], count: int, method: Method, duration: float) -> None:
+        some, none = 1.0 + 0.618 * np.arange(count), np.zeros(count)  # that cancel in no row
+        system = under(some)
         start = np.zeros(system.size)
         self.run = Single(system, method, start, start, 0.0, duration, None)
         without, pack = _numbers_by_name(under(none)), self._packed(under(none))
-        self.rises = np.zeros((len(columns), len(self.run.fixed)))
-        self.fields: dict[str, tuple[Any, dict[int, Any]]] = {}
-        for a, column in enumerate(columns):
-            pushed = under(column)
+        self.rises = np.zeros((count, len(self.run.fixed)))
+        self.fields: dict[str, tuple[Any, Any]] = {}
+        for i in range(count):
+            pushed = under(np.eye(count)[i])
             for name, value in _numbers_by_name(pushed).items():
-                self.rises[a, self.run.made.names[name]] = value - without.get(name, 0.0)
+                self.rises[i, self.run.made.names[name]] = value - without.get(name, 0.0)
             for name, value in self._packed(pushed).items():
                 if not np.array_equal(value, pack[name]):
-                    self.fields.setdefault(name, (pack[name], {}))[1][a] = value - pack[name]
+                    rises = self.fields.setdefault(name, (pack[name], np.zeros((count, *value.shape))))[1]
+                    rises[i] = value - pack[name]
         self.origin = self.run.fixed - some @ self.rises
 
     def _packed(self, system: System) -> dict[str, Any]:
         record = packing.pack(system, self.run.method, EXACT, 1e-3, False)
         return {name: record[name].copy() for name in record.dtype.names if record.dtype[name].base.kind == "f"}
 
-    def ready(self, u: Any, q: Any, qd: Any, begin: float, end: float, times: Any) -> Single:
-        """The run from a start of all rows under the loads u (a,)."""
-        self.run.fixed[:] = self.origin + u @ self.rises
+    def ready(self, given: Any, q: Any, qd: Any, begin: float, end: float, times: Any) -> Single:
+        """The run from a start of all rows under the load of the numbers given."""
+        self.run.fixed[:] = self.origin + given @ self.rises
         for name, (value, rises) in self.fields.items():
-            self.run.record[0][name] = value + sum(u[a] * rise for a, rise in rises.items())
+            self.run.record[0][name] = value + np.tensordot(given, rises, 1)
         self.run.restart(q, qd, begin, end, times)
         return self.run
 
