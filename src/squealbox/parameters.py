@@ -52,6 +52,8 @@ class DataSheet:
     """A name for a field of all sheets in another field, such as ``{"sliding_speed": ("contacts", "V")}``."""
     told: ClassVar[Mapping[str, tuple[str, str]]] = {}
     """Unit and meaning of fields that are no declared parameters, for `summary`."""
+    counted_from: ClassVar[int] = 1
+    """The number of the first of several in a field."""
 
     def __new__(cls, *_: Any, **given: Any) -> Self:
         """A sheet not yet filled; a name it does not have is refused with the nearest one."""
@@ -195,9 +197,9 @@ class DataSheet:
         return tuple(sheet.replace(each[i]) if i in each else sheet for i, sheet in enumerate(sheets))
 
     def _place(self, name: str, sheets: Any, key: str) -> int:
-        known = members(sheets)
-        if key.isdigit() and 1 <= int(key) <= len(known):
-            return int(key) - 1
+        known, first = members(sheets), sheets[0].counted_from
+        if key.isdigit() and first <= int(key) < first + len(known):
+            return int(key) - first
         if key not in known:
             raise ParameterError(type(self).__name__, f"{name}.{key}", UNSAID, known_names(key, list(known)))
         return known.index(key)
@@ -256,7 +258,8 @@ def members(value: Any) -> list[str]:
         return []
     names = [str(getattr(each, "name", "")) for each in value]
     plain = [bool(re.fullmatch(r"[^\W\d][^.=]*", name)) and names.count(name) == 1 for name in names]
-    return [name if good else str(i) for i, (name, good) in enumerate(zip(names, plain, strict=True), start=1)]
+    numbers = range(value[0].counted_from, value[0].counted_from + len(value))
+    return [name if good else str(i) for i, name, good in zip(numbers, names, plain, strict=True)]
 
 
 def to_plain(value: Any) -> Any:

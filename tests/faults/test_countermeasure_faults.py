@@ -51,7 +51,7 @@ BAD = {
     "no loop at all": (lambda: Controlled(DRUM, [3]), "expected a loop, such as PID"),
     "an algebraic loop": (lambda: ActiveForce(0.1, 0.0, on="y"), "ActiveForce.time_constant = 0.*algebraic loop"),
     "too many gains": (lambda: Controlled(DRUM, [StateFeedback(on="y", velocity=(1.0,) * 3)]), "at most 2 gains"),
-    "a loop that is not there": (lambda: LATE.replace({"loops.3.delay": 0.0}), "loops.0.NAME"),
+    "a loop that is not there": (lambda: LATE.replace({"loops.3.delay": 0.0}), "loops.3: expected one of 0"),
     "poles without loops": (lambda: closed_loop(DRUM), "a brake with loops"),
     "modes of loops of two rates": (
         lambda: complex_modes(Controlled(DRUM, [PID(on="y", sampling=1e4), PID(on="x", sampling=2e4)])),

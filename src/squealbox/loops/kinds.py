@@ -8,7 +8,7 @@ A loop senses the degree of freedom `sense` and acts on `on` (a name each). Acti
 Burdess 1981, Mechanism and Machine Theory 16, 535-542.
 """
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -23,6 +23,8 @@ class Loop(DataSheet):
     of computing time, are None or 0 where the actuator is ideal. A command that is sampled or late is cut at the limit,
     held, and then followed by the actuator.
     """
+
+    counted_from: ClassVar[int] = 0
 
     on: str = ""
     sense: str = ""
