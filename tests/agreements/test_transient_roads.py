@@ -241,7 +241,7 @@ def test_output_between_steps_is_as_good_as_at_steps(method):
 
 
 def test_a_run_in_small_budgets_is_the_same_run(monkeypatch):
-    module = importlib.import_module("squealbox.transient.simulate")
+    module = importlib.import_module("squealbox.transient.legs")
     whole = simulate(two_blocks_on_belt(), 6.0, ([0.3, -0.1], [0.1, 0.0]))
     monkeypatch.setattr(module, "BUDGET", (3, 3))
     pieces = simulate(two_blocks_on_belt(), 6.0, ([0.3, -0.1], [0.1, 0.0]))

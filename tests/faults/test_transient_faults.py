@@ -24,7 +24,7 @@ from squealbox.system import InvalidSystem
 from squealbox.transient import Trajectory, _engine, packing
 from squealbox.transient.lanes import single
 
-module = importlib.import_module("squealbox.transient.simulate")
+module = importlib.import_module("squealbox.transient.legs")
 
 
 def assert_reached(motion):

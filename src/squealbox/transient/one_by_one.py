@@ -2,11 +2,10 @@
 
 Such are loops that are sampled or late, limits that vary, rigid contacts, designs of one size but of other structure,
 and brakes with more freedoms and contacts than a kernel's text can spell out (60 coordinates with 100 contacts).
-Observers see the rows of a run, at most `STEP` of its fastest swing apart, with q'' of the cubic through q and q' of
-both ends.
+Observers see rows of a run at most `STEP` of its fastest swing apart, its events among them, with q'' of the cubic
+through q and q' of both ends.
 """
 
-import dataclasses
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
@@ -25,6 +24,7 @@ from squealbox.transient.trajectory import Trajectory
 from squealbox.transient.widened import RunApart
 
 STEP = 1.0 / 32.0  # rad; an extreme is then off by less than 1e-8 of the swing
+LEAST = 32  # parts of a run
 Run = Callable[..., Trajectory]
 
 
@@ -75,10 +75,13 @@ class OneByOne(Work):
         """One run, as a row of results and its samples."""
         swing = highest_rate(system)
         chosen = self.usual(system)
-        closer = min(STEP / swing if swing > 0.0 else np.inf, chosen.largest_step or np.inf)
-        method = dataclasses.replace(chosen, largest_step=closer) if np.isfinite(closer) else chosen
         given = {"start_time": self.begin, "width": self.width}
-        motion = self.simulate(system, self.duration, start, None, method, **given)
+        count = max(int(np.ceil(self.duration * swing / STEP)), LEAST)
+        instants = self.begin + self.duration * np.arange(count + 1) / count
+        motion = self.simulate(system, self.duration, start, instants, chosen, **given)
+        if len(motion.event_time):
+            instants = np.union1d(instants, motion.event_time)
+            motion = self.simulate(system, self.duration, start, instants, chosen, **given)
         if motion.outcome == "interrupted":
             raise KeyboardInterrupt
         known: System = motion.inputs["system"]

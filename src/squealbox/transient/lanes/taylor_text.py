@@ -173,7 +173,8 @@ class TaylorStep(EquationText):
             safe.append(f"({slips}{without})" if c in self.shape.slick else slips)
         safe += ["(x < 0.0)"] * any(self.shape.unilateral)
         self.put(f"safe = {' & '.join(safe) or 'x > 0.0'}")
-        self.put(f"found = step_end(({watched}), kinks, safe, x, {largest}, {ORDER})")
+        order = WORK_ORDER if self.shape.varying else ORDER  # a schedule's terms are known beyond those of the motion
+        self.put(f"found = step_end(({watched}), kinks, safe, x, {largest}, {order})")
         self.put("end, event, target, longest = found.end, (found.event > 0.5) & fine, found.target, found.next_limit")
         self.judge(found)
         for c in range(0 if self.gliding else m):
