@@ -7,7 +7,7 @@ from squealbox.studies.uncertainty.scatter import Scatter
 
 FRICTION, SPRINGS, DAMPERS = 0.08, 0.03, 0.20  # coefficients of variation
 ASSUMED = (
-    f"assumed scatter, since none was given: friction {100.0 * FRICTION:.0f} %, stiffnesses {100.0 * SPRINGS:.0f} %, "
+    f"Assumed scatter, since none was given: friction {100.0 * FRICTION:.0f} %, stiffnesses {100.0 * SPRINGS:.0f} %, "
     f"dampers {100.0 * DAMPERS:.0f} % (standard deviation over mean)"
 )
 

@@ -3,13 +3,13 @@
 import { shown } from "./numbers.js";
 
 const d3 = window.d3;
-const ROW = 26;
+const ROW = 24;
 
 export class Bars {
   constructor(place, name, { unit = "1/s" } = {}) {
     this.name = name;
     this.unit = unit;
-    this.margin = { top: 6, right: 62, bottom: 40, left: 128 };
+    this.margin = { top: 6, right: 62, bottom: 36, left: 128 };
     this.figure = d3.select(place).append("figure").attr("class", "chart").attr("data-figure", name);
     this.frame = this.figure.append("div").attr("class", "frame");
     this.canvas = { hidden: true };
@@ -34,15 +34,15 @@ export class Bars {
     this.frame.style("height", `${height}px`);
     const ends = spec.bars.flatMap((bar) => stacked(bar).flatMap((part) => [part.from, part.to]));
     const x = d3.scaleLinear().domain([Math.min(0, ...ends), Math.max(0, ...ends) || 1]).range([left, left + this.inner.width]);
-    this.axis.attr("transform", `translate(0,${height - bottom})`).call(d3.axisBottom(x).ticks(4).tickFormat((v) => shown(v, 4)).tickSizeOuter(0));
+    this.axis.attr("transform", `translate(0,${height - bottom})`).call(d3.axisBottom(x).ticks(Math.max(2, this.inner.width / 50)).tickFormat((v) => shown(v, 4)).tickSizeOuter(0));
     const groups = this.rows.selectAll("g.bar").data(spec.bars);
     groups.exit().remove();
     const fresh = groups.enter().append("g").attr("class", "bar");
     fresh.append("text").attr("class", "name").attr("text-anchor", "end");
     fresh.append("text").attr("class", "value");
     const all = fresh.merge(groups).attr("transform", (bar, i) => `translate(0,${top + legend + ROW * i})`).attr("data-name", (bar) => bar.name).attr("data-value", (bar) => bar.sum);
-    all.select("text.name").attr("x", left - 8).attr("y", 17).text((bar) => bar.name);
-    all.select("text.value").attr("x", width - right + 6).attr("y", 17).text((bar) => shown(bar.sum, 3));
+    all.select("text.name").attr("x", left - 8).attr("y", 16).text((bar) => bar.name);
+    all.select("text.value").attr("x", width - right + 6).attr("y", 16).text((bar) => shown(bar.sum, 3));
     const parts = all.selectAll("rect").data(stacked);
     parts.exit().remove();
     parts.enter().insert("rect", "text").merge(parts).attr("class", (part) => part.cls).attr("y", 4).attr("height", ROW - 9)
