@@ -19,9 +19,10 @@ if any(name in os.environ for name in UNWANTED) or os.environ.get("OPENBLAS_NUM_
 import numpy as np
 
 from squealbox import DrumBrake, LinearSlope
+from squealbox.compiled.packed import room
 from squealbox.control.poles import Late, late_poles
 from squealbox.stability import compiled_eigenvalues, stability_boundary, stability_map
-from squealbox.stability import kernels_two_dof as kernels
+from squealbox.stability.spectra import flags_of, parts_of, two_dof_kernels
 
 
 def least(function, repetitions=7):
@@ -63,12 +64,12 @@ def two_degrees_of_freedom(count=40000):
     values = np.linalg.eigvals(state)
     mass, c, k = np.eye(2).ravel(), damping.ravel(), stiffness.ravel()
     growth, omega, number = np.empty(count), np.empty(count), np.empty(count)
-    flags = np.empty(count, dtype=np.uint8)
-    ours = least(lambda: kernels.growth_and_frequency(mass, c, k, 0, growth, omega, number), 30) / count
+    kernels = two_dof_kernels()
+    ours = least(lambda: kernels.growth_and_frequency(mass, c, k, 0, growth, omega, number, room(4)), 30) / count
     gap = np.max(np.abs(growth - values.real.max(axis=-1)))
     report("2 DOF growth and frequency", ours, numpy_time, f"largest difference {gap:.1e}")
-    ours = least(lambda: kernels.flags_shared_mass(mass, c, k, flags), 200) / count
-    wrong = int(np.sum(flags.astype(bool) != (values.real.max(axis=-1) < 0.0)))
+    ours = least(lambda: flags_of(mass, c, k), 200) / count
+    wrong = int(np.sum(flags_of(mass, c, k) != (values.real.max(axis=-1) < 0.0)))
     report("2 DOF stability flag", ours, numpy_time, f"{wrong} flags differ")
 
 
@@ -76,7 +77,8 @@ def spectra():
     """Whole spectra: of 2 DOF in closed form, of any real matrices by QR."""
     damping, stiffness, state = oscillators(20000, 2)
     mass, c, k, found = np.eye(2).ravel(), damping.ravel(), stiffness.ravel(), np.empty((len(state), 4), dtype=complex)
-    compare("4 x 4 spectrum, 2 DOF", state, lambda: kernels.spectrum(mass, c, k, 0, found), lambda: found)
+    run = partial(two_dof_kernels().spectrum, mass, c, k, 0, parts_of(found).reshape(-1, 8), room(8))
+    compare("4 x 4 spectrum, 2 DOF", state, run, lambda: found)
     for size, count in ((4, 20000), (12, 3200), (24, 640)):
         for kind in ("oscillators", "any real"):
             if kind == "oscillators":

@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 from scipy.optimize import linear_sum_assignment
 
+from squealbox.compiled.packed import room
 from squealbox.stability import compiled_eigenvalues, spectra
+from squealbox.stability.spectra import parts_of, spectra_kernels
 
 EPS = np.finfo(float).eps
 
@@ -27,10 +29,9 @@ def gap(ours: Any, theirs: Any) -> Any:
 
 def kernel_alone(matrices: Any) -> Any:
     """What the kernel answers itself, NaN where it leaves the matrix to LAPACK."""
-    from squealbox.stability import kernels_spectra
-
-    values = np.empty(matrices.shape[:2], dtype=complex)
-    kernels_spectra.spectra(np.require(matrices, float, ["C", "W"]), values)
+    values, n = np.empty(matrices.shape[:2], dtype=complex), matrices.shape[-1]
+    rooms = room(n * n), room(n), room(n), room(n)
+    spectra_kernels().spectra(np.require(matrices, float, ["C", "W"]), parts_of(values), *rooms)
     return values
 
 

@@ -10,7 +10,19 @@ import struct
 from collections.abc import Callable
 from typing import Any
 
-from squealbox.compiled.kinds import FLOAT, TEXTS, TRUTH, WHOLE, Number, Untranslatable, Value, kind_of
+from squealbox.compiled.kinds import (
+    FLOAT,
+    LANES,
+    MASK,
+    PACKED,
+    TEXTS,
+    TRUTH,
+    WHOLE,
+    Number,
+    Untranslatable,
+    Value,
+    kind_of,
+)
 
 INSTRUCTIONS = {"+": ("fadd", "add"), "-": ("fsub", "sub"), "*": ("fmul", "mul")}
 BITS = {"&": "and", "|": "or", "^": "xor", "<<": "shl", ">>": "ashr"}
@@ -30,6 +42,10 @@ LIBRARY = {
 OF_TWO = {"nextafter": "nextafter", "hypot": "hypot", "arctan2": "atan2", "copysign": "copysign", "power": "pow"}
 INTRINSIC = {"sqrt": "llvm.sqrt.f64", "fabs": "llvm.fabs.f64", "absolute": "llvm.fabs.f64", "floor": "llvm.floor.f64",
              "ceil": "llvm.ceil.f64"}  # fmt: skip
+FLAGS = (
+    "nsz arcp contract afn reassoc"  # of packed numbers; not nnan or ninf: they would remove the tests for lost lanes
+)
+WIDE = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv"}
 MOST_POWER = 16  # whole powers up to this one are products
 
 
@@ -63,11 +79,17 @@ class Arithmetic:
         if not isinstance(own, str):
             raise Untranslatable(f"a {own[0]} where a number is expected")
         kind = kind or own
+        if literal(value) and kind == PACKED:
+            return Number(PACKED, "<" + ", ".join([f"double {written(float(value))}"] * LANES) + ">")
         if literal(value):
             number = float(value) if kind == FLOAT else bool(value) if kind == TRUTH else int(value)
             return Number(kind, written(number) if kind == FLOAT else str(number).lower())
         if own == kind:
             return value
+        if kind == PACKED:
+            return self.in_all_lanes(self.numbered(value, FLOAT))
+        if own in (PACKED, MASK) or kind == MASK:
+            raise Untranslatable("packed numbers or masks beside what is not")
         if kind == TRUTH:
             return self.truth(value)
         if kind == FLOAT:
@@ -75,6 +97,13 @@ class Arithmetic:
             return Number(FLOAT, self.put(f"{name} {TEXTS[own]} {value.text} to double"))
         line = f"zext i1 {value.text} to i64" if own == TRUTH else f"fptosi double {value.text} to i64"
         return Number(WHOLE, self.put(line))
+
+    def in_all_lanes(self, x: Number) -> Number:
+        """A number as packed ones."""
+        kind = TEXTS[PACKED]
+        one = self.put(f"insertelement {kind} poison, double {x.text}, i64 0")
+        zeros = f"<{LANES} x i32> zeroinitializer"
+        return Number(PACKED, self.put(f"shufflevector {kind} {one}, {kind} poison, {zeros}"))
 
     def truth(self, value: Value) -> Any:
         """Whether it is not zero: a Python truth value or a number of kind TRUTH."""
@@ -89,6 +118,11 @@ class Arithmetic:
         if literal(a) and literal(b):
             return self.known(sign, a, b)
         kinds = kind_of(a), kind_of(b)
+        if PACKED in kinds and sign in WIDE:
+            x, y = self.numbered(a, PACKED), self.numbered(b, PACKED)
+            return Number(PACKED, self.put(f"{WIDE[sign]} {FLAGS} {TEXTS[PACKED]} {x.text}, {y.text}"))
+        if kinds == (MASK, MASK) and sign in ("&", "|"):
+            return Number(MASK, self.put(f"{BITS[sign]} {TEXTS[MASK]} {a.text}, {b.text}"))
         if sign == "**":
             return self.power(a, b)
         if sign in BITS:
@@ -142,8 +176,8 @@ class Arithmetic:
         """-a."""
         if literal(a):
             return -a
-        if a.kind == FLOAT:
-            return Number(FLOAT, self.put(f"fneg double {a.text}"))
+        if a.kind in (FLOAT, PACKED):
+            return Number(a.kind, self.put(f"fneg {TEXTS[a.kind]} {a.text}"))
         return self.binary("-", 0, a)
 
     def inverted(self, a: Value) -> Value:
@@ -155,6 +189,9 @@ class Arithmetic:
         """a sign b, a truth value."""
         if literal(a) and literal(b):
             return PLAIN[sign](a, b)
+        if PACKED in (kind_of(a), kind_of(b)):
+            x, y = self.numbered(a, PACKED), self.numbered(b, PACKED)
+            return Number(MASK, self.put(f"fcmp {ORDERS[sign][0]} {TEXTS[PACKED]} {x.text}, {y.text}"))
         real = FLOAT in (kind_of(a), kind_of(b))
         kind = FLOAT if real else WHOLE
         x, y = self.numbered(a, kind), self.numbered(b, kind)
@@ -184,6 +221,10 @@ class Arithmetic:
         """abs(a)."""
         if literal(a):
             return abs(a)
+        if a.kind == PACKED:
+            kind, name = TEXTS[PACKED], f"@llvm.fabs.v{LANES}f64"
+            self.needed.add(f"declare {kind} {name}({kind})")
+            return Number(PACKED, self.put(f"call {kind} {name}({kind} {a.text})"))
         if a.kind == FLOAT:
             return self.called("llvm.fabs.f64", a)
         return self.select(self.compare("<", a, 0), self.negated(a), a)

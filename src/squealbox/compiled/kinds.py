@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 
+LANES = 16  # of a packed number: two registers of AVX-512, of which one hides the latency of the other
 FLOAT, WHOLE, TRUTH = "f", "i", "b"  # kinds of numbers, each wider than the next
-TEXTS = {FLOAT: "double", WHOLE: "i64", TRUTH: "i1"}
+PACKED, MASK = "v", "m"  # numbers and truths side by side, see `packed`
+TEXTS = {FLOAT: "double", WHOLE: "i64", TRUTH: "i1", PACKED: f"<{LANES} x double>", MASK: f"<{LANES} x i1>"}
 
 
 class Untranslatable(ValueError):
@@ -111,7 +113,7 @@ def wider(a: Any, b: Any) -> Any:
     """The kind that holds values of both; `Untranslatable` where there is none."""
     if a == b:
         return a
-    if isinstance(a, str) and isinstance(b, str):
+    if isinstance(a, str) and isinstance(b, str) and not {a, b} & {PACKED, MASK}:
         return FLOAT if FLOAT in (a, b) else WHOLE
     if a is not None and b is not None and a[0] == b[0] == "tuple" and len(a[1]) == len(b[1]):
         return "tuple", tuple(wider(x, y) for x, y in zip(a[1], b[1], strict=True))
@@ -121,4 +123,5 @@ def wider(a: Any, b: Any) -> Any:
 def said(kind: Any) -> str:
     """A kind in words."""
     words = {FLOAT: "a number", WHOLE: "a whole number", TRUTH: "a truth value", None: "nothing"}
+    words |= {PACKED: "packed numbers", MASK: "a mask"}
     return words[kind] if kind is None or isinstance(kind, str) else f"a {kind[0]}"

@@ -7,6 +7,7 @@ translate: a change of any makes another file, and several processes may write t
 import ast
 import ctypes
 import hashlib
+import inspect
 import os
 import sys
 import tempfile
@@ -30,7 +31,7 @@ PASSES = (  # those that plain loops gain by; LLVM's own list takes ten times as
     "sroa", "simplify_cfg", "always_inliner", "instruction_combine", "loop_simplify", "loop_rotate", "new_gvn",
     "instruction_combine", "simplify_cfg", "global_dead_code_eliminate",
 )  # fmt: skip
-TRANSLATORS = ("kinds.py", "arithmetic.py", "expressions.py", "translation.py", "machine.py")
+TRANSLATORS = ("kinds.py", "arithmetic.py", "expressions.py", "translation.py", "packed.py", "machine.py")
 CTYPES = {"ptr": ctypes.c_void_p, "i64": ctypes.c_int64, "double": ctypes.c_double, "i1": ctypes.c_bool}
 LOCK = threading.Lock()
 KEPT: list[Any] = []  # execution engines, for as long as their code may be called
@@ -86,6 +87,33 @@ class Compiled:
     def ready(self, *given: Any) -> bool:
         """Whether a call with such arguments finds its machine code, here or on disk."""
         return tuple(_key(each) for each in given) in self.made or self._path(tuple(_kind(x) for x in given)).exists()
+
+
+class Translated:
+    """A text whose functions are compiled one by one, each at its first call."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+
+    def __getattr__(self, name: str) -> Compiled:
+        if f"def {name}(" not in self.text:
+            raise AttributeError(name)
+        made = Compiled(self.text, name)
+        setattr(self, name, made)
+        return made
+
+
+@cache
+def translated(*modules: ModuleType) -> Translated:
+    """The functions of some modules as compiled ones, all parts of their callers."""
+    text = []
+    for module in modules:
+        tree = ast.parse(inspect.getsource(module))
+        for node in tree.body:
+            if isinstance(node, ast.FunctionDef):
+                node.decorator_list = [ast.Name("packed")]
+        text.append(ast.unparse(tree))
+    return Translated("\n\n".join(text))
 
 
 def _key(value: Any) -> Any:

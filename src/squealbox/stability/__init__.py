@@ -1,4 +1,4 @@
-"""Is steady sliding stable? Depends on: system, continuation, result; numba only when a kernel is needed."""
+"""Is steady sliding stable? Depends on: system, continuation, result, compiled."""
 
 from squealbox.stability.band_modes import BandModes, band_modes, certified
 from squealbox.stability.boundary import Boundary, stability_boundary

@@ -7,17 +7,13 @@ nothing.
 
 from typing import Any
 
-from numba import njit
-
-from squealbox.stability.packed import inverse_power, larger, largest, load, root, select, signed, some, splat, store
+from squealbox.compiled.packed import inverse_power, larger, largest, load, root, select, signed, some, splat, store
 
 EPS = 2.220446049250313e-16
 TINY = 1e-290  # of a matrix whose largest entry is about 1: nothing
 SWEEPS = 60  # QR sweeps on one window before the matrix is given up
-INLINE: Any = {"error_model": "numpy", "forceinline": True}
 
 
-@njit(**INLINE)
 def windows(h: Any, n: int, top: int) -> Any:
     """Set negligible subdiagonals to zero; last and first row of each matrix's lowest window of three rows or more.
 
@@ -47,7 +43,6 @@ def windows(h: Any, n: int, top: int) -> Any:
     return select(found, size, last), low
 
 
-@njit(**INLINE)
 def shifts(h: Any, n: int, top: int, bottom: int, last: Any, low: Any, sweeps: Any) -> Any:
     """First column (p, q, r) of (H - s1)(H - s2), both shifts the eigenvalues of the window's last 2 x 2 block.
 
@@ -78,7 +73,6 @@ def shifts(h: Any, n: int, top: int, bottom: int, last: Any, low: Any, sweeps: A
     return (a - x) * (a - y) - w + b * c, c * (a + d - x - y), c * e
 
 
-@njit(**INLINE)
 def sweep(h: Any, n: int, top: int, bottom: int, last: Any, low: Any, p: Any, q: Any, r: Any) -> None:
     """One implicit double-shift QR sweep of every matrix over its own window, inside rows bottom to top."""
     zero, one = splat(0.0), splat(1.0)
@@ -118,7 +112,6 @@ def sweep(h: Any, n: int, top: int, bottom: int, last: Any, low: Any, p: Any, q:
         row = row + one
 
 
-@njit(**INLINE)
 def _turn_three(h: Any, place: int, apart: int, f: Any, g: Any, s: Any, u: Any, q: Any, r: Any) -> None:
     x, y, z = load(h, place), load(h, place + apart), load(h, place + 2 * apart)
     t = f * x + g * y + s * z
@@ -127,7 +120,6 @@ def _turn_three(h: Any, place: int, apart: int, f: Any, g: Any, s: Any, u: Any, 
     store(h, place + 2 * apart, z - t * r)
 
 
-@njit(**INLINE)
 def _turn_two(h: Any, place: int, apart: int, f: Any, g: Any, u: Any, q: Any) -> None:
     x, y = load(h, place), load(h, place + apart)
     t = f * x + g * y
@@ -135,7 +127,6 @@ def _turn_two(h: Any, place: int, apart: int, f: Any, g: Any, u: Any, q: Any) ->
     store(h, place + apart, y - t * q)
 
 
-@njit(**INLINE)
 def iterate(h: Any, n: int) -> Any:
     """QR sweeps until every matrix has blocks of one and two rows only; returns 1 where that did not come about."""
     zero, one, none = splat(0.0), splat(1.0), splat(-1.0)

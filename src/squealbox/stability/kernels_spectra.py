@@ -5,22 +5,18 @@ matrices lie side by side as one matrix of packed numbers (see `packed`), entry 
 together; what differs between them, the window that is still coupled and its shifts, is held in packed numbers too, and
 a matrix outside its window, or finished, takes part with a reflection that does nothing.
 
-Importing this module loads numba; only `spectra` does.
+Plain functions for `compiled`, which `spectra` has translated.
 """
 
 import math
 from typing import Any
 
-from numba import njit
-
-from squealbox.stability.kernels_qr import INLINE, TINY, iterate
-from squealbox.stability.packed import (
+from squealbox.compiled.packed import (
     LANES,
     inverse_power,
     larger,
     load,
     power_near_root,
-    room,
     root,
     select,
     signed,
@@ -28,9 +24,9 @@ from squealbox.stability.packed import (
     splat,
     store,
 )
+from squealbox.stability.kernels_qr import TINY, iterate
 
 
-@njit(**INLINE)
 def scale(h: Any, n: int) -> Any:
     """Scale every matrix by a power of two to a largest entry in [1, 2); returns it, NaN for a matrix not finite."""
     total, largest_entry = splat(0.0), splat(0.0)
@@ -45,7 +41,6 @@ def scale(h: Any, n: int) -> Any:
     return select(usual, factor, splat(math.nan))
 
 
-@njit(**INLINE)
 def balance(h: Any, n: int) -> Any:
     """Scale rows and columns by powers of two until their norms agree; returns 1 where a row or column stands alone.
 
@@ -79,7 +74,6 @@ def balance(h: Any, n: int) -> Any:
     return alone
 
 
-@njit(**INLINE)
 def hessenberg(h: Any, n: int, v: Any) -> None:
     """Reduce to Hessenberg form by Householder reflections I - w v v'; v is room for one vector."""
     zero, one = splat(0.0), splat(1.0)
@@ -103,7 +97,6 @@ def hessenberg(h: Any, n: int, v: Any) -> None:
             _reflect(h, i * n + m + 1, 1, v, weight, size)
 
 
-@njit(**INLINE)
 def _reflect(h: Any, start: int, stride: int, v: Any, weight: Any, size: int) -> None:
     """x -= w (v.x) v for the entries x of h at start, start + stride, ..."""
     product = splat(0.0)
@@ -114,7 +107,6 @@ def _reflect(h: Any, start: int, stride: int, v: Any, weight: Any, size: int) ->
         store(h, start + i * stride, load(h, start + i * stride) - product * load(v, i))
 
 
-@njit(**INLINE)
 def read(h: Any, n: int, real: Any, imaginary: Any) -> None:
     """The eigenvalues of the blocks on the diagonal."""
     zero, one, half = splat(0.0), splat(1.0), splat(0.5)
@@ -139,14 +131,13 @@ def read(h: Any, n: int, real: Any, imaginary: Any) -> None:
         store(imaginary, i, select(pair, -omega, zero))
 
 
-@njit(cache=True, error_model="numpy")
-def spectra(matrices: Any, values: Any) -> None:
-    """Eigenvalues of matrices (count, n, n) into values (count, n); NaN where they are left to LAPACK.
+def spectra(matrices: Any, values: Any, h: Any, v: Any, real: Any, imaginary: Any) -> None:
+    """Eigenvalues of matrices (count, n, n) into values (count, n, 2), real and imaginary; NaN where left to LAPACK.
 
-    These are matrices that are not finite, have a row or column with nothing beside its diagonal, or do not converge.
+    h is room for n n packed numbers, v, real and imaginary for n each. Left are matrices that are not finite, have a
+    row or column with nothing beside its diagonal, or do not converge.
     """
     number, n = matrices.shape[0], matrices.shape[1]
-    h, v, real, imaginary = room(n * n), room(n), room(n), room(n)
     for start in range(0, number, LANES):
         count = min(LANES, number - start)
         for lane in range(LANES):
@@ -165,4 +156,5 @@ def spectra(matrices: Any, values: Any) -> None:
             store(imaginary, i, load(imaginary, i) * back)
         for lane in range(count):
             for i in range(n):
-                values[start + lane, i] = complex(real[i * LANES + lane], imaginary[i * LANES + lane])
+                values[start + lane, i, 0] = real[i * LANES + lane]
+                values[start + lane, i, 1] = imaginary[i * LANES + lane]

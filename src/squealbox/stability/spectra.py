@@ -1,4 +1,4 @@
-"""Which arithmetic answers a batch: NumPy's eigvals, or the compiled kernels when the batch is worth loading numba for.
+"""Which arithmetic answers a batch: NumPy's eigvals, or the compiled kernels when the batch is worth loading them for.
 
 Both give the same numbers to round-off (a test compares them); `engine` chooses by name, and "auto" by size.
 """
@@ -8,13 +8,15 @@ from typing import Any, Literal
 
 import numpy as np
 
+from squealbox.compiled.packed import LANES, room
+from squealbox.stability import kernels_qr, kernels_spectra, kernels_two_dof
 from squealbox.stability.deflation import SLOW
 from squealbox.stability.eigenvalues import MARGINAL, modes_of
 from squealbox.stability.state_matrix import special_entries, state_matrix, with_special
 from squealbox.system import Equilibrium, Linearised
 
 Engine = Literal["auto", "numpy", "compiled"]
-WORTH_IT = 5000  # systems in a batch from which loading the compiled kernels (about 1 s) pays
+WORTH_IT = 5000  # systems in a batch from which loading the compiled kernels (a tenth of a second) pays
 LARGEST_COMPILED = 60  # state variables up to which the kernels were measured; 5 times as fast as LAPACK there
 
 
@@ -55,14 +57,17 @@ def _round_off(about: Linearised, values: Any, doubtful: Any) -> Any:
 def asymptotically_stable(about: Linearised, engine: Engine = "auto") -> Any:
     """True where every growth rate is negative, (...); an undamped or missing system is False."""
     if about.M.shape[-1] == 2 and compiled(about, engine):
-        from squealbox.stability import kernels_two_dof as kernels
-
         mass, damping, stiffness, shape, usable = _flat(about)
-        flags = np.empty(damping.size // 4, dtype=np.uint8)
-        run = kernels.flags_shared_mass if mass.size == 4 else kernels.flags_own_mass
-        run(mass, damping, stiffness, flags)
-        return flags.astype(bool).reshape(shape) & usable
+        return flags_of(mass, damping, stiffness).reshape(shape) & usable
     return largest_growth(about, engine)[0] < 0.0
+
+
+def flags_of(mass: Any, damping: Any, stiffness: Any) -> Any:
+    """True where every real part is negative, (count,), of flat matrices of 2 x 2; of M one or as many."""
+    number = damping.size // 4
+    words = np.empty(-(-number // LANES), dtype=np.int64)
+    two_dof_kernels().flags(mass, damping, stiffness, 0 if mass.size == 4 else 4, number, words, room(4))
+    return np.unpackbits(words.astype("<u2").view(np.uint8), count=number, bitorder="little").view(bool)
 
 
 def eigenvalues(about: Linearised, engine: Engine = "auto") -> Any:
@@ -103,15 +108,32 @@ def compiled_eigenvalues(matrices: Any) -> Any:
         raise ValueError(f"matrices are {matrices.dtype} of shape {matrices.shape}: expected real (..., n, n)")
     if not matrices.size:
         return np.empty(matrices.shape[:-1], dtype=complex)
-    from squealbox.stability import kernels_spectra
-
     flat = np.require(matrices.reshape(-1, *matrices.shape[-2:]), float, ["C", "W"])
-    values = np.empty(flat.shape[:2], dtype=complex)
-    kernels_spectra.spectra(flat, values)
+    values, n = np.empty(flat.shape[:2], dtype=complex), flat.shape[-1]
+    spectra_kernels().spectra(flat, parts_of(values), room(n * n), room(n), room(n), room(n))
     left = np.isnan(values[:, 0].real)  # the kernel leaves a matrix whole
     if np.any(left):
         values[left] = by_lapack(flat[left])
     return values.reshape(matrices.shape[:-1])
+
+
+def two_dof_kernels() -> Any:
+    """The functions of `kernels_two_dof`, compiled at their first call on a machine."""
+    from squealbox.compiled.machine import translated
+
+    return translated(kernels_two_dof)
+
+
+def spectra_kernels() -> Any:
+    """Those of `kernels_spectra`."""
+    from squealbox.compiled.machine import translated
+
+    return translated(kernels_qr, kernels_spectra)
+
+
+def parts_of(values: Any) -> Any:
+    """Real and imaginary parts of complex numbers (...), the same memory, (..., 2)."""
+    return values.view(float).reshape(*values.shape, 2)
 
 
 def by_lapack(matrices: Any) -> Any:
@@ -141,37 +163,35 @@ def growth_of_parts(about: Linearised, passive: Any, elastic: Any) -> Callable[[
 
     P is `passive`, E `elastic`. For two degrees of freedom; the matrices are read once, whatever the number of calls.
     """
-    from squealbox.stability import kernels_two_dof as kernels
-
     mass, damping, stiffness, shape, _ = _flat(about)
     base, springs = (
         np.require(np.broadcast_to(part, about.C.shape), float, ["C", "W"]).reshape(-1) for part in (passive, elastic)
     )
 
+    kernels = two_dof_kernels()
+
     def growth(x: float, y: float) -> Any:
         out = np.empty(damping.size // 4)
-        kernels.growth_of_parts(mass, base, damping, springs, stiffness, 0 if mass.size == 4 else 4, x, y, out)
+        stride = 0 if mass.size == 4 else 4
+        kernels.growth_of_parts(mass, base, damping, springs, stiffness, stride, float(x), float(y), out, room(4))
         return out.reshape(shape)
 
     return growth
 
 
 def _two_dof_spectrum(about: Linearised) -> Any:
-    from squealbox.stability import kernels_two_dof as kernels
-
     mass, damping, stiffness, shape, usable = _flat(about)
     values = np.empty((damping.size // 4, 4), dtype=complex)
-    kernels.spectrum(mass, damping, stiffness, 0 if mass.size == 4 else 4, values)
+    parts = parts_of(values).reshape(-1, 8)
+    two_dof_kernels().spectrum(mass, damping, stiffness, 0 if mass.size == 4 else 4, parts, room(8))
     return np.where(usable[..., None], values.reshape(*shape, 4), np.nan)
 
 
 def _two_dof(about: Linearised) -> tuple[Any, Any, Any]:
-    from squealbox.stability import kernels_two_dof as kernels
-
     mass, damping, stiffness, shape, usable = _flat(about)
-    number = damping.size // 4
-    growth, omega, count = np.empty(number), np.empty(number), np.empty(number)
-    kernels.growth_and_frequency(mass, damping, stiffness, 0 if mass.size == 4 else 4, growth, omega, count)
+    growth, omega, count = (np.empty(damping.size // 4) for _ in range(3))
+    stride = 0 if mass.size == 4 else 4
+    two_dof_kernels().growth_and_frequency(mass, damping, stiffness, stride, growth, omega, count, room(4))
     known = usable & np.isfinite(growth.reshape(shape))
     growth, omega = (np.where(known, values.reshape(shape), np.nan) for values in (growth, omega))
     return growth, omega, np.where(known, count.reshape(shape), 0.0).astype(np.int64)

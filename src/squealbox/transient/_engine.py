@@ -14,7 +14,7 @@ from functools import cache
 from types import ModuleType
 from typing import Any
 
-from squealbox.compiled.machine import Compiled
+from squealbox.compiled.machine import Translated
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
 from squealbox.transient import (
@@ -258,15 +258,3 @@ def load_module(text: str) -> Any:
     module = ModuleType("squealbox_kernel")
     exec(compile(text, "<kernel>", "exec"), module.__dict__)  # text of our own making
     return module
-
-
-class Translated:
-    """A generated text whose functions are compiled one by one, each at its first call."""
-
-    def __init__(self, text: str) -> None:
-        self.text = text
-
-    def __getattr__(self, name: str) -> Compiled:
-        if f"def {name}(" not in self.text:
-            raise AttributeError(name)
-        return Compiled(self.text, name)

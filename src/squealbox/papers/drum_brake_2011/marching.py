@@ -1,28 +1,29 @@
-"""The march of `solver_2011.ode23` as machine code. Importing this module loads numba, as maps do anyway."""
+"""The march of `solver_2011.ode23`, plain functions for `compiled`."""
 
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 
-@njit(cache=True, error_model="numpy")
 def march(
-    linear: Any, force: Any, sensed: Any, pushed: Any, laws: Any, duration: float, rtol: float, shortest: float
-) -> Any:
-    """Times (k,) and states (k, 2n) of the accepted steps of Bogacki and Shampine's method, from rest.
+    linear: Any, force: Any, sensed: Any, pushed: Any, laws: Any, duration: float, rtol: float, shortest: float,
+    times: Any, states: Any, slopes: Any, room: Any,
+) -> int:  # fmt: skip
+    """Count k of the accepted steps of Bogacki and Shampine's method, from rest; one more than there is room for if so.
 
     `linear` (n, 2n) and `force` (n,) give q'' without contacts, `sensed` (contacts, 2n) the rows n and t of each,
-    `pushed` (contacts, n) what its force adds to q'', `laws` its N0, V, mu0 and slope.
+    `pushed` (contacts, n) what its force adds to q'', `laws` its N0, V, mu0 and slope. Instants and states go to
+    `times` and `states` (..., 2n); `slopes` (4, 2n) and `room` (3, 2n) are zeros to work in.
     """
     size = len(force)
-    times, states = np.empty(1024), np.empty((1024, 2 * size))
-    y, new = np.zeros(2 * size), np.zeros(2 * size)
-    largest = np.full(2 * size, 1e-6 / rtol)
-    slopes = np.zeros((4, 2 * size))
+    y, new, largest = room[0], room[1], room[2]
+    for i in range(2 * size):
+        largest[i] = 1e-6 / rtol
     _rate(linear, force, sensed, pushed, laws, y, slopes[0])
     time, step, failed, count = 0.0, 1e-6, False, 1
-    times[0], states[0] = time, y
+    times[0] = time
+    for i in range(2 * size):
+        states[0, i] = y[i]
     while time < duration:
         step = min(step, duration / 50.0, duration - time)
         for i in range(2 * size):
@@ -48,14 +49,15 @@ def march(
             y[i], slopes[0, i] = new[i], slopes[3, i]
             largest[i] = max(largest[i], abs(y[i]))
         if count == len(times):
-            times, states = np.concatenate((times, times)), np.concatenate((states, states))
-        times[count], states[count] = time, y
+            return count + 1
+        times[count] = time
+        for i in range(2 * size):
+            states[count, i] = y[i]
         count += 1
         step *= min(5.0, wanted)
-    return times[:count], states[:count]
+    return count
 
 
-@njit(cache=True, error_model="numpy")
 def _rate(linear: Any, force: Any, sensed: Any, pushed: Any, laws: Any, y: Any, out: Any) -> None:
     """The rate of change of (q, q')."""
     size = len(force)

@@ -70,7 +70,7 @@ def count(found: list[Record]) -> dict[str, int]:
 
 def versions() -> dict[str, str]:
     """Versions of what computed and drew the study."""
-    return {**provenance(), **{name: metadata.version(name) for name in ("numba", "matplotlib")}}
+    return {**provenance(), **{name: metadata.version(name) for name in ("llvmlite", "matplotlib")}}
 
 
 def write_json(path: Path, found: list[Record], searched: Mapping[str, Any], extras: Any) -> Path:

@@ -16,7 +16,9 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.compiled.machine import translated
 from squealbox.designs import DrumBrake
+from squealbox.papers.drum_brake_2011 import marching
 from squealbox.papers.drum_brake_2011.cases import DURATION, Case
 from squealbox.papers.drum_brake_2011.claims import EXACT, RAW
 from squealbox.papers.drum_brake_2011.motions import METHODS, SAMPLES, judged
@@ -90,16 +92,20 @@ def ode23(design: Any, duration: float = DURATION, rtol: float = RELATIVE) -> Pl
     begins at 1e-6 and rises to rtol times the largest value so far; the next step is 0.8 (rtol/error)^(1/3) times the
     last, at most five times, and never longer than a fiftieth of the run.
     """
-    from squealbox.papers.drum_brake_2011.marching import march
-
+    march, room = translated(marching).march, 1024
     system = as_system(design)
     inverse, size, contacts = np.linalg.inv(system.M), system.size, system.contacts
     linear = np.hstack([-inverse @ system.K, -inverse @ system.C])
     sensed = np.array([np.concatenate([each.n, each.t]) for each in contacts])
     pushed = np.array([inverse @ each.d for each in contacts])
     laws = np.array([[each.N0, each.V, each.law.static, each.law.slope] for each in contacts], dtype=float)
-    t, y = march(linear, inverse @ system.load, sensed, pushed, laws, duration, rtol, SHORTEST)
-    return Plain(t, y[:, :size], y[:, size:])
+    given = linear, inverse @ system.load, sensed, pushed, laws, float(duration), float(rtol), SHORTEST
+    while True:
+        t, y = np.empty(room), np.empty((room, 2 * size))
+        count = march(*given, t, y, np.zeros((4, 2 * size)), np.zeros((3, 2 * size)))
+        if count <= room:
+            return Plain(t[:count], y[:count, :size], y[:count, size:])
+        room *= 4
 
 
 def run(designs: Sequence[Any], setting: str) -> Iterator[Any]:

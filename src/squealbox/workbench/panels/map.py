@@ -1,6 +1,5 @@
 """Stability over two parameters, with the boundary exact on every line of the grid."""
 
-import sys
 from dataclasses import replace
 from typing import Any
 
@@ -32,8 +31,6 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     points = int(options.number("points", usual, FEWEST, 401))
     values = [np.linspace(*span, points) for span in spans]
     parts, text = [], "computing the map"
-    if "numba" not in sys.modules:
-        text = "loading the kernel of the map, and compiling it on its first day here: some seconds"
     for i, block in enumerate(np.array_split(values[0], BLOCKS if few or show == "mechanism" else 1)):
         work.progress(i / BLOCKS, text)
         parts.append(
