@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from squealbox import PID, Controlled, Coulomb, DrumBrake, MassOnBelt, System, simulate
+from squealbox import PID, Controlled, Coulomb, DrumBrake, LinearSlope, MassOnBelt, System, simulate
 from squealbox.control import run_loops
 from squealbox.friction import Dahl, ElastoPlastic, LuGre
 from squealbox.transient import pieces
@@ -66,6 +66,20 @@ def test_what_a_law_remembers_goes_on_from_piece_to_piece(law, clock):
     beside = simulate(Controlled(belt, PID(on="x", derivative=0.0, **clock)), 0.6, times=7)
     assert beside.settings["pieces"] > 10
     assert np.max(np.abs(beside.q - alone.q)) < 1e-9 * np.max(np.abs(alone.q))
+
+
+def test_sampled_and_late_loops_together_on_a_brake_that_sticks(monkeypatch):
+    loops = (
+        PID(on="y", derivative=2e3, sampling=5e4, computing=1.0, limit=80.0),
+        PID(on="x", derivative=2e3, delay=2e-5),
+    )
+    brake = Controlled(DrumBrake(load1=4e3, load2=4e3, friction=LinearSlope(0.45, -0.01)), loops)
+    run = simulate(brake, 1e-3, times=5)
+    monkeypatch.setattr(pieces, "ARC", 0.1)
+    closer = simulate(brake, 1e-3, times=5)
+    assert run.outcome == closer.outcome == "completed"
+    assert len(run.event_time) > 4
+    assert np.max(np.abs(run.q - closer.q)) < 1e-9 * np.max(np.abs(run.q))
 
 
 def test_a_sampled_run_by_another_method_and_a_named_one():

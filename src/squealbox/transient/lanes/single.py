@@ -175,11 +175,11 @@ class Pushed:
         for i in range(count):
             pushed = under(np.eye(count)[i])
             for name, value in _numbers_by_name(pushed).items():
-                self.rises[i, self.run.made.names[name]] = value - without.get(name, 0.0)
+                self.rises[i, self.run.made.names[name]] = _rise(value, without.get(name, 0.0))
             for name, value in self._packed(pushed).items():
                 if not np.array_equal(value, pack[name]):
                     rises = self.fields.setdefault(name, (pack[name], np.zeros((count, *value.shape))))[1]
-                    rises[i] = value - pack[name]
+                    rises[i] = _rise(value, pack[name])
         self.origin = self.run.fixed - some @ self.rises
 
     def _packed(self, system: System) -> dict[str, Any]:
@@ -193,6 +193,12 @@ class Pushed:
             self.run.record[0][name] = value + np.tensordot(given, rises, 1)
         self.run.restart(q, qd, begin, end, times)
         return self.run
+
+
+def _rise(value: Any, before: Any) -> Any:
+    """What is between two; nothing where both are the same infinity."""
+    with np.errstate(invalid="ignore"):
+        return np.where(value == before, 0.0, value - before)
 
 
 def _numbers_by_name(system: System) -> dict[str, float]:
