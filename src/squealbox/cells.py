@@ -25,7 +25,7 @@ def cells(raw: bytes) -> list[tuple[int, list[str]]]:
     kept = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
     if not kept:
         return []
-    mark = next((mark for mark in (";", "\t") if mark in kept[0][1]), ",")
+    mark = next((mark for mark in (";", "\t") if mark in kept[-1][1]), ",")  # above it a title may stand
     try:
         rows = list(csv.reader(io.StringIO("\n".join(line for _, line in kept)), strict=True, delimiter=mark))
     except csv.Error as error:

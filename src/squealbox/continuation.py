@@ -16,7 +16,7 @@ import numpy as np
 
 from squealbox.result import COMPLETED, Outcome
 
-KEEP = 1e-3  # scaled correction below which Newton's method keeps its derivative for the next one
+KEEP = 1e-2  # scaled correction below which Newton's method keeps its derivative for the next one
 SLOW = 0.1  # share of the one before by which a correction with a kept derivative must shrink
 FAR = 10.0  # step lengths from the prediction beyond which Newton's method has lost the path
 STEEP = 1e4  # 1/cos of the angle to the last tangent above which the null vector is taken from singular values

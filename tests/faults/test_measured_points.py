@@ -45,6 +45,28 @@ def test_what_is_no_speed_or_no_coefficient_is_refused(text, words, tmp_path):
         read_points(tmp_path / "p.csv")
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Dynamometer test 5\n\nspeed [km/h],mu\n3.6,0.4\n7.2,0.3\n",
+        "Run 3;;\nt [s];mu [-];v [m/s]\n0;0,4;1\n1;0,3;2\n",
+        "# pad A\ntemperature,friction coefficient [%],sliding speed\n20,40,1\n25,30,2\n",
+    ],
+)
+def test_titles_are_passed_over_and_of_more_columns_the_names_choose(text, tmp_path):
+    (tmp_path / "p.csv").write_text(text)
+    speeds, values = read_points(tmp_path / "p.csv")
+    assert speeds == pytest.approx([1.0, 2.0], rel=1e-12)
+    assert values == pytest.approx([0.4, 0.3], rel=1e-12)
+
+
+@pytest.mark.parametrize("text", ["1,0.4,20\n", "time,v,speed,mu\n0,1,1,0.4\n", "a,b,c\n1,0.4,20\n", "v,mu\n1,0.4,3\n"])
+def test_columns_that_nothing_tells_apart_are_refused(text, tmp_path):
+    (tmp_path / "p.csv").write_text(text)
+    with pytest.raises(DesignFileError, match="cells: expected two"):
+        read_points(tmp_path / "p.csv")
+
+
 def test_negative_speeds_are_refused_in_python_too():
     with pytest.raises(ParameterError, match=r"speeds\[2\].*0 m/s or more"):
         fit_friction([0.1, 0.2, -0.3, 0.4, 0.5], [0.3] * 5)

@@ -301,3 +301,19 @@ def test_labels_of_the_dataset(motion):
     assert data["qd"].attrs["units"] == "m/s"
     assert data.attrs["kind"].endswith("Trajectory")
     assert all(data[name].attrs["long_name"] for name in data.data_vars)
+
+
+def test_a_generated_text_is_kept_for_what_it_was_made_for(tmp_path, monkeypatch):
+    monkeypatch.setenv("SQUEALBOX_CACHE", str(tmp_path))
+    written = []
+
+    def write(text):
+        return lambda: written.append(text) or text
+
+    assert _engine.kept_text("one", write("a\nb\n")) == "a\nb\n"
+    assert _engine.kept_text("one", write("never written")) == "a\nb\n"
+    assert _engine.kept_text("two", write("c")) == "c"
+    (path, *_) = tmp_path.glob("*.text")
+    path.write_bytes(path.read_bytes()[:-1])  # a damaged file is written anew
+    assert {_engine.kept_text("one", write("a\nb\n")), _engine.kept_text("two", write("c"))} == {"a\nb\n", "c"}
+    assert len(written) == 3

@@ -20,6 +20,7 @@ from squealbox import (
     DrumBrake,
     LayerDamping,
     LinearSlope,
+    LuGre,
     ModeCoupling,
     NormalDither,
     Scatter,
@@ -37,7 +38,8 @@ from squealbox import (
 from squealbox.cli import main
 from squealbox.cli.inputs import changed
 from squealbox.countermeasures import COUNTERMEASURES
-from squealbox.countermeasures.loss import growth_of
+from squealbox.countermeasures.best import _tuned
+from squealbox.countermeasures.loss import growth_about, growth_of
 from squealbox.designs import DESIGNS
 from squealbox.files import json_schema, read_text
 from squealbox.files.writing import cure_text, design_text
@@ -51,6 +53,7 @@ from squealbox.report.page import render
 from squealbox.report.results import result_page
 from squealbox.result import Result
 from squealbox.studies import Normal
+from squealbox.system import as_system
 
 DRUM = DrumBrake(friction=LinearSlope(0.36, -0.05))
 CASES = [
@@ -282,3 +285,31 @@ def test_cures_have_a_page_of_their_own(table):
     dithered = [i for i in range(len(table)) if "Dithered" in str(table.line[i])]
     assert len(dithered) >= 2
     assert all("mean friction left" in str(table.caution[i]) for i in dithered)
+
+
+@pytest.mark.parametrize(
+    "brake",
+    [
+        DRUM,
+        Controlled(DRUM, [PID(on="x", derivative=3.0, delay=2e-5)]),
+        Controlled(DRUM, [PID(on="x", derivative=3.0, sampling=5e4)]),
+        DESIGNS["drum_brake_shoes"](),
+        ModeCoupling(friction=LuGre(0.45, 0.3, 0.1, 1e4, 10.0, 0.05)),
+    ],
+    ids=["drum", "late loop", "sampled loop", "several contacts", "memory"],
+)
+def test_a_tuning_is_linearised_as_the_brake_with_it(brake):
+    """`best_absorber` linearises once and moves the absorber's spring and damper in what it got."""
+    start = TunedMass(brake, as_system(brake).names[0], 0.05, 1906.0, 0.013)
+    tuned = _tuned(start)
+    frequencies, dampings = np.array([800.0, 1906.0, 4000.0]), np.array([0.0, 0.013, 0.4])
+    together = growth_about(tuned(frequencies, dampings))
+    for i, (frequency, damping) in enumerate(zip(frequencies, dampings, strict=True)):
+        alone = float(growth_of(start.replace(frequency=frequency, damping=damping)))
+        assert together[i] == pytest.approx(alone, rel=1e-9, abs=1e-7)
+        assert float(growth_about(tuned(frequency, damping))) == pytest.approx(alone, rel=1e-9, abs=1e-7)
+
+
+def test_bars_of_cures_have_a_key(table):
+    told = [text.get_text() for text in plot(table).axes[0].get_legend().get_texts()]
+    assert told == ["quiet at 10 % more friction", "no dose is quiet at 10 % more friction", "without a cure"]

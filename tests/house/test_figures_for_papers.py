@@ -129,3 +129,46 @@ def test_branches_that_lie_decades_apart_share_a_logarithmic_axis():
 
     assert _floor([np.array([1.0, 2.0]), np.array([3.0, 1.0])]) == 0.0
     assert 0.0 < _floor([np.array([1.0, 2.0]), np.array([300.0, 100.0])]) < 1.1
+
+
+@pytest.mark.parametrize(
+    ("label", "values", "read", "last"),
+    [
+        ("k1 [N/m]", [1e7, 4e7], "k1 [MN/m]", "40"),
+        ("damping [N s/m]", [0.0, 3e4], "damping [kN s/m]", "30"),
+        ("residual [-]", [0.0, 4e-15], "residual [10⁻¹⁵]", "4"),
+        ("rate [1/s²]", [0.0, 4e5], "rate [10⁵ 1/s²]", "4"),
+        ("area [m²]", [0.0, 4e-5], "area [10⁻⁵ m²]", "4"),  # a prefix would be squared
+        ("load [N]", [0.0, 4e3], "load [N]", "4000"),
+    ],
+)
+def test_a_power_of_ten_stands_in_the_unit(label, values, read, last):
+    figure, panel = plots.panels(width=4.0)
+    panel.plot([0.0, 1.0], values)
+    panel.set(ylabel=label, ylim=values)
+    for _ in range(2):  # a second file has the same numbers
+        style.drawn(figure)
+        assert panel.get_ylabel() == read
+        assert panel.yaxis.get_major_formatter().get_offset() == ""
+        assert panel.get_yticklabels()[-1].get_text() == last
+
+
+def test_a_branch_begins_where_it_is_born():
+    brake = DrumBrake(friction=LinearSlope(0.3, -0.05))
+    onset = hopf_point(brake, "friction.static", (0.1, 0.6))
+    followed = branch(brake, "friction.static", (0.1, 0.6), onset, points=4)
+    lines = plots.branch_diagram(followed, estimates=False).axes[0].lines
+    rise = next(each for each in lines if each.get_xdata()[0] == pytest.approx(float(onset.value), abs=1e-15))
+    assert rise.get_ydata()[0] == 0.0
+    assert rise.get_xdata()[-1] == followed.value[0]
+    mark = next(each for each in lines if each.get_label() == "onset of instability")
+    assert mark.get_xdata()[0] == float(onset.value)
+
+
+def test_what_is_dissipated_is_drawn_as_the_audit_has_it():
+    motion = simulate(DrumBrake(friction=LinearSlope(0.45, -0.05)), 0.002)
+    (drawn,) = [each for each in plots.energy(motion).axes[0].lines if each.get_label().startswith("dissipated")]
+    assert np.all(drawn.get_ydata()[1:] > 0.0)
+    assert drawn.get_ydata()[-1] / drawn.get_ydata()[1] == pytest.approx(
+        motion.energy.dissipated[-1] / motion.energy.dissipated[1], rel=1e-9
+    )

@@ -156,6 +156,18 @@ def test_a_signal_is_two_measured_numbers_and_a_comparison_a_table():
         compare(complex_modes(DrumBrake()), events, event=3)
 
 
+def test_a_level_has_no_per_cent():
+    numbers = np.array([2000.0, 30.0, 94.0])
+    settings = {"rows": ["frequency", "growth rate", "level"], "units": ["Hz", "1/s", "dB(A)"], "notes": []}
+    found = Comparison(
+        simulated=1.1 * numbers, measured=numbers, error=0.1 * numbers, away=np.ones(3), settings=settings
+    )
+    panel = plots.plot(found).axes[0]
+    marks = next(line for line in panel.lines if line.get_label() == "simulated").get_xdata()
+    np.testing.assert_allclose(marks, [10.0, 10.0, np.nan])
+    assert panel.get_yticklabels()[2].get_text() == "level\n103.4 for 94, +9.4 dB"
+
+
 def test_growth_of_an_onset_is_set_beside_that_of_an_onset():
     """A cycle of 1, reached from 1e-6 at 300/s: 1/sqrt(1 + (1e12 - 1) exp(-600 t)); one that was there has no onset."""
     t = np.arange(9600) / 48000.0

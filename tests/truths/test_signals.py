@@ -1,9 +1,11 @@
 """Signals with closed-form answers: each estimator against the number put in, and a twin that must fail."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from scipy.io import wavfile
-from scipy.signal import butter, find_peaks, get_window, lfilter
+from scipy.signal import butter, find_peaks, get_window, lfilter, resample_poly
 
 from squealbox.signals import (
     SignalError,
@@ -16,6 +18,8 @@ from squealbox.signals import (
     spectrogram,
     spectrum,
 )
+from squealbox.signals.spectra import tops
+from squealbox.signals.wav import resampled
 
 RATE = 100e3
 T = np.arange(4000) / RATE
@@ -281,3 +285,23 @@ def test_errors_in_noise_of_any_colour_are_those_of_its_density_at_the_tone(ahea
         assert found.rate_error == pytest.approx(1.96 * sd, rel=0.25)  # 100 lines tell a density to 10 %
         away.append(found.rate / sd)
     assert np.sqrt(np.mean(np.square(away))) < 1.7  # of ten, 2e-4
+
+
+@pytest.mark.parametrize("apart", [1, 4, 20])
+@pytest.mark.parametrize("steps", [1e-9, 0.1], ids=["no plateaus", "plateaus"])
+@pytest.mark.parametrize("count", [3, 50, 2000])
+def test_maxima_are_those_of_scipy(count, steps, apart):
+    noise = np.random.default_rng(count).normal(size=count + 6)
+    x = np.round(np.convolve(noise, np.ones(7), "valid") / steps) * steps
+    for least in (-2.0, 0.0, 2.0):
+        expected, _ = find_peaks(x, height=least, distance=apart, prominence=0.7)
+        if steps < 0.1 or apart == 1:  # of neighbours of one height either may go
+            np.testing.assert_array_equal(tops(x, least, apart, 0.7), expected)
+        assert tops(x, least, apart, 0.7).size == pytest.approx(expected.size, abs=0.1 * expected.size)
+
+
+@pytest.mark.parametrize("ratio", [Fraction(1), Fraction(3, 2), Fraction(2, 3), Fraction(147, 160), Fraction(10, 77)])
+def test_another_rate_is_that_of_scipy(ratio):
+    x = np.random.default_rng(0).normal(size=1003)
+    expected = resample_poly(x, ratio.numerator, ratio.denominator)
+    np.testing.assert_allclose(resampled(x, ratio), expected, atol=1e-13)  # rounding of 20 terms each

@@ -107,7 +107,7 @@ def test_coarse_and_unequal_samples_keep_the_amplitude():
     assert found.frequency == pytest.approx(2000.0, rel=1e-4)
 
 
-@pytest.mark.parametrize(("seconds", "periods"), [(2.0, 0.62), (3.0, 0.93), (5.0, 1.5), (12.0, 3.7)])
+@pytest.mark.parametrize(("seconds", "periods"), [(2.0, 0.62), (3.0, 0.93), (3.25, 1.0), (5.0, 1.5), (12.0, 3.7)])
 def test_two_periods_are_enough_for_amplitude_and_frequency(seconds, periods):
     """Stick-slip on a belt of 0.1 m/s: it slips for 2 (pi - atan(s omega / V)) / omega, s = 20 mm."""
     belt = MassOnBelt(m=1.0, c=0.0, k=100.0, load=10.0, sliding_speed=0.1, friction=Coulomb(0.5, 0.3))
@@ -118,8 +118,10 @@ def test_two_periods_are_enough_for_amplitude_and_frequency(seconds, periods):
     assert found.kind == "not_decided"
     assert float(found.frequency) == pytest.approx(1.0 / period, rel=1e-6)
     assert float(found.amplitude) == pytest.approx(amplitude, rel=1e-6)
-    assert f"the last {seconds / 4:.3g} s".replace("0.5 s", "500 ms").replace("0.75 s", "750 ms") in found.text
-    assert f"hold only {periods:g} periods" in found.text
+    last = f"{seconds / 4:.3g} s" if seconds >= 4.0 else f"{250.0 * seconds:.3g} ms"
+    assert f"the last {last} hold only {periods:g} period{'s' if periods != 1.0 else ''};" in found.text.replace(
+        ")", ""
+    )
 
 
 @pytest.mark.parametrize("cycles", [1.3, 1.7, 1.99])
@@ -147,6 +149,7 @@ def test_an_interval_that_holds_zero_is_no_growth():
     found = verdict(x, T)
     assert found.kind == "not_decided"
     assert "still settling" in found.text
+    assert "growth rate" not in found.text
     for share in (2.0, 30.0, 100.0):
         grown = verdict(1e-9 * np.exp(share * T) * WAVE, T)
         assert grown.kind == "grows"

@@ -17,7 +17,8 @@ def fit(file: Path, *, law: tuple[str, ...] = (), level: float = 0.95, out: Path
     ----------
     file
         CSV file of two columns, sliding speed and friction coefficient; a first line of names may tell their units,
-        "v [km/h], mu [%]", else they are m/s and 1; decimal commas and a byte order mark are read
+        "v [km/h], mu [%]", else they are m/s and 1, and of more columns which are meant; titles above it, decimal
+        commas and a byte order mark are read
     law
         laws to try: coulomb, linear_slope, stribeck, hyperbolic, cubic, which are all when left out; lugre and
         elasto_plastic by their curve of steady sliding

@@ -213,22 +213,29 @@ def _of_this_machine() -> bytes:
 
 
 def optimised(text: str, modules: dict[str, Any]) -> Any:
-    """A text and the modules it calls, as one."""
+    """A text and the modules it calls, as one; those are straight-line code, by which the passes gain nothing."""
     import llvmlite.binding as llvm
 
     machine = processor()
     module = llvm.parse_assembly(text)
+    module.triple, module.data_layout = machine.triple, str(machine.target_data)
+    builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=1))
+    _passed(module, builder, PASSES)
     for other, part in modules.items():
         module.link_in(llvm.parse_assembly(str(part)))
         module.get_function(other).linkage = "internal"
-    module.triple, module.data_layout = machine.triple, str(machine.target_data)
     module.verify()
-    manager = llvm.create_new_module_pass_manager()
-    for each in PASSES:
-        getattr(manager, f"add_{each}_pass")()
-    builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=1))
-    manager.run(module, builder)
+    _passed(module, builder, ("global_dead_code_eliminate",))
     return module
+
+
+def _passed(module: Any, builder: Any, passes: tuple[str, ...]) -> None:
+    import llvmlite.binding as llvm
+
+    manager = llvm.create_new_module_pass_manager()
+    for each in passes:
+        getattr(manager, f"add_{each}_pass")()
+    manager.run(module, builder)
 
 
 def loaded(code: bytes, name: str) -> int:

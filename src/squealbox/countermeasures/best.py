@@ -13,7 +13,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public, with_parameters
-from squealbox.countermeasures.loss import at_the_window, first_loss, growth_of
+from squealbox.countermeasures.base import direction, outer
+from squealbox.countermeasures.loss import at_the_window, first_loss, growth_about, growth_of
 from squealbox.countermeasures.mechanical import TunedMass
 from squealbox.designs.base import Design
 from squealbox.parameters import ParameterError, known_names
@@ -22,6 +23,7 @@ from squealbox.stability import complex_modes
 from squealbox.stability.family import steady_sliding
 from squealbox.stability.state_matrix import spectrum
 from squealbox.studies.uncertainty.scatter import Scatter
+from squealbox.system import Equilibrium, Linearised, as_system
 
 AIMS = ("decay", "margin", "probability")
 FREQUENCIES, DAMPINGS = 21, 14  # of the detuning map
@@ -156,12 +158,42 @@ def best_absorber(
 Judge = Callable[[Any, Any], Any]
 
 
+def _tuned(start: TunedMass) -> Callable[[Any, Any], Linearised]:
+    """The linearised brake over frequencies and damping ratios (...), one shape, of its absorber.
+
+    Its spring and damper alone change with them, and it hangs still while the brake slides: the rest is known once.
+    """
+    system = as_system(start, linear=True)
+    if any(loop.sampling is not None for loop in system.loops):  # of one exact sample no part is the absorber's alone
+        return lambda f, z: steady_sliding(start.replace(frequency=f, damping=z))
+    about, base = steady_sliding(start), start.brake.system()
+    row = np.zeros(about.K.shape[-1])
+    row[: base.size], row[base.size] = -direction("TunedMass", "on", base, start.on), 1.0
+    mass, rate = float(start.mass), 2.0 * np.pi * float(start.frequency)
+    loss = 2.0 * float(start.damping) * rate
+
+    def tuned(frequency: Any, damping: Any) -> Linearised:
+        now = 2.0 * np.pi * np.asarray(frequency, dtype=float)
+        stiffness = about.K + outer(mass * (now**2 - rate**2), row, row)
+        losses = about.C + outer(mass * (2.0 * np.asarray(damping) * now - loss), row, row)
+        state, shape = about.equilibrium, now.shape
+        over = {
+            name: np.broadcast_to(getattr(state, name), shape + np.shape(getattr(state, name)))
+            for name in ("q", "normal_force", "sliding_speed", "friction", "exists", "floating")
+        }
+        sliding = Equilibrium(**over, outcome=state.outcome)
+        return Linearised(np.broadcast_to(about.M, stiffness.shape), losses, stiffness, sliding)
+
+    return tuned
+
+
 def _judge(
     start: Any, aim: str, scatter: Scatter | None, parameter: str, bounds: Any, samples: int, seed: int
 ) -> Judge:
     """The number to be made small, of frequencies and damping ratios (k,)."""
     if aim == "decay":
-        return lambda f, z: growth_of(start.replace(frequency=f, damping=z))
+        tuned = _tuned(start)
+        return lambda f, z: growth_about(tuned(f, z))
     if aim == "margin":
         limits = _limits(start, parameter, bounds)
 
@@ -224,9 +256,11 @@ def _meetings(start: Any, near: tuple[float, float]) -> list[tuple[float, float,
     """Tunings near by at which two of the slowest modes meet: (lambda_i - lambda_j)^2 = 0, two real equations."""
     from scipy.optimize import root
 
+    tuned = _tuned(start)
+
     def apart(x: Any) -> Any:
         frequency, damping = np.exp(np.clip(x, np.log(near) - FAR, np.log(near) + FAR))  # a step may go anywhere
-        values = spectrum(steady_sliding(start.replace(frequency=float(frequency), damping=float(damping))))
+        values = spectrum(tuned(frequency, damping))
         upper = np.sort_complex(-values[: len(values) // 2])[: max(len(values) // 2, 2)]
         squares = np.array([(a - b) ** 2 for i, a in enumerate(upper) for b in upper[:i]]) / np.max(np.abs(upper)) ** 2
         least = squares[int(np.argmin(np.abs(squares)))]
@@ -236,7 +270,7 @@ def _meetings(start: Any, near: tuple[float, float]) -> list[tuple[float, float,
     if not np.all(np.isfinite(found.x)) or np.max(np.abs(found.fun)) > 1e-10:
         return []
     frequency, damping = (float(x) for x in np.exp(found.x))
-    values = spectrum(steady_sliding(start.replace(frequency=frequency, damping=damping)))
+    values = spectrum(tuned(frequency, damping))
     upper = values[: len(values) // 2]
     order = np.argsort(-upper.real)
     a, b = upper[order[0]], upper[order[min(1, len(order) - 1)]]
@@ -248,12 +282,13 @@ def _band(design: Any) -> tuple[float, float]:
     """The frequencies around the tuning between which the brake is stable; NaN where it is not."""
     from scipy.optimize import brentq
 
-    if not float(growth_of(design)) < 0.0:
+    tuned = _tuned(design)
+    if not float(growth_about(tuned(design.frequency, design.damping))) < 0.0:
         return float("nan"), float("nan")
 
     def growth(x: float) -> float:
         moved = float(np.exp(x))  # the damper itself stays
-        return float(growth_of(design.replace(frequency=moved, damping=design.damping * design.frequency / moved)))
+        return float(growth_about(tuned(moved, design.damping * design.frequency / moved)))
 
     ends = []
     for side in (-1.0, 1.0):

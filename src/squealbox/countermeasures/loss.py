@@ -16,6 +16,7 @@ import numpy as np
 
 from squealbox.stability.family import steady_sliding
 from squealbox.stability.spectra import largest_growth
+from squealbox.system import Linearised
 
 MOST_ROWS = 12  # of a state matrix, whose products are 66 then
 NEAR = 2e-3  # share of a margin by which the window below it may lie above the margin of another tuning
@@ -24,7 +25,12 @@ REAL = 1e-6  # imaginary part below which a place is one; beside a window that c
 
 def growth_of(design: Any) -> Any:
     """The largest growth rate [1/s] of a design of arrays; inf without steady sliding."""
-    growth: Any = largest_growth(steady_sliding(design))[0]
+    return growth_about(steady_sliding(design))
+
+
+def growth_about(sliding: Linearised) -> Any:
+    """As `growth_of`, of what is linearised already."""
+    growth: Any = largest_growth(sliding)[0]
     return np.where(np.isfinite(growth), growth, np.inf)
 
 

@@ -13,11 +13,14 @@ from squealbox.files.numbers import shown
 from squealbox.files.units import UnitError, in_si, split
 
 LARGEST = 5_000_000  # bytes
+SPEED = re.compile(r"\bv\b|speed|velocity|geschwindigkeit", re.IGNORECASE)
+COEFFICIENT = re.compile(r"\b(mu|µ|μ|cof)\b|friction|coefficient|reibwert", re.IGNORECASE)
 
 
 def read_points(path: str | os.PathLike[str]) -> tuple[Any, Any]:
-    """Sliding speeds [m/s] and friction coefficients of a CSV file of two columns; cells may carry units.
+    """Sliding speeds [m/s] and friction coefficients of a CSV file; cells may carry units.
 
+    Of more than two columns the names tell which are meant. Titles above them, lines of one text, are passed over.
     A first line without numbers is taken for names, with a unit in brackets or behind a comma or slash where there is
     one: ``speed [mm/s]``, ``v (km/h)``, ``v in rpm`` (refused: not a speed).
     Raises `DesignFileError` with file and line.
@@ -29,26 +32,44 @@ def read_points(path: str | os.PathLike[str]) -> tuple[Any, Any]:
         raise _error(path, 0, "there is no such file") from error
     except (OSError, ValueError) as error:
         raise _error(path, 0, f"is not a readable CSV file: {getattr(error, 'strerror', None) or error}") from error
-    if rows and all(not cell.strip()[:1].isdigit() and cell.strip()[:1] not in ("-", "+", ".") for cell in rows[0][1]):
-        units = [_header_unit(path, rows[0], i, wanted) for i, wanted in enumerate(("m/s", "-")[: len(rows[0][1])])]
+    while len(rows) > 1 and _is_text(rows[0][1]) and sum(bool(cell.strip()) for cell in rows[0][1]) <= 1:
         rows = rows[1:]
-    else:
-        units = ["", ""]
+    columns, units, width = (0, 1), ["", ""], 2
+    if rows and _is_text(rows[0][1]):
+        columns, width = _columns(path, *rows[0]), len(rows[0][1])
+        units = [_header_unit(path, rows[0], i, x) for i, x in zip(columns, ("m/s", "-"), strict=True)]
+        rows = rows[1:]
     points = []
     for number, row in rows:
-        if len(row) != 2:
-            raise _error(path, number, f"{len(row)} cells: expected two, sliding speed and friction coefficient")
+        if len(row) != width:
+            wanted = "two, sliding speed and friction coefficient" if width == 2 else f"{width}, as there are names"
+            raise _error(path, number, f"{len(row)} cells: expected {wanted}")
         try:
-            pairs = zip(row, units, ("m/s", "-"), strict=True)
+            pairs = zip([row[i] for i in columns], units, ("m/s", "-"), strict=True)
             points.append(tuple(_value(cell.strip(), unit, wanted) for cell, unit, wanted in pairs))
         except UnitError as error:
             raise _error(path, number, str(error)) from error
         if points[-1][0] < 0.0:
-            raise _error(path, number, f"a sliding speed of {shown(row[0].strip())}: expected 0 m/s or more")
+            raise _error(path, number, f"a sliding speed of {shown(row[columns[0]].strip())}: expected 0 m/s or more")
     if not points:
         raise _error(path, 0, f"{shown(path.name)} holds no points: expected rows of speed and coefficient")
-    columns = np.array(points)
-    return columns[:, 0], columns[:, 1]
+    found = np.array(points)
+    return found[:, 0], found[:, 1]
+
+
+def _is_text(row: list[str]) -> bool:
+    return all(not cell.strip()[:1].isdigit() and cell.strip()[:1] not in ("-", "+", ".") for cell in row)
+
+
+def _columns(path: Path, line: int, names: list[str]) -> tuple[int, int]:
+    """Where the speed and the coefficient stand: the first two of two, of more those whose names say so."""
+    if len(names) == 2:
+        return 0, 1
+    found = [[i for i, name in enumerate(names) if pattern.search(name)] for pattern in (SPEED, COEFFICIENT)]
+    if len(names) < 2 or [len(each) for each in found] != [1, 1]:
+        expected = "two, sliding speed and friction coefficient, or names of which one says v or speed and one mu"
+        raise _error(path, line, f"{len(names)} cells: expected {expected}")
+    return found[0][0], found[1][0]
 
 
 def _value(cell: str, unit: str, wanted: str) -> float:

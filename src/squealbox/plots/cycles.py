@@ -110,7 +110,8 @@ def branch_diagram(
     ----------
     branches : one or several
     dof : index of the degree of freedom; None takes the one that moves most, and the axis names it
-    hopf : marks where the branch is born
+    hopf : marks where the branch is born; a branch that was followed from such a point has its mark without, and is
+        joined to it as amplitudes rise there, by the root of the distance
     runs : (values, amplitudes [m]) of long runs, drawn as crosses
     estimates : quick estimates, drawn as dotted curves with how far they are off; True computes those of
         :func:`limit_cycles.estimate_curves` where the branches know what they were followed in, False draws none
@@ -134,8 +135,14 @@ def branch_diagram(
             _parts(panel, one, one.amplitude[:, dof] / factor, scale, line(i if labels else 0)["color"], label, shown)
             _marks(panel, one, one.amplitude[:, dof] / factor, scale, shown)
         floor = _floor([size / factor for size in largest])
-        if hopf is not None and hopf.outcome.ok:
-            panel.plot(hopf.value / scale, floor, "o", color="#000000", label="onset of instability", zorder=4,
+        births = {float(hopf.value)} if hopf is not None and hopf.outcome.ok else set()
+        for i, one in enumerate(several):
+            born = one.settings.get("born_at")
+            if born is not None and len(one.value):
+                births.add(float(born))
+                _rise(panel, one, one.amplitude[0, dof] / factor, float(born), scale, line(i if labels else 0)["color"])
+        for k, born in enumerate(sorted(births)):
+            panel.plot(born / scale, floor, "o", color="#000000", label=None if k else "onset of instability", zorder=4,
                        clip_on=False)  # fmt: skip
         if floor > 0.0:
             panel.set_yscale("log")
@@ -235,6 +242,13 @@ def _parts(panel: Any, one: Branch, size: Any, scale: float, colour: str, label:
             shown.add(text)
             panel.plot(np.where(joined, one.value, np.nan) / scale, np.where(joined, size, np.nan), color=colour,
                        linestyle=dash, label=None if told else text)  # fmt: skip
+
+
+def _rise(panel: Any, one: Branch, size: float, born: float, scale: float, colour: str) -> None:
+    """From where a branch is born to its first point."""
+    share = np.linspace(0.0, 1.0, 33)
+    at = born + (float(one.value[0]) - born) * share**2
+    panel.plot(at / scale, size * share, color=colour, linestyle="-" if one.stable[0] else "--", linewidth=0.7)
 
 
 def _marks(panel: Any, one: Branch, size: Any, scale: float, shown: set[str]) -> None:

@@ -63,6 +63,7 @@ def bifurcation_diagram(
             mark, colour, text = SWEPT[kind]
             at, up = np.broadcast_arrays(diagram.value[:, None] / scale, marks[i] / factor)
             size, rim = {"amplitude": (3.2, 0.6), "maxima": (2.2, 0.6), "section": (1.8, 0.4)}[show]
+            size *= 1.9 if kind == "rest" else 1.0  # a circle goes round the triangles of the sweeps, not over them
             panel.plot(at.ravel(), up.ravel(), mark, color=colour, markersize=size, markerfacecolor="none",
                        markeredgewidth=rim, label=None if kind in told else text)  # fmt: skip
             told.add(kind)

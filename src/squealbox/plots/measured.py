@@ -115,9 +115,14 @@ def calibration_figure(found: Calibration, *, title: str = "") -> "Figure":
 
 @drawn_by.register(Comparison)
 def model_beside_measurement(found: Comparison, *, title: str = "", axes: Any = None) -> "Figure":
-    """How far each simulated number lies from the measured one, beside the measured number's own 95 % error."""
+    """How far each simulated number lies from the measured one, beside the measured number's own 95 % error.
+
+    Of a level in dB, which has no per cent, the difference stands beside its numbers.
+    """
     share = 100.0 * found.error / np.where(found.measured == 0.0, 1.0, np.abs(found.measured))
     off = 100.0 * (found.simulated / np.where(found.measured == 0.0, np.nan, found.measured) - 1.0)
+    units = found.settings["units"]
+    off[[unit.startswith("dB") for unit in units]] = np.nan
     with drawing(axes, width=1.5 * COLUMN, height=0.9 + NARROW * len(found.names)) as panel:
         rows = np.arange(len(found.names))
         panel.axvline(0.0, color="black", linewidth=0.6)
@@ -125,13 +130,17 @@ def model_beside_measurement(found: Comparison, *, title: str = "", axes: Any = 
         panel.errorbar(np.where(both, 0.0, np.nan), rows, xerr=np.nan_to_num(share), fmt="s", color="#000000",
                        markersize=4, capsize=3, linewidth=1.0, label="measured, 95 %")  # fmt: skip
         panel.plot(off, rows, "o", color="#D55E00", markersize=5, label="simulated")
-        numbers = zip(found.names, found.simulated, found.measured, strict=True)
-        panel.set_yticks(rows, [f"{name}\n{_or_dash(a)} for {_or_dash(b)}" for name, a, b in numbers], fontsize=7)
+        numbers = zip(found.names, found.simulated, found.measured, units, strict=True)
+        told = [f"{name}\n{_or_dash(a)} for {_or_dash(b)}{_in_dB(a - b, unit)}" for name, a, b, unit in numbers]
+        panel.set_yticks(rows, told, fontsize=7)
         panel.set(xlabel=quantity_label("away from the measured number", "%"), title=title)
-        panel.margins(y=0.3)
-        panel.invert_yaxis()
-        panel.legend(loc="best", fontsize=6)
+        panel.set_ylim(len(rows) - 0.5, -1.1)  # with a row without marks, and room for the key
+        panel.legend(loc="upper right", ncols=2, fontsize=6)
         return figure_of(panel)
+
+
+def _in_dB(difference: float, unit: str) -> str:
+    return f", {difference:+.3g} dB" if unit.startswith("dB") and np.isfinite(difference) else ""
 
 
 def spectrograms_beside(

@@ -110,13 +110,13 @@ def _drawn(motion: Any, dof: int | str) -> tuple[Any, Any, Any]:
 def energy(trajectory: Trajectory, *, unit: str | None = None, title: str = "", axes: Any = None) -> "Figure":
     """Where the energy went, and by how much the audit fails to close; `axes` is a pair of panels.
 
-    Above: work of the friction of each contact, of the load and of the skew stiffness, energy dissipated (negative) and
-    stored. Below: the residual over the largest energy turned over.
+    Above: work of the friction of each contact, of the load and of the skew stiffness, energy stored and, positive too
+    though it is taken out, dissipated. Below: the residual over the largest energy turned over.
     """
     audit, times = trajectory.energy, trajectory.t
     names = trajectory.system.contact_names
     terms = [(f"friction, {name}", audit.friction[:, i]) for i, name in enumerate(names)]
-    terms += [("load", audit.load), ("circulation", audit.circulation), ("dissipated", -audit.dissipated)]
+    terms += [("load", audit.load), ("circulation", audit.circulation), ("dissipated (taken out)", audit.dissipated)]
     terms += [("opening of contacts", audit.opening), ("stored", audit.stored)]
     terms = [(name, term) for name, term in terms if np.any(term)] or terms[-1:]  # at rest there is none
     factor, read = scaled("J", *(term for _, term in terms), to=unit)

@@ -35,20 +35,31 @@ def countermeasure_drawing(design: Countermeasure, *, axes: Any = None) -> "Figu
 @drawn_by.register(Remedies)
 def remedies_figure(found: Remedies, *, title: str = "", axes: Any = None) -> "Figure":
     """The share of the lot that squeals with each cure, ranked, beside that without; hollow where no dose is enough."""
+    from matplotlib.patches import Patch
+
     count = min(len(found), MOST_BARS)
     with drawing(axes, width=1.8 * COLUMN, height=0.6 + 0.19 * count) as panel:
         places = np.arange(count)
+        friction = f" at {100.0 * found.margin:.3g} % more friction" if found.margin else ""
+        looks: dict[bool, dict[str, Any]] = {
+            True: {"facecolor": "#0072B2"},
+            False: {"facecolor": "white", "edgecolor": "#0072B2"},
+        }
+        words = {True: f"quiet{friction}", False: f"no dose is quiet{friction}"}
         for place in places:
-            look = {"facecolor": "#0072B2"} if found.reached[place] else {"facecolor": "white", "edgecolor": "#0072B2"}
-            panel.barh(place, max(float(found.probability[place]), 1e-3), height=0.7, **look)
-        panel.axvline(found.before, color="#D55E00", linewidth=1.0, label="without")
+            panel.barh(
+                place, max(float(found.probability[place]), 1e-3), height=0.7, **looks[bool(found.reached[place])]
+            )
+        before = panel.axvline(found.before, color="#D55E00", linewidth=1.0, label="without a cure")
+        kinds = [each for each in (True, False) if each in found.reached[:count]]
         panel.set_yticks(places, [str(name) for name in found.name[:count]], fontsize=6)
         panel.invert_yaxis()
         panel.set_xlim(0.0, 1.0)
         left_out = f" (the best {count} of {len(found)} cures)" if count < len(found) else ""
         panel.set_xlabel(f"share of the lot that squeals{left_out}")
         panel.set_title(title)
-        panel.legend(loc="lower right", fontsize=6)
+        key = [Patch(label=words[each], **looks[each]) for each in kinds]
+        panel.legend(handles=[*key, before], loc="best", fontsize=6)
         return figure_of(panel)
 
 

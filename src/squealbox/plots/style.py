@@ -11,12 +11,12 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.plots.ticks import spread_ticks
 from squealbox.signals import with_error
 
 if TYPE_CHECKING:
@@ -319,36 +319,6 @@ def drawn(figure: "Figure", kind: str = "png", dots: float | None = None, *, tri
     return stream.getvalue()
 
 
-def _spread_ticks(figure: "Figure") -> bool:
-    """Fewer ticks on every axis whose numbers would run into each other; whether that changed any."""
-    from matplotlib.ticker import MaxNLocator, ScalarFormatter
-
-    changed = False
-    for panel in figure.axes:
-        for axis, side in ((panel.xaxis, 0), (panel.yaxis, 1)):
-            locator = axis.get_major_locator()
-            if isinstance(locator, MaxNLocator):
-                for bins in range(len(axis.get_majorticklocs()) - 2, 1, -1):
-                    if not _crowded(axis, side, 0.04 * figure.dpi):
-                        break
-                    locator.set_params(nbins=bins)
-                    changed = True
-            formatter = axis.get_major_formatter()
-            if isinstance(formatter, ScalarFormatter) and formatter.get_offset() and not formatter.get_useMathText():
-                formatter.set_useMathText(True)  # a power of ten is set as one, plain numbers are not
-                changed = True
-    return changed
-
-
-def _crowded(axis: Any, side: int, gap: float) -> bool:
-    """True where two numbers along an axis come closer than a `gap` [dots]."""
-    low, high = sorted(axis.get_view_interval())
-    seen = zip(axis.get_majorticklocs(), axis.get_ticklabels(), strict=False)
-    boxes = [label.get_window_extent() for at, label in seen if low <= at <= high and label.get_text()]
-    spans = sorted((box.min[side], box.max[side]) for box in boxes)
-    return any(after[0] < before[1] + gap for before, after in pairwise(spans))
-
-
 @contextmanager
 def laid_out(figure: "Figure", dots: float | None) -> Iterator[None]:
     """The figure with its layout done and put to rest, so that drawing does not do it again.
@@ -364,7 +334,7 @@ def laid_out(figure: "Figure", dots: float | None) -> Iterator[None]:
     before, finest = figure.dpi, rcParams["savefig.dpi"]
     figure.set_dpi(dots or (before if finest == "figure" else finest))
     engine.execute(figure)
-    if _spread_ticks(figure):  # along axes as long as the layout leaves them; other numbers need other room
+    if spread_ticks(figure):  # along axes as long as the layout leaves them; other numbers need other room
         engine.execute(figure)
     figure.set_dpi(before)
     figure.set_layout_engine(None)  # with "none" a placeholder stays, and each file is drawn twice

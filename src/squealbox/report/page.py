@@ -9,6 +9,7 @@ import gzip
 import hashlib
 import json
 import os
+import re
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -19,6 +20,7 @@ import numpy as np
 from squealbox.report.blocks import Chart, Page, Section
 
 TEMPLATE = "page.html.j2"
+MICRO = re.compile(r"(\d |\[)u(?=[msNJ]\b)")
 
 
 def render(page: Page) -> str:
@@ -28,6 +30,7 @@ def render(page: Page) -> str:
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("squealbox", "templates"),
         autoescape=True,
+        finalize=_micro,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -39,6 +42,11 @@ def render(page: Page) -> str:
     return environment.get_template(TEMPLATE).render(
         page=page, figures=figures, start=start, library=library[0] if library else "", allowed=allowed
     )
+
+
+def _micro(value: Any) -> Any:
+    """A text with µm for the um that terminals are given."""
+    return type(value)(MICRO.sub(r"\1µ", value)) if isinstance(value, str) else value
 
 
 def write_page(page: Page, path: str | os.PathLike[str]) -> Path:

@@ -13,6 +13,7 @@ from squealbox.extras import extra
 from squealbox.result import Array, Result, quantity
 from squealbox.signals.recordings import as_recording
 from squealbox.signals.samples import SignalError
+from squealbox.signals.wav import resampled
 
 RATE = 48000  # [Hz] the standards are written for
 LEAST = 0.2  # s that a stationary sound must last
@@ -68,7 +69,7 @@ def sound_quality(
     x = heard.channel(channel)[keep]
     if x.size < LEAST * heard.rate:
         raise SignalError(f"the stretch lasts {x.size / heard.rate:.3g} s: expected {LEAST} s or more")
-    x = _resampled(x, heard.rate)
+    x = resampled(x, Fraction(RATE / heard.rate).limit_denominator(1000))
     with contextlib.redirect_stdout(io.StringIO()):  # it prints what it does
         total, specific, bark = loudness_zwst(x, RATE)
         sharpness = sharpness_din_from_loudness(total, specific)
@@ -79,12 +80,3 @@ def sound_quality(
         specific_loudness=np.asarray(specific, dtype=float), bark=np.asarray(bark, dtype=float),
         settings={"channel": str(channel), "begin": begin, "end": end},
     )  # fmt: skip
-
-
-def _resampled(x: Any, rate: float) -> Any:
-    if rate == RATE:
-        return x
-    from scipy.signal import resample_poly
-
-    ratio = Fraction(RATE / rate).limit_denominator(1000)
-    return resample_poly(x, ratio.numerator, ratio.denominator)

@@ -129,8 +129,6 @@ def peaks(spectrum: Spectrum, count: int | None = None, *, least: float = 0.03) 
     when it is a resolution away from the next, the dip before a higher one falls to half of it, and it is twice what
     the side lobes of higher lines can make there.
     """
-    from scipy.signal import find_peaks
-
     if not isinstance(spectrum, Spectrum):
         raise SignalError(f"a {type(spectrum).__name__} is no spectrum: expected spectrum(signal)")
     amplitude, frequency = spectrum.amplitude, spectrum.frequency
@@ -139,7 +137,7 @@ def peaks(spectrum: Spectrum, count: int | None = None, *, least: float = 0.03) 
     floor = np.finfo(float).tiny
     level = np.log(np.maximum(amplitude, floor))
     top = float(np.max(amplitude, initial=floor))
-    found, _ = find_peaks(level, height=np.log(max(least * top, floor)), distance=apart, prominence=np.log(2.0))
+    found = tops(level, np.log(max(least * top, floor)), apart, np.log(2.0))
     middle = level[found]
     left, right = (np.maximum(level[found + side], middle - 2.0) for side in (-1, 1))  # a null of a side lobe misleads
     shift = 0.5 * (left - right) / (left - 2.0 * middle + right)
@@ -153,6 +151,41 @@ def peaks(spectrum: Spectrum, count: int | None = None, *, least: float = 0.03) 
         if height[i] > 2.0 * np.sum(height[kept] * lobes):
             kept.append(int(i))
     return Peaks(place[kept[:count]], height[kept[:count]])
+
+
+def tops(x: Any, least: float, apart: int, dip: float) -> Any:
+    """Places of the maxima of x: `least` high, the highest within `apart` points, `dip` above the way to a higher one.
+
+    Those of `scipy.signal.find_peaks(x, height=least, distance=apart, prominence=dip)`, whose package takes longer to
+    load than all of a run's drawing.
+    """
+    begins = np.flatnonzero(np.diff(x, prepend=np.nan))  # of stretches of one height, of which the middle counts
+    heights, ends = x[begins], np.append(begins[1:], x.size) - 1
+    inner = np.flatnonzero((heights[1:-1] > heights[:-2]) & (heights[1:-1] > heights[2:])) + 1
+    found = (begins[inner] + ends[inner])[heights[inner] >= least] // 2
+    if not found.size:
+        return found
+    high = x[found]
+    saddles = np.minimum.reduceat(x, np.append(0, found))
+    below = np.maximum(_lowest_before(high, saddles), _lowest_before(high[::-1], saddles[::-1])[::-1])
+    first, last = np.searchsorted(found, found - apart + 1), np.searchsorted(found, found + apart)
+    alone, order = np.ones(found.size, dtype=bool), np.argsort(high)[::-1]
+    for i in order[(last - first)[order] > 1]:
+        if alone[i]:
+            alone[first[i] : last[i]] = False
+            alone[i] = True
+    return found[alone & (high - below >= dip)]
+
+
+def _lowest_before(high: Any, saddles: Any) -> Any:
+    """The lowest of what lies between each top and the next higher one before it, or the beginning."""
+    lowest, higher = np.empty(high.size), list[tuple[float, float]]()
+    for i, (height, low) in enumerate(zip(high.tolist(), saddles.tolist(), strict=False)):
+        while higher and higher[-1][0] <= height:
+            low = min(low, higher.pop()[1])
+        higher.append((height, low))
+        lowest[i] = low
+    return lowest
 
 
 def _side_lobes(window: str) -> Any:

@@ -328,8 +328,13 @@ def _modes(about: Linearised, eigenvalues: Any, states: Any, usable: Any) -> tup
 
 
 def _inverse(states: Any) -> tuple[Any, Any]:
+    largest = 0.01 / np.finfo(float).eps
     with np.errstate(all="ignore"):
-        invertible = np.linalg.cond(states) < 0.01 / np.finfo(float).eps
+        condition = np.asarray(np.linalg.cond(states, 1))  # an inverse; singular values of 480 states take twenty
+        doubtful = ~(condition < 0.01 * largest)
+        if np.any(doubtful):
+            condition[doubtful] = np.linalg.cond(states[doubtful])
+        invertible = condition < largest
     safe = np.where(invertible[..., None, None], states, np.eye(states.shape[-1]))
     return np.linalg.inv(safe), invertible
 

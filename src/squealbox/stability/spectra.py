@@ -25,10 +25,11 @@ def largest_growth(about: Linearised, engine: Engine = "auto") -> tuple[Any, Any
 
     NaN, NaN and 0 where there is no spectrum.
     """
-    special = np.any(special_entries(about))
+    entries = special_entries(about)
+    special = np.any(entries)
     if about.M.shape[-1] == 2 and compiled(about, engine) and not special:
         return _two_dof(about)
-    values = eigenvalues(about, engine)
+    values = eigenvalues(about, engine, entries)
     known = np.isfinite(values.real)
     if special:  # rigid-body motion is no vibration
         known &= (values != 0.0) | (np.asarray(about.equilibrium.floating)[..., None] == 0)
@@ -70,10 +71,10 @@ def flags_of(mass: Any, damping: Any, stiffness: Any) -> Any:
     return np.unpackbits(words.astype("<u2").view(np.uint8), count=number, bitorder="little").view(bool)
 
 
-def eigenvalues(about: Linearised, engine: Engine = "auto") -> Any:
-    """All eigenvalues (..., 2n) [1/s] in no particular order; NaN without a spectrum."""
+def eigenvalues(about: Linearised, engine: Engine = "auto", special: Any = None) -> Any:
+    """All eigenvalues (..., 2n) [1/s] in no particular order; NaN without a spectrum. special : see `with_special`."""
     if about.M.shape[-1] == 2 and compiled(about, engine):
-        return with_special(about, _two_dof_spectrum(about))
+        return with_special(about, _two_dof_spectrum(about), special)
     matrix, rate, usable, _ = state_matrix(about)
     size = matrix.shape[-1]
     matrix[~usable] = np.eye(size)
@@ -83,7 +84,7 @@ def eigenvalues(about: Linearised, engine: Engine = "auto") -> Any:
         values = compiled_eigenvalues(matrix)
     values *= rate[..., None]
     values[~usable] = np.nan
-    return with_special(about, values)
+    return with_special(about, values, special)
 
 
 def compiled_eigenvalues(matrices: Any) -> Any:

@@ -31,9 +31,12 @@ def special_entries(about: Linearised) -> Any:
     return exists & (~known | (np.asarray(about.equilibrium.floating) > 0))
 
 
-def with_special(about: Linearised, eigenvalues: Any) -> Any:
-    """Eigenvalues (..., 2n) with those entries solved exactly whose pencil is singular; see `deflation`."""
-    special = special_entries(about)
+def with_special(about: Linearised, eigenvalues: Any, special: Any = None) -> Any:
+    """Eigenvalues (..., 2n) with those entries solved exactly whose pencil is singular; see `deflation`.
+
+    special : what `special_entries` says, where it was asked
+    """
+    special = special_entries(about) if special is None else special
     if not np.any(special):
         return eigenvalues
     eigenvalues = np.array(eigenvalues)

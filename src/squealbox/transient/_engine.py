@@ -6,15 +6,17 @@ named by the hash of that text. So a change of any source makes new code; nothin
 """
 
 import ast
+import hashlib
 import inspect
 import operator
 import re
 from collections.abc import Callable, Collection, Mapping
 from functools import cache
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from squealbox.compiled.machine import Translated
+from squealbox.compiled.machine import Translated, cache_folder, kept
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
 from squealbox.transient import (
@@ -65,7 +67,8 @@ def kernel(
     `counts` fixes numbers such as ``("p.contacts", 2)`` in the text, so the compiler unrolls the loops over them.
     `own` are the sources of mu(v, p) and slope(v, p) of friction laws that follow `LAWS`.
     """
-    march: Callable[..., int] = load_module(source(events, plain, counts, own)).march
+    text = kept_text(f"{events}, {plain}, {counts}, {own}", lambda: source(events, plain, counts, own))
+    march: Callable[..., int] = load_module(text).march
     return march
 
 
@@ -81,6 +84,23 @@ def source(
     for module in (_motion, _runge_kutta, *((_rigid, _sharing, _impacts, _modes, _events) if events else ()), _march):
         parts += definitions(module, fixed)
     return "\n\n".join(parts) + "\n"
+
+
+def kept_text(made_for: str, write: Callable[[], str]) -> str:
+    """A generated text, from disk where these modules wrote it before: that takes longer than a short run.
+
+    `made_for` says all that it depends on besides the modules.
+    """
+    named = hashlib.sha256(made_for.encode() + _digest()).hexdigest()[:32]
+    return kept(cache_folder() / f"{named}.text", lambda: ((), write().encode()))[1].decode()
+
+
+@cache
+def _digest() -> bytes:
+    """Of every module that texts are written by or made of."""
+    folder = Path(__file__).parent
+    texts = [path.read_bytes() for path in sorted([*folder.rglob("*.py"), *folder.parent.glob("*.py")])]
+    return hashlib.sha256(b"".join(texts)).digest()
 
 
 def head(

@@ -161,7 +161,8 @@ def _judged(course: Course, steady: float, gone: float, least_periods: float) ->
         return _one_way(course)
     periods = course.frequency * course.last
     if periods < least_periods:
-        return NOT_DECIDED, f"the last {_read(course.last, 's')} hold only {periods:.2g} periods", course
+        told = f"{periods:.2g}"
+        return NOT_DECIDED, f"the last {_read(course.last, 's')} hold only {told} period{'s' * (told != '1')}", course
     now = course.stretch(1.0 - course.part, 1.0)
     change = now[0] * course.last
     if abs(change) <= steady and np.ptp(last) <= 2.0 * steady * np.mean(last):
@@ -245,7 +246,8 @@ def _settled_at(course: Course, kind: str, band: float) -> float:
 def _sentence(kind: str, why: str, course: Course, settled: float, name: str, unit: str) -> str:
     words = {DECAYS: "Decays", GROWS: "Grows", SETTLES_ON_CYCLE: "Settles on a cycle", NOT_DECIDED: "Not decided"}
     text = words[kind] + (f" ({why})" if why else "")
-    if np.isfinite(course.rate) and kind != SETTLES_ON_CYCLE:
+    told = _clear(course.rate, course.rate_error) if kind == NOT_DECIDED else kind != SETTLES_ON_CYCLE
+    if np.isfinite(course.rate) and told:
         text += f", growth rate {with_error(course.rate, course.rate_error)} 1/s"
     if np.isnan(course.amplitude) or np.isfinite(course.rest):
         return text + "."

@@ -148,6 +148,8 @@ def branch(
     settings = {"bounds": list(bounds), "method": method, "contact": contact, "width": width, "harmonics": harmonics}
     if isinstance(start, HopfPoint) and (method, contact) not in METHODS_FROM_HOPF:
         raise ParameterError("branch", "start", "a HopfPoint", "shooting or exact contact from a Hopf point")
+    if isinstance(start, HopfPoint) and start.outcome.ok:
+        settings["born_at"] = float(start.value)
     if isinstance(start, BranchPoint):
         middle = float(start.value) if value is None else middle
         if start.kind == "period_doubling" and method != "shooting":

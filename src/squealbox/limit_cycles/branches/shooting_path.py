@@ -143,21 +143,26 @@ class ShootingPath:
         motion = flown.motion
         n = self.field(p).system.size
         low, high = extremes(motion.t, motion.q[:, :n], motion.qd[:, :n])
-        slip = motion.sliding_velocity * np.sign(self.field(p).V)
-        sticking = np.sum((motion.mode[1:] == 0) * np.diff(motion.t)[:, None], axis=0)
+        least_slip, sticking = self.sliding(x, p)
         return {"period": float(x[-1]), "lowest": low, "highest": high,
                 "multipliers": self.multipliers(x, p),
-                "least_slip": float(np.min(slip, initial=np.inf)),
-                "sticking": float(np.max(sticking, initial=0.0)),
+                "least_slip": least_slip, "sticking": sticking,
                 "begin": np.concatenate([motion.q[0, :n], motion.qd[0, :n]])}  # fmt: skip
 
     def multipliers(self, x: Any, p: float) -> Any:
         """Floquet multipliers of the cycle at a point."""
         return self.field(p).multipliers(self.fly(x, p)[1].phi)
 
+    def sliding(self, x: Any, p: float) -> tuple[float, float]:
+        """Least sliding speed in the sense of V [m/s] at the instants of the motion, and longest sticking [s]."""
+        motion = self.run(x, p)
+        slip = motion.sliding_velocity * np.sign(self.field(p).V)
+        sticking = np.sum((motion.mode[1:] == 0) * np.diff(motion.t)[:, None], axis=0)
+        return float(np.min(slip, initial=np.inf)), float(np.max(sticking, initial=0.0))
+
     def least_slip(self, x: Any, p: float) -> float:
         """Least sliding speed in the sense of V [m/s] at the instants of the motion."""
-        return float(self.describe(x, p)["least_slip"])
+        return self.sliding(x, p)[0]
 
     def cycle(self, x: Any, p: float) -> Cycle:
         """The cycle at a point, its multipliers computed anew to 1e-12; error is the scaled residual there."""

@@ -85,6 +85,7 @@ class Chord:
         self.normal = (self.b - self.a) / np.linalg.norm(self.b - self.a)
         self.tangents = a.tangent, b.tangent
         self.length = b.arclength - a.arclength
+        self.kept: Any = None  # the derivative of the last trial, which is near enough for the next one beside it
 
     def derivative(self, y: Any) -> Any:
         """d residual / dy in scaled variables, shape (n, n + 1)."""
@@ -97,13 +98,13 @@ class Chord:
         ends = (3.0 - 2.0 * s) * s**2
         y = (1.0 - ends) * self.a + ends * self.b + h0 * self.tangents[0] + h1 * self.tangents[1]
         y = y + self.normal * (self.normal @ (self.a + s * (self.b - self.a) - y))
-        matrix, last = None, np.inf
+        matrix, last = self.kept, np.inf
         for _ in range(NEWTON_STEPS):
             x = y * self.scale
             value = self.path.residual(x[:-1], float(x[-1]))
             if not np.all(np.isfinite(value)):
                 return None
-            if matrix is None or last > KEEP:
+            if matrix is None or KEEP < last < np.inf:
                 matrix = np.vstack([self.derivative(y), self.normal])
             if not np.all(np.isfinite(matrix)):
                 return None
@@ -112,6 +113,7 @@ class Chord:
             if last > SLOW * before:
                 matrix = None
             if last < CLOSE:
+                self.kept = matrix
                 x = y * self.scale
                 return x[:-1], float(x[-1])
         return None
@@ -127,6 +129,8 @@ class Chord:
             return self.tangent_p(x, p)
         if kind == "grazing":
             return float(self.path.least_slip(x, p))
+        if kind == "sticking":
+            return 1.0 if self.path.sliding(x, p)[1] > 0.0 else -1.0
         return TESTS[kind](self.path.describe(x, p))
 
 

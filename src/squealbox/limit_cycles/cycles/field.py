@@ -239,9 +239,10 @@ class Field(Autonomous):
         if np.ndim(mode) == 1:
             alike = [(slice(None), self.sticking(mode))]
         else:
-            kinds: dict[bytes, int] = {}
-            which = np.array([kinds.setdefault(row.tobytes(), len(kinds)) for row in np.equal(mode, 0)])
-            alike = [(which == i, np.flatnonzero(np.frombuffer(kind, bool))) for kind, i in kinds.items()]
+            held = np.equal(mode, 0)
+            begins = np.flatnonzero(np.append(True, np.any(held[1:] != held[:-1], axis=1)))  # few: a motion's stretches
+            ends = np.append(begins[1:], len(held))
+            alike = [(slice(i, k), np.flatnonzero(held[i])) for i, k in zip(begins, ends, strict=True)]
         return [(rows, self._hold(stuck)) for rows, stuck in alike if stuck.size]
 
     def sticking(self, mode: Any) -> Any:

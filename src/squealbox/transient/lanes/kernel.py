@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Callable
+from dataclasses import fields
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -61,8 +62,14 @@ PLACES = {
 @cache
 def lane_kernel(shape: Shape) -> Callable[..., Any]:
     """`service.run`, compiled for one shape at first use, then read from disk."""
-    run: Callable[..., Any] = _engine.load_module(source(shape)).run
+    run: Callable[..., Any] = _engine.load_module(source(shape) if shape.observers else _kept(shape)).run
     return run
+
+
+def _kept(shape: Shape) -> str:
+    """The text, from disk where it was made before; not that of observers, which may be functions of the user's."""
+    told = {each.name: getattr(shape, each.name) for each in fields(shape)} | {"present": sorted(shape.present)}
+    return _engine.kept_text(repr(told), lambda: source(shape))
 
 
 def source(shape: Shape) -> str:
