@@ -19,6 +19,7 @@ from squealbox.system import Contact, System, equilibrium
 
 OWN = "chosen by the user"
 EVERY = ""
+STEEPER = 1e-6  # share by which a mean law must fall faster than the law itself to be told
 TWIN = 0.2  # relative distance of the dither from an eigenfrequency below which it shakes that mode
 
 
@@ -72,7 +73,9 @@ class Dithered(Countermeasure):
         said = []
         for i in chosen:
             name, speed = base.contacts[i].name, float(np.max(np.abs(state.sliding_speed[..., i])))
-            if np.any(self.velocity < speed) and np.any(base.contacts[i].law.slope_at(speed) < 0.0):
+            law = base.contacts[i].law
+            slope, mean = (np.asarray(each.slope_at(speed)) for each in (law, averaged(law, self.velocity)))
+            if np.any((self.velocity < speed) & (mean < slope - STEEPER * np.abs(slope)) & (slope < 0.0)):
                 said.append(
                     f"dither of {np.max(self.velocity):g} m/s stays below the sliding speed {speed:g} m/s of "
                     f"{name}: friction that weakens with speed falls faster on the mean, which destabilises"
