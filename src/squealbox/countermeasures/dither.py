@@ -19,7 +19,7 @@ from squealbox.system import Contact, System, equilibrium
 
 OWN = "chosen by the user"
 EVERY = ""
-STEEPER = 1e-6  # share by which a mean law must fall faster than the law itself to be told
+CLOSE = 1e-6  # share within which a mean law falls as fast as the law itself
 TWIN = 0.2  # relative distance of the dither from an eigenfrequency below which it shakes that mode
 
 
@@ -75,11 +75,12 @@ class Dithered(Countermeasure):
             name, speed = base.contacts[i].name, float(np.max(np.abs(state.sliding_speed[..., i])))
             law = base.contacts[i].law
             slope, mean = (np.asarray(each.slope_at(speed)) for each in (law, averaged(law, self.velocity)))
-            if np.any((self.velocity < speed) & (mean < slope - STEEPER * np.abs(slope)) & (slope < 0.0)):
-                said.append(
-                    f"dither of {np.max(self.velocity):g} m/s stays below the sliding speed {speed:g} m/s of "
-                    f"{name}: friction that weakens with speed falls faster on the mean, which destabilises"
-                )
+            below, near = np.asarray(self.velocity) < speed, CLOSE * np.abs(slope)
+            stays = f"dither of {np.max(self.velocity):g} m/s stays below the sliding speed {speed:g} m/s of {name}"
+            if np.any(below & (mean < slope - near) & (slope < 0.0)):
+                said.append(f"{stays}: friction that weakens with speed falls faster on the mean, which destabilises")
+            elif np.any(below & (np.abs(mean - slope) <= near)):
+                said.append(f"{stays}: nothing reverses, and friction rises or falls on the mean as it does without")
             if np.any(state.normal_force[..., i] < 0.0):
                 said.append(f"{name} is pulled (N < 0): dither takes damping away there")
         return (*said, *resonances(self.brake, self.frequency), *super().cautions())
