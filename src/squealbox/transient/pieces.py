@@ -132,7 +132,10 @@ class _Walk:
         self.shortest = min(self.late[self.flowing], default=np.inf)
         self.longest = self.shortest / np.ceil(self.shortest / self.arc) if self.flowing else np.inf
         if duration / min(self.longest, float(np.min(self.steps))) > MOST_PIECES:
-            raise ParameterError("simulate", "duration", duration, f"at most {MOST_PIECES} samples or delays")
+            expected = (
+                f"at most {MOST_PIECES} samples, delays and half radians of the brake's fastest motion under a delay"
+            )
+            raise ParameterError("simulate", "duration", duration, expected)
         self.held = np.zeros(count)
         self.arrivals: list[tuple[float, int, float]] = []
         self.taken = np.zeros(count, dtype=int)
@@ -225,7 +228,7 @@ class _Walk:
         if edges and found.outcome.ok:
             for instant in inside:
                 self.sensed.kink(instant, 1)
-            self._remember(found, edges, numbers)
+            self._remember(found, edges)
             self.sensed.forget(until - float(np.max(self.late)))
         return found
 
@@ -267,10 +270,10 @@ class _Walk:
         if self.pushed is not None:
             found = by_series(self.pushed.ready(numbers, self.q, self.qd, now, until, instants), until)
             if found.outcome != "step_underflow" or self.ways.named:
-                return found
+                return replace(found, rows=found.rows.copy())  # without the room around them
         return leg(self._under(numbers), self.ways, self.q, self.qd, now, until - now, instants)
 
-    def _remember(self, found: Leg, edges: list[float], numbers: Any) -> None:
+    def _remember(self, found: Leg, edges: list[float]) -> None:
         """Keep what was sensed, and add up the work of the actuators."""
         driven, n = self.driven, self.driven.b.shape[1]
         t, q, qd = found.parts(self.system.size)
