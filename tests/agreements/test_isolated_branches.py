@@ -1,10 +1,13 @@
 """Isolated branches from long runs against shooting from a known start, and both ways as one branch."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from squealbox import DrumBrake, LinearSlope, ParameterError, branch, hopf_point, shooting
 from squealbox.limit_cycles import isolated_branches, joined, settled_cycles
+from squealbox.limit_cycles.branches.isolated import lies_on
 
 DRUM = DrumBrake(friction=LinearSlope(0.34, -0.05), reading="consistent")
 LARGE, SMALL = ([3e-5, 1e-5], [0.3, -0.3]), None  # a start far from sliding, and the growing mode
@@ -59,3 +62,12 @@ def test_both_ways_keep_their_special_points():
 
 def found_at(static):
     return shooting(DRUM.replace({"friction.static": static}), LARGE)
+
+
+def test_a_branch_that_ended_early_lies_on_the_one_that_goes_on():
+    brake = DrumBrake(friction=LinearSlope(0.3, -0.05))
+    onset = hopf_point(brake, "friction.static", (0.1, 0.6))
+    short, long = (branch(brake, "friction.static", (0.1, 0.6), onset, points=count) for count in (6, 24))
+    assert lies_on(short, long)
+    assert not lies_on(long, short)
+    assert not lies_on(short, replace(long, period=1.1 * long.period))

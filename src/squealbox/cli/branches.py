@@ -22,6 +22,7 @@ from squealbox.limit_cycles import (
     stretches,
 )
 from squealbox.limit_cycles import branch as followed
+from squealbox.limit_cycles.branches.isolated import lies_on
 from squealbox.matrices import liveliest
 from squealbox.result import Outcome
 
@@ -115,7 +116,8 @@ def all_branches(
     if start != "hopf":
         say("runs, and the branches they lead to")
         several += isolated_branches(design, varied.name, bounds, values=at, starts=runs, known=several, points=points)
-    return born, several
+    # runs may lead to a branch that goes on through the whole of an earlier one, which ended after so many points
+    return born, tuple(x for i, x in enumerate(several) if not any(lies_on(x, later) for later in several[i + 1 :]))
 
 
 def _said(name: str, one: Branch, quiet: list[tuple[float, float]], design: "Design", varied: "Axis") -> str:

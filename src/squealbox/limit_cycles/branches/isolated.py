@@ -149,12 +149,12 @@ def isolated_branches(
             start = {"start": cycle, "value": float(value), "method": "shooting", **walk}
             ways = [branch(design, parameter, bounds, direction=way, **start) for way in (-1.0, 1.0)]
             one = joined(*ways)
-            if not any(_same_way(one, other) for other in found):
+            if not any(lies_on(one, other) for other in found):
                 found.append(one)
     return tuple(found[len(known) :])
 
 
-def _same_way(one: Branch, other: Branch) -> bool:
+def lies_on(one: Branch, other: Branch) -> bool:
     """True when most points of a branch lie on another one: the same branch, met again."""
     on = 0
     for i in range(len(one.value)):
