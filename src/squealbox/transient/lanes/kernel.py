@@ -62,14 +62,20 @@ PLACES = {
 @cache
 def lane_kernel(shape: Shape) -> Callable[..., Any]:
     """`service.run`, compiled for one shape at first use, then read from disk."""
-    run: Callable[..., Any] = _engine.load_module(source(shape) if shape.observers else _kept(shape)).run
+    run: Callable[..., Any] = _engine.load_module(_text(shape)).run
     return run
 
 
-def _kept(shape: Shape) -> str:
-    """The text, from disk where it was made before; not that of observers, which may be functions of the user's."""
-    told = {each.name: getattr(shape, each.name) for each in fields(shape)} | {"present": sorted(shape.present)}
-    return _engine.kept_text(repr(told), lambda: source(shape))
+def _text(shape: Shape) -> str:
+    """The text, from disk where it was made before; not that of observers which are functions of the user's."""
+    asked = [(each.update.__module__, getattr(each.update, "__qualname__", "<>")) for each in shape.observers]
+    if any(not module.startswith("squealbox.transient.") or "<" in name for module, name in asked):
+        return source(shape)
+    watched = [each._replace(update=name) for each, name in zip(shape.observers, asked, strict=True)]
+    told = {each.name: getattr(shape, each.name) for each in fields(shape)}
+    return _engine.kept_text(
+        repr({**told, "present": sorted(shape.present), "observers": watched}), lambda: source(shape)
+    )
 
 
 def source(shape: Shape) -> str:
