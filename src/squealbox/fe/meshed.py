@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from squealbox.contacts import Contacts
+from squealbox.contacts import Contacts, unchanging
 from squealbox.designs.base import Design
 from squealbox.fe.grids import Body, FacePoints
 from squealbox.parameters import DataSheet, ParameterError, parameter
@@ -135,19 +135,18 @@ class MeshedBrake(Design):
         stiffness = float(self.value_of("contact_stiffness"))
         elastic = tuple((name, *(float(x) for x in vars_of(part))) for name, part in self.materials().items())
         springs = tuple((name, float(value)) for name, value in self.held_by().items())
-        matrices = summed(made, elastic, springs, stiffness, touching.tobytes())
-        normal = made.normal[touching]
+        matrices, (normal, pushed, along, across) = summed(made, elastic, springs, stiffness, touching.tobytes())
         contacts = Contacts(
-            n=sparse.diags_array(stiffness * made.area[touching]) @ normal,
-            d=made.along[touching],
-            t=made.along[touching],
+            n=pushed,
+            d=along,
+            t=along,
             N0=0.0,
             V=self.value_of("angular_speed") * made.radius[touching],
             law=self.value_of("friction"),
             names=tuple(np.array(made.names)[touching]),
             unilateral=True,
             normal=normal,
-            across=made.across[touching],
+            across=across,
         )
         load = sum(value * made.loads[name] for name, value in self.pressed_by().items())
         return System(*matrices, load, contacts)
@@ -198,15 +197,22 @@ def vars_of(material: Material) -> tuple[float, float, float]:
 
 
 @lru_cache(maxsize=2)
-def summed(made: Structure, elastic: Any, springs: Any, contact: float, touching: bytes) -> tuple[Any, Any, Any]:
-    """M, C and K of a structure; kept, because friction, pressure and speed change none of them."""
+def summed(
+    made: Structure, elastic: Any, springs: Any, contact: float, touching: bytes
+) -> tuple[tuple[Any, Any, Any], tuple[Any, ...]]:
+    """M, C and K of a structure, and the rows normal, n, along and across of its contacts.
+
+    Kept, because friction, pressure and speed change none of them.
+    """
     mass = sum(density * made.mass[name] for name, density, _, _ in elastic)
     damping = sum(young * share * made.stiffness[name] for name, _, young, share in elastic)
-    rows = made.normal[np.frombuffer(touching, dtype=np.int64)]
-    area = made.area[np.frombuffer(touching, dtype=np.int64)]
-    light = rows.T @ sparse.diags_array(contact * area) @ rows + sum(k * made.springs[name] for name, k in springs)
+    some = np.frombuffer(touching, dtype=np.int64)
+    normal, along, across = (rows[some] for rows in (made.normal, made.along, made.across))
+    pushed = sparse.csr_array(sparse.diags_array(contact * made.area[some]) @ normal)
+    light = normal.T @ pushed + sum(k * made.springs[name] for name, k in springs)
     stiffness = sum(young * made.stiffness[name] for name, _, young, _ in elastic) + light
-    return mass, damping, sparse.csr_array(stiffness)
+    matrices, rows = (mass, damping, stiffness), (normal, pushed, along, across)
+    return tuple(tuple(unchanging(sparse.csr_array(table)) for table in tables) for tables in (matrices, rows))  # type: ignore[return-value]
 
 
 class Frame:
