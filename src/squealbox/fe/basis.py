@@ -57,11 +57,8 @@ def fresh_directions(mass: Any, basis: Sequence[Any], weighted: Sequence[Any], v
     values, turns = np.linalg.eigh(0.5 * (gram + gram.T))
     keep = values > NEGLIGIBLE
     fresh = vectors @ (turns[:, keep] / np.sqrt(values[keep]))
-    for _ in range(2):  # what the small directions lost of their right angle
-        fresh = _without(fresh, basis, weighted)
-        gram = fresh.T @ (mass @ fresh)
-        fresh = np.linalg.solve(np.linalg.cholesky(gram), fresh.T).T
-    return fresh
+    fresh = _without(fresh, basis, weighted)  # what the small directions lost of their right angle
+    return fresh @ np.linalg.inv(np.linalg.cholesky(fresh.T @ (mass @ fresh))).T
 
 
 def _without(vectors: Any, basis: Sequence[Any], weighted: Sequence[Any]) -> Any:

@@ -19,6 +19,7 @@ from scipy import sparse
 from squealbox.contacts import Contacts, unchanging
 from squealbox.designs.base import Design
 from squealbox.fe.grids import Body, FacePoints
+from squealbox.fe.real_modes import RealModes, real_modes
 from squealbox.parameters import DataSheet, ParameterError, parameter
 from squealbox.system import Equilibrium, System, equilibrium
 
@@ -190,6 +191,11 @@ class Preload:
         """Normal force of one lining [N]."""
         return float(np.sum(self.equilibrium.normal_force[self.side == side]))
 
+    def torque(self, side: int) -> float:
+        """Torque of one lining's friction about the axis [N m]."""
+        friction = self.equilibrium.friction * self.equilibrium.normal_force
+        return float(np.sum((friction * np.hypot(self.place[0], self.place[1]))[self.side == side]))
+
 
 def vars_of(material: Material) -> tuple[float, float, float]:
     """Density, Young's modulus and damping."""
@@ -213,6 +219,13 @@ def summed(
     stiffness = sum(young * made.stiffness[name] for name, _, young, _ in elastic) + light
     matrices, rows = (mass, damping, stiffness), (normal, pushed, along, across)
     return tuple(tuple(unchanging(sparse.csr_array(table)) for table in tables) for tables in (matrices, rows))  # type: ignore[return-value]
+
+
+def modes_alone(body: Body, material: Material, top: float, held: Any = None) -> RealModes:
+    """Undamped modes below `top` [Hz] of one body, free or without the freedoms marked `held` (n,)."""
+    kept = np.arange(body.size) if held is None else np.flatnonzero(~held)
+    stiffness, mass = material.young * body.stiffness(material.poisson), material.density * body.mass()
+    return real_modes(sparse.csr_array(stiffness[kept][:, kept]), sparse.csr_array(mass[kept][:, kept]), top)
 
 
 class Frame:
@@ -239,6 +252,12 @@ class Frame:
             inside = inside[:, self.inner[body]]
         where = (inside.indices + self.starts[body]).astype(np.int32)
         return sparse.csr_array((inside.data, where, inside.indptr), shape=(inside.shape[0], self.size))
+
+    def pin(self, face: FacePoints, body: int, direction: Any) -> Any:
+        """The row (1, n) of a face's mean displacement along a direction (3,)."""
+        directions = np.repeat(np.asarray(direction)[:, None], len(face.area), axis=1)
+        share = sparse.csr_array((face.area / np.sum(face.area))[None, :])
+        return share @ self.rows(face.along(directions), body)
 
     def spring(self, face: FacePoints, body: int, *directions: Any) -> Any:
         """A spring of 1 N/m over a face along each of the directions (3, k), spread by area."""
