@@ -22,6 +22,7 @@ from squealbox.fe.pencil import Pencil
 MOST = 150  # factorisations
 RATES_AGREE = 0.8  # rad by which two formulas for the turn of an interval may differ
 PHASES_AGREE = 0.4  # rad by which measured phases may differ from the turn the rates give
+PIECES = (1, 4, 1, 4)  # of each side of the rectangle at first
 PROBE = 1e-5  # distance of the second determinant, as a share of the largest |lambda|
 GROWTH = 1000.0  # growth rate [1/s] up to which a rectangle reaches at least
 
@@ -82,10 +83,9 @@ def certificate(
     inside = (known.real > left) & (known.real < right) & (known.imag > low) & (known.imag < high)
     search = _Winding(pencil, known, PROBE * abs(complex(right, high)), most, {} if phases is None else phases)
     corners = [complex(left, low), complex(right, low), complex(right, high), complex(left, high)]
-    pieces = (2, 8, 2, 8)
     turn, reason = 0.0, ""
     try:
-        for start, end, parts in zip(corners, [*corners[1:], corners[0]], pieces, strict=True):
+        for start, end, parts in zip(corners, [*corners[1:], corners[0]], PIECES, strict=True):
             turn += search.turn(start, end, parts)
         missing: int | None = round(turn / (2.0 * np.pi))
     except _TooMany as error:
