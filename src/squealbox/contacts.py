@@ -295,7 +295,7 @@ def _each(name: str, values: Any, count: int) -> Any:
 def _rows(name: str, rows: Any) -> Any:
     """A table of rows in compressed sparse rows, whose values are real and finite."""
     if sparse.issparse(rows):
-        return _finite(name, sparse.csr_array(rows))
+        return _finite(name, rows if isinstance(rows, sparse.csr_array) else sparse.csr_array(rows))
     table = array(name, rows, 2)
     if table.ndim != 2:
         raise InvalidSystem(f"{name} has shape {table.shape}: expected (contacts, n)")
@@ -321,7 +321,7 @@ def dense_rows(contact: Contact) -> Contact:
 def sparse_matrix(name: str, matrix: Any, ndim: int = 2) -> Any:
     """A matrix in compressed sparse rows, finite and real, or `InvalidSystem`."""
     if sparse.issparse(matrix):
-        return _finite(name, sparse.csr_array(matrix))
+        return _finite(name, matrix if isinstance(matrix, sparse.csr_array) else sparse.csr_array(matrix))
     found = array(name, matrix, ndim)
     if found.ndim != 2:
         raise InvalidSystem(f"{name} has shape {found.shape}: beside sparse matrices expected one matrix, (n, n)")
@@ -329,11 +329,23 @@ def sparse_matrix(name: str, matrix: Any, ndim: int = 2) -> Any:
 
 
 def _finite(name: str, table: Any) -> Any:
-    """A sparse array of finite real numbers without duplicate entries, or `InvalidSystem`."""
+    """A sparse array of finite real numbers without duplicate entries, or `InvalidSystem`.
+
+    A copy that cannot be written to; such a one is taken as it is, so that systems of one brake share their matrices.
+    """
+    if table.data.dtype == float and not table.data.flags.writeable and table.has_canonical_format:
+        return table
     if np.iscomplexobj(table.data):
         raise InvalidSystem(f"{name}: expected an array of real numbers")
     table = table.astype(float)
-    table.sum_duplicates()
     if not np.all(np.isfinite(table.data)):
         raise InvalidSystem(f"{name} holds a value that is not finite")
+    return unchanging(table)
+
+
+def unchanging(table: Any) -> Any:
+    """A sparse array without duplicate entries that can no longer be written to."""
+    table.sum_duplicates()
+    for part in (table.data, table.indices, table.indptr):
+        part.flags.writeable = False
     return table

@@ -19,18 +19,24 @@ from squealbox.contacts import Contacts
 from squealbox.factorisation import Factor, SingularMatrix, factor
 
 ROUGH, FINE = 1e-2, 1e-11  # of a step's residual: what is left of it while the set of open contacts changes, and after
+FAIR = 1e-7  # what a fine step leaves at most, however close to balance it begins
 LAST = 1e-6  # size of a fine step, relative to the displacement, after which no other is needed
-BALANCED = 1e-10  # of the largest residual met: what is left of it in balance
+BALANCED = 1e-10  # of the forces that act: what is left of them in balance
+ASTRAY = 1e-3  # of these: what is left where round-off of a stiff brake lets nothing smaller be reached
 EXACT_STEPS = 60  # of a search that factors every step
+ROOM = 16  # directions for which memory is taken at a time
 DIRECTIONS = 100  # that a step may try; more, and a factorisation is the quicker way
 DEPENDENT = 1e-8  # share of the largest square length below which a remembered direction is no new one
 
 
 class Start(NamedTuple):
-    """Steady sliding q (n,) of a similar brake and the factor of a similar stiffness, to begin a search with."""
+    """Steady sliding q (n,) of a similar brake and the factor of a similar stiffness, to begin a search with.
+
+    base is None where that stiffness is singular.
+    """
 
     q: Any
-    base: Factor
+    base: Factor | None
 
 
 class SlidingState(NamedTuple):
@@ -51,8 +57,7 @@ def sliding_state(
 
     Where rough steps lead astray, as they may where the brake is all but rigid, exact ones begin anew.
     """
-    base = _factored(stiffness) if start is None else start.base
-    begin = np.zeros(stiffness.shape[0]) if start is None else start.q
+    begin, base = at_rest(stiffness) if start is None else start
     steps = 3 + 2 * len(contacts)
     found = _search(_Steps(stiffness, contacts, base), begin, load, time, steps)
     if not found.settled and base is not None and np.any(contacts.unilateral):
@@ -65,24 +70,26 @@ def _search(steps: "_Steps", q: Any, load: Any, time: float, most: int) -> Slidi
     stiffness, contacts = steps.stiffness, steps.contacts
     speed, preload = contacts.at("V", time), contacts.at("N0", time)
     mu, _ = contacts.friction(speed)
-    exactly, largest, step = not np.any(contacts.unilateral), 0.0, None
-    closed = np.ones(len(contacts), dtype=bool)
+    acting = float(np.linalg.norm(load) + np.linalg.norm(contacts.d.T @ (mu * preload)))
+    exactly, step = not np.any(contacts.unilateral), None
     normal = preload + contacts.n @ q
-    for _ in range(most):
-        before, closed = closed, (normal > 0.0) | ~contacts.unilateral
+    closed = normal >= 0.0  # what just touches is held at first, or nothing might hold the brake
+    for made in range(most):
+        before, closed = closed, ((normal > 0.0) if made else closed) | ~contacts.unilateral
         drag = np.where(closed, mu * np.sign(speed), 0.0)
         residual = stiffness @ q - load - contacts.d.T @ (drag * normal)
         if contacts.normal is not None:
             residual -= contacts.normal.T @ np.where(closed, 0.0, normal)
         size = float(np.linalg.norm(residual))
-        largest = max(largest, size)
+        acting = acting if made else max(acting, size)
         same = step is not None and np.array_equal(before, closed)
         small = step is not None and float(np.linalg.norm(step)) <= LAST * float(np.linalg.norm(q))
-        if size == 0.0 or (same and exactly and (small or size <= BALANCED * largest)):
+        if size == 0.0 or (same and exactly and size <= (ASTRAY if small else BALANCED) * acting):
             return SlidingState(q, _pressing(normal, closed), speed, mu, False, True)
         exactly = same or not np.any(contacts.unilateral)
         try:
-            step = steps.solved(drag, closed, residual, FINE if exactly else ROUGH)
+            enough = np.clip(0.1 * BALANCED * acting / size, FINE, FAIR)
+            step = steps.solved(drag, closed, residual, enough if exactly else ROUGH)
         except SingularMatrix:
             return SlidingState(q, _pressing(normal, closed), speed, mu, True, False)
         q = q - step
@@ -90,11 +97,12 @@ def _search(steps: "_Steps", q: Any, load: Any, time: float, most: int) -> Slidi
     return SlidingState(q, _pressing(normal, closed), speed, mu, False, False)
 
 
-def _factored(stiffness: Any) -> Factor | None:
+def at_rest(stiffness: Any) -> Start:
+    """No displacement, and the factor of the stiffness with every contact closed."""
     try:
-        return factor(stiffness)
+        return Start(np.zeros(stiffness.shape[0]), factor(stiffness))
     except SingularMatrix:
-        return None
+        return Start(np.zeros(stiffness.shape[0]), None)
 
 
 def _pressing(normal: Any, closed: Any) -> Any:
@@ -123,13 +131,14 @@ class _Steps:
         small = accuracy * np.linalg.norm(residual)
         known, images = self._remembered(drag, closed)
         count = known.shape[1]
-        room = [np.empty((len(residual), count + DIRECTIONS), order="F") for _ in range(2)]
-        room[0][:, :count], room[1][:, :count] = known, images
+        room = [np.asfortranarray(known), np.asfortranarray(images)]
         part = images.T @ residual
         step, left = known @ part, residual - images @ part
         for made in range(count, count + DIRECTIONS):
             if np.linalg.norm(left) <= small:
                 return step
+            if made == room[0].shape[1]:
+                room = [np.pad(part, ((0, 0), (0, ROOM))) for part in room]
             z = base.solve(left)
             self.tried.append((z, self.stiffness @ z, self.contacts.n @ z))
             image = self._image(*self.tried[-1][1:], drag, closed)

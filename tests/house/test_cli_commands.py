@@ -9,6 +9,7 @@ import pytest
 from squealbox import DrumBrake, complex_modes, critical_value, equilibrium
 from squealbox.cli import COMMANDS, main
 from squealbox.files import BRAKES, read_design, read_file
+from squealbox.files.reading import MESHED
 from squealbox.result import Outcome, Result
 
 
@@ -111,7 +112,7 @@ def test_a_bad_file_says_all_its_problems(said, tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-@pytest.mark.parametrize("name", [name for name in BRAKES if name != "disc_brake"])
+@pytest.mark.parametrize("name", [name for name in BRAKES if name not in MESHED])
 def test_init_writes_an_example_that_runs(name, said, tmp_path, undrawn):
     code, out, _ = said("init", tmp_path / "new" / "folder", "--brake", name)
     path = tmp_path / "new" / "folder" / "brake.toml"
@@ -124,8 +125,9 @@ def test_init_writes_an_example_that_runs(name, said, tmp_path, undrawn):
     assert said("run", path, "--out", tmp_path / "study")[0] == 0
 
 
-def test_init_says_how_a_meshed_brake_begins(said, tmp_path):
-    code, _, err = said("init", tmp_path / "new", "--brake", "disc_brake")
+@pytest.mark.parametrize("name", MESHED)
+def test_init_says_how_a_meshed_brake_begins(name, said, tmp_path):
+    code, _, err = said("init", tmp_path / "new", "--brake", name)
     assert code == 2
     assert "section [modes]" in err
     assert not (tmp_path / "new").exists()

@@ -6,7 +6,10 @@ import pytest
 from fe_brakes import dense, pad_brake
 from squealbox import Coulomb, complex_modes
 from squealbox.fe import certificate, count_below, pencil_of, real_modes
+from squealbox.fe.growing_basis import GrowingBasis
+from squealbox.fe.projection import basis_for, modes_on, refined
 from squealbox.stability import certified
+from squealbox.stability.band_modes import known_eigenvalues
 
 BAND = (3000.0, 7000.0)
 
@@ -82,3 +85,24 @@ def test_sturm_counts_the_real_modes():
         assert found.complete
         assert count_below(pencil.elastic, pencil.M, top) == np.sum(exact < top)
         np.testing.assert_allclose(found.frequency, exact[exact < top], rtol=1e-9)
+
+
+def test_a_growing_mode_that_the_basis_lacks_is_noticed_and_nothing_else(brake):
+    """The basis less the right shape of one growing mode: its eigenvalue is then nowhere in the list."""
+    pencil, _, _ = brake
+    modes, basis = basis_for(pencil, BAND)
+    onto = GrowingBasis([pencil], basis)
+    whole = refined(onto, modes.base, BAND, 0.05)[0]
+    basis = np.concatenate(onto.blocks, axis=1)
+    phases = {}
+    assert certificate(pencil, known_eigenvalues(whole), BAND, phases=phases).certified
+    growing = np.flatnonzero(whole.eigenvalues.real > np.abs(whole.error))
+    assert len(growing)
+    for hidden in growing:
+        shape = whole.x[:, [hidden]]
+        gone = np.linalg.qr(np.concatenate([shape.real, shape.imag], axis=1))[0]
+        rest = np.linalg.svd(np.eye(len(gone)) - gone @ gone.T)[0][:, : len(gone) - 2]
+        less = modes_on(GrowingBasis([pencil], basis @ rest), 0, modes.base, BAND)[0]
+        found = certificate(pencil, known_eigenvalues(less), BAND, phases=phases)
+        assert found.missing == 1
+        assert found.factorisations <= 150

@@ -65,3 +65,24 @@ def test_a_singular_matrix_is_refused(library):
 def test_bad_input_is_named(matrix, words):
     with pytest.raises(ValueError, match=words):
         factor(matrix, library="mumps" if words == "library" else "auto")
+
+
+def test_the_order_of_one_factor_serves_another_with_entries_in_its_places():
+    pytest.importorskip("rslab")
+    matrix = random_matrix("real symmetric")
+    first = factor(matrix, True, library="rslab")
+    less = sparse.csc_array(matrix + sparse.diags_array(np.full(SIZE, 0.5)))
+    pair = next((i, j) for i, j in zip(*less.nonzero(), strict=True) if i < j)
+    less = less.tolil()
+    less[pair], less[pair[::-1]] = 0.0, 0.0
+    less = sparse.csc_array(less)
+    less.eliminate_zeros()
+    right = np.random.default_rng(6).standard_normal(SIZE)
+    second = factor(less, True, library="rslab", order=first.order)
+    assert second.order is first.order
+    np.testing.assert_allclose(second.solve(right), np.linalg.solve(less.toarray(), right), rtol=1e-9)
+    elsewhere = sparse.csc_array(less + sparse.coo_array(([0.1, 0.1], ([0, 40], [40, 0])), shape=(SIZE, SIZE)))
+    assert less[0, 40] == 0.0 == matrix[0, 40]
+    third = factor(elsewhere, True, library="rslab", order=first.order)
+    assert third.order is not first.order
+    np.testing.assert_allclose(third.solve(right), np.linalg.solve(elsewhere.toarray(), right), rtol=1e-9)

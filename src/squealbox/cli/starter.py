@@ -135,12 +135,12 @@ def _duration(design: "Design") -> str:
 def _example(brake: str) -> "Design":
     from squealbox.designs import DrumBrake
     from squealbox.files import BRAKES, OwnBrake, OwnContact, OwnMechanism
-    from squealbox.files.reading import READERS
+    from squealbox.files.reading import MESHED, READERS
     from squealbox.friction import Coulomb, LinearSlope
 
-    if brake == "disc_brake":
+    if brake in MESHED:
         raise UsageError(
-            '--brake disc_brake: a file of one line, brake = "disc_brake", beside a section [modes] with its band; '
+            f'--brake {brake}: a file of one line, brake = "{brake}", beside a section [modes] with its band; '
             "examples/caliper begins from exported matrices"
         )
     if brake in READERS:

@@ -7,6 +7,7 @@ from squealbox.fe.disc_brake import Backplates, Disc, DiscBrake, Pads, Springs, 
 from squealbox.fe.export import write_shape
 from squealbox.fe.interfaces import CoordinateSystem, Interface, Rotation
 from squealbox.fe.meshed import Material, MeshedBrake, Preload
+from squealbox.fe.meshed_drum import Anchors, Drum, MeshedDrumBrake, Shoes, free_drum_modes
 from squealbox.fe.pencil import Pencil, pencil_of
 from squealbox.fe.published import PublishedDiscBrake
 from squealbox.fe.quadratic import FullModes, full_modes
@@ -19,18 +20,21 @@ from squealbox.fe.units import UNITS
 
 __all__ = [
     "UNITS",
+    "Anchors",
     "AssembledBrake",
     "Backplates",
     "Certificate",
     "CoordinateSystem",
     "Disc",
     "DiscBrake",
+    "Drum",
     "Factor",
     "FullModes",
     "Interface",
     "Material",
     "MatrixFileError",
     "MeshedBrake",
+    "MeshedDrumBrake",
     "Pads",
     "Pencil",
     "Preload",
@@ -39,6 +43,7 @@ __all__ = [
     "ReducedBrake",
     "Reduction",
     "Rotation",
+    "Shoes",
     "SingularMatrix",
     "Springs",
     "Structure",
@@ -47,6 +52,7 @@ __all__ = [
     "count_below",
     "factor",
     "free_disc_modes",
+    "free_drum_modes",
     "full_modes",
     "open_matrices",
     "pencil_of",

@@ -3,7 +3,7 @@
 In coordinates that are undamped modes, the slow ones l carry the modes of the band; the fast ones h follow nearly
 statically. Two-sided static condensation gives a problem in l alone, with eigenvalues lambda_j and modes u_j, w_j, and
 
-    x_h -= K_hh^-1 [Q x]_h
+    x_h -= Q_hh(lambda_0)^-1 [Q x]_h
     x -= R sum_{j != k} u_j w_j^H L' Q x / (lambda - lambda_j)
 
 with R and L the columns of the condensation and lambda the two-sided Rayleigh quotient leads from it to the modes of
@@ -21,6 +21,7 @@ from squealbox.fe.small import Small
 
 SLOW = 2.2  # times the end of the band: coordinates above it are fast
 PASSES = 40
+GROUPS = 3  # of neighbouring modes, whose fast coordinates are solved for with one factor
 SETTLED, ROUGH = 1e-11, 1e-7  # of |lambda|: change of an eigenvalue at which it has settled
 RESIDUAL = 1e-5  # of |K x|: residual of a shape; its eigenvalue is better by the same factor again
 
@@ -72,7 +73,7 @@ def band_pairs(small: Small, band: tuple[float, float], *, rough: bool = False) 
     found = condensed(small, band[1])
     if found is None:
         return None
-    slow, right, left, h, hold = found
+    slow, right, left, h, _ = found
     every, u, w, _ = slow.eigen()
     w = w / np.conj(np.sum(np.conj(w) * (2.0 * every * (slow.M @ u) + slow.C @ u), axis=0))
     light = np.abs(every.real) < 1.2 * MOST_DAMPED * np.abs(every)
@@ -84,6 +85,7 @@ def band_pairs(small: Small, band: tuple[float, float], *, rough: bool = False) 
     u, w, near = _single(u), _single(w), _single(near)  # corrections: single precision halves their price, costs none
     back_u, back_w = np.conj(u).T, np.conj(w).T
     both, back = np.concatenate([stiffness, damping]), np.concatenate([stiffness.T, damping.T])
+    holds = _holds(small, h, values)
     unit = bool(np.max(np.abs(mass - np.eye(len(mass)))) < 1e-9)
     settled = False
     for made in range(PASSES):
@@ -103,8 +105,9 @@ def band_pairs(small: Small, band: tuple[float, float], *, rough: bool = False) 
         settled = bool(made > 1 and np.all(moved <= ROUGH) if rough else np.all(moved <= SETTLED) and off <= RESIDUAL)
         if settled:
             break
-        x[h] -= _solved(hold, missed[h], 0)
-        y[h] -= _solved(hold, missed_left[h], 1)
+        for columns, held in holds:
+            x[np.ix_(h, columns)] -= lu_solve(held, _single(missed[np.ix_(h, columns)]), check_finite=False)
+            y[np.ix_(h, columns)] -= lu_solve(held, _single(missed_left[np.ix_(h, columns)]), 2, check_finite=False)
         x += _times(right, u @ ((back_w @ _single(_times(left.T, missed))) / near))
         y += _times(left, w @ ((back_u @ _single(_times(right.T, missed_left))) / np.conj(near)))
     if not settled:
@@ -133,11 +136,15 @@ def _single(x: Any) -> Any:
     return x.astype(np.complex64)
 
 
-def _solved(hold: Any, x: Any, trans: int) -> Any:
-    """A^-1 x or A^-T x for the factor of a real A and a complex x (m, k), as one real solve."""
-    count = x.shape[1]
-    both = lu_solve(hold, np.concatenate([x.real, x.imag], axis=1), trans=trans, check_finite=False)
-    return both[:, :count] + 1j * both[:, count:]
+def _holds(small: Small, fast: Any, values: Any) -> list[tuple[Any, Any]]:
+    """Columns of `values` that lie near each other, and the factor of Q of the fast coordinates in their middle."""
+    inside = np.ix_(fast, fast)
+    mass, damping, stiffness = (matrix[inside] for matrix in (small.M, small.C, small.K))
+    found = []
+    for columns in np.array_split(np.argsort(values.imag), min(GROUPS, len(values))):
+        rate = 1j * np.sqrt(0.5 * (np.min(values.imag[columns]) ** 2 + np.max(values.imag[columns]) ** 2))
+        found.append((columns, lu_factor(_single(stiffness + rate * damping + rate**2 * mass))))
+    return found
 
 
 def _times(matrix: Any, x: Any) -> Any:

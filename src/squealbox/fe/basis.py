@@ -16,25 +16,30 @@ from squealbox.fe.real_modes import RealModes
 NEGLIGIBLE = 1e-13  # share of the largest length below which a direction is round-off
 
 
-def enriched_basis(pencil: Pencil, modes: RealModes, extra: int | None = None) -> Any:
-    """Columns V (n, m) with V' M V = I: the real modes and the `extra` strongest vectors (default: as many)."""
+def enriched_basis(pencil: Pencil, modes: RealModes, top: float, allowed: float = 10.0) -> Any:
+    """Columns V (n, m) with V' M V = I: the real modes, and of the vectors for those up to `top` [Hz] the strongest.
+
+    A vector's strain energy over the angular frequency is what leaving it out may cost an eigenvalue [1/s]; those left
+    out hold `allowed` of it together.
+    """
     shapes = modes.shapes
-    extra = shapes.shape[1] if extra is None else extra
-    rates = 2.0 * np.pi * np.maximum(modes.frequency, 1e-3 * modes.top)
-    held = pencil.elastic @ shapes
-    parts = [*((part - held) / rates for part in pencil.stiffness_on(shapes)), pencil.damping_on(shapes)]
-    right = np.concatenate([part for part in parts if np.any(part)] or [np.zeros((pencil.size, 0))], axis=1)
-    return joined(pencil, shapes, strongest(pencil, modes, modes.base.solve_many(right), extra))
+    below = modes.frequency <= max(top, float(np.min(modes.frequency, initial=0.0)))
+    some, rates = shapes[:, below], 2.0 * np.pi * np.maximum(modes.frequency[below], 1e-3 * modes.top)
+    held = pencil.elastic @ some
+    parts = [*((part - held) / rates for part in pencil.stiffness_on(some)), pencil.damping_on(some)]
+    parts = [part * np.sqrt(0.5 * rates) for part in parts if np.any(part)]
+    right = np.concatenate(parts or [np.zeros((pencil.size, 0))], axis=1)
+    return joined(pencil, shapes, strongest(pencil, modes, modes.base.solve_many(right), allowed))
 
 
-def strongest(pencil: Pencil, modes: RealModes, vectors: Any, count: int) -> Any:
-    """The `count` directions of most strain energy in the span of `vectors`, without the real modes."""
+def strongest(pencil: Pencil, modes: RealModes, vectors: Any, allowed: float) -> Any:
+    """The directions of most strain energy in `vectors` less their part in the real modes, but for `allowed` of it."""
     shapes = modes.shapes
     vectors = vectors - shapes @ (shapes.T @ (pencil.M @ vectors))
     energy = vectors.T @ (pencil.elastic @ vectors)
     values, turns = np.linalg.eigh(0.5 * (energy + energy.T))
-    keep = np.argsort(-values)[:count]
-    keep = keep[values[keep] > NEGLIGIBLE * np.max(values, initial=0.0)]
+    values = np.maximum(values, 0.0)
+    keep = np.cumsum(values) > max(allowed, NEGLIGIBLE * float(np.sum(values)))
     return vectors @ (turns[:, keep] / np.sqrt(values[keep]))
 
 
@@ -52,11 +57,8 @@ def fresh_directions(mass: Any, basis: Sequence[Any], weighted: Sequence[Any], v
     values, turns = np.linalg.eigh(0.5 * (gram + gram.T))
     keep = values > NEGLIGIBLE
     fresh = vectors @ (turns[:, keep] / np.sqrt(values[keep]))
-    for _ in range(2):  # what the small directions lost of their right angle
-        fresh = _without(fresh, basis, weighted)
-        gram = fresh.T @ (mass @ fresh)
-        fresh = np.linalg.solve(np.linalg.cholesky(gram), fresh.T).T
-    return fresh
+    fresh = _without(fresh, basis, weighted)  # what the small directions lost of their right angle
+    return fresh @ np.linalg.inv(np.linalg.cholesky(fresh.T @ (mass @ fresh))).T
 
 
 def _without(vectors: Any, basis: Sequence[Any], weighted: Sequence[Any]) -> Any:

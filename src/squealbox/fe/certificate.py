@@ -22,6 +22,7 @@ from squealbox.fe.pencil import Pencil
 MOST = 150  # factorisations
 RATES_AGREE = 0.8  # rad by which two formulas for the turn of an interval may differ
 PHASES_AGREE = 0.4  # rad by which measured phases may differ from the turn the rates give
+PIECES = (1, 4, 1, 4)  # of each side of the rectangle at first
 PROBE = 1e-5  # distance of the second determinant, as a share of the largest |lambda|
 GROWTH = 1000.0  # growth rate [1/s] up to which a rectangle reaches at least
 
@@ -61,6 +62,7 @@ def certificate(
     *,
     largest_growth: float | None = None,
     most: int = MOST,
+    phases: dict[complex, float] | None = None,
 ) -> Certificate:
     """Whether `eigenvalues` holds every mode that grows, or hardly decays, in the band (f1, f2) [Hz].
 
@@ -71,6 +73,7 @@ def certificate(
     band : (f1, f2) [Hz]; widened a little to where no known mode is close to its ends
     largest_growth : [1/s] right side of the rectangle; by default 1000, or four times the largest known
     most : factorisations after which the search gives up
+    phases : of det Q at points, kept from one list of eigenvalues to the next for the same brake; those found are added
     """
     known = np.asarray(eigenvalues, dtype=complex)
     known = known[known.imag > 0.0]
@@ -78,12 +81,11 @@ def certificate(
     left = _left_side(known, low, high)
     right = largest_growth or max(GROWTH, 4.0 * float(np.max(known.real, initial=0.0)))
     inside = (known.real > left) & (known.real < right) & (known.imag > low) & (known.imag < high)
-    search = _Winding(pencil, known, PROBE * abs(complex(right, high)), most)
+    search = _Winding(pencil, known, PROBE * abs(complex(right, high)), most, {} if phases is None else phases)
     corners = [complex(left, low), complex(right, low), complex(right, high), complex(left, high)]
-    pieces = (2, 8, 2, 8)
     turn, reason = 0.0, ""
     try:
-        for start, end, parts in zip(corners, [*corners[1:], corners[0]], pieces, strict=True):
+        for start, end, parts in zip(corners, [*corners[1:], corners[0]], PIECES, strict=True):
             turn += search.turn(start, end, parts)
         missing: int | None = round(turn / (2.0 * np.pi))
     except _TooMany as error:
@@ -104,8 +106,9 @@ class _TooMany(Exception):
 class _Winding:
     """Phases of det Q(lambda) / prod (lambda - lambda_k) and their rates along a contour."""
 
-    def __init__(self, pencil: Pencil, known: Any, probe: float, most: int) -> None:
+    def __init__(self, pencil: Pencil, known: Any, probe: float, most: int, phases: dict[complex, float]) -> None:
         self.pencil, self.known, self.probe, self.most, self.made = pencil, known, probe, most, 0
+        self.phases = phases
         self.seen: dict[tuple[complex, complex], tuple[float, float]] = {}
 
     def turn(self, start: complex, end: complex, parts: int) -> float:
@@ -142,8 +145,10 @@ class _Winding:
         if self.made >= self.most:
             raise _TooMany(f"the phase of det Q could not be followed with {self.most} factorisations")
         self.made += 1
-        whole = factor(self.pencil.at(point), symmetric=False, library="superlu").log_determinant.imag
-        return whole - float(np.sum(np.angle(point - self.known)))
+        if point not in self.phases:
+            whole = factor(self.pencil.at(point), symmetric=False, library="superlu")
+            self.phases[point] = whole.log_determinant.imag
+        return self.phases[point] - float(np.sum(np.angle(point - self.known)))
 
 
 def _wrapped(angle: float) -> float:

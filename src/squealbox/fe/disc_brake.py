@@ -9,11 +9,11 @@ from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
-from scipy import sparse
 
+from squealbox.fe.contact_points import ContactPoints
 from squealbox.fe.grids import Body, breaks
-from squealbox.fe.meshed import IRON, LINING, OWN, STEEL, Frame, Material, MeshedBrake, Structure
-from squealbox.fe.real_modes import RealModes, real_modes
+from squealbox.fe.meshed import IRON, LINING, OWN, STEEL, Frame, Material, MeshedBrake, Structure, modes_alone
+from squealbox.fe.real_modes import RealModes
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, parameter
 
@@ -162,19 +162,12 @@ def structure(
         mass[name] = sum(frame.square(pad.mass(m), i) for i, (pad, m) in both)
         stiffness[name] = sum(frame.square(pad.stiffness(poisson, m), i) for i, (pad, m) in both)
     caliper, abutment, load = 0.0, 0.0, np.zeros(frame.size)
-    tables: dict[str, list[Any]] = {key: [] for key in ("normal", "along", "across", "area", "place", "angle", "side")}
+    points = ContactPoints(frame, 0, disc)
     for i, pad in enumerate(pads):
         sign, bottom = (1.0, 0) if i == 0 else (-1.0, -1)  # the pad above presses downwards
         face = pad.face(2, bottom)
-        directions = _directions(face.place, sign)
-        below = disc.points(np.array([face.place[0], face.place[1], np.full(face.place.shape[1], sign * half)]))
-        for key, direction in zip(("normal", "along", "across"), directions, strict=True):
-            lower = sum(sparse.diags_array(direction[j]) @ below[j] for j in range(3))
-            tables[key].append(frame.rows(face.along(direction), i + 1) - frame.rows(lower, 0))
-        tables["area"].append(face.area)
-        tables["place"].append(face.place)
-        tables["angle"].append(np.arctan2(face.place[1], face.place[0]))
-        tables["side"].append(np.full(len(face.area), i))
+        below = np.array([face.place[0], face.place[1], np.full(face.place.shape[1], sign * half)])
+        points.add(face, i + 1, _directions(face.place, sign), below, np.arctan2(face.place[1], face.place[0]))
         back = pad.face(2, -1 - bottom)
         into = _directions(back.place, sign)[0]
         caliper = caliper + frame.spring(back, i + 1, into)
@@ -191,20 +184,13 @@ def structure(
         for end in (0, -1):
             side = pad.face(1, end, lambda _r, _t, z: np.abs(z) > half + lining)
             abutment = abutment + frame.spring(side, i + 1, *_directions(side.place, sign)[1:])
-    places, sides = np.concatenate(tables["place"], axis=1), np.concatenate(tables["side"])
     return Structure(
         size=frame.size,
         mass=mass,
         stiffness=stiffness,
         springs={"caliper": caliper, "abutment": abutment},
         loads={"pressure": load},
-        **{k: sparse.vstack(tables[k], format="csr") for k in ("normal", "along", "across")},
-        area=np.concatenate(tables["area"]),
-        place=places,
-        radius=np.hypot(places[0], places[1]),
-        angle=np.concatenate(tables["angle"]),
-        side=sides,
-        names=tuple(f"pad {s + 1} point {i + 1}" for i, s in enumerate(sides)),
+        **points.fields("pad"),
         bodies=bodies,
         kept=frame.kept,
     )
@@ -216,11 +202,8 @@ def free_disc_modes(disc: Disc, element_size: float, top: float, *, held: bool =
     around = breaks(0.0, 2.0 * np.pi, element_size / (0.5 * (disc.inner_radius + disc.outer_radius)), 12)
     radii = breaks(disc.inner_radius, disc.outer_radius, element_size, 2)
     body = Body(radii, around, breaks(-half, half, element_size, 2), closed=True)
-    stiffness, mass = disc.material.young * body.stiffness(disc.material.poisson), disc.material.density * body.mass()
-    if held:
-        kept = np.flatnonzero(np.hypot(*body.places[:2]) > disc.inner_radius * (1.0 + 1e-6))
-        stiffness, mass = stiffness[kept][:, kept], mass[kept][:, kept]
-    return real_modes(sparse.csr_array(stiffness), sparse.csr_array(mass), top)
+    at_bore = np.hypot(*body.places[:2]) <= disc.inner_radius * (1.0 + 1e-6)
+    return modes_alone(body, disc.material, top, at_bore if held else None)
 
 
 def _directions(place: Any, sign: float) -> tuple[Any, Any, Any]:

@@ -59,6 +59,7 @@ class GrowingBasis:
         self._of = [[self._known(self._products, _Product, part) for part in p.structural] for p in self.pencils]
         self._rows = [self._rows_of(pencil) for pencil in self.pencils]
         self.blocks: list[Any] = []
+        self._undamped = np.zeros((0, 0))
         self._extend(basis)
 
     @property
@@ -70,14 +71,16 @@ class GrowingBasis:
         """Take in what is new of the columns of `vectors` (n, k)."""
         self._extend(fresh_directions(self.pencils[0].M, self.blocks, self._of[0][0].right, vectors))
 
-    def turn(self, turns: Any) -> None:
-        """V becomes V T for a square T (m, m); the products of size n are given up, so it grows no more."""
+    def turn(self) -> None:
+        """V becomes undamped modes on itself; the products of size n are given up, so it grows no more."""
+        turns = self.undamped
         for product in self._products:
             product.gram = turns.T @ product.gram @ turns
             product.right = product.left = []
         for table in self._tables:
             table.dense = table.dense @ turns
         self.blocks = [times(self.blocks, turns)]
+        self._undamped = np.eye(self.size)
 
     def structural(self, i: int) -> dict[str, Any]:
         """M, C, K of the structure (m, m) and the contacts' rows (contacts, m) of one pencil."""
@@ -91,6 +94,13 @@ class GrowingBasis:
             lifted, rows = np.flatnonzero(sliding.lifted), self._rows[i]
             found = found - rows["normal"].dense[lifted].T @ rows["n"].dense[lifted]
         return 0.5 * (found + found.T)
+
+    @property
+    def undamped(self) -> Any:
+        """Turns (m, m) to the undamped modes of the first pencil on the basis, rising in frequency."""
+        if len(self._undamped) != self.size:
+            self._undamped = np.linalg.eigh(self.elastic(0))[1]
+        return self._undamped
 
     def small(self, i: int) -> Small:
         """M, C_eff and K_eff of one pencil on the basis."""
@@ -108,44 +118,46 @@ class GrowingBasis:
         return Small(mass, damping, stiffness)
 
     def residual(self, i: int, values: Any, x: Any) -> Any:
-        """Q(lambda_k) V x_k (n, k)."""
-        found = self._summed([product.right for product in self._of[i]], (x * values**2, x * values, x))
+        """Q(lambda_k) V x_k, its real parts and then its imaginary ones (n, 2k)."""
+        found = self._summed([product.right for product in self._of[i]], values, x)
         sliding, rows = self.pencils[i].sliding, self._rows[i]
         if sliding is None:
             return found
-        felt = rows["n"].dense @ x
+        still, moving = parts(x), parts(x * values)
+        felt = rows["n"].dense @ still
         weight = -sliding.coupling[:, None] * felt
         if np.any(sliding.along):
-            weight = weight + sliding.along[:, None] * (rows["t"].dense @ (x * values))
+            weight = weight + sliding.along[:, None] * (rows["t"].dense @ moving)
         found += rows["d"].matrix.T @ weight
         if "normal" in rows and np.any(sliding.lifted):
             found -= rows["normal"].matrix.T @ (sliding.lifted[:, None] * felt)
         if "across" in rows:
-            found += rows["across"].matrix.T @ (sliding.across[:, None] * (rows["across"].dense @ (x * values)))
+            found += rows["across"].matrix.T @ (sliding.across[:, None] * (rows["across"].dense @ moving))
         return found
 
     def left_residual(self, i: int, values: Any, y: Any) -> Any:
-        """Q(lambda_k)^H V y_k (n, k)."""
+        """Q(lambda_k)^H V y_k, its real parts and then its imaginary ones (n, 2k)."""
         back = np.conj(values)
-        found = self._summed([product.left for product in self._of[i]], (y * back**2, y * back, y))
+        found = self._summed([product.left for product in self._of[i]], back, y)
         sliding, rows = self.pencils[i].sliding, self._rows[i]
         if sliding is None:
             return found
-        weight = sliding.coupling[:, None] * (rows["d"].dense @ y)
+        still, moving = parts(y), parts(y * back)
+        weight = sliding.coupling[:, None] * (rows["d"].dense @ still)
         if "normal" in rows and np.any(sliding.lifted):
-            weight = weight + sliding.lifted[:, None] * (rows["normal"].dense @ y)
+            weight = weight + sliding.lifted[:, None] * (rows["normal"].dense @ still)
         found -= rows["n"].matrix.T @ weight
         if np.any(sliding.along):
-            found += rows["t"].matrix.T @ (sliding.along[:, None] * (rows["d"].dense @ (y * back)))
+            found += rows["t"].matrix.T @ (sliding.along[:, None] * (rows["d"].dense @ moving))
         if "across" in rows:
-            found += rows["across"].matrix.T @ (sliding.across[:, None] * (rows["across"].dense @ (y * back)))
+            found += rows["across"].matrix.T @ (sliding.across[:, None] * (rows["across"].dense @ moving))
         return found
 
-    def _summed(self, products: list[list[Any]], factors: Any) -> Any:
-        """Sum of A V x over the products and factors."""
-        found = times(products[0], factors[0])
-        for blocks, factor in zip(products[1:], factors[1:], strict=True):
-            times(blocks, factor, found)
+    def _summed(self, products: list[list[Any]], values: Any, x: Any) -> Any:
+        """(lambda^2 M + lambda C + K) V x from the products with M, C and K."""
+        found = np.zeros((self.pencils[0].size, 2 * x.shape[1]))
+        for blocks, factor in zip(products, (values**2, values, np.ones_like(values)), strict=True):
+            times(blocks, parts(x * factor), found)
         return found
 
     def _extend(self, fresh: Any) -> None:
@@ -169,20 +181,18 @@ class GrowingBasis:
         return among[-1]
 
 
+def parts(x: Any) -> Any:
+    """Real parts of complex columns (m, k), and then their imaginary ones: (m, 2k)."""
+    return np.concatenate([x.real, x.imag], axis=1)
+
+
 def times(blocks: Sequence[Any], x: Any, onto: Any = None) -> Any:
-    """V x for a real V in blocks of columns and a real or complex x (m, k), added to `onto` where it is given."""
-    columns = np.concatenate([x.real, x.imag], axis=1) if np.iscomplexobj(x) else x
-    size, count = blocks[0].shape[0], x.shape[1]
-    found = np.zeros((size, count), dtype=x.dtype) if onto is None else onto
+    """V x for V in blocks of columns and x (m, k), all real, added to `onto` where it is given."""
+    found = np.zeros((blocks[0].shape[0], x.shape[1])) if onto is None else onto
     start = 0
     for block in blocks:
-        part = block @ columns[start : start + block.shape[1]]
+        found += block @ x[start : start + block.shape[1]]
         start += block.shape[1]
-        if np.iscomplexobj(x):
-            found.real += part[:, :count]
-            found.imag += part[:, count:]
-        else:
-            found += part
     return found
 
 

@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from squealbox.contacts import Contacts
+from squealbox.contacts import Contacts, unchanging
 from squealbox.designs.base import Design
 from squealbox.fe.grids import Body, FacePoints
+from squealbox.fe.real_modes import RealModes, real_modes
 from squealbox.parameters import DataSheet, ParameterError, parameter
 from squealbox.system import Equilibrium, System, equilibrium
 
@@ -135,19 +136,18 @@ class MeshedBrake(Design):
         stiffness = float(self.value_of("contact_stiffness"))
         elastic = tuple((name, *(float(x) for x in vars_of(part))) for name, part in self.materials().items())
         springs = tuple((name, float(value)) for name, value in self.held_by().items())
-        matrices = summed(made, elastic, springs, stiffness, touching.tobytes())
-        normal = made.normal[touching]
+        matrices, (normal, pushed, along, across) = summed(made, elastic, springs, stiffness, touching.tobytes())
         contacts = Contacts(
-            n=sparse.diags_array(stiffness * made.area[touching]) @ normal,
-            d=made.along[touching],
-            t=made.along[touching],
+            n=pushed,
+            d=along,
+            t=along,
             N0=0.0,
             V=self.value_of("angular_speed") * made.radius[touching],
             law=self.value_of("friction"),
             names=tuple(np.array(made.names)[touching]),
             unilateral=True,
             normal=normal,
-            across=made.across[touching],
+            across=across,
         )
         load = sum(value * made.loads[name] for name, value in self.pressed_by().items())
         return System(*matrices, load, contacts)
@@ -191,6 +191,11 @@ class Preload:
         """Normal force of one lining [N]."""
         return float(np.sum(self.equilibrium.normal_force[self.side == side]))
 
+    def torque(self, side: int) -> float:
+        """Torque of one lining's friction about the axis [N m]."""
+        friction = self.equilibrium.friction * self.equilibrium.normal_force
+        return float(np.sum((friction * np.hypot(self.place[0], self.place[1]))[self.side == side]))
+
 
 def vars_of(material: Material) -> tuple[float, float, float]:
     """Density, Young's modulus and damping."""
@@ -198,15 +203,29 @@ def vars_of(material: Material) -> tuple[float, float, float]:
 
 
 @lru_cache(maxsize=2)
-def summed(made: Structure, elastic: Any, springs: Any, contact: float, touching: bytes) -> tuple[Any, Any, Any]:
-    """M, C and K of a structure; kept, because friction, pressure and speed change none of them."""
+def summed(
+    made: Structure, elastic: Any, springs: Any, contact: float, touching: bytes
+) -> tuple[tuple[Any, Any, Any], tuple[Any, ...]]:
+    """M, C and K of a structure, and the rows normal, n, along and across of its contacts.
+
+    Kept, because friction, pressure and speed change none of them.
+    """
     mass = sum(density * made.mass[name] for name, density, _, _ in elastic)
     damping = sum(young * share * made.stiffness[name] for name, _, young, share in elastic)
-    rows = made.normal[np.frombuffer(touching, dtype=np.int64)]
-    area = made.area[np.frombuffer(touching, dtype=np.int64)]
-    light = rows.T @ sparse.diags_array(contact * area) @ rows + sum(k * made.springs[name] for name, k in springs)
+    some = np.frombuffer(touching, dtype=np.int64)
+    normal, along, across = (rows[some] for rows in (made.normal, made.along, made.across))
+    pushed = sparse.csr_array(sparse.diags_array(contact * made.area[some]) @ normal)
+    light = normal.T @ pushed + sum(k * made.springs[name] for name, k in springs)
     stiffness = sum(young * made.stiffness[name] for name, _, young, _ in elastic) + light
-    return mass, damping, sparse.csr_array(stiffness)
+    matrices, rows = (mass, damping, stiffness), (normal, pushed, along, across)
+    return tuple(tuple(unchanging(sparse.csr_array(table)) for table in tables) for tables in (matrices, rows))  # type: ignore[return-value]
+
+
+def modes_alone(body: Body, material: Material, top: float, held: Any = None) -> RealModes:
+    """Undamped modes below `top` [Hz] of one body, free or without the freedoms marked `held` (n,)."""
+    kept = np.arange(body.size) if held is None else np.flatnonzero(~held)
+    stiffness, mass = material.young * body.stiffness(material.poisson), material.density * body.mass()
+    return real_modes(sparse.csr_array(stiffness[kept][:, kept]), sparse.csr_array(mass[kept][:, kept]), top)
 
 
 class Frame:
@@ -233,6 +252,12 @@ class Frame:
             inside = inside[:, self.inner[body]]
         where = (inside.indices + self.starts[body]).astype(np.int32)
         return sparse.csr_array((inside.data, where, inside.indptr), shape=(inside.shape[0], self.size))
+
+    def pin(self, face: FacePoints, body: int, direction: Any) -> Any:
+        """The row (1, n) of a face's mean displacement along a direction (3,)."""
+        directions = np.repeat(np.asarray(direction)[:, None], len(face.area), axis=1)
+        share = sparse.csr_array((face.area / np.sum(face.area))[None, :])
+        return share @ self.rows(face.along(directions), body)
 
     def spring(self, face: FacePoints, body: int, *directions: Any) -> Any:
         """A spring of 1 N/m over a face along each of the directions (3, k), spread by area."""

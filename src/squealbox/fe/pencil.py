@@ -18,10 +18,11 @@ MOST_DAMPED = 0.1  # damping ratio above which a pair is no candidate for squeal
 @dataclass(frozen=True)
 class Sliding:
     """A system and what its contacts add about steady sliding, each (contacts,): mu sgn V of closed ones, 1 where one
-    has lifted off, N mu' along the sliding direction and mu N / |V| across it.
+    has lifted off, N mu' along the sliding direction and mu N / |V| across it; pushed is N0 + n . q, below 0 at a gap.
     """
 
     system: System
+    pushed: Any
     coupling: Any
     lifted: Any
     along: Any
@@ -142,7 +143,8 @@ def pencil_of(
     pressing = np.where(closed, state.normal_force, 0.0)
     turning = pressing * state.friction / np.abs(state.sliding_speed)
     _, slope = table.friction(state.sliding_speed)
-    sliding = Sliding(system, coupling, np.where(closed, 0.0, 1.0), pressing * slope, turning)
+    pushed = table.at("N0", time) + table.n @ state.q
+    sliding = Sliding(system, pushed, coupling, np.where(closed, 0.0, 1.0), pressing * slope, turning)
     return SlidingPencil(sliding, state)
 
 

@@ -9,17 +9,21 @@ because K0^-1 is nearly Q^-1 on the directions outside the basis. K0^-1 r and K0
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from squealbox.factorisation import Factor
+from squealbox.factorisation import Factor, Order
+from squealbox.fe.band_spectrum import Pairs, band_pairs
 from squealbox.fe.basis import enriched_basis
-from squealbox.fe.growing_basis import GrowingBasis, times
+from squealbox.fe.growing_basis import GrowingBasis, parts, times
 from squealbox.fe.pencil import Pencil, vibrating
 from squealbox.fe.real_modes import RealModes, real_modes
+from squealbox.fe.small import Small
 
 HEADROOM = 0.7  # modes above this share of the highest real mode of a basis are not shown: there it invents
+REACH = 1.1  # times the end of the band up to which real modes are enriched
 FEWEST = 12  # real modes that a basis holds at least
 ROUNDS = 6  # of growing a basis
 LEFT_OUT = 0.3  # of the tolerance: what a round of growing may leave out
@@ -29,8 +33,8 @@ LEFT_OUT = 0.3  # of the tolerance: what a round of growing may leave out
 class Projected:
     """Modes on a basis: eigenvalues (k,) with Im > 0, x and y (m, k), error (k,): the complex estimate delta.
 
-    condition (k,) is the condition number of each eigenvalue on the basis; every holds all eigenvalues of the small
-    problem, also those outside the band. right and left (n, k) are the shapes on all freedoms, where asked for.
+    condition (k,) is the condition number of each eigenvalue on the basis; small is the problem on it. right and left
+    (n, k) are the shapes on all freedoms, where asked for.
     """
 
     eigenvalues: Any
@@ -38,49 +42,87 @@ class Projected:
     y: Any
     error: Any
     condition: Any
-    every: Any
+    small: Small
     right: Any = None
     left: Any = None
 
+    @cached_property
+    def every(self) -> Any:
+        """All eigenvalues of the small problem, also those outside the band."""
+        return self.small.eigenvalues()
+
 
 class Residuals(NamedTuple):
-    """What a basis misses of modes (n, k): r = Q u, s = Q^H w, and K0^-1 r."""
+    """What a basis misses of the modes `asked` (k,): r = Q u, s = Q^H w, and K0^-1 r, all (n, 2k).
 
+    Real parts come first, then imaginary ones.
+    """
+
+    asked: Any
     right: Any
     left: Any
     moved: Any
 
 
-def basis_for(pencil: Pencil, band: tuple[float, float]) -> tuple[RealModes, Any]:
+def basis_for(pencil: Pencil, band: tuple[float, float], order: Order | None = None) -> tuple[RealModes, Any]:
     """Real modes up to the band's end / 0.7, and the basis enriched by friction and damping."""
     top = band[1] / HEADROOM
-    modes = real_modes(pencil.elastic, pencil.M, top)
+    modes = real_modes(pencil.elastic, pencil.M, top, order)
     while modes.count < min(FEWEST, pencil.size // 2):
         top *= 1.5
-        modes = real_modes(pencil.elastic, pencil.M, top)
-    return modes, enriched_basis(pencil, modes)
+        modes = real_modes(pencil.elastic, pencil.M, top, modes.base.order)
+    return modes, enriched_basis(pencil, modes, REACH * band[1])
 
 
-def modes_on(onto: GrowingBasis, i: int, base: Factor, band: tuple[float, float]) -> tuple[Projected, Residuals]:
-    """The modes of the i-th pencil in the band (f1, f2) [Hz], with their estimates: one solve for each."""
+def modes_on(
+    onto: GrowingBasis,
+    i: int,
+    base: Factor,
+    band: tuple[float, float],
+    before: Projected | None = None,
+    tolerance: float = 0.0,
+) -> tuple[Projected, Residuals]:
+    """The modes of the i-th pencil in the band (f1, f2) [Hz], with their estimates: one solve for each.
+
+    Where they are known `before`, on part of this basis, those with an estimate within `tolerance` [1/s] are not solved
+    for again: what is left of it is what the eigenvalue has not moved of it.
+    """
     small = onto.small(i)
+    pairs = _pairs(small, onto.undamped, band)
+    error = np.full(len(pairs.values), np.inf, dtype=complex)
+    if before is not None and len(before.eigenvalues):
+        exact = before.eigenvalues + before.error
+        same = np.argmin(np.abs(exact - pairs.values[:, None]), axis=1)
+        error = np.where(np.abs(before.error[same]) <= tolerance, exact[same] - pairs.values, np.inf)
+    asked = np.flatnonzero(~(np.abs(error) <= tolerance))
+    values, x, y = pairs.values[asked], pairs.right[:, asked], pairs.left[:, asked]
+    missed, missed_left = onto.residual(i, values, x), onto.left_residual(i, values, y)
+    moved = base.solve_many(missed)
+    error[asked] = _paired(missed_left, moved)
+    found = Projected(pairs.values, pairs.right, pairs.left, error, pairs.condition, small)
+    return found, Residuals(asked, missed, missed_left, moved)
+
+
+def _pairs(small: Small, turns: Any, band: tuple[float, float]) -> Pairs:
+    """The modes in the band by condensation in undamped modes; where they do not settle, of the whole spectrum."""
+    turned = Small(*(turns.T @ (matrix @ turns) for matrix in (small.M, small.C, small.K)))
+    pairs = band_pairs(turned, band)
+    if pairs is not None:
+        return pairs._replace(right=turns @ pairs.right, left=turns @ pairs.left)
     values, x, y, condition = small.eigen()
     low, high = (2.0 * np.pi * f for f in band)
     inside = np.flatnonzero((values.imag >= low) & (values.imag <= high) & vibrating(values))
     inside = inside[np.argsort(values[inside].imag, kind="stable")]
     chosen, x, y = values[inside], x[:, inside], y[:, inside]
     y = y / np.conj(np.sum(np.conj(y) * (2.0 * chosen * (small.M @ x) + small.C @ x), axis=0))
-    missed, missed_left = onto.residual(i, chosen, x), onto.left_residual(i, chosen, y)
-    moved = base.solve_many(missed)
-    error = np.sum(np.conj(missed_left) * moved, axis=0)
-    return Projected(chosen, x, y, error, condition[inside], values), Residuals(missed, missed_left, moved)
+    return Pairs(chosen, x, y, condition[inside])
 
 
 def with_shapes(onto: GrowingBasis, found: Projected) -> Projected:
     """The same modes with right and left shapes on all freedoms; the right ones of length 1."""
-    right = times(onto.blocks, found.x)
+    right = _complex(times(onto.blocks, parts(found.x)))
     length = np.linalg.norm(right, axis=0)
-    left = times(onto.blocks, found.y * length)
+    left = _complex(times(onto.blocks, parts(found.y * length)))
     return replace(found, x=found.x / length, y=found.y * length, right=right / length, left=left)
 
 
@@ -90,12 +132,29 @@ def residual_vectors(base: Factor, missed: Residuals, marked: Any) -> tuple[Any,
     The estimate is <dw, du> in the energy of K0. Each pair is scaled so that both have the same energy, |dw| |du|: what
     a direction holds of them is then what leaving it out may cost, in 1/s.
     """
-    right, left, moved = missed.right[:, marked], missed.left[:, marked], missed.moved[:, marked]
+    both = np.tile(marked, 2)
+    right, left, moved = missed.right[:, both], missed.left[:, both], missed.moved[:, both]
     moved_left = base.solve_many(left)
-    energies = [np.sum(np.conj(m) * r, axis=0).real for m, r in ((moved, right), (moved_left, left))]
-    balance = np.sqrt(np.sqrt(np.maximum(energies[1], 1e-300) / np.maximum(energies[0], 1e-300)))
-    pairs = ((moved * balance, moved_left / balance), (right * balance, left / balance))
-    return tuple(np.concatenate([a.real, a.imag, b.real, b.imag], axis=1) for a, b in pairs)  # type: ignore[return-value]
+    energies = [_paired(m, r).real for m, r in ((moved, right), (moved_left, left))]
+    balance = np.tile(np.sqrt(np.sqrt(np.maximum(energies[1], 1e-300) / np.maximum(energies[0], 1e-300))), 2)
+    for columns in (moved, right):
+        columns *= balance
+    for columns in (moved_left, left):
+        columns /= balance
+    return np.concatenate([moved, moved_left], axis=1), np.concatenate([right, left], axis=1)
+
+
+def _complex(columns: Any) -> Any:
+    """Complex columns (n, k) from their parts (n, 2k)."""
+    count = columns.shape[1] // 2
+    return columns[:, :count] + 1j * columns[:, count:]
+
+
+def _paired(left: Any, right: Any) -> Any:
+    """a_k^H b_k (k,) of complex columns given by their parts (n, 2k)."""
+    count = left.shape[1] // 2
+    real, swapped = (np.einsum("ij,ij->j", left, columns) for columns in (right, np.roll(right, count, axis=1)))
+    return real[:count] + real[count:] + 1j * (swapped[:count] - swapped[count:])
 
 
 def main_directions(moved: Any, missed: Any, allowed: float) -> Any:
@@ -116,7 +175,7 @@ def refined(
     """The modes in the band of every pencil; the basis grows until every estimate is below `tolerance` [1/s].
 
     The first pencil and the last, about which and between which the others lie, come after these: what serves them
-    mostly serves those too. A pencil whose estimates are small is not looked at again, because the basis only grows.
+    mostly serves those too. A mode whose estimate is small is not looked at again, because the basis only grows.
     """
     every: list[Any] = [None] * len(onto.pencils)
     outer = [*range(1, len(onto.pencils) - 1)]
@@ -125,8 +184,8 @@ def refined(
         for left in reversed(range(rounds + 1)):
             parts, marked, again = [], 0, []
             for i in open_:
-                every[i], missed = modes_on(onto, i, base, band)
-                marks = np.abs(every[i].error) > tolerance
+                every[i], missed = modes_on(onto, i, base, band, every[i], tolerance)
+                marks = np.abs(every[i].error[missed.asked]) > tolerance
                 if np.any(marks) and left:
                     parts.append(residual_vectors(base, missed, marks))
                     marked += int(np.sum(marks))

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from scipy.linalg import eigh
 
-from squealbox.factorisation import Factor, SingularMatrix, factor
+from squealbox.factorisation import Factor, Order, SingularMatrix, factor
 
 DENSE = 400  # rows up to which LAPACK finds all modes at once
 MOST = 3000  # modes that are looked for at once
@@ -38,20 +38,24 @@ class RealModes:
         return self.count == len(self.frequency)
 
 
-def count_below(stiffness: Any, mass: Any, frequency: float) -> int:
-    """Number of undamped modes below `frequency` [Hz]: negative eigenvalues of K - w^2 M (K, M symmetric, M >= 0)."""
-    return factor(stiffness - (2.0 * np.pi * frequency) ** 2 * mass, symmetric=True).inertia[1]
+def count_below(stiffness: Any, mass: Any, frequency: float, order: Order | None = None) -> int:
+    """Number of undamped modes below `frequency` [Hz]: negative eigenvalues of K - w^2 M (K, M symmetric, M >= 0).
+
+    `order` is that of a factor of K, where there is one.
+    """
+    return factor(stiffness - (2.0 * np.pi * frequency) ** 2 * mass, symmetric=True, order=order).inertia[1]
 
 
-def real_modes(stiffness: Any, mass: Any, top: float) -> RealModes:
+def real_modes(stiffness: Any, mass: Any, top: float, order: Order | None = None) -> RealModes:
     """All undamped modes below `top` [Hz], by shift-invert Lanczos about 0 with blocks of columns.
 
-    A body that is free to move makes K0 singular; it is then shifted by a small share of (2 pi top)^2 M.
+    A body that is free to move makes K0 singular; it is then shifted by a small share of (2 pi top)^2 M. `order`
+    is that of the factor of a similar matrix, where there is one.
 
     Raises `ValueError` when more than 3000 modes lie below `top`.
     """
-    count = count_below(stiffness, mass, top)
-    base, shift = _base(stiffness, mass, top)
+    base, shift = _base(stiffness, mass, top, order)
+    count = count_below(stiffness, mass, top, base.order)
     size = mass.shape[0]
     if count > MOST:
         raise ValueError(f"{count} real modes below {top:g} Hz: expected at most {MOST}; choose a lower band")
@@ -62,19 +66,19 @@ def real_modes(stiffness: Any, mass: Any, top: float) -> RealModes:
     else:
         inverse, shapes = _slowest(base, mass, count)
         values = 1.0 / inverse - shift
-    order = np.argsort(values)
-    values, shapes = values[order], shapes[:, order]
+    rising = np.argsort(values)
+    values, shapes = values[rising], shapes[:, rising]
     inside = values < (2.0 * np.pi * top) ** 2
     values, shapes = values[inside], shapes[:, inside]
     shapes = shapes / np.sqrt(np.einsum("ij,ij->j", shapes, mass @ shapes))
     return RealModes(np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi), shapes, top, count, base, shift)
 
 
-def _base(stiffness: Any, mass: Any, top: float) -> tuple[Factor, float]:
+def _base(stiffness: Any, mass: Any, top: float, order: Order | None) -> tuple[Factor, float]:
     """The factor of K0, or of K0 + shift M where K0 is singular or so nearly that its rigid motions drown all else."""
     rate = (2.0 * np.pi * top) ** 2
     try:
-        base = factor(stiffness, symmetric=True)
+        base = factor(stiffness, symmetric=True, order=order)
     except SingularMatrix:
         base = None
     if base is not None:
@@ -82,7 +86,7 @@ def _base(stiffness: Any, mass: Any, top: float) -> tuple[Factor, float]:
         slower = base.solve(mass @ slow)
         if slower @ (mass @ slower) * RIGID**2 < rate**-2 * (slow @ (mass @ slow)):
             return base, 0.0
-    return factor(stiffness + 1e-4 * rate * mass, symmetric=True), 1e-4 * rate
+    return factor(stiffness + 1e-4 * rate * mass, symmetric=True, order=order), 1e-4 * rate
 
 
 def _slowest(base: Factor, mass: Any, count: int) -> tuple[Any, Any]:

@@ -13,17 +13,19 @@ from typing import Any, Literal
 import numpy as np
 
 from squealbox.arguments import named, public
+from squealbox.factorisation import Order
 from squealbox.fe.basis import joined
 from squealbox.fe.craig_bampton import craig_bampton_basis
 from squealbox.fe.full_brake import FullBrake, full_system
 from squealbox.fe.growing_basis import GrowingBasis
+from squealbox.fe.opening import opening_directions
 from squealbox.fe.pencil import Pencil, SlidingPencil, pencil_of, vibrating
 from squealbox.fe.projection import HEADROOM, ROUNDS, Projected, basis_for, refined
 from squealbox.fe.quadratic import full_modes
-from squealbox.fe.real_modes import RealModes, real_modes
+from squealbox.fe.real_modes import real_modes
 from squealbox.fe.reduced_brake import FIELDS, Axis, ReducedBrake, Reduction, chebyshev_points, lagrange
 from squealbox.fe.small import Small
-from squealbox.sparse_sliding import Start
+from squealbox.sparse_sliding import Start, at_rest
 from squealbox.system import InvalidSystem, as_system
 
 Basis = Literal["enriched", "craig-bampton", "pod"]
@@ -31,6 +33,7 @@ METHODS = ("enriched", "craig-bampton", "pod")
 POINTS = (3, 5, 9, 17, 33)  # Chebyshev points of a parameter that changes matrices, until the new ones were foreseen
 FORESEEN = 1e-5  # by so much of the largest entry; what lies between the new ones is then known far better
 MOST_AXES = 4
+OPENING = 10.0  # of the tolerance: what the shapes of contacts that open may lack before residuals are looked at
 HIGH_DAMPING = (0.02, 0.2)  # damping ratios that are tried
 SEEN = 1e-5  # share of the strongest direction from which on the band's modes have a part in a direction
 INSIDE = (0.25, 0.5, 0.75)  # shares of the ranges at which added damping is checked, beside their corners
@@ -71,17 +74,20 @@ def reduce(
         raise InvalidSystem(f"the system is dense, with {system.size} degrees of freedom: it needs no reduction")
     corners = [dict(zip(ranges, values, strict=True)) for values in product(*ranges.values())] if ranges else []
     corners += [{name: 0.5 * (start + end) for name, (start, end) in ranges.items()}] if ranges else []
-    reference = pencil_of(system, time)
+    rest = at_rest(system.K)
+    reference = pencil_of(system, time, start=rest)
+    order = None if rest.base is None else rest.base.order
+    del rest  # its factor is large
     steady = reference.state.q
-    modes, basis = _first_basis(method, design_or_system, reference, ranges, (low, high), time)
+    modes, basis = _first_basis(method, design_or_system, reference, ranges, (low, high), time, order)
     near = Start(steady, modes.base)
     pencils = [pencil_of(full_system(design_or_system, corner), time, start=near) for corner in corners]
     basis = _with_statics(reference, pencils, basis)
     if method == "enriched":
-        basis = joined(reference, basis, _contact_directions(modes, [reference, *pencils], 0.5 * tolerance))
+        basis = joined(reference, basis, opening_directions(modes, [reference, *pencils], high, OPENING * tolerance))
     onto = GrowingBasis([reference, *pencils], basis)
     found = refined(onto, modes.base, (low, high), 0.5 * tolerance, ROUNDS if method == "enriched" else 0)
-    onto.turn(np.linalg.eigh(onto.elastic(0))[1])  # coordinates are undamped modes on the basis, rising in frequency
+    onto.turn()
     full = FullBrake(design_or_system, onto.blocks[0], steady, modes.base, time)
     arrays = full.projected_arrays(system, onto.structural(0))
     axes, values = [], {}
@@ -131,10 +137,12 @@ def _checked(band: Any, varying: Any, method: str) -> tuple[float, float]:
     return float(band[0]), float(band[1])
 
 
-def _first_basis(method: str, design: Any, reference: Pencil, ranges: Any, band: Any, time: float) -> tuple[Any, Any]:
+def _first_basis(
+    method: str, design: Any, reference: Pencil, ranges: Any, band: Any, time: float, order: Order | None
+) -> tuple[Any, Any]:
     if method == "enriched":
-        return basis_for(reference, band)
-    modes = real_modes(reference.elastic, reference.M, band[1] / HEADROOM)
+        return basis_for(reference, band, order)
+    modes = real_modes(reference.elastic, reference.M, band[1] / HEADROOM, order)
     if method == "craig-bampton":
         return modes, craig_bampton_basis(reference, _touched(design), HELD * band[1])
     shapes = []
@@ -171,27 +179,6 @@ def _with_statics(reference: SlidingPencil, pencils: list[SlidingPencil], basis:
     moved = [pencil.state.q - reference.state.q for pencil in pencils]
     columns = [q for q in moved if np.any(q)]
     return joined(reference, basis, np.stack(columns, axis=1)) if columns else basis
-
-
-def _contact_directions(modes: RealModes, pencils: list[SlidingPencil], tolerance: float) -> Any:
-    """Static shapes K0^-1 r_c of the contacts c that open or close between the pencils, as far as modes feel them.
-
-    An open contact changes K by -k_c r_c' r_c. To second order that moves the eigenvalue of a mode u of angular
-    frequency w by a' G a, with G_cd = r_c K0^-1 r_d' and a_c = k_c (r_c u) / sqrt(2 w), over the contacts that differ.
-    """
-    open_ = np.stack([pencil.sliding.lifted > 0.0 for pencil in pencils])
-    changing = np.flatnonzero(np.any(open_ != open_[0], axis=0))
-    table = pencils[0].sliding.system.contacts
-    if not len(changing):
-        return np.zeros((pencils[0].size, 0))
-    rows, springs = table.normal[changing], table.n[changing]
-    moved = modes.base.solve_many(rows.T.toarray())
-    rates = 2.0 * np.pi * np.maximum(modes.frequency, 1e-3 * modes.top)
-    felt = np.max(np.abs(springs @ modes.shapes) / np.sqrt(2.0 * rates), axis=1)
-    energy = felt[:, None] * (rows @ moved) * felt
-    values, turns = np.linalg.eigh(0.5 * (energy + energy.T))
-    keep = np.cumsum(np.maximum(values, 0.0)) > tolerance
-    return moved @ (felt[:, None] * turns[:, keep] / np.sqrt(values[keep]))
 
 
 def _axis(full: FullBrake, name: str, low: float, high: float, arrays: dict[str, Any]) -> Axis | None:
@@ -252,7 +239,7 @@ def _damped_above(smalls: list[Small], elastic: Any, top: float, allowed: float)
     nothing = np.zeros_like(mass)
     shapes, light, rising = [], [], []
     for small in smalls:
-        values, right, _, _ = small.eigen()
+        values, right = small.right_shapes()
         rising.append(_growth_above(values, end))
         below = (values.imag >= 0.0) & (values.imag <= end)
         shapes += [right[:, below].real, right[:, below].imag]

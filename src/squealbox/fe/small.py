@@ -20,6 +20,12 @@ class Small:
         state, rate, _ = self._state()
         return np.linalg.eigvals(state).astype(complex) * rate
 
+    def right_shapes(self) -> tuple[Any, Any]:
+        """Eigenvalues (2m,) and right shapes x (m, 2m)."""
+        state, rate, _ = self._state()
+        values, right = np.linalg.eig(state)
+        return values.astype(complex) * rate, right[: len(self.M)]
+
     def eigen(self) -> tuple[Any, Any, Any, Any]:
         """Eigenvalues (2m,), right x and left y (m, 2m) of the quadratic problem, and the condition numbers (2m,)."""
         size = len(self.M)

@@ -11,6 +11,8 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.designs import DESIGNS, Design
 from squealbox.fe.disc_brake import DiscBrake
+from squealbox.fe.meshed import MeshedBrake
+from squealbox.fe.meshed_drum import MeshedDrumBrake
 from squealbox.files import analyses, countermeasures
 from squealbox.files.assembled import ASSEMBLED, read_assembled
 from squealbox.files.document import Document, document_of, open_document
@@ -24,7 +26,8 @@ from squealbox.files.uncertain import Optimise, Scattered, read_optimise, read_s
 from squealbox.parameters import ParameterError, known_names
 from squealbox.system import InvalidSystem
 
-BRAKES: dict[str, type[Design]] = {**DESIGNS, "own": OwnBrake, "mechanism": OwnMechanism, "disc_brake": DiscBrake}
+MESHED: dict[str, type[MeshedBrake]] = {"disc_brake": DiscBrake, "meshed_drum_brake": MeshedDrumBrake}
+BRAKES: dict[str, type[Design]] = {**DESIGNS, "own": OwnBrake, "mechanism": OwnMechanism, **MESHED}
 READERS = {ASSEMBLED: read_assembled, REDUCED: read_reduced}  # brakes that files beside the design describe
 STUDY = "study"  # a section that `study.read_study` reads
 SECTIONS: dict[str, Callable[..., Any]] = {

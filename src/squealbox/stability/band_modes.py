@@ -14,9 +14,10 @@ import numpy as np
 from squealbox.fe.certificate import Certificate, certificate
 from squealbox.fe.growing_basis import GrowingBasis
 from squealbox.fe.pencil import Pencil, pencil_of
-from squealbox.fe.projection import Projected, basis_for, refined, with_shapes
+from squealbox.fe.projection import Projected, basis_for, modes_on, refined, with_shapes
 from squealbox.fe.quadratic import full_modes
 from squealbox.result import Array, Outcome, quantity
+from squealbox.sparse_sliding import at_rest
 from squealbox.stability.eigenvalues import ComplexModes
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
 
@@ -99,7 +100,8 @@ def band_modes(
     if method not in ("projection", "full"):
         raise ValueError(f"method = {method!r}: expected 'projection' or 'full'")
     system = as_system(design_or_system, linear=True)
-    state = equilibrium(system, time)
+    start = at_rest(system.K)
+    state = equilibrium(system, time, start)
     if not state.exists:
         return _nothing(design_or_system, system, state, (low, high), time)
     pencil = pencil_of(system, time, state)
@@ -110,9 +112,12 @@ def band_modes(
     common["settings"] = {"band": [low, high], "method": method, "tolerance": tolerance, "certify": certify}
     if method == "full":
         return _full(pencil, (low, high), count, common)
-    modes, basis = basis_for(pencil, (low, high))
+    order = None if start.base is None else start.base.order
+    del start  # its factor is large
+    modes, basis = basis_for(pencil, (low, high), order)
     onto = GrowingBasis([pencil], basis)
-    found = with_shapes(onto, refined(onto, modes.base, (low, high), tolerance)[0])
+    refined(onto, modes.base, (low, high), tolerance)
+    found = with_shapes(onto, modes_on(onto, 0, modes.base, (low, high))[0])
     common |= {"real_frequency": modes.frequency, "real_modes_complete": modes.complete}
     if certify:
         proof = certificate(pencil, known_eigenvalues(found), (low, high))

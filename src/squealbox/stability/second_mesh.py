@@ -88,7 +88,7 @@ def mesh_doubt(brake: MeshedBrake, modes: Any, element_size: float | None = None
 
     Parameters
     ----------
-    brake : a design with `element_size`, such as `DiscBrake`
+    brake : a design with `element_size`, such as `DiscBrake` or `MeshedDrumBrake`
     modes : its modes, ``complex_modes(brake, band=(f1, f2))``
     element_size : of the second mesh [m]; None takes 1.5 times the brake's, which costs a fraction of the first
 
