@@ -132,9 +132,7 @@ class _Walk:
         self.shortest = min(self.late[self.flowing], default=np.inf)
         self.longest = self.shortest / np.ceil(self.shortest / self.arc) if self.flowing else np.inf
         if duration / min(self.longest, float(np.min(self.steps))) > MOST_PIECES:
-            expected = (
-                f"at most {MOST_PIECES} samples, delays or half radians of the fastest mode under one"
-            )
+            expected = f"at most {MOST_PIECES} samples, delays or half radians of the fastest mode under one"
             raise ParameterError("simulate", "duration", duration, expected)
         self.held = np.zeros(count)
         self.arrivals: list[tuple[float, int, float]] = []
