@@ -37,12 +37,12 @@ def test_static_friction_never_falls_below_kinetic():
 def test_the_table_says_what_was_assumed_and_nothing_where_it_was_given():
     brake = ModeCoupling(c1=0.02, c2=0.02)
     table = silence(brake, candidates=[], push=0.0)
-    assert "assumed scatter" in table.summary()
+    assert "Assumed scatter" in table.summary()
     assert "brakes in the lot" not in table.summary()
     assert "nan" not in table.summary()  # what was not asked has no column
     assert "after push [um]" not in table.heads()
     own = Scatter(usual_scatter(brake).distributions)
-    assert "assumed" not in silence(brake, own, candidates=[], push=0.0).summary()
+    assert "Assumed" not in silence(brake, own, candidates=[], push=0.0).summary()
     with pytest.raises(ParameterError, match="a Scatter"):
         silence(brake, {"friction.static": 0.1})
 

@@ -73,6 +73,7 @@ RC: dict[str, Any] = {
     "axes.formatter.use_mathtext": False,  # it takes as long as all else of a figure
     "axes.formatter.useoffset": False,
     "axes.unicode_minus": True,
+    "agg.path.chunksize": 20_000,  # vertices at once; a line of millions is too much for the renderer otherwise
     "xtick.labelsize": 7.0,
     "ytick.labelsize": 7.0,
     "xtick.direction": "in",
