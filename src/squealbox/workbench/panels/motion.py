@@ -8,7 +8,7 @@ from squealbox.designs import Design
 from squealbox.files.runs import usual_duration
 from squealbox.plots.facts import unit_at
 from squealbox.plots.style import scaled
-from squealbox.signals import SignalError, dominant_frequency, peaks, spectrogram, spectrum
+from squealbox.signals import SignalError, peaks, spectrogram, spectrum
 from squealbox.transient import Trajectory, verdict
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.following import followed
@@ -84,10 +84,9 @@ def _signals(motion: Trajectory, dof: int, data: dict[str, Any]) -> Answer:
     try:
         lines = spectrum(motion, dof=dof, begin=float(t[late]))
         grid = spectrogram(motion, dof=dof)
-        main = dominant_frequency(x, t)
     except SignalError as error:
         return Answer({**data, "noSpectrum": str(error)}, arrays)
-    top = _upto(lines, main)
+    top = _upto(lines, float(judged.frequency))
     shown, seen = lines.frequency <= top, grid.frequency <= top
     found = peaks(lines, 4)
     data |= {
