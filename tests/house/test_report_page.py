@@ -10,8 +10,8 @@ import wave
 
 import numpy as np
 import pytest
-from playwright.sync_api import sync_playwright
 
+from browsers import driven
 from squealbox import DrumBrake, LinearSlope, Ramp, complex_modes, simulate
 from squealbox.cli import BAD_INPUT, DONE, main
 from squealbox.files import write_design
@@ -45,7 +45,7 @@ def written(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def browser():
-    with sync_playwright() as playwright, tempfile.TemporaryDirectory() as profile:
+    with driven() as playwright, tempfile.TemporaryDirectory() as profile:
         context = playwright.chromium.launch_persistent_context(
             profile,
             executable_path=shutil.which("chromium"),

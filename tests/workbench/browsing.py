@@ -4,7 +4,7 @@ import contextlib
 import shutil
 import time
 
-from playwright.sync_api import sync_playwright
+from browsers import driven
 
 FLAGS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
@@ -39,7 +39,7 @@ def launched():
     """A headless Chromium with a new profile."""
     path = shutil.which("chromium")
     assert path, "chromium is not installed; make test installs it"
-    with sync_playwright() as playwright:
+    with driven() as playwright:
         running = playwright.chromium.launch(executable_path=path, args=FLAGS)
         yield running
         running.close()
