@@ -26,6 +26,7 @@ from squealbox.compiled.kinds import FLOAT, TEXTS, TRUTH, WHOLE, Array, Record, 
 from squealbox.compiled.translation import Unit
 
 DECORATORS = ("inner", "packed", "entry")  # of plain functions that are translated; packed ones into their callers
+LINE = 64  # bytes of the cache's lines, with one of which the stack begins: a register put by across two costs twice
 PATIENCE = 0.5  # s of compiling after which a terminal is told
 PASSES = (  # those that plain loops gain by; LLVM's own list takes ten times as long for code no quicker
     "sroa", "simplify_cfg", "always_inliner", "instruction_combine", "loop_simplify", "loop_rotate", "new_gvn",
@@ -174,7 +175,7 @@ def _door(name: str, made: str, kinds: tuple[Any, ...], returned: Any) -> str:
     """The function that Python calls: what is returned goes into an array of doubles."""
     types = [text for kind in kinds for text in registers(kind)]
     given = [f"{text} %a{k}" for k, text in enumerate(types)]
-    lines = [f'define void @"{name}"({", ".join([*given, "ptr %out"])}) nounwind {{', "entry:"]
+    lines = [f'define void @"{name}"({", ".join([*given, "ptr %out"])}) nounwind alignstack({LINE}) {{', "entry:"]
     call = f'call {result(returned)} @"{made}"({", ".join(given)})'
     lines.append(f"  {call}" if returned is None else f"  %found = {call}")
     parts = [] if returned is None else [returned] if isinstance(returned, str) else returned[1]
