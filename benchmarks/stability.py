@@ -65,7 +65,7 @@ def two_degrees_of_freedom(count=40000):
     mass, c, k = np.eye(2).ravel(), damping.ravel(), stiffness.ravel()
     growth, omega, number = np.empty(count), np.empty(count), np.empty(count)
     kernels = two_dof_kernels()
-    ours = least(lambda: kernels.growth_and_frequency(mass, c, k, 0, growth, omega, number, room(4)), 30) / count
+    ours = least(lambda: kernels.growth_and_frequency(mass, c, k, growth, omega, number, room(4)), 30) / count
     gap = np.max(np.abs(growth - values.real.max(axis=-1)))
     report("2 DOF growth and frequency", ours, numpy_time, f"largest difference {gap:.1e}")
     ours = least(lambda: flags_of(mass, c, k), 200) / count
@@ -77,7 +77,7 @@ def spectra():
     """Whole spectra: of 2 DOF in closed form, of any real matrices by QR."""
     damping, stiffness, state = oscillators(20000, 2)
     mass, c, k, found = np.eye(2).ravel(), damping.ravel(), stiffness.ravel(), np.empty((len(state), 4), dtype=complex)
-    run = partial(two_dof_kernels().spectrum, mass, c, k, 0, parts_of(found).reshape(-1, 8), room(8))
+    run = partial(two_dof_kernels().spectrum, mass, c, k, parts_of(found).reshape(-1, 8), room(8))
     compare("4 x 4 spectrum, 2 DOF", state, run, lambda: found)
     for size, count in ((4, 20000), (12, 3200), (24, 640)):
         for kind in ("oscillators", "any real"):

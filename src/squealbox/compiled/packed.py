@@ -47,6 +47,10 @@ def _intrinsic(f: Any, name: str, *values: Number) -> Number:
     return Number(PACKED, f.put(f"call {FLAGS} {REALS} @llvm.{name}.v{LANES}f64({given})"))
 
 
+def _chosen(f: Any, where: Number, x: Number, y: Number) -> Number:
+    return Number(PACKED, f.put(f"select {BITS} {where.text}, {REALS} {x.text}, {REALS} {y.text}"))
+
+
 def _words(value: int) -> str:
     return "<" + ", ".join([f"i64 {value}"] * LANES) + ">"
 
@@ -60,7 +64,7 @@ def splat(f: Any, x: Number) -> Number:
 @written(MASK + PACKED + PACKED)
 def select(f: Any, where: Number, x: Number, y: Number) -> Number:
     """x where the mask holds, else y."""
-    return Number(PACKED, f.put(f"select {BITS} {where.text}, {REALS} {x.text}, {REALS} {y.text}"))
+    return _chosen(f, where, x, y)
 
 
 @written(MASK)
@@ -92,13 +96,13 @@ def signed(f: Any, x: Number, y: Number) -> Number:
 @written(PACKED + PACKED)
 def larger(f: Any, x: Number, y: Number) -> Number:
     """The larger of two numbers; y when either is NaN."""
-    return Number(PACKED, f.put(f"select {BITS} {f.compare('>', x, y).text}, {REALS} {x.text}, {REALS} {y.text}"))
+    return _chosen(f, f.compare(">", x, y), x, y)
 
 
 @written(PACKED + PACKED)
 def smaller(f: Any, x: Number, y: Number) -> Number:
     """The smaller of two numbers; y when either is NaN."""
-    return Number(PACKED, f.put(f"select {BITS} {f.compare('<', x, y).text}, {REALS} {x.text}, {REALS} {y.text}"))
+    return _chosen(f, f.compare("<", x, y), x, y)
 
 
 @written(PACKED)

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public, with_parameters
-from squealbox.countermeasures.base import direction, outer
+from squealbox.countermeasures.base import outer
 from squealbox.countermeasures.loss import at_the_window, first_loss, growth_about, growth_of
 from squealbox.countermeasures.mechanical import TunedMass
 from squealbox.designs.base import Design
@@ -168,15 +168,14 @@ def _tuned(start: TunedMass) -> Callable[[Any, Any], Linearised]:
         return lambda f, z: steady_sliding(start.replace(frequency=f, damping=z))
     about, base = steady_sliding(start), start.brake.system()
     row = np.zeros(about.K.shape[-1])
-    row[: base.size], row[base.size] = -direction("TunedMass", "on", base, start.on), 1.0
-    mass, rate = float(start.mass), 2.0 * np.pi * float(start.frequency)
-    loss = 2.0 * float(start.damping) * rate
+    row[: base.size + 1] = start.stretch(base)
+    before = start.spring_and_damper
 
     def tuned(frequency: Any, damping: Any) -> Linearised:
-        now = 2.0 * np.pi * np.asarray(frequency, dtype=float)
-        stiffness = about.K + outer(mass * (now**2 - rate**2), row, row)
-        losses = about.C + outer(mass * (2.0 * np.asarray(damping) * now - loss), row, row)
-        state, shape = about.equilibrium, now.shape
+        spring, damper = start.replace(frequency=frequency, damping=damping).spring_and_damper
+        stiffness = about.K + outer(spring - before[0], row, row)
+        losses = about.C + outer(damper - before[1], row, row)
+        state, shape = about.equilibrium, np.shape(spring)
         over = {
             name: np.broadcast_to(getattr(state, name), shape + np.shape(getattr(state, name)))
             for name in ("q", "normal_force", "sliding_speed", "friction", "exists", "floating")

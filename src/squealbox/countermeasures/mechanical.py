@@ -8,7 +8,7 @@ and the opposite forces on the brake. Sources: Den Hartog 1956, Mechanical Vibra
 vibration Habib and Kerschen 2015, Proc. R. Soc. A 471, 20140976.
 """
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -41,16 +41,24 @@ class TunedMass(Countermeasure):
     def system(self) -> System:
         """The brake's equation with one more degree of freedom."""
         base = self.brake.system()
-        row = direction("TunedMass", "on", base, self.on)
-        whole = extended(base, "absorber")
-        relative, own = np.append(-row, 1.0), np.append(0.0 * row, 1.0)
-        mass, rate = np.asarray(self.mass), 2.0 * np.pi * np.asarray(self.frequency)
+        relative, own = self.stretch(base), np.append(np.zeros(base.size), 1.0)
+        spring, damper = self.spring_and_damper
         return added(
-            whole,
-            mass=outer(mass, own, own),
-            damping=outer(2.0 * self.damping * mass * rate, relative, relative),
-            stiffness=outer(mass * rate**2, relative, relative),
+            extended(base, "absorber"),
+            mass=outer(np.asarray(self.mass), own, own),
+            damping=outer(damper, relative, relative),
+            stiffness=outer(spring, relative, relative),
         )
+
+    def stretch(self, base: System) -> Any:
+        """The row (n + 1,) that reads how far the absorber is from where it hangs."""
+        return np.append(-direction("TunedMass", "on", base, self.on), 1.0)
+
+    @property
+    def spring_and_damper(self) -> tuple[Any, Any]:
+        """Stiffness [N/m] and damping [N s/m] between the absorber and the brake."""
+        mass, rate = np.asarray(self.mass), 2.0 * np.pi * np.asarray(self.frequency)
+        return mass * rate**2, 2.0 * self.damping * mass * rate
 
 
 class AddedMass(Countermeasure):

@@ -12,7 +12,21 @@ import numpy as np
 
 from squealbox.fe.contact_points import ContactPoints
 from squealbox.fe.grids import Body, breaks
-from squealbox.fe.meshed import IRON, LINING, OWN, STEEL, Frame, Material, MeshedBrake, Structure, modes_alone
+from squealbox.fe.meshed import (
+    IRON,
+    LINING,
+    OWN,
+    STEEL,
+    Frame,
+    Material,
+    MeshedBrake,
+    Structure,
+    longest_side,
+    modes_alone,
+    some_of,
+    speed_of,
+    stiffness_of_contact,
+)
 from squealbox.fe.real_modes import RealModes
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, parameter
@@ -74,15 +88,9 @@ class DiscBrake(MeshedBrake):
     piston_radius: float = parameter(
         "m", 0.0, low_open=True, default=0.021, meaning="radius of the patch that is pressed", source=OWN
     )
-    angular_speed: float = parameter(
-        "rad/s", 0.0, low_open=True, default=18.0, meaning="angular speed of the disc", source=OWN
-    )
-    contact_stiffness: float = parameter(
-        "N/m^3", 0.0, low_open=True, default=1e12, meaning="stiffness of contact per area", source=OWN
-    )
-    element_size: float = parameter(
-        "m", 1e-4, default=0.012, meaning="longest side of an element in the plane of the disc", source=OWN
-    )
+    angular_speed: float = speed_of("disc")
+    contact_stiffness: float = stiffness_of_contact()
+    element_size: float = longest_side("in the plane of the disc")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -120,11 +128,7 @@ class DiscBrake(MeshedBrake):
         """Contact points outside chamfers and slot."""
         offset = np.abs(made.angle)
         inside = (offset < 0.5 * self.pads.angle - self.pads.chamfer) & (offset >= 0.5 * self.pads.slot)
-        if not np.any(inside):
-            raise ParameterError(
-                "Pads", "chamfer", self.pads.chamfer, "an angle that leaves some of the lining to touch"
-            )
-        return np.flatnonzero(inside)
+        return some_of(inside, "Pads", self.pads.chamfer)
 
 
 @lru_cache(maxsize=4)

@@ -74,6 +74,28 @@ class Structure:
         return np.split(whole, np.cumsum(sizes)[:-1])
 
 
+def speed_of(part: str) -> Any:
+    """The parameter `angular_speed` of a brake whose disc or drum turns."""
+    return parameter("rad/s", 0.0, low_open=True, default=18.0, meaning=f"angular speed of the {part}", source=OWN)
+
+
+def stiffness_of_contact() -> Any:
+    """The parameter `contact_stiffness`."""
+    return parameter("N/m^3", 0.0, low_open=True, default=1e12, meaning="stiffness of contact per area", source=OWN)
+
+
+def longest_side(where: str) -> Any:
+    """The parameter `element_size`."""
+    return parameter("m", 1e-4, default=0.012, meaning=f"longest side of an element {where}", source=OWN)
+
+
+def some_of(inside: Any, sheet: str, chamfer: float) -> Any:
+    """The places that hold; `ParameterError` where the chamfer of a sheet leaves none."""
+    if not np.any(inside):
+        raise ParameterError(sheet, "chamfer", chamfer, "an angle that leaves some of the lining to touch")
+    return np.flatnonzero(inside)
+
+
 class MeshedBrake(Design):
     """A brake that meshes itself; a subclass says of what it is made.
 

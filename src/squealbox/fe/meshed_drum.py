@@ -20,7 +20,21 @@ import numpy as np
 
 from squealbox.fe.contact_points import ContactPoints
 from squealbox.fe.grids import Body, breaks
-from squealbox.fe.meshed import IRON, LINING, OWN, STEEL, Frame, Material, MeshedBrake, Structure, modes_alone
+from squealbox.fe.meshed import (
+    IRON,
+    LINING,
+    OWN,
+    STEEL,
+    Frame,
+    Material,
+    MeshedBrake,
+    Structure,
+    longest_side,
+    modes_alone,
+    some_of,
+    speed_of,
+    stiffness_of_contact,
+)
 from squealbox.fe.real_modes import RealModes
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, parameter
@@ -73,15 +87,9 @@ class MeshedDrumBrake(MeshedBrake):
     force: float = parameter(
         "N", 0.0, low_open=True, default=2000.0, meaning="of the wheel cylinder on each shoe", source=OWN
     )
-    angular_speed: float = parameter(
-        "rad/s", 0.0, low_open=True, default=18.0, meaning="angular speed of the drum", source=OWN
-    )
-    contact_stiffness: float = parameter(
-        "N/m^3", 0.0, low_open=True, default=1e12, meaning="stiffness of contact per area", source=OWN
-    )
-    element_size: float = parameter(
-        "m", 1e-4, default=0.012, meaning="longest side of an element along arc and axis", source=OWN
-    )
+    angular_speed: float = speed_of("drum")
+    contact_stiffness: float = stiffness_of_contact()
+    element_size: float = longest_side("along arc and axis")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -113,11 +121,7 @@ class MeshedDrumBrake(MeshedBrake):
     def touching(self, made: Structure) -> Any:
         """Contact points outside chamfers."""
         inside = np.abs(made.angle) < 0.5 * self.shoes.angle - self.shoes.chamfer
-        if not np.any(inside):
-            raise ParameterError(
-                "Shoes", "chamfer", self.shoes.chamfer, "an angle that leaves some of the lining to touch"
-            )
-        return np.flatnonzero(inside)
+        return some_of(inside, "Shoes", self.shoes.chamfer)
 
 
 @lru_cache(maxsize=4)

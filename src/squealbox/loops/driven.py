@@ -36,7 +36,8 @@ class Driven:
 
     def commands(self, q: Any, qd: Any) -> Any:
         """Commands (..., a) at states (..., n), cut at their limits."""
-        return np.clip(self.wanted(q, qd), -self.limits, self.limits)
+        limits = self.limits
+        return np.clip(self.wanted(q, qd), -limits, limits)
 
     def forces(self, q: Any, u: Any) -> Any:
         """Forces (..., a) [N] of the actuators."""

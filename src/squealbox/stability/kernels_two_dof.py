@@ -26,9 +26,9 @@ def entries(matrices: Any, start: int, number: int, spare: Any) -> Any:
     return columns(spare, 0)
 
 
-def masses(m: Any, stride: int, start: int, number: int, spare: Any) -> Any:
-    """Their M; one for all where stride is 0."""
-    if stride == 0:
+def masses(m: Any, start: int, number: int, spare: Any) -> Any:
+    """Their M; of one matrix that for all."""
+    if len(m) == 4:
         return splat(m[0]), splat(m[1]), splat(m[2]), splat(m[3])
     return entries(m, start, number, spare)
 
@@ -61,10 +61,10 @@ def hurwitz_margin(a4: Any, a3: Any, a2: Any, a1: Any, a0: Any) -> Any:
     return select(last == last, smaller(smaller(a3, a1), smaller(a0, last)), last)
 
 
-def flags(m: Any, c: Any, k: Any, stride: int, number: int, words: Any, spare: Any) -> None:
-    """Bit i of word g tells whether all real parts of system 16 g + i are negative; M is shared where stride is 0."""
+def flags(m: Any, c: Any, k: Any, number: int, words: Any, spare: Any) -> None:
+    """Bit i of word g tells whether all real parts of system 16 g + i are negative; of M one or as many."""
     for start in range(0, number, LANES):
-        mass = masses(m, stride, start, number, spare)
+        mass = masses(m, start, number, spare)
         damping, stiffness = entries(c, start, number, spare), entries(k, start, number, spare)
         a4, a3, a2, a1, a0 = polynomial(mass, damping, stiffness)
         words[start // LANES] = word(hurwitz_margin(a4, a3, a2, a1, a0) > splat(0.0))
@@ -158,15 +158,12 @@ def rightmost(a4: Any, a3: Any, a2: Any, a1: Any, a0: Any) -> Any:
 
 
 def growth_and_frequency(
-    m: Any, c: Any, k: Any, stride: int, growth: Any, omega: Any, count: Any, spare: Any
+    m: Any, c: Any, k: Any, growth: Any, omega: Any, count: Any, spare: Any
 ) -> None:  # fmt: skip
-    """Largest real part, its |imaginary part| and the number of growing pairs of each system.
-
-    `stride` is 0 when M is shared, else 4.
-    """
+    """Largest real part, its |imaginary part| and the number of growing pairs of each system; of M one or as many."""
     number = len(growth)
     for start in range(0, number, LANES):
-        mass = masses(m, stride, start, number, spare)
+        mass = masses(m, start, number, spare)
         damping, stiffness = entries(c, start, number, spare), entries(k, start, number, spare)
         a4, a3, a2, a1, a0 = polynomial(mass, damping, stiffness)
         real, imaginary, growing = rightmost(a4, a3, a2, a1, a0)
@@ -184,12 +181,12 @@ def between(a: Any, b: Any, share: Any) -> Any:
 
 
 def growth_of_parts(
-    m: Any, p: Any, c: Any, e: Any, k: Any, stride: int, x: float, y: float, growth: Any, spare: Any
+    m: Any, p: Any, c: Any, e: Any, k: Any, x: float, y: float, growth: Any, spare: Any
 ) -> None:  # fmt: skip
     """Largest real part of each system with K = E + x (K - E) and C = P + y (C - P)."""
     number = len(growth)
     for start in range(0, number, LANES):
-        mass = masses(m, stride, start, number, spare)
+        mass = masses(m, start, number, spare)
         damping = between(entries(p, start, number, spare), entries(c, start, number, spare), splat(y))
         stiffness = between(entries(e, start, number, spare), entries(k, start, number, spare), splat(x))
         a4, a3, a2, a1, a0 = polynomial(mass, damping, stiffness)
@@ -212,11 +209,11 @@ def roots_of(p: Any, q: Any, scale: Any, spare: Any, first: int) -> None:
     store(spare, first + 3, select(swings, -rise, zero))
 
 
-def spectrum(m: Any, c: Any, k: Any, stride: int, values: Any, spare: Any) -> None:
+def spectrum(m: Any, c: Any, k: Any, values: Any, spare: Any) -> None:
     """All four eigenvalues of each system, values (count, 8) of real and imaginary parts; spare for eight packed."""
     number = values.shape[0]
     for start in range(0, number, LANES):
-        mass = masses(m, stride, start, number, spare)
+        mass = masses(m, start, number, spare)
         damping, stiffness = entries(c, start, number, spare), entries(k, start, number, spare)
         a4, a3, a2, a1, a0 = polynomial(mass, damping, stiffness)
         p1, q1, p2, q2, scale = factors(a4, a3, a2, a1, a0)

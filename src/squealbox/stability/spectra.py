@@ -67,7 +67,7 @@ def flags_of(mass: Any, damping: Any, stiffness: Any) -> Any:
     """True where every real part is negative, (count,), of flat matrices of 2 x 2; of M one or as many."""
     number = damping.size // 4
     words = np.empty(-(-number // LANES), dtype=np.int64)
-    two_dof_kernels().flags(mass, damping, stiffness, 0 if mass.size == 4 else 4, number, words, room(4))
+    two_dof_kernels().flags(mass, damping, stiffness, number, words, room(4))
     return np.unpackbits(words.astype("<u2").view(np.uint8), count=number, bitorder="little").view(bool)
 
 
@@ -173,8 +173,7 @@ def growth_of_parts(about: Linearised, passive: Any, elastic: Any) -> Callable[[
 
     def growth(x: float, y: float) -> Any:
         out = np.empty(damping.size // 4)
-        stride = 0 if mass.size == 4 else 4
-        kernels.growth_of_parts(mass, base, damping, springs, stiffness, stride, float(x), float(y), out, room(4))
+        kernels.growth_of_parts(mass, base, damping, springs, stiffness, float(x), float(y), out, room(4))
         return out.reshape(shape)
 
     return growth
@@ -184,15 +183,14 @@ def _two_dof_spectrum(about: Linearised) -> Any:
     mass, damping, stiffness, shape, usable = _flat(about)
     values = np.empty((damping.size // 4, 4), dtype=complex)
     parts = parts_of(values).reshape(-1, 8)
-    two_dof_kernels().spectrum(mass, damping, stiffness, 0 if mass.size == 4 else 4, parts, room(8))
+    two_dof_kernels().spectrum(mass, damping, stiffness, parts, room(8))
     return np.where(usable[..., None], values.reshape(*shape, 4), np.nan)
 
 
 def _two_dof(about: Linearised) -> tuple[Any, Any, Any]:
     mass, damping, stiffness, shape, usable = _flat(about)
     growth, omega, count = (np.empty(damping.size // 4) for _ in range(3))
-    stride = 0 if mass.size == 4 else 4
-    two_dof_kernels().growth_and_frequency(mass, damping, stiffness, stride, growth, omega, count, room(4))
+    two_dof_kernels().growth_and_frequency(mass, damping, stiffness, growth, omega, count, room(4))
     known = usable & np.isfinite(growth.reshape(shape))
     growth, omega = (np.where(known, values.reshape(shape), np.nan) for values in (growth, omega))
     return growth, omega, np.where(known, count.reshape(shape), 0.0).astype(np.int64)

@@ -195,7 +195,7 @@ class Scalar:
     def _make_room(self) -> None:
         count = self.scratch["count"]
         if self.problem["every_step"] and count[_motion.ROWS] >= len(self.rows):
-            self.rows = np.concatenate([self.rows, np.empty_like(self.rows)])
+            self.rows = packing.longer(self.rows)
         if count[_motion.EVENTS] + self.problem["contacts"] > len(self.events):
             more = np.zeros((len(self.events) + int(self.problem["contacts"]), 3))
             self.events = np.concatenate([self.events, more])

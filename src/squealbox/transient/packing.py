@@ -150,6 +150,13 @@ def rule(name: str) -> Any:
     return _record(np.dtype(kinds), values)
 
 
+def longer(kept: Any) -> Any:
+    """The same rows with room for three times as many more, which takes no memory before it is written to."""
+    out = np.empty((4 * len(kept), *kept.shape[1:]))
+    out[: len(kept)] = kept
+    return out
+
+
 def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> Any:
     """The record of working arrays of one march, with the start in place; first_step 0 leaves it to the march."""
     n, m = problem["atol"].shape[0] // 2, problem["static"].shape[0]

@@ -24,13 +24,23 @@ from squealbox.system import InvalidSystem, System, equilibrium
 from squealbox.transient.legs import Leg, Progress, by_series, leg, told, ways_of
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR
-from squealbox.transient.sensed import ARC, MEANS, NEAR, NODES, WEIGHTS, Sensed, highest_kink, points_of
+from squealbox.transient.sensed import (
+    ARC,
+    MEANS,
+    NEAR,
+    NODES,
+    SAME,
+    WEIGHTS,
+    Sensed,
+    as_one,
+    highest_kink,
+    points_of,
+)
 from squealbox.transient.trajectory import Trajectory
 from squealbox.transient.widened import parted
 from squealbox.transient.widened import start_of as widened_start
 
 MOST_PIECES = 200_000
-SAME = 1e-12  # share of a piece below which two instants are one
 How = tuple[str, float, Any, tuple[float | None, Any]]  # scheme of contact, width of smoothing, method, tolerances
 
 
@@ -144,7 +154,7 @@ class _Walk:
         self.cuts, self.marks, self.work = [begin], [True], [0.0]
         self.after: list[Any] = []
         self.before: list[Any] = []
-        self.how, self.ways = how, ways_of(self.system, *how)
+        self.ways = ways_of(self.system, *how)
         self.pushed: Any = None
         if self.ways.method.tableau == TAYLOR:
             from squealbox.transient.lanes.single import Pushed
@@ -176,11 +186,11 @@ class _Walk:
     def _take(self, now: float) -> None:
         """Samples that are due, commands that arrive, and what is late."""
         order = self.sensed.acted(now) if self.flowing else None
+        n, u = self.driven.b.shape[1], None
         for a in map(int, np.flatnonzero(np.isfinite(self.steps))):
             due = self.begin + self.taken[a] * self.steps[a]
             if due <= now + SAME * self.steps[a]:
-                n = self.driven.b.shape[1]
-                u = self.driven.commands(self.q[:n], self.qd[:n])
+                u = self.driven.commands(self.q[:n], self.qd[:n]) if u is None else u
                 self.arrivals.append((due + self.late[a], a, float(u[a])))
                 self.taken[a] += 1
         self.arrivals.sort(key=lambda each: each[0])
@@ -198,7 +208,7 @@ class _Walk:
         if self.flowing:
             marks.append(self._on_grid(now, self.shortest))
             others.append(self._on_grid(now, self.longest))
-        apart = SAME * min(self.longest, self.end - self.begin) + 16.0 * float(np.spacing(abs(now)))
+        apart = as_one(min(self.longest, self.end - self.begin), now)
         ends = [each for each in (*marks, *others) if each > now + apart]
         until = max(each for each in ends if each <= min(ends) + apart)
         return until, any(abs(each - until) <= apart for each in marks)

@@ -14,7 +14,7 @@ NODES = 8  # Chebyshev's points in which a command is told
 ARC = 0.5  # radians of the brake's motion that they carry: 2 (ARC/4)^8/8! is 3e-12
 FAINT = 1e-11  # share of a kink that is nothing
 NEAR = 1e-9  # share of a stretch below which two instants in it are one
-SAME = 1e-12  # share of a delay below which what acts is at one instant
+SAME = 1e-12  # share of a delay or a piece below which two instants are one
 POINTS = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)[::-1]
 WEIGHTS = np.linalg.inv(np.vander(POINTS, increasing=True))  # of the powers of x, from values at the points
 MEANS = np.array([2.0 / (k + 1) if k % 2 == 0 else 0.0 for k in range(NODES)]) @ WEIGHTS  # Fejer's rule on (-1, 1)
@@ -23,6 +23,11 @@ MEANS = np.array([2.0 / (k + 1) if k % 2 == 0 else 0.0 for k in range(NODES)]) @
 def points_of(begin: float, end: float) -> Any:
     """Chebyshev's points between two instants, (NODES,)."""
     return 0.5 * (begin + end) + 0.5 * (end - begin) * POINTS
+
+
+def as_one(length: float, now: float) -> float:
+    """The time [s] within which instants about `now` are one, where pieces are as long as `length` [s]."""
+    return SAME * length + 16.0 * float(np.spacing(abs(now)))
 
 
 def highest_kink(angle: float) -> int:
@@ -86,7 +91,7 @@ class Sensed:
         return min(orders, default=None)
 
     def _apart(self, now: float) -> float:
-        return SAME * float(np.min(self.late)) + 16.0 * float(np.spacing(abs(now)))
+        return as_one(float(np.min(self.late)), now)
 
     def forget(self, before: float) -> None:
         """What acts no more."""

@@ -64,13 +64,6 @@ def numbers(system: System, made: Prepared, method: Method, duration: float, beg
     return fixed
 
 
-def longer(kept: Any) -> Any:
-    """The same rows with room for three times as many more, which takes no memory before it is written to."""
-    out = np.empty((4 * len(kept), *kept.shape[1:]))
-    out[: len(kept)] = kept
-    return out
-
-
 class Single:
     """One run, resumed until it ends."""
 
@@ -149,9 +142,9 @@ class Single:
     def _make_room(self) -> None:
         rows, events = self.count
         if not len(self.times) and rows + 3 > len(self.rows):
-            self.rows = longer(self.rows)
+            self.rows = packing.longer(self.rows)
         if events + len(self.system.contacts) > len(self.events):
-            self.events = longer(self.events)
+            self.events = packing.longer(self.events)
 
     def columns(self) -> tuple[Any, Any]:
         """Rows of output and of events, as far as they were written."""
@@ -169,7 +162,8 @@ class Pushed:
         system = under(some)
         start = np.zeros(system.size)
         self.run = Single(system, method, start, start, 0.0, duration, None)
-        without, pack = _numbers_by_name(under(none)), self._packed(under(none))
+        bare = under(none)
+        without, pack = _numbers_by_name(bare), self._packed(bare)
         self.rises = np.zeros((count, len(self.run.fixed)))
         self.fields: dict[str, tuple[Any, Any]] = {}
         for i in range(count):
