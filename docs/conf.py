@@ -1,10 +1,12 @@
 """Settings of the documentation: Sphinx with MyST-NB and furo; pages run their examples while they are built."""
 
+import os
 import sys
 from pathlib import Path
 
 import squealbox
 
+os.environ["SQUEALBOX_PROGRESS"] = "no"  # no line of waiting among the outputs of cells
 sys.path.insert(0, str(Path(__file__).parent / "_ext"))
 
 project = "squealbox"

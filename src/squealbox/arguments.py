@@ -1,7 +1,7 @@
 """What the arguments of public functions may be: one sentence where one is not, before anything is computed.
 
 An argument's name says what it is, the same in every function (`duration` is a time above zero everywhere), so what it
-may be stands here once. Depends on: parameters.
+may be stands here once. Who waits for the function is told so. Depends on: parameters, waiting.
 """
 
 import functools
@@ -13,6 +13,7 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 
 from squealbox.parameters import DataSheet, Missing, Parameter, ParameterError, known_names
+from squealbox.waiting import Progress, watched
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -150,6 +151,7 @@ def public(**kinds: Kind | None) -> Callable[[Callable[P, R]], Callable[P, R]]:
         looked = {name: kinds.get(name, KINDS.get(name)) for name in names}
         at = [(i, name, kind, given[name].default) for i, (name, kind) in enumerate(looked.items()) if kind is not None]
         owner = function.__name__
+        place = names.index("progress") if "progress" in names else None
         must = [name for name in names if given[name].default is inspect.Parameter.empty]
 
         @functools.wraps(function)
@@ -174,7 +176,12 @@ def public(**kinds: Kind | None) -> Callable[[Callable[P, R]], Callable[P, R]]:
                     about = looked[lacking]
                     raise Missing(owner, lacking, about(None) if about else "")
             try:
-                return function(*args, **keywords)
+                if not watched():
+                    return function(*args, **keywords)
+                with Progress(owner) as shown:
+                    if place is not None and place >= len(args) and keywords.get("progress") is None:
+                        keywords["progress"] = shown.heard
+                    return function(*args, **keywords)
             except ParameterError as error:
                 if error.named or error.name not in given:
                     raise

@@ -1,6 +1,5 @@
 """The command line as people run it: a process with files, signals and pipes, and every hostile file from outside."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -88,34 +87,6 @@ def test_every_hostile_file_is_refused_with_two_and_writes_nothing(tmp_path, cap
         assert "Traceback" not in err, name
         assert "inside the program" not in err, name
         assert list(tmp_path.iterdir()) == [path], name
-
-
-@pytest.mark.skipif(not hasattr(os, "openpty"), reason="needs a terminal")
-def test_progress_is_shown_on_a_terminal_only():
-    code = (
-        "import time\nfrom squealbox.cli.progress import Progress\n"
-        "with Progress('waiting') as progress:\n    progress('half way', 0.5)\n    time.sleep(2.5)\n"
-    )
-    silent = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
-    assert (silent.stdout, silent.stderr) == ("", "")
-    leader, follower = os.openpty()
-    shown = subprocess.run([sys.executable, "-c", code], stderr=follower, stdout=subprocess.PIPE, timeout=60)
-    os.close(follower)
-    text = os.read(leader, 65536).decode()
-    os.close(leader)
-    assert shown.stdout == b""
-    assert "half way" in text
-
-
-def test_a_quick_command_shows_no_progress():
-    leader, follower = os.openpty()
-    code = "from squealbox.cli.progress import Progress\nwith Progress('quick'): pass"
-    subprocess.run([sys.executable, "-c", code], stderr=follower, check=True, timeout=60)
-    os.set_blocking(leader, False)
-    with pytest.raises(BlockingIOError):
-        os.read(leader, 1)
-    os.close(leader)
-    os.close(follower)
 
 
 LOAD = "import sys; from squealbox import Result; print(type(Result.load(sys.argv[1])).__name__)"

@@ -5,11 +5,11 @@ from typing import Literal
 
 from squealbox.cli.answers import show
 from squealbox.cli.inputs import AllowCode, Changes, folder, number, read
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import UsageError
 from squealbox.cli.tables import written
 from squealbox.countermeasures import best_absorber
 from squealbox.files import write_design
+from squealbox.waiting import Progress
 
 
 def absorber(

@@ -8,13 +8,13 @@ from cyclopts import Parameter
 
 from squealbox.cli.answers import show
 from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.states import States, box_from
 from squealbox.cli.tables import write_csv, written
 from squealbox.limit_cycles import Basin, basin, dangerous_push
 from squealbox.limit_cycles.attractors.basins import half_widths
 from squealbox.limit_cycles.attractors.sections import state_names
+from squealbox.waiting import Progress
 
 Two = Annotated[tuple[str, str] | None, Parameter(negative="")]
 Push = Annotated[bool, Parameter(negative="")]

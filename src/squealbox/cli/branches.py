@@ -7,7 +7,6 @@ import numpy as np
 
 from squealbox.cli.answers import keep
 from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, in_motion, read, readable, with_points
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.tables import write_csv, written
 from squealbox.limit_cycles import (
@@ -25,6 +24,7 @@ from squealbox.limit_cycles import branch as followed
 from squealbox.limit_cycles.branches.isolated import lies_on
 from squealbox.matrices import liveliest
 from squealbox.result import Outcome
+from squealbox.waiting import Progress
 
 if TYPE_CHECKING:
     from squealbox.designs import Design

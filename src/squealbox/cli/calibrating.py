@@ -6,7 +6,6 @@ from squealbox.calibration import Comparison, Measured, compare, from_events, re
 from squealbox.calibration import calibrate as fitted
 from squealbox.cli.answers import show
 from squealbox.cli.inputs import AllowCode, Changes, folder, read
-from squealbox.cli.progress import Progress
 from squealbox.cli.recordings import Band, ends_of
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import written
@@ -15,6 +14,7 @@ from squealbox.files.measurements import Recorded
 from squealbox.files.runs import run_closely
 from squealbox.signals import Recording, SignalError, SquealEvents, read_recording, squeal_events
 from squealbox.stability import complex_modes
+from squealbox.waiting import Progress
 
 
 def calibrate(

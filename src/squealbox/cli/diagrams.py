@@ -22,12 +22,12 @@ from squealbox.cli.inputs import (
     time_of,
     with_points,
 )
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.limit_cycles import BifurcationDiagram, Branch, Section, bifurcation_diagram
 from squealbox.limit_cycles.attractors.settling import KINDS
 from squealbox.parameters import known_names
+from squealbox.waiting import Progress
 
 if TYPE_CHECKING:
     from squealbox.designs import Design

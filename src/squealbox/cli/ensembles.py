@@ -8,7 +8,6 @@ import numpy as np
 from squealbox.cli.answers import keep
 from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read, time_of
 from squealbox.cli.maps import Plane, Span, axes_of
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.reduced_brake import ReducedBrake
@@ -17,6 +16,7 @@ from squealbox.files.runs import start_of, usual_duration
 from squealbox.matrices import liveliest
 from squealbox.system import as_system
 from squealbox.transient import Ensemble, simulate_ensemble
+from squealbox.waiting import Progress
 
 
 def ensemble(

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from squealbox.cli.inputs import small
-from squealbox.cli.progress import Progress
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.assembled import AssembledBrake
 from squealbox.fe.meshed import MeshedBrake
@@ -18,6 +17,7 @@ from squealbox.files.reduced import Reduce, Reduced
 from squealbox.stability import complex_modes
 from squealbox.stability.mode_table import mode_table, table_text
 from squealbox.stability.second_mesh import ONE_MESH, mesh_doubt
+from squealbox.waiting import Progress
 
 FRICTION = "friction.static"
 POINTS = 61

@@ -10,7 +10,6 @@ import cyclopts
 import numpy as np
 
 from squealbox.cli.answers import manner
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import UsageError
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
@@ -19,6 +18,7 @@ from squealbox.files.analyses import Axis, quantity_of, words_of
 from squealbox.files.units import UnitError, in_si
 from squealbox.parameters import Parameter, ParameterError
 from squealbox.transient.simulate import TIME_STEPPING
+from squealbox.waiting import Progress
 
 Changes = Annotated[tuple[str, ...], cyclopts.Parameter(name="--set", negative="", show_default=False)]
 AllowCode = Annotated[bool, cyclopts.Parameter(name="--allow-code", negative="")]

@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 
 from squealbox.cli.inputs import AllowCode, Changes, free, in_motion, read, time_of
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.files.analyses import Simulate
 from squealbox.files.runs import run
 from squealbox.signals import SignalError, column, dominant_frequency, sound, sound_level
+from squealbox.waiting import Progress
 
 SAMPLES = 88_200.0  # a second: twice what a sound needs, so that nothing heard is folded down
 

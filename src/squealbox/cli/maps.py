@@ -8,11 +8,11 @@ from cyclopts import Parameter
 
 from squealbox.cli.answers import keep
 from squealbox.cli.inputs import AllowCode, Changes, Option, axis, folder, read, readable, small, with_points
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability import Boundary, StabilityMap, map_boundary, stability_boundary, stability_map
+from squealbox.waiting import Progress
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,13 +7,13 @@ import numpy as np
 
 from squealbox.cli.answers import show
 from squealbox.cli.inputs import AllowCode, Changes, folder, read, small
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files import write_design
 from squealbox.studies import Optimum
 from squealbox.studies import optimise as optimised
 from squealbox.studies.quantity import unit_of
+from squealbox.waiting import Progress
 
 
 def optimise(

@@ -4,9 +4,9 @@ import importlib
 from dataclasses import dataclass
 from pathlib import Path
 
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import UsageError
 from squealbox.parameters import known_names
+from squealbox.waiting import Progress
 
 
 @dataclass(frozen=True)

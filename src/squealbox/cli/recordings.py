@@ -10,7 +10,6 @@ import numpy as np
 
 from squealbox.cli.answers import show
 from squealbox.cli.inputs import number
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import UsageError
 from squealbox.signals import (
     Recording,
@@ -24,6 +23,7 @@ from squealbox.signals import (
     squeal_events,
 )
 from squealbox.signals.events import BAND, LEAST_LEVEL
+from squealbox.waiting import Progress
 
 SOUNDS = (".wav", ".flac", ".csv", ".uff", ".unv")
 Band = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 
 from squealbox.cli.inputs import AllowCode, Changes, Ends, free, number, read
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import UsageError
 from squealbox.cli.tables import written
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.fe.reduced_files import save_reduced
 from squealbox.files.reduced import Reduce, Reduced, dense, error_table, promise
+from squealbox.waiting import Progress
 
 
 def reduce_(file: Path, *, out: Path, band: Ends = None, changes: Changes = (), allow_code: AllowCode = False) -> None:

@@ -4,11 +4,11 @@ import dataclasses
 from pathlib import Path
 
 from squealbox.cli.inputs import AllowCode, Changes, free, read
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import UsageError
 from squealbox.report import ReportError
 from squealbox.report import report as write
 from squealbox.result import ResultFileError
+from squealbox.waiting import Progress
 
 
 def report(source: Path, *, out: Path | None = None, changes: Changes = (), allow_code: AllowCode = False) -> None:

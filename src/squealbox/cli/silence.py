@@ -6,13 +6,13 @@ import numpy as np
 
 from squealbox.cli.answers import keep
 from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files import NotWritable
 from squealbox.files.writing import cure_text
 from squealbox.remedies import Remedies
 from squealbox.remedies import silence as silenced
+from squealbox.waiting import Progress
 
 
 def silence(

@@ -8,7 +8,6 @@ import numpy as np
 from squealbox.cli.answers import keep, show
 from squealbox.cli.finite_elements import print_more
 from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, number, read, readable, small
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.reduced_brake import ReducedBrake
@@ -21,6 +20,7 @@ from squealbox.stability import (
     mechanism,
     mode_energy,
 )
+from squealbox.waiting import Progress
 
 SPECTRA = 61  # values at which the modes of a reduced brake are drawn
 

@@ -9,7 +9,6 @@ from cyclopts import Parameter
 
 from squealbox.cli import answers
 from squealbox.cli.inputs import AllowCode, Changes, changed, folder, free, in_motion, small
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.study_analyses import UNITS, analysis_of
 from squealbox.cli.tables import write_csv, written
@@ -17,6 +16,7 @@ from squealbox.files.analyses import Axis as Span
 from squealbox.files.study import read_study
 from squealbox.studies import Space, Store, open_sweep, sweep
 from squealbox.studies.store import LOG, RESULT
+from squealbox.waiting import Progress
 
 if TYPE_CHECKING:
     from squealbox.studies import Pace, Sweep

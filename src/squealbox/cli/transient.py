@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from squealbox.cli.answers import keep
 from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read, time_of
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files.analyses import Simulate
 from squealbox.files.runs import lasting, run, start_of
 from squealbox.parameters import ParameterError
+from squealbox.waiting import Progress
 
 if TYPE_CHECKING:
     from squealbox.transient.trajectory import Trajectory

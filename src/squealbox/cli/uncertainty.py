@@ -10,13 +10,13 @@ from cyclopts import Parameter
 from squealbox import studies
 from squealbox.cli.answers import keep
 from squealbox.cli.inputs import AllowCode, Changes, folder, read, small
-from squealbox.cli.progress import Progress
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files.uncertain import STUDIES, Sampled, Scattered
 from squealbox.parameters import ParameterError
 from squealbox.result import Result
 from squealbox.studies.quantity import unit_of
+from squealbox.waiting import Progress
 
 if TYPE_CHECKING:
     from squealbox.designs import Design

@@ -9,7 +9,6 @@ import ctypes
 import hashlib
 import inspect
 import os
-import sys
 import tempfile
 import threading
 import warnings
@@ -24,10 +23,11 @@ import numpy as np
 from squealbox.compiled.expressions import ELEMENTS, result
 from squealbox.compiled.kinds import FLOAT, TEXTS, TRUTH, WHOLE, Array, Record, kind_of, registers
 from squealbox.compiled.translation import Unit
+from squealbox.waiting import aside
 
 DECORATORS = ("inner", "packed", "entry")  # of plain functions that are translated; packed ones into their callers
 LINE = 64  # bytes of the cache's lines, with one of which the stack begins: a register put by across two costs twice
-PATIENCE = 0.5  # s of compiling after which a terminal is told
+PATIENCE = 0.5  # s of compiling after which people are told
 PASSES = (  # those that plain loops gain by; LLVM's own list takes ten times as long for code no quicker
     "sroa", "simplify_cfg", "always_inliner", "instruction_combine", "loop_simplify", "loop_rotate", "new_gvn",
     "instruction_combine", "simplify_cfg", "global_dead_code_eliminate",
@@ -146,11 +146,6 @@ def built(text: str, name: str, kinds: tuple[Any, ...]) -> tuple[Any, Any]:
     unit = _unit(text)
     made, returned = unit.function(name, kinds)
     return returned, optimised("\n".join([unit.text(), _door(name, made, kinds, returned)]), unit.modules)
-
-
-def _tell() -> None:
-    if sys.stderr.isatty():
-        print("squealbox: compiling for this kind of system, once on this machine ...", file=sys.stderr, flush=True)
 
 
 def _unit(text: str) -> Unit:
@@ -307,13 +302,14 @@ def kept(path: Path, build: Callable[[], tuple[Any, bytes]]) -> tuple[Any, bytes
     except OSError:
         check, content = b"", b""
     if not content or hashlib.sha256(content).hexdigest().encode() != check:
-        told = threading.Timer(PATIENCE, _tell)
+        told = threading.Timer(PATIENCE, aside, ["compiling for this kind of system, once on this machine"])
         told.daemon = True
         told.start()
         try:
             returned, code = build()
         finally:
             told.cancel()
+            aside("")
         content = repr(returned).encode() + b"\n" + code
         _write(path, hashlib.sha256(content).hexdigest().encode() + b"\n" + content)
     first, _, code = content.partition(b"\n")
