@@ -143,6 +143,9 @@ class System(DataSheet):
         """Name of each contact, "contact 1" and so on where it has none."""
         return numbered([contact.name for contact in self.contacts])
 
+    def __str__(self) -> str:
+        return self.summary()
+
     @property
     def size(self) -> int:
         """Number n of degrees of freedom."""

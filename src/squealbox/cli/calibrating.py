@@ -13,7 +13,8 @@ from squealbox.files import DesignFile, write_design
 from squealbox.files.measurements import Recorded
 from squealbox.files.runs import run_closely
 from squealbox.signals import Recording, SignalError, SquealEvents, read_recording, squeal_events
-from squealbox.stability import complex_modes
+from squealbox.signals.events import BAND
+from squealbox.stability import ComplexModes, complex_modes
 from squealbox.waiting import Progress
 
 
@@ -45,7 +46,7 @@ def calibrate(
         raise UsageError(f"{file}: has no section [calibrate], which says what is fitted to what")
     measured: list[Measured] = list(found.calibrate.measured)
     if heard:
-        *_, events = _heard(found)
+        *_, events = _heard(found, own=complex_modes(found.design))
         measured += from_events(events, int(events.level.argmax())) if events.count else []
     with Progress("calibrating"):
         result = fitted(found.design, found.calibrate.parameters, measured, loss=found.calibrate.loss)
@@ -82,7 +83,8 @@ def compare_(
     full_scale
         what its full scale is worth
     band
-        lowest and highest frequency at which squeal is looked for: --band 1kHz 16kHz
+        lowest and highest frequency at which squeal is looked for, --band 1kHz 16kHz; by default 2 to 16 kHz, and as
+        far down as half the frequency of the design's own mode
     modes
         table (.csv) or universal file of the modes of a test or another code, to compare with those of the design
     out
@@ -102,7 +104,7 @@ def compare_(
             figures["mode_table"] = compare(own, read_mode_table(modes))
             show("modes", figures["mode_table"])
         if modes is None or recording is not None:
-            sound, channel, events = _heard(found, recording, unit, full_scale, band)
+            sound, channel, events = _heard(found, recording, unit, full_scale, band, own)
             figures["modes"] = compare(own, events)
             show("modes", figures["modes"])
             if found.simulate is not None:
@@ -127,8 +129,12 @@ def _heard(
     unit: str = "Pa",
     full_scale: float | None = None,
     band: Band = None,
+    own: ComplexModes | None = None,
 ) -> tuple[Recording, int, SquealEvents]:
-    """The recording of the section or the one that is named, the channel of it that is heard, and its squeal events."""
+    """The recording of the section or the one that is named, the channel of it that is heard, and its squeal events.
+
+    `own` are the modes that are expected in it, where no band is given.
+    """
     about = found.recording
     if about is None and recording is None:
         raise UsageError(f"{found.path}: has no section [recording], and no recording is named")
@@ -137,8 +143,16 @@ def _heard(
     path = Path(about.file) if recording is not None else found.path.parent / about.file
     try:
         sound = read_recording(path, unit=about.unit, full_scale=about.full_scale, rate=about.rate)
-        ends = about.band if band is None else ends_of(band)
+        ends = ends_of(band) if band is not None else about.band or _around(own)
         events = squeal_events(sound, channel=about.channel, band=ends, least_level=about.least_level)
     except SignalError as error:
         raise UsageError(str(error)) from error
     return sound, about.channel, events
+
+
+def _around(own: ComplexModes | None) -> tuple[float, float]:
+    """Where squeal is usual [Hz], and as far down as half the frequency of the mode that grows most, which is said."""
+    low = BAND[0] if own is None or not own.unstable_modes else 0.5 * own.most_unstable.frequency
+    if low < BAND[0]:
+        print(f"squeal is looked for from {low:.0f} Hz on, half the frequency of the mode that grows most")
+    return min(low, BAND[0]), BAND[1]

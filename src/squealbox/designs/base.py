@@ -36,6 +36,9 @@ class Design(DataSheet):
         """The equation of motion with these parameters."""
         raise NotImplementedError
 
+    def __str__(self) -> str:
+        return self.summary()
+
     def plot(self, **keywords: Any) -> Any:
         """The drawing of this brake, as `squealbox.plots.brake_drawing` makes it."""
         return importlib.import_module(DRAWN_BY).plot(self, **keywords)

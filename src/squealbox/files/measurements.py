@@ -27,7 +27,7 @@ from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
 from squealbox.parameters import Parameter, ParameterError, known_names
-from squealbox.signals.events import BAND, LEAST_LEVEL
+from squealbox.signals.events import LEAST_LEVEL
 
 LOSSES = ("squares", "robust")
 FREQUENCY = Parameter("Hz", 0.0, low_open=True)
@@ -45,14 +45,17 @@ class Calibrated:
 
 @dataclass(frozen=True)
 class Recorded:
-    """[recording]: the file beside the design, what its numbers are worth, and what counts as squeal."""
+    """[recording]: the file beside the design, what its numbers are worth, and what counts as squeal.
+
+    Without a band squeal is looked for where it is usual, and as far down as half the frequency that is expected.
+    """
 
     file: str
     unit: str = ""
     full_scale: float | None = None
     rate: float | None = None
     channel: int = 0
-    band: tuple[float, float] = BAND
+    band: tuple[float, float] | None = None
     least_level: float = LEAST_LEVEL
 
 

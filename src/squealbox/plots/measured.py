@@ -117,20 +117,25 @@ def calibration_figure(found: Calibration, *, title: str = "") -> "Figure":
 def model_beside_measurement(found: Comparison, *, title: str = "", axes: Any = None) -> "Figure":
     """How far each simulated number lies from the measured one, beside the measured number's own 95 % error.
 
-    Of a level in dB, which has no per cent, the difference stands beside its numbers.
+    Of a level in dB, which has no per cent, the difference stands beside its numbers. What one side alone tells is left
+    to the table.
     """
-    share = 100.0 * found.error / np.where(found.measured == 0.0, 1.0, np.abs(found.measured))
-    off = 100.0 * (found.simulated / np.where(found.measured == 0.0, np.nan, found.measured) - 1.0)
-    units = found.settings["units"]
+    known = np.isfinite(found.simulated) & np.isfinite(found.measured)
+    known = known if np.any(known) else ~known
+    simulated, measured, error = (x[known] for x in (found.simulated, found.measured, found.error))
+    names, units = ([x for x, both in zip(all_, known, strict=True) if both]
+                    for all_ in (found.names, found.settings["units"]))  # fmt: skip
+    share = 100.0 * error / np.where(measured == 0.0, 1.0, np.abs(measured))
+    off = 100.0 * (simulated / np.where(measured == 0.0, np.nan, measured) - 1.0)
     off[[unit.startswith("dB") for unit in units]] = np.nan
-    with drawing(axes, width=1.5 * COLUMN, height=0.9 + NARROW * len(found.names)) as panel:
-        rows = np.arange(len(found.names))
+    with drawing(axes, width=1.5 * COLUMN, height=0.9 + NARROW * len(names)) as panel:
+        rows = np.arange(len(names))
         panel.axvline(0.0, color="black", linewidth=0.6)
         both = np.isfinite(off)  # without a reference there is nothing to stand at zero
         panel.errorbar(np.where(both, 0.0, np.nan), rows, xerr=np.nan_to_num(share), fmt="s", color="#000000",
                        markersize=4, capsize=3, linewidth=1.0, label="measured, 95 %")  # fmt: skip
         panel.plot(off, rows, "o", color="#D55E00", markersize=5, label="simulated")
-        numbers = zip(found.names, found.simulated, found.measured, units, strict=True)
+        numbers = zip(names, simulated, measured, units, strict=True)
         told = [f"{name}\n{_or_dash(a)} for {_or_dash(b)}{_in_dB(a - b, unit)}" for name, a, b, unit in numbers]
         panel.set_yticks(rows, told, fontsize=7)
         panel.set(xlabel=quantity_label("away from the measured number", "%"), title=title)
