@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from scipy.signal import lfilter
+from scipy.sparse import dia_array
 
 from squealbox import (
     PID,
@@ -22,12 +23,14 @@ from squealbox import (
     stability,
     studies,
 )
-from squealbox.control import defeating_push, placement, run_loops, stable_gains
+from squealbox.control import closed_loop, defeating_push, placement, run_loops, stable_gains
+from squealbox.countermeasures import best_absorber
 from squealbox.designs import DampingParadox, DrumBrake, MassOnBelt
 from squealbox.fit import fit_friction
 from squealbox.friction import Coulomb
 from squealbox.limit_cycles import basin, bifurcation_diagram, branch, coexistence, dangerous_push, hopf_point, shooting
 from squealbox.limit_cycles.branches.curves import hopf_curve
+from squealbox.remedies import Remedies
 from squealbox.result import Result
 from squealbox.studies import sweep
 from squealbox.transient import compare_contact, simulate, simulate_ensemble, verdict
@@ -118,6 +121,26 @@ def limited() -> System:
     return System([[1.0]], [[-0.1]], [[1.0]], loops=(PID(on="q1", derivative=0.3, limit=1.0),))
 
 
+def sparse_block() -> System:
+    M, C, K = (dia_array(np.diag(each)) for each in ([1.0, 1.0], [3.0, 3.0], [1e6, 4e6]))
+    pad = Contact(n=[0.0, 1e5], d=[1.0, 0.0], t=[1.0, 0.0], law=Coulomb(0.3), V=1.0, N0=50.0, name="pad")
+    return System(M=M, C=C, K=K, contacts=[pad])
+
+
+def cures() -> Any:
+    """Two rows, the second with what to know before."""
+    return Remedies(
+        name=np.array(["added damping on y", "friction.static down"]), dose=np.array([12.0, 0.25]),
+        unit=np.array(["N s/m", ""]), reached=np.array([True, False]), growth=np.array([-3.0, 4.0]),
+        growth_at_margin=np.array([-1.0, 7.0]), probability=np.array([0.02, 0.3]),
+        amplitude=np.array([np.nan, 1e-6]), cost=np.array(["a damper", "another lining"]),
+        caution=np.array(["", "the brake needs 40 % more force"]),
+        line=np.array(['AddedDamping(brake, "y", 12.0)', 'brake.replace({"friction.static": 0.25})']),
+        values=({}, {"friction.static": 0.25}), growth_before=33.0, before=0.9, amplitude_before=2e-5,
+        inputs={"system": drum()},
+    )  # fmt: skip
+
+
 def scattered(study: Callable[..., Any], **settings: Any) -> Any:
     """A study of the growth rate of the model of the damping paradox under scatter."""
     scatter = studies.Scatter({FRICTION: studies.Normal(0.28, 0.02), "eta1": studies.Uniform(0.01, 0.03)})
@@ -136,6 +159,7 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
     "ComplexModes": lambda: stability.complex_modes(drum()),
     "CriticalValue": lambda: stability.critical_value(drum(), FRICTION, RANGE),
     "CriticalValues": lambda: stability.critical_values(drum(), FRICTION, RANGE),
+    "BandModes": lambda: stability.complex_modes(sparse_block(), band=(100.0, 400.0)),
     "ModeEnergy": lambda: stability.mode_energy(drum()),
     "LocalSensitivity": lambda: stability.local_sensitivity(drum(), stability.complex_modes(drum()).most_unstable),
     "MeshDoubt": lambda: stability.MeshDoubt(
@@ -166,6 +190,9 @@ EXAMPLES: dict[str, Callable[[], Result]] = {
     "LoopRun": lambda: run_loops(sampled(), 5.0, ([1.0], [0.0])),
     "Placement": lambda: placement(drum()),
     "DefeatingPush": lambda: defeating_push(limited(), precision=0.1),
+    "ClosedLoop": lambda: closed_loop(limited()),
+    "BestAbsorber": lambda: best_absorber(DampingParadox(), "x", 0.02),
+    "Remedies": cures,
     "StableGains": lambda: stable_gains(limited()),
     "SquealEvents": stop,
     "NoiseMatrix": campaign,

@@ -363,8 +363,7 @@ def _hashable(value: Any) -> Any:
 
 def _told(sheet: DataSheet, indent: str = "  ", usual: Mapping[str, Any] | None = None) -> Iterator[str]:
     """The lines of a summary, short lists of sheets before long ones; of what is in a list, no value of `usual`."""
-    declared, several = sheet.parameters(), []
-    room = max(14, *map(len, sheet.field_names()))
+    declared, several, room = sheet.parameters(), [], max(14, *map(len, sheet.field_names()))
     for name in sheet.field_names():
         value, about = getattr(sheet, name), declared.get(name)
         unit, meaning = (about.unit, about.meaning) if about else sheet.told.get(name, ("", ""))
@@ -380,8 +379,8 @@ def _told(sheet: DataSheet, indent: str = "  ", usual: Mapping[str, Any] | None 
             usual and name in usual and _same(value, usual[name])
         ):
             unit = "" if unit in ("", "-") or value is None else f" {unit}"
-            turned = f" = {math.degrees(value):.6g} deg" if unit == " rad" and isinstance(value, float) else ""
-            yield f"{indent}{name:<{room}s} {_compact(value) + unit + turned:<28s} {meaning}".rstrip()
+            unit += f" = {math.degrees(value):.6g} deg" if unit == " rad" and isinstance(value, float) else ""
+            yield f"{indent}{name:<{room}s} {_compact(value) + unit:<28s} {meaning}".rstrip()
     for lines in sorted(several, key=len):
         yield from lines
 

@@ -159,10 +159,15 @@ class Result:
         lines = [f"  {field.name:<20s} {_told(field, getattr(self, field.name))}" for field in fields[:MOST_LINES]]
         if len(fields) > MOST_LINES:
             lines.append(f"  and {len(fields) - MOST_LINES} more arrays, listed by .to_dataset()")
-        caution = str(getattr(self, "caution", ""))
-        if caution:
+        if caution := self.warning:
             lines.append(textwrap.fill(f"Caution: {caution}", 118, initial_indent="  ", subsequent_indent="    "))
         return "\n".join([said, *lines])
+
+    @property
+    def warning(self) -> str:
+        """What to know of the whole before it is used; "" also where the cautions are of its entries, as of cures."""
+        caution = getattr(self, "caution", "")
+        return caution if isinstance(caution, str) else ""
 
     @classmethod
     def kind_name(cls) -> str:

@@ -50,6 +50,7 @@ def test_what_is_no_speed_or_no_coefficient_is_refused(text, words, tmp_path):
     [
         "Dynamometer test 5\n\nspeed [km/h],mu\n3.6,0.4\n7.2,0.3\n",
         "Run 3;;\nt [s];mu [-];v [m/s]\n0;0,4;1\n1;0,3;2\n",
+        "mu,v\n0.4,1\n0.3,2\n",
         "# pad A\ntemperature,friction coefficient [%],sliding speed\n20,40,1\n25,30,2\n",
     ],
 )

@@ -35,6 +35,7 @@ def test_every_kind_of_the_package_is_drawn():
     kinds = [kind for kind in Result.kinds.values() if kind.__module__.startswith("squealbox.")]
     assert len(kinds) > 25
     assert [kind.__name__ for kind in kinds if plot.dispatch(kind) is plot.dispatch(object)] == []
+    assert [kind.__name__ for kind in kinds if kind.__name__ not in EXAMPLES] == []
 
 
 @pytest.mark.parametrize("name", list(EXAMPLES))

@@ -81,7 +81,7 @@ def plain(result: Result) -> dict[str, Any]:
         "kind": type(result).__name__,
         "outcome": str(result.outcome),
         "message": result.outcome.message,
-        "caution": getattr(result, "caution", "") or "",
+        "caution": result.warning,
         "values": {
             name: {
                 "value": _plain(column.values),

@@ -83,18 +83,24 @@ class ClosedLoop(Result):
     def sampling_margin(self, computing: float = 0.0) -> float:
         """The lowest sampling rate [Hz] of all loops, held, from which on the brake is stable at every higher one.
 
-        `computing` is the time to compute, in samples. NaN for a brake whose ideal loops do not hold it stable.
+        `computing` is the time to compute, in samples. NaN for a brake whose ideal loops do not hold it stable, inf for
+        one so near to its boundary that round-off hides the rate that would do.
         """
         found = self.plant
-        if not np.all(np.linalg.eigvals(found.closed).real < 0.0):
+        ideal = np.linalg.eigvals(found.closed)
+        if not np.all(ideal.real < 0.0):
             return float("nan")
 
         def growth(step: float) -> float:
             values, _ = sampled.multipliers(found, 1.0 / step, found.delay + computing * step)
             return float(np.log(np.abs(values[0])) / step)
 
-        fastest = float(np.max(np.abs(np.linalg.eigvals(found.closed))))
+        fastest, slack = float(np.max(np.abs(ideal))), -float(np.max(ideal.real))
         low, high = 1e-4 / fastest, 1e-3 / fastest
+        while growth(low) >= 0.0:
+            low, high = 0.1 * low, low
+            if 1e-14 / low > slack:  # ln|z| is known to some 1e-15
+                return float("inf")
         while growth(high) < 0.0:
             low, high = high, (1.05 if high * fastest > 0.1 else 1.2) * high
             if high > 1e4 / fastest:

@@ -266,8 +266,8 @@ def _meetings(start: Any, near: tuple[float, float]) -> list[tuple[float, float,
         return np.array([least.real, least.imag])
 
     found = root(apart, np.log(near), method="hybr", options={"xtol": 1e-14, "eps": 1e-9})
-    if not np.all(np.isfinite(found.x)) or np.max(np.abs(found.fun)) > 1e-10:
-        return []
+    if not np.all(np.abs(found.x - np.log(near)) <= FAR) or np.max(np.abs(found.fun)) > 1e-10:
+        return []  # none, or one far away, where the search was held
     frequency, damping = (float(x) for x in np.exp(found.x))
     values = spectrum(tuned(frequency, damping))
     upper = values[: len(values) // 2]

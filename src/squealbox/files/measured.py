@@ -62,10 +62,10 @@ def _is_text(row: list[str]) -> bool:
 
 
 def _columns(path: Path, line: int, names: list[str]) -> tuple[int, int]:
-    """Where the speed and the coefficient stand: the first two of two, of more those whose names say so."""
-    if len(names) == 2:
-        return 0, 1
+    """Where the speed and the coefficient stand: by their names, of two columns without such names in this order."""
     found = [[i for i, name in enumerate(names) if pattern.search(name)] for pattern in (SPEED, COEFFICIENT)]
+    if len(names) == 2 and [len(each) for each in found] != [1, 1]:
+        return 0, 1
     if len(names) < 2 or [len(each) for each in found] != [1, 1]:
         expected = "two, sliding speed and friction coefficient, or names of which one says v or speed and one mu"
         raise _error(path, line, f"{len(names)} cells: expected {expected}")

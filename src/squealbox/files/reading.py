@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -110,15 +110,21 @@ def read_text(text: str, name: str = "design.toml", *, beside: bool = True) -> D
 
 def _file(document: Document) -> DesignFile:
     tables = dict(document.tables)
-    study = tables.pop(STUDY, None) is not None
+    study = tables.pop(STUDY, None)
     asked = {name: tables.pop(name) for name in SECTIONS if name in tables}
     design = design_of(document, tables)
     sections = {name: section_of(document, name, table, design) for name, table in asked.items()}
     if design is None or document.problems:
         raise document.error()
+    found = DesignFile(document.path, design, study=study is not None, **sections)
+    if study is not None:
+        from squealbox.files.study import study_of  # which reads the brake of a study by this module
+
+        if study_of(document, study, found) is None:
+            raise document.error()
     forgot = tables.get("brake") in ("own", "mechanism") and "contacts" not in tables
     caution = NOTHING_RUBS.format(tables["brake"]) if forgot else ""
-    return DesignFile(document.path, design, study=study, caution=caution, **sections)
+    return replace(found, caution=caution)
 
 
 def design_of(document: Document, tables: Mapping[str, Any], beside: tuple[str, ...] = ()) -> Design | None:

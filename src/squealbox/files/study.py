@@ -80,10 +80,18 @@ def read_study(path: Path, *, allow_code: bool = False) -> StudyFile:
     tables = dict(document.tables)
     asked = tables.pop("study", None)
     brake = _brake(document, tables)
-    table = asked if isinstance(asked, Mapping) else {}
     if asked is None:
         document.problem((), "the section [study] is missing: it says which analysis is asked over which parameters")
-    elif not isinstance(asked, Mapping):
+    found = study_of(document, asked, brake)
+    if found is None or brake is None or document.problems:
+        raise document.error()
+    return found
+
+
+def study_of(document: Document, asked: Any, brake: DesignFile | None) -> StudyFile | None:
+    """What the section [study] asks of a brake; None, and problems of the document, where something is wrong in it."""
+    table = asked if isinstance(asked, Mapping) else {}
+    if asked is not None and not isinstance(asked, Mapping):
         wrong(document, ("study",), asked, "a section [study]")
     rest = {name: value for name, value in table.items() if name not in OTHERS}
     study = read_sheet(document, Study, rest, ("study",), beside=OTHERS)
@@ -97,7 +105,7 @@ def read_study(path: Path, *, allow_code: bool = False) -> StudyFile:
     if study is not None and brake is not None and study.analysis == "onset" and brake.onset is None:
         document.problem(("study", "analysis"), "'onset' needs a section [onset] with a parameter and its range")
     if document.problems or brake is None or study is None or space is None:
-        raise document.error()
+        return None
     return StudyFile(document.path, brake, study, space, keep, observe)
 
 

@@ -82,8 +82,7 @@ def _result_card(result: Result) -> str:
     kind = type(result).__name__
     ended = f"{result.outcome}: {result.outcome.message}" if result.outcome.message else str(result.outcome)
     parts = [f"<p><b>{escape(kind)}</b> &middot; {escape(ended)}</p>"]
-    caution = getattr(result, "caution", "")
-    parts += [f"<p><b>Caution:</b> {escape(caution)}</p>"] * bool(caution)
+    parts += [f"<p><b>Caution:</b> {escape(result.warning)}</p>"] * bool(result.warning)
     parts.append(_said(result))
     if has_figure(result):
         parts.append(inline(plot(result)))

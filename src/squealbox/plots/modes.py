@@ -59,9 +59,10 @@ def coalescence(
             for left, right in unstable_stretches(values, worst):
                 panel.axvspan(left, right, zorder=0, **UNSTABLE)
             panel.set_xlim(values[0], values[-1])
-        onsets = [left for left, _ in unstable_stretches(values, worst) if left > values[0]]
-        if onsets:
-            note(below, "unstable from " + ", ".join(number(x) for x in onsets) + f" {unit}".rstrip(), "upper left")
+        onsets = np.flatnonzero(~(worst[:-1] > 0.0) & (worst[1:] > 0.0))
+        if len(onsets):
+            told = (f"between {number(values[i])} and {number(values[i + 1])}" for i in onsets)
+            note(below, f"becomes unstable {', '.join(told)} {unit}".rstrip(), "upper left")
         above.set(ylabel=quantity_label("frequency", read), title=title)
         below.set(xlabel=quantity_label(name, unit), ylabel=quantity_label("growth rate", "1/s"))
         above.legend(loc="upper right")

@@ -71,9 +71,8 @@ def _about(result: Result) -> Iterator[Any]:
         yield from _cures(result)
     elif told is not None:
         yield Code(told())
-    caution = getattr(result, "caution", "")
-    if isinstance(caution, str) and caution:
-        yield Text(f"Caution: {caution}")
+    if result.warning:
+        yield Text(f"Caution: {result.warning}")
     numbers = tuple((name, f"{value} {unit}".rstrip()) for name, value, unit in plots.facts(result))
     if numbers:
         yield Table(("", "value"), numbers)

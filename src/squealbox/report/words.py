@@ -106,7 +106,10 @@ def _birth(found: Examination) -> Iterator[str]:
     if hopf.kind == "subcritical":
         yield f"The cycle born at {where} is unstable: vibration can persist on the stable side of that value already."
     elif hopf.kind == "supercritical":
-        yield f"The cycle born at {where} is stable and grows from nothing there, as long as its contacts keep sliding."
+        next_ = abs(hopf.first_rest - float(hopf.value))
+        far = f", for the next {number(next_, 2)} of {hopf.parameter}; beyond, sticking decides what is met"
+        said = "while its contacts keep sliding" + far * bool(np.isfinite(next_))
+        yield f"The cycle born at {where} is stable and grows from nothing there, {said}."
 
 
 def _cycle(found: Examination) -> Iterator[str]:

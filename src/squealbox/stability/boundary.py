@@ -19,6 +19,7 @@ from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.cells import Crossing, Samples, crossings
 from squealbox.stability.family import Family, Steady
+from squealbox.stability.plane_curves import between, onto_side, passed
 from squealbox.stability.scan import coalescence, is_neutral, on_divergence
 from squealbox.stability.sides import lying_on_a_side
 from squealbox.stability.state_matrix import spectrum
@@ -28,7 +29,9 @@ STEPS = tuple(  # ever shorter towards a corner
     StepControl(first=longest / 10.0, smallest=2e-6, largest=longest, tolerance=1e-8, largest_turn=0.2, most_points=60)
     for longest in (4e-2, 2e-3, 1e-4)
 )
-CIRCLE = 2e-5  # radius on which a curve is picked up again after a corner
+CIRCLE, WIDEST = 2e-5, 0.02  # radius on which a curve is picked up again after a corner; of circles along a jump
+CLOSE = 50.0  # radii of such a small circle from a side, which is reached straight on
+STRAIGHT = 0.998  # cosine of the turn up to which they grow
 SHIFT = 1e-6  # of the central differences for the gradient, in shares of the axes
 SHIFTS = SHIFT * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
 HALVINGS = 24  # of a crossed edge, down to 1e-9 of the axes
@@ -100,7 +103,7 @@ def stability_boundary(
     curves: list[Any] = []
     tangents: list[Any] = []
     for start, gradient in rectangle.starts(edges):
-        if not _passed(start, gradient, curves, tangents):
+        if not passed(start, gradient, curves, tangents, 2.0 * CIRCLE):
             points, directions = _traced(rectangle, start, gradient)
             curves.append(points)
             tangents.append(directions)
@@ -277,25 +280,36 @@ def _traced(rectangle: _Rectangle, start: Any, gradient: Any) -> tuple[Any, Any]
 def _walk(rectangle: _Rectangle, start: Any, heading: Any, side: float) -> tuple[list[Any], list[Any], bool]:
     """Points and tangents from `start` along `heading` until the curve closes, ends, or leaves the square.
 
-    `side` is 1 with the unstable side on the left, -1 on the right.
+    `side` is 1 with the unstable side on the left, -1 on the right. Where no detector leads on from a corner either,
+    growth jumps along the curve, and it is followed from circle to circle, wider ones while it goes straight.
     """
     points, tangents = [np.array(start)], [np.array(heading)]
-    point, along = np.array(start), np.array(heading)
+    point, along, radius = np.array(start), np.array(heading), CIRCLE
     for _ in range(200):  # corners
         corner = len(points)
         for here, tangent in _smooth_part(rectangle, point, along, side):
             if np.any((here < 0.0) | (here > 1.0)):
                 return [*points, np.clip(here, 0.0, 1.0)], [*tangents, tangent], False
-            if _between(points[-1], here, points[0], tangents[0], tangent) and len(points) > 3:
+            if between(points[-1], here, points[0], tangents[0], tangent) and len(points) > 3:
                 return [*points, points[0]], [*tangents, tangents[0]], True
             points.append(here)
             tangents.append(tangent)
-        picked = _around_corner(rectangle, points[-1], tangents[-1], side)
+        stuck = len(points) == corner
+        radius = radius if stuck else CIRCLE
+        if radius > 2.0 * CIRCLE:
+            side_ahead = onto_side(points[-1], points[-1] + 2.0 * tangents[-1])
+            ahead = float(np.linalg.norm(side_ahead - points[-1]))
+            if ahead < CLOSE * CIRCLE:
+                return [*points, side_ahead], [*tangents, tangents[-1]], False
+            radius = min(radius, 0.9 * ahead)  # beyond the side there is nothing to see
+        picked = _around_corner(rectangle, points[-1], tangents[-1], side, radius)
         if picked is None:
             return points, tangents, False
-        if np.linalg.norm(picked[0] - points[0]) < 2.0 * CIRCLE and len(points) > 3:
+        back = np.linalg.norm(picked[0] - points[0]) < 2.0 * CIRCLE
+        if len(points) > 3 and (back or between(points[-1], picked[0], points[0], tangents[0], picked[1])):
             return [*points, points[0]], [*tangents, tangents[0]], True
-        stuck = len(points) == corner
+        straight = picked[1] @ tangents[-1] > STRAIGHT
+        radius = min(2.0 * radius, WIDEST) if stuck and straight else max(0.25 * radius, CIRCLE)
         point, along = picked
         points.append(point)
         tangents.append(along)
@@ -342,7 +356,9 @@ def _smooth_part(rectangle: _Rectangle, point: Any, along: Any, side: float) -> 
         pace = 0 if path.outcome == "most_points" else pace + 1
 
 
-def _around_corner(rectangle: _Rectangle, point: Any, along: Any, side: float) -> tuple[Any, Any] | None:
+def _around_corner(
+    rectangle: _Rectangle, point: Any, along: Any, side: float, radius: float = CIRCLE
+) -> tuple[Any, Any] | None:
     """Where the boundary leaves a small circle about a corner, and the direction.
 
     Seen from the centre, the unstable side is on the left of the way on and on the right of the way back, so the two
@@ -350,7 +366,7 @@ def _around_corner(rectangle: _Rectangle, point: Any, along: Any, side: float) -
     """
     heading = float(np.arctan2(along[1], along[0]))
     angles = heading + np.linspace(-np.pi, np.pi, 361)
-    ring = point + CIRCLE * np.column_stack([np.cos(angles), np.sin(angles)])
+    ring = point + radius * np.column_stack([np.cos(angles), np.sin(angles)])
     values = side * rectangle.level(ring)
     ways = [i for i in range(360) if values[i] <= 0.0 < values[i + 1]]
     if not ways:
@@ -359,40 +375,7 @@ def _around_corner(rectangle: _Rectangle, point: Any, along: Any, side: float) -
     low, high = angles[best], angles[best + 1]
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        ahead = point + CIRCLE * np.array([[np.cos(middle), np.sin(middle)]])
+        ahead = point + radius * np.array([[np.cos(middle), np.sin(middle)]])
         low, high = (low, middle) if side * float(rectangle.level(ahead)[0]) > 0.0 else (middle, high)
     direction = np.array([np.cos(low), np.sin(low)])
-    return point + CIRCLE * direction, direction
-
-
-def _between(a: Any, b: Any, start: Any, first: Any, tangent: Any) -> bool:
-    """True when the start lies on the step from a to b, which goes the same way."""
-    span = b - a
-    share = (start - a) @ span / (span @ span)
-    off = np.linalg.norm(start - a - share * span)
-    return bool(0.0 < share <= 1.0 and off < 0.1 * np.linalg.norm(span) and first @ tangent > 0.0)
-
-
-def _passed(point: Any, gradient: Any, curves: list[Any], tangents: list[Any]) -> bool:
-    """True when a traced curve runs through `point` with its unstable side on the same side."""
-    for points, directions in zip(curves, tangents, strict=True):
-        chord = points[1:] - points[:-1]
-        length = np.linalg.norm(chord, axis=-1)
-        near = np.linalg.norm(0.5 * (points[1:] + points[:-1]) - point, axis=-1) < 0.6 * length + 1e-4
-        for i in np.nonzero(near)[0]:
-            s = np.linspace(0.0, 1.0, 33)[:, None]
-            curve = _hermite(points[i], points[i + 1], directions[i] * length[i], directions[i + 1] * length[i], s)
-            distance = np.linalg.norm(curve - point, axis=-1)
-            left = np.array([-chord[i, 1], chord[i, 0]])
-            if np.min(distance) < 0.02 * length[i] + 1e-6 + 2.0 * CIRCLE and left @ gradient > 0.0:
-                return True
-    return False
-
-
-def _hermite(a: Any, b: Any, slope_a: Any, slope_b: Any, s: Any) -> Any:
-    return (
-        (2.0 * s**3 - 3.0 * s**2 + 1.0) * a
-        + (s**3 - 2.0 * s**2 + s) * slope_a
-        + (3.0 * s**2 - 2.0 * s**3) * b
-        + (s**3 - s**2) * slope_b
-    )
+    return point + radius * direction, direction

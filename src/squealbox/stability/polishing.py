@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.parameters import ParameterError
 from squealbox.stability.family import Family
 
 ROUND_OFF = 16.0 * np.finfo(float).eps  # of an entry of K_eff and C_eff: sums over a few contacts and steady sliding
@@ -59,8 +60,11 @@ def polished(family: Family, value: float, eigenvalue: complex, low: float, high
 
 
 def _matrices(family: Family, p: float) -> tuple[Any, Any, Any] | None:
-    """M, C_eff and K_eff at p; None where there is no steady sliding."""
-    about = family.at(np.array([p]))
+    """M, C_eff and K_eff at p; None where there is no steady sliding, as beyond what the parameter may be."""
+    try:
+        about = family.at(np.array([p]))
+    except ParameterError:
+        return None
     if not about.equilibrium.exists[0]:
         return None
     whole = [np.broadcast_to(x, (1, *x.shape[-2:]))[0] for x in (about.M, about.C, about.K)]

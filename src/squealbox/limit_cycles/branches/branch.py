@@ -87,6 +87,10 @@ class Branch(Result):
         lines = [f"{walked}, {int(np.sum(self.stable))} stable; ended: {ended}"]
         if len(self.value) > 2 and high - low < STRAIGHT * max(abs(low), abs(high)):
             lines += [f"it goes straight up: cycles of every amplitude at {self.parameter} = {low:.8g}"]
+        one_way = self.settings.get("one_way")
+        if one_way:
+            further = "larger" if one_way < 0.0 else "smaller"
+            lines += [f"what lies at {further} values is another walk, from the same start: direction={-one_way:g}"]
         lines += [f"{kind} at {value:.8g}" for kind, value in zip(self.special_kind, self.special_value, strict=True)]
         lines += [f"Caution: {self.caution}"] if self.caution else []
         return "\n".join(lines)
@@ -122,7 +126,8 @@ def branch(
     method : "harmonic_balance" (smooth or smoothed cycles, fast), "shooting" (exact stick and slip), or "auto":
         shooting where the cycle at the start sticks or reverses and contact is exact, else harmonic balance
     contact, width, harmonics : for harmonic balance
-    direction : +1 walks to larger values first, -1 to smaller
+    direction : +1 walks to larger values at first, -1 to smaller; from a cycle in the middle the other way is a walk of
+        its own, which the summary says
     points : most points; largest_step : longest step, in shares of the range and of the size of the motion
     rtol : for shooting
 
@@ -143,6 +148,8 @@ def branch(
     span = float(bounds[1] - bounds[0])
     make = family(design, parameter)
     middle = 0.5 * (bounds[0] + bounds[1]) if value is None else value
+    if not bounds[0] <= middle <= bounds[1]:
+        raise ParameterError("branch", "value", value, f"a value within the bounds, {bounds[0]:g} to {bounds[1]:g}")
     if method == "auto":
         method, start = _chosen(make, start, middle, contact)
     settings = {"bounds": list(bounds), "method": method, "contact": contact, "width": width, "harmonics": harmonics}
@@ -154,6 +161,8 @@ def branch(
         middle = float(start.value) if value is None else middle
         if start.kind == "period_doubling" and method != "shooting":
             raise ParameterError("branch", "method", method, '"shooting" from a period doubling')
+    inside = bounds[0] < middle < bounds[1] and not isinstance(start, (HopfPoint, BranchPoint))
+    settings["one_way"] = float(direction) if inside else 0.0
     tangent = None
     if method == "shooting" and isinstance(start, HopfPoint):
         path, unknowns, p, tangent, outcome = _risen(make, start, bounds, harmonics, rtol)

@@ -26,6 +26,7 @@ from squealbox.friction import Table
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.starting import steady_state
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
+from squealbox.schedules import value_at
 from squealbox.stability import critical_value
 from squealbox.stability.eigenvalues import OneEigenvalue
 from squealbox.system import as_system
@@ -68,12 +69,27 @@ class HopfPoint(OneEigenvalue, Result):
         square = (0.5 * size / float(np.max(np.abs(self.shape[:half])))) ** 2
         return float(self.value - square * self.angular_frequency * self.lyapunov / self.growth_slope)
 
+    @property
+    def first_rest(self) -> float:
+        """The parameter value up to which all contacts keep sliding on the predicted cycle; NaN where none stops it.
+
+        A contact comes to rest where the swing of its sliding velocity, w |t.u| times the amplitude, is its speed. Up
+        to there the kind of the Hopf point tells what is met; beyond, sticking decides.
+        """
+        system, half = as_system(self.inputs["system"]), len(self.shape) // 2
+        u = self.shape[:half] / float(np.max(np.abs(self.shape[:half])))
+        swings = [(abs(float(value_at(c.V, 0.0))), abs(self.angular_frequency * (c.t @ u))) for c in system.contacts]
+        sizes = [speed / swing for speed, swing in swings if swing > 0.0 and speed > 0.0]
+        return self.beside(min(sizes)) if sizes and self.kind in ("supercritical", "subcritical") else float("nan")
+
     def summary(self) -> str:
-        """One line: where, at which frequency, and of which kind."""
+        """One line: where, at which frequency, of which kind, and how far its contacts keep sliding."""
         if not self.outcome.ok:
             return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
         kind = "Hopf point of unknown kind" if self.kind == "unknown" else f"{self.kind} Hopf point"
         said = f"{kind} at {self.parameter} = {float(self.value):.10g}, {self.frequency:.6g} Hz"
+        if np.isfinite(self.first_rest):
+            said += f"; on its cycle contacts keep sliding as far as {self.first_rest:.10g}"
         return f"{said}; {self.caution}" if self.caution else said
 
 

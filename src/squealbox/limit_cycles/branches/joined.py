@@ -37,4 +37,7 @@ def joined(back: Branch, forth: Branch) -> Branch:
     bad = next((one.outcome for one in (back, forth) if not one.outcome.ok), None)
     message = "; ".join(ends)
     outcome = Outcome(message=message) if bad is None else Outcome(str(bad), message, **bad.evidence)
-    return replace(forth, outcome=outcome, points=back.points[::-1] + forth.points, **arrays, **special)
+    settings = {**forth.settings, "one_way": 0.0}
+    return replace(
+        forth, outcome=outcome, settings=settings, points=back.points[::-1] + forth.points, **arrays, **special
+    )

@@ -10,6 +10,7 @@ are the eigenvalues of the product of the shots' derivatives, exact with saltati
 q' (`variation`).
 """
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,7 @@ from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Outcome
 
 CONTACTS = {"exact": "exact", "smooth": "arctan", "arctan": "arctan", "tanh": "tanh"}
+NOWHERE = "no motion stays on an unstable cycle: another start or a longer `settle` may lead to what it settles to"
 FINER = 0.1  # of the tolerance, where rows of a delay pass the corners of a command on
 ROUNDED = 1e-5  # of a command, up to which a delay is told without a word
 TURNS = (1, 2, 4)  # past a doubling, a run settles on the cycle that closes after two turns, past the next after four
@@ -51,10 +53,10 @@ def shooting(
     Parameters
     ----------
     design_or_system : a design or a `System`, with constant loads and speeds
-    start : None (the most unstable mode, else rest), a `Mode`, (q, qd) or a `Trajectory`, from which a run of `settle`
-        seconds leads to the cycle (past a period doubling to the stable one of two or four turns, where Newton's
-        method finds it; else to the unstable one); (q, qd, period) or a `Cycle`, taken as they are (this is how an
-        unstable cycle is found)
+    start : None (the most unstable mode, and rest where that leads to an unstable cycle), a `Mode`, (q, qd) or a
+        `Trajectory`, from which a run of `settle` seconds leads to the cycle (past a period doubling to the stable one
+        of two or four turns, where Newton's method finds it; else to the unstable one); (q, qd, period) or a `Cycle`,
+        taken as they are (this is how an unstable cycle is found)
     contact, width : "exact", or "smooth" = "arctan", "tanh" with `width` [m/s]
     shots : 1 for single shooting, more where the cycle is strongly unstable
     settle : [s] of the run before; None takes 300 periods of the slowest mode
@@ -97,7 +99,15 @@ def shooting(
         first = cycle if first is None else first
         if not cycle.outcome.ok or not _flips(cycle):
             break
-    return cycle if cycle.stable else first
+    if cycle.stable or known or not first.outcome.ok:
+        return cycle if cycle.stable else first
+    if start is None:
+        how = {"shots": shots, "settle": settle, "rtol": rtol, "tolerance": tolerance, "most_steps": most_steps}
+        rest = np.zeros(field.system.size)
+        other = shooting(design_or_system, (rest, rest), contact=contact, width=width, samples=samples, **how)
+        if other.outcome.ok and other.stable:
+            return other
+    return replace(first, caution="; ".join(filter(None, [first.caution, NOWHERE])))
 
 
 def _solved(

@@ -58,8 +58,8 @@ class TaylorStep(EquationText):
         return f"\n@wide({breadth})\ndef evaluate(A, b):\n    return at_once(A, b, {call})\n"
 
     def steps(self) -> str:
-        """Another trial where no lane of the group sticks; not for a single run, which would gain a tenth by it and wait
-        for half as much code again.
+        """Another trial where no lane of the group sticks; not for a single run, which would gain a tenth by it and
+        wait for half as much code again.
         """
         if not self.shape.exact or self.shape.recorded:
             return self.trial("trial") + CALLED
