@@ -102,7 +102,13 @@ def shooting(
     if cycle.stable or known or not first.outcome.ok:
         return cycle if cycle.stable else first
     if start is None:
-        how = {"shots": shots, "settle": settle, "rtol": rtol, "tolerance": tolerance, "most_steps": most_steps}
+        how: dict[str, Any] = {
+            "shots": shots,
+            "settle": settle,
+            "rtol": rtol,
+            "tolerance": tolerance,
+            "most_steps": most_steps,
+        }
         rest = np.zeros(field.system.size)
         other = shooting(design_or_system, (rest, rest), contact=contact, width=width, samples=samples, **how)
         if other.outcome.ok and other.stable:
