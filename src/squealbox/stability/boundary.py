@@ -365,17 +365,21 @@ def _around_corner(
     are told apart however sharp the corner.
     """
     heading = float(np.arctan2(along[1], along[0]))
-    angles = heading + np.linspace(-np.pi, np.pi, 361)
-    ring = point + radius * np.column_stack([np.cos(angles), np.sin(angles)])
-    values = side * rectangle.level(ring)
-    ways = [i for i in range(360) if values[i] <= 0.0 < values[i + 1]]
-    if not ways:
+    for half, count in ((0.5, 33),) * (radius > 2.0 * CIRCLE) + ((np.pi, 361),):  # along a jump first straight on
+        angles = heading + np.linspace(-half, half, count)
+        ring = point + radius * np.column_stack([np.cos(angles), np.sin(angles)])
+        beyond = (rectangle.level(ring) > 0.0) == (side > 0.0)  # without steady sliding the level is 0 on either side
+        ways = [i for i in range(count - 1) if beyond[i + 1] and not beyond[i]]
+        if ways:
+            break
+    else:
         return None
     best = min(ways, key=lambda i: abs(0.5 * (angles[i] + angles[i + 1]) - heading))
     low, high = angles[best], angles[best + 1]
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         ahead = point + radius * np.array([[np.cos(middle), np.sin(middle)]])
-        low, high = (low, middle) if side * float(rectangle.level(ahead)[0]) > 0.0 else (middle, high)
+        grows = bool(rectangle.level(ahead)[0] > 0.0)
+        low, high = (low, middle) if grows == (side > 0.0) else (middle, high)
     direction = np.array([np.cos(low), np.sin(low)])
     return point + radius * direction, direction
