@@ -13,6 +13,7 @@ that cannot look every tenth of a second whether they are still wanted have proc
 """
 
 import asyncio
+import functools
 import hashlib
 import json
 import time
@@ -32,6 +33,7 @@ from squealbox.workbench.state import StateError, UnknownBase, design_of
 
 LONGEST_TEXT = 1_000_000  # characters of an opened file
 MOST_BASES = 8  # opened files kept for a page; the page sends an older one again
+KEPT = 8  # designs of the last states: a slider's move asks several views about one
 LARGE = 40  # degrees of freedom from which every answer gets a process of its own: other pages are not held up
 PER_CUBE = 5e-6  # s an answer takes about, times the cube of the degrees of freedom
 SAID = 0.1  # s after which a progress is told again
@@ -215,8 +217,7 @@ def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design],
     try:
         if work.stopped:
             raise Stopped
-        design = design_of(message.get("state"), bases)
-        size = design.system().size
+        design, size = _asked(message.get("state"), bases)
         if size > LARGE and not (work.apart or PANELS[name].light):
             raise Elsewhere(f"computing, with {size} degrees of freedom", PER_CUBE * size**3)
         answer: Answer = function_of(name)(design, Options(message.get("options") or {}), work)
@@ -232,6 +233,19 @@ def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design],
     except Exception as error:  # a panel that fails says so in its own place; the others go on
         return _failed(about, error)
     return framed
+
+
+def _asked(state: Any, bases: Mapping[str, Design]) -> tuple[Design, int]:
+    """The design of a question and its degrees of freedom, made once for the views that ask about one state."""
+    base = bases.get(str(state.get("base"))) if isinstance(state, Mapping) else None
+    return _made(json.dumps(state), base)
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _made(state: str, base: Design | None) -> tuple[Design, int]:
+    given = json.loads(state)
+    design = design_of(given, {} if base is None else {given["base"]: base})
+    return design, design.system().size
 
 
 def _failed(about: Mapping[str, Any], error: Exception) -> bytes:

@@ -16,6 +16,7 @@ import { Verdict } from "./verdict.js";
 const LEADING = "locus"; // the view whose pace a moving slider keeps
 const QUIET = 40; // ms without a change after which the other views are asked
 const PATIENCE = 250; // ms they wait at most while a slider moves
+const LATE = 1000; // ms they wait for a leading view that is slow
 const AT_FIRST = 5000; // and before it has been drawn at all: one figure early is more than seven late
 const TOLD = "motion"; // the view whose answer is part of the verdict, also while it is out of sight
 const REST = 600; // ms without a change after which it is asked then
@@ -53,8 +54,15 @@ class App extends EventTarget {
     requestAnimationFrame(() => setTimeout(() => this.dispatchEvent(new CustomEvent("painted", { detail: { name, key, at: performance.now() } }))));
   }
 
+  /** The leading view was answered: what waits for it is asked while it is drawn, the verdict first. */
   answered(name) {
-    if (name === this.#leading()?.name) this.store.answered();
+    const leading = this.#leading();
+    if (name === leading.name) {
+      this.store.answered();
+      this.drawing.view.update();
+      this.verdict.view.update();
+    }
+    if (this.changedAt && !this.verdict.view.busy) this.#later();
   }
 
   /** The view that a moving slider waits for: the modes where they are on the screen, else the verdict. */
@@ -63,21 +71,24 @@ class App extends EventTarget {
     return view?.visible ? view : this.verdict.view;
   }
 
-  /** Ask the leading view and the drawing at once, and the others when the slider rests or has moved for long. */
+  /** Ask the leading view at once, the verdict after it, and the others when the slider rests or has moved for long. */
   #update() {
     const leading = this.#leading();
-    leading?.update();
-    this.drawing.view.update();
-    const now = performance.now();
-    this.changedAt ??= now;
-    clearTimeout(this.later);
-    const others = () => {
-      const patience = leading?.drawn ? PATIENCE : AT_FIRST;
-      if (leading?.busy && performance.now() - this.changedAt < patience) this.later = setTimeout(others, 10);
-      else this.#others();
-    };
+    leading.update();
+    for (const panel of this.panels.values()) if (panel.about.slow) panel.view.update();
     for (const view of this.views) view.stale();
-    this.later = setTimeout(others, Math.max(0, Math.min(QUIET, this.changedAt + PATIENCE - now)));
+    this.movedAt = performance.now();
+    this.changedAt ??= this.movedAt;
+    if (!leading.busy) this.answered(leading.name); // nothing of it has changed
+    clearTimeout(this.late);
+    this.late = setTimeout(() => this.changedAt && this.#others(), leading.drawn ? LATE : AT_FIRST);
+  }
+
+  /** The other views, when the hand rests or has moved for long. */
+  #later() {
+    clearTimeout(this.later);
+    const now = performance.now();
+    this.later = setTimeout(() => this.#others(), Math.max(0, Math.min(QUIET - (now - this.movedAt), this.changedAt + PATIENCE - now)));
   }
 
   #others() {

@@ -1,5 +1,6 @@
 // Bars to the left and right of zero, one row each, with their numbers: for few named things.
 
+import { sized } from "./chart.js";
 import { shown } from "./numbers.js";
 
 const d3 = window.d3;
@@ -18,15 +19,16 @@ export class Bars {
     this.rows = this.svg.append("g");
     this.label = this.svg.append("text").attr("class", "axis-label").attr("text-anchor", "middle");
     this.legend = this.svg.append("g").attr("class", "legend");
+    sized(this, () => this.draw(this.spec));
     this.draw({ label: "being computed", bars: [3, 2, 1].map((size) => ({ name: "…", parts: [["like", size]], sum: NaN })) });
-    new ResizeObserver(() => this.spec && this.draw(this.spec)).observe(this.frame.node());
   }
 
   /** spec: { label, bars: [{ name, parts: [[class, value], ...], sum }], legend: [[class, name], ...] } */
   draw(spec) {
     this.spec = spec;
+    if (!this.size.width) return;
     const { top, right, bottom, left } = this.margin;
-    const width = Math.max(this.frame.node().clientWidth, 200);
+    const width = Math.max(this.size.width, 200);
     const legend = spec.legend?.length > 1 ? 18 : 0;
     const height = top + legend + ROW * Math.max(spec.bars.length, 1) + bottom;
     this.inner = { width: width - left - right, height: height - top - bottom };

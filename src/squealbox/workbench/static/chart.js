@@ -47,13 +47,12 @@ export class Chart {
     this.reader.append("circle").attr("r", 3.5);
     this.reader.append("text").attr("class", "reading");
     this.svg.on("mousemove", () => this.#read(d3.mouse(this.svg.node()))).on("mouseleave", () => this.#silent());
-    new ResizeObserver(() => (this.spec ? this.draw(this.spec) : this.#sketch())).observe(this.frame.node());
+    sized(this, () => (this.spec ? this.draw(this.spec) : this.#sketch()));
   }
 
   /** What will stand here, until the first answer: a curve of its kind and a word of what is awaited. */
   #sketch() {
-    const { clientWidth: width, clientHeight: height } = this.frame.node();
-    if (!width) return;
+    const { width, height } = this.size;
     this.svg.attr("width", width).attr("height", height).attr("viewBox", `0 0 ${width} ${height}`);
     this.sketched ??= this.svg.append("g").attr("class", "sketch");
     this.sketched.selectAll("*").remove();
@@ -63,13 +62,14 @@ export class Chart {
   }
 
   draw(given) {
-    this.sketched?.remove();
-    this.height = this.frame.node().clientHeight || this.height;
-    this.svg.attr("height", this.height);
     const spec = (this.spec = { ...given, layers: given.layers.filter(drawable) });
+    if (!this.size.width) return; // out of sight: drawn when it is seen
+    this.sketched?.remove();
+    this.height = this.size.height;
+    this.svg.attr("height", this.height);
     const { top, right, bottom } = this.margin;
     const left = (this.margin.left = this.#room(spec.y));
-    const width = Math.max(this.frame.node().clientWidth, 180);
+    const width = Math.max(this.size.width, 180);
     const inner = { width: width - left - right, height: this.height - top - bottom };
     this.inner = inner;
     this.svg.attr("width", width).attr("viewBox", `0 0 ${width} ${this.height}`);
@@ -175,6 +175,7 @@ export class Chart {
 
   /** Where the brake that moves is now. */
   mark(x, y) {
+    if (!this.x) return;
     this.cursor ??= this.svg.append("circle").attr("class", "cursor").attr("r", 5);
     this.cursor.attr("cx", this.x(x)).attr("cy", this.y(y));
   }
@@ -201,6 +202,16 @@ export class Chart {
     }
     return columns;
   }
+}
+
+/** Keep the size of a figure's frame, and draw when it changes: asked for while drawing, it would lay out the page each time. */
+export function sized(chart, draw) {
+  chart.size = { width: 0, height: 0 };
+  new ResizeObserver(([{ contentRect: { width, height } }]) => {
+    const grown = width !== chart.size.width || height !== chart.size.height;
+    chart.size = { width, height };
+    if (grown && width) draw();
+  }).observe(chart.frame.node());
 }
 
 const LARGEST = 1e150; // beyond which differences and squares of an axis are no numbers

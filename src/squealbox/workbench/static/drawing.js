@@ -28,8 +28,8 @@ export class Drawing {
   }
 }
 
-/** A drawing as SVG; `parts(read)` puts each of its points where `read(number)` says, `at` is where that is in the picture. */
-export function drawn({ strokes, box }, points, words) {
+/** A drawing as SVG; `parts(read)` puts each point that `moves` where `read(number)` says; `at` is where that is in the picture. */
+export function drawn({ strokes, box }, points, words, moves = () => true) {
   const [left, right, bottom, top] = box;
   const room = 10;
   const scale = Math.min((SIZE.width - 2 * room) / (right - left || 1), (SIZE.height - 2 * room) / (top - bottom || 1));
@@ -38,15 +38,16 @@ export function drawn({ strokes, box }, points, words) {
   const at = ([x, y]) => [dx + scale * (x - left), SIZE.height - dy - scale * (y - bottom)];
   const svg = element("svg", { viewBox: `0 0 ${SIZE.width} ${SIZE.height}`, role: "img", "aria-label": words });
   let next = 0;
-  const pieces = strokes.map((stroke) => {
+  const pieces = strokes.flatMap((stroke) => {
     const own = Array.from({ length: stroke.count }, (_, i) => next + i);
     next += stroke.count;
     const [nodes, put] = DRAW[stroke.kind](stroke, scale);
     svg.append(...nodes);
-    return (read) => put(own.map((p) => at(read(p))));
+    const piece = (read) => put(own.map((p) => at(read(p))));
+    piece((p) => [points[2 * p], points[2 * p + 1]]);
+    return own.some(moves) ? [piece] : [];
   });
   const parts = (read) => pieces.forEach((piece) => piece(read));
-  parts((p) => [points[2 * p], points[2 * p + 1]]);
   return { svg, parts, at };
 }
 
@@ -78,7 +79,7 @@ const DRAW = {
       node.append(...symbols(words));
       return node;
     });
-    return [nodes, ([[x, y]]) => nodes.forEach((node, i) => set(node, { x, y: y + 4 + 14 * i }))];
+    return [nodes, ([[x, y]]) => nodes.forEach((node, i) => node.setAttribute("transform", `translate(${x} ${y + 4 + 14 * i})`))];
   },
 };
 

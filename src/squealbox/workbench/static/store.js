@@ -5,6 +5,7 @@
 // ones, so what is drawn always belongs to the design that is shown.
 
 const LINK = "#d=";
+const REST = 300; // ms without a change after which the address follows
 const LONGEST_WAIT = 150; // ms a gathered change may wait
 
 export class Store extends EventTarget {
@@ -64,7 +65,8 @@ export class Store extends EventTarget {
       this.future = [];
     }
     this.before = null;
-    this.#keepLink();
+    clearTimeout(this.keeping); // the address costs as much as a figure: it follows when the hand rests
+    this.keeping = setTimeout(() => this.#keepLink(), REST);
     this.dispatchEvent(new Event("history"));
   }
 
