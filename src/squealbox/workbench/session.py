@@ -22,9 +22,9 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from squealbox.designs import DESIGNS, Design
-from squealbox.files import DesignFileError, NotWritable, read_text
-from squealbox.files.writing import design_text
 from squealbox.workbench.apart import Died, Processes
 from squealbox.workbench.frames import frame
 from squealbox.workbench.panels import PANELS, Answer, Elsewhere, OptionError, Options, Stopped, Work, function_of
@@ -191,6 +191,8 @@ class Session:
         if name_of_text(text) in self.bases:  # the file of the command line, whose matrices may stand beside it
             base = name_of_text(text)
             return frame({**about, "kind": "opened", "base": base, "brake": _name(self.bases[base])})
+        from squealbox.files import DesignFileError, read_text  # loads much, and few open a file at once
+
         try:
             design = read_text(text, "the file", beside=False).design
         except DesignFileError as error:
@@ -220,7 +222,8 @@ def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design],
         design, size = _asked(message.get("state"), bases)
         if size > LARGE and not (work.apart or PANELS[name].light):
             raise Elsewhere(f"computing, with {size} degrees of freedom", PER_CUBE * size**3)
-        answer: Answer = function_of(name)(design, Options(message.get("options") or {}), work)
+        with np.errstate(all="ignore"):  # of extreme values: what is not finite is said in the answer
+            answer: Answer = function_of(name)(design, Options(message.get("options") or {}), work)
         framed = frame({**about, "kind": "answer", "data": answer.data}, answer.arrays)
     except StateError as error:
         return frame({**about, **_wrong(error)})
@@ -260,6 +263,8 @@ def _wrong(error: StateError) -> dict[str, Any]:
 
 
 def _toml(design: Design) -> dict[str, Any]:
+    from squealbox.files.writing import NotWritable, design_text
+
     try:
         return {"toml": design_text(design)}
     except NotWritable as error:

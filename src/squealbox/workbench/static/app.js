@@ -188,7 +188,12 @@ class App extends EventTarget {
     select.replaceChildren(...hello.brakes.map((brake) => make("option", { value: brake.name }, brake.title)));
     select.append(make("option", { value: "", hidden: true }, "from a file"));
     const address = location.hash;
-    const shown = hello.panels.filter((about) => about.shown);
+    this.loading = this.#panels(hello.panels.filter((about) => about.shown)); // meanwhile the sheet is asked
+    if (hello.text && !address) await this.open(hello.text);
+    else if (!(await this.follow(address))) await this.#sheet();
+  }
+
+  async #panels(shown) {
     const modules = await Promise.all(shown.map((about) => import(`./panels/${about.name}.js`)));
     shown.forEach((about, i) => {
       const panel = new Panel(this, about, modules[i].default);
@@ -197,8 +202,6 @@ class App extends EventTarget {
       byId("panels").append(panel.element);
     });
     this.questions.show();
-    if (hello.text && !address) await this.open(hello.text);
-    else if (!(await this.follow(address))) await this.#sheet();
   }
 
   #lost() {
@@ -217,6 +220,7 @@ class App extends EventTarget {
   async #sheet() {
     const { design } = this.store;
     const frame = await this.connection.ask({ ask: "sheet", state: { ...design, values: {} } }).catch(() => null);
+    await this.loading;
     if (!frame || this.store.design !== design) return;
     if (frame.kind === "unknown_base") return this.reopen();
     if (frame.kind !== "sheet") return this.problems(frame.wrong ?? []);

@@ -51,7 +51,9 @@ export function drawn({ strokes, box }, points, words, moves = () => true) {
   return { svg, parts, at };
 }
 
-const joined = (spots) => spots.map(([x, y]) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ");
+const known = (spot) => spot.every(Number.isFinite); // extreme values lead to places that are none
+
+const joined = (spots) => spots.filter(known).map(([x, y]) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ");
 
 // Each gives its nodes, and a function that puts them at the spots of its points.
 const DRAW = {
@@ -79,7 +81,7 @@ const DRAW = {
       node.append(...symbols(words));
       return node;
     });
-    return [nodes, ([[x, y]]) => nodes.forEach((node, i) => node.setAttribute("transform", `translate(${x} ${y + 4 + 14 * i})`))];
+    return [nodes, ([[x, y]]) => known([x, y]) && nodes.forEach((node, i) => node.setAttribute("transform", `translate(${x} ${y + 4 + 14 * i})`))];
   },
 };
 
@@ -116,7 +118,13 @@ function symbols(words) {
 
 const tint = (fill) => (fill === "#ffffff" ? "hollow" : fill === "#e6c9a8" ? "lining" : "filled");
 
-export const set = (node, about) => Object.entries(about).forEach(([name, value]) => node.setAttribute(name, value));
+/** Attributes of a node; a number that is none leaves its attribute out. */
+export function set(node, about) {
+  for (const [name, value] of Object.entries(about)) {
+    if (typeof value === "number" && !Number.isFinite(value)) node.removeAttribute(name);
+    else node.setAttribute(name, value);
+  }
+}
 
 export function element(tag, about) {
   const made = document.createElementNS(SVG, tag);

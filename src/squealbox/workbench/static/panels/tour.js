@@ -12,7 +12,7 @@ export default {
     panel.files.hidden = true;
     panel.step = null;
     panel.asked = new Asked(panel, "Start the tour, or judge the design that is shown.", () => reading(panel));
-    panel.list = make("div", { class: "scroller", tabindex: 0, "aria-label": "Claims of the paper" });
+    panel.list = make("div", { class: "scroller", role: "region", tabindex: 0, "aria-label": "Claims of the paper" });
     panel.body.append(
       make("p", {}, "Ten steps through the paper: each sets the design, says where to look, and gives the verdicts on what the paper claims."),
       make("div", { class: "buttons" }, button("Start the tour", () => start(panel)), button("Judge this reading", () => panel.asked.ask(), { title: "The claims with the reading and the friction slope of the design on the page" })),
