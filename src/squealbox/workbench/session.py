@@ -3,7 +3,7 @@
 A question is a JSON text, an answer a binary frame (`frames`) with the question's `id`:
 
     {"id": 7, "view": "locus", "state": {...}, "options": {...}}    ask a panel
-    {"id": 8, "ask": "sheet", "state": {...}}                       fields of a design, and its TOML text
+    {"id": 8, "ask": "sheet", "state": {...}}                       fields of a design; with "toml": true its text
     {"id": 9, "ask": "open", "text": "brake = ..."}                 read a design file
     {"id": 10, "ask": "stop", "view": "motion"}                     stop a panel's computation
 
@@ -178,7 +178,8 @@ class Session:
         except StateError as error:
             return frame({**about, **_wrong(error)})
         try:
-            return frame({**about, "kind": "sheet", "sheet": sheet(design), **_toml(design)})
+            written = _toml(design) if message.get("toml") is True else {}
+            return frame({**about, "kind": "sheet", "sheet": sheet(design), **written})
         except (ArithmeticError, ValueError) as error:  # a value at the end of what numbers reach
             return _failed(about, error)
 

@@ -7,9 +7,8 @@ const d3 = window.d3;
 const ROW = 24;
 
 export class Bars {
-  constructor(place, name, { unit = "1/s" } = {}) {
+  constructor(place, name) {
     this.name = name;
-    this.unit = unit;
     this.margin = { top: 6, right: 62, bottom: 36, left: 128 };
     this.figure = d3.select(place).append("figure").attr("class", "chart").attr("data-figure", name);
     this.frame = this.figure.append("div").attr("class", "frame");

@@ -76,7 +76,7 @@ export class Chart {
     this.clipped.attr("x", left).attr("y", top).attr("width", inner.width).attr("height", inner.height);
     this.x = scale(spec.x, [left, left + inner.width]);
     this.y = scale(spec.y, [top + inner.height, top]);
-    this.#axes(spec, width);
+    this.#axes(spec);
     const behind = spec.layers.filter((layer) => layer.kind === "band");
     const before = spec.layers.filter((layer) => layer.kind !== "band");
     this.#layers(this.back, behind);
@@ -92,7 +92,7 @@ export class Chart {
     return 30 + LETTER * Math.max(2, ...numbers);
   }
 
-  #axes(spec, width) {
+  #axes(spec) {
     const { top, bottom, left } = this.margin;
     const ticks = (axis, size) => axis.ticks(Math.max(2, Math.round(size / 70))).tickFormat((v) => shown(v, 5)).tickSizeOuter(0);
     this.xAxis.attr("transform", `translate(0,${this.height - bottom})`).call(ticks(d3.axisBottom(this.x), this.inner.width));
@@ -103,17 +103,13 @@ export class Chart {
     lines.enter().append("line").merge(lines).attr("x1", left).attr("x2", left + this.inner.width).attr("y1", this.y).attr("y2", this.y);
     this.xLabel.attr("x", left + this.inner.width / 2).attr("y", this.height - 6).text(spec.x.label);
     this.yLabel.attr("transform", `translate(14,${top + this.inner.height / 2}) rotate(-90)`).text(spec.y.label);
-    this.svg.attr("data-width", width);
   }
 
   #layers(group, layers) {
     const nodes = group.selectAll("g.layer").data(layers);
     nodes.exit().remove();
     const all = nodes.enter().append("g").merge(nodes);
-    const chart = this;
-    all.attr("class", (layer) => `layer ${layer.cls}`).each(function (layer) {
-      DRAW[layer.kind](d3.select(this), layer, chart);
-    });
+    all.attr("class", (layer) => `layer ${layer.cls}`).each((layer, i, drawn) => DRAW[layer.kind](d3.select(drawn[i]), layer, this));
   }
 
   #named(layers, place = "top right") {

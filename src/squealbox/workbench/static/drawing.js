@@ -14,13 +14,11 @@ export class Drawing {
     this.view = new View(app, "drawing", {
       request: () => ({ state: app.store.design, options: {} }),
       draw: (frame) => this.draw(frame),
-      status: (kind, frame) => this.status(kind, frame),
+      status: (kind, frame) => {
+        place.dataset.state = kind;
+        app.problems(kind === "wrong" ? frame.wrong : []);
+      },
     });
-  }
-
-  status(kind, frame) {
-    this.place.dataset.state = kind === "progress" ? "waiting" : kind;
-    this.app.problems(kind === "wrong" ? frame.wrong : []);
   }
 
   draw({ data, arrays }) {

@@ -11,7 +11,7 @@ const LONGEST_WAIT = 150; // ms a gathered change may wait
 export class Store extends EventTarget {
   constructor() {
     super();
-    this.design = { base: null, brake: "drum_brake", laws: {}, values: {} };
+    this.design = Store.plain("drum_brake");
     this.texts = new Map(); // of the opened files, by base: undo and links find the text of their own design
     this.sheet = null;
     this.settings = {}; // options of the panels, by panel
@@ -21,6 +21,8 @@ export class Store extends EventTarget {
     this.before = null; // the design before the gesture that is going on
     this.busy = () => false; // is the leading view still answering?
   }
+
+  static plain = (brake) => ({ base: null, brake, laws: {}, values: {} });
 
   /** The text of the file the present design came from, null where it came from none. */
   get text() {

@@ -39,7 +39,6 @@ export default {
 };
 
 const WHY = { unknown_base: "it came from a file that is not open any more" };
-
 const key = (panel, design) => JSON.stringify([design, panel.request().options.parameter, panel.b.data.span]);
 
 function keep(panel) {

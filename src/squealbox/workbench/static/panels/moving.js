@@ -26,7 +26,9 @@ export default {
     panel.app.store.addEventListener("changed", () => scene(panel));
     const step = (now) => {
       requestAnimationFrame(step);
-      if (!panel.element.hidden && panel.view.visible && panel.parts && !panel.held) frame(panel, now);
+      const asked = panel.app.verdict.view.busy || panel.app.store.busy(); // a slider moves: every second picture leaves time for it
+      const shown = !panel.element.hidden && panel.view.visible && panel.parts && !panel.held;
+      if (shown && !(panel.skipped = asked && !panel.skipped)) frame(panel, now);
     };
     requestAnimationFrame(step);
   },
@@ -39,8 +41,7 @@ export default {
     const names = data.modes.map(([hertz, growth], i) => [String(i), `${withUnit(hertz, "Hz")}, ${shown(growth, 3)} 1/s`]);
     panel.pick.replaceChildren(...(names.length > 1 ? [choose("mode", names, String(data.mode), (mode) => panel.choose({ mode: Number(mode) }))] : []));
     const { moves, points } = answer.arrays;
-    const goes = (p) => data.names.some((_, i) => moves[2 * (i * moves.shape[1] + p)] || moves[2 * (i * moves.shape[1] + p) + 1]);
-    const { parts, svg, at } = drawn(data, points, "The brake, moving", goes);
+    const { parts, svg, at } = drawn(data, points, "The brake, moving", (p) => data.names.some((_, i) => moves[2 * (i * moves.shape[1] + p)] || moves[2 * (i * moves.shape[1] + p) + 1]));
     panel.stage.replaceChildren(svg);
     Object.assign(panel, { parts, at });
     panel.size = data.box[3] - data.box[2];
