@@ -44,10 +44,14 @@ class Scan:
     def functions_at(self, values: Any) -> Any:
         """The functions at several values, of a reduced brake the growth rates in its band."""
         if self.family.band is None:
-            return _functions(self.family.at(values), self.neutral, self.undamped)
+            return self.functions_of(self.family.at(values))
         found = growth_in_band(self.family, values)
         missing = max(self.functions.shape[-1] - found.shape[-1], 0)
         return np.pad(found, ((0, 0), (0, missing)), constant_values=np.nan)
+
+    def functions_of(self, about: Linearised) -> Any:
+        """The functions of matrices that are known, not of a reduced brake."""
+        return _functions(about, self.neutral, self.undamped)
 
     @property
     def answered(self) -> Any:
