@@ -80,6 +80,7 @@ function scene(panel) {
     panel.remark = `The last ${shown(motion.arrays.lastTime.at(-1), 3)} ${motion.clock}, over and over; movement enlarged. Arrows: normal forces.`;
   } else {
     if (!arrays.re) {
+      panel.scene = null; // the design before may have moved
       panel.remark = `${data.message}.`;
       return;
     }
