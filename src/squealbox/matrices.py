@@ -80,14 +80,15 @@ def liveliest(sizes: Any, units: Any) -> int:
 def array(name: str, value: Any, ndim: int) -> np.ndarray:
     """A read-only array of finite real numbers with at least `ndim` axes; `InvalidSystem` with its name else."""
     try:
-        array = np.array(value).astype(float, casting="same_kind")  # refuses complex numbers and texts
+        array = np.array(value)
+        array = array.astype(float, casting="same_kind", copy=False)  # refuses complex numbers and texts
     except (TypeError, ValueError) as error:
         given = f" = {value!r}" if isinstance(value, str) or value is None else ""
         else_ = "; what varies in time is a schedule, such as Sinusoid or schedules.Table" if callable(value) else ""
         raise InvalidSystem(f"{name}{given}: expected an array of real numbers{else_}") from error
     if array.ndim < ndim:
         raise InvalidSystem(f"{name} has shape {array.shape}: expected at least {ndim} axes")
-    if not np.all(np.isfinite(array)):
+    if not np.isfinite(array).all():
         raise InvalidSystem(f"{name} holds a value that is not finite")
     array.flags.writeable = False
     return array

@@ -318,19 +318,20 @@ def _sheet_class(kind: object) -> type[DataSheet]:
 def _checked(sheet: DataSheet, name: str, about: Parameter) -> Any:
     value = getattr(sheet, name)
     owner = type(sheet).__name__
+    if type(value) is float and about.low < value < about.high:  # most of them, without an array
+        return value
     if isinstance(value, DataSheet) and about.schedule:
         return value
     if value is None and about.optional:
         return None
-    expected = about.expected
     if isinstance(value, (bool, np.bool_, str)) or value is None:
-        raise ParameterError(owner, name, value, expected)
+        raise ParameterError(owner, name, value, about.expected)
     try:
         number = np.asarray(value, dtype=float)
     except (TypeError, ValueError) as error:
-        raise ParameterError(owner, name, value, expected) from error
+        raise ParameterError(owner, name, value, about.expected) from error
     if not about.accepts(number):
-        raise ParameterError(owner, name, value, expected)
+        raise ParameterError(owner, name, value, about.expected)
     if number.ndim == 0:
         return float(number)
     number = number.copy()

@@ -272,7 +272,7 @@ def equilibrium(system: Any, time: float = 0.0, start: sparse_sliding.Start | No
             break
     sliding = np.all(speed != 0.0, axis=-1)
     exists = converged & ~singular & sliding
-    normal = _normal_forces(system, time, q)
+    normal = _normal_forces(system, force, q)
     outcome = ended(singular, sliding, converged, speed, pushed)
     return Equilibrium(q, normal, speed, mu, exists, outcome, np.where(exists, floating, 0))
 
@@ -396,8 +396,8 @@ def _residual(system: System, time: float, q: Any, force: Any, speed: Any, mu: A
     return residual, jacobian
 
 
-def _normal_forces(system: System, time: float, q: Any) -> Any:
+def _normal_forces(system: System, force: Any, q: Any) -> Any:
     if not system.contacts:
         return np.zeros((*system.shape, 0))
-    normal = _sliding(system, time)[0] + felt(system.rows[0], q)
+    normal = force + felt(system.rows[0], q)
     return np.where([contact.unilateral for contact in system.contacts], np.maximum(normal, 0.0), normal)

@@ -22,7 +22,7 @@ from squealbox import (
 )
 from squealbox.cli import main
 from squealbox.cli.starter import mechanism_example
-from squealbox.files.analyses import scalar_parameters
+from squealbox.files.varied import scalar_parameters
 
 MASS, K_PAD = np.diag([1.0, 1.0, 2.0]), 3e6
 STIFFNESS = np.array([[3.8e6, 1e6, 0.0], [1e6, 1e6, -0.5e6], [0.0, -0.5e6, 2e6]])

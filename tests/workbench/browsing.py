@@ -57,7 +57,7 @@ class Page:
         self.errors: list[str] = []
         self.expected: tuple[str, ...] = ()  # parts of messages a test provokes
         own = (f"http://127.0.0.1:{server.port}/", f"ws://127.0.0.1:{server.port}/", "blob:", "data:")
-        self.page.on("pageerror", lambda error: self.errors.append(f"script: {error}"))
+        self.page.on("pageerror", lambda error: self.errors.append(f"script: {error.stack or error}"))
         self.page.on("console", lambda m: self.errors.append(f"console: {m.text}") if m.type == "error" else None)
         self.page.on("request", lambda r: None if r.url.startswith(own) else self.errors.append(f"foreign: {r.url}"))
         self.page.on("websocket", lambda w: None if w.url.startswith(own) else self.errors.append(f"foreign: {w.url}"))

@@ -265,6 +265,6 @@ def test_a_slow_panel_does_not_hold_up_the_others_and_can_be_stopped(own_page):
 
 def test_the_saved_text_is_toml(page):
     text = page.page.evaluate("""() => import('/static/app.js').then(({ app }) => app.connection.ask(
-        { ask: 'sheet', state: app.store.design })).then(frame => frame.toml)""")
+        { ask: 'sheet', toml: true, state: app.store.design })).then(frame => frame.toml)""")
     assert tomllib.loads(text)["brake"] == "drum_brake"
     assert DrumBrake() == DrumBrake(friction=LinearSlope(0.30, -0.05))

@@ -6,7 +6,7 @@ from squealbox import DrumBrake, LinearSlope, complex_modes
 from squealbox.countermeasures import AddedDamping, AddedMass, TunedMass
 from squealbox.countermeasures.base import short_name
 from squealbox.files import read_text
-from squealbox.files.analyses import scalar_parameters
+from squealbox.files.varied import scalar_parameters
 from squealbox.workbench.panels import Options, Stopped, Work, function_of
 from squealbox.workbench.sheet import sheet
 from squealbox.workbench.state import design_of

@@ -107,6 +107,16 @@ def test_the_bars_of_sensitivity_are_its_ranking(squealing):
     ]
 
 
+def test_a_map_over_one_parameter_twice_says_so_and_is_pale(page):
+    page.drawn("map")
+    for which in (0, 1):
+        page.page.locator("section[data-panel=map] .parameter-choice select").nth(which).select_option("k3")
+    page.page.wait_for_selector("section[data-panel=map][data-state=wrong]")
+    assert page.says("map") == "x and y are both k3: choose two different parameters"
+    page.page.locator("section[data-panel=map] .parameter-choice select").nth(1).select_option("k4")
+    page.page.wait_for_selector("section[data-panel=map][data-state=drawn]")
+
+
 def test_the_map_shows_why(squealing):
     squealing.drawn("map")
     squealing.page.select_option("section[data-panel=map] select[aria-label=show]", "mechanism")

@@ -22,10 +22,10 @@ def wrong(page, check):
     return page.page.evaluate(f"() => {{ {CHECKS}\nreturn {check}(); }}")
 
 
-@pytest.fixture(scope="module")
-def shared(server, browser):
-    """One page for the tests that only look."""
-    with Page(browser, server) as opened:
+@pytest.fixture(scope="module", params=["light", "dark"])
+def shared(request, server, browser):
+    """One page for the tests that only look, in each of its colours."""
+    with Page(browser, server, scheme=request.param) as opened:
         opened.goto()
         yield opened
 
@@ -50,14 +50,17 @@ def test_each_question_is_one_screen_without_an_empty_box(shared, question):
 def test_everything_has_a_name_and_can_be_read(shared, question):
     ask(shared, question)
     shared.until(RESTED)
-    for check in ("nameless", "dangling", "twice", "small", "faint"):
+    for check in ("nameless", "silent", "dangling", "twice", "small", "faint"):
         assert wrong(shared, check) == []
 
 
-def test_the_check_of_contrast_sees_faint_text(shared):
-    shared.page.evaluate("document.getElementById('title').style.color = '#999999'")
+def test_the_checks_see_faint_text_and_a_name_nobody_hears(shared):
+    shared.page.evaluate("document.getElementById('title').style.color = '#777f87'")
     assert any("H2" in each for each in wrong(shared, "faint"))
     shared.page.evaluate("document.getElementById('title').style.color = ''")
+    shared.page.evaluate("document.getElementById('drawing').setAttribute('aria-label', 'the brake')")
+    assert len(wrong(shared, "silent")) == 1
+    shared.page.evaluate("document.getElementById('drawing').removeAttribute('aria-label')")
 
 
 def test_questions_take_the_arrow_keys_and_go_into_the_link(shared, browser, server):

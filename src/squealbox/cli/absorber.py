@@ -4,7 +4,8 @@ from pathlib import Path
 from typing import Literal
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import AllowCode, Changes, folder, number, read
+from squealbox.cli.inputs import Changes, folder, number, read
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import UsageError
 from squealbox.cli.tables import written
 from squealbox.countermeasures import best_absorber

@@ -7,7 +7,8 @@ import numpy as np
 from cyclopts import Parameter
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read
+from squealbox.cli.inputs import Changes, folder, in_motion, read
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.states import States, box_from
 from squealbox.cli.tables import write_csv, written

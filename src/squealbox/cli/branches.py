@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, in_motion, read, readable, with_points
+from squealbox.cli.inputs import RANGE, Changes, Ends, axis, folder, in_motion, read, readable, with_points
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.tables import write_csv, written
 from squealbox.limit_cycles import (

@@ -5,7 +5,8 @@ from pathlib import Path
 from squealbox.calibration import Comparison, Measured, compare, from_events, read_mode_table
 from squealbox.calibration import calibrate as fitted
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import AllowCode, Changes, folder, read
+from squealbox.cli.inputs import Changes, folder, read
+from squealbox.cli.options import AllowCode
 from squealbox.cli.recordings import Band, ends_of
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import written

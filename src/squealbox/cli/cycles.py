@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read, time_of
+from squealbox.cli.inputs import Changes, folder, in_motion, read, time_of
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.states import States, start_from
 from squealbox.cli.tables import written

@@ -10,7 +10,6 @@ from squealbox.cli.answers import keep
 from squealbox.cli.branches import all_branches
 from squealbox.cli.inputs import (
     RANGE,
-    AllowCode,
     Changes,
     Ends,
     axis,
@@ -22,6 +21,7 @@ from squealbox.cli.inputs import (
     time_of,
     with_points,
 )
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.limit_cycles import BifurcationDiagram, Branch, Section, bifurcation_diagram

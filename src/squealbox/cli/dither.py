@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from squealbox.cli.inputs import AllowCode, Changes, folder, number, read
+from squealbox.cli.inputs import Changes, folder, number, read
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.countermeasures import Dithered

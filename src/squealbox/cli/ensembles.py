@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read, time_of
+from squealbox.cli.inputs import Changes, folder, in_motion, read, time_of
 from squealbox.cli.maps import Plane, Span, axes_of
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.reduced_brake import ReducedBrake

@@ -12,8 +12,9 @@ from squealbox.fe.assembled import AssembledBrake
 from squealbox.fe.meshed import MeshedBrake
 from squealbox.fe.mode_shapes import write_uff, write_vtu
 from squealbox.files import DesignFile
-from squealbox.files.analyses import Axis, scalar_parameters
+from squealbox.files.analyses import Axis
 from squealbox.files.reduced import Reduce, Reduced
+from squealbox.files.varied import scalar_parameters
 from squealbox.stability import complex_modes
 from squealbox.stability.mode_table import mode_table, table_text
 from squealbox.stability.second_mesh import ONE_MESH, mesh_doubt

@@ -14,14 +14,14 @@ from squealbox.cli.running import UsageError
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files import DesignFile, read_file
-from squealbox.files.analyses import Axis, quantity_of, words_of
+from squealbox.files.analyses import Axis
 from squealbox.files.units import UnitError, in_si
+from squealbox.files.varied import quantity_of, words_of
 from squealbox.parameters import Parameter, ParameterError
 from squealbox.transient.simulate import TIME_STEPPING
 from squealbox.waiting import Progress
 
 Changes = Annotated[tuple[str, ...], cyclopts.Parameter(name="--set", negative="", show_default=False)]
-AllowCode = Annotated[bool, cyclopts.Parameter(name="--allow-code", negative="")]
 Ends = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
 
 

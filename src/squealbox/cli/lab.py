@@ -5,8 +5,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealbox.cli.inputs import AllowCode
-from squealbox.cli.running import UsageError
+from squealbox.cli import UsageError
+from squealbox.cli.options import AllowCode
 
 LINK = "#d="  # what a link to a design carries behind its address
 

@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.cli.inputs import AllowCode, Changes, free, in_motion, read, time_of
+from squealbox.cli.inputs import Changes, free, in_motion, read, time_of
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.files.analyses import Simulate
 from squealbox.files.runs import run

@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import AllowCode, Changes, folder, read
+from squealbox.cli.inputs import Changes, folder, read
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.control import closed_loop

@@ -7,7 +7,8 @@ import numpy as np
 from cyclopts import Parameter
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import AllowCode, Changes, Option, axis, folder, read, readable, small, with_points
+from squealbox.cli.inputs import Changes, Option, axis, folder, read, readable, small, with_points
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.reduced_brake import ReducedBrake

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import AllowCode, Changes, folder, read, small
+from squealbox.cli.inputs import Changes, folder, read, small
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files import write_design

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from squealbox.cli.inputs import AllowCode, Changes, Ends, free, number, read
+from squealbox.cli.inputs import Changes, Ends, free, number, read
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import UsageError
 from squealbox.cli.tables import written
 from squealbox.fe.reduced_brake import ReducedBrake

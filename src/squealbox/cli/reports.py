@@ -3,7 +3,8 @@
 import dataclasses
 from pathlib import Path
 
-from squealbox.cli.inputs import AllowCode, Changes, free, read
+from squealbox.cli.inputs import Changes, free, read
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import UsageError
 from squealbox.report import ReportError
 from squealbox.report import report as write

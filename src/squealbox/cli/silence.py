@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read
+from squealbox.cli.inputs import Changes, folder, in_motion, read
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files import NotWritable

@@ -7,7 +7,8 @@ import numpy as np
 
 from squealbox.cli.answers import keep, show
 from squealbox.cli.finite_elements import print_more
-from squealbox.cli.inputs import RANGE, AllowCode, Changes, Ends, axis, folder, number, read, readable, small
+from squealbox.cli.inputs import RANGE, Changes, Ends, axis, folder, number, read, readable, small
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.reduced_brake import ReducedBrake

@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import AllowCode, Changes, folder, in_motion, read, time_of
+from squealbox.cli.inputs import Changes, folder, in_motion, read, time_of
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files.analyses import Simulate

@@ -9,7 +9,8 @@ from cyclopts import Parameter
 
 from squealbox import studies
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import AllowCode, Changes, folder, read, small
+from squealbox.cli.inputs import Changes, folder, read, small
+from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files.uncertain import STUDIES, Sampled, Scattered

@@ -9,14 +9,16 @@ from squealbox.schedules import Schedule, as_schedule
 
 def vector(*entries: Any) -> Any:
     """The entries as an array (..., n)."""
-    return np.stack(np.broadcast_arrays(*entries), axis=-1)
+    made = np.empty((*np.broadcast(*entries).shape, len(entries)), dtype=np.result_type(*entries))
+    for i, entry in enumerate(entries):
+        made[..., i] = entry
+    return made
 
 
 def matrix(*rows: tuple[Any, ...]) -> Any:
     """The rows of entries as an array (..., n, m)."""
-    flat = np.broadcast_arrays(*(entry for row in rows for entry in row))
-    width = len(rows[0])
-    return np.stack([np.stack(flat[i : i + width], axis=-1) for i in range(0, len(flat), width)], axis=-2)
+    flat = vector(*(entry for row in rows for entry in row))
+    return flat.reshape(*flat.shape[:-1], len(rows), len(rows[0]))
 
 
 def diagonal(*entries: Any) -> Any:

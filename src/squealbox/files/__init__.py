@@ -4,38 +4,12 @@
     write_design(design, "copy.toml")           commented, reads back equal
     json_schema()                               for editors
 
-Importing this room loads neither pint nor SciPy.
+Its public names stand in ``__init__.pyi`` and are loaded when they are first used: a page that only wants to know what
+a file calls a law reads no meshes and fits no measurements.
 """
 
-from squealbox.files.document import DesignFileError, Problem
-from squealbox.files.measured import read_points
-from squealbox.files.mechanism import Body, OwnMechanism, Spring, Touch
-from squealbox.files.own_brake import OwnBrake, OwnContact, Part
-from squealbox.files.own_law import OwnLaw, law_from_file, own_law
-from squealbox.files.reading import BRAKES, DesignFile, read_design, read_file, read_text
-from squealbox.files.schema import json_schema
-from squealbox.files.writing import NotWritable, write_design
+import lazy_loader
 
-__all__ = [
-    "BRAKES",
-    "Body",
-    "DesignFile",
-    "DesignFileError",
-    "NotWritable",
-    "OwnBrake",
-    "OwnContact",
-    "OwnLaw",
-    "OwnMechanism",
-    "Part",
-    "Problem",
-    "Spring",
-    "Touch",
-    "json_schema",
-    "law_from_file",
-    "own_law",
-    "read_design",
-    "read_file",
-    "read_points",
-    "read_text",
-    "write_design",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
+from squealbox.files.own_law import own_law  # noqa: E402, F401 - the function, whose module has the same name

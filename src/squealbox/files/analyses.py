@@ -6,18 +6,18 @@ command line know it from here.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, get_origin
+from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.countermeasures.base import Countermeasure, short_name
 from squealbox.designs import Design
 from squealbox.files.arrays import Vector
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_number, wrong
-from squealbox.files.sheets import field_type, read_sheet
-from squealbox.parameters import Choice, DataSheet, Parameter, ParameterError, choice, known_names, parameter
+from squealbox.files.sheets import read_sheet
+from squealbox.files.varied import quantity_of
+from squealbox.parameters import DataSheet, Parameter, ParameterError, choice, known_names, parameter
 from squealbox.transient.legs import SCHEMES
 from squealbox.transient.methods import TABLEAUX, TAYLOR
 from squealbox.transient.simulate import TIME_STEPPING
@@ -77,36 +77,6 @@ class Map:
 
     x: Axis
     y: Axis
-
-
-def quantity_of(design: Design, name: str) -> Parameter:
-    """Unit and range of the scalar parameter `name` of `design`; `ParameterError` names those there are."""
-    known, short = scalar_parameters(design), short_name(design, name)
-    if short not in known:
-        raise ParameterError("design", "parameter", name, known_names(name[:60], list(known)))
-    return known[short]
-
-
-def scalar_parameters(design: Design) -> dict[str, Parameter]:
-    """The parameters of a design that a study can vary, nested ones with dots, aliases included.
-
-    Those of a brake within countermeasures and loops keep their names.
-    """
-    arrays = {name for name in design.parameters() if get_origin(field_type(type(design), name)) is Annotated}
-    leaves = ((name, about) for name, about, value in design.leaves() if np.ndim(value) == 0)
-    known = {name: about for name, about in leaves if name not in arrays}
-    brake = design.innermost if isinstance(design, Countermeasure) else design
-    own = brake.parameters()
-    for alias, names in brake.aliases.items():
-        if all(name in own for name in names):
-            known.setdefault(alias, own[names[0]])
-    return known
-
-
-def words_of(design: Design) -> dict[str, Choice]:
-    """The fields of a design that hold one of several words, those of a brake within countermeasures included."""
-    held = words_of(design.brake) if isinstance(design, Countermeasure) else {}
-    return {**held, **design.choices()}
 
 
 def read_modes(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Modes | None:

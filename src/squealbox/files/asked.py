@@ -5,10 +5,11 @@ from typing import Any
 
 from squealbox import quantities
 from squealbox.designs import Design
-from squealbox.files.analyses import quantity_of, read_ends, scalar_parameters
+from squealbox.files.analyses import read_ends
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
+from squealbox.files.varied import quantity_of, scalar_parameters
 from squealbox.parameters import Parameter, ParameterError, known_names
 from squealbox.studies import Quantity
 

@@ -23,7 +23,6 @@ from squealbox.files.own_law import OwnLaw, own_law
 from squealbox.friction import LAWS, FrictionLaw
 from squealbox.parameters import DataSheet, Parameter, ParameterError, known_names
 from squealbox.schedules import SCHEDULES, Schedule, Sum, as_schedule
-from squealbox.studies.uncertainty.distributions import Distribution
 
 Sheet = TypeVar("Sheet", bound=DataSheet)
 
@@ -226,6 +225,8 @@ def unit_in(sheet: type[DataSheet], about: Parameter, unit: str) -> str:
     what it multiplies. In a schedule it is that of the
     quantity it stands for, and ``/s`` is that per second.
     """
+    from squealbox.studies.uncertainty.distributions import Distribution  # studies are much to load for a brake
+
     if issubclass(sheet, Distribution) or hasattr(sheet, "unit_for"):
         return about.unit or unit
     if not issubclass(sheet, Schedule):

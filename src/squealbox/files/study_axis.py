@@ -6,11 +6,12 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.files.analyses import read_ends, scalar_parameters, words_of
+from squealbox.files.analyses import read_ends
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
 from squealbox.files.sheets import read_sheet
+from squealbox.files.varied import scalar_parameters, words_of
 from squealbox.parameters import Choice, Parameter, ParameterError, known_names
 from squealbox.studies import DISTRIBUTIONS, SAMPLINGS, Scatter, Space, grid, latin_hypercube, sampled, zipped
 from squealbox.studies.space import POINT, Axis, sobol_sequence

@@ -42,44 +42,53 @@ def moving_strokes(design: Design) -> dict[str, Any]:
     1
     """
     brake = design.innermost if isinstance(design, Countermeasure) else design
-    drawn, size = brake_strokes(brake), design.system().size
+    drawn, system = brake_strokes(brake), design.system()
+    size = system.size
     kind = next((kind for kind in PARTS if isinstance(brake, kind)), None)
     if kind is None:
-        drawn, parts, contacts = _boxes(design)
+        drawn, parts, contacts = _boxes(system.names)
     else:
         parts, contacts = PARTS[kind](brake)
-    points, moves, strokes = [], [], []
+    points, goes, strokes = [], [], []
     for stroke in drawn["strokes"]:
         names = [name for name in ("points", "at", "start", "end") if name in stroke]
         own = np.concatenate([np.reshape(stroke[name], (-1, 2)) for name in names])
         strokes.append({key: value for key, value in stroke.items() if key not in names} | {"count": len(own)})
         points.append(own)
-        moves.append(_moved(stroke["kind"], own, parts, size, float(stroke.get("radius", 0.0))))
-    known = contacts if len(contacts) == len(design.system().contacts) else []
+        goes.append(_goes_with(stroke["kind"], own, float(stroke.get("radius", 0.0))))
+    moves = _at(np.concatenate(points), parts, size, of=np.concatenate(goes))
+    first = 0
+    for stroke, own in zip(strokes, points, strict=True):
+        if stroke["kind"] == "line" and len(own) > 1:
+            part = slice(first, first + len(own))
+            moves[:, part] = _shared_out(own, moves[:, first], moves[:, part.stop - 1])
+        first += len(own)
+    known = contacts if len(contacts) == len(system.contacts) else []
     return {
         "strokes": strokes,
         "box": drawn["box"],
         "points": np.concatenate(points),
-        "moves": np.concatenate(moves, axis=1),
+        "moves": moves,
         "contacts": known,
         "contactMoves": np.stack([_at(np.reshape(at[:2], (1, 2)), parts, size)[:, 0] for at in known], axis=1)
         if known else np.zeros((size, 0, 2)),
     }  # fmt: skip
 
 
-def _moved(kind: str, points: Any, parts: list[Part], size: int, radius: float) -> Any:
-    """What each degree of freedom adds to the points of one stroke, shape (size, k, 2)."""
-    moves = _at(points, parts, size)
-    if kind == "line" and len(points) > 1:
-        way = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
-        share = (way / way[-1] if way[-1] else way)[None, :, None]
-        return (1.0 - share) * moves[:, :1] + share * moves[:, -1:]
+def _goes_with(kind: str, points: Any, radius: float) -> Any:
+    """The places (k, 2) whose part each point of a stroke goes along with: a whole polygon with its middle."""
     if kind == "polygon":
-        inner = np.mean(points[:-1], axis=0, keepdims=True)
-        return _at(points, parts, size, of=inner)
+        return np.broadcast_to(np.mean(points[:-1], axis=0), points.shape)
     if kind == "circle":
-        return _at(points, parts, size, of=points + np.array([radius, 0.0]))
-    return np.broadcast_to(moves[:, -1:], moves.shape) if kind == "arrow" else moves
+        return points + np.array([radius, 0.0])
+    return np.broadcast_to(points[-1], points.shape) if kind == "arrow" else points
+
+
+def _shared_out(points: Any, begin: Any, end: Any) -> Any:
+    """Along a line (k, 2) the moves (size, 2) of its ends, shared out by the way, shape (size, k, 2)."""
+    way = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
+    share = (way / way[-1] if way[-1] else way)[None, :, None]
+    return (1.0 - share) * begin[:, None] + share * end[:, None]
 
 
 def _at(points: Any, parts: list[Part], size: int, of: Any = None) -> Any:
@@ -161,9 +170,9 @@ def _wobbling(brake: WobblingDisc) -> tuple[list[Part], Contacts]:
     return [(_box(-1.3, 1.3, -0.14 - half, 0.14 + half), {0: -float(brake.r)})], ends
 
 
-def _boxes(design: Design) -> tuple[dict[str, Any], list[Part], Contacts]:
+def _boxes(freedoms: tuple[str, ...]) -> tuple[dict[str, Any], list[Part], Contacts]:
     """A brake without a drawing: a box for each degree of freedom, side by side."""
-    names = design.system().names[:MOST_SHOWN]
+    names = freedoms[:MOST_SHOWN]
     strokes: list[dict[str, Any]] = []
     parts: list[Part] = []
     for i, name in enumerate(names):

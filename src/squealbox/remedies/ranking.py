@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public, with_parameters
-from squealbox.control import closed_loop
+from squealbox.control.closed_loop import closed_loop
 from squealbox.countermeasures import Controlled, Countermeasure, Dithered
 from squealbox.countermeasures.loss import growth_of
 from squealbox.designs.base import Design

@@ -12,8 +12,9 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.files.analyses import Axis, Map, Simulate, quantity_of, scalar_parameters
+from squealbox.files.analyses import Axis, Map, Simulate
 from squealbox.files.runs import lasting, run, run_closely, usual_duration
+from squealbox.files.varied import quantity_of, scalar_parameters
 from squealbox.limit_cycles import hopf_point, shooting
 from squealbox.matrices import liveliest
 from squealbox.parameters import ParameterError

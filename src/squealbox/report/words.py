@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.files.analyses import quantity_of
+from squealbox.files.varied import quantity_of
 from squealbox.plots.facts import plain_unit, read
 from squealbox.plots.style import number
 from squealbox.report.examination import Examination

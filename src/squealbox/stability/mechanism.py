@@ -29,7 +29,7 @@ from squealbox.arguments import public
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.fe.small import Small
 from squealbox.stability.eigenvalues import MARGINAL
-from squealbox.stability.family import Steady, steady_sliding
+from squealbox.stability.family import Steady, entry, steady_sliding
 from squealbox.stability.in_band import IDLE, eigenvalues_in_band, ranked_in_band, worst_in_band
 from squealbox.stability.spectra import Engine, compiled, growth_of_parts, largest_growth
 from squealbox.stability.state_matrix import spectrum
@@ -106,9 +106,16 @@ def contributions(
     circulation, slope = np.zeros(base.shape), np.zeros(base.shape)
     if not np.any(rest):  # one part alone: its steps add up to the whole
         return base, growth(1.0, 1.0) - base, slope
-    for i in range(steps):
-        low, high = i / steps, (i + 1) / steps
-        after, first, second = growth(high, high), growth(high, low), growth(low, high)
+    ends = [(i / steps, (i + 1) / steps) for i in range(steps)]
+    places = [place for low, high in ends for place in ((high, high), (high, low), (low, high))]
+    if steady.K.ndim == 2 and band is None:  # one system: all its steps in one batch
+        batch = entry(entry(steady, (None,)), np.zeros(len(places), dtype=int))
+        x, y = (np.array(side)[:, None, None] for side in zip(*places, strict=True))
+        part = Linearised(batch.M, passive + y * rest, base_stiffness + x * coupling, batch.equilibrium)
+        grown = iter(ranked_growth(part, rank, engine))
+    else:
+        grown = (growth(x, y) for x, y in places)
+    for after, first, second in zip(grown, grown, grown, strict=True):
         circulation = circulation + 0.5 * (first - before + after - second)
         slope = slope + 0.5 * (second - before + after - first)
         before = after

@@ -259,7 +259,7 @@ def _described(found: Scan, value: float, beside: float, k: int, rising: bool, i
     else:
         growth = np.where(np.isnan(modes.growth_rate[0, :half]), np.inf, modes.growth_rate[0, :half])
         rigid = (modes.eigenvalues[0, :half] == 0.0) & (np.cumsum(modes.eigenvalues[0, :half] == 0.0) <= found.undamped)
-        here = found.at(float(place_of))[k]
+        here = found.at(place_of)[k] if found.family.band else found.functions_of(steady)[0, k]
         growth = np.where(rigid & (np.sum(~rigid) > 0), np.inf, growth)
         place = int(np.argmin(np.abs(growth - (0.0 if np.isnan(here) else here))))
         eigenvalue = complex(modes.eigenvalues[0, place])

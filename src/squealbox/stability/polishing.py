@@ -39,14 +39,15 @@ def polished(family: Family, value: float, eigenvalue: complex, low: float, high
     width = high - low
     p, root = value, eigenvalue
     for _ in range(STEPS):
-        matrices = _matrices(family, p)
+        sides = _sides(family, p, DIFFERENCE * width)
+        matrices = sides[1][1]
         if matrices is None:
             return unknown
         found = _refined(matrices, root)
         if found is None or abs(found[0] - root) > NEAR * max(abs(root), _scale(matrices)):
             return unknown
         root, u, w, along, error = found
-        rate = _rate(family, p, root, u, w, along, width)
+        rate = _rate(sides, root, u, w, along)
         if rate is None or rate == 0.0:
             return unknown
         step = root.real / rate
@@ -59,32 +60,39 @@ def polished(family: Family, value: float, eigenvalue: complex, low: float, high
     return Polished(float(p), complex(0.0, root.imag), float(bound + abs(step) + 2.0 * np.spacing(abs(p))))
 
 
-def _matrices(family: Family, p: float) -> tuple[Any, Any, Any] | None:
-    """M, C_eff and K_eff at p; None where there is no steady sliding, as beyond what the parameter may be."""
+Matrices = tuple[Any, Any, Any]
+
+
+def _sides(family: Family, p: float, step: float) -> list[tuple[float, Matrices | None]]:
+    """M, C_eff and K_eff at p and a step to both sides; None where there is no steady sliding."""
+    return _at(family, [p - step, p, p + step])
+
+
+def _at(family: Family, places: list[float]) -> list[tuple[float, Matrices | None]]:
+    """In one batch, unless one of them is beyond what the parameter may be."""
     try:
-        about = family.at(np.array([p]))
+        about = family.at(np.array(places))
     except ParameterError:
-        return None
-    if not about.equilibrium.exists[0]:
-        return None
-    whole = [np.broadcast_to(x, (1, *x.shape[-2:]))[0] for x in (about.M, about.C, about.K)]
-    return (whole[0], whole[1], whole[2]) if all(np.all(np.isfinite(x)) for x in whole) else None
+        return [(places[0], None)] if len(places) == 1 else [_at(family, [x])[0] for x in places]
+    whole = [np.broadcast_to(x, (len(places), *x.shape[-2:])) for x in (about.M, about.C, about.K)]
+    known = about.equilibrium.exists & np.all([np.all(np.isfinite(x), axis=(-1, -2)) for x in whole], axis=0)
+    return [(x, (whole[0][i], whole[1][i], whole[2][i]) if known[i] else None) for i, x in enumerate(places)]
 
 
-def _scale(matrices: tuple[Any, Any, Any]) -> float:
+def _scale(matrices: Matrices) -> float:
     """An angular frequency [rad/s] of the system: a root near zero is measured by it."""
     mass, _, stiffness = (float(np.max(np.abs(x), initial=0.0)) for x in matrices)
     return float(np.sqrt(stiffness / mass)) if mass > 0.0 else 0.0
 
 
-def _sizes(matrices: tuple[Any, Any, Any], size: float) -> Any:
+def _sizes(matrices: Matrices, size: float) -> Any:
     """|s|^2 |M| + |s| |C| + |K|, with no entry of K smaller than its diagonal lets expect: sums may have cancelled."""
     mass, damping, stiffness = matrices
     diagonal = np.sqrt(np.abs(np.diag(stiffness)))
     return size**2 * np.abs(mass) + size * np.abs(damping) + np.maximum(np.abs(stiffness), np.outer(diagonal, diagonal))
 
 
-def _refined(matrices: tuple[Any, Any, Any], root: complex) -> tuple[complex, Any, Any, complex, float] | None:
+def _refined(matrices: Matrices, root: complex) -> tuple[complex, Any, Any, complex, float] | None:
     """The eigenvalue near `root`, its right and left vectors, w' P' u, and the bound on its error [1/s]."""
     mass, damping, stiffness = (x.astype(np.clongdouble) for x in matrices)
     s = np.clongdouble(root)
@@ -103,10 +111,8 @@ def _refined(matrices: tuple[Any, Any, Any], root: complex) -> tuple[complex, An
     return complex(s), u, w, complex(along), error
 
 
-def _rate(family: Family, p: float, s: complex, u: Any, w: Any, along: complex, width: float) -> float | None:
+def _rate(sides: list[tuple[float, Matrices | None]], s: complex, u: Any, w: Any, along: complex) -> float | None:
     """d(Re lambda)/dp, from the difference of the matrices on both sides of p, or on one where the other has none."""
-    step = DIFFERENCE * width
-    sides = [(x, _matrices(family, x)) for x in (p - step, p, p + step)]
     known = [(x, m) for x, m in sides if m is not None]
     if len(known) < 2:
         return None

@@ -22,6 +22,8 @@ NEUTRAL = 1e-11  # |Re lambda| below this share of the largest |lambda|, at all 
 EDGE = 52  # halvings towards a value without an answer
 ROUND_OFF = 1e-13  # two modes that only pass each other come out as a pair apart by the root of the round-off
 DETAIL, DETAIL_IN_BAND = 17, 5  # values on which a suspicious stretch is scanned again
+BATCHES, NODES = 4, 9  # in which a bracket is made narrow, and values of each
+BESIDE = 1e-6  # share of the bracket beside a guess, where its sign is looked for
 NEAR, NEAR_IN_BAND = 2.0, 0.5  # times the swing of a bend from which zero may lie behind it; a parabola reaches 1/8
 
 
@@ -42,10 +44,14 @@ class Scan:
     def functions_at(self, values: Any) -> Any:
         """The functions at several values, of a reduced brake the growth rates in its band."""
         if self.family.band is None:
-            return _functions(self.family.at(values), self.neutral, self.undamped)
+            return self.functions_of(self.family.at(values))
         found = growth_in_band(self.family, values)
         missing = max(self.functions.shape[-1] - found.shape[-1], 0)
         return np.pad(found, ((0, 0), (0, missing)), constant_values=np.nan)
+
+    def functions_of(self, about: Linearised) -> Any:
+        """The functions of matrices that are known, not of a reduced brake."""
+        return _functions(about, self.neutral, self.undamped)
 
     @property
     def answered(self) -> Any:
@@ -83,6 +89,10 @@ class Scan:
         if self.functions[i, k] == 0.0:
             return low
         tolerance = relative * max(abs(low), abs(high))
+        if self.family.recipe is None and self.family.band is None:  # a batch costs hardly more than one value
+            low, high = self._narrowed(low, high, k, tolerance)
+            if high - low <= tolerance:
+                return 0.5 * (low + high)
 
         def function(value: float) -> float:
             found = float(self.at(value)[k])
@@ -92,6 +102,26 @@ class Scan:
 
         root: float = brentq(function, low, high, xtol=tolerance, rtol=relative)
         return root
+
+    def _narrowed(self, low: float, high: float, k: int, tolerance: float) -> tuple[float, float]:
+        """The bracket of function k after a few batches, each about the root of a polynomial through the last."""
+        near: Any = ()
+        for _ in range(BATCHES):
+            values = np.unique(np.clip([*np.linspace(low, high, NODES), *near], low, high))
+            functions = self.functions_at(values)[:, k]
+            change = np.flatnonzero((functions[1:] > 0.0) != (functions[:-1] > 0.0))
+            if not np.all(np.isfinite(functions)) or change.size != 1:
+                break  # what is less plain is left to Brent's method
+            low, high = (float(x) for x in values[change[0] : change[0] + 2])
+            if high - low <= tolerance:
+                break
+            with np.errstate(all="ignore"):  # of the inverse function, by Lagrange's formula
+                shares = functions / (functions - functions[:, None])
+                np.fill_diagonal(shares, 1.0)
+                guess = float(values @ np.prod(shares, axis=1))
+            beside = max(BESIDE * (high - low), 0.4 * tolerance)
+            near = (guess - beside, guess + beside) if low < guess < high else ()
+        return low, high
 
 
 def scan(family: Family, low: float, high: float, points: int, refinements: int = 3) -> Scan:

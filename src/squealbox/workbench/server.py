@@ -7,7 +7,7 @@ import threading
 from collections.abc import AsyncIterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 from starlette.applications import Starlette
@@ -15,8 +15,7 @@ from starlette.middleware import Middleware
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 from starlette.requests import Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response
-from starlette.routing import Mount, Route, WebSocketRoute
-from starlette.staticfiles import StaticFiles
+from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from squealbox.workbench.apart import Processes
@@ -25,6 +24,7 @@ from squealbox.workbench.guard import Headers, SameOrigin, Token
 from squealbox.workbench.recorded import Recordings
 
 STATIC = Path(__file__).parent / "static"
+KINDS = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml", ".html": "text/html"}
 HOSTS = ["127.0.0.1", "localhost"]
 LARGEST_MESSAGE = 2_000_000  # bytes; a longer one closes the connection
 LEADING = "locus"  # the figure a page shows first
@@ -42,6 +42,7 @@ class Workbench:
         self.token, self.text, self.design = token, text, design
         sys.setswitchinterval(SWITCH)
         self.pools = {"quick": ThreadPoolExecutor(2, "quick"), "warming": ThreadPoolExecutor(1, "warming")}
+        self.files = {path.relative_to(STATIC).as_posix(): path.read_bytes() for path in STATIC.rglob("*.*")}
         self.recordings = Recordings()
         self.processes = Processes()
         self.first = threading.Event()  # a page has its first figure
@@ -55,7 +56,7 @@ class Workbench:
             Route("/vendor/d3.js", _file(chart_library(), "text/javascript")),
             Route("/recording", self.record, methods=["POST"]),
             WebSocketRoute("/ws", self.talk),
-            Mount("/static", StaticFiles(directory=STATIC)),
+            Route("/static/{path:path}", self.static),
         ]
         middleware = [
             Middleware(Headers),
@@ -86,6 +87,13 @@ class Workbench:
             about: dict[str, Any] = {"httponly": True, "samesite": "strict", "path": "/", "max_age": 30 * 86400}
             response.set_cookie(self.token.cookie, self.token.token, **about)
         return response
+
+    async def static(self, request: Request) -> Response:
+        """A file of the page, from memory: forty come at once, while other threads load what answers need."""
+        name = request.path_params["path"]
+        if name not in self.files:
+            return Response(status_code=404)
+        return Response(self.files[name], media_type=KINDS.get(PurePosixPath(name).suffix))
 
     async def record(self, request: Request) -> Response:
         """Take a recording that was dropped onto the page into the folder of this server, under a name it makes."""

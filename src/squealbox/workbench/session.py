@@ -3,7 +3,7 @@
 A question is a JSON text, an answer a binary frame (`frames`) with the question's `id`:
 
     {"id": 7, "view": "locus", "state": {...}, "options": {...}}    ask a panel
-    {"id": 8, "ask": "sheet", "state": {...}}                       fields of a design, and its TOML text
+    {"id": 8, "ask": "sheet", "state": {...}}                       fields of a design; with "toml": true its text
     {"id": 9, "ask": "open", "text": "brake = ..."}                 read a design file
     {"id": 10, "ask": "stop", "view": "motion"}                     stop a panel's computation
 
@@ -13,6 +13,7 @@ that cannot look every tenth of a second whether they are still wanted have proc
 """
 
 import asyncio
+import functools
 import hashlib
 import json
 import time
@@ -21,9 +22,9 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from squealbox.designs import DESIGNS, Design
-from squealbox.files import DesignFileError, NotWritable, read_text
-from squealbox.files.writing import design_text
 from squealbox.workbench.apart import Died, Processes
 from squealbox.workbench.frames import frame
 from squealbox.workbench.panels import PANELS, Answer, Elsewhere, OptionError, Options, Stopped, Work, function_of
@@ -32,6 +33,7 @@ from squealbox.workbench.state import StateError, UnknownBase, design_of
 
 LONGEST_TEXT = 1_000_000  # characters of an opened file
 MOST_BASES = 8  # opened files kept for a page; the page sends an older one again
+KEPT = 8  # designs of the last states: a slider's move asks several views about one
 LARGE = 40  # degrees of freedom from which every answer gets a process of its own: other pages are not held up
 PER_CUBE = 5e-6  # s an answer takes about, times the cube of the degrees of freedom
 SAID = 0.1  # s after which a progress is told again
@@ -176,7 +178,8 @@ class Session:
         except StateError as error:
             return frame({**about, **_wrong(error)})
         try:
-            return frame({**about, "kind": "sheet", "sheet": sheet(design), **_toml(design)})
+            written = _toml(design) if message.get("toml") is True else {}
+            return frame({**about, "kind": "sheet", "sheet": sheet(design), **written})
         except (ArithmeticError, ValueError) as error:  # a value at the end of what numbers reach
             return _failed(about, error)
 
@@ -189,6 +192,8 @@ class Session:
         if name_of_text(text) in self.bases:  # the file of the command line, whose matrices may stand beside it
             base = name_of_text(text)
             return frame({**about, "kind": "opened", "base": base, "brake": _name(self.bases[base])})
+        from squealbox.files import DesignFileError, read_text  # loads much, and few open a file at once
+
         try:
             design = read_text(text, "the file", beside=False).design
         except DesignFileError as error:
@@ -215,11 +220,11 @@ def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design],
     try:
         if work.stopped:
             raise Stopped
-        design = design_of(message.get("state"), bases)
-        size = design.system().size
+        design, size = _asked(message.get("state"), bases)
         if size > LARGE and not (work.apart or PANELS[name].light):
             raise Elsewhere(f"computing, with {size} degrees of freedom", PER_CUBE * size**3)
-        answer: Answer = function_of(name)(design, Options(message.get("options") or {}), work)
+        with np.errstate(all="ignore"):  # of extreme values: what is not finite is said in the answer
+            answer: Answer = function_of(name)(design, Options(message.get("options") or {}), work)
         framed = frame({**about, "kind": "answer", "data": answer.data}, answer.arrays)
     except StateError as error:
         return frame({**about, **_wrong(error)})
@@ -234,6 +239,19 @@ def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design],
     return framed
 
 
+def _asked(state: Any, bases: Mapping[str, Design]) -> tuple[Design, int]:
+    """The design of a question and its degrees of freedom, made once for the views that ask about one state."""
+    base = bases.get(str(state.get("base"))) if isinstance(state, Mapping) else None
+    return _made(json.dumps(state), base)
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _made(state: str, base: Design | None) -> tuple[Design, int]:
+    given = json.loads(state)
+    design = design_of(given, {} if base is None else {given["base"]: base})
+    return design, design.system().size
+
+
 def _failed(about: Mapping[str, Any], error: Exception) -> bytes:
     """What could not be computed, as an answer: the page says it in the panel's own place."""
     text = " ".join(str(error).split())[:500]
@@ -246,6 +264,8 @@ def _wrong(error: StateError) -> dict[str, Any]:
 
 
 def _toml(design: Design) -> dict[str, Any]:
+    from squealbox.files.writing import NotWritable, design_text
+
     try:
         return {"toml": design_text(design)}
     except NotWritable as error:

@@ -9,8 +9,8 @@ import numpy as np
 
 from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
-from squealbox.files.analyses import scalar_parameters
 from squealbox.files.sheets import LAW_NAMES, field_type, name_of
+from squealbox.files.varied import scalar_parameters
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, Parameter
 from squealbox.schedules import Schedule

@@ -5,7 +5,7 @@ from typing import Any
 from squealbox.calibration import calibrate
 from squealbox.calibration.measured import from_events
 from squealbox.designs import Design
-from squealbox.files.analyses import scalar_parameters
+from squealbox.files.varied import scalar_parameters
 from squealbox.parameters import ParameterError
 from squealbox.signals import SignalError
 from squealbox.workbench.frames import finite

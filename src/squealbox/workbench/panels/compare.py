@@ -9,6 +9,7 @@ from squealbox.plots.cards import parameter_rows
 from squealbox.plots.modes import followed
 from squealbox.stability import complex_modes, critical_values, mechanism
 from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.modes import modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, axis_of, try_value
 
 POINTS = 161
@@ -43,7 +44,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
 
 
 def _state(design: Design) -> dict[str, Any]:
-    modes = complex_modes(design)
+    modes = modes_of(design)
     if not bool(modes.exists):
         return {"state": "no steady sliding", "growth": None, "frequency": None, "damping": None, "mechanism": ""}
     worst = modes.most_unstable

@@ -5,8 +5,9 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.stability import complex_modes, mode_energy
+from squealbox.stability import mode_energy
 from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.modes import modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
 MOST_BARS = 24
@@ -14,7 +15,7 @@ MOST_BARS = 24
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """Bars [1/s] that add up to the growth rate of the mode with the largest one."""
-    modes = complex_modes(design)
+    modes = modes_of(design)
     if not bool(modes.exists):
         return Answer({"outcome": str(modes.outcome), "message": modes.outcome.message, "bars": []})
     parts = mode_energy(design, modes.most_unstable)

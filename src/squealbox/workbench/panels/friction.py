@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.system import equilibrium, linearise
+from squealbox.system import linearise
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
@@ -15,7 +15,8 @@ POINTS = 241
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """mu(|v|) of the first contact's law, and coefficient, slope and lost damping of each contact at steady sliding."""
     system = design.system()
-    state = equilibrium(system)
+    steady = linearise(system)
+    state = steady.equilibrium
     speeds = np.abs(state.sliding_speed)
     top = 2.5 * float(np.max(speeds, initial=0.0)) or 1.0
     v = np.linspace(0.0, top, POINTS)
@@ -24,7 +25,6 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         if contact.law not in laws:
             laws.append(contact.law)
     curves = np.array([np.broadcast_to(law.mu(v), v.shape) for law in laws]) if laws else np.zeros((0, POINTS))
-    steady = linearise(system)
     contacts = [
         {
             "name": system.contact_names[i],

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.stability import complex_modes, tracked_modes
+from squealbox.stability import tracked_modes
+from squealbox.workbench.panels.modes import modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, axis_of, try_value
 
 POINTS = 97  # values along the axis; about 15 ms for two degrees of freedom
@@ -17,7 +18,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     """Frequency [Hz] and growth rate [1/s] of each mode along the axis, and the modes of the design itself."""
     parameter = options.parameter("parameter", design, "friction.static")
     low, high = options.span("span", design, parameter)
-    here = complex_modes(design)
+    here = modes_of(design)
     half = here.eigenvalues.shape[-1] // 2
     values = np.linspace(low, high, POINTS if half <= 2 else FEWER)
     tracks = tracked_modes(design, parameter, values)

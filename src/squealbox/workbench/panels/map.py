@@ -14,7 +14,7 @@ from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work,
 POINTS = 101
 FEWER = 51  # along each axis, for designs of more than two degrees of freedom
 FEWEST = 11  # the same of reduced brakes, with a spectrum of its own for each point
-CLOSE = 1e-6  # of a cell, a hundredth of that of the axis: numbers travel with seven digits
+CLOSE = 1e-5  # of a cell, a hundredth of that of the axis: numbers travel with seven digits
 BLOCKS = 8  # parts of a map between which it can be stopped
 
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.plots.moving import moving_strokes
-from squealbox.stability import complex_modes
 from squealbox.system import equilibrium
+from squealbox.workbench.panels.modes import modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
 MOST_MODES = 12
@@ -19,7 +19,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     data: dict[str, Any] = {name: drawn[name] for name in ("strokes", "box", "contacts")}
     data |= {"names": list(system.names), "units": list(system.units), "contactNames": list(system.contact_names)}
     arrays: dict[str, Any] = {name: drawn[name] for name in ("points", "moves", "contactMoves")}
-    modes, state = complex_modes(design), equilibrium(system)
+    modes, state = modes_of(design), equilibrium(system)
     data |= {"normal": np.nan_to_num(state.normal_force).tolist()}
     if not bool(modes.exists):
         return Answer({**data, "modes": [], "message": modes.outcome.message}, arrays)

@@ -9,7 +9,7 @@ import numpy as np
 
 from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
-from squealbox.files.analyses import scalar_parameters
+from squealbox.files.varied import scalar_parameters
 from squealbox.parameters import ParameterError
 from squealbox.workbench.sheet import read_in, slider, usual_value
 

@@ -3,8 +3,9 @@
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.stability import complex_modes, sensitivity
+from squealbox.stability import sensitivity
 from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.modes import modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
 MOST_BARS = 16
@@ -13,7 +14,7 @@ ROUND_OFF = 1e-12  # of the eigenvalue: smaller changes of its real part are non
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """Change of growth rate [1/s] and frequency [Hz] for one per cent more of each parameter, the strongest first."""
-    modes = complex_modes(design)
+    modes = modes_of(design)
     if not bool(modes.exists):
         return Answer({"outcome": str(modes.outcome), "message": modes.outcome.message, "bars": []})
     try:

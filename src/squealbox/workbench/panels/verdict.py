@@ -6,9 +6,10 @@ import numpy as np
 
 from squealbox.cautions import pulled
 from squealbox.designs import Design
-from squealbox.stability import complex_modes, critical_values, mechanism
+from squealbox.stability import critical_values, mechanism
 from squealbox.system import equilibrium
 from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.modes import modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, axis_of, try_value
 
 POINTS = 201
@@ -18,7 +19,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     """State, mechanism, critical values of the chosen parameter, and margin to the nearest."""
     parameter = options.parameter("parameter", design, "friction.static")
     low, high = options.span("span", design, parameter)
-    modes = complex_modes(design)
+    modes = modes_of(design)
     axis = axis_of(design, parameter)
     data: dict[str, Any] = {"axis": axis, "value": try_value(design, parameter), "span": [low, high]}
     if not bool(modes.exists):

@@ -13,9 +13,10 @@ import { Store, same } from "./store.js";
 import { chooseTheme, nextTheme } from "./theme.js";
 import { Verdict } from "./verdict.js";
 
-const LEADING = "locus"; // the view whose pace a moving slider keeps
+const LEADING = ["locus", "map", "motion"]; // the views whose pace a moving slider keeps, where they are on the screen
 const QUIET = 40; // ms without a change after which the other views are asked
 const PATIENCE = 250; // ms they wait at most while a slider moves
+const LATE = 1000; // ms they wait for a leading view that is slow
 const AT_FIRST = 5000; // and before it has been drawn at all: one figure early is more than seven late
 const TOLD = "motion"; // the view whose answer is part of the verdict, also while it is out of sight
 const REST = 600; // ms without a change after which it is asked then
@@ -53,31 +54,41 @@ class App extends EventTarget {
     requestAnimationFrame(() => setTimeout(() => this.dispatchEvent(new CustomEvent("painted", { detail: { name, key, at: performance.now() } }))));
   }
 
+  /** The leading view was answered: what waits for it is asked while it is drawn, the verdict first. */
   answered(name) {
-    if (name === this.#leading()?.name) this.store.answered();
+    const leading = this.#leading();
+    if (name === leading.name) {
+      this.store.answered();
+      this.drawing.view.update();
+      this.verdict.view.update();
+    }
+    if (this.changedAt && !this.verdict.view.busy) this.#later();
   }
 
-  /** The view that a moving slider waits for: the modes where they are on the screen, else the verdict. */
+  /** The view that a moving slider waits for: the main figure on the screen, else the verdict. */
   #leading() {
-    const view = this.panels.get(LEADING)?.view;
-    return view?.visible ? view : this.verdict.view;
+    const main = LEADING.map((name) => this.panels.get(name)?.view).find((view) => view?.visible);
+    return main ?? this.verdict.view;
   }
 
-  /** Ask the leading view and the drawing at once, and the others when the slider rests or has moved for long. */
+  /** Ask the leading view at once, the verdict after it, and the others when the slider rests or has moved for long. */
   #update() {
     const leading = this.#leading();
-    leading?.update();
-    this.drawing.view.update();
-    const now = performance.now();
-    this.changedAt ??= now;
-    clearTimeout(this.later);
-    const others = () => {
-      const patience = leading?.drawn ? PATIENCE : AT_FIRST;
-      if (leading?.busy && performance.now() - this.changedAt < patience) this.later = setTimeout(others, 10);
-      else this.#others();
-    };
+    leading.update();
+    for (const panel of this.panels.values()) if (panel.about.slow) panel.view.update();
     for (const view of this.views) view.stale();
-    this.later = setTimeout(others, Math.max(0, Math.min(QUIET, this.changedAt + PATIENCE - now)));
+    this.movedAt = performance.now();
+    this.changedAt ??= this.movedAt;
+    if (!leading.busy) this.answered(leading.name); // nothing of it has changed
+    clearTimeout(this.late);
+    this.late = setTimeout(() => this.changedAt && this.#others(), leading.drawn || leading.slow ? LATE : AT_FIRST);
+  }
+
+  /** The other views, when the hand rests or has moved for long. */
+  #later() {
+    clearTimeout(this.later);
+    const now = performance.now();
+    this.later = setTimeout(() => this.#others(), Math.max(0, Math.min(QUIET - (now - this.movedAt), this.changedAt + PATIENCE - now)));
   }
 
   #others() {
@@ -104,16 +115,6 @@ class App extends EventTarget {
   problems(wrong) {
     const others = this.parameters.problems(wrong);
     byId("problems").replaceChildren(...others.map((each) => make("p", {}, each.message)));
-  }
-
-  /** Another brake from the list. */
-  async chooseBrake(brake) {
-    this.store.replace({ base: null, brake, laws: {}, values: {} }, null);
-  }
-
-  /** Another friction law in its place. */
-  replaceLaw(path, name, design) {
-    this.store.replace(design);
   }
 
   /** Read a design file's text; resolves to what is wrong with it, or nothing. */
@@ -154,7 +155,7 @@ class App extends EventTarget {
 
   /** The server does not know our file, as after its restart: send it again. */
   async reopen() {
-    if (!this.store.text) return this.chooseBrake("drum_brake");
+    if (!this.store.text) return this.store.replace(Store.plain("drum_brake"));
     const frame = await this.connection.ask({ ask: "open", text: this.store.text });
     if (frame.kind === "opened") this.#update();
     else if (this.initial && this.store.design.base) note("The file this design came from is not open any more.");
@@ -177,7 +178,12 @@ class App extends EventTarget {
     select.replaceChildren(...hello.brakes.map((brake) => make("option", { value: brake.name }, brake.title)));
     select.append(make("option", { value: "", hidden: true }, "from a file"));
     const address = location.hash;
-    const shown = hello.panels.filter((about) => about.shown);
+    this.loading = this.#panels(hello.panels.filter((about) => about.shown)); // meanwhile the sheet is asked
+    if (hello.text && !address) await this.open(hello.text);
+    else if (!(await this.follow(address))) await this.#sheet();
+  }
+
+  async #panels(shown) {
     const modules = await Promise.all(shown.map((about) => import(`./panels/${about.name}.js`)));
     shown.forEach((about, i) => {
       const panel = new Panel(this, about, modules[i].default);
@@ -186,8 +192,6 @@ class App extends EventTarget {
       byId("panels").append(panel.element);
     });
     this.questions.show();
-    if (hello.text && !address) await this.open(hello.text);
-    else if (!(await this.follow(address))) await this.#sheet();
   }
 
   #lost() {
@@ -198,14 +202,15 @@ class App extends EventTarget {
   }
 
   async #changed(fields) {
+    if (!fields) return this.#update();
     for (const view of this.views) view.stale();
-    if (fields) await this.#sheet();
-    else this.#update();
+    await this.#sheet();
   }
 
   async #sheet() {
     const { design } = this.store;
     const frame = await this.connection.ask({ ask: "sheet", state: { ...design, values: {} } }).catch(() => null);
+    await this.loading;
     if (!frame || this.store.design !== design) return;
     if (frame.kind === "unknown_base") return this.reopen();
     if (frame.kind !== "sheet") return this.problems(frame.wrong ?? []);
@@ -223,7 +228,7 @@ class App extends EventTarget {
   }
 
   async #save() {
-    const frame = await this.connection.ask({ ask: "sheet", state: this.store.design }).catch(() => null);
+    const frame = await this.connection.ask({ ask: "sheet", toml: true, state: this.store.design }).catch(() => null);
     if (!frame) note("Not saved: the server does not answer. Save again when it does.");
     else if (frame.toml) download(frame.toml, `${this.stem()}.toml`, "application/toml");
     else note(frame.notWritable ?? "This design cannot be written: see what is marked.");
@@ -239,14 +244,14 @@ class App extends EventTarget {
 
   #buttons() {
     const on = (id, what) => byId(id).addEventListener("click", what);
-    byId("brake").addEventListener("change", (event) => this.chooseBrake(event.target.value));
+    byId("brake").addEventListener("change", (event) => this.store.replace(Store.plain(event.target.value)));
     on("open", () => this.opener.show());
     on("save", () => this.#save());
     on("link", () => this.#copyLink());
     on("undo", () => this.store.undo());
     on("redo", () => this.store.redo());
     on("reset", () => this.store.replace({ ...this.store.design, laws: {}, values: {} }));
-    on("theme", () => this.#theme());
+    on("theme", () => (note(`Colours: ${nextTheme()}`), this.#repaint()));
     document.addEventListener("keydown", (event) => {
       if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || event.target.type === "text") return;
       event.preventDefault();
@@ -255,11 +260,6 @@ class App extends EventTarget {
     });
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.#repaint());
     chooseTheme();
-  }
-
-  #theme() {
-    note(`Colours: ${nextTheme()}`);
-    this.#repaint();
   }
 
   /** Pictures hold their colours in their pixels: draw them again. */

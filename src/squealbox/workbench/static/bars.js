@@ -1,14 +1,14 @@
 // Bars to the left and right of zero, one row each, with their numbers: for few named things.
 
+import { sized } from "./chart.js";
 import { shown } from "./numbers.js";
 
 const d3 = window.d3;
 const ROW = 24;
 
 export class Bars {
-  constructor(place, name, { unit = "1/s" } = {}) {
+  constructor(place, name) {
     this.name = name;
-    this.unit = unit;
     this.margin = { top: 6, right: 62, bottom: 36, left: 128 };
     this.figure = d3.select(place).append("figure").attr("class", "chart").attr("data-figure", name);
     this.frame = this.figure.append("div").attr("class", "frame");
@@ -18,15 +18,16 @@ export class Bars {
     this.rows = this.svg.append("g");
     this.label = this.svg.append("text").attr("class", "axis-label").attr("text-anchor", "middle");
     this.legend = this.svg.append("g").attr("class", "legend");
+    sized(this, () => this.draw(this.spec));
     this.draw({ label: "being computed", bars: [3, 2, 1].map((size) => ({ name: "…", parts: [["like", size]], sum: NaN })) });
-    new ResizeObserver(() => this.spec && this.draw(this.spec)).observe(this.frame.node());
   }
 
   /** spec: { label, bars: [{ name, parts: [[class, value], ...], sum }], legend: [[class, name], ...] } */
   draw(spec) {
     this.spec = spec;
+    if (!this.size.width) return;
     const { top, right, bottom, left } = this.margin;
-    const width = Math.max(this.frame.node().clientWidth, 200);
+    const width = Math.max(this.size.width, 200);
     const legend = spec.legend?.length > 1 ? 18 : 0;
     const height = top + legend + ROW * Math.max(spec.bars.length, 1) + bottom;
     this.inner = { width: width - left - right, height: height - top - bottom };

@@ -47,13 +47,12 @@ export class Chart {
     this.reader.append("circle").attr("r", 3.5);
     this.reader.append("text").attr("class", "reading");
     this.svg.on("mousemove", () => this.#read(d3.mouse(this.svg.node()))).on("mouseleave", () => this.#silent());
-    new ResizeObserver(() => (this.spec ? this.draw(this.spec) : this.#sketch())).observe(this.frame.node());
+    sized(this, () => (this.spec ? this.draw(this.spec) : this.#sketch()));
   }
 
   /** What will stand here, until the first answer: a curve of its kind and a word of what is awaited. */
   #sketch() {
-    const { clientWidth: width, clientHeight: height } = this.frame.node();
-    if (!width) return;
+    const { width, height } = this.size;
     this.svg.attr("width", width).attr("height", height).attr("viewBox", `0 0 ${width} ${height}`);
     this.sketched ??= this.svg.append("g").attr("class", "sketch");
     this.sketched.selectAll("*").remove();
@@ -63,20 +62,21 @@ export class Chart {
   }
 
   draw(given) {
-    this.sketched?.remove();
-    this.height = this.frame.node().clientHeight || this.height;
-    this.svg.attr("height", this.height);
     const spec = (this.spec = { ...given, layers: given.layers.filter(drawable) });
+    if (!this.size.width) return; // out of sight: drawn when it is seen
+    this.sketched?.remove();
+    this.height = this.size.height;
+    this.svg.attr("height", this.height);
     const { top, right, bottom } = this.margin;
     const left = (this.margin.left = this.#room(spec.y));
-    const width = Math.max(this.frame.node().clientWidth, 180);
+    const width = Math.max(this.size.width, 180);
     const inner = { width: width - left - right, height: this.height - top - bottom };
     this.inner = inner;
     this.svg.attr("width", width).attr("viewBox", `0 0 ${width} ${this.height}`);
     this.clipped.attr("x", left).attr("y", top).attr("width", inner.width).attr("height", inner.height);
     this.x = scale(spec.x, [left, left + inner.width]);
     this.y = scale(spec.y, [top + inner.height, top]);
-    this.#axes(spec, width);
+    this.#axes(spec);
     const behind = spec.layers.filter((layer) => layer.kind === "band");
     const before = spec.layers.filter((layer) => layer.kind !== "band");
     this.#layers(this.back, behind);
@@ -92,7 +92,7 @@ export class Chart {
     return 30 + LETTER * Math.max(2, ...numbers);
   }
 
-  #axes(spec, width) {
+  #axes(spec) {
     const { top, bottom, left } = this.margin;
     const ticks = (axis, size) => axis.ticks(Math.max(2, Math.round(size / 70))).tickFormat((v) => shown(v, 5)).tickSizeOuter(0);
     this.xAxis.attr("transform", `translate(0,${this.height - bottom})`).call(ticks(d3.axisBottom(this.x), this.inner.width));
@@ -103,17 +103,13 @@ export class Chart {
     lines.enter().append("line").merge(lines).attr("x1", left).attr("x2", left + this.inner.width).attr("y1", this.y).attr("y2", this.y);
     this.xLabel.attr("x", left + this.inner.width / 2).attr("y", this.height - 6).text(spec.x.label);
     this.yLabel.attr("transform", `translate(14,${top + this.inner.height / 2}) rotate(-90)`).text(spec.y.label);
-    this.svg.attr("data-width", width);
   }
 
   #layers(group, layers) {
     const nodes = group.selectAll("g.layer").data(layers);
     nodes.exit().remove();
     const all = nodes.enter().append("g").merge(nodes);
-    const chart = this;
-    all.attr("class", (layer) => `layer ${layer.cls}`).each(function (layer) {
-      DRAW[layer.kind](d3.select(this), layer, chart);
-    });
+    all.attr("class", (layer) => `layer ${layer.cls}`).each((layer, i, drawn) => DRAW[layer.kind](d3.select(drawn[i]), layer, this));
   }
 
   #named(layers, place = "top right") {
@@ -175,6 +171,7 @@ export class Chart {
 
   /** Where the brake that moves is now. */
   mark(x, y) {
+    if (!this.x) return;
     this.cursor ??= this.svg.append("circle").attr("class", "cursor").attr("r", 5);
     this.cursor.attr("cx", this.x(x)).attr("cy", this.y(y));
   }
@@ -201,6 +198,16 @@ export class Chart {
     }
     return columns;
   }
+}
+
+/** Keep the size of a figure's frame, and draw when it changes: asked for while drawing, it would lay out the page each time. */
+export function sized(chart, draw) {
+  chart.size = { width: 0, height: 0 };
+  new ResizeObserver(([{ contentRect: { width, height } }]) => {
+    const grown = width !== chart.size.width || height !== chart.size.height;
+    chart.size = { width, height };
+    if (grown && width) draw();
+  }).observe(chart.frame.node());
 }
 
 const LARGEST = 1e150; // beyond which differences and squares of an axis are no numbers

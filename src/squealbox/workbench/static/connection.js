@@ -1,9 +1,11 @@
 // The conversation with the server: one JSON text up, one binary frame down. It comes back by itself after a restart.
 
+const TEXT = new TextDecoder();
+
 /** A frame's header with its arrays as Float32Array, each with its shape. */
 export function unframed(buffer) {
   const length = new DataView(buffer).getUint32(0, true);
-  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
+  const header = JSON.parse(TEXT.decode(new Uint8Array(buffer, 4, length)));
   let at = 4 + length;
   const arrays = {};
   for (const [name, shape] of header.arrays) {

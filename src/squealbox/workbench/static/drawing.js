@@ -14,13 +14,11 @@ export class Drawing {
     this.view = new View(app, "drawing", {
       request: () => ({ state: app.store.design, options: {} }),
       draw: (frame) => this.draw(frame),
-      status: (kind, frame) => this.status(kind, frame),
+      status: (kind, frame) => {
+        place.dataset.state = kind;
+        app.problems(kind === "wrong" ? frame.wrong : []);
+      },
     });
-  }
-
-  status(kind, frame) {
-    this.place.dataset.state = kind === "progress" ? "waiting" : kind;
-    this.app.problems(kind === "wrong" ? frame.wrong : []);
   }
 
   draw({ data, arrays }) {
@@ -28,8 +26,8 @@ export class Drawing {
   }
 }
 
-/** A drawing as SVG; `parts(read)` puts each of its points where `read(number)` says, `at` is where that is in the picture. */
-export function drawn({ strokes, box }, points, words) {
+/** A drawing as SVG; `parts(read)` puts each point that `moves` where `read(number)` says; `at` is where that is in the picture. */
+export function drawn({ strokes, box }, points, words, moves = () => true) {
   const [left, right, bottom, top] = box;
   const room = 10;
   const scale = Math.min((SIZE.width - 2 * room) / (right - left || 1), (SIZE.height - 2 * room) / (top - bottom || 1));
@@ -38,19 +36,22 @@ export function drawn({ strokes, box }, points, words) {
   const at = ([x, y]) => [dx + scale * (x - left), SIZE.height - dy - scale * (y - bottom)];
   const svg = element("svg", { viewBox: `0 0 ${SIZE.width} ${SIZE.height}`, role: "img", "aria-label": words });
   let next = 0;
-  const pieces = strokes.map((stroke) => {
+  const pieces = strokes.flatMap((stroke) => {
     const own = Array.from({ length: stroke.count }, (_, i) => next + i);
     next += stroke.count;
     const [nodes, put] = DRAW[stroke.kind](stroke, scale);
     svg.append(...nodes);
-    return (read) => put(own.map((p) => at(read(p))));
+    const piece = (read) => put(own.map((p) => at(read(p))));
+    piece((p) => [points[2 * p], points[2 * p + 1]]);
+    return own.some(moves) ? [piece] : [];
   });
   const parts = (read) => pieces.forEach((piece) => piece(read));
-  parts((p) => [points[2 * p], points[2 * p + 1]]);
   return { svg, parts, at };
 }
 
-const joined = (spots) => spots.map(([x, y]) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ");
+const known = (spot) => spot.every(Number.isFinite); // extreme values lead to places that are none
+
+const joined = (spots) => spots.filter(known).map(([x, y]) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ");
 
 // Each gives its nodes, and a function that puts them at the spots of its points.
 const DRAW = {
@@ -78,7 +79,7 @@ const DRAW = {
       node.append(...symbols(words));
       return node;
     });
-    return [nodes, ([[x, y]]) => nodes.forEach((node, i) => set(node, { x, y: y + 4 + 14 * i }))];
+    return [nodes, ([[x, y]]) => known([x, y]) && nodes.forEach((node, i) => node.setAttribute("transform", `translate(${x} ${y + 4 + 14 * i})`))];
   },
 };
 
@@ -115,7 +116,13 @@ function symbols(words) {
 
 const tint = (fill) => (fill === "#ffffff" ? "hollow" : fill === "#e6c9a8" ? "lining" : "filled");
 
-export const set = (node, about) => Object.entries(about).forEach(([name, value]) => node.setAttribute(name, value));
+/** Attributes of a node; a number that is none leaves its attribute out. */
+export function set(node, about) {
+  for (const [name, value] of Object.entries(about)) {
+    if (typeof value === "number" && !Number.isFinite(value)) node.removeAttribute(name);
+    else node.setAttribute(name, value);
+  }
+}
 
 export function element(tag, about) {
   const made = document.createElementNS(SVG, tag);

@@ -5,9 +5,7 @@ import { element } from "./drawing.js";
 import { onPaper } from "./theme.js";
 
 const FINER = 3; // pixels of a PNG for one of the page: 300 dots per inch at the size of the page
-
 const KEPT = ["paint-order", "fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-opacity", "opacity", "font-family", "font-size", "font-weight"];
-
 const KEYS = 24; // px below a figure for the meaning of its colours
 
 /** The SVG of a chart as text with its look as attributes; `ground` are the elements beneath it, as text. */

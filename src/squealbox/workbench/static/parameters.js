@@ -126,7 +126,7 @@ export class Parameters {
     const { design } = this.app.store;
     const values = {};
     for (const [each, value] of Object.entries(design.values)) if (!each.startsWith(`${path}.`)) values[each] = value;
-    this.app.replaceLaw(path, name, { ...design, laws: { ...design.laws, [path]: name }, values });
+    this.app.store.replace({ ...design, laws: { ...design.laws, [path]: name }, values });
   }
 }
 

@@ -5,12 +5,13 @@
 // ones, so what is drawn always belongs to the design that is shown.
 
 const LINK = "#d=";
+const REST = 300; // ms without a change after which the address follows
 const LONGEST_WAIT = 150; // ms a gathered change may wait
 
 export class Store extends EventTarget {
   constructor() {
     super();
-    this.design = { base: null, brake: "drum_brake", laws: {}, values: {} };
+    this.design = Store.plain("drum_brake");
     this.texts = new Map(); // of the opened files, by base: undo and links find the text of their own design
     this.sheet = null;
     this.settings = {}; // options of the panels, by panel
@@ -20,6 +21,8 @@ export class Store extends EventTarget {
     this.before = null; // the design before the gesture that is going on
     this.busy = () => false; // is the leading view still answering?
   }
+
+  static plain = (brake) => ({ base: null, brake, laws: {}, values: {} });
 
   /** The text of the file the present design came from, null where it came from none. */
   get text() {
@@ -64,7 +67,8 @@ export class Store extends EventTarget {
       this.future = [];
     }
     this.before = null;
-    this.#keepLink();
+    clearTimeout(this.keeping); // the address costs as much as a figure: it follows when the hand rests
+    this.keeping = setTimeout(() => this.#keepLink(), REST);
     this.dispatchEvent(new Event("history"));
   }
 

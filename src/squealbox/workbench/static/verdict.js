@@ -5,7 +5,6 @@ import { shown, withUnit } from "./numbers.js";
 import { View } from "./view.js";
 
 const MECHANISMS = { flutter: "mode coupling (flutter)", negative_slope: "falling friction (negative slope)", divergence: "divergence", mixed: "mode coupling and falling friction together", unknown: "not known" };
-
 const AUDIBLE = [20, 20e3]; // Hz
 const UNDAMPED = 1e-9; // damping ratio below which what is left is round-off
 

@@ -26,25 +26,29 @@ export class View {
     if (!question) return;
     const key = JSON.stringify(question);
     if (key === this.drawn) {
-      this.#tell(...this.outcome); // back at what is drawn, or at what was found wrong with it
+      this.status(...this.outcome); // back at what is drawn, or at what was found wrong with it
       return;
     }
-    this.#tell("waiting");
+    this.status("waiting");
     if (this.asked === null) this.#ask(question, key);
-    else if (this.slow && key !== this.asked) this.app.connection.ask({ ask: "stop", view: this.name }).catch(quiet);
+    else if (this.slow && key !== this.asked) this.#end();
   }
 
   /** What is drawn may be that of an older design: say so until it is asked for. */
   stale() {
     if (!this.visible) return;
     const question = this.request();
-    if (question && JSON.stringify(question) !== this.drawn) this.#tell("waiting");
+    if (question && JSON.stringify(question) !== this.drawn) this.status("waiting");
   }
 
   /** Stop a slow computation; the panel stays as it is until something changes. */
   stop() {
     this.stopping = this.asked !== null;
-    if (this.asked !== null) this.app.connection.ask({ ask: "stop", view: this.name }).catch(quiet);
+    if (this.asked !== null) this.#end();
+  }
+
+  #end() {
+    this.app.connection.ask({ ask: "stop", view: this.name }).catch(() => {}); // the server is gone, and its work too
   }
 
   forget() {
@@ -84,22 +88,14 @@ export class View {
       this.drawn = key;
       this.draw(frame);
       this.outcome = ["drawn", null];
-      this.#tell("drawn");
+      this.status("drawn");
       this.app.painted(this.name, key);
     } else if (wanted && frame.kind !== "superseded" && (stopped || frame.kind !== "stopped")) {
       this.drawn = key;
       this.outcome = [frame.kind, frame];
-      this.#tell(frame.kind, frame);
+      this.status(frame.kind, frame);
     }
     this.app.answered(this.name);
     if (this.drawn !== key) this.update(this.unseen); // a newer question, or this one again where it was stopped for another
   }
-
-  #tell(kind, frame = null) {
-    this.status(kind, frame);
-  }
-}
-
-function quiet(error) {
-  if (!(error instanceof Disconnected)) throw error;
 }

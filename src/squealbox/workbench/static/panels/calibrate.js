@@ -15,7 +15,7 @@ export default {
     panel.controls.append(choose("within", WIDE, String(panel.chosen.share ?? 0.3), (share) => panel.choose({ share: Number(share) })));
     panel.asked = new Asked(panel, "Press Fit, once a recording with a squeal event is there.", () => [panel.app.store.design, panel.chosen]);
     panel.keys = { fit: button("Fit", () => panel.asked.ask()), take: button("Take these values over", () => over(panel), { disabled: true }) };
-    panel.list = make("div", { class: "scroller", tabindex: 0, "aria-label": "Fitted values" });
+    panel.list = make("div", { class: "scroller", role: "region", tabindex: 0, "aria-label": "Fitted values" });
     panel.body.append(make("div", { class: "buttons" }, ...Object.values(panel.keys)), panel.list);
     list(panel, [["friction.static", "…", "…", "…"], ["k3", "…", "…", "…"]]);
   },

@@ -15,7 +15,7 @@ export default {
     };
     panel.body.append(make("div", { class: "buttons" }, ...Object.values(panel.keys)));
     const place = make("div", { class: "charts two" });
-    panel.table = make("div", { class: "scroller", tabindex: 0, "aria-label": "The two designs in numbers" });
+    panel.table = make("div", { class: "scroller", role: "region", tabindex: 0, "aria-label": "The two designs in numbers" });
     panel.body.append(place, panel.table);
     panel.charts = [
       new Chart(place, { name: "frequency", title: "Frequencies", height: 200 }),
@@ -39,7 +39,6 @@ export default {
 };
 
 const WHY = { unknown_base: "it came from a file that is not open any more" };
-
 const key = (panel, design) => JSON.stringify([design, panel.request().options.parameter, panel.b.data.span]);
 
 function keep(panel) {

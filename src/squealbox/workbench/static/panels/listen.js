@@ -16,13 +16,12 @@ export default {
   setup(panel) {
     panel.heard = { now: null, kept: null };
     panel.asked = new Asked(panel, "Press Play.");
-    const press = (text, what, about) => button(text, what, about);
     panel.keys = {
-      now: press("Play", () => play(panel, "now"), { title: "Compute and play the motion of this design" }),
-      keep: press("Keep as before", () => keep(panel), { disabled: true, title: "Keep this sound, then change the design and play again" }),
-      kept: press("Play before", () => play(panel, "kept"), { disabled: true }),
-      still: press("Stop", silence),
-      wav: press("WAV", () => save(panel), { disabled: true, title: "Save the sound as WAV files" }),
+      now: button("Play", () => play(panel, "now"), { title: "Compute and play the motion of this design" }),
+      keep: button("Keep as before", () => keep(panel), { disabled: true, title: "Keep this sound, then change the design and play again" }),
+      kept: button("Play before", () => play(panel, "kept"), { disabled: true }),
+      still: button("Stop", silence),
+      wav: button("WAV", () => save(panel), { disabled: true, title: "Save the sound as WAV files" }),
     };
     panel.ratio = make("input", { type: "checkbox", checked: true });
     panel.degrees = make("span");
@@ -70,8 +69,6 @@ function keep(panel) {
 /** The level while it lasts, or that it does not: the estimate looks at the end of the sound. */
 const loudness = (data) => (data.level === null || data.level < 0 ? "and dies away: in the end nothing is left to hear" : `about ${shown(data.level, 3)} dB, ${shown(data.weighted, 3)} dB(A) at 1 m`);
 
-const size = (heard) => heard.largest; // in m
-
 const loudest = (panel, heard) => fullScale(heard, Object.values(panel.heard).filter(Boolean), panel.ratio.checked);
 
 function sounding(panel, heard) {
@@ -89,7 +86,7 @@ function save(panel) {
 
 function figure(panel) {
   const { now, kept } = panel.heard;
-  const first = [now, kept].filter(Boolean).reduce((a, b) => (a && size(a) >= size(b) ? a : b), null);
+  const first = [now, kept].filter(Boolean).reduce((a, b) => (a && a.largest >= b.largest ? a : b), null);
   if (!first) return;
   const many = Math.ceil((PERIODS / first.pitch) * first.rate);
   const end = first.wave.length - Math.round(FADED * first.rate);

@@ -23,7 +23,7 @@ export default {
 
   options(panel) {
     const [x, y] = axes(panel);
-    if (!x || !y || x === y) return null;
+    if (!x || !y) return null;
     return { x, y, xspan: panel.span(x), yspan: panel.span(y), show: panel.chosen.show ?? "growth" };
   },
 

@@ -26,7 +26,9 @@ export default {
     panel.app.store.addEventListener("changed", () => scene(panel));
     const step = (now) => {
       requestAnimationFrame(step);
-      if (!panel.element.hidden && panel.view.visible && panel.parts && !panel.held) frame(panel, now);
+      const asked = panel.app.verdict.view.busy || panel.app.store.busy(); // a slider moves: every second picture leaves time for it
+      const shown = !panel.element.hidden && panel.view.visible && panel.parts && !panel.held;
+      if (shown && !(panel.skipped = asked && !panel.skipped)) frame(panel, now);
     };
     requestAnimationFrame(step);
   },
@@ -38,7 +40,8 @@ export default {
     const { data } = answer;
     const names = data.modes.map(([hertz, growth], i) => [String(i), `${withUnit(hertz, "Hz")}, ${shown(growth, 3)} 1/s`]);
     panel.pick.replaceChildren(...(names.length > 1 ? [choose("mode", names, String(data.mode), (mode) => panel.choose({ mode: Number(mode) }))] : []));
-    const { parts, svg, at } = drawn(data, answer.arrays.points, "The brake, moving");
+    const { moves, points } = answer.arrays;
+    const { parts, svg, at } = drawn(data, points, "The brake, moving", (p) => data.names.some((_, i) => moves[2 * (i * moves.shape[1] + p)] || moves[2 * (i * moves.shape[1] + p) + 1]));
     panel.stage.replaceChildren(svg);
     Object.assign(panel, { parts, at });
     panel.size = data.box[3] - data.box[2];
@@ -77,6 +80,7 @@ function scene(panel) {
     panel.remark = `The last ${shown(motion.arrays.lastTime.at(-1), 3)} ${motion.clock}, over and over; movement enlarged. Arrows: normal forces.`;
   } else {
     if (!arrays.re) {
+      panel.scene = null; // the design before may have moved
       panel.remark = `${data.message}.`;
       return;
     }
@@ -145,8 +149,9 @@ function frame(panel, now) {
     const [here, tail] = [panel.at([x, y]), panel.at([x - contact[2] * long, y - contact[3] * long])];
     arrow(shaft, head, tail, here);
     const state = forces ? STATES[panel.scene.motion.lastState[k * contacts + c]] : "slip";
-    set(dot, { cx: here[0], cy: here[1], class: `contact ${state}`, "data-state": state });
+    set(dot, { cx: here[0], cy: here[1] });
+    if (dot.dataset.state !== state) set(dot, { class: `contact ${state}`, "data-state": state });
   });
-  panel.element.dataset.pictures = (panel.pictures = (panel.pictures ?? 0) + 1);
+  panel.pictures = (panel.pictures ?? 0) + 1;
   if (forces) panel.app.dispatchEvent(new CustomEvent("cursor", { detail: k }));
 }

@@ -16,7 +16,7 @@ export default {
     panel.controls.append(panel.file, choose("unit", [["FS", "not calibrated"], ["Pa", "Pa"], ["g", "g"], ["m/s^2", "m/s²"]], panel.chosen.unit ?? "FS", (unit) => panel.choose({ unit })), make("label", {}, "1 is worth ", panel.scale));
     panel.keys = [button("Hear the recording", () => hear(panel), { disabled: true }), button("Hear the model", () => model(panel), { disabled: true })];
     const place = make("div", { class: "charts two" });
-    panel.list = make("div", { class: "scroller", tabindex: 0, "aria-label": "Squeal events" });
+    panel.list = make("div", { class: "scroller", role: "region", tabindex: 0, "aria-label": "Squeal events" });
     panel.body.append(make("div", { class: "buttons" }, ...panel.keys), place);
     panel.charts = [new Chart(place, { name: "recording", title: "Spectrogram with the events", height: 230, like: LIKE, awaited: "drop a recording here: WAV, FLAC, CSV, UFF" })];
     panel.list.append(make("p", { class: "quiet" }, "Here stand the squeal events: onset, frequency, level, growth; and the model beside the one you choose."));

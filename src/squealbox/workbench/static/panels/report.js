@@ -12,7 +12,7 @@ export default {
       make("p", {}, "One HTML file for a colleague: verdict, parameters with sources, stability, map, motion with sound, limit cycle, caveats and versions. It opens without a network and prints well."),
       make("div", { class: "buttons" }, button("Make the report", () => panel.asked.ask())),
     );
-    document.getElementById("tools").append(button("Report", () => fromBar(panel), { id: "report", title: "Everything about this design as one HTML file" }));
+    document.getElementById("tools").append(button("Report", () => (panel.app.questions.askFor("report"), panel.asked.ask()), { id: "report", title: "Everything about this design as one HTML file" }));
   },
 
   options: (panel) => (panel.asked.current ? { made: panel.asked.wanted.length } : null),
@@ -24,8 +24,3 @@ export default {
     panel.remark = `Saved as ${name}, ${(data.html.length / 1e6).toFixed(1)} MB.`;
   },
 };
-
-function fromBar(panel) {
-  panel.app.questions.askFor("report");
-  panel.asked.ask();
-}

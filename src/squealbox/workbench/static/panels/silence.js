@@ -22,7 +22,7 @@ export default {
       back: button("Take it back", () => apply(panel, null), { disabled: true }),
       hear: button("Hear before / after (B)", () => hear(panel), { disabled: true, "aria-keyshortcuts": KEY }),
     };
-    panel.list = make("div", { class: "scroller", tabindex: 0, "aria-label": "Cures, the best first" });
+    panel.list = make("div", { class: "scroller", role: "region", tabindex: 0, "aria-label": "Cures, the best first" });
     panel.body.append(make("div", { class: "buttons" }, ...Object.values(panel.keys)), panel.list);
     list(panel, ["absorber on y", "dampers on x and y", "theta2", "shim at shoe 1"].map((name) => ({ name })));
     panel.app.store.addEventListener("changed", () => mark(panel));

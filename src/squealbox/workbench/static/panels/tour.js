@@ -2,6 +2,7 @@
 
 import { Asked, button } from "../asked.js";
 import { make } from "../elements.js";
+import { Store } from "../store.js";
 
 const SIGNS = { agree: "✓ agree", disagree: "✗ disagree", "not decidable": "? not decidable" };
 const READING = { reading: "reconstructed", "friction.slope": -0.0653, sliding_speed: 1.48 }; // with what it was found with
@@ -12,7 +13,7 @@ export default {
     panel.files.hidden = true;
     panel.step = null;
     panel.asked = new Asked(panel, "Start the tour, or judge the design that is shown.", () => reading(panel));
-    panel.list = make("div", { class: "scroller", tabindex: 0, "aria-label": "Claims of the paper" });
+    panel.list = make("div", { class: "scroller", role: "region", tabindex: 0, "aria-label": "Claims of the paper" });
     panel.body.append(
       make("p", {}, "Ten steps through the paper: each sets the design, says where to look, and gives the verdicts on what the paper claims."),
       make("div", { class: "buttons" }, button("Start the tour", () => start(panel)), button("Judge this reading", () => panel.asked.ask(), { title: "The claims with the reading and the friction slope of the design on the page" })),
@@ -50,7 +51,7 @@ function mark(claim) {
 
 async function start(panel) {
   panel.step = 0;
-  panel.app.store.replace({ base: null, brake: "drum_brake", laws: {}, values: READING }, null);
+  panel.app.store.replace({ ...Store.plain("drum_brake"), values: READING });
   panel.card.hidden = false;
   panel.card.replaceChildren(make("p", {}, "Computing what the paper claims …"));
   panel.asked.ask();
@@ -60,7 +61,7 @@ function go(panel, step) {
   panel.step = step;
   const { table, steps } = panel.data;
   const { values, map } = steps[step];
-  panel.app.store.replace({ base: null, brake: "drum_brake", laws: {}, values: { ...READING, ...table, ...values } }, null);
+  panel.app.store.replace({ ...Store.plain("drum_brake"), values: { ...READING, ...table, ...values } });
   if (map) panel.app.store.option("map", map);
   else if (panel.app.store.settings.map?.x === "theta1") panel.app.store.option("map", { x: "friction.static", y: "load" });
   if (!panel.asked.current) panel.asked.ask();
@@ -81,7 +82,7 @@ function show(panel) {
     make("div", { class: "buttons" },
       button("Back", () => go(panel, panel.step - 1), { disabled: panel.step === 0 }),
       button("Next", () => go(panel, panel.step + 1), { disabled: panel.step === steps.length - 1 }),
-      button("End the tour", () => end(panel)),
+      button("End the tour", () => ((panel.step = null), (panel.card.hidden = true))),
     ),
   ].filter(Boolean));
   panel.card.dataset.step = panel.step;
@@ -93,9 +94,4 @@ function look(panel, name) {
   element.scrollIntoView({ block: "start", behavior: "smooth" });
   element.classList.add("looked");
   setTimeout(() => element.classList.remove("looked"), 2000);
-}
-
-function end(panel) {
-  panel.step = null;
-  panel.card.hidden = true;
 }
