@@ -35,8 +35,6 @@ __all__ = [
 DRAWN_BY = "squealbox.plots"  # by name, when asked: a sheet may know that it can be drawn, but not by whom
 MOST_LINES = 30  # of a summary
 MOST_ENTRIES = 16  # of an array that is printed in full
-
-
 _SHEETS: dict[str, type["DataSheet"]] = {}
 
 

@@ -53,8 +53,7 @@ class Outcome(str):
 
     def __new__(cls, name: str = COMPLETED, message: str = "", **evidence: Any) -> Self:
         self = super().__new__(cls, name)
-        self.message = message
-        self.evidence = evidence
+        self.message, self.evidence = message, evidence
         return self
 
     @property
@@ -153,21 +152,18 @@ class Result:
 
     def summary(self) -> str:
         """At most a screenful: how it ended, each number with its unit, each array by its shape and range."""
-        name, ended = type(self).__name__, self.outcome
+        name, ended, fields = type(self).__name__, self.outcome, _quantities(type(self))
         said = f"{name} ended as {ended}: {ended.message}" if ended.message and not ended.ok else f"{name}: {ended}"
-        fields = _quantities(type(self))
         lines = [f"  {field.name:<20s} {_told(field, getattr(self, field.name))}" for field in fields[:MOST_LINES]]
         if len(fields) > MOST_LINES:
             lines.append(f"  and {len(fields) - MOST_LINES} more arrays, listed by .to_dataset()")
-        if caution := self.warning:
-            lines.append(textwrap.fill(f"Caution: {caution}", 118, initial_indent="  ", subsequent_indent="    "))
-        return "\n".join([said, *lines])
+        caution = textwrap.fill(f"Caution: {self.warning}", 118, initial_indent="  ", subsequent_indent="    ")
+        return "\n".join([said, *lines, *[caution] * bool(self.warning)])
 
     @property
     def warning(self) -> str:
         """What to know of the whole before it is used; "" also where the cautions are of its entries, as of cures."""
-        caution = getattr(self, "caution", "")
-        return caution if isinstance(caution, str) else ""
+        return caution if isinstance(caution := getattr(self, "caution", ""), str) else ""
 
     @classmethod
     def kind_name(cls) -> str:

@@ -143,8 +143,7 @@ class System(DataSheet):
         """Name of each contact, "contact 1" and so on where it has none."""
         return numbered([contact.name for contact in self.contacts])
 
-    def __str__(self) -> str:
-        return self.summary()
+    __str__ = DataSheet.summary
 
     @property
     def size(self) -> int:
@@ -249,10 +248,8 @@ def equilibrium(system: Any, time: float = 0.0, start: sparse_sliding.Start | No
     force, speed, mu = _sliding(system, time)
     q = np.zeros((*shape, size))
     base = np.broadcast_to(system.K, (*shape, size, size))
-    singular = np.zeros(shape, dtype=bool)
+    singular, pushed, converged = (np.zeros(shape, dtype=bool) for _ in range(3))
     floating = np.zeros(shape, dtype=int)
-    pushed = np.zeros(shape, dtype=bool)
-    converged = np.zeros(shape, dtype=bool)
     scale = np.max(np.abs(base), axis=(-1, -2))
     forces = np.max(np.abs(value_at(system.load, time)), axis=-1) + np.max(np.abs(force), axis=-1, initial=0.0)
     linear = not any(contact.unilateral for contact in system.contacts)
