@@ -105,13 +105,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal that knows no squared sign shows a question mark
     if not words or words[0] in ("--help", "-h", "help"):
-        print(overview())
-        return DONE
+        return _shown(overview())
     if words[0] in ("--version", "-V"):
         from squealbox import __version__
 
-        print(f"squealbox {__version__}")
-        return DONE
+        return _shown(f"squealbox {__version__}")
     name = words[0]
     if name not in COMMANDS:
         print(f"squealbox: {_unknown(name)}", file=sys.stderr)
@@ -121,6 +119,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from squealbox.cli.running import run
 
     return run(name, COMMANDS[name], words[1:])
+
+
+def _shown(text: str) -> int:
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:
+        enough()
+    return DONE
+
+
+def enough() -> None:
+    """The reader, such as `head`, has seen enough: what is left goes nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def overview() -> str:

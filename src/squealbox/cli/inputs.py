@@ -123,7 +123,16 @@ def time_of(option: str, text: str) -> float:
 
 def folder(path: Path, *stems: str) -> Path:
     """The folder, made when it is not there; files of these names in it are only overwritten with --force."""
-    path.mkdir(parents=True, exist_ok=True)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except FileExistsError as error:
+        raise UsageError(
+            f"--out {path}: a file of that name is there, expected a folder or a name for a new one"
+        ) from error
+    except OSError as error:
+        raise UsageError(
+            f"--out {path}: no folder can be made there ({error.strerror}), expected one to write in"
+        ) from error
     free(*(each for stem in stems for part in (".*", "_*") for each in sorted(path.glob(f"{stem}{part}"))))
     return path
 

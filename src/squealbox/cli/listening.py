@@ -46,6 +46,8 @@ def listen(
         run the Python file of a friction law that the design file names
     """
     found = read(file, changes, allow_code)
+    if out.suffix.lower() != ".wav":
+        raise UsageError(f"--out {out}: expected a name that ends in .wav")
     free(out)
     seconds = time_of("--duration", duration)
     if not 0.0 < seconds <= 60.0:

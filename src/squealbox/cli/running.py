@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from squealbox.cli import BAD_INPUT, DONE, FAILED, OPTIONS, STOPPED, Command, UsageError
+from squealbox.cli import BAD_INPUT, DONE, FAILED, OPTIONS, STOPPED, Command, UsageError, enough
 from squealbox.result import Outcome
 
 QUANTITY = re.compile(r"-[.\d]+\D")  # "-90deg" is a value, which would be taken for an option
@@ -36,8 +36,8 @@ def run(name: str, command: Command, words: Sequence[str]) -> int:
         code = manner.end(name, code, error)
         sys.stdout.flush()
         return code
-    except BrokenPipeError:  # the reader, such as `head`, has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except BrokenPipeError:
+        enough()
         return DONE
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from squealbox.cli import COMMANDS, OPTIONS, UsageError
+from squealbox.cli.answers import manner
 from squealbox.parameters import known_names
 
 if TYPE_CHECKING:
@@ -65,8 +66,8 @@ def init(directory: Path, *, brake: str = "drum_brake") -> None:
 
     design = _example(brake)
     path = directory if directory.suffix == ".toml" else directory / FILE
-    if path.exists():
-        raise UsageError(f"{path} is there already, and init overwrites nothing")
+    if path.exists() and not manner().force:
+        raise UsageError(f"{path} is there already: --force overwrites it")
     path.parent.mkdir(parents=True, exist_ok=True)
     second = _second_axis(design)
     axes = {"second": "\n".join(second), "second_inline": ", ".join(second)}

@@ -144,7 +144,7 @@ def motion_overview(trajectory: Trajectory, *, dof: int | str | None = None, tit
     names = trajectory.system.names
     if dof is None:
         dof = liveliest(np.ptp(trajectory.q, axis=0), trajectory.system.units)
-    place = list(names).index(dof) if isinstance(dof, str) else dof
+    place = column(trajectory, dof)
     short = np.size(trajectory.t) < LEAST
     judged = None if short else verdict(trajectory, dof=dof)
     name, seconds = read_of(names, place), float(np.ptp(trajectory.t)) if np.size(trajectory.t) else 0.0

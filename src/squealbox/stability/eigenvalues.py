@@ -14,6 +14,7 @@ from squealbox.arguments import public
 from squealbox.cautions import out_of_range, pulling
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.loops.held import aliased
+from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, batched, quantity
 from squealbox.stability.deflation import special_modes, uncertain, vibrating
 from squealbox.stability.mode import Mode, OneEigenvalue, damping_ratio
@@ -154,7 +155,10 @@ class ComplexModes(Result):
         return replace(self, **changes)
 
     def mode(self, index: int, entry: tuple[int, ...] = ()) -> Mode:
-        """Mode `index` of the system at `entry` of the leading axes."""
+        """Mode `index` of the system at `entry` of the leading axes; `ParameterError` where there is none."""
+        count = self.eigenvalues.shape[-1]
+        if not -count <= index < count:
+            raise ParameterError("modes", "mode", index, f"a number from 0 to {count - 1}, the conjugates last")
         return Mode(
             eigenvalue=complex(self.eigenvalues[(*entry, index)]),
             shape=self.right[entry][:, index],
