@@ -1,7 +1,7 @@
 """A brake of one's own, given by its matrices: what a design file with ``brake = "own"`` describes."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -85,10 +85,10 @@ class OwnBrake(Design):
     friction: FrictionLaw = Coulomb(0.3)
     sliding_speed: Any = parameter("m/s", default=1.0, schedule=True, meaning="sliding speed of the contacts at rest")
     normal_force: Any = parameter("N", default=0.0, schedule=True, meaning="normal force of the contacts at q = 0")
-    contacts: tuple[OwnContact, ...] = ()
+    contacts: Sequence[OwnContact] = ()
     names: tuple[str, ...] = ()
     angles: tuple[str, ...] = ()  # names of those freedoms that are rotations; a name that ends in _turn is one anyway
-    parts: tuple[Part, ...] = ()
+    parts: Sequence[Part] = ()
 
     def __post_init__(self) -> None:
         super().__post_init__()

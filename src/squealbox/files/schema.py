@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import typing
+from collections.abc import Sequence
 from typing import Any
 
 from squealbox.fe.assembled import AssembledBrake
@@ -123,7 +124,7 @@ def _field(sheet: type[DataSheet], name: str) -> Schema:
     words = sheet.choices().get(name)
     if words is not None:
         return {"enum": list(words.options), "description": words.meaning}
-    if typing.get_origin(declared) is tuple:
+    if typing.get_origin(declared) in (tuple, Sequence):
         item = typing.get_args(declared)[0]
         return {"type": "array", "items": {"type": "string"} if item is str else _sheet(item)}
     if isinstance(declared, type) and issubclass(declared, FrictionLaw):

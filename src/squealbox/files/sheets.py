@@ -9,7 +9,7 @@ import functools
 import re
 import types
 import typing
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -109,7 +109,7 @@ def read_field(document: Document, sheet: type[DataSheet], name: str, value: Any
         return value if isinstance(value, bool) else wrong(document, key, value, "true or false")
     if declared == tuple[str, ...]:
         return _words(document, value, key)
-    if typing.get_origin(declared) is tuple and issubclass(typing.get_args(declared)[0], DataSheet):
+    if typing.get_origin(declared) in (tuple, Sequence) and issubclass(typing.get_args(declared)[0], DataSheet):
         return _sheets(document, typing.get_args(declared)[0], value, key)
     raise TypeError(f"{sheet.__name__}.{name}: a file cannot hold a {declared}")
 
