@@ -1,6 +1,6 @@
 """Everything a report knows of one design: results, no words, no figures."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 from squealbox.designs import Design
 from squealbox.files.analyses import Axis, Map, Simulate
@@ -48,6 +48,12 @@ class Examination:
     tried: tuple[str, ...] = ()
     hopf: HopfPoint | None = None
     missing: dict[str, str] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        parts = [each.name for each in fields(self) if isinstance(getattr(self, each.name), Result)]
+        lines = [f"Examination of {self.design.title or type(self.design).__name__}", self.modes.summary()]
+        lines += [f"parts: {', '.join(parts)}"] + [f"{name}: {why}" for name, why in self.missing.items()]
+        return "\n".join(lines)
 
     @property
     def stable(self) -> bool:

@@ -43,6 +43,15 @@ class Recording:
     notes: tuple[str, ...] = ()
     source: str = ""
 
+    def __repr__(self) -> str:
+        channels = ", ".join(f"{name} [{unit}]" for name, unit in zip(self.names, self.units, strict=True))
+        words = [
+            f"Recording {self.source}".rstrip(),
+            f"{len(self.samples) / self.rate:.6g} s at {self.rate:g} Hz",
+            channels,
+        ]
+        return "; ".join([*words, *self.braking, *self.notes])
+
     def __post_init__(self) -> None:
         x = np.asarray(self.samples, dtype=float)
         x = x[:, None] if x.ndim == 1 else x

@@ -45,6 +45,10 @@ class Quantity:
     batched: bool = True
     meaning: str = ""
 
+    def __repr__(self) -> str:
+        unit = f" {self.unit}" if self.unit not in ("", "-", "1") else ""
+        return f"Quantity {self.name}: squeals {self.squeals} {self.limit:g}{unit}"
+
     def __post_init__(self) -> None:
         if not callable(self.function):
             raise ParameterError("Quantity", "function", self.function, "a function of a design")
