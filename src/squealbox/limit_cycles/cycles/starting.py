@@ -18,6 +18,7 @@ PERIODS = 300.0  # of the lowest mode, of a run that is to settle
 GUESS_RTOL = 1e-9
 UNBOUNDED = 1e100  # [m, m/s]; squares of what is below it are still numbers
 LONG_STEPS = 2_000_000  # of the run that is to settle
+KEPT = 10_000_000  # rows times freedoms and contacts of one in which a return is looked for, some 0.4 GB
 LINGERS = 5.0  # periods of the slowest mode, after which rows of a delay hold what is under way
 STIFF = "one period of the slowest mode takes too many steps: damping, or what is held, is far faster than it"
 DYING = 0.05  # share of the sliding speed; a swing below it that falls goes on falling where sliding is stable
@@ -46,7 +47,7 @@ def first_guess(field: Autonomous, start: Any, settle: float | None) -> tuple[An
         if run.outcome == "step_limit":
             return x, slowest, Outcome("no_cycle", f"{STIFF}: {run.outcome.message}", **run.outcome.evidence)
     if duration > 0.0:
-        run = fly(field, x, duration, GUESS_RTOL, most=LONG_STEPS)
+        run = fly(field, x, duration, GUESS_RTOL, np.array([duration]), most=LONG_STEPS)
         if not run.outcome.ok:
             return x, slowest, Outcome("no_cycle", f"the first run ended early: {run.outcome.message}")
         x = np.concatenate([run.q[-1], run.qd[-1]])
@@ -80,7 +81,7 @@ def first_return(field: Autonomous, x: Any, period: float) -> tuple[Any, float, 
     run = fly(field, x, 12.0 * period, GUESS_RTOL, most=12 * PERIOD_STEPS)
     if run.outcome.ok and _inside_a_stick(run):  # the belt is slow: look for as long as contacts may stick
         window = 12.0 * (period + _longest_stick(field))
-        run = fly(field, x, window, GUESS_RTOL, most=LONG_STEPS)
+        run = fly(field, x, window, GUESS_RTOL, most=min(LONG_STEPS, KEPT // (field.size + len(field.V))))
     if not run.outcome.ok:
         return x, period, Outcome("no_cycle", f"the search for a return ended early: {run.outcome.message}")
     states = np.hstack([run.q, run.qd])
