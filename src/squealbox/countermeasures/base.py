@@ -16,6 +16,16 @@ from squealbox.parameters import Parameter, ParameterError, known_names
 from squealbox.system import Contact, System
 
 
+class Titled:
+    """What a countermeasure is called: the kind by its own words, one on a brake by the brake's first."""
+
+    def __init__(self, words: str) -> None:
+        self.words = words
+
+    def __get__(self, made: Any, kind: Any = None) -> str:
+        return self.words if made is None else f"{made.brake.title}, {self.words[:1].lower()}{self.words[1:]}"
+
+
 class Countermeasure(Design):
     """A design that holds a design: `brake` with one thing done to it.
 
@@ -23,6 +33,11 @@ class Countermeasure(Design):
     """
 
     brake: Design
+
+    def __init_subclass__(cls, **keywords: Any) -> None:
+        super().__init_subclass__(**keywords)
+        if isinstance(words := cls.__dict__.get("title"), str):
+            cls.title = Titled(words)  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -52,8 +52,14 @@ class OwnLaw(FrictionLaw):
         super().__post_init__()
 
     def _check_start(self) -> None:
-        if self.source in _ALLOWED:  # else `allow` looks
+        if self.source not in _ALLOWED:  # `allow` looks
+            return
+        try:
             super()._check_start()
+        except ParameterError:
+            raise
+        except Exception as error:
+            raise _refused(f"its code raises {type(error).__name__}: {error}", "mu(v, p) and slope(v, p)") from error
 
     def coefficients(self) -> tuple[Any, ...]:
         """The static limit, then the law's numbers."""

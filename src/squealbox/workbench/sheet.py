@@ -47,7 +47,7 @@ def _layers(design: Design) -> list[str]:
     """Titles of the countermeasures, from outside in."""
     found = []
     while isinstance(design, Countermeasure):
-        found.append(design.title.lower())
+        found.append(type(design).title.lower())
         design = design.brake
     return found
 
