@@ -5,6 +5,7 @@ with SQUEALBOX_PROGRESS=no. Depends on: nothing.
 """
 
 import contextlib
+import importlib
 import os
 import sys
 import threading
@@ -140,8 +141,7 @@ class _InNotebook:
     """A line below the cell, taken away in the end; without widgets, which not every notebook has."""
 
     def __init__(self) -> None:
-        from IPython.display import display
-
+        display = importlib.import_module("IPython.display").display  # which runs this
         self.line = display({"text/plain": ""}, raw=True, display_id=True)
 
     def update(self, text: str, share: float | None, seconds: float) -> None:

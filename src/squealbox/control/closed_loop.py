@@ -13,6 +13,8 @@ from squealbox.extras import extra
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 
+MOST_HELD = 200.0  # samples in a delay up to which a sampling rate is looked for
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ClosedLoop(Result):
@@ -97,9 +99,9 @@ class ClosedLoop(Result):
 
         fastest, slack = float(np.max(np.abs(ideal))), -float(np.max(ideal.real))
         low, high = 1e-4 / fastest, 1e-3 / fastest
-        while growth(low) >= 0.0:
+        while growth(high) >= 0.0:
             low, high = 0.1 * low, low
-            if 1e-14 / low > slack:  # ln|z| is known to some 1e-15
+            if 1e-14 / high > slack or np.max(found.delay) > MOST_HELD * high:  # ln|z| is known to some 1e-15
                 return float("inf")
         while growth(high) < 0.0:
             low, high = high, (1.05 if high * fastest > 0.1 else 1.2) * high
