@@ -359,12 +359,15 @@ def test_an_error_inside_the_program_is_one_sentence(said, brake, monkeypatch):
         main(["modes", str(brake)])
 
 
-@pytest.mark.parametrize("place", ["/proc/nowhere", "brake.toml"])
-def test_a_folder_that_cannot_be_made_is_said(place, said, brake, tmp_path):
+@pytest.mark.parametrize(
+    ("place", "words"),
+    [("/proc/nowhere", "no folder can be made there"), ("brake.toml", "a file of that name is there")],
+)
+def test_a_folder_that_cannot_be_made_is_said(place, words, said, brake, tmp_path):
     place = str(brake) if place == "brake.toml" else place
     code, out, err = said("onset", brake, "--out", place)
     assert (code, out) == (2, "")
-    assert err.startswith(f"squealbox onset: {place}: ")
+    assert err.startswith(f"squealbox onset: --out {place}: {words}")
     assert err.count("\n") == 1
 
 
