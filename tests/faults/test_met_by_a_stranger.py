@@ -16,7 +16,6 @@ from squealbox import (
     critical_value,
     hopf_point,
     plot,
-    remedies,
     stability_boundary,
     tracked_modes,
 )
@@ -120,11 +119,10 @@ def test_no_sampling_is_quick_enough_for_a_brake_on_its_boundary():
     assert closed_loop(near).sampling_margin(1.0) == pytest.approx(np.sqrt(held / 1e-4), rel=0.01)
 
 
-def test_an_absorber_that_is_nowhere_best_stops_no_ranking():
+def test_an_absorber_whose_modes_never_meet_is_found_all_the_same():
     brake = OwnBrake(
         M=np.eye(3), K=1e6 * np.eye(3), C=np.eye(3),
         contacts=(OwnContact(name="pad", n=[0.0, 1e5, 0.0], d=[1.0, 0.0, 0.0]),),
         friction=Coulomb(0.9), normal_force=5.0,
     )  # fmt: skip
     assert best_absorber(brake, brake.system().names[0], 0.05).outcome.ok
-    assert len(remedies.silence(brake, samples=8, push=0.0)) > 10
