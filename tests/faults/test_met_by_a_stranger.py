@@ -57,8 +57,8 @@ def test_a_branch_says_which_way_it_did_not_walk_and_stays_within_its_bounds():
     block = MassOnBelt(friction=Coulomb(0.4, 0.25))
     walk = {"start": shooting(block), "value": 0.2, "method": "shooting", "points": 3}
     ways = [branch(block, "sliding_speed", (0.1, 0.3), direction=way, **walk) for way in (1.0, -1.0)]
-    assert "at smaller values is another walk" in ways[0].summary()
-    assert "at larger values is another walk" in ways[1].summary()
+    assert "another walk: direction=-1" in ways[0].summary()
+    assert "another walk: direction=1" in ways[1].summary()
     assert "another walk" not in joined(*ways[::-1]).summary()
     with pytest.raises(ParameterError, match=r"branch\.value = 0\.9: expected a value within the bounds, 0\.1 to 0\.3"):
         branch(block, "sliding_speed", (0.1, 0.3), value=0.9)

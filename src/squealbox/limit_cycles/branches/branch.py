@@ -89,8 +89,7 @@ class Branch(Result):
             lines += [f"it goes straight up: cycles of every amplitude at {self.parameter} = {low:.8g}"]
         one_way = self.settings.get("one_way")
         if one_way:
-            further = "larger" if one_way < 0.0 else "smaller"
-            lines += [f"what lies at {further} values is another walk, from the same start: direction={-one_way:g}"]
+            lines += [f"the other way from its start is another walk: direction={-one_way:g}"]
         lines += [f"{kind} at {value:.8g}" for kind, value in zip(self.special_kind, self.special_value, strict=True)]
         lines += [f"Caution: {self.caution}"] if self.caution else []
         return "\n".join(lines)
