@@ -13,7 +13,7 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 
 from squealbox.parameters import DataSheet, Missing, Parameter, ParameterError, known_names
-from squealbox.waiting import Progress, watched
+from squealbox.waiting import Progress
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -176,11 +176,9 @@ def public(**kinds: Kind | None) -> Callable[[Callable[P, R]], Callable[P, R]]:
                     about = looked[lacking]
                     raise Missing(owner, lacking, about(None) if about else "")
             try:
-                if not watched():
-                    return function(*args, **keywords)
-                with Progress(owner) as shown:
-                    if place is not None and place >= len(args) and keywords.get("progress") is None:
-                        keywords["progress"] = shown.heard
+                with Progress(owner) as told:
+                    if told.began and place is not None and place >= len(args) and keywords.get("progress") is None:
+                        keywords["progress"] = told.heard
                     return function(*args, **keywords)
             except ParameterError as error:
                 if error.named or error.name not in given:

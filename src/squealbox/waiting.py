@@ -4,7 +4,6 @@ Only the outermost of several things is told, and nothing where nobody looks: in
 with SQUEALBOX_PROGRESS=no. Depends on: nothing.
 """
 
-import contextlib
 import importlib
 import os
 import sys
@@ -50,7 +49,8 @@ class Progress:
     """Used with ``with``; call it with a text and, where known, the share that is done (0 to 1)."""
 
     def __init__(self, text: str) -> None:
-        self.text, self.aside, self.began = text, "", 0.0
+        self.text, self.aside = text, ""
+        self.began = 0.0  # of the monotonic clock; 0 for one that is not told
         self.share: float | None = None
         self.shown: Any = None
 
@@ -63,8 +63,8 @@ class Progress:
         if isinstance(told[0], str):
             self(told[0])
         else:
-            done, total = (told[0].done, told[0].total) if hasattr(told[0], "total") else told[:2]
-            self(self.text, float(done) / float(total) if total else None)
+            share = told[0].share if hasattr(told[0], "share") else float(told[0]) / float(told[1] or 1.0)
+            self(self.text, share)
 
     def __enter__(self) -> Self:
         if watched():
@@ -152,5 +152,5 @@ class _InNotebook:
         self._put("")
 
     def _put(self, text: str) -> None:
-        with contextlib.suppress(AttributeError):  # no handle where a kernel has no place to show it
+        if self.line is not None:  # as where a kernel has no place to show it
             self.line.update({"text/plain": text}, raw=True)

@@ -20,7 +20,7 @@ from squealbox.studies.store import LOG, RESULT
 from squealbox.waiting import Progress
 
 if TYPE_CHECKING:
-    from squealbox.studies import Pace, Sweep
+    from squealbox.studies import Sweep
 
 LINES = 5  # of the log that `status` shows
 ROWS = 20  # of the table that `show` prints
@@ -84,7 +84,7 @@ def run(
             workers=workers,
             scheduler=scheduler,
             time_limit=limit if workers or scheduler else None,
-            progress=lambda pace: progress(str(pace), _share(pace)),
+            progress=lambda pace: progress(str(pace), pace.share),
         )
     if table.outcome == "interrupted":
         raise ComputationFailed(table.outcome)
@@ -184,10 +184,6 @@ def _rows(found: "Sweep") -> str:
 
 def _cell(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
-
-
-def _share(pace: "Pace") -> float:
-    return pace.done / max(pace.total, 1)
 
 
 def _seconds(text: str) -> float:

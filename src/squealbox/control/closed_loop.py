@@ -85,8 +85,8 @@ class ClosedLoop(Result):
     def sampling_margin(self, computing: float = 0.0) -> float:
         """The lowest sampling rate [Hz] of all loops, held, from which on the brake is stable at every higher one.
 
-        `computing` is the time to compute, in samples. NaN for a brake whose ideal loops do not hold it stable, inf for
-        one so near to its boundary that round-off hides the rate that would do.
+        `computing` is the time to compute, in samples. NaN for a brake whose ideal loops do not hold it stable, inf
+        where no rate does that is looked at: quicker ones are hidden by round-off, or put too many samples in a delay.
         """
         found = self.plant
         ideal = np.linalg.eigvals(found.closed)

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -116,15 +116,15 @@ def _file(document: Document) -> DesignFile:
     sections = {name: section_of(document, name, table, design) for name, table in asked.items()}
     if design is None or document.problems:
         raise document.error()
-    found = DesignFile(document.path, design, study=study is not None, **sections)
+    forgot = tables.get("brake") in ("own", "mechanism") and "contacts" not in tables
+    caution = NOTHING_RUBS.format(tables["brake"]) if forgot else ""
+    found = DesignFile(document.path, design, study=study is not None, caution=caution, **sections)
     if study is not None:
         from squealbox.files.study import study_of  # which reads the brake of a study by this module
 
         if study_of(document, study, found) is None:
             raise document.error()
-    forgot = tables.get("brake") in ("own", "mechanism") and "contacts" not in tables
-    caution = NOTHING_RUBS.format(tables["brake"]) if forgot else ""
-    return replace(found, caution=caution)
+    return found
 
 
 def design_of(document: Document, tables: Mapping[str, Any], beside: tuple[str, ...] = ()) -> Design | None:

@@ -123,8 +123,7 @@ def model_beside_measurement(found: Comparison, *, title: str = "", axes: Any = 
     known = np.isfinite(found.simulated) & np.isfinite(found.measured)
     known = known if np.any(known) else ~known
     simulated, measured, error = (x[known] for x in (found.simulated, found.measured, found.error))
-    names, units = ([x for x, both in zip(all_, known, strict=True) if both]
-                    for all_ in (found.names, found.settings["units"]))  # fmt: skip
+    names, units = (np.array(each)[known] for each in (found.names, found.settings["units"]))
     share = 100.0 * error / np.where(measured == 0.0, 1.0, np.abs(measured))
     off = 100.0 * (simulated / np.where(measured == 0.0, np.nan, measured) - 1.0)
     off[[unit.startswith("dB") for unit in units]] = np.nan

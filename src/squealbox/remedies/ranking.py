@@ -302,7 +302,9 @@ def _said(cured: Design, brake: Design) -> list[str]:
         if not found.stable:
             return []
         rate = found.sampling_margin(1.0)
-        sampling = f"the sampling above {rate:.4g} Hz" if np.isfinite(rate) else "no sampling is quick enough"
+        sampling = (
+            f"the sampling above {rate:.4g} Hz" if np.isfinite(rate) else "no sampling that was tried is quick enough"
+        )
         return [f"the delay must stay below {1e6 * found.delay_margin:.3g} us and {sampling} (one sample to compute)"]
     state = equilibrium(cured.system())
     pulled = [

@@ -28,6 +28,11 @@ class Pace(NamedTuple):
     fresh: int
 
     @property
+    def share(self) -> float:
+        """Share of the points that are done."""
+        return self.done / max(self.total, 1)
+
+    @property
     def rate(self) -> float:
         """Points per second."""
         return self.fresh / self.seconds if self.seconds > 0.0 else 0.0

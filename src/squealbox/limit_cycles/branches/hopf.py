@@ -88,8 +88,8 @@ class HopfPoint(OneEigenvalue, Result):
             return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
         kind = "Hopf point of unknown kind" if self.kind == "unknown" else f"{self.kind} Hopf point"
         said = f"{kind} at {self.parameter} = {float(self.value):.10g}, {self.frequency:.6g} Hz"
-        if np.isfinite(self.first_rest):
-            said += f"; on its cycle contacts keep sliding as far as {self.first_rest:.10g}"
+        if np.isfinite(rest := self.first_rest):
+            said += f"; on its cycle contacts keep sliding as far as {rest:.10g}"
         return f"{said}; {self.caution}" if self.caution else said
 
 

@@ -83,37 +83,35 @@ def shooting(
         raise ParameterError("shooting", "shots", shots, "a whole number of at least 1")
     field = field_of(design_or_system, CONTACTS[contact], width)
     rtol = FINER * rtol if field.late else rtol
-    x, period, found = first_guess(field, start, settle)
     settings = {"contact": contact, "width": width, "shots": shots, "rtol": rtol, "tolerance": tolerance}
-    if not found.ok:
-        return cycle_through(field, x, period, np.full((x.size, x.size), np.nan), found, settings, samples, np.nan)
     known = isinstance(start, Cycle) or (isinstance(start, (tuple, list)) and len(start) == 3)
-    first: Any = None
-    for turns in (1,) if known else TURNS:
-        turned = turns * (period if first is None else float(first.period))
-        newton, outcome = _solved(field, x, turned, int(shots), rtol, tolerance, most_steps)
-        error = newton.history[-1] if newton.history else np.inf
-        cycle = cycle_through(
-            field, newton.nodes[0], newton.period, newton.monodromy, outcome, settings, samples, error, newton.flights
-        )
-        first = cycle if first is None else first
-        if not cycle.outcome.ok or not _flips(cycle):
-            break
-    if cycle.stable or known or not first.outcome.ok:
+
+    def reached(start: Any) -> Cycle:
+        x, period, found = first_guess(field, start, settle)
+        if not found.ok:
+            return cycle_through(field, x, period, np.full((x.size, x.size), np.nan), found, settings, samples, np.nan)
+        first: Any = None
+        for turns in (1,) if known else TURNS:
+            turned = turns * (period if first is None else float(first.period))
+            newton, outcome = _solved(field, x, turned, int(shots), rtol, tolerance, most_steps)
+            error = newton.history[-1] if newton.history else np.inf
+            cycle = cycle_through(
+                field, newton.nodes[0], newton.period, newton.monodromy, outcome, settings, samples, error,
+                newton.flights,
+            )  # fmt: skip
+            first = cycle if first is None else first
+            if not cycle.outcome.ok or not _flips(cycle):
+                break
         return cycle if cycle.stable else first
+
+    cycle = reached(start)
+    if known or cycle.stable or not cycle.outcome.ok:
+        return cycle
     if start is None:
-        how: dict[str, Any] = {
-            "shots": shots,
-            "settle": settle,
-            "rtol": rtol,
-            "tolerance": tolerance,
-            "most_steps": most_steps,
-        }
-        rest = np.zeros(field.system.size)
-        other = shooting(design_or_system, (rest, rest), contact=contact, width=width, samples=samples, **how)
+        other = reached("rest")
         if other.outcome.ok and other.stable:
             return other
-    return replace(first, caution="; ".join(filter(None, [first.caution, NOWHERE])))
+    return replace(cycle, caution="; ".join(filter(None, [cycle.caution, NOWHERE])))
 
 
 def _solved(
