@@ -30,6 +30,7 @@ class App extends EventTarget {
     this.views = [];
     this.ready = false;
     this.lastMotion = null;
+    this.measured = {};
     this.parameters = new Parameters(this, byId("fields"));
     this.drawing = new Drawing(this, byId("drawing"));
     this.verdict = new Verdict(this, byId("verdict"));
@@ -111,6 +112,13 @@ class App extends EventTarget {
     this.dispatchEvent(new Event("motion"));
   }
 
+  /** What a recording says, by quantity: it is drawn over what is computed. */
+  hearing(measured) {
+    if (same(this.measured, measured)) return;
+    this.measured = measured;
+    this.dispatchEvent(new Event("measured"));
+  }
+
   /** What is wrong with the design: beside its field, or above all fields. */
   problems(wrong) {
     const others = this.parameters.problems(wrong);
@@ -184,9 +192,9 @@ class App extends EventTarget {
   }
 
   async #panels(shown) {
-    const modules = await Promise.all(shown.map((about) => import(`./panels/${about.name}.js`)));
+    const modules = await Promise.all(shown.map((about) => about.script && import(`./panels/${about.name}.js`)));
     shown.forEach((about, i) => {
-      const panel = new Panel(this, about, modules[i].default);
+      const panel = new Panel(this, about, modules[i]?.default ?? {});
       this.panels.set(about.name, panel);
       this.views.push(panel.view);
       byId("panels").append(panel.element);
