@@ -170,6 +170,16 @@ def packed(figures: Iterable[Figure | Bars]) -> tuple[list[dict[str, Any]], dict
     return [_figure(figure, take) for figure in figures], arrays
 
 
+def unpacked(data: Mapping[str, Any], arrays: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """The figure of that name in an answer, its arrays in place: what the page does, for clients in Python."""
+    figure = next(each for each in data["figures"] if each["name"] == name)
+
+    def read(value: Any) -> Any:
+        return arrays[value[1:]] if isinstance(value, str) and value.startswith("@") else value
+
+    return {**figure, "layers": [{key: read(value) for key, value in layer.items()} for layer in figure["layers"]]}
+
+
 def _figure(figure: Figure | Bars, take: Any) -> dict[str, Any]:
     if isinstance(figure, Bars):
         bars = [{**bar, "parts": [list(part) for part in bar["parts"]]} for bar in figure.bars]

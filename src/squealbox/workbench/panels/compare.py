@@ -10,10 +10,10 @@ from squealbox.plots.cards import parameter_rows
 from squealbox.plots.facts import read
 from squealbox.plots.modes import followed
 from squealbox.plots.style import number, scaled
-from squealbox.stability import complex_modes, critical_values, mechanism
+from squealbox.stability import complex_modes, mechanism
 from squealbox.workbench.figures import NONE, Axis, Figure, Table, across, line, span
 from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.modes import modes_of
+from squealbox.workbench.panels.modes import crossings_of, modes_of
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, try_value
 
 POINTS = 161
@@ -116,7 +116,7 @@ def _state(design: Design) -> dict[str, Any]:
 
 
 def _margin(design: Design, parameter: str, span: tuple[float, float], value: float | None) -> dict[str, Any]:
-    changes = [float(one.value) for one in critical_values(design, parameter, span) if one.changes_stability]
+    changes = [float(one.value) for one in crossings_of(design, parameter, span) if one.changes_stability]
     if not changes or value is None:
         return {"critical": changes[0] if changes else None, "margin": None}
     nearest = min(changes, key=lambda each: abs(each - value))

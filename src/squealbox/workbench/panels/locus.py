@@ -6,9 +6,8 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.plots.style import scaled
-from squealbox.stability import tracked_modes
 from squealbox.workbench.figures import Axis, Figure, across, band, line, modes_named, points, span, upright
-from squealbox.workbench.panels.modes import modes_of
+from squealbox.workbench.panels.modes import modes_of, tracks_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, try_value
 
 POINTS = 97  # values along the axis; about 15 ms for two degrees of freedom
@@ -24,7 +23,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     here = modes_of(design)
     half = here.eigenvalues.shape[-1] // 2
     values = np.linspace(low, high, POINTS if half <= 2 else FEWER)
-    tracks = tracked_modes(design, parameter, values)
+    tracks = tracks_of(design, parameter, (low, high), len(values))
     upper = _one_of_each_pair(tracks.eigenvalues)
     axis = options.axis(design, parameter, (low, high))
     unstable = _unstable(values / axis.factor, upper.real)

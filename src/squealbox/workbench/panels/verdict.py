@@ -7,12 +7,11 @@ import numpy as np
 from squealbox.cautions import pulled
 from squealbox.designs import Design
 from squealbox.plots import verdicts
-from squealbox.stability import critical_values, mechanism
+from squealbox.stability import mechanism
 from squealbox.system import equilibrium
-from squealbox.workbench.panels.modes import modes_of
+from squealbox.workbench.panels.modes import crossings_of, modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, try_value
 
-POINTS = 201
 LINEAR = ("Linear and about steady sliding: it says whether squeal can start, not how loud it gets; stable sliding can "
           "still squeal after a push.")  # fmt: skip
 MERGE = "Two modes nearly merge here: growth rate and shares react strongly to small changes."
@@ -36,7 +35,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     system = design.system()
     bilateral = np.zeros(len(system.contacts), dtype=bool)  # an open unilateral contact has N = 0
     data["pulled"] = [list(each) for each in pulled(system.contact_names, bilateral, equilibrium(system).normal_force)]
-    found = critical_values(design, parameter, ends, points=POINTS)
+    found = crossings_of(design, parameter, ends)
     changes = [each for each in found if each.changes_stability]
     data["crossings"] = [{"value": float(each.value), "changes": each.changes_stability} for each in found]
     if found.outcome.ok or changes:

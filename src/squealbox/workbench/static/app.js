@@ -55,13 +55,18 @@ class App extends EventTarget {
     requestAnimationFrame(() => setTimeout(() => this.dispatchEvent(new CustomEvent("painted", { detail: { name, key, at: performance.now() } }))));
   }
 
-  /** The leading view was answered: what waits for it is asked while it is drawn, the verdict first. */
+  /** The leading view is about to be drawn: the drawing and the verdict, which follow it, are asked meanwhile. */
+  ahead(name) {
+    if (name !== this.#leading().name) return;
+    this.drawing.view.update();
+    this.verdict.view.update();
+  }
+
+  /** A view was answered and drawn: what was gathered meanwhile can go, what waits for it is asked. */
   answered(name) {
-    const leading = this.#leading();
-    if (name === leading.name) {
+    if (name === this.#leading().name) {
       this.store.answered();
-      this.drawing.view.update();
-      this.verdict.view.update();
+      this.ahead(name);
     }
     if (this.changedAt && !this.verdict.view.busy) this.#later();
   }
