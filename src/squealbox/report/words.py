@@ -6,17 +6,16 @@ import numpy as np
 
 from squealbox.files.varied import quantity_of
 from squealbox.plots import verdicts
-from squealbox.plots.facts import plain_unit
-from squealbox.plots.style import number
+from squealbox.plots.style import number, read_in
 from squealbox.plots.verdicts import quantity
 from squealbox.report.examination import Examination
 from squealbox.system import equilibrium
 
 
 def in_reading_unit(found: Examination, name: str) -> tuple[float, str]:
-    """What SI values of a parameter are multiplied by to be read, and the unit then: angles in degrees."""
-    unit = quantity_of(found.design, name).unit
-    return (180.0 / np.pi, "°") if unit == "rad" else (1.0, plain_unit(unit))
+    """What SI values of a parameter are multiplied by to be read, and the unit then: degrees, kN/mm."""
+    unit, factor = read_in(quantity_of(found.design, name), found.design.value_of(name))
+    return 1.0 / factor, unit
 
 
 def value_in_words(found: Examination, name: str, value: float, digits: int = 5) -> str:

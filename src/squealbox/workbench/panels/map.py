@@ -66,7 +66,7 @@ def _picture(found: StabilityMap, show: str) -> dict[str, Any]:
     if show == "frequency":
         return heat(found.frequency.T, "sequential", "frequency", "Hz")
     return heat(
-        found.growth_rate.T, "diverging", "growth rate", "1/s", words="growth rate: orange squeals, blue is quiet"
+        found.growth_rate.T, "diverging", "growth rate", "1/s", words="orange squeals, blue is quiet"
     )
 
 

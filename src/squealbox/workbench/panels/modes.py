@@ -1,4 +1,4 @@
-"""What several panels ask of the design on the page, solved once; what runs along a parameter, once for all its values."""
+"""What several panels ask of one design, solved once; what runs along a parameter, once for all its values."""
 
 import functools
 

@@ -11,8 +11,9 @@ from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
 from squealbox.files.varied import scalar_parameters
 from squealbox.parameters import ParameterError
+from squealbox.plots.style import read_in
 from squealbox.workbench.figures import Axis, Bars, Figure, Table, packed
-from squealbox.workbench.sheet import read_in, slider, usual_value
+from squealbox.workbench.sheet import slider, usual_value
 from squealbox.workbench.state import StateError, UnknownBase, design_of
 
 LONGEST_UNIT = 12  # characters

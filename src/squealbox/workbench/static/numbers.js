@@ -45,7 +45,7 @@ const UNITS = [
 
 /** Units in which a field can be read, with the factor to SI; those that need a length or an area say how to ask for it. */
 export const unitsOf = (field) => {
-  const kind = UNITS.find((each) => field.unit in each || field.usual in each) ?? {};
+  const kind = UNITS.find((each) => (field.usual ?? field.unit) in each) ?? {};
   const shownOnce = Object.entries(kind).filter(([name]) => !["um", "us", "°"].includes(name)).map(([name, factor]) => ({ name, factor }));
   if ("m/s" in kind) shownOnce.push({ name: "rpm", ask: "Radius at which it slides, in mm", factor: (mm) => (2 * Math.PI * mm * 1e-3) / 60 });
   if ("N" in kind) shownOnce.push({ name: "bar", ask: "Area of the piston, in cm²", factor: (cm2) => 1e5 * cm2 * 1e-4 });

@@ -190,7 +190,7 @@ export class Store extends EventTarget {
   }
 }
 
-const inUnit = (field, unit, factor) => ({ ...field, unit, factor, range: `${field.lowOpen ? "(" : "["}${end(field.low, factor, "−")}, ${end(field.high, factor, "")}${field.highOpen ? ")" : "]"} ${unit}` });
+const inUnit = (field, unit, factor) => ({ ...field, usual: field.unit, unit, factor, range: `${field.lowOpen ? "(" : "["}${end(field.low, factor, "−")}, ${end(field.high, factor, "")}${field.highOpen ? ")" : "]"} ${unit}` });
 const end = (value, factor, sign) => (value === null ? `${sign}inf` : String(Number((value / factor).toPrecision(6))));
 
 export const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
