@@ -131,7 +131,7 @@ def test_the_charts_show_the_numbers(opened):
 
 def test_it_says_what_an_engineer_asks(opened):
     text = opened.page.inner_text("main")
-    critical = re.search(r"grows above friction\.static = ([\d.]+)", text)
+    critical = re.search(r"Stability changes at friction\.static = ([\d.]+)", text)
     assert float(critical[1]) == pytest.approx(0.33269, abs=5e-6)  # the digits printed
     assert "Steady sliding is unstable" in text
     assert "flutter" in text

@@ -11,7 +11,8 @@ from squealbox.limit_cycles.attractors.sections import state_names
 from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import unit_at
-from squealbox.plots.style import drawing, figure_of, number, quantity_label, scaled
+from squealbox.plots.style import drawing, figure_of
+from squealbox.words import number, quantity_label, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

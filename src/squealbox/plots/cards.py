@@ -18,8 +18,8 @@ from squealbox.limit_cycles import Branch, PointCurve
 from squealbox.limit_cycles.attractors.basins import Basin
 from squealbox.parameters import DataSheet, Parameter
 from squealbox.plots.dispatch import drawn_by, plot
-from squealbox.plots.facts import facts, plain_unit
-from squealbox.plots.style import drawn, number, read_in
+from squealbox.plots.facts import facts
+from squealbox.plots.style import drawn
 from squealbox.plots.sweeps import numeric_answers
 from squealbox.result import Result
 from squealbox.stability import ComplexModes, finite_spectrum
@@ -27,6 +27,7 @@ from squealbox.stability.modes_text import html as modes_table
 from squealbox.studies import Sweep
 from squealbox.system import System
 from squealbox.transient import Trajectory
+from squealbox.words import number, plain_unit, read_in
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -12,18 +12,8 @@ from squealbox.matrices import liveliest
 from squealbox.parameters import DataSheet, ParameterError
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import read_of, unit_at
-from squealbox.plots.style import (
-    LOOK,
-    WIDTH,
-    cautioned,
-    drawing,
-    figure_of,
-    line,
-    number,
-    panels,
-    quantity_label,
-    scaled,
-)
+from squealbox.plots.style import LOOK, WIDTH, cautioned, drawing, figure_of, line, panels
+from squealbox.words import number, quantity_label, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

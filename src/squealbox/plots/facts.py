@@ -8,10 +8,10 @@ import numpy as np
 
 from squealbox.limit_cycles import Branch, Cycle
 from squealbox.parameters import DataSheet
-from squealbox.plots.style import MINUS, number, scaled
 from squealbox.signals import Spectrum, peaks
 from squealbox.stability import CriticalValue, StabilityMap
 from squealbox.transient import Ensemble, Trajectory, Verdict
+from squealbox.words import MINUS, number, plain_unit, scaled
 
 Fact = tuple[str, str, str]  # name, value, unit
 
@@ -37,11 +37,6 @@ def shown(value: Any, digits: int = 6) -> str:
         size = number(abs(float(np.imag(value))), digits)
         return f"{number(float(np.real(value)), digits)} {MINUS if np.imag(value) < 0.0 else '+'} {size} i"
     return "not known" if np.isnan(float(value)) else number(float(value), digits)
-
-
-def plain_unit(unit: str) -> str:
-    """A unit as it is written behind a number: nothing for a pure number."""
-    return "" if unit in ("-", "1") else unit
 
 
 def read(name: str, value: Any, unit: str, digits: int = 4) -> Fact:

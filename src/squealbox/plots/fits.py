@@ -6,7 +6,8 @@ import numpy as np
 
 from squealbox.fit import FrictionFit
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.style import COLUMN, drawing, figure_of, line, quantity_label
+from squealbox.plots.style import COLUMN, drawing, figure_of, line
+from squealbox.words import quantity_label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,7 +7,8 @@ import numpy as np
 
 from squealbox.friction import FrictionLaw
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.style import drawing, figure_of, line, number, quantity_label
+from squealbox.plots.style import drawing, figure_of, line
+from squealbox.words import number, quantity_label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.plots.style import drawing, figure_of, quantity_label, scaled
+from squealbox.plots.style import drawing, figure_of
+from squealbox.words import quantity_label, scaled
 
 HATCH = "\\\\\\\\"  # against the slope that bands of coalescence usually have
 PALE = "#f6e6da"

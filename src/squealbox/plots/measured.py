@@ -6,7 +6,7 @@ import numpy as np
 
 from squealbox.calibration import Calibration, Comparison
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.style import COLUMN, WIDTH, drawing, figure_of, line, note, number, panels, quantity_label
+from squealbox.plots.style import COLUMN, WIDTH, drawing, figure_of, line, note, panels
 from squealbox.signals import (
     DampingOnset,
     NoiseMatrix,
@@ -16,6 +16,7 @@ from squealbox.signals import (
     SquealEvents,
     spectrogram,
 )
+from squealbox.words import number, quantity_label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

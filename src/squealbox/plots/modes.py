@@ -4,7 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.plots.style import LINES, UNSTABLE, drawing, figure_of, line, note, number, quantity_label, scaled
+from squealbox.plots.style import LINES, UNSTABLE, drawing, figure_of, line, note
+from squealbox.words import number, quantity_label, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

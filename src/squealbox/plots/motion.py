@@ -8,11 +8,12 @@ from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import read_of, unit_at
 from squealbox.plots.spectra import spectrum
-from squealbox.plots.style import drawing, figure_of, line, note, number, panels, quantity_label, scaled, uncertain
+from squealbox.plots.style import drawing, figure_of, line, note, panels, uncertain
 from squealbox.signals import LEAST, SignalError, column, equal_steps, values
 from squealbox.transient.envelope import smooth_curve
 from squealbox.transient.trajectory import Trajectory
 from squealbox.transient.verdict import Verdict, verdict
+from squealbox.words import number, quantity_label, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,7 +9,7 @@ from squealbox.limit_cycles import HopfPoint, PointCurve
 from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import unit_of
-from squealbox.plots.style import MINUS, drawing, figure_of, line, note, number, power_of_ten, quantity_label, scaled
+from squealbox.plots.style import drawing, figure_of, line, note, power_of_ten
 from squealbox.stability import (
     CriticalValue,
     CriticalValues,
@@ -19,6 +19,7 @@ from squealbox.stability import (
     complex_modes,
 )
 from squealbox.system import as_system
+from squealbox.words import MINUS, number, quantity_label, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,9 +9,10 @@ from squealbox.parameters import known_names
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import unit_of
 from squealbox.plots.maps import amplitude_map
-from squealbox.plots.style import LINES, cautioned, drawing, figure_of, quantity_label, scaled
+from squealbox.plots.style import LINES, cautioned, drawing, figure_of
 from squealbox.system import as_system
 from squealbox.transient import Ensemble
+from squealbox.words import quantity_label, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,9 +8,10 @@ from squealbox.control import ClosedLoop, DefeatingPush, LoopRun, Placement, Sta
 from squealbox.countermeasures import BestAbsorber, Countermeasure
 from squealbox.plots.brakes import brake_drawing
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.style import COLUMN, drawing, figure_of, line, quantity_label, scaled
+from squealbox.plots.style import COLUMN, drawing, figure_of, line
 from squealbox.remedies import Remedies
 from squealbox.system import as_system
+from squealbox.words import quantity_label, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

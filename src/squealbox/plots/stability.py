@@ -12,7 +12,7 @@ import numpy as np
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import unit_of
 from squealbox.plots.modes import coalescence
-from squealbox.plots.style import LINES, drawing, figure_of, line, note, number, quantity_label, scaled
+from squealbox.plots.style import LINES, drawing, figure_of, line, note
 from squealbox.stability import (
     Boundary,
     ComplexModes,
@@ -25,6 +25,7 @@ from squealbox.stability import (
     TransientGrowth,
     map_boundary,
 )
+from squealbox.words import number, quantity_label, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

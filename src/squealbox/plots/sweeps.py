@@ -7,8 +7,9 @@ import numpy as np
 
 from squealbox.limit_cycles.attractors.pushes import DangerousPush
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.style import COLUMN, LINES, PREFIXES, ROW, drawing, figure_of, line, note, quantity_label, scaled
+from squealbox.plots.style import COLUMN, LINES, ROW, drawing, figure_of, line, note
 from squealbox.studies import Sweep
+from squealbox.words import PREFIXES, quantity_label, scaled
 
 if TYPE_CHECKING:
     import xarray

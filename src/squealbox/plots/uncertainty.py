@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.style import COLUMN, LINES, WIDTH, drawing, figure_of, line, number, power_of_ten, quantity_label
+from squealbox.plots.style import COLUMN, LINES, WIDTH, drawing, figure_of, line, power_of_ten
 from squealbox.studies.quantity import unit_of
 from squealbox.studies.uncertainty.intervals import IntervalBounds
 from squealbox.studies.uncertainty.morris import MorrisEffects
 from squealbox.studies.uncertainty.probability import SquealProbability
 from squealbox.studies.uncertainty.sobol import SobolIndices
+from squealbox.words import number, quantity_label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

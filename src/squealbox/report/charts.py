@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.plots.modes import followed, unstable_stretches
-from squealbox.plots.style import LINES, quantity_label, scaled
+from squealbox.plots.style import LINES
+from squealbox.words import quantity_label, scaled
 
 Figure = dict[str, Any]
 DASHES = ("solid", "dash", "dot", "dashdot", "longdash")

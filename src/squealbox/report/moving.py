@@ -12,9 +12,9 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.plots.moving import moving_strokes
-from squealbox.plots.verdicts import quantity
 from squealbox.report.blocks import Drawing
 from squealbox.stability import ComplexModes
+from squealbox.words import quantity
 
 FRAMES = 24  # of a period
 PERIOD = 2.4  # s it takes

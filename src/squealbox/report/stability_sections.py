@@ -7,12 +7,12 @@ import numpy as np
 
 from squealbox import plots
 from squealbox.plots.cards import has_drawing
-from squealbox.plots.style import quantity_label
 from squealbox.report import charts, tables, words
 from squealbox.report.blocks import Chart, Section, Text
 from squealbox.report.examination import Examination
 from squealbox.report.moving import vibrating
 from squealbox.report.pictures import picture, why_not
+from squealbox.words import quantity_label
 
 
 def stability(found: Examination) -> Iterator[Any]:

@@ -3,14 +3,14 @@
 import numpy as np
 
 from squealbox.plots.cards import parameter_rows
-from squealbox.plots.facts import plain_unit, shown
-from squealbox.plots.style import number, scaled
+from squealbox.plots.facts import shown
 from squealbox.remedies import Remedies
 from squealbox.report.blocks import Cell, Table
 from squealbox.report.examination import Examination, results_of
 from squealbox.report.words import in_reading_unit, quantity
 from squealbox.stability import ComplexModes, ModeEnergy, Sensitivity
 from squealbox.system import System, equilibrium
+from squealbox.words import number, plain_unit, scaled
 
 MOST_MODES = 12
 MOST_PARAMETERS = 10

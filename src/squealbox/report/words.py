@@ -5,11 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from squealbox.files.varied import quantity_of
-from squealbox.plots import verdicts
-from squealbox.plots.style import number, read_in
-from squealbox.plots.verdicts import quantity
 from squealbox.report.examination import Examination
+from squealbox.stability import sentences
 from squealbox.system import equilibrium
+from squealbox.words import number, quantity, read_in
 
 
 def in_reading_unit(found: Examination, name: str) -> tuple[float, str]:
@@ -31,13 +30,13 @@ def verdict(found: Examination) -> list[str]:
 
 def short_verdict(found: Examination) -> str:
     """One sentence for the head of a page."""
-    said = verdicts.headline(found.modes, found.why)
+    said = sentences.headline(found.modes, found.why)
     return f"{said}{', and yet a vibration can persist beside it' if found.coexists else ''}."
 
 
 def _stability(found: Examination) -> Iterator[str]:
     yield short_verdict(found)
-    yield verdicts.growth(found.modes, found.why)
+    yield sentences.growth(found.modes, found.why)
 
 
 def _margin(found: Examination) -> Iterator[str]:
@@ -45,8 +44,8 @@ def _margin(found: Examination) -> Iterator[str]:
         return
     name, ends = found.varied.name, (float(found.varied.low), float(found.varied.high))
     changes = [each for each in found.crossings if each.changes_stability]
-    said = verdicts.margin(name, found.present, changes, ends, lambda value: value_in_words(found, name, value))
-    yield verdicts.plain(said)
+    said = sentences.margin(name, found.present, changes, ends, lambda value: value_in_words(found, name, value))
+    yield sentences.plain(said)
 
 
 def _motion(found: Examination) -> Iterator[str]:

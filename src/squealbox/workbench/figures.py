@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.plots.style import number
+from squealbox.words import number
 from squealbox.workbench.frames import finite
 
 Layer = dict[str, Any]

@@ -13,8 +13,8 @@ from squealbox.files.sheets import LAW_NAMES, field_type, name_of
 from squealbox.files.varied import scalar_parameters
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, Parameter
-from squealbox.plots.style import read_in
 from squealbox.schedules import Schedule
+from squealbox.words import read_in
 from squealbox.workbench.frames import finite
 from squealbox.workbench.state import CHOOSABLE
 

@@ -7,7 +7,8 @@ import numpy as np
 from squealbox import plots
 from squealbox.papers.drum_brake_2011.cases import Case
 from squealbox.papers.drum_brake_2011.figures import Margins
-from squealbox.plots.style import drawing, figure_of, number
+from squealbox.plots.style import drawing, figure_of
+from squealbox.words import number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,8 +7,8 @@ from squealbox.calibration.measured import from_events
 from squealbox.designs import Design
 from squealbox.files.varied import scalar_parameters
 from squealbox.parameters import ParameterError
-from squealbox.plots.style import number
 from squealbox.signals import SignalError
+from squealbox.words import number
 from squealbox.workbench.figures import Table
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, try_value

@@ -7,10 +7,9 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.files.varied import scalar_parameters
 from squealbox.plots.cards import parameter_rows
-from squealbox.plots.facts import read
 from squealbox.plots.modes import followed
-from squealbox.plots.style import number, scaled
 from squealbox.stability import complex_modes, mechanism
+from squealbox.words import number, quantity, scaled
 from squealbox.workbench.figures import NONE, Axis, Figure, Table, across, line, span
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.modes import crossings_of, modes_of
@@ -81,7 +80,8 @@ def _table(a: Side | None, b: Side, axis: Axis) -> Table:
     rates = [NONE if each["growth"] is None else f"{number(each['growth'], 5)} 1/s" for each in sides]
     rows: list[list[Any]] = [
         ["steady sliding", *(", ".join(filter(None, (each["state"], each["mechanism"]))) for each in sides)],
-        ["worst mode", *(NONE if each["frequency"] is None else _hertz(each["frequency"]) for each in sides)],
+        ["worst mode", *(NONE if each["frequency"] is None else quantity(each["frequency"], "Hz", 5)
+                         for each in sides)],
         ["its growth rate", *rates[:-1], (rates[-1], {-1.0: "better", 1.0: "worse"}.get(float(sense), ""))],
         [f"critical {axis.label}", *("none here" if each["critical"] is None else axis.value(each["critical"])
                                      for each in sides)],
@@ -93,11 +93,6 @@ def _table(a: Side | None, b: Side, axis: Axis) -> Table:
             texts = [each["parameters"].get(name, NONE) for each in sides]
             rows += [[name, *texts]] if texts[0] != texts[1] else []
     return Table(["", "A (kept)", "B (this page)"] if a is not None else ["", "B (this page)"], rows)
-
-
-def _hertz(value: float) -> str:
-    _, text, unit = read("", value, "Hz", 5)
-    return f"{text} {unit}"
 
 
 def _state(design: Design) -> dict[str, Any]:

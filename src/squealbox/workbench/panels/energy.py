@@ -5,9 +5,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.plots.facts import read
-from squealbox.plots.style import number
 from squealbox.stability import mode_energy
+from squealbox.words import number, quantity
 from squealbox.workbench.figures import Bars
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.modes import modes_of
@@ -44,8 +43,8 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         bars.append({"name": "skew stiffness", "parts": [(LOOKS["normal force"], skew)], "sum": skew})
     bars.sort(key=lambda bar: -abs(bar["sum"]))
     growth, left = float(np.real(parts.eigenvalue)), len(bars[MOST_BARS:])
-    _, hertz, unit = read("", abs(np.imag(parts.eigenvalue)) / (2.0 * np.pi), "Hz")
-    words = f"Together {number(growth)} 1/s at {hertz} {unit}: to the right feeds the mode, to the left damps it."
+    hertz = quantity(abs(np.imag(parts.eigenvalue)) / (2.0 * np.pi), "Hz")
+    words = f"Together {number(growth)} 1/s at {hertz}: to the right feeds the mode, to the left damps it."
     data = {
         "outcome": "completed",
         "growth": growth,

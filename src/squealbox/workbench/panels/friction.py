@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.plots.style import number
 from squealbox.system import linearise
+from squealbox.words import number
 from squealbox.workbench.figures import Axis, Figure, line, points, span, upright
 from squealbox.workbench.panels.panel import Answer, Options, Work
 

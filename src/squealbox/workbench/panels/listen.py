@@ -3,10 +3,10 @@
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.plots.style import scaled
 from squealbox.signals import SignalError, audible, dominant_frequency
 from squealbox.signals.radiation import AREA, AUDIBLE
 from squealbox.signals.wav import SAMPLING
+from squealbox.words import scaled
 from squealbox.workbench.panels.following import followed
 from squealbox.workbench.panels.loudness import loudest, loudness
 from squealbox.workbench.panels.panel import Answer, Options, Work

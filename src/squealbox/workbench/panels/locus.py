@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.plots.style import scaled
+from squealbox.words import scaled
 from squealbox.workbench.figures import Axis, Figure, across, band, line, modes_named, points, span, upright
 from squealbox.workbench.panels.modes import modes_of, tracks_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, try_value

@@ -7,8 +7,8 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.plots.style import number
 from squealbox.stability import StabilityMap, map_boundary, stability_map
+from squealbox.words import number
 from squealbox.workbench.figures import Figure, heat, path
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
 
@@ -65,9 +65,7 @@ def _picture(found: StabilityMap, show: str) -> dict[str, Any]:
         return heat(found.mechanism.T, "mechanism", "mechanism", "", names=names)
     if show == "frequency":
         return heat(found.frequency.T, "sequential", "frequency", "Hz")
-    return heat(
-        found.growth_rate.T, "diverging", "growth rate", "1/s", words="orange squeals, blue is quiet"
-    )
+    return heat(found.growth_rate.T, "diverging", "growth rate", "1/s", words="orange squeals, blue is quiet")
 
 
 def _joined(parts: list[StabilityMap], axes: dict[str, Any]) -> StabilityMap:

@@ -7,9 +7,9 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.files.runs import usual_duration
 from squealbox.plots.facts import unit_at
-from squealbox.plots.style import number, scaled
 from squealbox.signals import SignalError, peaks, spectrogram, spectrum
 from squealbox.transient import Trajectory, Verdict, verdict
+from squealbox.words import number, scaled
 from squealbox.workbench.figures import Axis, Figure, across, heat, hull, line, span, text
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.following import followed

@@ -11,7 +11,7 @@ from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
 from squealbox.files.varied import scalar_parameters
 from squealbox.parameters import ParameterError
-from squealbox.plots.style import read_in
+from squealbox.words import read_in
 from squealbox.workbench.figures import Axis, Bars, Figure, Table, packed
 from squealbox.workbench.sheet import slider, usual_value
 from squealbox.workbench.state import StateError, UnknownBase, design_of

@@ -8,11 +8,11 @@ from squealbox import read_recording, squeal_events
 from squealbox.calibration import compare
 from squealbox.designs import Design
 from squealbox.plots.facts import shown
-from squealbox.plots.style import number
 from squealbox.signals import SignalError, spectrogram
 from squealbox.signals.events import SquealEvents
 from squealbox.signals.recordings import Recording
 from squealbox.stability import complex_modes
+from squealbox.words import number
 from squealbox.workbench.figures import NONE, Axis, Figure, Table, heat, line
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work

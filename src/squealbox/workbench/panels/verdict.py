@@ -6,9 +6,9 @@ import numpy as np
 
 from squealbox.cautions import pulled
 from squealbox.designs import Design
-from squealbox.plots import verdicts
-from squealbox.stability import mechanism
+from squealbox.stability import mechanism, sentences
 from squealbox.system import equilibrium
+from squealbox.words import quantity
 from squealbox.workbench.panels.modes import crossings_of, modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, try_value
 
@@ -26,8 +26,8 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     why = mechanism(design) if exists and not bool(modes.stable) else None
     data: dict[str, Any] = {
         "state": "unknown" if not exists else "unstable" if why else "stable",
-        "headline": verdicts.headline(modes, why),
-        "why": [verdicts.growth(modes, why)],
+        "headline": sentences.headline(modes, why),
+        "why": [sentences.growth(modes, why)],
         "value": value,
     }
     if not exists:
@@ -39,7 +39,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     changes = [each for each in found if each.changes_stability]
     data["crossings"] = [{"value": float(each.value), "changes": each.changes_stability} for each in found]
     if found.outcome.ok or changes:
-        data["why"] += [" ", *verdicts.margin(axis.label, value, changes, ends, axis.value)]
+        data["why"] += [" ", *sentences.margin(axis.label, value, changes, ends, axis.value)]
     else:
         data["why"].append(f" {found.outcome.message}.")
     near = bool(np.any(modes.near_defective))
@@ -49,5 +49,5 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
 
 def _pulling(pulled: list[Any]) -> list[str]:
     """A sentence on the contacts that pull in steady sliding."""
-    named = ", ".join(f"{name} is pulled ({verdicts.quantity(force, 'N')})" for name, force in pulled)
+    named = ", ".join(f"{name} is pulled ({quantity(force, 'N')})" for name, force in pulled)
     return [f"{named}: a contact that cannot pull would lift off."] if named else []

@@ -6,11 +6,11 @@
 """
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
-from squealbox.plots.facts import read
-from squealbox.plots.style import number
-from squealbox.stability import ComplexModes, CriticalValue, Mechanism
+from squealbox.stability.eigenvalues import ComplexModes
+from squealbox.stability.mechanism import Mechanism
+from squealbox.stability.onset import CriticalValue
+from squealbox.words import number, quantity
 
 MECHANISMS = {
     "flutter": "mode coupling (flutter)",
@@ -22,12 +22,6 @@ MECHANISMS = {
 AUDIBLE = (20.0, 20e3)  # Hz
 UNDAMPED = 1e-9  # damping ratio below which what is left is round-off
 Words = list[str | tuple[str, bool]]  # texts, those with True to be seen first
-
-
-def quantity(value: Any, unit: str, digits: int = 4) -> str:
-    """A number in the unit that suits it: 12.3 µm."""
-    _, text, written = read("", value, unit, digits)
-    return f"{text} {written}".rstrip()
 
 
 def headline(modes: ComplexModes, why: Mechanism | None) -> str:
