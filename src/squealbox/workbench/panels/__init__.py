@@ -86,7 +86,7 @@ PANELS: dict[str, Panel] = {
         choices=(over("x", "x", FRICTION, span="xspan"), over("y", "y", *LOADS, span="yspan"),
                  words("show", "show", *SHOWN)),
     ),
-    "friction": Panel("Friction curve", figures=(Place("friction", "", 300),)),
+    "friction": Panel("Friction curve", figures=(Place("friction", "", 300),), table="Contacts in steady sliding"),
     "motion": Panel(
         "Motion", columns=2, slow=True, layout="two",
         choices=(words("start", "start", *STARTS), words("push", "push", *PUSHES, usual="0.05"), FREEDOM),

@@ -6,8 +6,8 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.system import linearise
-from squealbox.words import number
-from squealbox.workbench.figures import Axis, Figure, line, points, span, upright
+from squealbox.words import number, quantity
+from squealbox.workbench.figures import Axis, Figure, Table, line, points, span, upright
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
 POINTS = 241
@@ -26,15 +26,15 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         if contact.law not in laws:
             laws.append(contact.law)
     mu = [np.broadcast_to(law.mu(v), v.shape) for law in laws]
-    rows = zip(system.contacts, state.sliding_speed, state.friction, strict=True)
-    sliding = [(abs(float(speed)), float(m), float(each.law.slope_at(speed))) for each, speed, m in rows
+    at = zip(system.contacts, state.sliding_speed, state.friction, strict=True)
+    sliding = [(abs(float(speed)), float(m), float(each.law.slope_at(speed))) for each, speed, m in at
                if np.isfinite(speed)]  # fmt: skip
     static = [float(law.static_limit) for law in laws]
     upward = Axis("friction coefficient", "-", span(*mu, static, zero=True))
     names = [type(law).__name__ for law in laws]
-    told = "name" if len(names) > 1 else "column"
+    kind = "name" if len(names) > 1 else "column"
     layers = [
-        *(line(v, curve, f"s{i % 7}", **{told: names[i]}) for i, curve in enumerate(mu)),
+        *(line(v, curve, f"s{i % 7}", **{kind: names[i]}) for i, curve in enumerate(mu)),
         *(upright(speed) for speed in dict.fromkeys(speed for speed, *_ in sliding)),
         points(np.zeros(len(static)), static, "begin", 4.0, column="static limit"),
         points([each[0] for each in sliding], [each[1] for each in sliding], column="contacts at steady sliding"),
@@ -47,8 +47,11 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     elif falling:
         words = (f"Friction falls with speed at {len(falling)} of {len(sliding)} contacts, slope {number(falling[0])} "
                  "s/m: it takes damping away.")  # fmt: skip
+    told = zip(system.contact_names, state.normal_force, state.sliding_speed, state.friction, strict=True)
+    rows = [(name, quantity(force, "N"), quantity(speed, "m/s"), number(m)) for name, force, speed, m in told]
+    contacts = Table(("contact", "N", "slides at", "mu"), rows)
     figure = Figure("friction", Axis("sliding speed |v|", "m/s", (0.0, top)), upward, layers)
-    return Answer({"outcome": str(steady.equilibrium.outcome), "words": words}, figures=[figure])
+    return Answer({"outcome": str(steady.equilibrium.outcome), "words": words, "table": contacts}, figures=[figure])
 
 
 def _tangent(at: tuple[float, float, float], half: float) -> Any:
