@@ -17,7 +17,7 @@ from squealbox.friction import FrictionLaw
 from squealbox.limit_cycles import Branch, PointCurve
 from squealbox.limit_cycles.attractors.basins import Basin
 from squealbox.parameters import DataSheet, Parameter
-from squealbox.plots.dispatch import drawn_by, plot
+from squealbox.plots.dispatch import drawer_of, plot
 from squealbox.plots.facts import facts
 from squealbox.plots.style import drawn
 from squealbox.plots.sweeps import numeric_answers
@@ -103,9 +103,7 @@ def _said(result: Result) -> str:
 
 def has_figure(result: Result) -> bool:
     """True where a figure is known, there is something to draw, and the arrays are small enough to draw unasked."""
-    if drawn_by.dispatch(type(result)) is drawn_by.dispatch(object) or not (
-        result.outcome.ok or isinstance(result, WALKED)
-    ):
+    if drawer_of(type(result)) is drawer_of(object) or not (result.outcome.ok or isinstance(result, WALKED)):
         return False
     sizes = [np.size(getattr(result, name)) for name, _ in _quantities(result)] or [_points(result)]
     return sizes[0] > 0 and max(sizes) <= MOST_POINTS

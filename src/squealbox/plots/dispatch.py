@@ -1,7 +1,8 @@
 """One door to every figure: `plot` looks at the kind of result and calls the function that draws it."""
 
+import importlib
 import inspect
-from functools import singledispatch
+from functools import cache, singledispatch
 from typing import TYPE_CHECKING, Any
 
 from squealbox.arguments import public, real
@@ -12,6 +13,20 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INCHES = real(Parameter("inches", 0.5, 100.0))
+
+
+# The modules that say how a kind of result is drawn; they are loaded when something is first to be drawn.
+DRAWERS = (
+    "basins", "brakes", "contact", "cycles", "diagrams", "fits", "laws", "maps", "measured", "modes", "motion",
+    "optimisation", "points", "populations", "reliability", "remedies", "spectra", "stability", "sweeps", "uncertainty",
+)  # fmt: skip
+
+
+@cache
+def drawers() -> None:
+    """Load every module that registers how a kind is drawn."""
+    for name in DRAWERS:
+        importlib.import_module(f"squealbox.plots.{name}")
 
 
 @singledispatch
@@ -45,7 +60,7 @@ def plot(
     token = LOOK.set(Look(width, height, style))
     try:
         with styled():
-            draw = drawn_by.dispatch(type(result))
+            draw = drawer_of(type(result))
             known = inspect.signature(draw).parameters
             if all(each.kind is not each.VAR_KEYWORD for each in known.values()):
                 names = [*list(known)[1:], "width", "height", "style"]
@@ -57,6 +72,12 @@ def plot(
         LOOK.reset(token)
 
 
+def drawer_of(kind: type) -> Any:
+    """The function that draws a kind of result."""
+    drawers()
+    return drawn_by.dispatch(kind)
+
+
 plot.register = drawn_by.register  # type: ignore[attr-defined]
-plot.dispatch = drawn_by.dispatch  # type: ignore[attr-defined]
+plot.dispatch = drawer_of  # type: ignore[attr-defined]
 plot.registry = drawn_by.registry  # type: ignore[attr-defined]
