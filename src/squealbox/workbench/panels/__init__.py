@@ -42,6 +42,7 @@ PANELS: dict[str, Panel] = {
     "recording": Panel("Recording", columns=2, slow=True),
     "calibrate": Panel("Calibrate", columns=2, slow=True, apart=True),
     "report": Panel("Report", slow=True, apart=True),
+    "project": Panel("Project", columns=2, slow=True, light=True),
     "tour": Panel("Tour: the drum-brake paper of 2011", slow=True, apart=True),
 }
 

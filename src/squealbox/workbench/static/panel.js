@@ -80,7 +80,7 @@ export class Panel {
     const field = store.field(store.sheet?.aliases[parameter]?.[0] ?? parameter);
     if (!field?.slider) return null;
     const value = store.value(parameter);
-    const [low, high] = field.slider;
+    const [low, high] = (store.design.base && this.chosen.spans?.[parameter]) || field.slider; // as the opened file asks
     return typeof value === "number" ? [Math.min(low, value), Math.max(high, value)] : [low, high];
   }
 
