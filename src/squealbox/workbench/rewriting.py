@@ -42,7 +42,6 @@ def rewritten(
     Raises `NotWritable` for a design that no file can hold.
     """
     new = design_text(after)
-    wanted = tomlkit.parse(new)
     try:
         found = tomlkit.parse(text)
         _put(found, tomllib.loads(design_text(before)), tomllib.loads(new), after)
@@ -52,6 +51,7 @@ def rewritten(
             return whole, ""
     except (TOMLKitError, DesignFileError):  # a way to write TOML that is not known here: the values come first
         found = tomlkit.parse(text)
+    wanted = tomlkit.parse(new)
     for name, section in found.items():
         if name in (*SECTIONS, STUDY):
             wanted[name] = section

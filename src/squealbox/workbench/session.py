@@ -183,9 +183,8 @@ class Session:
                 slot.work.stop()
             await self.send(frame({"id": message["id"], "kind": "done"}))
         elif ask in ("sheet", "open", "project"):
-            pool, answer = {"sheet": ("quick", self._sheet), "open": ("quick", self._open)}.get(
-                ask, ("project", self._project)
-            )
+            answer = {"sheet": self._sheet, "open": self._open, "project": self._project}[ask]
+            pool = "project" if ask == "project" or message.get("toml") is True else "quick"  # writing files takes time
             await self.send(await asyncio.get_running_loop().run_in_executor(self.pools[pool], answer, message))
         else:
             raise Malformed("ask: expected one of sheet, open, project, stop; or view")

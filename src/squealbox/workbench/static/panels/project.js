@@ -9,8 +9,7 @@ const HEADS = ["design", "steady sliding", "worst mode", "growth 1/s", "critical
 
 export default {
   setup(panel) {
-    const { app } = panel;
-    const { store } = app;
+    const [app, { store }] = [panel.app, panel.app];
     panel.files.hidden = true;
     panel.called = make("input", { type: "text", size: 12, maxlength: 80, "aria-label": "Name for the design or the state", placeholder: "name" });
     const also = make("input", { type: "checkbox", checked: Boolean(panel.chosen.results), onchange: () => panel.choose({ results: also.checked }) });
@@ -26,11 +25,15 @@ export default {
     document.addEventListener("saved", ({ detail }) => panel.chosen.results && send(panel, "results", detail.name, detail.content));
     for (const [where, news] of [[store, "changed"], [store, "history"], [app.connection, "hello"]]) where.addEventListener(news, rested);
     for (const news of ["visibilitychange", "pagehide"]) addEventListener(news, keeping);
-    if (!location.hash && !app.hello.text) offer(panel);
+    if (location.hash || app.hello.text) return;
+    ask(panel, "left").then((left) => {
+      const go = (words) => button(words, () => (place.remove(), words === "Not now" || app.take(left.state)));
+      const place = left?.state && make("p", { class: "offer", role: "status" }, go(`Go on where you were (${left.title}, ${when(left.time)})`), " ", go("Not now"));
+      if (place) document.getElementById("content").prepend(place);
+    });
   },
 
   options: (panel) => ({ stamp: panel.stamp }),
-
   state: () => Store.plain("drum_brake"), // of the page nothing: the table is of what is on disk
 
   draw(panel, { data }) {
@@ -65,11 +68,9 @@ async function ask(panel, verb, about = {}) {
 async function asA(panel, name) {
   const { connection, store } = panel.app;
   const { text } = (await ask(panel, "open", { name })) ?? {};
-  const frame = text && (await connection.ask({ ask: "open", text }));
-  if (frame?.kind !== "opened") return note(`${name} cannot be read.`);
-  store.texts.set(frame.base, text);
-  store.option("compare", { a: { base: frame.base, brake: frame.brake, laws: {}, values: {} } });
-  note(`${name} is A under “What silences it?”.`);
+  const { kind, base, brake } = text ? await connection.ask({ ask: "open", text }) : {};
+  if (kind === "opened") store.texts.set(base, text), store.option("compare", { a: { base, brake, laws: {}, values: {} } });
+  note(kind === "opened" ? `${name} is A under “What silences it?”.` : `${name} cannot be read.`);
 }
 
 async function look(panel) {
@@ -81,7 +82,8 @@ async function look(panel) {
   panel.restore.replaceChildren(...found.thrown.map(([thrown, name]) => button(`Take back ${name}`, () => act(panel, "restore", { name, thrown }))));
   panel.past.replaceChildren(table(["left at", "state", ""], found.history.map(({ time, id, title, words, name }) => [when(time), make("span", { title }, make("b", {}, name), ` ${words || title}`), button("Go back", () => take(panel, "back", { line: id }), { "aria-label": `Go back to ${name || when(time)}` })])));
   const files = (part, key) => found[part].map(({ name, size }) => [make("a", { href: address(part, name), download: name }, name), `${Math.ceil(size / 1e3)} kB`, key(name)]);
-  const measured = (name) => button("Open", () => measure(panel, name), { "aria-label": `Open ${name}` });
+  const measure = (name) => fetch(address("measurements", name)).then(async (answer) => (answer.ok ? panel.app.panels.get("recording").take(new File([await answer.blob()], name)) : note(`${name} cannot be opened.`)));
+  const measured = (name) => button("Open", () => measure(name).catch(() => note("The server does not answer.")), { "aria-label": `Open ${name}` });
   panel.kept.replaceChildren(table(["measurements, results", "size", ""], [...files("measurements", measured), ...files("results", () => "")]));
   panel.says.textContent = [panel.remark, `In ${found.folder}.`, ...found.wrong].join(" ");
 }
@@ -91,12 +93,6 @@ async function send(panel, part, name, body) {
   const found = (await answer?.json().catch(() => null)) ?? { message: "Not kept: the server does not answer." };
   note(found.message ?? `Kept as ${part}/${found.name}.`);
   look(panel);
-}
-
-async function measure(panel, name) {
-  const answer = await fetch(address("measurements", name)).catch(() => null);
-  if (answer?.ok) panel.app.panels.get("recording").take(new File([await answer.blob()], name));
-  else note(`${name} cannot be opened.`);
 }
 
 /** Keep notes and state when a gesture is over; not the brake a page begins with, before anything was done to it. */
@@ -110,11 +106,4 @@ async function keep(panel) {
   if (!ready || store.before || state === panel.state || (!panel.state && same(store.design, Store.plain("drum_brake")))) return;
   if (await ask(panel, "keep", { state: store.whole })) panel.state = state;
   if (panel.view.visible) look(panel);
-}
-
-async function offer(panel) {
-  const { title, time, state } = (await ask(panel, "left")) ?? {};
-  const go = (key) => button(key, () => (place.remove(), key === "Not now" || panel.app.take(state)));
-  const place = make("p", { class: "offer", role: "status" }, go(`Go on where you were (${title}, ${when(time)})`), " ", go("Not now"));
-  if (state) document.getElementById("content").prepend(place);
 }
