@@ -59,7 +59,7 @@ MOVES = """([views, path, values]) => import('/static/app.js').then(async ({ app
 def started(folder: Path) -> tuple[subprocess.Popen[str], str, int]:
     """`squealbox lab` with its address and port."""
     command = [str(Path(sys.executable).with_name("squealbox")), "lab", "--no-browser", "--port", "0"]
-    environment = {**os.environ, "XDG_STATE_HOME": str(folder)}
+    environment = {**os.environ, "XDG_STATE_HOME": str(folder), "XDG_DATA_HOME": str(folder)}
     for name in ("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE"):
         environment.pop(name, None)
     server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)

@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 from PIL import Image
@@ -20,6 +21,7 @@ TELLING = "section[data-panel={}][data-state=drawn]"
 def main() -> None:
     """One brake that squeals, as its page shows it when it is opened."""
     command = [str(Path(sys.executable).with_name("squealbox")), "lab", "--no-browser", "--port", "0"]
+    command.insert(2, tempfile.mkdtemp(prefix="squealbox-pictures-"))  # a project of its own
     server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     try:
         assert server.stdout is not None

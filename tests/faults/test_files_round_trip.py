@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from squealbox import Coulomb, Cubic, DrumBrake, Hyperbolic, LinearSlope, ParameterError, Ramp, Sinusoid, Stribeck
-from squealbox.cli.starter import mechanism_example
 from squealbox.files import BRAKES, NotWritable, OwnBrake, OwnContact, own_law, read_design, read_file, write_design
+from squealbox.files.beginnings import mechanism_example
 from squealbox.files.sheets import LAW_NAMES, SCHEDULE_NAMES
 from squealbox.friction import Dahl, ElastoPlastic, LuGre, Table
 from squealbox.parameters import from_plain, to_plain

@@ -21,7 +21,7 @@ from squealbox import (
     write_design,
 )
 from squealbox.cli import main
-from squealbox.cli.starter import mechanism_example
+from squealbox.files.beginnings import mechanism_example
 from squealbox.files.varied import scalar_parameters
 
 MASS, K_PAD = np.diag([1.0, 1.0, 2.0]), 3e6

@@ -51,13 +51,13 @@ def test_the_numbers_of_the_paper_are_what_is_computed(tmp_path):
 def test_the_brake_of_the_first_page_is_sound():
     """A newcomer's first answer is no caution that a shoe pulls; so is the file that `init` writes."""
     from squealbox import complex_modes
-    from squealbox.cli.starter import _example
+    from squealbox.files.beginnings import first_design
 
     (example,) = examples(README)
     line = next(line for line in example.splitlines() if line.startswith("brake = "))
     known: dict = {}
     exec("from squealbox import DrumBrake, LinearSlope\n" + line, known)
-    for brake in (known["brake"], _example("drum_brake")):
+    for brake in (known["brake"], first_design("drum_brake")):
         modes = complex_modes(brake)
         assert not modes.stable
         assert "Caution" not in modes.summary()

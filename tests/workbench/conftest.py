@@ -17,7 +17,8 @@ class Server:
     """`squealbox lab` as its user starts it."""
 
     def __init__(self, folder, *words, port=0, token="token-of-the-tests-0123456789"):
-        environment = {**os.environ, "XDG_STATE_HOME": str(folder), "SQUEALBOX_TOKEN": token}
+        own = {"XDG_STATE_HOME": str(folder), "XDG_DATA_HOME": str(folder)}
+        environment = {**os.environ, **own, "SQUEALBOX_TOKEN": token}
         command = [COMMAND, "lab", *map(str, words), "--no-browser", "--port", str(port)]
         self.log = open(folder / "server.log", "w+")  # noqa: SIM115 - closed by stop
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self.log, text=True, env=environment)

@@ -11,7 +11,7 @@ from squealbox.designs import DESIGNS
 from squealbox.plots.moving import moving_strokes
 from workbench.browsing import Page
 
-QUESTIONS = ("why", "when", "happens", "silences", "matches", "tells")
+QUESTIONS = ("why", "when", "happens", "silences", "matches", "tells", "project")
 CHECKS = (Path(__file__).parent / "checks.js").read_text()
 RESTED = "() => ![...document.querySelectorAll('.panel:not([hidden])')].some(p => p.dataset.state === 'waiting')"
 DOTS = "[...document.querySelectorAll('section[data-panel=motion] .cursor')].map(c => c.getAttribute('cx')).join()"
@@ -70,12 +70,12 @@ def test_questions_take_the_arrow_keys_and_go_into_the_link(shared, browser, ser
     assert shared.page.evaluate("document.activeElement.id") == "ask-when"
     shared.page.keyboard.press("ArrowLeft")
     shared.page.keyboard.press("ArrowLeft")
-    assert shared.page.evaluate("document.activeElement.id") == "ask-tells"
+    assert shared.page.evaluate("document.activeElement.id") == "ask-project"
     fragment = "#" + shared.page.evaluate("location.hash").lstrip("#")
     assert shared.page.evaluate("location.search") == "", "the token does not stay in the address"
     with Page(browser, server) as other:
         other.page.goto(server.address + fragment)
-        other.page.wait_for_selector("#panels[data-question=tells]")
+        other.page.wait_for_selector("#panels[data-question=project]")
 
 
 @pytest.mark.parametrize(("size", "scheme"), [((390, 844), "light"), ((640, 400), "dark"), ((768, 1024), "light")])

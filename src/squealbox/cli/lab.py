@@ -25,7 +25,8 @@ def lab(
     Parameters
     ----------
     file
-        design file to start with, or a link that somebody copied from his workbench
+        design file to start with, a link that somebody copied from his workbench, or the folder of a project, which is
+        made where there is none; left out, the project is in ~/.local/share/squealbox/workbench
     port
         where the page is served; left out, 8642 or the next free one
     browser
@@ -35,16 +36,17 @@ def lab(
     """
     if port is not None and not 0 <= port <= 65535:
         raise UsageError(f"--port {port}: expected 0 to 65535")
-    text, fragment, design = "", "", None
+    path, fragment, folder = None, "", None
     if file is not None and LINK in file:
         fragment = "d=" + file.partition(LINK)[2]
+    elif file is not None and (Path(file).is_dir() or not (Path(file).exists() or Path(file).suffix)):
+        folder = Path(file)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise UsageError(f"{file}: the folder of a project cannot be made: {error.strerror}") from error
     elif file is not None:
-        from squealbox.files import read_file
-
-        design = read_file(
-            Path(file), allow_code=allow_code
-        ).design  # says all that is wrong with it before anything is served
-        text = Path(file).read_text(encoding="utf-8")
+        path = Path(file)
     from squealbox.workbench.lab import serve
 
-    serve(text, port, design=design, browser=browser, fragment=fragment)
+    serve(path, port, allow_code=allow_code, browser=browser, fragment=fragment, folder=folder)

@@ -1,5 +1,6 @@
 """From the command to the page: a free port on loopback, the token, the server, the browser."""
 
+import functools
 import logging
 import os
 import secrets
@@ -19,22 +20,26 @@ TRIES = 20  # ports after the usual one that are tried
 
 
 def serve(
-    text: str = "", port: int | None = None, *, design: Any = None, browser: bool = True, fragment: str = ""
-) -> None:
+    path: Path | None = None, port: int | None = None, *, allow_code: bool = False, browser: bool = True,
+    fragment: str = "", folder: Path | None = None,
+) -> None:  # fmt: skip
     """Serve the workbench on loopback until it is stopped with Ctrl-C.
 
     Parameters
     ----------
-    text, design : a design file to start with, and the design read from it where matrices stand beside it
+    path : a design file to start with, whose matrices may stand beside it; a law in it that is code needs `allow_code`
     port : None takes 8642 or the next free one
     browser : open the page in the browser
     fragment : what stands behind the # of the page's address: a design shared by its link
+    folder : the project; left out, the one that stands ready (`folder.standing`)
 
-    Raises `OSError` where the port is taken, `MissingExtra` before anything is served.
+    Raises `DesignFileError` for a file that is no design and `MissingExtra` before anything is served, `OSError` where
+    the port is taken.
     """
-    need("workbench", "uvicorn", "starlette", "websockets")
+    need("workbench", "uvicorn", "starlette", "websockets", "tomlkit")
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")  # many small matrices: threads of the algebra only stand in each other's way
+    file = _opened(path, allow_code) if path is not None else None
     listening = listen(port)
     port = listening.getsockname()[1]
     token = kept_token()
@@ -44,16 +49,27 @@ def serve(
         threading.Thread(target=webbrowser.open, args=[address], daemon=True).start()
     import uvicorn
 
+    from squealbox.workbench.folder import Project, standing
     from squealbox.workbench.guard import Token
+    from squealbox.workbench.patience import Patient
     from squealbox.workbench.server import LARGEST_MESSAGE, Workbench
 
-    app = Workbench(Token(token, port), text, design).app()
+    app = Workbench(Token(token, port), Project(folder or standing()), file).app()
     config = uvicorn.Config(
-        app, log_level="warning", ws="websockets-sansio", ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False,
-        lifespan="on", timeout_graceful_shutdown=2, access_log=False, server_header=False,
+        app, log_level="warning", http=Patient, ws="websockets-sansio", ws_max_size=LARGEST_MESSAGE,
+        ws_per_message_deflate=False, lifespan="on", timeout_graceful_shutdown=2, access_log=False, server_header=False,
     )  # fmt: skip
     logging.getLogger("uvicorn.error").addFilter(_is_news)
     uvicorn.Server(config).run(sockets=[listening])
+
+
+def _opened(path: Path, allow_code: bool) -> Any:
+    """The design file to start with; all that is wrong with it is said before anything is served."""
+    from squealbox.files.reading import read_file, read_text
+    from squealbox.workbench.session import Opened
+
+    found = read_file(path, allow_code=allow_code)
+    return Opened(path.read_text(encoding="utf-8"), found, functools.partial(read_text, name=str(path)))
 
 
 def _is_news(record: logging.LogRecord) -> bool:

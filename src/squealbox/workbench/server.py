@@ -2,6 +2,7 @@
 
 import asyncio
 import importlib.util
+import os
 import sys
 import threading
 from collections.abc import AsyncIterator
@@ -13,12 +14,13 @@ from typing import Any
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
 from starlette.middleware.trustedhost import TrustedHostMiddleware
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from squealbox.workbench.apart import Processes
+from squealbox.workbench.folder import FOLDER, Project
 from squealbox.workbench.frames import frame
 from squealbox.workbench.guard import Headers, SameOrigin, Token
 from squealbox.workbench.recorded import Recordings
@@ -36,12 +38,15 @@ NO_TOKEN = """<!doctype html><html lang="en"><meta charset="utf-8"><title>squeal
 
 
 class Workbench:
-    """The parts of one running workbench: token, file to start with and its design, and the threads that compute."""
+    """The parts of one running workbench: token, file to start with, project, and the threads that compute."""
 
-    def __init__(self, token: Token, text: str = "", design: Any = None) -> None:
-        self.token, self.text, self.design = token, text, design
+    def __init__(self, token: Token, project: Project, file: Any = None) -> None:
+        self.token, self.project, self.file = token, project, file
+        os.environ[FOLDER] = str(project.folder)
+        project.sweep()
         sys.setswitchinterval(SWITCH)
         self.pools = {"quick": ThreadPoolExecutor(2, "quick"), "warming": ThreadPoolExecutor(1, "warming")}
+        self.pools["project"] = ThreadPoolExecutor(1, "project")
         self.files = {path.relative_to(STATIC).as_posix(): path.read_bytes() for path in STATIC.rglob("*.*")}
         self.recordings = Recordings()
         self.processes = Processes()
@@ -56,6 +61,7 @@ class Workbench:
             Route("/vendor/d3.js", _file(chart_library(), "text/javascript")),
             Route("/recording", self.record, methods=["POST"]),
             Route("/paper", self.paper, methods=["POST"]),
+            Route("/project/{part}/{name}", self.kept, methods=["GET", "POST"]),
             WebSocketRoute("/ws", self.talk),
             Route("/static/{path:path}", self.static),
         ]
@@ -102,7 +108,7 @@ class Workbench:
             return JSONResponse({"message": "this address needs its token"}, status_code=403)
         try:
             kept = await self.recordings.take(request.query_params.get("name", ""), request.stream())
-        except ValueError as error:
+        except (ValueError, ClientDisconnect) as error:
             return JSONResponse({"message": str(error)}, status_code=400)
         return JSONResponse({"id": kept})
 
@@ -123,13 +129,28 @@ class Workbench:
             return JSONResponse({"message": str(error)}, status_code=400)
         return Response(made, media_type="application/pdf")
 
+    async def kept(self, request: Request) -> Response:
+        """A recording or a result of the project: given to the page, or taken from it."""
+        if not self.token.known(request.scope):
+            return JSONResponse({"message": "this address needs its token"}, status_code=403)
+        part, name = request.path_params["part"], request.path_params["name"]
+        try:
+            if request.method == "POST":
+                return JSONResponse({"name": await self.project.take(part, name, request.stream())})
+            path = self.project.file(part, name)
+        except (ValueError, ClientDisconnect) as error:
+            return JSONResponse({"message": str(error)}, status_code=400)
+        if path is None:
+            return Response(status_code=404)
+        return FileResponse(path, media_type="application/octet-stream", headers={"content-disposition": "attachment"})
+
     async def talk(self, socket: WebSocket) -> None:
         """One page's connection from its start to its end."""
         if not self.token.known(socket.scope):
             await socket.close(1008)  # before it is accepted: the handshake is answered with 403
             return
         await socket.accept()
-        from squealbox.workbench.session import Session, name_of_text
+        from squealbox.workbench.session import Session
 
         self._slow_pools()
         writing = asyncio.Lock()
@@ -141,12 +162,12 @@ class Workbench:
                 except (WebSocketDisconnect, RuntimeError):  # the page left while its answer was computed
                     session.close()
 
-        session = Session(send, self.pools, self.processes, told=self._answered)
-        if self.design is not None:
-            session.bases[name_of_text(self.text)] = self.design
+        session = Session(send, self.pools, self.processes, told=self._answered, project=self.project)
+        if self.file is not None:
+            session.give(self.file)
         self.pages += 1
         try:
-            await send(frame({"kind": "hello", **_hello(self.text)}))
+            await send(frame({"kind": "hello", **_hello(self.file)}))
             while True:
                 message = await socket.receive()
                 if message["type"] == "websocket.disconnect":
@@ -199,12 +220,13 @@ def _file(path: Path, kind: str) -> Any:
     return answer
 
 
-def _hello(text: str) -> dict[str, Any]:
+def _hello(file: Any) -> dict[str, Any]:
     from squealbox.designs import DESIGNS
     from squealbox.workbench.panels import PANELS
 
     return {
-        "text": text,
+        "text": file.text if file is not None else "",
+        "name": file.found.path.stem if file is not None else "",
         "brakes": [{"name": name, "title": design.title} for name, design in DESIGNS.items()],
         "panels": [panel.data(name) for name, panel in PANELS.items()],
     }

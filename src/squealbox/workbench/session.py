@@ -1,4 +1,4 @@
-"""One page's conversation with the server. Nothing is kept of a user but the files the page opened, and those are his.
+"""One page's conversation with the server. Nothing is kept of it but the files it opened and what it puts on disk.
 
 A question is a JSON text, an answer a binary frame (`frames`) with the question's `id`:
 
@@ -6,6 +6,7 @@ A question is a JSON text, an answer a binary frame (`frames`) with the question
     {"id": 8, "ask": "sheet", "state": {...}}                       fields of a design; with "toml": true its text
     {"id": 9, "ask": "open", "text": "brake = ..."}                 read a design file
     {"id": 10, "ask": "stop", "view": "motion"}                     stop a panel's computation
+    {"id": 11, "ask": "project", "do": "save", "name": "bench 7"}   what is kept on disk (`project`)
 
 Of each view one question is answered at a time; of those that arrive meanwhile only the newest waits, and the others
 are answered at once with `superseded`. Views do not wait for each other, and slow ones have threads of their own; those
@@ -20,16 +21,20 @@ import time
 from collections.abc import Awaitable, Callable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from squealbox.designs import DESIGNS, Design
 from squealbox.workbench.apart import Died, Processes
+from squealbox.workbench.folder import Project, ProjectError, standing
 from squealbox.workbench.frames import frame
 from squealbox.workbench.panels import PANELS, Answer, Elsewhere, OptionError, Options, Stopped, Work, function_of
 from squealbox.workbench.sheet import sheet
 from squealbox.workbench.state import StateError, UnknownBase, design_of
+
+if TYPE_CHECKING:
+    from squealbox.files.reading import DesignFile
 
 LONGEST_TEXT = 1_000_000  # characters of an opened file
 MOST_BASES = 8  # opened files kept for a page; the page sends an older one again
@@ -52,12 +57,23 @@ class Slot:
     waiting: dict[str, Any] | None = None
 
 
+@dataclass(frozen=True)
+class Opened:
+    """A design file as the page opened it: its text, what was read from it, and how it is read."""
+
+    text: str
+    found: "DesignFile"
+    read: "Callable[[str], DesignFile]"
+
+
 @dataclass
 class Session:
     """A page's conversation: `send` takes a frame, `pools` are where answers are computed.
 
-    A slow panel has a pool of its own name, the others share the one called "quick"; `processes` are for those apart.
-    `bases` are the designs of opened files; it may begin with the file the workbench was started with.
+    A slow panel has a pool of its own name, the others share the one called "quick"; `processes` are for those apart,
+    and what is written to disk goes one after the other through the pool called "project".
+    `bases` are the designs of opened files, `files` the files; they may begin with the one the workbench was started
+    with.
     """
 
     send: Callable[[bytes], Awaitable[None]]
@@ -65,6 +81,8 @@ class Session:
     processes: Processes
     told: Callable[[str], None] | None = None  # of each view that was answered
     bases: dict[str, Design] = field(default_factory=dict)
+    files: dict[str, Opened] = field(default_factory=dict)
+    project: Project = field(default_factory=lambda: Project(standing()))
     slots: dict[str, Slot] = field(default_factory=dict)
     tasks: set[asyncio.Task[None]] = field(default_factory=set)
 
@@ -164,12 +182,28 @@ class Session:
                 slot.waiting = None
                 slot.work.stop()
             await self.send(frame({"id": message["id"], "kind": "done"}))
-        elif ask == "sheet":
-            await self.send(await asyncio.get_running_loop().run_in_executor(self.pools["quick"], self._sheet, message))
-        elif ask == "open":
-            await self.send(await asyncio.get_running_loop().run_in_executor(self.pools["quick"], self._open, message))
+        elif ask in ("sheet", "open", "project"):
+            answer = {"sheet": self._sheet, "open": self._open, "project": self._project}[ask]
+            pool = "project" if ask == "project" or message.get("toml") is True else "quick"  # writing files takes time
+            await self.send(await asyncio.get_running_loop().run_in_executor(self.pools[pool], answer, message))
         else:
-            raise Malformed("ask: expected one of sheet, open, stop; or view")
+            raise Malformed("ask: expected one of sheet, open, project, stop; or view")
+
+    def give(self, file: Opened) -> str:
+        """Make a design file known to the page; the name under which it speaks of it."""
+        base = name_of_text(file.text)
+        while base not in self.bases and len(self.bases) >= MOST_BASES:
+            self.files.pop(next(iter(self.bases)), None)
+            self.bases.pop(next(iter(self.bases)))
+        self.bases[base], self.files[base] = file.found.design, file
+        return base
+
+    def _file(self, text: str) -> Opened:
+        """A design file by its text; one that is known may be that of the command line, with matrices beside it."""
+        from squealbox.files.reading import read_text
+
+        read = functools.partial(read_text, name="the file", beside=False)
+        return self.files.get(name_of_text(text)) or Opened(text, read(text), read)
 
     def _sheet(self, message: dict[str, Any]) -> bytes:
         about = {"id": message["id"], "ask": "sheet"}
@@ -178,7 +212,7 @@ class Session:
         except StateError as error:
             return frame({**about, **_wrong(error)})
         try:
-            written = _toml(design) if message.get("toml") is True else {}
+            written = self._toml(design, message) if message.get("toml") is True else {}
             return frame({**about, "kind": "sheet", "sheet": sheet(design), **written})
         except (ArithmeticError, ValueError) as error:  # a value at the end of what numbers reach
             return _failed(about, error)
@@ -189,21 +223,61 @@ class Session:
         if not isinstance(text, str) or len(text) > LONGEST_TEXT:
             problem = {"line": 0, "field": "", "message": f"expected a text of at most {LONGEST_TEXT} characters"}
             return frame({**about, "kind": "wrong", "wrong": [problem]})
-        if name_of_text(text) in self.bases:  # the file of the command line, whose matrices may stand beside it
-            base = name_of_text(text)
-            return frame({**about, "kind": "opened", "base": base, "brake": _name(self.bases[base])})
-        from squealbox.files import DesignFileError, read_text  # loads much, and few open a file at once
+        from squealbox.files import DesignFileError  # loads much, and few open a file at once
+        from squealbox.workbench.rewriting import settings_of
 
         try:
-            design = read_text(text, "the file", beside=False).design
+            file = self._file(text)
         except DesignFileError as error:
             wrong = [{"line": each.line, "field": each.key, "message": each.message} for each in error.problems]
             return frame({**about, "kind": "wrong", "wrong": wrong})
-        base = name_of_text(text)
-        while len(self.bases) >= MOST_BASES:
-            self.bases.pop(next(iter(self.bases)))
-        self.bases[base] = design
-        return frame({**about, "kind": "opened", "base": base, "brake": _name(design)})
+        opened = {"base": self.give(file), "brake": _name(file.found.design), "settings": settings_of(file.found)}
+        return frame({**about, "kind": "opened", **opened})
+
+    def _toml(self, design: Design, message: Mapping[str, Any]) -> dict[str, Any]:
+        """The text of a file of the design: that of the opened file with its changes, where it came from one."""
+        from squealbox.files.writing import NotWritable, design_text
+
+        file = self.files.get(str(message["state"].get("base")))
+        try:
+            if file is None:
+                return {"toml": design_text(design), "said": ""}
+            from squealbox.workbench.rewriting import rewritten
+
+            given = message.get("settings")
+            settings = given if isinstance(given, Mapping) else {}
+            text, said = rewritten(file.text, file.found.design, design, settings, file.read)
+            return {"toml": text, "said": said}
+        except NotWritable as error:
+            return {"toml": None, "notWritable": str(error)}
+
+    def _project(self, message: dict[str, Any]) -> bytes:
+        from squealbox.workbench.project import done
+
+        about = {"id": message["id"], "ask": "project"}
+        try:
+            return frame({**done(self.project, message, self._written), **about})
+        except (ArithmeticError, ValueError, OSError) as error:
+            return _failed(about, error)
+
+    def _written(self, state: Mapping[str, Any]) -> Any:
+        """A state as the page keeps it, with the text it came from: its design, and what makes its file."""
+        from squealbox.files import DesignFileError
+
+        text = state.get("text")
+        try:
+            base = self.give(self._file(text)) if isinstance(text, str) else None
+            design = design_of({**state, "base": base}, self.bases)
+        except (StateError, DesignFileError) as error:
+            raise ProjectError(f"This design has something wrong in it: {error}") from error
+
+        def made() -> tuple[str, str]:
+            found = self._toml(design, {"state": {"base": base}, "settings": state.get("settings")})
+            if found["toml"] is None:
+                raise ProjectError(found["notWritable"])
+            return found["toml"], found["said"]
+
+        return design, made
 
 
 def name_of_text(text: str) -> str:
@@ -262,15 +336,6 @@ def _failed(about: Mapping[str, Any], error: Exception) -> bytes:
 def _wrong(error: StateError) -> dict[str, Any]:
     kind = "unknown_base" if isinstance(error, UnknownBase) else "wrong"
     return {"kind": kind, "wrong": [{"field": each.field, "message": each.message} for each in error.wrong]}
-
-
-def _toml(design: Design) -> dict[str, Any]:
-    from squealbox.files.writing import NotWritable, design_text
-
-    try:
-        return {"toml": design_text(design)}
-    except NotWritable as error:
-        return {"toml": None, "notWritable": str(error)}
 
 
 def _name(design: Design) -> str:

@@ -118,6 +118,7 @@ PANELS: dict[str, Panel] = {
                  words("within", "share", ("0.1", "10 %"), ("0.3", "30 %"), ("0.6", "60 %"), usual="0.3")),
     ),
     "report": Panel("Report", slow=True, apart=True),
+    "project": Panel("Project", columns=2, slow=True, light=True),
     "tour": Panel("Tour: the drum-brake paper of 2011", slow=True, apart=True),
 }  # fmt: skip
 

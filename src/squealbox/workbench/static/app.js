@@ -47,7 +47,7 @@ class App extends EventTarget {
 
   /** The name of files: design and date are left out, so that equal figures have equal names. */
   stem() {
-    return this.store.design.base ? "design" : this.store.design.brake.replaceAll("_", "-");
+    return this.store.design.base ? (this.store.names.get(this.store.design.base) ?? "design") : this.store.design.brake.replaceAll("_", "-");
   }
 
   /** A view was drawn: tell who waits for it, once the frame with it has been painted. */
@@ -131,11 +131,12 @@ class App extends EventTarget {
   }
 
   /** Read a design file's text; resolves to what is wrong with it, or nothing. */
-  async open(text, wanted = () => true) {
+  async open(text, wanted = () => true, name = null) {
     const frame = await this.connection.ask({ ask: "open", text });
     if (!wanted()) return [];
     if (frame.kind === "opened") {
-      this.store.replace({ base: frame.base, brake: frame.brake, laws: {}, values: {} }, text);
+      for (const [panel, asked] of Object.entries(frame.settings)) this.store.settings = { ...this.store.settings, [panel]: { ...this.store.settings[panel], ...asked } };
+      this.store.replace({ base: frame.base, brake: frame.brake, laws: {}, values: {} }, text, name);
       return [];
     }
     return frame.wrong ?? [{ line: 0, field: "", message: frame.message }];
@@ -144,25 +145,30 @@ class App extends EventTarget {
   /** Take over what a link carries; false where it carries nothing. */
   async follow(address) {
     const carried = Store.carried(address);
-    if (!carried) return false;
+    return carried !== null && this.take(carried);
+  }
+
+  /** Take over what a link or the project carries; false where that cannot be. */
+  async take(carried) {
     const [laws, values, settings] = [carried.laws, carried.values, carried.settings].map((each) => (isObject(each) ? each : {}));
-    const brake = String(carried.brake ?? "");
+    let brake = String(carried.brake ?? "");
     const text = typeof carried.text === "string" ? carried.text : null;
     if (!text && !this.hello.brakes.some((each) => each.name === brake)) {
       note(`The link names a brake that is not known here: “${brake.slice(0, 40)}”.`);
       return false;
     }
-    this.store.settings = settings;
-    let base = null;
+    let [base, asked] = [null, {}];
     if (text) {
       const frame = await this.connection.ask({ ask: "open", text });
       if (frame.kind !== "opened") {
         note("The file in this link cannot be read here.");
         return false;
       }
-      base = frame.base;
+      [base, asked] = [frame.base, frame.settings];
+      brake ||= frame.brake;
     }
-    this.store.replace({ base, brake, laws, values }, text);
+    this.store.settings = { ...asked, ...settings };
+    this.store.replace({ base, brake, laws, values }, text, carried.name);
     return true;
   }
 
@@ -192,7 +198,7 @@ class App extends EventTarget {
     select.append(make("option", { value: "", hidden: true }, "from a file"));
     const address = location.hash;
     this.loading = this.#panels(hello.panels.filter((about) => about.shown)); // meanwhile the sheet is asked
-    if (hello.text && !address) await this.open(hello.text);
+    if (hello.text && !address) await this.open(hello.text, undefined, hello.name);
     else if (!(await this.follow(address))) await this.#sheet();
   }
 
@@ -241,9 +247,9 @@ class App extends EventTarget {
   }
 
   async #save() {
-    const frame = await this.connection.ask({ ask: "sheet", toml: true, state: this.store.design }).catch(() => null);
+    const frame = await this.connection.ask({ ask: "sheet", toml: true, state: this.store.design, settings: this.store.settings }).catch(() => null);
     if (!frame) note("Not saved: the server does not answer. Save again when it does.");
-    else if (frame.toml) download(frame.toml, `${this.stem()}.toml`, "application/toml");
+    else if (frame.toml) download(frame.toml, `${this.stem()}.toml`, "application/toml"), frame.said && note(frame.said);
     else note(frame.notWritable ?? "This design cannot be written: see what is marked.");
   }
 

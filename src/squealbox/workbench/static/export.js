@@ -118,6 +118,7 @@ function cell(value) {
 
 /** Hand a file to the user. */
 export function download(content, name, type) {
+  document.dispatchEvent(new CustomEvent("saved", { detail: { content, name } })); // it may go into the project too
   const address = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type }));
   const link = document.createElement("a");
   link.href = address;

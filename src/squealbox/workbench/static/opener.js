@@ -25,6 +25,7 @@ export class Opener {
   }
 
   show() {
+    this.name = null;
     this.list.replaceChildren();
     if (!this.dialog.open) this.dialog.showModal();
   }
@@ -32,6 +33,7 @@ export class Opener {
   async #read(file) {
     if (!file) return;
     if (file.size > 1_000_000) return this.#say([{ message: `${file.name} has ${file.size} bytes, expected at most 1000000` }]);
+    this.name = file.name.replace(/\.toml$/i, "");
     this.text.value = await file.text();
     await this.#open();
   }
@@ -44,7 +46,7 @@ export class Opener {
       return;
     }
     this.#say([{ message: "reading …" }]);
-    const wrong = await this.app.open(text, () => this.dialog.open).catch((error) => [{ message: error.message }]);
+    const wrong = await this.app.open(text, () => this.dialog.open, this.name).catch((error) => [{ message: error.message }]);
     if (!this.dialog.open) return; // cancelled meanwhile
     if (wrong.length) return this.#say(wrong);
     this.dialog.close();

@@ -9,6 +9,7 @@ const QUESTIONS = [
   ["silences", "What silences it?", ["silence", "sensitivity", "compare"]],
   ["matches", "Does it match the test?", ["recording", "calibrate"]],
   ["tells", "Report, tour", ["report", "tour"]],
+  ["project", "Project", ["project"]],
 ];
 
 export class Questions {

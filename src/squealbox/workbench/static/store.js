@@ -13,6 +13,7 @@ export class Store extends EventTarget {
     super();
     this.design = Store.plain("drum_brake");
     this.texts = new Map(); // of the opened files, by base: undo and links find the text of their own design
+    this.names = new Map(); // under which they are saved again
     this.sheet = null;
     this.settings = {}; // options of the panels, by panel
     this.past = [];
@@ -104,8 +105,9 @@ export class Store extends EventTarget {
   }
 
   /** Another brake, file or law: the fields change too. */
-  replace(design, text = null) {
+  replace(design, text = null, name = null) {
     if (design.base && text !== null) this.texts.set(design.base, text);
+    if (design.base && name) this.names.set(design.base, name);
     this.gathered = null;
     this.past.push(this.before ?? this.design);
     this.before = null;
@@ -128,11 +130,15 @@ export class Store extends EventTarget {
     this.dispatchEvent(new CustomEvent("changed"));
   }
 
+  /** What a link and the project carry: the design, the file it came from, and the options of the panels. */
+  get whole() {
+    const { base, brake, laws, values } = this.design;
+    return { brake, laws, values, settings: this.settings, ...(base ? { text: this.text, name: this.names.get(base) } : {}) };
+  }
+
   /** The link's part behind the #. */
   fragment() {
-    const { base, brake, laws, values } = this.design;
-    const carried = { brake, laws, values, settings: this.settings, ...(base ? { text: this.text } : {}) };
-    return LINK + encode(JSON.stringify(carried));
+    return LINK + encode(JSON.stringify(this.whole));
   }
 
   /** What a link carries; null where it is none. */
