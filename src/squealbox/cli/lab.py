@@ -1,5 +1,6 @@
 """`squealbox lab`: the workbench in the browser."""
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -40,10 +41,16 @@ def lab(
         fragment = "d=" + file.partition(LINK)[2]
     elif file is not None:
         from squealbox.files import read_file
+        from squealbox.files.reduced import for_a_page
+        from squealbox.system import InvalidSystem
 
-        design = read_file(
-            Path(file), allow_code=allow_code
-        ).design  # says all that is wrong with it before anything is served
+        found = read_file(Path(file), allow_code=allow_code)  # says all that is wrong before anything is served
+        if found.design.system().is_sparse:
+            print("squealbox lab: making the finite-element brake small, which takes some seconds", file=sys.stderr)
+        try:
+            design = for_a_page(found)
+        except InvalidSystem as error:
+            raise UsageError(f"{file}: {error}") from error
         text = Path(file).read_text(encoding="utf-8")
     from squealbox.workbench.lab import serve
 

@@ -35,8 +35,10 @@ LONGEST_TEXT = 1_000_000  # characters of an opened file
 MOST_BASES = 8  # opened files kept for a page; the page sends an older one again
 KEPT = 8  # designs of the last states: a slider's move asks several views about one
 LARGE = 40  # degrees of freedom from which every answer gets a process of its own: other pages are not held up
+SINGLE = 160  # the same, of answers that take one spectrum
 PER_CUBE = 5e-6  # s an answer takes about, times the cube of the degrees of freedom
 SAID = 0.1  # s after which a progress is told again
+SPARSE = "a finite-element brake is made small first, which takes a while: open it with squealbox lab FILE"
 LONGEST_ID = 9_007_199_254_740_991  # the largest whole number a page can count to
 
 
@@ -199,6 +201,8 @@ class Session:
         except DesignFileError as error:
             wrong = [{"line": each.line, "field": each.key, "message": each.message} for each in error.problems]
             return frame({**about, "kind": "wrong", "wrong": wrong})
+        if design.system().is_sparse:
+            return frame({**about, "kind": "wrong", "wrong": [{"line": 0, "field": "", "message": SPARSE}]})
         base = name_of_text(text)
         while len(self.bases) >= MOST_BASES:
             self.bases.pop(next(iter(self.bases)))
@@ -221,7 +225,7 @@ def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design],
         if work.stopped:
             raise Stopped
         design, size = _asked(message.get("state"), bases)
-        if size > LARGE and not (work.apart or PANELS[name].light):
+        if size > (SINGLE if PANELS[name].single else LARGE) and not (work.apart or PANELS[name].light):
             raise Elsewhere(f"computing, with {size} degrees of freedom", PER_CUBE * size**3)
         with np.errstate(all="ignore"):  # of extreme values: what is not finite is said in the answer
             answer: Answer = function_of(name)(design, Options(message.get("options") or {}), work)

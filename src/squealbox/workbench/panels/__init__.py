@@ -15,18 +15,21 @@ class Panel:
     """A panel: its title, how wide it is in columns of the page, and whether its answer may take seconds.
 
     `apart`: it is computed in a process of its own, which takes a second to start and can be ended at any instant.
+    `single`: it takes one spectrum, which brakes of 160 degrees of freedom have at once.
     """
 
     title: str
     columns: int = 1
     slow: bool = False
     apart: bool = False
+    single: bool = False
     light: bool = False  # no more work for a large brake than for a small one
     shown: bool = True  # False: it answers the page itself, not a place on it
 
 
 PANELS: dict[str, Panel] = {
-    "moving": Panel("The brake, slowed down"),
+    "moving": Panel("The brake, slowed down", single=True),
+    "mesh": Panel("Its surface", light=True, shown=False),
     "drawing": Panel("The brake", light=True, shown=False),
     "verdict": Panel("Verdict", shown=False),
     "locus": Panel("Modes over a parameter", columns=2),

@@ -12,7 +12,8 @@ from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.modes import modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, axis_of, try_value
 
-POINTS = 201
+POINTS, COARSE = 201, 21  # of brakes of few and of many degrees of freedom
+FEW = 40
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
@@ -40,7 +41,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
             "flutterShare": finite(why.flutter_share),
             "modes": min(int(modes.unstable_modes), modes.eigenvalues.shape[-1] // 2),
         }
-    found = critical_values(design, parameter, (low, high), points=POINTS)
+    found = critical_values(design, parameter, (low, high), points=POINTS if system.size <= FEW else COARSE)
     data["crossings"] = [
         {
             "value": float(each.value),

@@ -44,7 +44,8 @@ export class Questions {
 
   show() {
     const { asked } = this;
-    if (this.place.dataset.question === asked) return;
+    if (this.place.dataset.question === asked && this.many === this.app.panels.size) return;
+    this.many = this.app.panels.size; // a file may be open before they are here
     this.place.dataset.question = asked;
     this.place.setAttribute("aria-labelledby", `ask-${asked}`);
     for (const tab of this.tabs) {
