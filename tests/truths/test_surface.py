@@ -80,4 +80,4 @@ def test_exported_matrices_are_drawn_by_their_nodes():
     assert surface.names == ("disc", "pad")
     assert np.all(surface.faces == np.arange(22)[:, None])
     np.testing.assert_allclose(surface.places[0], [0.1, -0.03, 0.0])
-    assert "name no elements" in function_of("moving")(drawn, Options({}), Work()).data["mesh"]
+    assert "name no elements" in function_of("moving")(drawn, Options({}), Work()).data["words"]

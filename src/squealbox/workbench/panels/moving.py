@@ -13,6 +13,7 @@ from squealbox.workbench.panels.modes import modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
 MOST_MODES = 12
+SEEN = 0.05  # of the freedom that moves most: what moves less has no phase to tell
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
@@ -41,8 +42,12 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     data |= {"modes": told, "mode": chosen}
     if surface is not None:
         moved = surface_shape(surface, shape)
-        return Answer({**data, "mesh": _said(surface, moved)}, {"re": moved.real, "im": moved.imag})
+        size = np.linalg.norm(np.abs(moved), axis=1)
+        shares = np.mean(size[surface.faces], axis=1) / np.max(size)
+        data |= {"mesh": True, "words": _said(surface, size)}
+        return Answer(data, {"re": moved.real, "im": moved.imag, "shares": shares})
     press = [contact.n @ shape for contact in system.contacts]
+    data |= {"words": f"{_phases(shape, system.names)}. Its size is free; growth is left out."}
     arrays |= {"re": shape.real, "im": shape.imag, "pressRe": np.real(press), "pressIm": np.imag(press)}
     return Answer(data, arrays)
 
@@ -68,9 +73,21 @@ def _order(modes: Any, design: Design) -> list[int]:
     return order[:MOST_MODES]
 
 
-def _said(surface: Surface, moved: Any) -> str:
-    """What is drawn of the surface, and how the parts share the motion."""
-    size = np.linalg.norm(np.abs(moved), axis=1)
+def _phases(shape: Any, names: Any) -> str:
+    """The phase of each freedom that moves much, against the one that moves most."""
+    sizes = np.abs(shape)
+    most = int(np.argmax(sizes))
+    told = []
+    for i in np.flatnonzero(sizes > SEEN * sizes[most]):
+        if i != most:
+            degrees = int(np.rint(np.rad2deg(np.angle(shape[i] / shape[most]))))
+            way = "behind" if degrees < 0 else "before"
+            told.append(f"{names[i]} {sizes[i] / sizes[most]:.2g} of {names[most]} and {abs(degrees)}° {way}")
+    return ", ".join(told[:3]) or f"only {names[most]} moves"
+
+
+def _said(surface: Surface, size: Any) -> str:
+    """What is drawn of the surface, and how the parts share the motion, of size (k,) at the nodes."""
     nodes = [np.unique(surface.faces[surface.parts == i]) for i in range(len(surface.names))]
     shares = [float(np.max(size[each])) / float(np.max(size)) for each in nodes]
     said = ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in zip(surface.names, shares, strict=True))

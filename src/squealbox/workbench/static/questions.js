@@ -6,7 +6,7 @@ const QUESTIONS = [
   ["why", "Why does it squeal?", ["locus", "moving", "energy", "friction"]],
   ["when", "When?", ["map", "branch"]],
   ["happens", "What happens?", ["moving", "motion", "listen"]],
-  ["silences", "What silences it?", ["silence", "sensitivity", "compare"]],
+  ["silences", "What silences it?", ["silence", "target", "sensitivity", "compare"]],
   ["matches", "Does it match the test?", ["recording", "calibrate"]],
   ["tells", "Report, tour", ["report", "tour"]],
 ];

@@ -70,11 +70,10 @@ async function solid(panel, { data, arrays }) {
     panel.scene = panel.mesh = null;
     const found = await panel.app.connection.ask({ view: "mesh", state, options: {} }).catch(() => null);
     if (found?.kind !== "answer" || panel.answer.data !== data) return;
-    panel.mesh = new Mesh(panel.stage, () => panel.scene && frame(panel, panel.since ?? 0));
-    panel.mesh.load(found.arrays, found.data.names);
+    panel.mesh = new Mesh(panel.stage, found, () => panel.scene && frame(panel, panel.since ?? 0));
     panel.mesh.base = state.base;
   }
-  panel.mesh.shape(arrays.re, arrays.im, data.normal);
+  Object.assign(panel.mesh, arrays, { normal: data.normal });
   scene(panel);
 }
 
@@ -96,8 +95,7 @@ function scene(panel) {
     }
     const at = (share) => ({ k: 0, turn: 2 * Math.PI * share, q: Array.from(arrays.re, (re, i) => re * Math.cos(2 * Math.PI * share) - arrays.im[i] * Math.sin(2 * Math.PI * share)) });
     panel.scene = { at, period: SLOW };
-    const words = data.mesh ?? `${phases(data, arrays)}. Its size is free; growth is left out.`;
-    panel.remark = data.modes.length ? `${data.mode ? "A mode" : "The mode that grows first"}, ${withUnit(data.modes[data.mode][0], "Hz")}: ${words}` : "";
+    panel.remark = `${data.mode ? "A mode" : "The mode that grows first"}, ${withUnit(data.modes[data.mode][0], "Hz")}: ${data.words}`;
   }
   if (!data.mesh) panel.scale = (REACH * panel.size) / (largest(panel) || 1);
   const keys = data.mesh ? panel.mesh.keys() : ["slip", "stick", "lifted"].map((state) => [state, state]);
@@ -141,16 +139,6 @@ function played(panel, now) {
     panel.says.textContent = "Goes along with the sound, lit as by a flash once a period, so that its vibration is seen slowly.";
   }
   frame(panel, panel.since ?? 0, now.share);
-}
-
-/** The phase of each freedom that moves much, against the one that moves most. */
-function phases({ names }, { re, im }) {
-  const sizes = Array.from(re, (value, i) => Math.hypot(value, im[i]));
-  const most = sizes.indexOf(Math.max(...sizes));
-  const degree = (i) => Math.round(((Math.atan2(im[i], re[i]) - Math.atan2(im[most], re[most])) * 180) / Math.PI);
-  const others = names.map((name, i) => [name, i]).filter(([, i]) => i !== most && sizes[i] > 0.05 * sizes[most]).slice(0, 3);
-  if (!others.length) return `only ${names[most]} moves`;
-  return others.map(([name, i]) => `${name} ${shown(sizes[i] / sizes[most], 2)} of ${names[most]} and ${Math.abs(((degree(i) + 540) % 360) - 180)}° ${((degree(i) + 540) % 360) - 180 < 0 ? "behind" : "before"}`).join(", ");
 }
 
 /** What displacements q add to a point, of the points whose moves (freedoms, points, 2) these are. */
