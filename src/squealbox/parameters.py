@@ -346,7 +346,8 @@ def _same(a: Any, b: Any) -> bool:
         return a is b or (type(a) is type(b) and a.shape == b.shape and (a != b).nnz == 0)
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         return np.array_equal(a, b)
-    if isinstance(a, tuple) and isinstance(b, tuple):
+    a, b = (tuple(each.items()) if isinstance(each, dict) else each for each in (a, b))
+    if isinstance(a, (tuple, list)) and isinstance(b, (tuple, list)):
         return len(a) == len(b) and all(_same(x, y) for x, y in zip(a, b, strict=True))
     return bool(a == b)
 
@@ -357,7 +358,8 @@ def _hashable(value: Any) -> Any:
         return value.shape, float(np.sum(entries.data)), float(np.sum(entries.data * (entries.coords[0] + 1.0)))
     if isinstance(value, np.ndarray):
         return value.shape, value.tobytes()
-    return tuple(_hashable(item) for item in value) if isinstance(value, tuple) else value
+    several = tuple(value.items()) if isinstance(value, dict) else value
+    return tuple(_hashable(item) for item in several) if isinstance(several, (tuple, list)) else value
 
 
 def _told(sheet: DataSheet, indent: str = "  ", usual: Mapping[str, Any] | None = None) -> Iterator[str]:

@@ -102,6 +102,7 @@ class ReducedBrake(Design):
     friction: FrictionLaw | None = None
     values: Any = None
     full: Any = None
+    surface: Any = None  # `fe.surface.Surface`, for those who draw it
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", dict(self.values or {}))
@@ -152,16 +153,15 @@ class ReducedBrake(Design):
                 inner[name.removeprefix("friction.")] = value
             elif name == "friction" and isinstance(value, FrictionLaw):
                 whole["friction"] = value
-            elif name in ("reduction", "values", "full"):
+            elif name in ("reduction", "values", "full", "surface"):
                 whole[name] = value
             else:
                 raise ParameterError(type(self).__name__, name, value, known_names(name, self._names()))
         law = whole.get("friction", self.friction)
         if inner and law is not None:
             whole["friction"] = law.replace(inner)
-        return type(self)(
-            **{"reduction": self.reduction, "friction": self.friction, "full": self.full, "values": values} | whole
-        )
+        kept = {name: getattr(self, name) for name in ("reduction", "friction", "full", "surface")}
+        return type(self)(**{**kept, "values": values} | whole)
 
     def value_of(self, path: str) -> Any:
         """The value behind a name."""

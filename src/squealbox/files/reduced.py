@@ -22,6 +22,7 @@ from squealbox.designs import Design
 from squealbox.fe.readers.matrix import MatrixFileError
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.fe.reduced_files import load_reduced
+from squealbox.fe.surface import with_surface
 from squealbox.files.analyses import Axis, Simulate, read_ends
 from squealbox.files.arrays import ArrayFileError, Vector, path_beside
 from squealbox.files.asked import flattened, known
@@ -140,6 +141,15 @@ def dense(found: "DesignFile", axes: Iterable[Axis] = ()) -> "DesignFile":
             raise
         raise InvalidSystem(str(error)) from error
     return _from_rest(dataclasses.replace(found, design=with_rest(small)))
+
+
+def for_a_page(found: "DesignFile") -> Design:
+    """The design of a file as a page shows it: a finite-element brake made small, with its surface to draw.
+
+    Raises `InvalidSystem` as `dense`.
+    """
+    design = dense(found).design
+    return with_surface(design) if isinstance(design, ReducedBrake) else design
 
 
 def with_rest(small: ReducedBrake) -> ReducedBrake:

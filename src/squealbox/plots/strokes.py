@@ -3,7 +3,8 @@
 `Strokes` stands in for the panel and takes the few calls the drawings make, so the geometry is written down once.
 """
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,10 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.plots.brakes import BELT, DRAWINGS, LOAD
 
+SAID = {  # what a drawing calls by another name than the design does
+    "N": ("load",), "F": ("load",), "N0": ("load",), "N1": ("load1",), "N2": ("load2",), "V": ("sliding_speed",),
+    "VB": ("sliding_speed",), "Omega": ("spin",),
+}  # fmt: skip
 ROLES = {BELT: "motion", LOAD: "load", "#7a8a99": "part"}  # what a colour stands for; the page has its own colours
 
 
@@ -28,6 +33,27 @@ def brake_strokes(design: Design) -> dict[str, Any]:
     points = np.array(panel.points) if panel.points else np.zeros((1, 2))
     low, high = points.min(axis=0), points.max(axis=0)
     return {"strokes": panel.strokes, "box": [float(x) for x in (low[0], high[0], low[1], high[1])]}
+
+
+def written_places(design: Design, strokes: Sequence[Mapping[str, Any]], points: Any) -> dict[str, tuple[float, float]]:
+    """Where in a drawing the parameters of a design are written: name to place, where a text says `k_1`, `N_2`, 35°.
+
+    `strokes` have a count each and `points` (k, 2) are theirs one after the other, as `moving_strokes` gives them.
+    """
+    leaves = {name: (about.unit, value) for name, about, value in design.leaves()}
+    degrees = {f"{np.rad2deg(value):.0f}°": name for name, (unit, value) in leaves.items()
+               if unit == "rad" and isinstance(value, float)}  # fmt: skip
+    found: dict[str, tuple[float, float]] = {}
+    first = 0
+    for stroke in strokes:
+        for word in re.split(r"[\s,$]+", str(stroke.get("text", ""))):
+            plain = re.sub(r"[_\\]", "", word)
+            names = (plain, degrees.get(plain, ""), *SAID.get(plain, ()))
+            for name in names:
+                if name in leaves:
+                    found.setdefault(name, (float(points[first][0]), float(points[first][1])))
+        first += int(stroke["count"])
+    return found
 
 
 class Strokes:

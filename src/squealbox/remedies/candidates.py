@@ -302,7 +302,7 @@ def _speeds(brake: Design) -> Any:
 
 def more_friction(brake: Design, factor: float) -> Design:
     """The brake with every friction coefficient of its laws times `factor`."""
-    laws = list(_laws(brake))
+    laws = list(laws_of(brake))
     if not laws:
         raise ParameterError("silence", "brake", type(brake).__name__, "a design with a friction law")
     return brake.replace({
@@ -312,10 +312,11 @@ def more_friction(brake: Design, factor: float) -> Design:
     })  # fmt: skip
 
 
-def _laws(design: Any, prefix: str = "") -> Iterator[tuple[str, FrictionLaw]]:
+def laws_of(design: Any, prefix: str = "") -> Iterator[tuple[str, FrictionLaw]]:
+    """The friction laws of a design and of the brake within it, each with its name."""
     for name in design.field_names():
         value = getattr(design, name)
         if isinstance(value, FrictionLaw):
             yield prefix + name, value
         elif isinstance(value, Design):
-            yield from _laws(value, f"{prefix}{name}.")
+            yield from laws_of(value, f"{prefix}{name}.")

@@ -6,10 +6,16 @@ from squealbox.studies.uncertainty.distributions import Lognormal, TruncatedNorm
 from squealbox.studies.uncertainty.scatter import Scatter
 
 FRICTION, SPRINGS, DAMPERS = 0.08, 0.03, 0.20  # coefficients of variation
+LOT, LEAST_LOT, SMALL = 2048, 128, 20  # brakes, and degrees of freedom up to which LOT of them take seconds
 ASSUMED = (
     f"Assumed scatter, since none was given: friction {100.0 * FRICTION:.0f} %, stiffnesses {100.0 * SPRINGS:.0f} %, "
     f"dampers {100.0 * DAMPERS:.0f} % (standard deviation over mean)"
 )
+
+
+def lot_size(brake: Design, most: int = LOT) -> int:
+    """Brakes in the lot of a brake of n degrees of freedom: the fewer the larger, as a spectrum costs n^2 to n^3."""
+    return max(LEAST_LOT, int(most * min(1.0, (SMALL / brake.system().size) ** 2)))
 
 
 def usual_scatter(brake: Design) -> Scatter:

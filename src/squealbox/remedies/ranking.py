@@ -14,7 +14,7 @@ from squealbox.designs.base import Design
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.parameters import ParameterError
 from squealbox.remedies.candidates import Candidate, candidates_for, more_friction
-from squealbox.remedies.production import ASSUMED, usual_scatter
+from squealbox.remedies.production import ASSUMED, LOT, lot_size, usual_scatter
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.uncertainty.scatter import Scatter
 from squealbox.system import InvalidSystem, equilibrium
@@ -24,7 +24,6 @@ TUNING = 0.03  # standard deviation of an absorber's frequency in production, re
 ZOOM = 17
 PUSH, PERIODS = 0.05, 100.0  # m/s of the push, and how many periods of the worst mode it is followed
 MOST_ROWS = 20  # of a summary
-LOT, LEAST_LOT, SMALL = 2048, 128, 20  # brakes, and degrees of freedom up to which LOT of them take seconds
 Z = 1.96  # of a 95 % interval
 FEWER = "{} brakes in the lot, as each is large: P(squeal) is known to {:.0f} % or better, with more samples closer"
 HALF = 0.5
@@ -161,8 +160,8 @@ def silence(
     scatter = usual_scatter(brake) if scatter is None else scatter
     if not isinstance(scatter, Scatter):
         raise ParameterError("silence", "scatter", scatter, "a Scatter of the brake's parameters")
-    fewer = samples is None and _lot(brake) < LOT
-    samples = _lot(brake) if samples is None else samples
+    fewer = samples is None and lot_size(brake) < LOT
+    samples = lot_size(brake) if samples is None else samples
     lot = scatter.sample(samples, seed=seed)
     tuning = 1.0 + TUNING * np.random.default_rng(seed + 1).standard_normal(samples)
     worse = more_friction(brake, 1.0 + margin)
@@ -190,11 +189,6 @@ def silence(
         inputs={"system": brake}, settings={"samples": samples, "seed": seed, "push": push}, outcome=outcome,
         assumption="\n".join([ASSUMED] * assumed + [FEWER.format(samples, 50.0 * Z / np.sqrt(samples))] * fewer),
     )  # fmt: skip
-
-
-def _lot(brake: Design) -> int:
-    """Brakes in the lot of a brake of n degrees of freedom: the fewer the larger, as a spectrum costs n^2 to n^3."""
-    return max(LEAST_LOT, int(LOT * min(1.0, (SMALL / brake.system().size) ** 2)))
 
 
 def _row(each: Candidate, brake: Design, margin: float, lot: Any, tuning: Any, push: float) -> dict[str, Any]:

@@ -33,8 +33,8 @@ def serve(
     fragment : what stands behind the # of the page's address: a design shared by its link
     folder : the project; left out, the one that stands ready (`folder.standing`)
 
-    Raises `DesignFileError` for a file that is no design and `MissingExtra` before anything is served, `OSError` where
-    the port is taken.
+    Raises `DesignFileError` for a file that is no design, `InvalidSystem` for one too large for a page and
+    `MissingExtra` before anything is served, `OSError` where the port is taken.
     """
     need("workbench", "uvicorn", "starlette", "websockets", "tomlkit")
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -66,10 +66,14 @@ def serve(
 def _opened(path: Path, allow_code: bool) -> Any:
     """The design file to start with; all that is wrong with it is said before anything is served."""
     from squealbox.files.reading import read_file, read_text
+    from squealbox.files.reduced import for_a_page
     from squealbox.workbench.session import Opened
 
     found = read_file(path, allow_code=allow_code)
-    return Opened(path.read_text(encoding="utf-8"), found, functools.partial(read_text, name=str(path)))
+    if found.design.system().is_sparse:
+        print("squealbox lab: making the finite-element brake small, which takes some seconds", file=sys.stderr)
+    read = functools.partial(read_text, name=str(path))
+    return Opened(path.read_text(encoding="utf-8"), found, read, for_a_page(found))
 
 
 def _is_news(record: logging.LogRecord) -> bool:

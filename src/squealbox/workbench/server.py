@@ -182,11 +182,11 @@ class Workbench:
             self.first.set()
 
     def _slow_pools(self) -> None:
-        """Threads for each slow panel, so that none holds up another; made with the first page."""
+        """Threads of their own for slow panels and those quick with any brake: none waits for another."""
         from squealbox.workbench.panels import PANELS
 
         for name, panel in PANELS.items():
-            if panel.slow and name not in self.pools:
+            if (panel.slow or panel.single or panel.light) and name not in self.pools:
                 self.pools[name] = ThreadPoolExecutor(2, name)
 
     def _warm(self) -> None:

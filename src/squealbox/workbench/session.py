@@ -40,8 +40,10 @@ LONGEST_TEXT = 1_000_000  # characters of an opened file
 MOST_BASES = 8  # opened files kept for a page; the page sends an older one again
 KEPT = 8  # designs of the last states: a slider's move asks several views about one
 LARGE = 40  # degrees of freedom from which every answer gets a process of its own: other pages are not held up
+SINGLE = 160  # the same, of answers that take one spectrum
 PER_CUBE = 5e-6  # s an answer takes about, times the cube of the degrees of freedom
 SAID = 0.1  # s after which a progress is told again
+SPARSE = "a finite-element brake is made small first, which takes a while: open it with squealbox lab FILE"
 LONGEST_ID = 9_007_199_254_740_991  # the largest whole number a page can count to
 
 
@@ -64,6 +66,7 @@ class Opened:
     text: str
     found: "DesignFile"
     read: "Callable[[str], DesignFile]"
+    design: Design | None = None  # what the page shows of it, where that is not the design itself
 
 
 @dataclass
@@ -195,7 +198,7 @@ class Session:
         while base not in self.bases and len(self.bases) >= MOST_BASES:
             self.files.pop(next(iter(self.bases)), None)
             self.bases.pop(next(iter(self.bases)))
-        self.bases[base], self.files[base] = file.found.design, file
+        self.bases[base], self.files[base] = file.design or file.found.design, file
         return base
 
     def _file(self, text: str) -> Opened:
@@ -231,6 +234,8 @@ class Session:
         except DesignFileError as error:
             wrong = [{"line": each.line, "field": each.key, "message": each.message} for each in error.problems]
             return frame({**about, "kind": "wrong", "wrong": wrong})
+        if file.found.design.system().is_sparse:
+            return frame({**about, "kind": "wrong", "wrong": [{"line": 0, "field": "", "message": SPARSE}]})
         opened = {"base": self.give(file), "brake": _name(file.found.design), "settings": settings_of(file.found)}
         return frame({**about, "kind": "opened", **opened})
 
@@ -295,7 +300,7 @@ def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design],
         if work.stopped:
             raise Stopped
         design, size = _asked(message.get("state"), bases)
-        if size > LARGE and not (work.apart or PANELS[name].light):
+        if size > (SINGLE if PANELS[name].single else LARGE) and not (work.apart or PANELS[name].light):
             raise Elsewhere(f"computing, with {size} degrees of freedom", PER_CUBE * size**3)
         with np.errstate(all="ignore"):  # of extreme values: what is not finite is said in the answer
             answer: Answer = function_of(name)(design, Options(message.get("options") or {}, bases), work)

@@ -9,6 +9,7 @@ import numpy as np
 
 from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files.sheets import LAW_NAMES, field_type, name_of
 from squealbox.files.varied import scalar_parameters
 from squealbox.friction import FrictionLaw
@@ -67,7 +68,7 @@ def slider(value: float, about: Parameter, whole: bool = False) -> tuple[float, 
 def usual_value(owner: DataSheet, name: str) -> Any:
     """The value the class gives to a field, or the present one where the class has none."""
     usual = getattr(type(owner), name, None)
-    return usual if isinstance(usual, (int, float)) else getattr(owner, name)
+    return usual if isinstance(usual, (int, float)) else owner.value_of(name)
 
 
 def _fields(owner: DataSheet, prefix: str) -> Iterator[dict[str, Any]]:
@@ -86,17 +87,28 @@ def _fields(owner: DataSheet, prefix: str) -> Iterator[dict[str, Any]]:
             yield {"path": path, "kind": "choice", "value": value, "options": about.options, "meaning": about.meaning}
         elif name in parameters:
             yield _parameter(owner, name, value, path, parameters[name])
+    if isinstance(owner, ReducedBrake):
+        for name, about, value in owner.leaves():
+            if name in owner.values:
+                yield _number(name, about, value, value, whole=False)
 
 
 def _parameter(owner: DataSheet, name: str, value: Any, path: str, about: Parameter) -> dict[str, Any]:
     field = {"path": path, "meaning": about.meaning, "source": about.source, "range": about.range}
     if isinstance(value, Schedule) or np.ndim(value) > 0:
         return {**field, "kind": "fixed", "value": f"{value!r}" if isinstance(value, Schedule) else _size(value)}
-    whole = field_type(type(owner), name) is int
-    unit, factor = read_in(about, usual_value(owner, name))
+    return field | _number(path, about, value, usual_value(owner, name), field_type(type(owner), name) is int)
+
+
+def _number(path: str, about: Parameter, value: Any, usual: Any, whole: bool) -> dict[str, Any]:
+    unit, factor = read_in(about, usual)
     low, high = slider(float(value) if value is not None else 0.0, about, whole)
+    if about.low > 0.0 and math.isfinite(about.high) and not about.unit:
+        low, high = about.low, about.high  # of what a finite-element brake was reduced for
     return {
-        **field,
+        "path": path,
+        "meaning": about.meaning,
+        "source": about.source,
         "kind": "number",
         "range": replace(about, unit=unit, low=about.low / factor, high=about.high / factor).range,
         "value": value,

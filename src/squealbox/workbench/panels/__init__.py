@@ -33,12 +33,14 @@ class Panel:
     `choices` stand in its head and become options of the question, `figures` are drawn as its answer describes them.
     `along`: the answer is the same for all values of the parameters along its axes. `apart`: it is computed in a
     process of its own, which takes a second to start and can be ended at any instant.
+    `single`: it takes one spectrum, which brakes of 160 degrees of freedom have at once.
     """
 
     title: str
     columns: int = 1
     slow: bool = False
     apart: bool = False
+    single: bool = False
     light: bool = False  # no more work for a large brake than for a small one
     shown: bool = True  # False: it answers the page itself, not a place on it
     along: bool = False
@@ -73,7 +75,8 @@ SHOWN = (("growth", "growth rate"), ("frequency", "frequency"), ("mechanism", "m
 PUSHES = (("0.001", "0.1 %"), ("0.05", "5 %"), ("0.5", "50 %"), ("2", "200 %"))
 
 PANELS: dict[str, Panel] = {
-    "moving": Panel("The brake, slowed down"),
+    "moving": Panel("The brake, slowed down", single=True),
+    "mesh": Panel("Its surface", light=True, shown=False),
     "drawing": Panel("The brake", light=True, shown=False),
     "verdict": Panel("Verdict", shown=False),
     "locus": Panel(
@@ -94,13 +97,14 @@ PANELS: dict[str, Panel] = {
                  Place("phase", "Phase plane of the second half"), Place("spectrogram", "Spectrogram")),
     ),
     "energy": Panel("Energy by contact", figures=(Place("energy", bars=True),)),
-    "sensitivity": Panel("Which parameter to change"),
+    "sensitivity": Panel("Which parameter to change", slow=True),
     "branch": Panel(
         "Limit cycles over a parameter", slow=True, apart=True, along=True,
         choices=(over("over", "parameter", FRICTION), FREEDOM),
         figures=(Place("branch", "", 270, "bent", "amplitude of the cycles: press Follow"),),
     ),
     "silence": Panel("Cures", columns=2, slow=True, apart=True),
+    "target": Panel("A target", slow=True),
     "listen": Panel("Listen", slow=True),
     "compare": Panel(
         "Compare two designs", columns=2, choices=(over("over", "parameter", FRICTION),), layout="two",

@@ -1,24 +1,45 @@
-"""The motion as sound: a second and a half of it at its true frequency, and an estimate of how loud that may be."""
+"""The motion as sound at its true frequency, as it slides or braking to rest, and how loud that may be."""
+
+from typing import Any
 
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.signals import SignalError, audible, dominant_frequency
+from squealbox.matrices import liveliest
+from squealbox.signals import SignalError, audible, dominant_frequency, rendered, spectrogram, squeal_events
 from squealbox.signals.radiation import AREA, AUDIBLE
 from squealbox.signals.wav import SAMPLING
+from squealbox.transient import Trajectory
 from squealbox.words import scaled
 from squealbox.workbench.panels.following import followed
 from squealbox.workbench.panels.loudness import loudest, loudness
-from squealbox.workbench.panels.panel import Answer, Options, Work
+from squealbox.workbench.panels.panel import Answer, Elsewhere, OptionError, Options, Work
 from squealbox.workbench.panels.start import start_and_dof
+from squealbox.workbench.panels.stop import LEFT_OUT, braking
 
 SECONDS = 1.5
 RATE = 2.0 * SAMPLING  # of the motion: nothing heard is folded down
 FADE = 0.01  # s at each end
+FRAMES, TURNS = 1500, 12  # pictures that go along with a sound, and periods they seem to show
+SHORTEST, LONGEST = 0.5, 4.0  # s of a stop
+LATE = 3.0  # s that a second of a stop takes, in a process of its own
+BAND, LEAST = (200.0, 16000.0), 70.0  # Hz and dB(A) of the events looked for
+ROOM = 2e-5 * 10.0 ** (30.0 / 20.0)  # Pa: noise of 30 dB, which a microphone would hear too
+PIECE = 0.04  # s of a column of the spectrogram
+ROWS = 160  # of its picture
+HARMONIC = 0.04  # by which an event may miss a multiple of a louder one and be its harmonic
+MOST_TOLD = 4
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
-    """The sound of one degree of freedom as samples at 44.1 kHz, in the unit named, with pitch and estimated level."""
+    """The sound of one degree of freedom as samples at 44.1 kHz, in the unit named, with pitch and estimated level.
+
+    With `braking` [s] it is that of a stop: sound pressure, its spectrogram (frequencies, times) and the squeal events.
+    `frameQ`, `frameForce` and `frameState` are what the brake looks like as it sounds, lit once a period.
+    """
+    seconds = options.number("braking", 0.0, 0.0, LONGEST)
+    if seconds:
+        return _stop(design, seconds, options, work)
     system = design.system()
     start, dof = start_and_dof(design, options)
     area = options.number("area", AREA, 1e-6, 10.0)
@@ -46,4 +67,81 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "largest": float(np.max(np.abs(wave))),
         **loudness(motion, dof, begin=0.75 * SECONDS, area=area),
     }
-    return Answer(data, {"wave": wave / factor})
+    data["words"] = f"{system.names[dof]} at {pitch:.5g} Hz, {_loud(data)}"
+    return Answer(data, {"wave": wave / factor, **_frames(motion, pitch)})
+
+
+def _loud(data: dict[str, Any]) -> str:
+    """The level while it lasts, or that it does not: the estimate looks at the end of the sound."""
+    if data["level"] is None or data["level"] < 0.0:
+        return "and dies away: in the end nothing is left to hear"
+    return f"about {data['level']:.3g} dB, {data['weighted']:.3g} dB(A) at 1 m"
+
+
+def _frames(motion: Trajectory, pitch: float) -> dict[str, Any]:
+    """The motion at instants that move on with the sound, by whole periods and a small part of one."""
+    share = np.arange(FRAMES) / FRAMES
+    at = (np.floor(share * motion.t[-1] * pitch) + (TURNS * share) % 1.0) / pitch
+    rows = np.clip(np.rint(at / motion.t[-1] * (len(motion.t) - 1)).astype(int), 0, len(motion.t) - 1)
+    return {
+        "frameQ": motion.q[rows], "frameForce": motion.normal_force[rows], "frameState": motion.mode[rows]
+    }  # fmt: skip
+
+
+def _stop(design: Design, seconds: float, options: Options, work: Work) -> Answer:
+    if seconds < SHORTEST:
+        raise OptionError(f"braking: expected 0, or {SHORTEST:g} to {LONGEST:g} s")
+    stopping, speed, unit = braking(design, seconds)
+    if not work.apart:
+        raise Elsewhere("following the stop", 1.0 + LATE * seconds)
+    area = options.number("area", AREA, 1e-6, 10.0)
+    system = stopping.system()
+    motion = followed(system, seconds, work, 0.6, start="rest", times=int(seconds * RATE) + 1)
+    if not motion.outcome.ok:
+        data = {"names": list(system.names), "dof": 0, "rate": SAMPLING, "outcome": str(motion.outcome)}
+        return Answer({**data, "silent": f"The stop ended early: {motion.outcome.message}."})
+    lines = [i for i, unit in enumerate(system.units) if unit == "m"] or list(range(system.size))
+    dof = lines[liveliest(np.std(motion.qd[:, lines], axis=0), tuple(system.units[i] for i in lines))]
+    heard = rendered(motion, dof=dof, area=area, noise=ROOM)
+    pressure, times = heard.channel(0), motion.t
+    events = _events(pressure, times)
+    wave = audible(pressure, times, fade=FADE)
+    grid = spectrogram(pressure, times, segment=PIECE, overlap=0.5)
+    pitch = max(events, key=lambda event: event[3])[2] if events else 0.0
+    top = min(max(3.5 * pitch, 4000.0), BAND[1])
+    seen = grid.frequency <= top
+    each = max(int(np.count_nonzero(seen)) // ROWS, 1)
+    count = int(np.count_nonzero(seen)) // each
+    picture = grid.amplitude[: count * each].reshape(count, each, -1).max(axis=1)
+    level = max((event[3] for event in events), default=None)
+    data = {
+        "names": list(system.names), "dof": dof, "rate": SAMPLING, "outcome": "completed", "unit": "Pa", "factor": 1.0,
+        "pitch": pitch, "largest": float(np.max(np.abs(wave))), "level": level, "weighted": level, "of": "",
+        "seconds": seconds, "speed": speed, "speedUnit": unit, "events": events,
+        "words": _told(events, system.names[dof]),
+        "gridTime": [float(grid.time[0]), float(grid.time[-1])], "gridTop": float(grid.frequency[count * each - 1]),
+        "assumption": f"The pressure is that of {1e4 * area:.3g} cm² of {system.names[dof]} at 1 m.",
+    }  # fmt: skip
+    return Answer(data, {"wave": wave, "grid": picture, **_frames(motion, pitch or 1.0 / PIECE)})
+
+
+def _events(pressure: Any, times: Any) -> list[list[float]]:
+    """Begin [s], end [s], frequency [Hz] and peak level [dB(A)] of the loudest squeal events, without harmonics."""
+    found = squeal_events(pressure[::2], SAMPLING, band=BAND, least_level=LEAST)
+    rows = sorted(zip(found.onset, found.end, found.frequency, found.peak_level, strict=True), key=lambda row: -row[3])
+    kept: list[list[float]] = []
+    for row in rows:
+        overtone = any(
+            row[0] < other[1] and other[0] < row[1] and round(row[2] / other[2]) >= 1
+            and abs(row[2] / (round(row[2] / other[2]) * other[2]) - 1.0) < HARMONIC for other in kept
+        )  # fmt: skip
+        if not overtone:
+            kept.append([float(number) for number in row])
+    return sorted(kept[:MOST_TOLD])
+
+
+def _told(events: list[list[float]], name: str) -> str:
+    if not events:
+        return f"No squeal of {LEAST:g} dB(A) or more in this stop. {LEFT_OUT}."
+    told = [f"{f:.4g} Hz, {level:.0f} dB(A), {begin:.2g} to {end:.2g} s" for begin, end, f, level in events]
+    return f"Squeal of {name} at 1 m, an estimate: {'; '.join(told)}. {LEFT_OUT}."

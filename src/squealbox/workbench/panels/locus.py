@@ -14,6 +14,7 @@ POINTS = 97  # values along the axis; about 15 ms for two degrees of freedom
 NONE = 1e-7  # growth rates up to this, or this share of themselves, are round-off
 TURN = 2.0 * np.pi
 FEWER = 61  # for designs of more degrees of freedom
+LARGE, FEWEST = 40, 21  # and of many
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
@@ -22,7 +23,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     low, high = options.span("span", design, parameter)
     here = modes_of(design)
     half = here.eigenvalues.shape[-1] // 2
-    values = np.linspace(low, high, POINTS if half <= 2 else FEWER)
+    values = np.linspace(low, high, POINTS if half <= 2 else FEWER if half <= LARGE else FEWEST)
     tracks = tracks_of(design, parameter, (low, high), len(values))
     upper = _one_of_each_pair(tracks.eigenvalues)
     axis = options.axis(design, parameter, (low, high))

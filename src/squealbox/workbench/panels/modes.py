@@ -16,7 +16,8 @@ from squealbox.stability import (
 )
 
 KEPT = 8  # designs of the last questions
-POINTS = 201  # of a range, between which crossings are looked for
+POINTS, COARSE = 201, 21  # of a range, between which crossings are looked for: of brakes small and large
+LARGE = 40  # degrees of freedom
 
 
 @functools.lru_cache(maxsize=KEPT)
@@ -44,7 +45,8 @@ def _without(design: Design, parameter: str, low: float) -> Design:
 
 @functools.lru_cache(maxsize=KEPT)
 def _crossings(design: Design, parameter: str, ends: tuple[float, float]) -> CriticalValues:
-    return critical_values(design, parameter, ends, points=POINTS)
+    points = POINTS if design.system().size <= LARGE else COARSE
+    return critical_values(design, parameter, ends, points=points)
 
 
 @functools.lru_cache(maxsize=KEPT)

@@ -1,36 +1,97 @@
-"""The brake that moves: its drawing with what each degree of freedom does to it, and the mode that grows first."""
+"""The brake that moves: its drawing or surface, what each degree of freedom does to it, the mode that grows first."""
 
 from typing import Any
 
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe.surface import Surface
 from squealbox.plots.moving import moving_strokes
 from squealbox.system import equilibrium
 from squealbox.workbench.panels.modes import modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
 MOST_MODES = 12
+SEEN = 0.05  # of the freedom that moves most: what moves less has no phase to tell
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
-    """Strokes, their motion for each freedom, forces of steady sliding, and a mode as real and imaginary part."""
-    system, drawn = design.system(), moving_strokes(design)
-    data: dict[str, Any] = {name: drawn[name] for name in ("strokes", "box", "contacts")}
-    data |= {"names": list(system.names), "units": list(system.units), "contactNames": list(system.contact_names)}
-    arrays: dict[str, Any] = {name: drawn[name] for name in ("points", "moves", "contactMoves")}
+    """Strokes, their motion for each freedom, forces of steady sliding, and a mode as real and imaginary part.
+
+    Of a finite-element brake with a surface the mode is that of its nodes, (k, 3), the largest of them 1; the surface
+    itself is the answer of the panel `mesh`.
+    """
+    system = design.system()
+    surface = design.surface if isinstance(design, ReducedBrake) else None
     modes, state = modes_of(design), equilibrium(system)
-    data |= {"normal": np.nan_to_num(state.normal_force).tolist()}
+    data: dict[str, Any] = {"names": list(system.names), "units": list(system.units)}
+    data |= {"contactNames": list(system.contact_names), "normal": np.nan_to_num(state.normal_force).tolist()}
+    arrays: dict[str, Any] = {}
+    if surface is None:
+        drawn = moving_strokes(design)
+        data |= {name: drawn[name] for name in ("strokes", "box", "contacts")}
+        arrays |= {name: drawn[name] for name in ("points", "moves", "contactMoves")}
     if not bool(modes.exists):
         return Answer({**data, "modes": [], "message": modes.outcome.message}, arrays)
-    half = modes.eigenvalues.shape[-1] // 2
-    growth = np.nan_to_num(modes.growth_rate[:half], nan=-np.inf)
-    first = modes.most_unstable.index
-    order = [first, *(int(i) for i in np.argsort(-growth, kind="stable") if i != first)][:MOST_MODES]
+    order = _order(modes, design)
     chosen = min(int(options.number("mode", 0, 0, 1e6)), len(order) - 1)
     mode = modes.mode(order[chosen])
     shape = mode.shape[: system.size]
-    press = [contact.n @ shape for contact in system.contacts]
-    arrays |= {"re": shape.real, "im": shape.imag, "pressRe": np.real(press), "pressIm": np.imag(press)}
     told = [(float(modes.frequency[i]), float(modes.growth_rate[i]), float(modes.damping_ratio[i])) for i in order]
-    return Answer({**data, "modes": told, "mode": chosen}, arrays)
+    data |= {"modes": told, "mode": chosen}
+    if surface is not None:
+        moved = surface_shape(surface, shape)
+        size = np.linalg.norm(np.abs(moved), axis=1)
+        shares = np.mean(size[surface.faces], axis=1) / np.max(size)
+        data |= {"mesh": True, "words": _said(surface, size)}
+        return Answer(data, {"re": moved.real, "im": moved.imag, "shares": shares})
+    press = [contact.n @ shape for contact in system.contacts]
+    data |= {"words": f"{_phases(shape, system.names)}. Its size is free; growth is left out."}
+    arrays |= {"re": shape.real, "im": shape.imag, "pressRe": np.real(press), "pressIm": np.imag(press)}
+    return Answer(data, arrays)
+
+
+def surface_shape(surface: Surface, shape: Any) -> Any:
+    """Displacement (k, 3) of the nodes in a mode of the reduced brake (m,), turned and scaled so that the largest of
+    its components is 1.
+    """
+    moved = np.asarray(surface.moves, dtype=float) @ shape
+    return moved / moved.flat[np.argmax(np.abs(moved))]
+
+
+def _order(modes: Any, design: Design) -> list[int]:
+    """Modes, the one that grows first before the others; of a reduced brake those in the band it is good for."""
+    half = modes.eigenvalues.shape[-1] // 2
+    growth = np.nan_to_num(modes.growth_rate[:half], nan=-np.inf)
+    first = modes.most_unstable.index
+    order = [first, *(int(i) for i in np.argsort(-growth, kind="stable") if i != first)]
+    if isinstance(design, ReducedBrake):
+        low, high = design.band
+        inside = [i for i in order if low <= modes.frequency[i] <= high]
+        order = inside or order
+    return order[:MOST_MODES]
+
+
+def _phases(shape: Any, names: Any) -> str:
+    """The phase of each freedom that moves much, against the one that moves most."""
+    sizes = np.abs(shape)
+    most = int(np.argmax(sizes))
+    told = []
+    for i in np.flatnonzero(sizes > SEEN * sizes[most]):
+        if i != most:
+            degrees = int(np.rint(np.rad2deg(np.angle(shape[i] / shape[most]))))
+            way = "behind" if degrees < 0 else "before"
+            told.append(f"{names[i]} {sizes[i] / sizes[most]:.2g} of {names[most]} and {abs(degrees)}° {way}")
+    return ", ".join(told[:3]) or f"only {names[most]} moves"
+
+
+def _said(surface: Surface, size: Any) -> str:
+    """What is drawn of the surface, and how the parts share the motion, of size (k,) at the nodes."""
+    nodes = [np.unique(surface.faces[surface.parts == i]) for i in range(len(surface.names))]
+    shares = [float(np.max(size[each])) / float(np.max(size)) for each in nodes]
+    said = ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in zip(surface.names, shares, strict=True))
+    lone = bool(np.all(surface.faces[:, :1] == surface.faces))
+    what = "node of the files, which name no elements" if lone else "line of the mesh"
+    each = f"every {what}" if surface.step == 1 else f"one {what} in {surface.step}"
+    return f"Largest motion: {said} of it. Drawn: {each}, {len(surface.faces)} {'points' if lone else 'faces'}."

@@ -8,16 +8,15 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.files.document import DesignFileError
 from squealbox.files.reading import read_text
-from squealbox.plots.facts import read
-from squealbox.plots.style import number
-from squealbox.stability import critical_values, mechanism
+from squealbox.stability import mechanism
+from squealbox.words import number, quantity
+from squealbox.workbench.figures import NONE
 from squealbox.workbench.folder import LARGEST_TEXT, Project, ProjectError, standing
-from squealbox.workbench.panels.modes import modes_of
+from squealbox.workbench.panels.modes import crossings_of, modes_of
 from squealbox.workbench.panels.panel import Answer, Elsewhere, Options, Work
 from squealbox.workbench.session import LARGE, PER_CUBE
 
 FRICTION = "friction.static"  # whose critical value is tabled
-NONE = "\N{EN DASH}"  # in a cell of which nothing is known
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
@@ -67,8 +66,7 @@ def _numbers(text: str, apart: bool) -> dict[str, Any]:
             return {"state": "no steady sliding"}
         stable, worst = bool(modes.stable), modes.most_unstable
         state = "stable" if stable else f"unstable, {mechanism(design).name.replace('_', ' ')}"
-        hertz = " ".join(read("", worst.frequency, "Hz")[1:])
-        numbers = [hertz, number(worst.growth_rate, 3), *_critical(design)]
+        numbers = [quantity(worst.frequency, "Hz"), number(worst.growth_rate, 3), *_critical(design)]
     return {"state": state, "numbers": numbers}
 
 
@@ -78,7 +76,7 @@ def _critical(design: Design) -> list[str]:
     if options.parameter("parameter", design, FRICTION) != FRICTION:
         return [NONE, NONE]
     span, value = options.span("span", design, FRICTION), float(design.value_of(FRICTION))
-    changes = [float(each.value) for each in critical_values(design, FRICTION, span) if each.changes_stability]
+    changes = [float(each.value) for each in crossings_of(design, FRICTION, span) if each.changes_stability]
     if not changes:
         return [NONE, NONE]
     nearest = min(changes, key=lambda each: abs(each - value))

@@ -6,7 +6,7 @@ const QUESTIONS = [
   ["why", "Why does it squeal?", ["locus", "moving", "energy", "friction"]],
   ["when", "When?", ["map", "branch"]],
   ["happens", "What happens?", ["moving", "motion", "listen"]],
-  ["silences", "What silences it?", ["silence", "sensitivity", "compare"]],
+  ["silences", "What silences it?", ["silence", "target", "sensitivity", "compare"]],
   ["matches", "Does it match the test?", ["recording", "calibrate"]],
   ["tells", "Report, tour", ["report", "tour"]],
   ["project", "Project", ["project"]],
@@ -45,7 +45,8 @@ export class Questions {
 
   show() {
     const { asked } = this;
-    if (this.place.dataset.question === asked) return;
+    if (this.place.dataset.question === asked && this.many === this.app.panels.size) return;
+    this.many = this.app.panels.size; // a file may be open before they are here
     this.place.dataset.question = asked;
     this.place.setAttribute("aria-labelledby", `ask-${asked}`);
     for (const tab of this.tabs) {

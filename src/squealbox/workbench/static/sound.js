@@ -15,16 +15,25 @@ export function silence() {
   source = null;
 }
 
-/** Play samples so that `full` [m] is 0.9 of full scale. */
-export function sound(heard, full) {
+/** Play samples so that `full` [m] is 0.9 of full scale, `slow` times slower; `at` is told which share has been heard, null at the end. */
+export function sound(heard, full, { slow = 1, at = () => {} } = {}) {
   audio ??= new AudioContext();
   audio.resume();
   silence();
   const buffer = audio.createBuffer(1, heard.wave.length, heard.rate);
   const scale = (0.9 * heard.factor) / full;
   buffer.copyToChannel(heard.wave.map((value) => value * scale), 0);
-  source = audio.createBufferSource();
-  source.buffer = buffer;
-  source.connect(audio.destination);
-  source.start();
+  const playing = (source = audio.createBufferSource());
+  playing.buffer = buffer;
+  playing.playbackRate.value = 1 / slow;
+  playing.connect(audio.destination);
+  const begun = audio.currentTime;
+  playing.start();
+  playing.onended = () => source !== playing && source ? null : at((source = null));
+  const look = () => {
+    if (source !== playing) return;
+    at(Math.min(0.9999, (audio.currentTime - begun) / slow / buffer.duration));
+    requestAnimationFrame(look);
+  };
+  look();
 }

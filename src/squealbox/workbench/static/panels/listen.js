@@ -1,16 +1,18 @@
-// The motion as sound at its true frequency, now and before a change, and both as files.
+// The motion as sound, true or slowed with the picture, as it slides or braking to rest; now and before, and as files.
 
 import { Asked, button } from "../asked.js";
-import { Chart, line, span } from "../chart.js";
-import { make } from "../elements.js";
+import { Chart, hull, line, span, text } from "../chart.js";
+import { sequential } from "../colours.js";
+import { choose, make } from "../elements.js";
 import { download } from "../export.js";
-import { label, shown, withUnit } from "../numbers.js";
+import { label, shown, typographic, withUnit } from "../numbers.js";
 import { fullScale, silence, sound } from "../sound.js";
 import { degrees, startOf } from "../start.js";
 import { wavBlob } from "../wav.js";
 
-const PERIODS = 6; // drawn, of the end of the sound
-const FADED = 0.03; // s at the end that the drawing leaves out
+const COLUMNS = 400; // of the time history: the least and largest value in each
+const SLOW = [["1", "true"], ["8", "slowed 8 times"], ["32", "slowed 32 times"]];
+const STOPS = [["0", "as it slides"], ...["0.5", "1", "2", "4"].map((seconds) => [seconds, `braking to rest in ${seconds} s`])];
 
 export default {
   setup(panel) {
@@ -26,24 +28,26 @@ export default {
     panel.ratio = make("input", { type: "checkbox", checked: true });
     panel.degrees = make("span");
     panel.controls.append(panel.degrees);
+    const heard = choose("heard", SLOW, panel.chosen.slow ?? "1", (slow) => panel.choose({ slow }));
+    const stops = choose("while", STOPS, String(panel.chosen.braking ?? 0), (braking) => panel.choose({ braking: Number(braking) }));
     const ratio = make("label", { title: "Both as loud as they are to each other; else each as loud as can be" }, panel.ratio, " true ratio");
-    panel.body.append(make("div", { class: "buttons" }, ...Object.values(panel.keys), ratio));
+    panel.body.append(make("div", { class: "buttons" }, ...Object.values(panel.keys), heard, stops, ratio));
     panel.words = make("div", { class: "quiet" });
-    panel.charts = [new Chart(panel.body, { name: "sound", height: 170, title: "The end of the sound", awaited: "the sound: press Play" })];
+    panel.charts = [new Chart(panel.body, { name: "sound", height: 170, awaited: "the sound: press Play" })];
     panel.body.append(panel.words);
   },
 
   options(panel) {
     if (!panel.asked.current) return null;
     const motion = startOf(panel.app.store);
-    return { ...motion, dof: panel.chosen.dof ?? motion.dof };
+    return { ...motion, dof: panel.chosen.dof ?? motion.dof, braking: panel.chosen.braking ?? 0 };
   },
 
   draw(panel, { data, arrays }) {
     degrees(panel, data);
-    panel.remark = data.silent ?? `${data.names[data.dof]} at ${withUnit(data.pitch, "Hz", 5)}, ${loudness(data)}`;
+    panel.remark = data.silent ?? typographic(data.words);
     panel.element.dataset.pitch = data.pitch ?? "";
-    panel.heard.now = data.silent ? null : { ...data, wave: arrays.wave };
+    panel.heard.now = data.silent ? null : { ...data, ...arrays };
     panel.keys.keep.disabled = panel.keys.wav.disabled = !panel.heard.now;
     figure(panel);
     if (panel.waiting && panel.heard.now) sounding(panel, panel.heard.now);
@@ -53,7 +57,7 @@ export default {
 
 /** Play what is kept, or the present design: computed first where that has not been done. */
 function play(panel, which) {
-  if (which === "kept" || (panel.asked.current && panel.heard.now)) sounding(panel, panel.heard[which]);
+  if (which === "kept" || (panel.asked.current && panel.heard.now && panel.element.dataset.state === "drawn")) sounding(panel, panel.heard[which]);
   else {
     panel.waiting = true;
     panel.asked.ask();
@@ -66,13 +70,16 @@ function keep(panel) {
   figure(panel);
 }
 
-/** The level while it lasts, or that it does not: the estimate looks at the end of the sound. */
-const loudness = (data) => (data.level === null || data.level < 0 ? "and dies away: in the end nothing is left to hear" : `about ${shown(data.level, 3)} dB, ${shown(data.weighted, 3)} dB(A) at 1 m`);
-
 const loudest = (panel, heard) => fullScale(heard, Object.values(panel.heard).filter(Boolean), panel.ratio.checked);
 
 function sounding(panel, heard) {
-  sound(heard, loudest(panel, heard));
+  const { wave, rate, frameQ: q, frameForce: force, frameState: state } = heard;
+  const at = (share) => {
+    if (share !== null) panel.cursor?.((share * wave.length) / rate);
+    panel.element.dataset.at = share ?? "";
+    panel.app.dispatchEvent(new CustomEvent("played", { detail: share === null || heard !== panel.heard.now ? null : { share, q, force, state } }));
+  };
+  sound(heard, loudest(panel, heard), { slow: Number(panel.chosen.slow ?? 1), at });
   panel.element.dataset.played = heard.pitch;
 }
 
@@ -88,17 +95,36 @@ function figure(panel) {
   const { now, kept } = panel.heard;
   const first = [now, kept].filter(Boolean).reduce((a, b) => (a && a.largest >= b.largest ? a : b), null);
   if (!first) return;
-  const many = Math.ceil((PERIODS / first.pitch) * first.rate);
-  const end = first.wave.length - Math.round(FADED * first.rate);
-  const x = Float32Array.from({ length: many }, (_, i) => (1e3 * i) / first.rate);
-  const part = (heard) => heard.wave.subarray(end - many, end).map((value) => (value * heard.factor) / first.factor);
-  const layers = [];
-  if (kept) layers.push(line(x, part(kept), { cls: "s1", name: "before" }));
-  if (now) layers.push(line(x, part(now), { cls: "s0", name: "now" }));
-  panel.charts[0].draw({
-    x: { label: label("time", "ms"), domain: [0, x.at(-1)] },
-    y: { label: label(first.names[first.dof], first.unit), domain: span(layers.map((layer) => layer.y), { room: 0.25 }) },
-    layers,
+  panel.words.textContent = panel.says.title = `${first.assumption}${now && kept ? ` Before: ${kept.words}.` : ""}`;
+  if (now?.grid) return stop(panel, now);
+  const drawn = [[kept, "s1", "before"], [now, "s0", "now"]].filter(([heard]) => heard && !heard.grid).map(([heard, cls, name]) => {
+    const many = Math.floor(heard.wave.length / COLUMNS);
+    const ends = (most) => Float32Array.from({ length: COLUMNS }, (_, i) => (most(...heard.wave.subarray(i * many, (i + 1) * many)) * heard.factor) / first.factor);
+    return hull(Float32Array.from({ length: COLUMNS }, (_, i) => ((i + 0.5) * many) / heard.rate), ends(Math.min), ends(Math.max), { cls, name });
   });
-  panel.words.textContent = `${first.assumption}${now && kept ? ` Before: ${withUnit(kept.pitch, "Hz", 5)}, ${loudness(kept)}.` : ""}`;
+  panel.charts[0].draw({
+    x: { label: label("time", "s"), domain: [0, first.wave.length / first.rate] },
+    y: { label: label(first.names[first.dof], first.unit), domain: span(drawn.flatMap(({ low, high }) => [low, high])) },
+    layers: drawn,
+  });
+  panel.cursor = (time) => now && panel.charts[0].mark(time, (now.wave[Math.round(time * now.rate)] * now.factor) / first.factor);
+}
+
+/** A stop: its spectrogram, the speed as a line from its first value to none, and the squeal events by name. */
+function stop(panel, { grid, gridTime, gridTop, seconds, speed, speedUnit, events }) {
+  const [rows, columns] = grid.shape;
+  const scale = () => sequential(grid, { log: true });
+  const height = (time) => (gridTop / 1e3) * (1 - time / seconds);
+  const squeals = events.flatMap(([from, to, hertz, level]) => [
+    line([from, to], [hertz / 1e3, hertz / 1e3], { cls: "s1" }),
+    text((Math.max(from, gridTime[0]) + to) / 2, hertz / 1e3, `${withUnit(hertz, "Hz", 3)}, ${Math.round(level)} dB(A)`),
+  ]);
+  panel.charts[0].draw({
+    x: { label: label("time", "s"), domain: gridTime },
+    y: { label: label("frequency", "kHz"), domain: [0, gridTop / 1e3] },
+    heat: { rows, columns, values: grid, scale, keys: () => scale().steps.map(([css, value]) => [css, `${shown(value, 2)} Pa`]), name: "sound pressure [Pa]", smooth: true },
+    layers: [line(gridTime, gridTime.map(height), { cls: "s2", name: `speed ${shown(speed, 3)} to 0 ${speedUnit}` }), ...squeals],
+    legend: "bottom left",
+  });
+  panel.cursor = (time) => panel.charts[0].mark(time, height(time));
 }

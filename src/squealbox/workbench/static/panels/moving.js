@@ -2,6 +2,7 @@
 
 import { arrow, drawn, element, set } from "../drawing.js";
 import { choose, make } from "../elements.js";
+import { Mesh } from "../mesh.js";
 import { shown, withUnit } from "../numbers.js";
 
 const SLOW = 2.4; // s that a period of a mode takes, and a sixth of the last periods of a motion
@@ -17,17 +18,18 @@ export default {
     panel.play = make("button", { type: "button", onclick: () => hold(panel) }, "Pause");
     panel.controls.append(panel.pick, panel.play);
     panel.stage = make("div", { class: "drawing moving" });
-    panel.legend = make("p", { class: "states" }, ...["slip", "stick", "lifted"].flatMap((state) => [make("i", { class: `swatch ${state}` }), `${state} `]));
+    panel.legend = make("p", { class: "states" });
     panel.body.append(panel.stage, panel.legend);
     panel.charts = [];
     hold(panel, still.matches);
     still.addEventListener("change", () => hold(panel, still.matches));
     panel.app.addEventListener("motion", () => scene(panel));
+    panel.app.addEventListener("played", ({ detail }) => played(panel, detail));
     panel.app.store.addEventListener("changed", () => scene(panel));
     const step = (now) => {
       requestAnimationFrame(step);
       const asked = panel.app.verdict.view.busy || panel.app.store.busy(); // a slider moves: every second picture leaves time for it
-      const shown = !panel.element.hidden && panel.view.visible && panel.parts && !panel.held;
+      const shown = !panel.element.hidden && panel.view.visible && panel.scene && !panel.held && !panel.played;
       if (shown && !(panel.skipped = asked && !panel.skipped)) frame(panel, now);
     };
     requestAnimationFrame(step);
@@ -40,6 +42,8 @@ export default {
     const { data } = answer;
     const names = data.modes.map(([hertz, growth], i) => [String(i), `${withUnit(hertz, "Hz")}, ${shown(growth, 3)} 1/s`]);
     panel.pick.replaceChildren(...(names.length > 1 ? [choose("mode", names, String(data.mode), (mode) => panel.choose({ mode: Number(mode) }))] : []));
+    if (data.mesh) return solid(panel, answer);
+    panel.mesh = null;
     const { moves, points } = answer.arrays;
     const { parts, svg, at } = drawn(data, points, "The brake, moving", (p) => data.names.some((_, i) => moves[2 * (i * moves.shape[1] + p)] || moves[2 * (i * moves.shape[1] + p) + 1]));
     panel.stage.replaceChildren(svg);
@@ -59,24 +63,29 @@ function hold(panel, held = !panel.held) {
   panel.play.textContent = held ? "Move" : "Pause";
 }
 
+/** The surface of a finite-element brake, asked for once: only the mode is new. */
+async function solid(panel, { data, arrays }) {
+  const state = panel.app.store.design;
+  if (panel.mesh?.base !== state.base) {
+    panel.scene = panel.mesh = null;
+    const found = await panel.app.connection.ask({ view: "mesh", state, options: {} }).catch(() => null);
+    if (found?.kind !== "answer" || panel.answer.data !== data) return;
+    panel.mesh = new Mesh(panel.stage, found, () => panel.scene && frame(panel, panel.since ?? 0));
+    panel.mesh.base = state.base;
+  }
+  Object.assign(panel.mesh, arrays, { normal: data.normal });
+  scene(panel);
+}
+
 /** What is shown: the motion where it is asked what happens and one of this design is known, else the mode. */
 function scene(panel) {
-  if (!panel.answer) return;
+  if (!panel.answer || panel.played || (panel.answer.data.mesh && !panel.mesh)) return;
   const { data, arrays } = panel.answer;
   const { motion } = panel.app;
-  const moves = panel.app.questions.asked === "happens" && motion?.arrays?.lastQ;
+  const moves = !data.mesh && panel.app.questions.asked === "happens" && motion?.arrays?.lastQ;
   panel.pick.hidden = Boolean(moves);
-  let at;
   if (moves) {
-    const [q, many] = [motion.arrays.lastQ, data.names.length];
-    const rows = q.length / many;
-    const mean = new Float64Array(many);
-    for (let i = 0; i < q.length; i++) mean[i % many] += q[i] / rows;
-    at = (share) => {
-      const k = Math.min(Math.floor(share * rows), rows - 1);
-      return { k, q: Array.from(mean, (middle, i) => q[k * many + i] - middle) };
-    };
-    panel.scene = { at, period: 6 * SLOW, motion: motion.arrays };
+    panel.scene = motionOf(panel, motion.arrays.lastQ, motion.arrays.lastForce, motion.arrays.lastState);
     panel.remark = `The last ${shown(motion.arrays.lastTime.at(-1), 3)} ${motion.clock}, over and over; movement enlarged. Arrows: normal forces.`;
   } else {
     if (!arrays.re) {
@@ -84,24 +93,52 @@ function scene(panel) {
       panel.remark = `${data.message}.`;
       return;
     }
-    at = (share) => ({ k: 0, turn: 2 * Math.PI * share, q: Array.from(arrays.re, (re, i) => re * Math.cos(2 * Math.PI * share) - arrays.im[i] * Math.sin(2 * Math.PI * share)) });
-    panel.scene = { at, period: SLOW, motion: null };
-    panel.remark = data.modes.length ? `${data.mode ? "A mode" : "The mode that grows first"}, ${withUnit(data.modes[data.mode][0], "Hz")}: ${phases(data, arrays)}. Its size is free; growth is left out.` : "";
+    const at = (share) => ({ k: 0, turn: 2 * Math.PI * share, q: Array.from(arrays.re, (re, i) => re * Math.cos(2 * Math.PI * share) - arrays.im[i] * Math.sin(2 * Math.PI * share)) });
+    panel.scene = { at, period: SLOW };
+    panel.remark = `${data.mode ? "A mode" : "The mode that grows first"}, ${withUnit(data.modes[data.mode][0], "Hz")}: ${data.words}`;
   }
-  panel.scale = (REACH * panel.size) / (largest(panel) || 1);
-  panel.legend.hidden = !moves;
+  if (!data.mesh) panel.scale = (REACH * panel.size) / (largest(panel) || 1);
+  const keys = data.mesh ? panel.mesh.keys() : ["slip", "stick", "lifted"].map((state) => [state, state]);
+  panel.legend.replaceChildren(...keys.flatMap(([look, name]) => [swatch(look), `${name} `]));
+  panel.legend.hidden = !moves && !data.mesh;
   panel.says.textContent = panel.remark;
   frame(panel, panel.held ? (panel.since ?? 0) : performance.now()); // held, the same instant again
 }
 
-/** The phase of each freedom that moves much, against the one that moves most. */
-function phases({ names }, { re, im }) {
-  const sizes = Array.from(re, (value, i) => Math.hypot(value, im[i]));
-  const most = sizes.indexOf(Math.max(...sizes));
-  const degree = (i) => Math.round(((Math.atan2(im[i], re[i]) - Math.atan2(im[most], re[most])) * 180) / Math.PI);
-  const others = names.map((name, i) => [name, i]).filter(([, i]) => i !== most && sizes[i] > 0.05 * sizes[most]).slice(0, 3);
-  if (!others.length) return `only ${names[most]} moves`;
-  return others.map(([name, i]) => `${name} ${shown(sizes[i] / sizes[most], 2)} of ${names[most]} and ${Math.abs(((degree(i) + 540) % 360) - 180)}° ${((degree(i) + 540) % 360) - 180 < 0 ? "behind" : "before"}`).join(", ");
+/** A swatch in a colour, or in the look of a state. */
+function swatch(look) {
+  const made = make("i", { class: `swatch ${look}` });
+  if (look.includes("(") || look.includes("#")) made.style.background = look;
+  return made;
+}
+
+/** Motion of all freedoms (instants, freedoms) about its mean, with force and state of each contact. */
+function motionOf(panel, q, force, state) {
+  const many = panel.answer.data.names.length;
+  const rows = q.length / many;
+  const mean = new Float64Array(many);
+  for (let i = 0; i < q.length; i++) mean[i % many] += q[i] / rows;
+  const at = (share) => {
+    const k = Math.min(Math.floor(share * rows), rows - 1);
+    return { k, q: Array.from(mean, (middle, i) => q[k * many + i] - middle) };
+  };
+  return { at, period: 6 * SLOW, force, state };
+}
+
+/** A sound plays: the brake stands where its clock is, { share, q, force, state }; null when it is over. */
+function played(panel, now) {
+  if (!now) {
+    panel.played = null;
+    return scene(panel);
+  }
+  if (panel.held || panel.element.hidden || !panel.answer || panel.answer.data.mesh || now.q.length % panel.answer.data.names.length) return;
+  if (panel.played !== now.q) {
+    panel.played = now.q;
+    panel.scene = motionOf(panel, now.q, now.force, now.state);
+    panel.scale = (REACH * panel.size) / (largest(panel) || 1);
+    panel.says.textContent = "Goes along with the sound, lit as by a flash once a period, so that its vibration is seen slowly.";
+  }
+  frame(panel, panel.since ?? 0, now.share);
 }
 
 /** What displacements q add to a point, of the points whose moves (freedoms, points, 2) these are. */
@@ -127,10 +164,12 @@ function largest(panel) {
 }
 
 /** One picture. */
-function frame(panel, now) {
+function frame(panel, now, share = (now / 1e3 / panel.scene?.period) % 1) {
   if (!panel.scene) return;
+  panel.since = now;
+  panel.pictures = (panel.pictures ?? 0) + 1;
+  if (panel.answer.data.mesh) return panel.mesh.draw(2 * Math.PI * share);
   const { data, arrays } = panel.answer;
-  const share = ((panel.since = now) / 1e3 / panel.scene.period) % 1;
   const { k, q, turn = 0 } = panel.scene.at(share);
   const { points, moves } = arrays;
   const place = (x, y, by, p) => {
@@ -138,7 +177,7 @@ function frame(panel, now) {
     return [x + panel.scale * dx, y + panel.scale * dy];
   };
   panel.parts((p) => place(points[2 * p], points[2 * p + 1], moves, p));
-  const forces = panel.scene.motion?.lastForce;
+  const forces = panel.scene.force;
   const contacts = panel.arrows.length;
   const mean = Math.max(...data.normal.map(Math.abs).filter(Number.isFinite), 1e-12);
   const swing = Math.max(...(arrays.pressRe ?? []).map((re, i) => Math.hypot(re, arrays.pressIm[i])), 1e-300);
@@ -148,10 +187,9 @@ function frame(panel, now) {
     const long = (normal * FORCE * panel.size) / (1.5 * mean);
     const [here, tail] = [panel.at([x, y]), panel.at([x - contact[2] * long, y - contact[3] * long])];
     arrow(shaft, head, tail, here);
-    const state = forces ? STATES[panel.scene.motion.lastState[k * contacts + c]] : "slip";
+    const state = forces ? STATES[panel.scene.state[k * contacts + c]] : "slip";
     set(dot, { cx: here[0], cy: here[1] });
     if (dot.dataset.state !== state) set(dot, { class: `contact ${state}`, "data-state": state });
   });
-  panel.pictures = (panel.pictures ?? 0) + 1;
-  if (forces) panel.app.dispatchEvent(new CustomEvent("cursor", { detail: k }));
+  if (forces && !panel.played) panel.app.dispatchEvent(new CustomEvent("cursor", { detail: k }));
 }

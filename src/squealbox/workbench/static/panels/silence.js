@@ -6,7 +6,7 @@ import { shown, withUnit } from "../numbers.js";
 import { fullScale, sound } from "../sound.js";
 import { same } from "../store.js";
 
-const HEADS = ["", "cure", "dose", "growth 1/s", "at margin", "lot squeals", "after push", "cost", "caution"];
+const HEADS = ["", "cure", "dose", "growth", "at margin", "squeals", "pushed", "cost", "caution"];
 const KEY = "b";
 
 export default {
@@ -56,7 +56,7 @@ function list(panel, rows) {
   const body = rows.map((row) => {
     const known = "dose" in row;
     const key = button("Apply", () => apply(panel, row), { disabled: !known || Boolean(row.refused), title: row.refused ?? row.python, "aria-label": `Apply ${row.name}` });
-    return make("tr", { data: { cure: row.name }, class: known ? null : "like" }, make("td", {}, key), ...(known ? cells(row) : [row.name, ...Array(7).fill("…")]).map((text, i) => make(i ? "td" : "th", i ? { title: text } : { scope: "row" }, text)));
+    return make("tr", { data: { cure: row.name }, class: known ? null : "like" }, make("td", {}, key), ...(known ? cells(row) : [row.name, ...Array(7).fill("…")]).map((text, i) => make(i ? "td" : "th", { title: text, scope: i ? null : "row" }, text)));
   });
   panel.list.replaceChildren(table(HEADS, body, { class: "cures" }));
 }
