@@ -8,7 +8,8 @@ import pytest
 from squealbox import DrumBrake, LinearSlope
 from squealbox.workbench.figures import Axis, Bars, Figure, across, heat, line, packed, span, unpacked
 from squealbox.workbench.panels import OptionError, Options, Work, function_of
-from squealbox.workbench.paper import NoFigure, pdf
+from squealbox.workbench.paper import KINDS, NoFigure
+from squealbox.workbench.paper import drawn as pdf
 
 PLAIN = {
     "size": [300, 200], "x": {"label": "time [s]", "domain": [0, 1]}, "y": {"label": "x [mm]", "domain": [-1, 1]},
@@ -61,7 +62,10 @@ def test_the_other_design_of_a_comparison_is_checked_like_its_own():
 
 
 def test_a_figure_becomes_a_pdf():
-    assert pdf(json.dumps(PLAIN).encode()).startswith(b"%PDF")
+    begins = {"pdf": b"%PDF", "svg": b"<?xml", "png": b"\x89PNG"}
+    assert set(begins) == set(KINDS)
+    for kind, head in begins.items():
+        assert pdf(json.dumps(PLAIN).encode(), kind).startswith(head)
     for name in ("locus", "energy", "friction"):
         answer = asked(name)
         figures, arrays = packed(answer.figures)

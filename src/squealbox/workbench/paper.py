@@ -1,9 +1,8 @@
-"""A figure of the page as PDF: the numbers and axes the page shows, drawn with Matplotlib for paper.
+"""A figure of the page as PDF, SVG or PNG: the numbers and axes the page shows, drawn with Matplotlib for paper.
 
 What comes from a page is not trusted: sizes are bounded, and what is no figure is a `NoFigure` with one sentence.
 """
 
-import io
 import json
 import threading
 from collections.abc import Callable
@@ -12,7 +11,8 @@ from typing import Any
 import numpy as np
 
 LARGEST = 4_000_000  # bytes of a figure
-DOTS = 96.0  # px of the page to an inch
+DOTS, PNG_DOTS = 96.0, 300.0  # px of the page, and of a PNG, to an inch
+KINDS = {"pdf": "application/pdf", "svg": "image/svg+xml", "png": "image/png"}
 SERIES = ("#0072b2", "#d55e00", "#009e73", "#b45a8d", "#3a96cf", "#b87f00", "#14181d")
 DASHES = ("-", (0, (7, 2)), (0, (2, 2)), (0, (9, 3, 2, 3)), (0, (4, 2)), (0, (12, 3)), (0, (3, 3)))
 MECHANISMS = ("#deebf7", "#d55e00", "#009e73", "#783c96", "#e69f00")
@@ -26,24 +26,24 @@ class NoFigure(ValueError):
     """What was sent is no figure; the message is one sentence."""
 
 
-def pdf(text: bytes) -> bytes:
-    """The PDF of a figure given as JSON: as `figures.packed` has it, with the arrays in place."""
+def drawn(text: bytes, kind: str = "pdf") -> bytes:
+    """The file, one of KINDS, of a figure given as JSON: as `figures.packed` has it, with the arrays in place."""
     try:
         spec = json.loads(text)
         if not isinstance(spec, dict):
             raise NoFigure("expected a figure")
         with _ONE:
-            return _drawn(spec)
+            return _drawn(spec, kind)
     except NoFigure:
         raise
     except (ValueError, TypeError, KeyError, IndexError, AttributeError, RecursionError, OverflowError) as error:
         raise NoFigure(f"this is no figure that can be drawn: {type(error).__name__}") from error
 
 
-def _drawn(spec: dict[str, Any]) -> bytes:
-    from matplotlib.backends.backend_pdf import FigureCanvasPdf
+def _drawn(spec: dict[str, Any], kind: str) -> bytes:
     from matplotlib.figure import Figure
 
+    from squealbox import plots
     from squealbox.plots.style import styled
 
     width, height = (min(max(float(size), 100.0), 4000.0) / DOTS for size in spec["size"])
@@ -54,9 +54,7 @@ def _drawn(spec: dict[str, Any]) -> bytes:
             _bars(panel, spec)
         else:
             _axes(panel, spec)
-        file = io.BytesIO()
-        FigureCanvasPdf(figure).print_pdf(file, metadata={"Creator": "squealbox", "CreationDate": None})
-    return file.getvalue()
+        return plots.drawn(figure, kind, PNG_DOTS)
 
 
 def _axes(panel: Any, spec: dict[str, Any]) -> None:

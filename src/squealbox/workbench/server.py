@@ -60,7 +60,7 @@ class Workbench:
             Route("/favicon.ico", _file(STATIC / "favicon.svg", "image/svg+xml")),
             Route("/vendor/d3.js", _file(chart_library(), "text/javascript")),
             Route("/recording", self.record, methods=["POST"]),
-            Route("/paper", self.paper, methods=["POST"]),
+            Route("/paper/{kind}", self.paper, methods=["POST"]),
             Route("/project/{part}/{name}", self.kept, methods=["GET", "POST"]),
             WebSocketRoute("/ws", self.talk),
             Route("/static/{path:path}", self.static),
@@ -113,8 +113,12 @@ class Workbench:
         return JSONResponse({"id": kept})
 
     async def paper(self, request: Request) -> Response:
-        """A figure of the page as PDF."""
-        from squealbox.workbench.paper import LARGEST, NoFigure, pdf
+        """A figure of the page as a file for paper."""
+        from squealbox.workbench.paper import KINDS, LARGEST, NoFigure, drawn
+
+        kind = request.path_params["kind"]
+        if kind not in KINDS:
+            return Response(status_code=404)
 
         if not self.token.known(request.scope):
             return JSONResponse({"message": "this address needs its token"}, status_code=403)
@@ -124,10 +128,10 @@ class Workbench:
             if len(content) > LARGEST:
                 return JSONResponse({"message": f"a figure of more than {LARGEST} bytes"}, status_code=413)
         try:
-            made = await asyncio.get_running_loop().run_in_executor(self.pools["warming"], pdf, bytes(content))
+            made = await asyncio.get_running_loop().run_in_executor(self.pools["warming"], drawn, bytes(content), kind)
         except NoFigure as error:
             return JSONResponse({"message": str(error)}, status_code=400)
-        return Response(made, media_type="application/pdf")
+        return Response(made, media_type=KINDS[kind])
 
     async def kept(self, request: Request) -> Response:
         """A recording or a result of the project: given to the page, or taken from it."""

@@ -67,10 +67,18 @@ def words(text: str, name: str, *options: tuple[str, str], usual: str = "") -> d
             "numbers": numbers}  # fmt: skip
 
 
+def number(text: str, name: str, usual: float, low: float, high: float, step: float) -> dict[str, Any]:
+    """A number to be typed, the option `name`."""
+    return {"kind": "number", "text": text, "name": name, "usual": usual, "low": low, "high": high, "step": step}
+
+
 FREEDOM = {"kind": "freedom", "text": "of"}  # a choice among the degrees of freedom that the answer names
 FRICTION = "friction.static"
 LOADS = ("load", "load1", "sliding_speed", "theta1")
 STARTS = (("push", "steady sliding, pushed"), ("rest", "loads applied at rest"), ("sliding", "steady sliding"))
+STEPS = (("percent", "+1 %"), ("tolerance", "one tolerance"))
+SLOWED = (("1", "true"), ("8", "slowed 8 times"), ("32", "slowed 32 times"))
+STOPS = (("0", "as it slides"), *((f"{s:g}", f"braking to rest in {s:g} s") for s in (0.5, 1, 2, 4)))
 SHOWN = (("growth", "growth rate"), ("frequency", "frequency"), ("mechanism", "mechanism"))
 PUSHES = (("0.001", "0.1 %"), ("0.05", "5 %"), ("0.5", "50 %"), ("2", "200 %"))
 
@@ -97,18 +105,27 @@ PANELS: dict[str, Panel] = {
                  Place("phase", "Phase plane of the second half"), Place("spectrogram", "Spectrogram")),
     ),
     "energy": Panel("Energy by contact", figures=(Place("energy", bars=True),)),
-    "sensitivity": Panel("Which parameter to change", slow=True),
+    "sensitivity": Panel(
+        "Which parameter to change", slow=True, choices=(words("for", "step", *STEPS),),
+        figures=(Place("sensitivity", bars=True),), layout="beside",
+    ),
     "branch": Panel(
         "Limit cycles over a parameter", slow=True, apart=True, along=True,
         choices=(over("over", "parameter", FRICTION), FREEDOM),
         figures=(Place("branch", "", 270, "bent", "amplitude of the cycles: press Follow"),),
     ),
     "silence": Panel("Cures", columns=2, slow=True, apart=True),
-    "target": Panel("A target", slow=True),
-    "listen": Panel("Listen", slow=True),
+    "target": Panel(
+        "A target", slow=True, figures=(Place("lot", "", 150),),
+        choices=(number("friction", "friction", 0.45, 0.01, 5.0, 0.01), number("for %", "share", 95.0, 1.0, 99.9, 0.1)),
+    ),
+    "listen": Panel(
+        "Listen", slow=True, choices=(FREEDOM, words("heard", "slow", *SLOWED), words("while", "braking", *STOPS)),
+        figures=(Place("sound", "", 170, awaited="the sound: press Play"),),
+    ),
     "compare": Panel(
         "Compare two designs", columns=2, choices=(over("over", "parameter", FRICTION),), layout="two",
-        figures=(Place("frequency", "Frequencies", 200), Place("growth", "Largest growth rate", 200)),
+        figures=(Place("frequency", "Frequencies", 200), Place("growth", "Growth rate", 200)),
         table="The two designs in numbers",
     ),
     "recording": Panel(

@@ -10,7 +10,8 @@ from squealbox.signals import SignalError, audible, dominant_frequency, rendered
 from squealbox.signals.radiation import AREA, AUDIBLE
 from squealbox.signals.wav import SAMPLING
 from squealbox.transient import Trajectory
-from squealbox.words import scaled
+from squealbox.words import number, quantity, scaled
+from squealbox.workbench.figures import Axis, Figure, heat, line, text
 from squealbox.workbench.panels.following import followed
 from squealbox.workbench.panels.loudness import loudest, loudness
 from squealbox.workbench.panels.panel import Answer, Elsewhere, OptionError, Options, Work
@@ -119,10 +120,25 @@ def _stop(design: Design, seconds: float, options: Options, work: Work) -> Answe
         "pitch": pitch, "largest": float(np.max(np.abs(wave))), "level": level, "weighted": level, "of": "",
         "seconds": seconds, "speed": speed, "speedUnit": unit, "events": events,
         "words": _told(events, system.names[dof]),
-        "gridTime": [float(grid.time[0]), float(grid.time[-1])], "gridTop": float(grid.frequency[count * each - 1]),
         "assumption": f"The pressure is that of {1e4 * area:.3g} cm² of {system.names[dof]} at 1 m.",
     }  # fmt: skip
-    return Answer(data, {"wave": wave, "grid": picture, **_frames(motion, pitch or 1.0 / PIECE)})
+    figure = _picture(picture, grid.time, float(grid.frequency[count * each - 1]), data)
+    return Answer(data, {"wave": wave, **_frames(motion, pitch or 1.0 / PIECE)}, [figure])
+
+
+def _picture(picture: Any, time: Any, top: float, data: dict[str, Any]) -> Figure:
+    """The spectrogram of a stop, the speed as a line from its first value to none, and the squeal events by name."""
+    span, height = (float(time[0]), float(time[-1])), top / 1e3
+    falls = [height * (1.0 - each / data["seconds"]) for each in span]
+    layers = [line(list(span), falls, "s2", f"speed {number(data['speed'], 3)} to 0 {data['speedUnit']}")]
+    for begin, end, hertz, level in data["events"]:
+        layers.append(line([begin, end], [hertz / 1e3] * 2, "s1"))
+        layers.append(
+            text((max(begin, span[0]) + end) / 2.0, hertz / 1e3, f"{quantity(hertz, 'Hz', 3)}, {level:.0f} dB(A)")
+        )
+    upward = Axis("frequency", "kHz", (0.0, height), factor=1e3, quantity="frequency")
+    seen = heat(picture, "decades", "sound pressure", "Pa", smooth=True)
+    return Figure("sound", Axis("time", "s", span), upward, layers, "bottom left", seen)
 
 
 def _events(pressure: Any, times: Any) -> list[list[float]]:

@@ -13,11 +13,13 @@ from squealbox.plots.strokes import written_places
 from squealbox.remedies.production import usual_scatter
 from squealbox.stability import critical_values, sensitivity
 from squealbox.system import InvalidSystem
+from squealbox.workbench.figures import Bars
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.modes import modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, axis_of
 
 MOST_BARS = 16
+MERGE = "Two modes nearly merge here: derivatives mean little."
 ROUND_OFF = 1e-12  # of the eigenvalue: smaller changes of its real part are none
 POINTS = 101  # of the range in which a critical value is looked for
 LARGE = 40  # degrees of freedom beyond which it is not: the verdict looks along one parameter
@@ -37,11 +39,11 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     step = options.word("step", STEPS)
     modes = modes_of(design)
     if not bool(modes.exists):
-        return Answer({"outcome": str(modes.outcome), "message": modes.outcome.message, "bars": []})
+        return _none(str(modes.outcome), modes.outcome.message)
     try:
         found = sensitivity(design)
     except ValueError as error:  # no steady sliding beside the design
-        return Answer({"outcome": "no_derivative", "message": str(error), "bars": []})
+        return _none("no_derivative", str(error))
     turn = np.sign(np.imag(found.eigenvalue)) / (2.0 * np.pi)
     steps = _steps(design, found, step)
     change = steps * found.first
@@ -56,6 +58,9 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         bar = {"name": name, "growth": float(change[i].real), "frequency": float(turn * change[i].imag),
                "value": float(found.values[i]), "place": places.get(name)}  # fmt: skip
         bars.append(bar | {"needed": _needed(design, name) if design.system().size <= LARGE else None})
+    shown = [{"name": bar["name"], "parts": [("b0" if bar["growth"] > 0.0 else "b2", bar["growth"])],
+              "sum": bar["growth"]} for bar in bars]  # fmt: skip
+    told = {"percent": "+1 %", "tolerance": "one tolerance"}[step]
     data = {
         "outcome": "completed",
         "bars": bars,
@@ -63,11 +68,15 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "condition": finite(found.condition),
         "near": found.near_defective,
         "stable": bool(modes.stable),
-        "words": _words(bars, step, bool(modes.stable)),
+        "words": MERGE if found.near_defective else _words(bars, step, bool(modes.stable)),
     }
     if places:
         data |= {"strokes": drawn["strokes"], "box": drawn["box"]}
-    return Answer(data, {"points": drawn["points"]})
+    return Answer(data, {"points": drawn["points"]}, [Bars("sensitivity", f"growth rate [1/s] for {told}", shown)])
+
+
+def _none(outcome: str, why: str) -> Answer:
+    return Answer({"outcome": outcome, "words": f"{why}.", "bars": []}, figures=[Bars("sensitivity", "", [])])
 
 
 def _steps(design: Design, found: Any, step: str) -> Any:

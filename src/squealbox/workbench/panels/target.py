@@ -5,6 +5,7 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.parameters import ParameterError
 from squealbox.remedies.target import ASSUMED, Lot, lot_of
+from squealbox.workbench.figures import Axis, Figure, Layer, across, line, points, text, upright
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
 
@@ -27,10 +28,25 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     axis = np.linspace(low, high, POINTS)
     data = {
         "friction": friction, "share": share, "stable": reached, "least": finite(least), "nominal": finite(lot.nominal),
-        "met": reached >= share, "brakes": len(lot.lost), "names": list(lot.names), "shares": list(lot.share),
+        "marks": {"met": reached >= share}, "met": reached >= share,
+        "brakes": len(lot.lost), "names": list(lot.names), "shares": list(lot.share),
         "words": f"{_words(lot, friction, share, reached, least)} {len(lot.lost)} brakes. {ASSUMED}.",
     }  # fmt: skip
-    return Answer(data, {"axis": axis, "curve": 100.0 * lot.stable(axis)})
+    layers = [
+        line(axis, 100.0 * lot.stable(axis)),
+        across(share),
+        upright(friction),
+        *_named("target", friction, share),
+    ]
+    if np.isfinite(least):
+        layers += _named("reached", least, share, "begin")
+    over = Axis("friction", "-", (low, high))
+    return Answer(data, figures=[Figure("lot", over, Axis("stable", "%", (0.0, 105.0)), layers)])
+
+
+def _named(words: str, x: float, share: float, look: str = "here") -> list[Layer]:
+    """A point on the line of the share, with a word below it."""
+    return [points([x], [share], look), text(x, share - 22.0, words)]
 
 
 def _seen(lot: Lot, friction: float) -> tuple[float, float]:

@@ -67,7 +67,7 @@ export class Chart {
     this.svg.attr("height", this.height);
     const { top, right, bottom } = this.margin;
     const left = (this.margin.left = this.#room(spec.y));
-    const width = Math.max(this.size.width, 180);
+    const width = Math.max(this.size.width, 130);
     const inner = { width: width - left - right, height: this.height - top - bottom };
     this.inner = inner;
     this.svg.attr("width", width).attr("viewBox", `0 0 ${width} ${this.height}`);
@@ -206,7 +206,7 @@ export class Chart {
     if (!this.x) return;
     const known = [x, y].filter((each) => typeof each === "number");
     this.here ??= this.svg.append("g").attr("clip-path", `url(#${this.clip})`);
-    const mark = known.length < 2 ? { kind: "upright", x, cls: "present" } : { kind: "points", x: [x], y: [y], cls: "here big", r: 6 };
+    const mark = (this.markLayer = known.length < 2 ? { kind: "upright", x, cls: "present" } : { kind: "points", x: [x], y: [y], cls: "here big", r: 6 });
     this.#layers(this.here, [mark].filter(drawable));
     this.figure.attr("data-at", known.join(","));
   }

@@ -132,6 +132,13 @@ export class Panel {
     this.controls.append(choose(text, options, String(this.chosen[name] ?? usual), (value) => this.choose({ [name]: numbers ? Number(value) : value })));
   }
 
+  /** A number to be typed, kept as option `name`. */
+  number({ text, name, usual, low, high, step }) {
+    const input = make("input", { type: "number", class: "end", "aria-label": `${this.name}: ${name}`, min: low, max: high, step, value: this.chosen[name] ?? usual });
+    input.addEventListener("change", () => input.value && input.checkValidity() && this.choose({ [name]: input.valueAsNumber }));
+    this.controls.append(make("label", { class: "choice" }, `${text} `, input));
+  }
+
   /** A select over the degrees of freedom of what was drawn. */
   freedom({ text }) {
     const place = make("span");
@@ -200,7 +207,8 @@ export class Panel {
         if (!asked[name]) return null;
         asked[span] = this.span(asked[name]);
         along.push(asked[name]);
-      } else if (kind === "words") asked[name] = this.chosen[name] ?? (numbers ? Number(usual) : usual);
+      } else if (kind === "freedom") asked.dof = this.chosen.dof ?? 0;
+      else asked[name] = this.chosen[name] ?? (numbers ? Number(usual) : usual);
     }
     const own = this.module.options ? this.module.options(this) : {};
     if (!own) return null;

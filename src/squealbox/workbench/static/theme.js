@@ -15,19 +15,6 @@ const night = matchMedia("(prefers-color-scheme: dark)");
 /** A word for the colours the page has now, found without laying it out. */
 export const shade = () => document.documentElement.dataset.theme ?? (night.matches ? "dark" : "light");
 
-/** Do something while the page has the colours of paper; nothing of it is seen, since the page is painted only afterwards. */
-export function onPaper(act) {
-  const { dataset } = document.documentElement;
-  const before = dataset.theme;
-  dataset.theme = "light";
-  try {
-    return act();
-  } finally {
-    if (before === undefined) delete dataset.theme;
-    else dataset.theme = before;
-  }
-}
-
 export function nextTheme() {
   const now = CHOICES.indexOf(localStorage.getItem(KEY) ?? CHOICES[0]);
   return chooseTheme(CHOICES[(now + 1) % CHOICES.length]);
