@@ -137,7 +137,7 @@ def test_a_degree_of_freedom_the_design_does_not_have_is_the_first_and_named_so(
 
 
 def test_the_onset_drawn_is_the_nearest_to_the_present_value(monkeypatch):
-    monkeypatch.setattr(branch, "_cycle", lambda *_: (None, ""))
+    monkeypatch.setattr(branch, "_cycle", lambda *_: None)
     monkeypatch.setattr(branch, "_walks", lambda *_: iter(()))
     at = brake(theta2=np.deg2rad(115.0))
     found = function_of("branch")(at, Options({"parameter": "theta2"}), Work(apart=True))
@@ -189,7 +189,7 @@ def test_the_report_button_hands_over_a_file(page, browser, tmp_path):
     opened.goto(file.as_uri())
     opened.wait_for_selector("html[data-charts]")
     assert opened.evaluate("document.documentElement.dataset.charts") == "drawn"
-    assert "grows above friction.static = 0.33269" in opened.inner_text("main")
+    assert "Stability changes at friction.static = 0.33269" in opened.inner_text("main")
     assert errors == []
     context.close()
 

@@ -155,12 +155,13 @@ def test_the_command_line_opens_a_file_with_matrices_beside_it(browser, tmp_path
 def test_every_figure_is_saved(page, tmp_path):
     page.drawn("map")
     files = {}
-    for kind in ("PNG", "SVG", "CSV"):
+    for kind in ("PNG", "SVG", "PDF", "CSV"):
         with page.page.expect_download() as saved:
-            page.page.locator("section[data-panel=map] .files button", has_text=kind).click()
+            page.page.select_option("section[data-panel=map] .files select", kind)
         files[kind] = tmp_path / saved.value.suggested_filename
         saved.value.save_as(files[kind])
     assert files["PNG"].read_bytes().startswith(b"\x89PNG")
+    assert files["PDF"].read_bytes().startswith(b"%PDF")
     svg = files["SVG"].read_text()
     assert svg.startswith("<svg")
     assert "data:image/png" in svg
@@ -178,7 +179,7 @@ def test_figures_are_saved_for_paper_also_from_a_dark_page(browser, server, tmp_
         dark, pixels = page.page.evaluate(background), page.page.evaluate(PIXELS)
         for kind in ("PNG", "SVG"):
             with page.page.expect_download() as saved:
-                page.page.locator("section[data-panel=map] .files button", has_text=kind).click()
+                page.page.select_option("section[data-panel=map] .files select", kind)
             saved.value.save_as(tmp_path / f"map.{kind}")
         assert page.page.evaluate(background) == dark
         assert page.page.evaluate(PIXELS) == pixels, "the page keeps its colours"
@@ -198,7 +199,7 @@ def test_names_of_bars_and_curves_of_the_boundary_are_in_the_tables(page, tmp_pa
     for panel in ("energy", "map"):
         page.drawn(panel)
         with page.page.expect_download() as saved:
-            page.page.locator(f"section[data-panel={panel}] .files button", has_text="CSV").click()
+            page.page.select_option(f"section[data-panel={panel}] .files select", "CSV")
         saved.value.save_as(tmp_path / panel)
         heads[panel] = (tmp_path / panel).read_text().splitlines()
     assert heads["energy"][0] == '"name","share of the growth rate [1/s]"'

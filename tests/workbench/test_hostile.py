@@ -8,6 +8,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
+from squealbox.workbench.figures import unpacked
 from squealbox.workbench.frames import unframed
 
 STATE = {"brake": "drum_brake", "laws": {}, "values": {}}
@@ -283,5 +284,7 @@ def test_an_answer_is_that_of_the_library(talk):
     header, arrays = talk.ask(locus(9, **{"friction.static": 0.45, "load1": 2000.0}))
     modes = complex_modes(DrumBrake(friction=LinearSlope(0.45, -0.05), load1=2000.0))
     assert header["id"] == 9
-    assert np.allclose(arrays["hereGrowth"], modes.growth_rate[:2], rtol=1e-6)
-    assert np.allclose(arrays["hereFrequency"], modes.frequency[:2], rtol=1e-6)
+    plane = unpacked(header["data"], arrays, "plane")["layers"]
+    here = next(layer for layer in plane if layer.get("column") == "present design")
+    assert np.allclose(here["x"], modes.growth_rate[:2], rtol=1e-6)
+    assert np.allclose(1e3 * np.array(here["y"]), modes.frequency[:2], rtol=1e-6)

@@ -74,7 +74,8 @@ def test_the_map_is_that_of_the_library_and_a_click_moves_the_design(page):
     axes = {"friction.static": np.linspace(0.0, 1.0, 101), "load": np.linspace(0.0, 2500.0, 101)}
     share = float(np.mean(stability_map(brake(), axes, mechanism=False).unstable))
     chart = page.page.locator("section[data-panel=map] svg")
-    assert float(chart.get_attribute("data-unstable")) == pytest.approx(share, abs=1e-12)
+    panel = page.page.locator("section[data-panel=map]")
+    assert float(panel.get_attribute("data-unstable")) == pytest.approx(share, abs=1e-12)
     assert any(stroke["d"].count("L") > 20 for stroke in page.strokes("map", "map")), "no boundary is drawn"
     box = chart.bounding_box()
     page.page.mouse.click(box["x"] + 0.75 * box["width"], box["y"] + 0.25 * box["height"])

@@ -16,10 +16,10 @@ from squealbox.designs import Design
 from squealbox.friction import FrictionLaw
 from squealbox.limit_cycles import Branch, PointCurve
 from squealbox.limit_cycles.attractors.basins import Basin
-from squealbox.parameters import DataSheet
+from squealbox.parameters import DataSheet, Parameter
 from squealbox.plots.dispatch import drawn_by, plot
 from squealbox.plots.facts import facts, plain_unit
-from squealbox.plots.style import drawn, number
+from squealbox.plots.style import drawn, number, read_in
 from squealbox.plots.sweeps import numeric_answers
 from squealbox.result import Result
 from squealbox.stability import ComplexModes, finite_spectrum
@@ -158,26 +158,25 @@ def has_drawing(design: Design) -> bool:
 
 
 def parameter_rows(design: DataSheet) -> list[tuple[str, str, str, str, str]]:
-    """(name, value with unit, range, meaning, source) of every parameter, nested sheets included; angles in degrees."""
-    rows = [
-        (name, _with_unit(value, about.unit), about.range, about.meaning, about.source)
-        for name, about, value in design.leaves()
-    ]
+    """(name, value with unit, range, meaning, source) of every parameter, nested sheets included, in units as read."""
+    rows = [(name, *_with_unit(value, about), about.meaning, about.source) for name, about, value in design.leaves()]
     words = [(name, str(getattr(design, name)), "one of " + ", ".join(about.options), about.meaning, "")
              for name, about in design.choices().items()]  # fmt: skip
     return rows + words
 
 
-def _with_unit(value: Any, unit: str) -> str:
+def _with_unit(value: Any, about: Parameter) -> tuple[str, str]:
+    """Value and range in the unit a reader uses: degrees, kN/mm."""
+    usual = float(value) if not np.ndim(value) and isinstance(value, (int, float)) else 0.0
+    unit, factor = read_in(about, usual)
+    range_ = dataclasses.replace(about, unit=unit, low=about.low / factor, high=about.high / factor).range
     if value is None:
-        return "not set"
+        return "not set", range_
     if isinstance(value, DataSheet):
-        return f"{type(value).__name__}, varies in time"
+        return f"{type(value).__name__}, varies in time", range_
     if np.ndim(value):
-        return f"{np.size(value)} values {plain_unit(unit)}".rstrip()
-    if unit == "rad":
-        return f"{number(float(np.rad2deg(value)), 6)}°"
-    return f"{number(float(value), 6)} {plain_unit(unit)}".rstrip()
+        return f"{np.size(value)} values {plain_unit(about.unit)}".rstrip(), range_
+    return f"{number(float(value) / factor, 6)} {unit}".rstrip(), range_
 
 
 def _short(value: Any, most: int = 80) -> str:

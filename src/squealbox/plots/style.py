@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from squealbox.parameters import Parameter
+
 MINUS = "\N{MINUS SIGN}"
 WIDTH = 7.0  # inches: the text width of a journal page
 COLUMN = 3.4  # one column of two
@@ -58,6 +60,15 @@ NAMELESS: dict[str, dict[str, None]] = {
     "png": {"Software": None},
     "svg": {"Date": None, "Creator": None},
     "pdf": {"CreationDate": None},
+}
+# Units in which a parameter is read and written, what one of them is in SI, and the sizes of the design's own value
+# for which they are used; everything else is in SI.
+READ_IN: dict[str, tuple[tuple[str, float, float, float], ...]] = {
+    "rad": (("deg", np.pi / 180.0, 0.0, np.inf),),
+    "N/m": (("kN/mm", 1e6, 1e5, np.inf),),
+    "N": (("kN", 1e3, 1e4, np.inf),),
+    "m": (("mm", 1e-3, 1e-12, 0.3), ("m", 1.0, 0.3, np.inf)),
+    "s": (("µs", 1e-6, 1e-12, 1e-4), ("ms", 1e-3, 1e-4, 0.5)),
 }
 PACKED = 3  # of 9, how hard a PNG is packed: the usual 6 takes twice as long and saves a twentieth
 RC: dict[str, Any] = {
@@ -249,6 +260,20 @@ def scaled(unit: str, *arrays: Any, to: str | None = None) -> tuple[float, str]:
     if largest == 0.0 or not np.isfinite(largest):
         return choices[0]
     return next(((factor, name) for factor, name in choices if largest >= 0.999 * factor), choices[-1])
+
+
+def read_in(about: "Parameter", usual: Any) -> tuple[str, float]:
+    """The unit a parameter is read in and what one of it is in SI, chosen by the design's usual value, not the present.
+
+    >>> from squealbox.parameters import Parameter
+    >>> read_in(Parameter("N/m"), 190e6)
+    ('kN/mm', 1000000.0)
+    """
+    size = abs(float(usual)) if isinstance(usual, (int, float)) else 0.0
+    for unit, factor, least, most in READ_IN.get(about.unit, ()):
+        if least <= size < most:
+            return unit, factor
+    return "" if about.unit == "-" else about.unit, 1.0
 
 
 def power_of_ten(values: Any, unit: str) -> tuple[float, str]:

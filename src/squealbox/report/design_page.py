@@ -32,6 +32,7 @@ def design_page(found: Examination, *, title: str = "", command: str = "", note:
         Section("Two parameters", tuple(stability_sections.map_of_two(found))),
         Section("Motion in time", tuple(motion_sections.transient(found))),
         Section("Limit cycle", tuple(motion_sections.limit_cycle(found))),
+        Section("What silences it", tuple(stability_sections.cures(found))),
         Section("How it was computed", tuple(_provenance(found, command))),
     ]
     versions = ", ".join(f"{name} {version}" for name, version in provenance().items())

@@ -6,6 +6,7 @@ from squealbox.designs import Design
 from squealbox.files.analyses import Axis, Map, Simulate
 from squealbox.limit_cycles import Cycle, HopfPoint
 from squealbox.matrices import liveliest
+from squealbox.remedies import Remedies
 from squealbox.result import Result
 from squealbox.signals import SoundLevel
 from squealbox.stability import (
@@ -47,6 +48,7 @@ class Examination:
     cycle: Cycle | None = None
     tried: tuple[str, ...] = ()
     hopf: HopfPoint | None = None
+    remedies: Remedies | None = None
     missing: dict[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:

@@ -18,6 +18,7 @@ from squealbox.files.varied import quantity_of, scalar_parameters
 from squealbox.limit_cycles import hopf_point, shooting
 from squealbox.matrices import liveliest
 from squealbox.parameters import ParameterError
+from squealbox.remedies import silence
 from squealbox.report.examination import Examination
 from squealbox.schedules import Schedule, value_at
 from squealbox.signals import SignalError, sound_level
@@ -46,6 +47,7 @@ OF_LARGE = (0.05, 1.6)  # shares of its friction over which a finite-element bra
 SPECTRA = 61  # values at which modes of a reduced brake are drawn
 COARSE = 11  # points along each axis of a reduced brake's map
 CLOSE, EXACT = 0.02, 1e-13  # share of a cell to which the boundary on it is located, and of any other brake
+LOT = 256  # brakes of the lot that a cure is tried on
 PUSHES = (1.0, 3.0)  # velocities at the contacts, over the sliding speed, from which a cycle is looked for
 
 
@@ -58,7 +60,7 @@ def examine(
     time: float = 0.0,
     progress: Progress = lambda text: None,
 ) -> Examination:
-    """Stability, margin, sensitivity, energy, map, transient, sound and limit cycle of a design.
+    """Stability, margin, sensitivity, energy, map, transient, sound, limit cycle and cures of a design.
 
     Parameters
     ----------
@@ -78,6 +80,7 @@ def examine(
     work.margins(plane)
     work.transient(simulate)
     work.cycle()
+    work.cures()
     return Examination(
         design=design, system=work.system, modes=work.modes, time=time, missing=work.missing, **work.found
     )
@@ -188,6 +191,15 @@ class _Work:
                     self.found["cycle"] = found
                     break
         self.found["tried"] = tuple(tried)
+
+    def cures(self) -> None:
+        """What would silence it, or keep it silent with more friction."""
+        if not self.modes.exists:
+            return
+        with self.part("cures", "cures"):
+            if self.reduced:
+                raise InvalidSystem("squealbox silence looks for cures of a finite-element brake, in its own time")
+            self.found["remedies"] = silence(self.design, samples=LOT)
 
     def _not_too_large(self, what: str, way_out: str) -> None:
         """Raise `InvalidSystem` where this would run for minutes."""

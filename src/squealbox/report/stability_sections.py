@@ -6,10 +6,12 @@ from typing import Any
 import numpy as np
 
 from squealbox import plots
+from squealbox.plots.cards import has_drawing
 from squealbox.plots.style import quantity_label
 from squealbox.report import charts, tables, words
 from squealbox.report.blocks import Chart, Section, Text
 from squealbox.report.examination import Examination
+from squealbox.report.moving import vibrating
 from squealbox.report.pictures import picture, why_not
 
 
@@ -19,6 +21,9 @@ def stability(found: Examination) -> Iterator[Any]:
         yield Text(found.missing.get("stability", "there is no steady sliding"))
         return
     yield tables.modes(found.modes)
+    moving = vibrating(found.design, found.modes) if has_drawing(found.design) else None
+    if moving is not None:
+        yield moving
     yield picture(plots.plot(found.modes), "Eigenvalues. To the right of the line a mode grows.")
     if found.varied is not None and found.spectra is not None:
         yield _coalescence(found)
@@ -48,6 +53,14 @@ def _coalescence(found: Examination) -> Chart:
     caption = f"Frequencies and growth rates over {varied.name}; hatched: unstable; dotted: this design."
     moving = charts.modes_over_parameter(factor * inputs, spectra.eigenvalues, varied.name, unit, here)
     return Chart(picture(figure, caption), moving)
+
+
+def cures(found: Examination) -> Iterator[Any]:
+    """The cures that leave the least squeal, the best first."""
+    if found.remedies is not None:
+        yield tables.cures(found.remedies)
+        yield Text(found.remedies.assumption)
+    yield from why_not(found, "cures")
 
 
 def map_of_two(found: Examination) -> Iterator[Any]:

@@ -3,8 +3,9 @@
 import numpy as np
 
 from squealbox.plots.cards import parameter_rows
-from squealbox.plots.facts import shown
-from squealbox.plots.style import number
+from squealbox.plots.facts import plain_unit, shown
+from squealbox.plots.style import number, scaled
+from squealbox.remedies import Remedies
 from squealbox.report.blocks import Cell, Table
 from squealbox.report.examination import Examination, results_of
 from squealbox.report.words import in_reading_unit, quantity
@@ -13,6 +14,7 @@ from squealbox.system import System, equilibrium
 
 MOST_MODES = 12
 MOST_PARAMETERS = 10
+MOST_CURES = 8
 
 
 def parameters(found: Examination) -> Table:
@@ -91,6 +93,27 @@ def energy(fed: ModeEnergy) -> Table:
     ]  # fmt: skip
     head = ("", "by normal force, or damping", "by slope of friction", "phase of normal force", "work a cycle / energy")
     said = f"What feeds and damps the worst mode; the sum is its growth rate, {number(fed.growth_rate, 5)} 1/s."
+    return Table(head, tuple(rows), said)
+
+
+def cures(found: Remedies) -> Table:
+    """The best cures: dose, what is left of the squeal, cost and what to know before."""
+    rows = []
+    for i in range(min(len(found), MOST_CURES)):
+        factor, unit = scaled(str(found.unit[i]), found.dose[i])
+        left = "not known" if np.isnan(found.amplitude[i]) else quantity(found.amplitude[i], "m", 2)
+        mark = "stable" if found.reached[i] else "not-decidable"
+        rows.append((
+            Cell(str(found.name[i]), str(found.caution[i])),
+            f"{number(found.dose[i] / factor, 3)} {plain_unit(unit)}".strip(),
+            f"{number(found.growth[i], 3)} 1/s", Cell(f"{number(100.0 * found.probability[i], 3)} %", mark=mark), left,
+            str(found.cost[i]),
+        ))  # fmt: skip
+    head = ("cure", "dose", "growth rate", "lot that squeals", "after a push", "cost")
+    before = f"Without: {number(found.growth_before, 3)} 1/s, {number(100.0 * found.before, 3)} % of the lot squeals."
+    said = (
+        f"The best {len(rows)} of {len(found)}, quiet up to {number(100.0 * found.margin, 3)} % more friction. {before}"
+    )
     return Table(head, tuple(rows), said)
 
 

@@ -1,35 +1,27 @@
 """What an examination says in sentences: the verdict, and the caveats that belong to it."""
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
 from squealbox.files.varied import quantity_of
-from squealbox.plots.facts import plain_unit, read
-from squealbox.plots.style import number
+from squealbox.plots import verdicts
+from squealbox.plots.style import number, read_in
+from squealbox.plots.verdicts import quantity
 from squealbox.report.examination import Examination
 from squealbox.system import equilibrium
 
-UNDAMPED = 1e-9  # damping ratio below which what is left is round-off
-
 
 def in_reading_unit(found: Examination, name: str) -> tuple[float, str]:
-    """What SI values of a parameter are multiplied by to be read, and the unit then: angles in degrees."""
-    unit = quantity_of(found.design, name).unit
-    return (180.0 / np.pi, "°") if unit == "rad" else (1.0, plain_unit(unit))
+    """What SI values of a parameter are multiplied by to be read, and the unit then: degrees, kN/mm."""
+    unit, factor = read_in(quantity_of(found.design, name), found.design.value_of(name))
+    return 1.0 / factor, unit
 
 
 def value_in_words(found: Examination, name: str, value: float, digits: int = 5) -> str:
     """A value of a parameter with its unit."""
     factor, unit = in_reading_unit(found, name)
     return f"{number(factor * float(value), digits)} {unit}".rstrip()
-
-
-def quantity(value: Any, unit: str, digits: int = 4) -> str:
-    """A number in the unit that suits it: 12.3 µm."""
-    _, text, written = read("", value, unit, digits)
-    return f"{text} {written}".rstrip()
 
 
 def verdict(found: Examination) -> list[str]:
@@ -39,49 +31,22 @@ def verdict(found: Examination) -> list[str]:
 
 def short_verdict(found: Examination) -> str:
     """One sentence for the head of a page."""
-    if not found.modes.exists:
-        return f"There is no steady sliding: {found.modes.outcome.message}."
-    if not found.stable:
-        worst = found.modes.most_unstable
-        how = f" at {quantity(worst.frequency, 'Hz')}" if worst.frequency > 0.0 else ""
-        return f"Steady sliding is unstable: a mode grows{how}."
-    beside = ", and yet a vibration can persist beside it" if found.coexists else ""
-    return f"Steady sliding is stable{beside}."
+    said = verdicts.headline(found.modes, found.why)
+    return f"{said}{', and yet a vibration can persist beside it' if found.coexists else ''}."
 
 
 def _stability(found: Examination) -> Iterator[str]:
     yield short_verdict(found)
-    if not found.modes.exists:
-        return
-    worst = found.modes.most_unstable
-    if found.stable and abs(worst.damping_ratio) < UNDAMPED:
-        yield f"A mode at {quantity(worst.frequency, 'Hz')} neither grows nor decays: nothing in the model damps it."
-    elif found.stable:
-        yield (
-            f"The least damped mode, at {quantity(worst.frequency, 'Hz')}, decays at "
-            f"{number(abs(worst.growth_rate))} 1/s (damping ratio {number(100.0 * worst.damping_ratio, 3)} %)."
-        )
-    elif found.why is not None:
-        yield f"Its growth rate is {number(worst.growth_rate)} 1/s, its mechanism {found.why}."
+    yield verdicts.growth(found.modes, found.why)
 
 
 def _margin(found: Examination) -> Iterator[str]:
     if found.varied is None or found.crossings is None:
         return
-    name, critical = found.varied.name, found.critical
-    if critical is None:
-        ends = " and ".join(value_in_words(found, name, x) for x in (found.varied.low, found.varied.high))
-        yield f"Between {name} = {ends} stability does not change."
-        return
-    value, here = float(critical.value), found.present
-    shares = ", ".join(f"{key.replace('_', ' ')} {100.0 * share:.0f} %" for key, share in critical.shares.items())
-    side = "above" if critical.direction == "destabilising" else "below"
-    yield (
-        f"A mode of {quantity(critical.frequency, 'Hz')} grows {side} {name} = {value_in_words(found, name, value)} "
-        f"by {critical.mechanism.replace('_', ' ')} ({shares})."
-    )
-    share = f"{number(100.0 * (value - here) / abs(here), 3)} %" if here else value_in_words(found, name, value - here)
-    yield f"This design has {name} = {value_in_words(found, name, here)}: that value is {share} away."
+    name, ends = found.varied.name, (float(found.varied.low), float(found.varied.high))
+    changes = [each for each in found.crossings if each.changes_stability]
+    said = verdicts.margin(name, found.present, changes, ends, lambda value: value_in_words(found, name, value))
+    yield verdicts.plain(said)
 
 
 def _motion(found: Examination) -> Iterator[str]:

@@ -61,18 +61,23 @@ class StabilityMap(Result):
         names = [(name, int(np.sum(self.mechanism == code))) for code, name in enumerate(NAMES) if code > 0]
         parts = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in names if count)
         place = np.unravel_index(int(np.nanargmax(self.growth_rate)), self.growth_rate.shape)
-        where = ", ".join(f"{n} = {np.asarray(v)[i]:.6g}" for (n, v), i in zip(self.axes.items(), place, strict=True))
+        axes = zip(self.axes.items(), place, strict=True)
+        where = ", ".join(f"{n} = {np.asarray(v)[i]:.6g} {self._unit(n)}".rstrip() for (n, v), i in axes)
         lines = [f"{unstable} of {known} points unstable ({unstable / known:.2%}){': ' + parts if parts else ''}"]
         lines += [f"largest growth rate {self.growth_rate[place]:+.6g} 1/s at {self.frequency[place]:.6g} Hz, {where}"]
         if known < total:
             lines.append(f"{total - known} points without steady sliding")
         return "\n".join(lines)
 
+    def _unit(self, name: str) -> str:
+        """The unit of an axis, empty for a pure number or where no design is known."""
+        design = self.inputs.get("system")
+        return design.unit_of(name) if isinstance(design, DataSheet) else ""
+
     def labelled(self) -> Labelled:
         """The arrays with the parameters as named coordinates."""
-        names, design = {f"axis_{i}": name for i, name in enumerate(self.axes)}, self.inputs.get("system")
-        units = {name: design.unit_of(name) if isinstance(design, DataSheet) else "" for name in self.axes}
-        labels = {name: Labels((name,), np.asarray(at), {"units": units[name]}) for name, at in self.axes.items()}
+        names = {f"axis_{i}": name for i, name in enumerate(self.axes)}
+        labels = {name: Labels((name,), np.asarray(at), {"units": self._unit(name)}) for name, at in self.axes.items()}
         return super().labelled().renamed(names).with_({}, labels)
 
 

@@ -61,6 +61,7 @@ class Workbench:
             Route("/vendor/d3.js", _file(chart_library(), "text/javascript")),
             Route("/recording", self.record, methods=["POST"]),
             Route("/project/{part}/{name}", self.kept, methods=["GET", "POST"]),
+            Route("/paper", self.paper, methods=["POST"]),
             WebSocketRoute("/ws", self.talk),
             Route("/static/{path:path}", self.static),
         ]
@@ -125,6 +126,23 @@ class Workbench:
         if path is None:
             return Response(status_code=404)
         return FileResponse(path, media_type="application/octet-stream", headers={"content-disposition": "attachment"})
+
+    async def paper(self, request: Request) -> Response:
+        """A figure of the page as PDF."""
+        from squealbox.workbench.paper import LARGEST, NoFigure, pdf
+
+        if not self.token.known(request.scope):
+            return JSONResponse({"message": "this address needs its token"}, status_code=403)
+        content = bytearray()
+        async for piece in request.stream():
+            content += piece
+            if len(content) > LARGEST:
+                return JSONResponse({"message": f"a figure of more than {LARGEST} bytes"}, status_code=413)
+        try:
+            made = await asyncio.get_running_loop().run_in_executor(self.pools["warming"], pdf, bytes(content))
+        except NoFigure as error:
+            return JSONResponse({"message": str(error)}, status_code=400)
+        return Response(made, media_type="application/pdf")
 
     async def talk(self, socket: WebSocket) -> None:
         """One page's connection from its start to its end."""
@@ -210,8 +228,5 @@ def _hello(file: Any) -> dict[str, Any]:
         "text": file.text if file is not None else "",
         "name": file.found.path.stem if file is not None else "",
         "brakes": [{"name": name, "title": design.title} for name, design in DESIGNS.items()],
-        "panels": [
-            {"name": name, "title": panel.title, "columns": panel.columns, "slow": panel.slow, "shown": panel.shown}
-            for name, panel in PANELS.items()
-        ],
+        "panels": [panel.data(name) for name, panel in PANELS.items()],
     }

@@ -298,8 +298,9 @@ def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design],
         if size > LARGE and not (work.apart or PANELS[name].light):
             raise Elsewhere(f"computing, with {size} degrees of freedom", PER_CUBE * size**3)
         with np.errstate(all="ignore"):  # of extreme values: what is not finite is said in the answer
-            answer: Answer = function_of(name)(design, Options(message.get("options") or {}), work)
-        framed = frame({**about, "kind": "answer", "data": answer.data}, answer.arrays)
+            answer: Answer = function_of(name)(design, Options(message.get("options") or {}, bases), work)
+        data, arrays = answer.sent()
+        framed = frame({**about, "kind": "answer", "data": data}, arrays)
     except StateError as error:
         return frame({**about, **_wrong(error)})
     except OptionError as error:

@@ -13,19 +13,11 @@ from squealbox.files.sheets import LAW_NAMES, field_type, name_of
 from squealbox.files.varied import scalar_parameters
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, Parameter
+from squealbox.plots.style import read_in
 from squealbox.schedules import Schedule
 from squealbox.workbench.frames import finite
 from squealbox.workbench.state import CHOOSABLE
 
-# Units in which a field is read and written, what one of them is in SI, and the sizes of the design's own value for
-# which they are used; everything else is in SI.
-READ_IN: dict[str, tuple[tuple[str, float, float, float], ...]] = {
-    "rad": (("deg", math.pi / 180.0, 0.0, math.inf),),
-    "N/m": (("kN/mm", 1e6, 1e5, math.inf),),
-    "N": (("kN", 1e3, 1e4, math.inf),),
-    "m": (("mm", 1e-3, 1e-12, 0.3), ("m", 1.0, 0.3, math.inf)),
-    "s": (("µs", 1e-6, 1e-12, 1e-4), ("ms", 1e-3, 1e-4, 0.5)),
-}
 STEPS = 500  # of a slider
 
 
@@ -70,19 +62,6 @@ def slider(value: float, about: Parameter, whole: bool = False) -> tuple[float, 
     if whole:
         low, top = max(about.low, 1.0), max(8.0, top)
     return low, min(top, about.high)
-
-
-def read_in(about: Parameter, usual: Any) -> tuple[str, float]:
-    """The unit a parameter is read in and what one of it is in SI, chosen by the design's usual value, not the present.
-
-    >>> read_in(Parameter("N/m"), 190e6)
-    ('kN/mm', 1000000.0)
-    """
-    size = abs(float(usual)) if isinstance(usual, (int, float)) else 0.0
-    for unit, factor, least, most in READ_IN.get(about.unit, ()):
-        if least <= size < most:
-            return unit, factor
-    return "" if about.unit == "-" else about.unit, 1.0
 
 
 def usual_value(owner: DataSheet, name: str) -> Any:

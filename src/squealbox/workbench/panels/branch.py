@@ -5,6 +5,7 @@ design (shooting, exact stick and slip) to both sides. Every system that is made
 waits, so a walk can be stopped at any point.
 """
 
+import json
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -24,11 +25,12 @@ from squealbox.limit_cycles import (
 from squealbox.limit_cycles.branches.stretches import NEUTRAL
 from squealbox.parameters import ParameterError
 from squealbox.plots.facts import unit_at
-from squealbox.plots.style import scaled
+from squealbox.plots.style import number, scaled
 from squealbox.stability import complex_modes, critical_values
 from squealbox.system import System
+from squealbox.workbench.figures import Axis, Figure, Layer, band, line, points, span
 from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, axis_of
+from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
 
 POINTS = 200  # of each walk to one side, at most: round two folds and back
 STEP = 0.1  # longest, in shares of the range and of the motion
@@ -44,23 +46,23 @@ Make = Callable[[float], System]
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """The branches as curves (value, amplitude, stable), their special points, and the stretches of coexistence."""
     parameter = options.parameter("parameter", design, "friction.static")
-    span = options.span("span", design, parameter)
-    span = (span[0] + EDGE * (span[1] - span[0]), span[1])
-    usual = min(max(float(design.value_of(parameter) or span[0]), span[0]), span[1])
-    at = max(options.number("at", usual, -1e300, 1e300), span[0])
-    if at > span[1]:
-        raise OptionError(f"at: expected a number in [{span[0]:g}, {span[1]:g}]")
+    ends = options.span("span", design, parameter)
+    ends = (ends[0] + EDGE * (ends[1] - ends[0]), ends[1])
+    usual = min(max(float(design.value_of(parameter) or ends[0]), ends[0]), ends[1])
+    at = max(options.number("at", usual, -1e300, 1e300), ends[0])
+    if at > ends[1]:
+        raise OptionError(f"at: expected a number in [{ends[0]:g}, {ends[1]:g}]")
     dof, points = options.dof(design), int(options.number("points", POINTS, 5, 1000))
-    watched = _Watched(design, parameter, span, at, work)
+    watched = _Watched(design, parameter, ends, at, work)
     try:
-        born = _nearest_onset(watched, parameter, span, at)
-        cycle, start = _cycle(watched, design.replace({parameter: at}))
+        born = _nearest_onset(watched, parameter, ends, at)
+        cycle = _cycle(watched, design.replace({parameter: at}))
         centre = cycle is not None and bool(np.all(np.abs(np.abs(cycle.multipliers[1:]) - 1.0) < NEUTRAL))
-        walks = list(_walks(watched, parameter, span, at, born, None if centre else cycle, points))
+        walks = list(_walks(watched, parameter, ends, at, born, None if centre else cycle, points))
     except ParameterError as error:
         raise OptionError(f"no limit cycles here: {error.expectation}") from error
     kept = [walk for walk in walks if len(walk.value)]
-    return _drawn(design, parameter, span, dof, born, kept, start, centre)
+    return _drawn(design, options.axis(design, parameter, ends), ends, dof, born, kept, centre)
 
 
 class _Watched:
@@ -93,15 +95,15 @@ def _nearest_onset(watched: _Watched, parameter: str, span: tuple[float, float],
     return hopf_point(make, parameter, (max(near - room, span[0]), min(near + room, span[1])))
 
 
-def _cycle(watched: _Watched, here: Design) -> tuple[Cycle | None, str]:
-    """A stable cycle at the present design and from where it was reached; None where no start led to one."""
+def _cycle(watched: _Watched, here: Design) -> Cycle | None:
+    """A stable cycle at the present design, else an unstable one; None where no start led to one."""
     found = None
     for name, start in _starts(here):
         cycle = shooting(watched.at_part(0.1, f"cycle from {name}")(watched.at), start)
         if cycle.outcome.ok and cycle.stable:
-            return cycle, name
-        found = found or ((cycle, name) if cycle.outcome.ok else None)
-    return found or (None, "")
+            return cycle
+        found = found or (cycle if cycle.outcome.ok else None)
+    return found
 
 
 def _starts(here: Design) -> Iterator[tuple[str, Any]]:
@@ -139,43 +141,75 @@ def _walks(
 
 def _drawn(
     design: Design,
-    parameter: str,
-    span: tuple[float, float],
+    axis: Axis,
+    span_: tuple[float, float],
     dof: int,
     born: HopfPoint,
     walks: list[Branch],
-    start: str,
     centre: bool,
 ) -> Answer:
-    axis, own = axis_of(design, parameter), unit_at(design.system(), dof)
+    own, names = unit_at(design.system(), dof), list(design.system().names)
     metre, unit = scaled(own, *(walk.amplitude[:, dof] for walk in walks)) if walks else (1.0, own)
-    quiet = stable_sliding(design, parameter, span)
+    quiet = stable_sliding(design, axis.parameter, span_)
+    together = [(a / axis.factor, b / axis.factor) for a, b in beside_sliding(walks, quiet)]
+    sizes = [walk.amplitude[:, dof] / metre for walk in walks]
+    _, top = span(*sizes, zero=True, room=0.3)
+    layers = [band(*ends, "together") for ends in together]
+    layers += [line([a / axis.factor, b / axis.factor], [0.0, 0.0], "s2", "stable sliding") for a, b in quiet]
+    for walk, size in zip(walks, sizes, strict=True):
+        layers += _curves(walk, size, axis.factor)
+    specials = [each for walk, size in zip(walks, sizes, strict=True) for each in _specials(walk, size, span_, axis)]
+    if specials:
+        kinds = ", ".join(dict.fromkeys(kind for kind, *_ in specials))
+        layers.append(points([x for _, x, _ in specials], [y for *_, y in specials], "begin", 5.0, column=kinds))
+    hopf = finite(born.value / axis.factor) if born.outcome.ok else None
+    if hopf is not None:
+        layers.append(points([hopf], [0.0], column="onset"))
+    ended = [f"{walk.outcome} {walk.outcome.message}".strip() for walk in walks]
     data: dict[str, Any] = {
-        "axis": axis,
-        "span": [end / axis["factor"] for end in span],
-        "unit": unit,
-        "names": list(design.system().names),
-        "dof": dof,
-        "hopf": finite(born.value / axis["factor"]) if born.outcome.ok else None,
-        "kind": born.kind if born.outcome.ok else "",
-        "start": start,
-        "centre": centre,
-        "walks": [_walk(walk, span, dof, axis["factor"], metre) for walk in walks],
-        "quiet": [[a / axis["factor"], b / axis["factor"]] for a, b in quiet],
-        "together": [[a / axis["factor"], b / axis["factor"]] for a, b in beside_sliding(walks, quiet)],
-    }
-    arrays: dict[str, Any] = {}
-    for i, walk in enumerate(walks):
-        arrays |= {f"value{i}": walk.value / axis["factor"], f"size{i}": walk.amplitude[:, dof] / metre}
-        arrays[f"stable{i}"] = np.asarray(walk.stable, dtype=float)
-    return Answer(data, arrays)
+        "hopf": hopf, "names": names, "dof": dof, "together": together, "centre": centre, "walks": len(walks),
+        "parameter": axis.parameter, "factor": axis.factor,
+        "marks": {"together": json.dumps(together), "walks": len(walks)},
+        "words": " ".join(_words(axis, born, together, ended, specials, centre)),
+    }  # fmt: skip
+    upward = Axis(f"amplitude of {names[dof]}", unit, (-0.03 * top, top))
+    return Answer(data, figures=[Figure("branch", axis, upward, layers)])
 
 
-def _walk(walk: Branch, span: tuple[float, float], dof: int, factor: float, metre: float) -> dict[str, Any]:
-    specials = [
-        [str(kind).replace("_", " "), float(value) / factor, float(walk.amplitude[int(point), dof]) / metre]
-        for kind, value, point in zip(walk.special_kind, walk.special_value, walk.special_point, strict=True)
-    ]
-    if np.ptp(walk.value) <= UPRIGHT * (span[1] - span[0]):
-        specials = []  # it stands at one value: each of its points looks special, by round-off
-    return {"specials": specials, "ended": f"{walk.outcome} {walk.outcome.message}".strip()}
+def _curves(walk: Branch, size: Any, factor: float) -> list[Layer]:
+    """Stable stretches solid and unstable ones dashed; where they meet, the point is of both."""
+    stable, x = np.asarray(walk.stable, dtype=bool), walk.value / factor
+    before = np.r_[stable[:1], stable[:-1]]
+    drawn = []
+    for wanted, look, name in ((True, "s0", "stable cycle"), (False, "s1", "unstable cycle")):
+        kept = np.where((stable == wanted) | (before == wanted), size, np.nan)
+        if np.any(np.isfinite(kept)):
+            drawn.append(line(x, kept, look, name))
+    return drawn
+
+
+def _specials(walk: Branch, size: Any, span_: tuple[float, float], axis: Axis) -> list[tuple[str, float, float]]:
+    if np.ptp(walk.value) <= UPRIGHT * (span_[1] - span_[0]):
+        return []  # it stands at one value: each of its points looks special, by round-off
+    rows = zip(walk.special_kind, walk.special_value, walk.special_point, strict=True)
+    return [(str(kind).replace("_", " "), float(x) / axis.factor, float(size[int(at)])) for kind, x, at in rows]
+
+
+def _words(axis: Axis, born: HopfPoint, together: Any, ended: list[str], specials: Any, centre: bool) -> Iterator[str]:
+    unit = f" {axis.unit}" if axis.unit else ""
+    if born.outcome.ok:
+        yield f"Sliding loses its stability at {axis.value(float(born.value))}, {born.kind}."
+    for low, high in together:
+        yield (f"From {number(low)} to {number(high)}{unit} (shaded) a stable cycle exists beside stable sliding: "
+               "a push decides.")  # fmt: skip
+    early = list(dict.fromkeys(each for each in ended if not each.startswith("completed")))
+    if early:
+        yield f"Followed until: {'; '.join(early)}. Beyond that nothing is said."
+    if centre:
+        yield ("Closed orbits lie side by side about a centre, as nothing in the model damps them: none attracts, a "
+               "push decides the size.")  # fmt: skip
+    elif not ended:
+        yield "No limit cycle was found from the starts tried; that does not prove there is none."
+    told = list(dict.fromkeys(f"{kind} at {number(x, 5)}" for kind, x, _ in specials))
+    if told:
+        yield f"Circles: {', '.join(told[:6])}."

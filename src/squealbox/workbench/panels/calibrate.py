@@ -7,12 +7,15 @@ from squealbox.calibration.measured import from_events
 from squealbox.designs import Design
 from squealbox.files.varied import scalar_parameters
 from squealbox.parameters import ParameterError
+from squealbox.plots.style import number
 from squealbox.signals import SignalError
+from squealbox.workbench.figures import Table
 from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, axis_of, try_value
+from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, try_value
 from squealbox.workbench.panels.recording import heard
 
 MOST = 4  # parameters
+HEADS = ("parameter", "now", "fitted", "95 % interval")
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
@@ -31,15 +34,19 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     except (SignalError, ParameterError) as error:
         raise OptionError(str(error)) from error
     rows: list[dict[str, Any]] = []
+    table: list[list[str]] = []
     for i, name in enumerate(found.names):
-        axis = axis_of(design, name)
-        ends = {each: finite(getattr(found, each)[i]) for each in ("values", "low", "high")}
-        rows.append({"name": name, **axis, "before": try_value(design, name), **ends})
-    fits = zip(found.settings["measured"], found.predicted, found.residuals, strict=True)
-    return Answer({
-        "outcome": str(found.outcome), "message": found.outcome.message, "rows": rows,
-        "fits": [[text, finite(value), finite(away)] for text, value, away in fits], "open": list(found.cannot_tell),
-    })  # fmt: skip
+        axis = options.axis(design, name, bounds[name])
+        value, low, high = (finite(getattr(found, each)[i]) for each in ("values", "low", "high"))
+        rows.append({"name": name, "values": value, "low": low, "high": high})
+        before = axis.value(try_value(design, name))
+        table.append([name, before, axis.value(value), f"{axis.value(low)} to {axis.value(high)}"])
+    fits = list(zip(found.settings["measured"], found.predicted, found.residuals, strict=True))
+    said = [f"{text}: the fit says {number(value, 5)}, {number(away, 2)} sd apart." for text, value, away in fits]
+    failed = [] if found.outcome.ok else [f"{found.outcome.message}."]
+    words = " ".join([*failed, *found.cannot_tell, *said])
+    data = {"outcome": str(found.outcome), "rows": rows, "fits": [[text, finite(away)] for text, _, away in fits]}
+    return Answer({**data, "table": Table(HEADS, table), "words": words, "marks": {"outcome": data["outcome"]}})
 
 
 def _bounds(design: Design, name: str, share: float, about: Any) -> tuple[float, float]:

@@ -1,46 +1,103 @@
-"""What two designs are compared by; the page keeps the answer of the one and puts it beside that of the other."""
+"""Two designs beside each other: A that was kept and B on the page, in curves and in a table."""
 
 from typing import Any
 
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.files.varied import scalar_parameters
 from squealbox.plots.cards import parameter_rows
+from squealbox.plots.facts import read
 from squealbox.plots.modes import followed
-from squealbox.stability import complex_modes, critical_values, mechanism
+from squealbox.plots.style import number, scaled
+from squealbox.stability import complex_modes, mechanism
+from squealbox.workbench.figures import NONE, Axis, Figure, Table, across, line, span
 from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.modes import modes_of
-from squealbox.workbench.panels.panel import Answer, Options, Work, axis_of, try_value
+from squealbox.workbench.panels.modes import crossings_of, modes_of
+from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, try_value
 
 POINTS = 161
+KEEP = "Keep this design as A, then change it: A stays beside it."
+TOLD = ("state", "mechanism", "growth", "frequency", "damping", "critical", "margin")
+Side = dict[str, Any]
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
-    """Stability, its margin in a parameter, frequencies and growth rates over it, and all parameters in words."""
+    """Frequencies and growth rates of both over a parameter, and what differs in numbers and in parameters."""
     parameter = options.parameter("parameter", design, "friction.static")
-    low, high = options.span("span", design, parameter)
-    axis, value = axis_of(design, parameter), try_value(design, parameter)
-    grid = np.linspace(low, high, POINTS)
+    ends = options.span("span", design, parameter)
+    axis, words = options.axis(design, parameter, ends), KEEP
+    sides = [("B", "s0", _side(design, parameter, ends))]
+    try:
+        other = options.design("a")
+        if other is not None and parameter not in scalar_parameters(other):
+            raise OptionError(f"it has no {parameter}")
+        if other is not None:
+            sides.append(("A", "s1", _side(other, parameter, ends)))
+            words = ""
+    except OptionError as error:
+        words = f"A cannot be drawn over {parameter}: {str(error).removeprefix('a: ')}."
+    b, a = sides[0][2], sides[1][2] if len(sides) > 1 else None
+    data = {**{name: b[name] for name in TOLD}, "words": words, "table": _table(a, b, axis)}
+    data["marks"] = {"compared": "yes" if a else "no"}
+    return Answer(data, figures=_figures(axis, sides))
+
+
+def _figures(axis: Axis, sides: list[tuple[str, str, Side]]) -> list[Figure]:
+    x = sides[0][2]["grid"] / axis.factor
+    factor, hertz = scaled("Hz", *(side["frequencies"] for *_, side in sides))
+    modes = [line(x, row / factor, look, name) for name, look, side in sides for row in side["frequencies"].T]
+    rates = [line(x, side["largest"], look, name) for name, look, side in sides]
+    high = span(*(each["y"] for each in modes), room=0.2)
+    upward = Axis("frequency", hertz, high, factor=factor, quantity="frequency")
+    rate = Axis("growth rate", "1/s", span(*(each["y"] for each in rates), room=0.2), quantity="growth rate")
+    return [
+        Figure("frequency", axis, upward, modes),
+        Figure("growth", axis, rate, [across(0.0), *rates], "top left"),
+    ]
+
+
+def _side(design: Design, parameter: str, ends: tuple[float, float]) -> Side:
+    """What one of the two is compared by; SI values."""
+    grid = np.linspace(*ends, POINTS)
     spectra = complex_modes(design.replace({parameter: grid}))
     tracks = followed(spectra.eigenvalues)
     tracks = np.where(np.imag(tracks) >= 0.0, tracks, np.nan)
-    tracks = tracks[:, np.any(np.isfinite(tracks), axis=0)]
-    data: dict[str, Any] = {
-        "axis": axis,
-        "value": None if value is None else value / axis["factor"],
-        "span": [low / axis["factor"], high / axis["factor"]],
-        "title": design.title,
-        "parameters": [[name, text] for name, text, *_ in parameter_rows(design)],
-        "modes": tracks.shape[1],
+    return {
+        "grid": grid,
+        "frequencies": np.imag(tracks[:, np.any(np.isfinite(tracks), axis=0)]) / (2.0 * np.pi),
+        "largest": np.max(np.real(spectra.eigenvalues), axis=-1),
+        "parameters": {name: text for name, text, *_ in parameter_rows(design)},
         **_state(design),
-        **_margin(design, parameter, (low, high), value, axis["factor"]),
+        **_margin(design, parameter, ends, try_value(design, parameter)),
     }
-    arrays = {
-        "values": grid / axis["factor"],
-        "frequency": np.imag(tracks.T) / (2.0 * np.pi),
-        "growth": np.max(np.real(spectra.eigenvalues), axis=-1),
-    }
-    return Answer(data, arrays)
+
+
+def _table(a: Side | None, b: Side, axis: Axis) -> Table:
+    """Rows of both sides; without A those of B. The growth rate says whether B is better or worse."""
+    sides = [b] if a is None else [a, b]
+    known = a is not None and a["growth"] is not None and b["growth"] is not None
+    sense = np.sign(b["growth"] - a["growth"]) if a is not None and known else 0.0
+    rates = [NONE if each["growth"] is None else f"{number(each['growth'], 5)} 1/s" for each in sides]
+    rows: list[list[Any]] = [
+        ["steady sliding", *(", ".join(filter(None, (each["state"], each["mechanism"]))) for each in sides)],
+        ["worst mode", *(NONE if each["frequency"] is None else _hertz(each["frequency"]) for each in sides)],
+        ["its growth rate", *rates[:-1], (rates[-1], {-1.0: "better", 1.0: "worse"}.get(float(sense), ""))],
+        [f"critical {axis.label}", *("none here" if each["critical"] is None else axis.value(each["critical"])
+                                     for each in sides)],
+        ["margin to it", *(NONE if each["margin"] is None else f"{number(100.0 * each['margin'], 3)} %"
+                           for each in sides)],
+    ]  # fmt: skip
+    if a is not None:
+        for name in dict.fromkeys([*a["parameters"], *b["parameters"]]):
+            texts = [each["parameters"].get(name, NONE) for each in sides]
+            rows += [[name, *texts]] if texts[0] != texts[1] else []
+    return Table(["", "A (kept)", "B (this page)"] if a is not None else ["", "B (this page)"], rows)
+
+
+def _hertz(value: float) -> str:
+    _, text, unit = read("", value, "Hz", 5)
+    return f"{text} {unit}"
 
 
 def _state(design: Design) -> dict[str, Any]:
@@ -58,11 +115,9 @@ def _state(design: Design) -> dict[str, Any]:
     }
 
 
-def _margin(
-    design: Design, parameter: str, span: tuple[float, float], value: float | None, factor: float
-) -> dict[str, Any]:
-    changes = [float(one.value) for one in critical_values(design, parameter, span) if one.changes_stability]
+def _margin(design: Design, parameter: str, span: tuple[float, float], value: float | None) -> dict[str, Any]:
+    changes = [float(one.value) for one in crossings_of(design, parameter, span) if one.changes_stability]
     if not changes or value is None:
-        return {"critical": changes[0] / factor if changes else None, "margin": None}
+        return {"critical": changes[0] if changes else None, "margin": None}
     nearest = min(changes, key=lambda each: abs(each - value))
-    return {"critical": nearest / factor, "margin": (nearest - value) / abs(value) if value else None}
+    return {"critical": nearest, "margin": (nearest - value) / abs(value) if value else None}

@@ -5,38 +5,52 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.plots.facts import read
+from squealbox.plots.style import number
 from squealbox.stability import mode_energy
+from squealbox.workbench.figures import Bars
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.modes import modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
 MOST_BARS = 24
+LOOKS = {"normal force": "b0", "slope": "b1", "damping": "b2"}
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """Bars [1/s] that add up to the growth rate of the mode with the largest one."""
     modes = modes_of(design)
     if not bool(modes.exists):
-        return Answer({"outcome": str(modes.outcome), "message": modes.outcome.message, "bars": []})
+        return Answer(
+            {"outcome": str(modes.outcome), "words": f"{modes.outcome.message}."}, figures=[Bars("energy", "", [])]
+        )
     parts = mode_energy(design, modes.most_unstable)
     per = 1.0 / (2.0 * parts.total)
     bars: list[dict[str, Any]] = []
     for i, name in enumerate(parts.contacts):
         circulation, slope = float(parts.circulation[i] * per), float(parts.slope[i] * per)
-        bars.append({"name": name, "parts": {"normal force": circulation, "slope": slope}, "sum": circulation + slope})
+        bars.append(
+            {
+                "name": name,
+                "parts": [(LOOKS["normal force"], circulation), (LOOKS["slope"], slope)],
+                "sum": circulation + slope,
+            }
+        )
     for i, name in enumerate(parts.dofs):
         taken = -float(parts.dissipated[i] * per)
-        bars.append({"name": f"damping of {name}", "parts": {"damping": taken}, "sum": taken})
+        bars.append({"name": f"damping of {name}", "parts": [(LOOKS["damping"], taken)], "sum": taken})
     if parts.structure:
         skew = float(parts.structure * per)
-        bars.append({"name": "skew stiffness", "parts": {"normal force": skew}, "sum": skew})
+        bars.append({"name": "skew stiffness", "parts": [(LOOKS["normal force"], skew)], "sum": skew})
     bars.sort(key=lambda bar: -abs(bar["sum"]))
+    growth, left = float(np.real(parts.eigenvalue)), len(bars[MOST_BARS:])
+    _, hertz, unit = read("", abs(np.imag(parts.eigenvalue)) / (2.0 * np.pi), "Hz")
+    words = f"Together {number(growth)} 1/s at {hertz} {unit}: to the right feeds the mode, to the left damps it."
     data = {
         "outcome": "completed",
-        "growth": float(np.real(parts.eigenvalue)),
-        "frequency": float(abs(np.imag(parts.eigenvalue)) / (2.0 * np.pi)),
+        "growth": growth,
         "residual": finite(parts.residual),
-        "bars": bars[:MOST_BARS],
-        "left": len(bars[MOST_BARS:]),
+        "words": f"{words} {left} smaller ones are not shown." if left else words,
     }
-    return Answer(data)
+    legend = [(look, name) for name, look in LOOKS.items()]
+    return Answer(data, figures=[Bars("energy", "share of the growth rate [1/s]", bars[:MOST_BARS], legend)])

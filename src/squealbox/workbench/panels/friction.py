@@ -5,15 +5,16 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.plots.style import number
 from squealbox.system import linearise
-from squealbox.workbench.frames import finite
+from squealbox.workbench.figures import Axis, Figure, line, points, span, upright
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
 POINTS = 241
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
-    """mu(|v|) of the first contact's law, and coefficient, slope and lost damping of each contact at steady sliding."""
+    """mu(|v|) of each law with its static limit, and where on it each contact slides, with the slope there."""
     system = design.system()
     steady = linearise(system)
     state = steady.equilibrium
@@ -24,23 +25,34 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     for contact in system.contacts:
         if contact.law not in laws:
             laws.append(contact.law)
-    curves = np.array([np.broadcast_to(law.mu(v), v.shape) for law in laws]) if laws else np.zeros((0, POINTS))
-    contacts = [
-        {
-            "name": system.contact_names[i],
-            "law": laws.index(contact.law),
-            "speed": finite(state.sliding_speed[i]),
-            "mu": finite(contact.law.mu(state.sliding_speed[i])),
-            "slope": finite(contact.law.slope_at(state.sliding_speed[i])),
-            "normal": finite(state.normal_force[i]),
-        }
-        for i, contact in enumerate(system.contacts)
+    mu = [np.broadcast_to(law.mu(v), v.shape) for law in laws]
+    rows = zip(system.contacts, state.sliding_speed, state.friction, strict=True)
+    sliding = [(abs(float(speed)), float(m), float(each.law.slope_at(speed))) for each, speed, m in rows
+               if np.isfinite(speed)]  # fmt: skip
+    static = [float(law.static_limit) for law in laws]
+    upward = Axis("friction coefficient", "-", span(*mu, static, zero=True))
+    names = [type(law).__name__ for law in laws]
+    told = "name" if len(names) > 1 else "column"
+    layers = [
+        *(line(v, curve, f"s{i % 7}", **{told: names[i]}) for i, curve in enumerate(mu)),
+        *(upright(speed) for speed in dict.fromkeys(speed for speed, *_ in sliding)),
+        points(np.zeros(len(static)), static, "begin", 4.0, column="static limit"),
+        points([each[0] for each in sliding], [each[1] for each in sliding], column="contacts at steady sliding"),
+        *(_tangent(each, 0.07 * top) for each in sliding),
     ]
-    data = {
-        "contacts": contacts,
-        "laws": [type(law).__name__ for law in laws],
-        "static": [finite(law.static_limit) for law in laws],
-        "outcome": str(steady.equilibrium.outcome),
-        "message": steady.equilibrium.outcome.message,
-    }
-    return Answer(data, {"speed": v, "mu": curves})
+    falling = [slope for *_, slope in sliding if slope < 0.0]
+    words = "Friction does not fall with speed here."
+    if not steady.equilibrium.outcome.ok:
+        words = f"{steady.equilibrium.outcome.message}."
+    elif falling:
+        words = (f"Friction falls with speed at {len(falling)} of {len(sliding)} contacts, slope {number(falling[0])} "
+                 "s/m: it takes damping away.")  # fmt: skip
+    figure = Figure("friction", Axis("sliding speed |v|", "m/s", (0.0, top)), upward, layers)
+    return Answer({"outcome": str(steady.equilibrium.outcome), "words": words}, figures=[figure])
+
+
+def _tangent(at: tuple[float, float, float], half: float) -> Any:
+    """A short tangent where a contact slides: the slope that takes damping away."""
+    speed, mu, slope = at
+    ends = [speed - half, speed + half], [mu - slope * half, mu + slope * half]
+    return line(*ends, "tangent", column="tangent")

@@ -5,12 +5,14 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.stability import tracked_modes
-from squealbox.workbench.panels.modes import modes_of
-from squealbox.workbench.panels.panel import Answer, Options, Work, axis_of, try_value
+from squealbox.plots.style import scaled
+from squealbox.workbench.figures import Axis, Figure, across, band, line, modes_named, points, span, upright
+from squealbox.workbench.panels.modes import modes_of, tracks_of
+from squealbox.workbench.panels.panel import Answer, Options, Work, try_value
 
 POINTS = 97  # values along the axis; about 15 ms for two degrees of freedom
 NONE = 1e-7  # growth rates up to this, or this share of themselves, are round-off
+TURN = 2.0 * np.pi
 FEWER = 61  # for designs of more degrees of freedom
 
 
@@ -21,25 +23,53 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     here = modes_of(design)
     half = here.eigenvalues.shape[-1] // 2
     values = np.linspace(low, high, POINTS if half <= 2 else FEWER)
-    tracks = tracked_modes(design, parameter, values)
+    tracks = tracks_of(design, parameter, (low, high), len(values))
     upper = _one_of_each_pair(tracks.eigenvalues)
-    axis = axis_of(design, parameter)
+    axis = options.axis(design, parameter, (low, high))
+    unstable = _unstable(values / axis.factor, upper.real)
+    value = try_value(design, parameter)
     data = {
-        "axis": axis,
-        "value": try_value(design, parameter),
+        "value": value,
         "outcome": str(here.outcome),
-        "message": here.outcome.message,
-        "stable": bool(here.stable),
-        "unstable": _unstable(values / axis["factor"], upper.real),
+        "words": "" if here.outcome.ok else f"{here.outcome.message}.",
+        "unstable": unstable,
+        "marks": {"value": value},
     }
-    arrays = {
-        "value": values / axis["factor"],
-        "frequency": np.abs(upper.imag).T / (2.0 * np.pi),
-        "growth": upper.real.T,
-        "hereFrequency": here.frequency[:half],
-        "hereGrowth": here.growth_rate[:half],
-    }
-    return Answer(data, arrays)
+    present = None if value is None else value / axis.factor
+    modes = (here.frequency[:half], here.growth_rate[:half])
+    return Answer(data, figures=_figures(axis, values / axis.factor, upper, present, modes, unstable))
+
+
+def _figures(axis: Axis, x: Any, upper: Any, present: float | None, here: Any, unstable: Any) -> list[Figure]:
+    """Frequencies and growth rates over the axis, and both in their plane; the modes of the design itself as points."""
+    factor, hertz = scaled("Hz", upper.imag / TURN)
+    frequency = list(np.abs(upper.imag).T / (TURN * factor))
+    growth, count = list(upper.real.T), upper.shape[1]
+    f, g = here[0] / factor, here[1]
+    bands = [band(*ends) for ends in unstable]
+    at = [] if present is None else [(np.full(len(f), present), y) for y in (f, g)]
+    high = span(*frequency, f)
+    reach = span(*growth, g, zero=True)
+    upward = Axis("frequency", hertz, high, factor=factor, quantity="frequency")
+    rate = Axis("growth rate", "1/s", reach, quantity="growth rate")
+    begins = np.array([[g[0], f[0]] for g, f in zip(growth, frequency, strict=True) if np.isfinite(g[0] + f[0])])
+    names = [modes_named(count, i) for i in range(count)]
+    plain = [{**each, "name": ""} for each in names]
+    dots = [points(x0, y, column="present design") for x0, y in at]
+    return [
+        Figure("frequency", axis, upward, [
+            *bands, *(line(x, y, **names[i]) for i, y in enumerate(frequency)), *dots[:1],
+        ], "bottom right"),
+        Figure("growth", axis, rate, [
+            *bands, across(0.0), *(line(x, y, **plain[i]) for i, y in enumerate(growth)), *dots[1:],
+        ]),
+        Figure("plane", rate, upward, [
+            band(0.0, reach[1]), upright(0.0, "axis-line"),
+            *(line(a, b, **plain[i]) for i, (a, b) in enumerate(zip(growth, frequency, strict=True))),
+            points(g, f, column="present design"),
+            *([points(begins[:, 0], begins[:, 1], "begin", 3.0, column="first value")] if len(begins) else []),
+        ]),
+    ]  # fmt: skip
 
 
 def _unstable(values: Any, growth: Any) -> list[list[float]]:

@@ -7,9 +7,10 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.stability import Boundary, StabilityMap, map_boundary, stability_map
-from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, axis_of
+from squealbox.plots.style import number
+from squealbox.stability import StabilityMap, map_boundary, stability_map
+from squealbox.workbench.figures import Figure, heat, path
+from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
 
 POINTS = 101
 FEWER = 51  # along each axis, for designs of more than two degrees of freedom
@@ -39,25 +40,32 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     found = _joined(parts, {across: values[0], up: values[1]})
     work.progress(0.95, "locating the boundary")
     edge = map_boundary(found, close=CLOSE)
-    growth, exists = found.growth_rate, np.isfinite(found.growth_rate)
-    read = [axis_of(design, parameter) for parameter in (across, up)]
+    axes = [options.axis(design, each, ends) for each, ends in zip((across, up), spans, strict=True)]
+    exists = np.isfinite(found.growth_rate)
+    unstable = float(np.mean(found.unstable[exists])) if np.any(exists) else None
+    missing = int(np.sum(~exists))
+    words = (
+        "no steady sliding anywhere"
+        if unstable is None
+        else f"{number(100.0 * unstable, 3)} % of the plane is unstable"
+    )
     data = {
-        "x": read[0],
-        "y": read[1],
-        "xspan": [end / read[0]["factor"] for end in spans[0]],
-        "yspan": [end / read[1]["factor"] for end in spans[1]],
-        "show": show,
-        "unstable": float(np.mean(found.unstable[exists])) if np.any(exists) else None,
-        "missing": int(np.sum(~exists)),
-        "largest": finite(np.nanmax(growth)) if np.any(exists) else None,
-        "mechanisms": list(StabilityMap.mechanism_names),
+        "words": f"{words}; {missing} points have no steady sliding" if missing else words,
+        "marks": {"unstable": unstable},
     }
-    arrays = {"growth": growth.T, "edge": _scaled(edge, read), "curve": edge.curve}
-    if show == "frequency":
-        arrays["frequency"] = found.frequency.T
+    rings = [np.column_stack([edge.x[edge.curve == i] / axes[0].factor, edge.y[edge.curve == i] / axes[1].factor])
+             for i in np.unique(edge.curve)]  # fmt: skip
+    figure = Figure("map", axes[0], axes[1], [path(rings, "boundary")], heat=_picture(found, show))
+    return Answer(data, figures=[figure])
+
+
+def _picture(found: StabilityMap, show: str) -> dict[str, Any]:
     if show == "mechanism":
-        arrays["mechanism"] = found.mechanism.T
-    return Answer(data, arrays)
+        names = [name.replace("_", " ") for name in StabilityMap.mechanism_names]
+        return heat(found.mechanism.T, "mechanism", "mechanism", "", names=names)
+    if show == "frequency":
+        return heat(found.frequency.T, "sequential", "frequency", "Hz")
+    return heat(found.growth_rate.T, "diverging", "growth rate", "1/s", words="orange squeals, blue is quiet")
 
 
 def _joined(parts: list[StabilityMap], axes: dict[str, Any]) -> StabilityMap:
@@ -65,8 +73,3 @@ def _joined(parts: list[StabilityMap], axes: dict[str, Any]) -> StabilityMap:
     names = ("growth_rate", "frequency", "circulation", "slope", "unstable_modes", "mechanism")
     arrays: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
     return replace(parts[0], axes=axes, **arrays)
-
-
-def _scaled(edge: Boundary, read: list[dict[str, Any]]) -> Any:
-    """Points of the boundary (points, 2) in the units of the axes."""
-    return np.column_stack([edge.x / read[0]["factor"], edge.y / read[1]["factor"]])

@@ -1,14 +1,52 @@
-"""The modes of the design on the page: several panels ask for them at once."""
+"""What several panels ask of one design, solved once; what runs along a parameter, once for all its values."""
 
 import functools
 
+import numpy as np
+
 from squealbox.designs import Design
-from squealbox.stability import ComplexModes, complex_modes
+from squealbox.parameters import ParameterError
+from squealbox.stability import (
+    ComplexModes,
+    CriticalValues,
+    TrackedModes,
+    complex_modes,
+    critical_values,
+    tracked_modes,
+)
 
 KEPT = 8  # designs of the last questions
+POINTS = 201  # of a range, between which crossings are looked for
 
 
 @functools.lru_cache(maxsize=KEPT)
 def modes_of(design: Design) -> ComplexModes:
     """The modes about steady sliding, solved once for all panels that show one design."""
     return complex_modes(design)
+
+
+def crossings_of(design: Design, parameter: str, ends: tuple[float, float]) -> CriticalValues:
+    """Where modes cross zero growth between the ends [SI]: the same while the parameter itself is moved."""
+    return _crossings(_without(design, parameter, ends[0]), parameter, ends)
+
+
+def tracks_of(design: Design, parameter: str, ends: tuple[float, float], points: int) -> TrackedModes:
+    """The modes followed over the parameter: the same while the parameter itself is moved."""
+    return _tracks(_without(design, parameter, ends[0]), parameter, ends, points)
+
+
+def _without(design: Design, parameter: str, low: float) -> Design:
+    try:
+        return design.replace({parameter: low})
+    except ParameterError:  # beside its other values that is none: kept as it is
+        return design
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _crossings(design: Design, parameter: str, ends: tuple[float, float]) -> CriticalValues:
+    return critical_values(design, parameter, ends, points=POINTS)
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _tracks(design: Design, parameter: str, ends: tuple[float, float], points: int) -> TrackedModes:
+    return tracked_modes(design, parameter, np.linspace(*ends, points))

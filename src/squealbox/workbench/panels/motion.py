@@ -7,9 +7,10 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.files.runs import usual_duration
 from squealbox.plots.facts import unit_at
-from squealbox.plots.style import scaled
+from squealbox.plots.style import number, scaled
 from squealbox.signals import SignalError, peaks, spectrogram, spectrum
-from squealbox.transient import Trajectory, verdict
+from squealbox.transient import Trajectory, Verdict, verdict
+from squealbox.workbench.figures import Axis, Figure, across, heat, hull, line, span, text
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.following import followed
 from squealbox.workbench.panels.loudness import loudest, loudness
@@ -37,71 +38,64 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "dof": dof,
         "duration": duration,
         "outcome": str(motion.outcome),
-        "message": motion.outcome.message,
         "steps": motion.steps,
-        "caution": motion.caution,
     }
+    said = [motion.caution, "" if motion.outcome.ok else f"{motion.outcome.message}."]
     if motion.t.size < 64:
-        return Answer({**data, "short": True})
-    return _signals(motion, dof, data)
+        return Answer({**data, "words": " ".join(filter(None, said))})
+    judged = verdict(motion, dof=dof)
+    data |= {"words": " ".join(filter(None, [judged.text, *said])), "verdict": judged.text, "fate": judged.fate}
+    data["marks"] = {"fate": judged.fate}
+    return _signals(motion, dof, judged, data)
 
 
-def _signals(motion: Trajectory, dof: int, data: dict[str, Any]) -> Answer:
+def _signals(motion: Trajectory, dof: int, judged: Verdict, data: dict[str, Any]) -> Answer:
     x, v, t = motion.q[:, dof], motion.qd[:, dof], motion.t
+    name = motion.system.names[dof]
     metre, size = scaled(unit_at(motion.system, dof), x)
     second, clock = scaled("s", t)
     speed, rate = scaled(unit_at(motion.system, dof, moves=True), v)
-    data |= {"unit": size, "clock": clock, "speed": rate, "lastFrom": float(t[max(len(t) - SHOWN, 0)] / second)}
-    judged = verdict(motion, dof=dof)
+    late, last = len(t) // 2, slice(max(len(t) - SHOWN, 0), None)
     data |= {
-        "verdict": judged.text,
-        "fate": judged.fate,
-        "amplitude": finite(judged.amplitude),
-        "frequency": finite(judged.frequency),
+        "unit": size, "clock": clock, "lastFrom": float(t[last][0] / second),
+        "amplitude": finite(judged.amplitude), "frequency": finite(judged.frequency),
         "loud": loudness(motion, loudest(motion), begin=float(t[-1] - LAST * (t[-1] - t[0]))),
-        "sticking": [finite(np.mean(motion.mode[:, i] == 0)) for i in range(motion.mode.shape[1])],
-        "speeds": [
-            [finite(np.min(column)), finite(np.max(column))] for column in motion.sliding_velocity[len(t) // 2 :].T
-        ],
-    }
-    low, high, at = _hull(t, x)
-    late = len(t) // 2
-    last = slice(max(len(t) - SHOWN, 0), None)
+        "speeds": [[finite(np.min(each)), finite(np.max(each))] for each in motion.sliding_velocity[late:].T],
+    }  # fmt: skip
     arrays: dict[str, Any] = {
-        "lastTime": (t[last] - t[last][0]) / second,
-        "lastQ": motion.q[last],
-        "lastX": x[last] / metre,
-        "lastV": v[last] / speed,
-        "lastForce": motion.normal_force[last],
-        "lastFriction": motion.friction_force[last],
-        "lastState": motion.mode[last],
-        "time": at / second,
-        "low": low / metre,
-        "high": high / metre,
-        "x": x[late:] / metre,
-        "v": v[late:] / speed,
-    }
+        "lastTime": (t[last] - t[last][0]) / second, "lastQ": motion.q[last],
+        "lastX": x[last] / metre, "lastV": v[last] / speed,
+        "lastForce": motion.normal_force[last], "lastState": motion.mode[last],
+    }  # fmt: skip
+    low, high, at = (each / unit for each, unit in zip(_hull(t, x), (metre, metre, second), strict=True))
+    end, orbit = float(t[-1] / second), (x[late:] / metre, v[late:] / speed)
+    moves = Axis(name, size, span(low, high))
+    figures = [
+        Figure("time", Axis("time", clock, (0.0, end)), moves, [hull(at, low, high)]),
+        Figure("phase", Axis(name, size, span(orbit[0])), Axis(f"d{name}/dt", rate, span(orbit[1])),
+               [line(*orbit, "s1 thin")]),
+    ]  # fmt: skip
     try:
-        lines = spectrum(motion, dof=dof, begin=float(t[late]))
-        grid = spectrogram(motion, dof=dof)
+        lines, grid = spectrum(motion, dof=dof, begin=float(t[late])), spectrogram(motion, dof=dof)
     except SignalError as error:
-        return Answer({**data, "noSpectrum": str(error)}, arrays)
+        return Answer({**data, "noSpectrum": str(error)}, arrays, figures)
     top = _upto(lines, float(judged.frequency))
     shown, seen = lines.frequency <= top, grid.frequency <= top
-    found = peaks(lines, 4)
-    data |= {
-        "peaks": [[f, a / metre] for f, a in found if f <= top],
-        "resolution": lines.resolution,
-        "gridTime": [float(grid.time[0] / second), float(grid.time[-1] / second)],
-        "gridTop": float(grid.frequency[seen][-1]),
-        "end": float(t[-1] / second),
-    }
-    arrays |= {
-        "hertz": lines.frequency[shown],
-        "amplitude": lines.amplitude[shown] / metre,
-        "grid": grid.amplitude[seen] / metre,
-    }
-    return Answer(data, arrays)
+    found = [(f, a / metre) for f, a in peaks(lines, 4) if f <= top]
+    data["marks"] |= {"frequency": found[0][0] if found else ""}
+    factor, hertz = scaled("Hz", top)
+    f, sizes = lines.frequency[shown] / factor, lines.amplitude[shown] / metre
+    over = Axis("frequency", hertz, (0.0, float(f[-1])), factor=factor, quantity="frequency")
+    upward = Axis("amplitude", size, (0.0, 1.18 * float(np.max(sizes)) or 1.0))
+    named = [text(at / factor, a, number(at / factor)) for at, a in found[:3]]
+    figures.append(Figure("spectrum", over, upward, [line(f, sizes), across(0.0), *named]))
+    stretch = (float(grid.time[0] / second), float(grid.time[-1] / second))
+    upward = Axis(
+        "frequency", hertz, (0.0, float(grid.frequency[seen][-1] / factor)), factor=factor, quantity="frequency"
+    )
+    picture = heat(grid.amplitude[seen] / metre, "decades", "amplitude", size, smooth=True)
+    figures.append(Figure("spectrogram", Axis("time", clock, stretch), upward, [], heat=picture))
+    return Answer(data, arrays, figures)
 
 
 def _upto(lines: Any, main: float) -> float:

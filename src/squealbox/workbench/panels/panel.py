@@ -1,7 +1,7 @@
 """What a panel is given and what it hands back."""
 
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,7 +11,12 @@ from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
 from squealbox.files.varied import scalar_parameters
 from squealbox.parameters import ParameterError
-from squealbox.workbench.sheet import read_in, slider, usual_value
+from squealbox.plots.style import read_in
+from squealbox.workbench.figures import Axis, Bars, Figure, Table, packed
+from squealbox.workbench.sheet import slider, usual_value
+from squealbox.workbench.state import StateError, UnknownBase, design_of
+
+LONGEST_UNIT = 12  # characters
 
 
 class OptionError(ValueError):
@@ -32,13 +37,24 @@ class Elsewhere(Exception):
 
 @dataclass(frozen=True)
 class Answer:
-    """What a panel draws: `data` goes into the header (plain JSON), `arrays` follow as float32.
+    """What a panel draws: `figures`, a sentence in `data["words"]`, and what else its script asks for.
 
-    Scale arrays to the unit they are read in before (float32 has seven digits), and name that unit in `data`.
+    `data` goes into the header (plain JSON), `arrays` follow as float32. Scale numbers to the unit they are read in
+    before (float32 has seven digits). What stands in `data["marks"]` becomes attributes of the panel's element, a
+    `Table` in `data["table"]` its table.
     """
 
     data: Mapping[str, Any]
     arrays: Mapping[str, Any] = field(default_factory=dict)
+    figures: Sequence[Figure | Bars] = ()
+
+    def sent(self) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Header and arrays of the answer's frame."""
+        plain = {name: value.data() if isinstance(value, Table) else value for name, value in self.data.items()}
+        if not self.figures:
+            return plain, dict(self.arrays)
+        figures, arrays = packed(self.figures)
+        return {**plain, "figures": figures}, {**arrays, **self.arrays}
 
 
 class Work:
@@ -77,10 +93,22 @@ Function = Callable[[Design, "Options", Work], Answer]
 class Options:
     """The options of a question, each read with its kind and range; what is wrong is an `OptionError`."""
 
-    def __init__(self, given: Any) -> None:
+    def __init__(self, given: Any, bases: Mapping[str, Design] | None = None) -> None:
         if not isinstance(given, Mapping):
             raise OptionError("options: expected an object")
-        self.given = given
+        self.given, self.bases = given, bases or {}
+
+    def design(self, name: str) -> Design | None:
+        """Another design, given as the page gives its own; None where none is given."""
+        state = self.given.get(name)
+        if state is None:
+            return None
+        try:
+            return design_of(state, self.bases)
+        except UnknownBase as error:
+            raise OptionError(f"{name}: it came from a file that is not open any more") from error
+        except StateError as error:
+            raise OptionError(f"{name}: {error}") from error
 
     def word(self, name: str, options: tuple[str, ...]) -> str:
         """One of several words; the first where nothing is given."""
@@ -131,6 +159,16 @@ class Options:
         if not (low < high and about.accepts(np.array([low, high]))):
             raise OptionError(f"{name}: expected a lower and a higher value in {about.range}")
         return low, high
+
+    def axis(self, design: Design, parameter: str, ends: tuple[float, float]) -> Axis:
+        """An axis over a parameter, its ends given in SI, in the unit that was chosen for it or the usual one."""
+        read, chosen = axis_of(design, parameter), self.given.get("units")
+        unit, factor = read["unit"], read["factor"]
+        given = chosen.get(parameter) if isinstance(chosen, Mapping) else None
+        if isinstance(given, list) and len(given) == 2 and _is_number(given[1]) and given[1] > 0.0:
+            unit, factor = str(given[0])[:LONGEST_UNIT], float(given[1])
+        low, high = (end / factor for end in ends)
+        return Axis(parameter, unit, (low, high), parameter, factor)
 
 
 def axis_of(design: Design, parameter: str) -> dict[str, Any]:

@@ -10,14 +10,15 @@ from squealbox.files.document import DesignFileError
 from squealbox.files.reading import read_text
 from squealbox.plots.facts import read
 from squealbox.plots.style import number
-from squealbox.stability import critical_values, mechanism
+from squealbox.stability import mechanism
+from squealbox.workbench.figures import NONE
 from squealbox.workbench.folder import LARGEST_TEXT, Project, ProjectError, standing
-from squealbox.workbench.panels.modes import modes_of
+from squealbox.workbench.panels.modes import crossings_of, modes_of
 from squealbox.workbench.panels.panel import Answer, Elsewhere, Options, Work
 from squealbox.workbench.session import LARGE, PER_CUBE
 
+NO_DESIGN = "No design yet: name the one on the page and save it, or begin with a preset."
 FRICTION = "friction.static"  # whose critical value is tabled
-NONE = "\N{EN DASH}"  # in a cell of which nothing is known
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
@@ -28,7 +29,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     for i, name in enumerate(names):
         work.progress(i / len(names), name)
         rows.append({**project.about("designs", f"{name}.toml"), "name": name, **_row(project, name, work)})
-    return Answer({"rows": rows})
+    return Answer({"rows": rows, "marks": {"designs": len(rows)}, "words": "" if rows else NO_DESIGN})
 
 
 def _row(project: Project, name: str, work: Work) -> dict[str, Any]:
@@ -78,7 +79,7 @@ def _critical(design: Design) -> list[str]:
     if options.parameter("parameter", design, FRICTION) != FRICTION:
         return [NONE, NONE]
     span, value = options.span("span", design, FRICTION), float(design.value_of(FRICTION))
-    changes = [float(each.value) for each in critical_values(design, FRICTION, span) if each.changes_stability]
+    changes = [float(each.value) for each in crossings_of(design, FRICTION, span) if each.changes_stability]
     if not changes:
         return [NONE, NONE]
     nearest = min(changes, key=lambda each: abs(each - value))

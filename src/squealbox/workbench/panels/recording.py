@@ -7,10 +7,13 @@ import numpy as np
 from squealbox import read_recording, squeal_events
 from squealbox.calibration import compare
 from squealbox.designs import Design
+from squealbox.plots.facts import shown
+from squealbox.plots.style import number
 from squealbox.signals import SignalError, spectrogram
 from squealbox.signals.events import SquealEvents
 from squealbox.signals.recordings import Recording
 from squealbox.stability import complex_modes
+from squealbox.workbench.figures import NONE, Axis, Figure, Table, heat, line
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
 from squealbox.workbench.recorded import path_of
@@ -26,29 +29,40 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     """Events, spectrogram and notes of the recording, and simulated beside measured numbers."""
     recording, events = heard(options, work)
     data: dict[str, Any] = {
-        "duration": recording.duration, "rate": recording.rate, "names": list(recording.names),
-        "notes": list(recording.notes), "unit": events.settings["unit"], "outcome": str(events.outcome),
-        "message": events.outcome.message,
+        "unit": events.settings["unit"], "outcome": str(events.outcome),
         "events": [_event(events, i) for i in range(min(events.count, MOST_EVENTS))],
-        "count": events.count, "occurrence": events.occurrence, "compared": [],
+        "count": events.count, "marks": {"events": events.count}, "words": _words(recording, events),
     }  # fmt: skip
     modes = complex_modes(design)
     if events.count and bool(modes.exists):
         chosen = min(int(options.number("event", int(np.argmax(events.level)), 0, 1e6)), events.count - 1)
         found = compare(modes, events, event=chosen)
         rows = zip(found.names, found.simulated, found.measured, found.error, found.away, strict=True)
-        data |= {"event": chosen, "compared": [[name, *map(finite, row)] for name, *row in rows if name != "level"]}
+        compared = [_compared(*row) for row in rows if row[0] != "level"]
+        data |= {"event": chosen, "table": Table(("that event", "model", "measured", "apart"), compared)}
     work.progress(0.7, "spectrogram")
+    picture, stretch, top = _grid(recording, events)
+    lines = [
+        line([events.onset[i], events.end[i]], [events.frequency[i] / 1e3] * 2,
+             "s1" if i == data.get("event") else "s5", column=f"event {i + 1}")
+        for i in range(min(events.count, MOST_EVENTS))
+    ]  # fmt: skip
+    upward = Axis("frequency", "kHz", (0.0, top / 1e3), factor=1e3)
+    seen = heat(picture, "decades", "amplitude", events.settings["unit"], smooth=True)
+    return Answer(data, figures=[Figure("recording", Axis("time", "s", stretch), upward, lines, heat=seen)])
+
+
+def _grid(recording: Recording, events: SquealEvents) -> tuple[Any, tuple[float, float], float]:
+    """The spectrogram no finer than it is seen: amplitudes, ends of its time [s], its highest frequency [Hz]."""
     sound = recording.channel(0)
     piece = min(PIECE, recording.duration / 4.0)
     overlap = float(np.clip(1.0 - recording.duration / (COLUMNS * piece), 0.0, 0.9))
     grid = spectrogram(sound, recording.t, segment=piece, overlap=overlap)
     top = min(TOP, max(0.25 * TOP, 2.5 * float(np.max(events.frequency, initial=0.0))))
     seen = np.nonzero(grid.frequency <= top)[0]
-    rows_, columns = -(-len(seen) // ROWS), -(-len(grid.time) // COLUMNS)
-    picture = _coarser(grid.amplitude[seen], rows_, columns)
-    data |= {"gridTime": [float(grid.time[0]), float(grid.time[-1])], "gridTop": float(grid.frequency[seen[-1]])}
-    return Answer(data, {"grid": picture})
+    rows, columns = -(-len(seen) // ROWS), -(-len(grid.time) // COLUMNS)
+    picture = _coarser(grid.amplitude[seen], rows, columns)
+    return picture, (float(grid.time[0]), float(grid.time[-1])), float(grid.frequency[seen[-1]])
 
 
 def heard(options: Options, work: Work) -> tuple[Recording, SquealEvents]:
@@ -66,6 +80,23 @@ def heard(options: Options, work: Work) -> tuple[Recording, SquealEvents]:
         return recording, squeal_events(recording, band=(low, min(TOP, 0.49 * recording.rate)))
     except (SignalError, ModuleNotFoundError) as error:
         raise OptionError(str(error).replace(f"{path.name}: ", "")) from error
+
+
+def _words(recording: Recording, events: SquealEvents) -> str:
+    """What was found in how much sound, and the notes of the recording."""
+    counted = f"{events.outcome.message or 'No squeal event'}."
+    if events.count:
+        share = f"{number(100.0 * events.occurrence, 3)} % of {number(recording.duration, 3)} s"
+        counted = f"{events.count} event{'s' if events.count > 1 else ''}, {share}."
+    return " ".join([counted, *(f"{each}." for each in recording.notes)])
+
+
+def _compared(name: str, simulated: Any, measured: Any, error: Any, away: Any) -> list[str]:
+    """A row of what the model says beside what was measured."""
+    spread = f" ± {number(error, 2)}" if np.isfinite(error) else ""
+    unit = {"frequency": "Hz", "growth rate": "1/s"}.get(name, "")
+    apart = f"{number(away, 3)} sd" if np.isfinite(away) else NONE
+    return [f"{name} {unit}".strip(), shown(simulated, 5), f"{shown(measured, 5)}{spread}", apart]
 
 
 def _event(events: SquealEvents, i: int) -> dict[str, float | None]:

@@ -6,50 +6,48 @@ import numpy as np
 
 from squealbox.cautions import pulled
 from squealbox.designs import Design
-from squealbox.stability import critical_values, mechanism
+from squealbox.plots import verdicts
+from squealbox.stability import mechanism
 from squealbox.system import equilibrium
-from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.modes import modes_of
-from squealbox.workbench.panels.panel import Answer, Options, Work, axis_of, try_value
+from squealbox.workbench.panels.modes import crossings_of, modes_of
+from squealbox.workbench.panels.panel import Answer, Options, Work, try_value
 
-POINTS = 201
+LINEAR = ("Linear and about steady sliding: it says whether squeal can start, not how loud it gets; stable sliding can "
+          "still squeal after a push.")  # fmt: skip
+MERGE = "Two modes nearly merge here: growth rate and shares react strongly to small changes."
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
-    """State, mechanism, critical values of the chosen parameter, and margin to the nearest."""
+    """Headline, reasons and caveats; critical values of the chosen parameter and the margin to the nearest."""
     parameter = options.parameter("parameter", design, "friction.static")
-    low, high = options.span("span", design, parameter)
-    modes = modes_of(design)
-    axis = axis_of(design, parameter)
-    data: dict[str, Any] = {"axis": axis, "value": try_value(design, parameter), "span": [low, high]}
-    if not bool(modes.exists):
-        return Answer({**data, "state": "unknown", "reason": modes.outcome.message})
-    worst = modes.most_unstable
+    ends = options.span("span", design, parameter)
+    axis, value, modes = options.axis(design, parameter, ends), try_value(design, parameter), modes_of(design)
+    exists = bool(modes.exists)
+    why = mechanism(design) if exists and not bool(modes.stable) else None
+    data: dict[str, Any] = {
+        "state": "unknown" if not exists else "unstable" if why else "stable",
+        "headline": verdicts.headline(modes, why),
+        "why": [verdicts.growth(modes, why)],
+        "value": value,
+    }
+    if not exists:
+        return Answer({**data, "caveats": LINEAR})
     system = design.system()
     bilateral = np.zeros(len(system.contacts), dtype=bool)  # an open unilateral contact has N = 0
     data["pulled"] = [list(each) for each in pulled(system.contact_names, bilateral, equilibrium(system).normal_force)]
-    data |= {"growth": worst.growth_rate, "frequency": worst.frequency, "damping": finite(worst.damping_ratio)}
-    data["near"] = bool(np.any(modes.near_defective))
-    if bool(modes.stable):
-        data["state"] = "stable"
+    found = crossings_of(design, parameter, ends)
+    changes = [each for each in found if each.changes_stability]
+    data["crossings"] = [{"value": float(each.value), "changes": each.changes_stability} for each in found]
+    if found.outcome.ok or changes:
+        data["why"] += [" ", *verdicts.margin(axis.label, value, changes, ends, axis.value)]
     else:
-        why = mechanism(design)
-        data |= {
-            "state": "unstable",
-            "mechanism": why.name,
-            "flutterShare": finite(why.flutter_share),
-            "modes": min(int(modes.unstable_modes), modes.eigenvalues.shape[-1] // 2),
-        }
-    found = critical_values(design, parameter, (low, high), points=POINTS)
-    data["crossings"] = [
-        {
-            "value": float(each.value),
-            "direction": each.direction,
-            "mechanism": each.mechanism,
-            "frequency": each.frequency,
-            "changes": each.changes_stability,
-        }
-        for each in found
-    ]
-    data["noCrossing"] = "" if found.outcome.ok else found.outcome.message
+        data["why"].append(f" {found.outcome.message}.")
+    near = bool(np.any(modes.near_defective))
+    data["caveats"] = " ".join([*_pulling(data["pulled"]), LINEAR, *([MERGE] if near else [])])
     return Answer(data)
+
+
+def _pulling(pulled: list[Any]) -> list[str]:
+    """A sentence on the contacts that pull in steady sliding."""
+    named = ", ".join(f"{name} is pulled ({verdicts.quantity(force, 'N')})" for name, force in pulled)
+    return [f"{named}: a contact that cannot pull would lift off."] if named else []

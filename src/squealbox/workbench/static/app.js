@@ -30,6 +30,7 @@ class App extends EventTarget {
     this.views = [];
     this.ready = false;
     this.lastMotion = null;
+    this.measured = {};
     this.parameters = new Parameters(this, byId("fields"));
     this.drawing = new Drawing(this, byId("drawing"));
     this.verdict = new Verdict(this, byId("verdict"));
@@ -54,13 +55,18 @@ class App extends EventTarget {
     requestAnimationFrame(() => setTimeout(() => this.dispatchEvent(new CustomEvent("painted", { detail: { name, key, at: performance.now() } }))));
   }
 
-  /** The leading view was answered: what waits for it is asked while it is drawn, the verdict first. */
+  /** The leading view is about to be drawn: the drawing and the verdict, which follow it, are asked meanwhile. */
+  ahead(name) {
+    if (name !== this.#leading().name) return;
+    this.drawing.view.update();
+    this.verdict.view.update();
+  }
+
+  /** A view was answered and drawn: what was gathered meanwhile can go, what waits for it is asked. */
   answered(name) {
-    const leading = this.#leading();
-    if (name === leading.name) {
+    if (name === this.#leading().name) {
       this.store.answered();
-      this.drawing.view.update();
-      this.verdict.view.update();
+      this.ahead(name);
     }
     if (this.changedAt && !this.verdict.view.busy) this.#later();
   }
@@ -109,6 +115,13 @@ class App extends EventTarget {
     this.lastMotion = { design: this.store.design, text, arrays, clock: data.clock, from: data.lastFrom, speeds: data.speeds, fate: data.fate, loud: data.loud };
     this.verdict.amplitude();
     this.dispatchEvent(new Event("motion"));
+  }
+
+  /** What a recording says, by quantity: it is drawn over what is computed. */
+  hearing(measured) {
+    if (same(this.measured, measured)) return;
+    this.measured = measured;
+    this.dispatchEvent(new Event("measured"));
   }
 
   /** What is wrong with the design: beside its field, or above all fields. */
@@ -190,9 +203,9 @@ class App extends EventTarget {
   }
 
   async #panels(shown) {
-    const modules = await Promise.all(shown.map((about) => import(`./panels/${about.name}.js`)));
+    const modules = await Promise.all(shown.map((about) => about.script && import(`./panels/${about.name}.js`)));
     shown.forEach((about, i) => {
-      const panel = new Panel(this, about, modules[i].default);
+      const panel = new Panel(this, about, modules[i]?.default ?? {});
       this.panels.set(about.name, panel);
       this.views.push(panel.view);
       byId("panels").append(panel.element);

@@ -11,28 +11,26 @@ const MARGIN = { top: 8, right: 14, bottom: 42, left: 58 };
 const WAVE = Array.from({ length: 60 }, (_, i) => [i / 59, 0.5 + 0.4 * Math.sin(i / 3) * Math.exp(-i / 60)]);
 const LETTER = 7; // px a digit of the axes is wide
 
-// What can be drawn. Each is { kind, ... }; `cls` chooses the look in workbench.css.
+// What a panel's own script draws; the server's figures come with layers of these and other kinds (DRAW below).
 export const line = (x, y, about = {}) => ({ kind: "line", x, y, cls: "s0", ...about });
-export const hull = (x, low, high, about = {}) => ({ kind: "hull", x, low, high, cls: "s0", ...about });
-export const points = (x, y, about = {}) => ({ kind: "points", x, y, cls: "here", r: 4.5, ...about });
-export const across = (y, about = {}) => ({ kind: "across", y, cls: "axis-line", ...about });
-export const upright = (x, about = {}) => ({ kind: "upright", x, cls: "present", ...about });
-export const band = (from, to, about = {}) => ({ kind: "band", from, to, cls: "unstable", ...about });
-export const text = (x, y, words, about = {}) => ({ kind: "text", x, y, words, cls: "label", ...about });
-export const path = (rings, about = {}) => ({ kind: "path", rings, cls: "boundary", ...about });
 
-export const BENT = [[[0, 0.02], [0.5, 0.02]], [[0.5, 0.02], [0.42, 0.25], [0.28, 0.45], [0.2, 0.6], [0.24, 0.72], [0.5, 0.86], [1, 1]]];
+const LIKE = {
+  wave: [WAVE],
+  events: [[[0, 0.3], [0.2, 0.3], [0.25, 0.6], [0.7, 0.58], [0.75, 0.3], [1, 0.3]]],
+  bent: [[[0, 0.02], [0.5, 0.02]], [[0.5, 0.02], [0.42, 0.25], [0.28, 0.45], [0.2, 0.6], [0.24, 0.72], [0.5, 0.86], [1, 1]]],
+};
 
 export class Chart {
-  constructor(place, { height = 230, title = "", name = "figure", margin = {}, like = [WAVE], awaited = "being computed" } = {}) {
+  constructor(place, { height = 230, title = "", name = "figure", margin = {}, like = "wave", awaited = "being computed" } = {}) {
     this.margin = { ...MARGIN, ...margin };
-    Object.assign(this, { height, like, awaited });
+    Object.assign(this, { height, like: LIKE[like] ?? LIKE.wave, awaited: awaited || "being computed" });
     this.name = name;
     this.figure = d3.select(place).append("figure").attr("class", "chart").attr("data-figure", name);
     if (title) this.figure.append("figcaption").text(title);
     this.frame = this.figure.append("div").attr("class", "frame fills").style("height", `${height}px`);
     this.canvas = this.frame.append("canvas").node();
-    this.svg = this.frame.append("svg").attr("role", "img").attr("aria-label", title || name).attr("height", height);
+    this.svg = this.frame.append("svg").attr("role", "img").attr("tabindex", 0).attr("aria-label", `${title || name}; plus and minus zoom, 0 shows all`).attr("height", height);
+    this.key = this.figure.append("p").attr("class", "key").attr("hidden", "");
     this.clip = `clip-${Math.random().toString(36).slice(2)}`;
     this.clipped = this.svg.append("clipPath").attr("id", this.clip).append("rect");
     this.back = this.svg.append("g").attr("clip-path", `url(#${this.clip})`);
@@ -74,8 +72,9 @@ export class Chart {
     this.inner = inner;
     this.svg.attr("width", width).attr("viewBox", `0 0 ${width} ${this.height}`);
     this.clipped.attr("x", left).attr("y", top).attr("width", inner.width).attr("height", inner.height);
-    this.x = scale(spec.x, [left, left + inner.width]);
-    this.y = scale(spec.y, [top + inner.height, top]);
+    const zoomed = this.zoom?.of === spec.x.label + spec.y.label ? this.zoom : {};
+    this.x = scale(spec.x, [left, left + inner.width], zoomed.x);
+    this.y = scale(spec.y, [top + inner.height, top], zoomed.y);
     this.#axes(spec);
     const behind = spec.layers.filter((layer) => layer.kind === "band");
     const before = spec.layers.filter((layer) => layer.kind !== "band");
@@ -83,6 +82,8 @@ export class Chart {
     this.#layers(this.front, before);
     this.#named(spec.layers.filter((layer) => layer.name && layer.kind !== "band"), spec.legend);
     this.#heat(spec.heat);
+    this.#keys(spec.heat);
+    if (this.marked) this.present(...this.marked);
     this.svg.attr("data-drawn", (this.count = (this.count ?? 0) + 1));
   }
 
@@ -134,7 +135,10 @@ export class Chart {
     canvas.hidden = !heat;
     if (!heat) return;
     const { left, top } = this.margin;
-    Object.assign(canvas.style, { left: `${left}px`, top: `${top}px`, width: `${this.inner.width}px`, height: `${this.inner.height}px` });
+    const [a, b] = this.spec.x.domain.map(this.x);
+    const [c, d] = this.spec.y.domain.map(this.y);
+    const clip = [top - d, b - left - this.inner.width, c - top - this.inner.height, left - a].map((room) => `${Math.max(0, room)}px`).join(" ");
+    Object.assign(canvas.style, { left: `${a}px`, top: `${d}px`, width: `${b - a}px`, height: `${c - d}px`, clipPath: `inset(${clip})` });
     const colours = shade();
     if (this.coloured?.values === heat.values && this.coloured.colours === colours) return; // only the mark has moved
     this.coloured = { values: heat.values, colours };
@@ -151,22 +155,60 @@ export class Chart {
     canvas.classList.toggle("smooth", Boolean(heat.smooth));
   }
 
+  /** What the colours of a picture mean, below it. */
+  #keys(heat) {
+    this.key.attr("hidden", heat ? null : "");
+    const key = heat && JSON.stringify([heat.keys(), heat.words]);
+    if (!heat || key === this.told) return;
+    this.told = key;
+    this.key.text("");
+    for (const [css, words] of heat.keys()) {
+      this.key.append("i").attr("class", "swatch").style("background-color", css);
+      this.key.append("span").text(words);
+    }
+    this.key.append("span").text(` ${heat.words ?? ""}`);
+  }
+
+  /** The number nearest to the pointer: of a line or point, else of an area or the picture below. */
   #read([x, y]) {
-    const layers = this.spec?.layers.filter((layer) => layer.kind === "line" || layer.kind === "points") ?? [];
     let best = null;
-    for (const layer of layers) {
-      for (let i = 0; i < layer.x.length; i++) {
-        const dx = this.x(layer.x[i]) - x;
-        const dy = this.y(layer.y[i]) - y;
-        const far = dx * dx + dy * dy;
-        if (far < (best?.far ?? 900)) best = { far, px: this.x(layer.x[i]), py: this.y(layer.y[i]), vx: layer.x[i], vy: layer.y[i], name: layer.name };
+    for (const layer of this.spec?.layers ?? []) {
+      const ys = { line: [layer.y], points: [layer.y], hull: [layer.low, layer.high] }[layer.kind] ?? [];
+      for (const values of ys) {
+        for (let i = 0; i < values.length; i++) {
+          const [dx, dy] = [this.x(layer.x[i]) - x, this.y(values[i]) - y];
+          const far = dx * dx + (layer.kind === "hull" ? 0 : dy * dy);
+          if (far < (best?.far ?? 900)) best = { far, px: this.x(layer.x[i]), py: this.y(values[i]), words: `${layer.name ? `${layer.name}: ` : ""}${shown(layer.x[i])}, ${layer.kind === "hull" ? `${shown(layer.low[i])} to ${shown(layer.high[i])}` : shown(values[i])}` };
+        }
       }
     }
+    best ??= this.spec?.heat && this.#below(x, y);
     if (!best) return this.#silent();
     const right = best.px > this.margin.left + 0.6 * this.inner.width;
     this.reader.attr("display", null).attr("transform", `translate(${best.px},${best.py})`);
-    this.reader.select("text").attr("x", right ? -8 : 8).attr("y", best.py < 30 ? 18 : -8).attr("text-anchor", right ? "end" : "start")
-      .text(`${best.name ? `${best.name}: ` : ""}${shown(best.vx)}, ${shown(best.vy)}`);
+    this.reader.select("text").attr("x", right ? -8 : 8).attr("y", best.py < 30 ? 18 : -8).attr("text-anchor", right ? "end" : "start").text(best.words);
+  }
+
+  /** The value of the picture below a place. */
+  #below(x, y) {
+    const { heat, x: along, y: up } = this.spec;
+    const [vx, vy] = [this.x.invert(x), this.y.invert(y)];
+    const cell = (value, [low, high], count) => Math.round(((value - low) / (high - low)) * (count - 1));
+    const [i, j] = [cell(vx, along.domain, heat.columns), cell(vy, up.domain, heat.rows)];
+    if (!(i >= 0 && j >= 0 && i < heat.columns && j < heat.rows)) return null;
+    const value = heat.values[j * heat.columns + i];
+    return { px: x, py: y, words: `${shown(vx)}, ${shown(vy)}: ${heat.names?.[value] ?? `${shown(value, 3)} ${heat.unit}`}` };
+  }
+
+  /** The present design: a line, or a point on a figure over two parameters. */
+  present(x, y) {
+    this.marked = [x, y];
+    if (!this.x) return;
+    const known = [x, y].filter((each) => typeof each === "number");
+    this.here ??= this.svg.append("g").attr("clip-path", `url(#${this.clip})`);
+    const mark = known.length < 2 ? { kind: "upright", x, cls: "present" } : { kind: "points", x: [x], y: [y], cls: "here big", r: 6 };
+    this.#layers(this.here, [mark].filter(drawable));
+    this.figure.attr("data-at", known.join(","));
   }
 
   /** Where the brake that moves is now. */
@@ -185,6 +227,7 @@ export class Chart {
     const columns = [];
     const { x, y, layers, heat } = this.spec;
     for (const [i, layer] of layers.entries()) {
+      if (layer.cls === "measured") columns.push(["measured", [layer.x ?? layer.y]]);
       const name = layer.name || layer.column || `line ${i + 1}`;
       if (layer.kind === "line" || layer.kind === "points") columns.push([`${name}: ${x.label}`, layer.x], [`${name}: ${y.label}`, layer.y]);
       if (layer.kind === "path") columns.push([`${name}: ${x.label}`, layer.rings.flatMap((ring) => [...ring.map((at) => at[0]), NaN])], [`${name}: ${y.label}`, layer.rings.flatMap((ring) => [...ring.map((at) => at[1]), NaN])]);
@@ -215,10 +258,9 @@ const LARGEST = 1e150; // beyond which differences and squares of an axis are no
 /** False for a mark whose place is no number: it would be an attribute no browser reads. */
 const drawable = (layer) => ["x", "y", "from", "to"].every((name) => typeof layer[name] !== "number" || Math.abs(layer[name]) < LARGEST);
 
-function scale(axis, range) {
-  const made = axis.log ? d3.scaleLog() : d3.scaleLinear();
-  made.domain(axis.domain.every((end) => Math.abs(end) < LARGEST) ? axis.domain : [0, 1]).range(range);
-  return axis.nice ? made.nice() : made;
+function scale(axis, range, zoomed) {
+  const domain = zoomed ?? axis.domain;
+  return d3.scaleLinear().domain(domain.every((end) => Math.abs(end) < LARGEST) ? domain : [0, 1]).range(range);
 }
 
 /** The span of some arrays, a little wider; `with0` keeps zero inside. */

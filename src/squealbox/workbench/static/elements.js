@@ -22,11 +22,21 @@ export function choose(text, choices, value, onchange) {
   return make("label", { class: "choice" }, `${text} `, select);
 }
 
-/** A table: the words of its head, and rows whose first cell names them; a cell may be an element. */
+/** A table: the words of its head, and rows whose first cell names them; a cell is a text, an element, or [text, class]. */
 export function table(heads, rows, about = {}) {
-  const cells = (tag, row) => row.map((cell, i) => make(i ? "td" : tag, tag === "th" && !i ? { scope: "row" } : {}, cell));
+  const cells = (tag, row) => row.map((cell) => [cell].flat()).map(([words, cls], i) => make(i ? "td" : tag, { class: cls || null, scope: i ? null : "row" }, words));
   const head = heads.map((words) => (words ? make("th", { scope: "col" }, words) : make("td")));
   return make("table", about, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...rows.map((row) => (Array.isArray(row) ? make("tr", {}, ...cells("th", row)) : row))));
+}
+
+/** A number asked for in a dialog; null where none is given. */
+export function askNumber(words) {
+  const input = make("input", { type: "number", min: 0, step: "any", required: true, id: "asked-number" });
+  const go = make("form", { method: "dialog" }, make("label", { for: input.id }, `${words} `), input, make("p", { class: "buttons" }, make("button", { value: "ok" }, "OK"), " ", make("button", { type: "button", onclick: () => dialog.close() }, "Cancel")));
+  const dialog = make("dialog", { "aria-label": words }, go);
+  document.body.append(dialog);
+  dialog.showModal();
+  return new Promise((resolve) => dialog.addEventListener("close", () => (dialog.remove(), resolve(dialog.returnValue === "ok" && input.valueAsNumber > 0 ? input.valueAsNumber : null))));
 }
 
 let hiding = 0;

@@ -1,7 +1,8 @@
-// Figures as files for paper, light also where the page is dark: PNG, SVG with its look written into it, and CSV of the
-// numbers drawn.
+// Figures as files for paper, light also where the page is dark: PNG, SVG with its look written into it, PDF, and the numbers
+// drawn as CSV or in the clipboard.
 
 import { element } from "./drawing.js";
+import { note } from "./elements.js";
 import { onPaper } from "./theme.js";
 
 const FINER = 3; // pixels of a PNG for one of the page: 300 dots per inch at the size of the page
@@ -50,13 +51,13 @@ const PAPER = "#ffffff";
 function printed(chart, ground) {
   const taken = onPaper(() => {
     chart.draw(chart.spec);
-    return { text: serialised(chart, ground(chart)), picture: chart.canvas.hidden ? null : copied(chart.canvas) };
+    return { text: serialised(chart, ground(chart)), picture: chart.canvas.hidden ? null : likeness(chart.canvas) };
   });
   chart.draw(chart.spec); // in the page's own colours again
   return taken;
 }
 
-function copied(canvas) {
+function likeness(canvas) {
   const copy = document.createElement("canvas");
   Object.assign(copy, { width: canvas.width, height: canvas.height });
   copy.getContext("2d").drawImage(canvas, 0, 0);
@@ -100,12 +101,12 @@ export async function pngBlob(chart) {
 }
 
 /** The numbers of a chart, one column each, with names and units in the first line. */
-export function csvText(chart) {
+export function csvText(chart, between = ",") {
   const columns = chart.columns();
   const quoted = (name) => `"${name.replaceAll('"', '""')}"`;
-  const lines = [columns.map(([name]) => quoted(name)).join(",")];
+  const lines = [columns.map(([name]) => quoted(name)).join(between)];
   const rows = Math.max(0, ...columns.map(([, values]) => values.length));
-  for (let i = 0; i < rows; i++) lines.push(columns.map(([, values]) => cell(values[i])).join(","));
+  for (let i = 0; i < rows; i++) lines.push(columns.map(([, values]) => cell(values[i])).join(between));
   return lines.join("\n") + "\n";
 }
 
@@ -128,12 +129,32 @@ export function download(content, name, type) {
   setTimeout(() => URL.revokeObjectURL(address), 10000);
 }
 
-/** Every chart of a panel as files of that kind. */
+/** The chart as PDF, drawn by the server from the numbers on the page. */
+async function pdfBlob(chart) {
+  const { x, y, layers = [], heat, ...rest } = chart.spec;
+  const axis = (each, scale) => each?.label && { label: each.label, domain: scale.domain() };
+  const picture = heat && { ...heat, span: [x.domain, y.domain], scale: heat.kind };
+  const figure = { ...rest, size: [chart.size.width, chart.size.height], x: axis(x, chart.x), y: axis(y, chart.y), layers, heat: picture };
+  const plain = (key, value) => (value instanceof Float32Array ? Array.from(value, (v) => (Number.isFinite(v) ? Number(v.toPrecision(7)) : null)) : value);
+  const answer = await fetch("/paper", { method: "POST", body: JSON.stringify(figure, plain) }).catch(() => null);
+  if (answer?.ok) return answer.blob();
+  note((await answer?.json().catch(() => null))?.message ?? "No PDF: the server does not answer.");
+  return null;
+}
+
+export const KINDS = [["PNG", "PNG"], ["SVG", "SVG"], ["PDF", "PDF"], ["CSV", "numbers as CSV"], ["Copy", "copy as table"]];
+
+/** Every chart of a panel as files of that kind, or all their numbers to the clipboard. */
 export async function exportCharts(charts, stem, kind) {
-  for (const chart of charts.filter((chart) => chart.spec)) {
-    const name = `${stem}-${chart.name}.${kind}`;
-    if (kind === "svg") download(svgText(chart), name, "image/svg+xml");
-    if (kind === "csv") download(csvText(chart), name, "text/csv");
-    if (kind === "png") download(await pngBlob(chart), name, "image/png");
+  const drawn = charts.filter((chart) => chart.spec);
+  if (kind === "Copy") return copied(drawn.map((chart) => csvText(chart, "\t")).join("\n"));
+  const made = { PNG: pngBlob, SVG: svgText, PDF: pdfBlob, CSV: csvText }[kind];
+  const type = { SVG: "image/svg+xml", CSV: "text/csv" }[kind];
+  for (const chart of drawn) {
+    const content = await made(chart);
+    if (content) download(content, `${stem}-${chart.name}.${kind.toLowerCase()}`, type);
   }
 }
+
+/** Text into the clipboard. */
+export const copied = (text) => navigator.clipboard.writeText(text).then(() => note("Copied: paste it into a spreadsheet."), () => note("The browser gives no clipboard to this page."));

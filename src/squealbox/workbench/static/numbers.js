@@ -37,11 +37,20 @@ const UNITS = [
   { s: 1, ms: 1e-3, "µs": 1e-6, us: 1e-6 },
   { Hz: 1, kHz: 1e3 },
   { N: 1, kN: 1e3, MN: 1e6, mN: 1e-3 },
-  { "m/s": 1, "mm/s": 1e-3, "km/h": 1 / 3.6 },
+  { "m/s": 1, "mm/s": 1e-3, "km/h": 1 / 3.6 }, // and rpm, with a radius
   { "N/m": 1, "kN/m": 1e3, "N/mm": 1e3, "MN/m": 1e6, "kN/mm": 1e6 },
   { kg: 1, g: 1e-3, t: 1e3 },
   { rad: 1, deg: Math.PI / 180, "°": Math.PI / 180 },
 ];
+
+/** Units in which a field can be read, with the factor to SI; those that need a length or an area say how to ask for it. */
+export const unitsOf = (field) => {
+  const kind = UNITS.find((each) => (field.usual ?? field.unit) in each) ?? {};
+  const shownOnce = Object.entries(kind).filter(([name]) => !["um", "us", "°"].includes(name)).map(([name, factor]) => ({ name, factor }));
+  if ("m/s" in kind) shownOnce.push({ name: "rpm", ask: "Radius at which it slides, in mm", factor: (mm) => (2 * Math.PI * mm * 1e-3) / 60 });
+  if ("N" in kind) shownOnce.push({ name: "bar", ask: "Area of the piston, in cm²", factor: (cm2) => 1e5 * cm2 * 1e-4 });
+  return shownOnce;
+};
 
 /** What somebody typed into a field, in the unit the field is read in: a number, alone or with a unit of its kind. */
 export function typed(text, field) {

@@ -1,11 +1,16 @@
 // A panel on the page: title, options, files, what is going on, and the place its module draws in.
 //
-// A module in panels/ exports `default { setup(panel), options(panel), draw(panel, frame) }` and, where it likes,
-// `state(panel)` (what of the design it depends on) and `changed(panel)` (called at every change of the design).
+// What it is given comes from the server: choices in its head, figures, table, sentence. A module in panels/ adds what is its
+// own: `default { setup(panel), options(panel), state(panel), more(panel, spec), draw(panel, frame) }`, each where it likes.
 
-import { choose, make } from "./elements.js";
-import { exportCharts } from "./export.js";
+import { Bars } from "./bars.js";
+import { Chart } from "./chart.js";
+import { choose, make, table } from "./elements.js";
+import { KINDS, exportCharts } from "./export.js";
+import { resolved } from "./figures.js";
+import { plain, typed, typographic } from "./numbers.js";
 import { View } from "./view.js";
+import { zoomable } from "./zoom.js";
 
 const SAYS = { stopped: "stopped", wrong: "not computed: see what is marked", failed: "failed" };
 
@@ -14,9 +19,11 @@ export class Panel {
     Object.assign(this, { app, about, module, name: about.name, charts: [] });
     const title = make("h2", { id: `title-${about.name}` }, about.title);
     this.controls = make("span", { class: "controls" });
-    this.files = make("span", { class: "files" });
+    this.files = make("span", { class: "files", hidden: !about.figures.length });
     this.says = make("p", { class: "says", role: "status", "aria-live": "polite" });
-    this.body = make("div", { class: "body" });
+    this.buttons = make("div", { class: "buttons", hidden: true });
+    this.place = make("div", { class: `charts ${about.layout}` });
+    this.body = make("div", { class: "body" }, this.buttons, this.place);
     this.element = make(
       "section",
       { class: `panel wide-${about.columns}`, "aria-labelledby": title.id, data: { panel: about.name, state: "waiting" } },
@@ -29,15 +36,65 @@ export class Panel {
     this.view = new View(app, about.name, {
       slow: about.slow,
       request: () => this.request(),
-      draw: (frame) => module.draw(this, frame),
+      draw: (frame) => this.draw(frame),
       status: (kind, frame) => this.status(kind, frame),
     });
-    for (const kind of ["png", "svg", "csv"]) {
-      const save = () => exportCharts(this.charts, `${this.app.stem()}-${this.name}`, kind);
-      this.files.append(make("button", { type: "button", title: `Save as ${kind.toUpperCase()}`, onclick: save }, kind.toUpperCase()));
-    }
-    module.setup(this);
+    for (const choice of about.choices) this[choice.kind](choice);
+    for (const figure of about.figures) this.figure(figure);
+    this.place.hidden = !about.figures.length;
+    if (about.table) this.body.append((this.list = make("div", { class: "scroller", role: "region", tabindex: 0, "aria-label": about.table })));
+    const save = ({ target }) => (exportCharts(this.charts, `${this.app.stem()}-${this.name}`, target.value), (target.value = ""));
+    const kinds = [["", "Save…"], ...KINDS].map(([kind, words]) => make("option", { value: kind, hidden: !kind }, words));
+    this.files.append(make("select", { "aria-label": `Save ${about.title}`, onchange: save }, ...kinds));
+    module.setup?.(this);
+    for (const event of ["shown", "changed"]) app.store.addEventListener(event, () => this.mark());
+    app.addEventListener("measured", () => this.frame && !this.element.hidden && this.draw(this.frame));
     new IntersectionObserver((entries) => this.#seen(entries.at(-1).isIntersecting), { rootMargin: "120px" }).observe(this.element);
+  }
+
+  /** A place for a figure, with a sketch of what will stand there. */
+  figure(about) {
+    const chart = about.bars ? new Bars(this.place, about.name) : new Chart(this.place, about);
+    if (!about.bars) zoomable(chart, (axis, ends) => this.narrow(axis, ends));
+    this.charts.push(chart);
+  }
+
+  /** The table that will stand there: its heads and names of rows. */
+  like(heads, names) {
+    this.list.replaceChildren(table(heads, names.map((name) => [name, ...Array(heads.length - 1).fill("…")]), { class: "cures" }));
+  }
+
+  /** A button above the figures. */
+  button(text, onclick, about = {}) {
+    const made = make("button", { type: "button", onclick, ...about }, text);
+    this.buttons.hidden = false;
+    this.buttons.append(made);
+    return made;
+  }
+
+  /** The figures, the table and the sentence of an answer, then what the panel's own script adds. */
+  draw(frame) {
+    this.frame = frame;
+    const { data, arrays } = frame;
+    if (data.words !== undefined) this.remark = typographic(data.words);
+    for (const [name, value] of Object.entries(data.marks ?? {})) this.element.dataset[name] = value ?? "";
+    this.filled?.(data);
+    for (const figure of data.figures ?? []) {
+      const spec = figure.bars ? figure : resolved(figure, arrays, this.app.measured);
+      this.charts.find((chart) => chart.name === figure.name).draw(this.module.more ? this.module.more(this, spec) : spec);
+    }
+    if (data.table) this.list?.replaceChildren(table(data.table.heads, data.table.rows, { class: "cures" }));
+    this.mark();
+    this.module.draw?.(this, frame);
+  }
+
+  /** The present design on the figures over its parameters. */
+  mark() {
+    if (this.element.hidden) return;
+    for (const chart of this.charts) {
+      const [x, y] = [chart.spec?.x, chart.spec?.y].map((axis) => axis?.parameter && this.app.store.value(axis.parameter) / axis.factor);
+      if (typeof x === "number") chart.present(x, y);
+    }
   }
 
   /** The options the user chose for this panel. */
@@ -49,21 +106,61 @@ export class Panel {
     this.app.store.option(this.name, changes);
   }
 
-  /** A select among the parameters that can be varied, kept as option `name`. */
-  parameterChoice(text, name, ...usual) {
+  /** A select among the parameters that can be varied, kept as option `name`, and the ends of its axis. */
+  over({ text, name, usual }) {
+    const { store } = this.app;
     const place = make("span", { class: "parameter-choice" });
     const fill = () => {
-      const varied = this.app.store.sheet?.varied ?? [];
+      const varied = store.sheet?.varied ?? [];
       const value = this.parameter(name, ...usual);
-      const key = JSON.stringify([varied, value]);
-      if (place.dataset.key === key) return;
+      const field = value && this.field(value);
+      const ends = field ? this.span(value)?.map((end) => plain(end / field.factor)) : null;
+      const key = JSON.stringify([varied, value, ends, field?.unit]);
+      if (place.dataset.key === key || place.contains(document.activeElement)) return;
       place.dataset.key = key;
-      place.replaceChildren(choose(text, varied.map((each) => [each, each]), value, (chosen) => this.choose({ [name]: chosen })));
+      const end = (i) => make("input", { type: "text", size: 4, class: "end", value: ends[i], inputmode: "decimal", "aria-label": `${value} ${i ? "to" : "from"} [${field.unit || "-"}]`, title: `${i ? "Upper" : "Lower"} end of the axis; empty: the usual one`, onchange: ({ target }) => this.#typed(value, field, ends, i, target) });
+      place.replaceChildren(choose(text, varied.map((each) => [each, each]), value, (chosen) => this.choose({ [name]: chosen })), ...(ends ? [end(0), "–", end(1)] : []));
     };
-    this.app.store.addEventListener("changed", fill);
-    this.app.store.addEventListener("fields", fill);
+    for (const event of ["changed", "fields"]) store.addEventListener(event, fill);
+    place.addEventListener("focusout", () => setTimeout(fill));
     this.controls.append(place);
     fill();
+  }
+
+  /** A select among words, kept as option `name`. */
+  words({ text, name, options, usual, numbers }) {
+    this.controls.append(choose(text, options, String(this.chosen[name] ?? usual), (value) => this.choose({ [name]: numbers ? Number(value) : value })));
+  }
+
+  /** A select over the degrees of freedom of what was drawn. */
+  freedom({ text }) {
+    const place = make("span");
+    this.controls.append(place);
+    this.filled = ({ names, dof }) => {
+      const key = JSON.stringify([names, dof]);
+      if (!names || place.dataset.key === key) return;
+      place.dataset.key = key;
+      place.replaceChildren(choose(text, names.map((name, i) => [String(i), name]), String(dof), (chosen) => this.choose({ dof: Number(chosen) })));
+    };
+  }
+
+  /** An end of an axis that was typed; empty, the usual one. */
+  #typed(parameter, field, ends, i, input) {
+    if (!input.value.trim()) return this.app.store.range(parameter, null);
+    const { value, wrong } = typed(input.value, field);
+    const both = ends.map(Number).with(i, value);
+    if (!wrong && both[0] < both[1]) return this.app.store.range(parameter, both.map((end) => end * field.factor));
+    this.says.textContent = `${parameter}: ${wrong ?? "expected a lower and a higher end"}`;
+    input.value = ends[i];
+  }
+
+  field = (parameter) => this.app.store.field(this.app.store.sheet?.aliases[parameter]?.[0] ?? parameter);
+
+  /** Other ends for an axis over a parameter, null for the usual ones; false where the axis is over none. */
+  narrow(axis, ends) {
+    if (!axis.parameter) return false;
+    this.app.store.range(axis.parameter, ends && ends.map((end) => end * axis.factor));
+    return true;
   }
 
   /** The parameter chosen as option `name`, or the first of `usual` that the design has. */
@@ -74,13 +171,15 @@ export class Panel {
     return usual.find((each) => varied.includes(each)) ?? varied[0];
   }
 
-  /** The ends [SI] of an axis over a parameter: its slider's, and wide enough for the present value. */
+  /** The ends [SI] of an axis over a parameter: those chosen, or its slider's, and wide enough for the present value. */
   span(parameter) {
-    const store = this.app.store;
-    const field = store.field(store.sheet?.aliases[parameter]?.[0] ?? parameter);
+    const { store } = this.app;
+    const field = this.field(parameter);
     if (!field?.slider) return null;
+    const chosen = store.ranges[parameter];
+    if (chosen) return chosen;
     const value = store.value(parameter);
-    const [low, high] = (store.design.base && this.chosen.spans?.[parameter]) || field.slider; // as the opened file asks
+    const [low, high] = field.slider;
     return typeof value === "number" ? [Math.min(low, value), Math.max(high, value)] : [low, high];
   }
 
@@ -91,10 +190,22 @@ export class Panel {
   }
 
   request() {
-    if (!this.app.store.sheet) return null;
-    const options = this.module.options(this);
-    if (!options) return null;
-    return { state: this.module.state?.(this) ?? this.app.store.design, options };
+    const { store } = this.app;
+    if (!store.sheet) return null;
+    const asked = {};
+    const along = [];
+    for (const { kind, name, usual, span, numbers } of this.about.choices) {
+      if (kind === "over") {
+        asked[name] = this.parameter(name, ...usual);
+        if (!asked[name]) return null;
+        asked[span] = this.span(asked[name]);
+        along.push(asked[name]);
+      } else if (kind === "words") asked[name] = this.chosen[name] ?? (numbers ? Number(usual) : usual);
+    }
+    const own = this.module.options ? this.module.options(this) : {};
+    if (!own) return null;
+    const state = this.module.state?.(this) ?? (this.about.along ? stateWithout(store, ...along) : store.design);
+    return { state, options: { ...asked, ...own, ...(store.units ? { units: store.units } : {}) } };
   }
 
   status(kind, frame) {

@@ -1,7 +1,7 @@
 // The side of the page: every field of the design as a slider and a number, a choice or a friction law.
 
-import { make } from "./elements.js";
-import { plain, raised, typed } from "./numbers.js";
+import { askNumber, make } from "./elements.js";
+import { plain, raised, typed, unitsOf } from "./numbers.js";
 
 export class Parameters {
   constructor(app, place) {
@@ -67,7 +67,7 @@ export class Parameters {
     const step = field.whole ? 1 : field.step / factor;
     const slider = make("input", { type: "range", "aria-label": `${field.path}, slider`, data: { slider: field.path }, min: low / factor, max: high / factor, step: field.whole ? 1 : "any" });
     const number = make("input", { ...common, type: "text", inputmode: "decimal", size: 9, placeholder: field.optional ? "left out" : "" });
-    const unit = make("span", { class: "unit" }, raised(field.unit || "-"));
+    const unit = this.#unit(field);
     slider.addEventListener("input", () => store.propose({ [field.path]: nearest(slider.valueAsNumber * factor, field) }));
     slider.addEventListener("change", () => store.commit());
     slider.addEventListener("keydown", (event) => {
@@ -107,6 +107,22 @@ export class Parameters {
       slider.classList.toggle("left-out", !given);
     };
     row.element.append(make("span", { class: "control" }, slider, number, unit));
+  }
+
+  /** The unit of a field: a choice where there are several. */
+  #unit(field) {
+    const units = unitsOf(field);
+    if (units.length < 2) return make("span", { class: "unit" }, raised(field.unit || "-"));
+    const chosen = units.some(({ name }) => name === field.unit) ? field.unit : units[0].name;
+    const about = make("select", { class: "unit", "aria-label": `Unit of ${field.path}`, title: "Read and write it in another unit" });
+    for (const { name, ask } of units) about.append(make("option", { value: name, selected: name === chosen }, raised(ask && name !== field.unit ? `${name}…` : name)));
+    about.addEventListener("change", async () => {
+      const { name, ask, factor } = units.find((each) => each.name === about.value);
+      const given = ask ? await askNumber(ask) : null;
+      if (ask && given === null) about.value = chosen;
+      else this.app.store.unit(field.path, name, ask ? factor(given) : factor);
+    });
+    return about;
   }
 
   #choice(field, row, common) {

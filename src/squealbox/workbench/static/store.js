@@ -12,8 +12,7 @@ export class Store extends EventTarget {
   constructor() {
     super();
     this.design = Store.plain("drum_brake");
-    this.texts = new Map(); // of the opened files, by base: undo and links find the text of their own design
-    this.names = new Map(); // under which they are saved again
+    [this.texts, this.names] = [new Map(), new Map()]; // of the opened files, by base: undo and links find those of their design
     this.sheet = null;
     this.settings = {}; // options of the panels, by panel
     this.past = [];
@@ -30,8 +29,34 @@ export class Store extends EventTarget {
     return this.design.base ? (this.texts.get(this.design.base) ?? null) : null;
   }
 
+  /** The fields of the design, each in the unit that was chosen for it. */
   get fields() {
-    return this.sheet?.fields ?? [];
+    return (this.sheet?.fields ?? []).map((field) => (this.units?.[field.path] ? inUnit(field, ...this.units[field.path]) : field));
+  }
+
+  /** Units chosen for parameters, { path: [unit, factor] }, where there are any. */
+  get units() {
+    return this.settings.page?.units;
+  }
+
+  /** Ends [SI] chosen for the axes over parameters, { path: [low, high] }. */
+  get ranges() {
+    return this.settings.page?.ranges ?? {};
+  }
+
+  /** Other ends for the axes over a parameter, null for the usual ones. */
+  range(parameter, ends) {
+    this.option("page", { ranges: { ...this.ranges, [parameter]: ends ?? undefined } });
+  }
+
+  /** Another unit for a parameter, and for the alias that begins with it. */
+  unit(path, unit, factor) {
+    const usual = this.sheet.fields.find((field) => field.path === path).unit === unit;
+    const also = Object.entries(this.sheet.aliases).filter(([, names]) => names[0] === path).map(([alias]) => alias);
+    const units = { ...this.units };
+    for (const each of [path, ...also]) units[each] = usual ? undefined : [unit, factor];
+    this.option("page", { units: Object.values(units).some(Boolean) ? units : undefined });
+    this.dispatchEvent(new Event("fields"));
   }
 
   field(path) {
@@ -169,6 +194,9 @@ export class Store extends EventTarget {
     history.replaceState(null, "", location.pathname + location.search + this.fragment());
   }
 }
+
+const inUnit = (field, unit, factor) => ({ ...field, usual: field.unit, unit, factor, range: `${field.lowOpen ? "(" : "["}${end(field.low, factor, "−")}, ${end(field.high, factor, "")}${field.highOpen ? ")" : "]"} ${unit}` });
+const end = (value, factor, sign) => (value === null ? `${sign}inf` : String(Number((value / factor).toPrecision(6))));
 
 export const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 

@@ -86,6 +86,7 @@ export class View {
     }
     if (wanted && frame.kind === "answer") {
       this.drawn = key;
+      this.app.ahead(this.name); // what waits for it is computed while it is drawn
       this.draw(frame);
       this.outcome = ["drawn", null];
       this.status("drawn");

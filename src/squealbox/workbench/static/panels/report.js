@@ -6,7 +6,6 @@ import { download } from "../export.js";
 
 export default {
   setup(panel) {
-    panel.files.hidden = true;
     panel.asked = new Asked(panel, "Press Make the report; it takes some seconds.");
     panel.body.append(
       make("p", {}, "One HTML file for a colleague: verdict, parameters with sources, stability, map, motion with sound, limit cycle, caveats and versions. It opens without a network and prints well."),

@@ -59,9 +59,9 @@ async function start(panel) {
 
 function go(panel, step) {
   panel.step = step;
-  const { table, steps } = panel.data;
+  const { values: paper, steps } = panel.data;
   const { values, map } = steps[step];
-  panel.app.store.replace({ ...Store.plain("drum_brake"), values: { ...READING, ...table, ...values } });
+  panel.app.store.replace({ ...Store.plain("drum_brake"), values: { ...READING, ...paper, ...values } });
   if (map) panel.app.store.option("map", map);
   else if (panel.app.store.settings.map?.x === "theta1") panel.app.store.option("map", { x: "friction.static", y: "load" });
   if (!panel.asked.current) panel.asked.ask();

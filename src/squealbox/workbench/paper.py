@@ -1,0 +1,192 @@
+"""A figure of the page as PDF: the numbers and axes the page shows, drawn with Matplotlib for paper.
+
+What comes from a page is not trusted: sizes are bounded, and what is no figure is a `NoFigure` with one sentence.
+"""
+
+import io
+import json
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+LARGEST = 4_000_000  # bytes of a figure
+DOTS = 96.0  # px of the page to an inch
+SERIES = ("#0072b2", "#d55e00", "#009e73", "#b45a8d", "#3a96cf", "#b87f00", "#14181d")
+DASHES = ("-", (0, (7, 2)), (0, (2, 2)), (0, (9, 3, 2, 3)), (0, (4, 2)), (0, (12, 3)), (0, (3, 3)))
+MECHANISMS = ("#deebf7", "#d55e00", "#009e73", "#783c96", "#e69f00")
+BANDS = {"unstable": "#f7e2d3", "operating": "#dfeee8", "together": "#ecd9ac"}
+BARS = {"b0": "#d55e00", "b1": "#b87f00", "b2": "#0072b2"}
+DECADES = 3.0
+_ONE = threading.Lock()  # Matplotlib's text is not made for several threads
+
+
+class NoFigure(ValueError):
+    """What was sent is no figure; the message is one sentence."""
+
+
+def pdf(text: bytes) -> bytes:
+    """The PDF of a figure given as JSON: as `figures.packed` has it, with the arrays in place."""
+    try:
+        spec = json.loads(text)
+        if not isinstance(spec, dict):
+            raise NoFigure("expected a figure")
+        with _ONE:
+            return _drawn(spec)
+    except NoFigure:
+        raise
+    except (ValueError, TypeError, KeyError, IndexError, AttributeError, RecursionError, OverflowError) as error:
+        raise NoFigure(f"this is no figure that can be drawn: {type(error).__name__}") from error
+
+
+def _drawn(spec: dict[str, Any]) -> bytes:
+    from matplotlib.backends.backend_pdf import FigureCanvasPdf
+    from matplotlib.figure import Figure
+
+    from squealbox.plots.style import styled
+
+    width, height = (min(max(float(size), 100.0), 4000.0) / DOTS for size in spec["size"])
+    with styled(), np.errstate(all="ignore"):
+        figure = Figure(figsize=(width, height), layout="constrained")
+        panel = figure.add_subplot()
+        if "bars" in spec:
+            _bars(panel, spec)
+        else:
+            _axes(panel, spec)
+        file = io.BytesIO()
+        FigureCanvasPdf(figure).print_pdf(file, metadata={"Creator": "squealbox", "CreationDate": None})
+    return file.getvalue()
+
+
+def _axes(panel: Any, spec: dict[str, Any]) -> None:
+    for way in ("x", "y"):
+        low, high = (float(end) for end in spec[way]["domain"])
+        if not (np.isfinite([low, high]).all() and low != high):
+            raise NoFigure("an axis needs two different ends")
+        getattr(panel, f"set_{way}lim")(low, high)
+        getattr(panel, f"set_{way}label")(str(spec[way]["label"])[:200])
+    if spec.get("heat"):
+        _picture(panel, spec["heat"])
+    named: dict[str, Any] = {}
+    for layer in spec["layers"]:
+        drawn = DRAW[layer["kind"]](panel, layer)
+        if layer.get("name") and drawn is not None:
+            named.setdefault(str(layer["name"])[:100], drawn)
+    if named:
+        place = {"top": "upper", "bottom": "lower"}
+        vertical, _, side = str(spec.get("legend", "top right")).partition(" ")
+        panel.legend(named.values(), named.keys(), loc=f"{place.get(vertical, 'upper')} {side or 'right'}")
+
+
+def _numbers(values: Any) -> Any:
+    return np.array([np.nan if value is None else value for value in values], dtype=float)
+
+
+def _look(layer: dict[str, Any]) -> dict[str, Any]:
+    look = str(layer.get("cls", "s0"))
+    if look[:1] == "s" and look[1:2].isdigit():
+        i = int(look[1]) % len(SERIES)
+        thin = "thin" in look
+        return {
+            "color": SERIES[0 if thin else i],
+            "linestyle": "-" if thin else DASHES[i],
+            "linewidth": 0.6 if thin else 1.4,
+        }
+    width = {"boundary": 1.4, "tangent": 1.8}.get(look, 0.8)
+    colour = {"tangent": SERIES[1], "axis-line": "#535c66", "measured": "#b3261e"}.get(look, "#14181d")
+    return {"color": colour, "linestyle": {"present": "--", "measured": ":"}.get(look, "-"), "linewidth": width}
+
+
+def _line(panel: Any, layer: dict[str, Any]) -> Any:
+    return panel.plot(_numbers(layer["x"]), _numbers(layer["y"]), **_look(layer))[0]
+
+
+def _points(panel: Any, layer: dict[str, Any]) -> Any:
+    hollow = layer.get("cls") == "begin"
+    size = min(float(layer.get("r", 4.5)), 20.0)
+    about = {"markersize": 1.3 * size, "color": "#14181d", "markerfacecolor": "white" if hollow else "#14181d"}
+    return panel.plot(_numbers(layer["x"]), _numbers(layer["y"]), "o", **about)[0]
+
+
+def _hull(panel: Any, layer: dict[str, Any]) -> Any:
+    low, high = _numbers(layer["low"]), _numbers(layer["high"])
+    return panel.fill_between(_numbers(layer["x"]), low, high, color=SERIES[0], alpha=0.75, linewidth=0.4)
+
+
+def _path(panel: Any, layer: dict[str, Any]) -> Any:
+    for ring in layer["rings"]:
+        panel.plot(*np.asarray(ring, dtype=float).T, **_look(layer))
+
+
+def _band(panel: Any, layer: dict[str, Any]) -> Any:
+    colour = BANDS.get(str(layer.get("cls")), "#eeeeee")
+    return panel.axvspan(float(layer["from"]), float(layer["to"]), color=colour, zorder=0, linewidth=0)
+
+
+def _text(panel: Any, layer: dict[str, Any]) -> Any:
+    about = {"xytext": (0, 4), "textcoords": "offset points", "ha": "center", "fontsize": 8, "annotation_clip": True}
+    panel.annotate(str(layer["words"])[:200].replace("$", r"\$"), (float(layer["x"]), float(layer["y"])), **about)
+
+
+DRAW: dict[str, Callable[[Any, dict[str, Any]], Any]] = {
+    "line": _line,
+    "points": _points,
+    "hull": _hull,
+    "path": _path,
+    "band": _band,
+    "text": _text,
+    "across": lambda panel, layer: panel.axhline(float(layer["y"]), **_look(layer)),
+    "upright": lambda panel, layer: panel.axvline(float(layer["x"]), **_look(layer)),
+}
+
+
+def _picture(panel: Any, heat: dict[str, Any]) -> None:
+    """The picture with its colours told: the scales of the page's `colours.js`."""
+    from matplotlib.colors import LinearSegmentedColormap, ListedColormap, LogNorm, Normalize, PowerNorm, TwoSlopeNorm
+
+    values = _numbers(heat["values"]).reshape(int(heat["rows"]), int(heat["columns"]))
+    (left, right), (bottom, top) = heat["span"]
+    across, up = (right - left) / (values.shape[1] - 1), (top - bottom) / (values.shape[0] - 1)
+    extent = (left - across / 2, right + across / 2, bottom - up / 2, top + up / 2)
+    pale = LinearSegmentedColormap.from_list("pale", ["#fafbfd", "#003c78"])
+    high, low = float(np.nanmax(values)), float(np.nanmin(values))
+    norm: Normalize = Normalize(low, high)
+    colours: Any = pale
+    if heat["scale"] == "mechanism":
+        colours, norm = ListedColormap(MECHANISMS), Normalize(-0.5, len(MECHANISMS) - 0.5)
+    elif heat["scale"] == "decades" and high > 0.0:
+        norm = LogNorm(high * 10.0**-DECADES, high, clip=True)
+    elif heat["scale"] == "diverging" and low < 0.0 < high:
+        colours = LinearSegmentedColormap.from_list("growth", ["#286eaf", "#fcfcfc", "#c85000"])
+        norm = TwoSlopeNorm(0.0, low, high)
+    elif heat["scale"] == "diverging":
+        colours = LinearSegmentedColormap.from_list(
+            "growth", ["#fcfcfc", "#c85000"] if high > 0.0 else ["#286eaf", "#fcfcfc"]
+        )
+        norm = PowerNorm(1.0, low, high)
+    smooth = "bilinear" if heat.get("smooth") else "nearest"
+    about: dict[str, Any] = {"origin": "lower", "aspect": "auto", "extent": extent, "interpolation": smooth}
+    shown = panel.imshow(values, cmap=colours, norm=norm, **about)
+    bar = panel.figure.colorbar(shown, ax=panel, label=str(heat.get("name", ""))[:100])
+    if heat["scale"] == "mechanism":
+        names = [str(name)[:40] for name in heat["names"]][: len(MECHANISMS)]
+        bar.set_ticks(range(len(names)), labels=names)
+
+
+def _bars(panel: Any, spec: dict[str, Any]) -> None:
+    names = [str(bar["name"])[:100] for bar in spec["bars"]]
+    for i, bar in enumerate(spec["bars"]):
+        ends = [0.0, 0.0]
+        for look, value in bar["parts"]:
+            size, side = float(value or 0.0), int((value or 0.0) < 0.0)
+            panel.barh(i, size, left=ends[side], color=BARS.get(str(look), "#7a8a99"), height=0.65)
+            ends[side] += size
+    panel.set_yticks(range(len(names)), labels=names)
+    panel.invert_yaxis()
+    panel.axvline(0.0, color="#535c66", linewidth=0.8)
+    panel.set_xlabel(str(spec.get("label", ""))[:200])
+    for look, name in spec.get("legend") or ():
+        panel.barh(0, 0.0, color=BARS.get(str(look), "#7a8a99"), label=str(name)[:60])
+    if spec.get("legend"):
+        panel.legend()
