@@ -112,9 +112,10 @@ def test_another_law_and_a_countermeasure():
 
 def test_sections_become_settings_and_settings_sections():
     settings = settings_of(read_text(TEXT))
-    assert settings["map"]["x"] == "friction.static"
-    assert settings["map"]["spans"]["theta1"] == pytest.approx(np.deg2rad([20.0, 160.0]))
-    assert settings["locus"] == {"spans": {"load": [100.0, 5000.0]}, "parameter": "load"}
+    assert settings["map"] == {"x": "friction.static", "y": "theta1"}
+    assert settings["locus"] == {"parameter": "load"}
+    assert settings["page"]["ranges"]["theta1"] == pytest.approx(np.deg2rad([20.0, 160.0]))
+    assert settings["page"]["ranges"]["load"] == [100.0, 5000.0]
     assert settings["motion"] == {"start": "sliding"}
     assert again(TEXT, {}, settings) == (TEXT, "")
     chosen = {"map": {"x": "k3"}, "locus": {"parameter": "k4"}, "motion": {"start": "rest"}}
@@ -131,10 +132,21 @@ def test_sections_become_settings_and_settings_sections():
     assert found.study
     assert "# as agreed" in text
     assert "# for the night" in text
+    text, lost = again(TEXT, {}, {"page": {"ranges": {"friction.static": [0.1, 0.6], "theta1": None}}})
+    assert (lost, lines(TEXT, text)[0]) == ("", ['x = { parameter = "friction.static", range = [0.1, 0.6] }   # x'])
+    assert again(TEXT, {}, {"page": {"ranges": {"friction.static": [3, "x"]}}})[1] in ("", LOST)
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"map": 3}, {"map": {"x": "none"}}, {"map": {"x": ["k3"]}}, {"motion": {"start": "push"}}]
+    "wrong",
+    [
+        {"map": 3},
+        {"map": {"x": "none"}},
+        {"map": {"x": ["k3"]}},
+        {"motion": {"start": "push"}},
+        {"page": {"ranges": 3}},
+        {"page": {}},
+    ],
 )
 def test_settings_that_no_section_can_hold_change_nothing(wrong):
     assert again(TEXT, {}, wrong) == (TEXT, "")

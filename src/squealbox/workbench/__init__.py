@@ -2,9 +2,11 @@
 
     squealbox lab                    the page, with the drum brake of the 2011 paper
     squealbox lab brake.toml         the page, with a design file
+    squealbox lab bench7             the page, in the project of that folder
 
-The server keeps nothing of a user: each question carries the design it is about. `docs/workbench.md` says how a panel
-is added: one Python file in ``panels/``, one ES module in ``static/panels/``.
+Each question carries the design it is about; what is kept is in the project, plain files in a folder.
+`docs/workbench.md` says how a panel is added: one Python file in ``panels/``, and a script in ``static/panels/`` where
+one does more than show.
 """
 
 from squealbox.workbench.lab import serve

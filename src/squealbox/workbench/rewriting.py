@@ -23,11 +23,11 @@ LOST = "Written anew, without the comments of the opened file: they could not be
 
 
 def settings_of(found: DesignFile) -> dict[str, dict[str, Any]]:
-    """What the sections of a file say to the page: options by panel, with `spans` [SI] of the axes they name."""
+    """What the sections of a file say to the page: options by panel, and the ends [SI] of the axes they name."""
     made: dict[str, dict[str, Any]] = {}
     for panel, option, axis in _axes(found):
-        made.setdefault(panel, {"spans": {}})[option] = axis.name
-        made[panel]["spans"][axis.name] = [axis.low, axis.high]
+        made.setdefault(panel, {})[option] = axis.name
+        made.setdefault("page", {"ranges": {}})["ranges"].setdefault(axis.name, [axis.low, axis.high])
     if found.simulate is not None:
         made["motion"] = {"start": found.simulate.start}
     return made
@@ -129,11 +129,18 @@ def _axes(found: DesignFile) -> Iterator[tuple[str, str, Axis]]:
 def _ask(found: Any, said: DesignFile, design: Design, settings: Mapping[str, Any]) -> None:
     """Put what was chosen on the page into the sections that ask for something else."""
     chosen = {name: each for name, each in settings.items() if isinstance(each, Mapping)}
+    ranges, before = chosen.get("page", {}).get("ranges"), settings_of(said).get("page", {}).get("ranges", {})
+    ranges = {name: ends for name, ends in ranges.items() if ends} if isinstance(ranges, Mapping) else {}
     for panel, option, axis in _axes(said):
-        name = chosen.get(panel, {}).get(option, axis.name)
-        if isinstance(name, str) and name != axis.name and name in scalar_parameters(design):
-            table = found["map"][option] if panel == "map" else found["onset" if panel == "locus" else panel]
-            table["parameter"], table["range"] = name, list(Options({}).span("span", design, name))
+        name, own = chosen.get(panel, {}).get(option, axis.name), [axis.low, axis.high]
+        if not isinstance(name, str) or name not in scalar_parameters(design):
+            continue
+        ends = ranges.get(name, own if name == axis.name else list(Options({}).span("span", design, name)))
+        table = found["map"][option] if panel == "map" else found["onset" if panel == "locus" else panel]
+        if name != axis.name:
+            table["parameter"] = name
+        if name != axis.name or (ends != own and ends != before.get(name, own)):
+            table["range"] = ends
     start = chosen.get("motion", {}).get("start")
     if said.simulate is not None and start in STARTS and start != said.simulate.start:
         found["simulate"]["start"] = start

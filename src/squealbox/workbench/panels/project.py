@@ -16,6 +16,7 @@ from squealbox.workbench.panels.modes import crossings_of, modes_of
 from squealbox.workbench.panels.panel import Answer, Elsewhere, Options, Work
 from squealbox.workbench.session import LARGE, PER_CUBE
 
+NO_DESIGN = "No design yet: name the one on the page and save it, or begin with a preset."
 FRICTION = "friction.static"  # whose critical value is tabled
 
 
@@ -27,7 +28,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     for i, name in enumerate(names):
         work.progress(i / len(names), name)
         rows.append({**project.about("designs", f"{name}.toml"), "name": name, **_row(project, name, work)})
-    return Answer({"rows": rows})
+    return Answer({"rows": rows, "marks": {"designs": len(rows)}, "words": "" if rows else NO_DESIGN})
 
 
 def _row(project: Project, name: str, work: Work) -> dict[str, Any]:

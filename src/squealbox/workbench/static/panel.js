@@ -186,7 +186,7 @@ export class Panel {
     const chosen = store.ranges[parameter];
     if (chosen) return chosen;
     const value = store.value(parameter);
-    const [low, high] = (store.design.base && this.chosen.spans?.[parameter]) || field.slider; // as the opened file asks
+    const [low, high] = field.slider;
     return typeof value === "number" ? [Math.min(low, value), Math.max(high, value)] : [low, high];
   }
 

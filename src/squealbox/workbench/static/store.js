@@ -12,8 +12,7 @@ export class Store extends EventTarget {
   constructor() {
     super();
     this.design = Store.plain("drum_brake");
-    this.texts = new Map(); // of the opened files, by base: undo and links find the text of their own design
-    this.names = new Map(); // under which they are saved again
+    [this.texts, this.names] = [new Map(), new Map()]; // of the opened files, by base: undo and links find those of their design
     this.sheet = null;
     this.settings = {}; // options of the panels, by panel
     this.past = [];

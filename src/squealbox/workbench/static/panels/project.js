@@ -10,14 +10,12 @@ const HEADS = ["design", "steady sliding", "worst mode", "growth 1/s", "critical
 export default {
   setup(panel) {
     const [app, { store }] = [panel.app, panel.app];
-    panel.files.hidden = true;
     panel.called = make("input", { type: "text", size: 12, maxlength: 80, "aria-label": "Name for the design or the state", placeholder: "name" });
     const also = make("input", { type: "checkbox", checked: Boolean(panel.chosen.results), onchange: () => panel.choose({ results: also.checked }) });
     const named = (verb) => () => act(panel, verb, { name: panel.called.value, state: store.whole });
     const recorded = ({ taken }) => (taken ? send(panel, "measurements", taken.name, taken) : note("No recording is open: drop one onto the page."));
     [panel.list, panel.past, panel.kept] = ["Designs of the project", "History", "Measurements and results"].map((words) => make("div", { class: "scroller", role: "region", tabindex: 0, "aria-label": words }));
-    const keeping = () => keep(panel);
-    const rested = later(keeping);
+    const [keeping, rested] = [() => keep(panel), later(() => keep(panel))];
     panel.notes = make("textarea", { "aria-label": "Notes", placeholder: "Notes: they save themselves, into notes.md", oninput: () => rested((panel.dirty = true)), onblur: keeping });
     Object.assign(panel, { stamp: Date.now(), presets: make("span"), restore: make("span") });
     panel.body.append(make("div", { class: "buttons" }, panel.called, button("Save this design", named("save")), button("Name this state", named("name")), panel.presets, button("Keep the recording", () => recorded(app.panels.get("recording"))), make("label", { title: "Figures and files that you save go into results/ too" }, also, " keep what I save"), panel.restore), make("div", { class: "project" }, panel.list, panel.notes, panel.past, panel.kept));
@@ -28,8 +26,8 @@ export default {
     if (location.hash || app.hello.text) return;
     ask(panel, "left").then((left) => {
       const go = (words) => button(words, () => (place.remove(), words === "Not now" || app.take(left.state)));
-      const place = left?.state && make("p", { class: "offer", role: "status" }, go(`Go on where you were (${left.title}, ${when(left.time)})`), " ", go("Not now"));
-      if (place) document.getElementById("content").prepend(place);
+      const place = make("p", { class: "offer", role: "status" }, go(`Go on where you were (${left?.title}, ${when(left?.time)})`), " ", go("Not now"));
+      if (left?.state) document.getElementById("content").prepend(place);
     });
   },
 
@@ -42,8 +40,6 @@ export default {
     const words = ({ name, note: text }) => make("input", { type: "text", value: text, maxlength: 2000, title: text, "aria-label": `Note on ${name}`, onchange: (event) => ask(panel, "note", { name, note: event.target.value }) });
     const state = ({ state, wrong }) => make("span", wrong ? { class: "problem", title: wrong } : {}, wrong || state);
     panel.list.replaceChildren(table(HEADS, data.rows.map((row) => [opens(row), state(row), ...row.numbers, when(1e3 * row.when), words(row), make("span", { class: "keys" }, ...keys(row))]), { class: "designs" }));
-    panel.element.dataset.designs = data.rows.length;
-    panel.remark = data.rows.length ? "" : "No design yet: name the one on the page and save it, or begin with a preset.";
     look(panel);
   },
 };
@@ -52,7 +48,6 @@ const when = (time) => new Date(time).toLocaleString("sv").slice(0, 16);
 const address = (part, name) => `/project/${part}/${encodeURIComponent(name)}`;
 /** A function that does `what` when its callers have rested. */
 const later = (what, timer = 0) => () => (clearTimeout(timer), (timer = setTimeout(what, REST)));
-/** Ask for a change of the designs, and table them again. */
 const act = async (panel, verb, about) => (await ask(panel, verb, about)) && ((panel.stamp += 1), panel.view.update());
 const take = async (panel, verb, about) => panel.app.take((await ask(panel, verb, about)) ?? {});
 
@@ -66,8 +61,7 @@ async function ask(panel, verb, about = {}) {
 }
 
 async function asA(panel, name) {
-  const { connection, store } = panel.app;
-  const { text } = (await ask(panel, "open", { name })) ?? {};
+  const [{ connection, store }, { text } = {}] = [panel.app, (await ask(panel, "open", { name })) ?? {}];
   const { kind, base, brake } = text ? await connection.ask({ ask: "open", text }) : {};
   if (kind === "opened") store.texts.set(base, text), store.option("compare", { a: { base, brake, laws: {}, values: {} } });
   note(kind === "opened" ? `${name} is A under “What silences it?”.` : `${name} cannot be read.`);
@@ -82,15 +76,14 @@ async function look(panel) {
   panel.restore.replaceChildren(...found.thrown.map(([thrown, name]) => button(`Take back ${name}`, () => act(panel, "restore", { name, thrown }))));
   panel.past.replaceChildren(table(["left at", "state", ""], found.history.map(({ time, id, title, words, name }) => [when(time), make("span", { title }, make("b", {}, name), ` ${words || title}`), button("Go back", () => take(panel, "back", { line: id }), { "aria-label": `Go back to ${name || when(time)}` })])));
   const files = (part, key) => found[part].map(({ name, size }) => [make("a", { href: address(part, name), download: name }, name), `${Math.ceil(size / 1e3)} kB`, key(name)]);
-  const measure = (name) => fetch(address("measurements", name)).then(async (answer) => (answer.ok ? panel.app.panels.get("recording").take(new File([await answer.blob()], name)) : note(`${name} cannot be opened.`)));
-  const measured = (name) => button("Open", () => measure(name).catch(() => note("The server does not answer.")), { "aria-label": `Open ${name}` });
+  const measure = (name) => fetch(address("measurements", name)).then((answer) => (answer.ok ? answer.blob() : Promise.reject())).then((blob) => panel.app.panels.get("recording").take(new File([blob], name)));
+  const measured = (name) => button("Open", () => measure(name).catch(() => note(`${name} cannot be opened.`)), { "aria-label": `Open ${name}` });
   panel.kept.replaceChildren(table(["measurements, results", "size", ""], [...files("measurements", measured), ...files("results", () => "")]));
   panel.says.textContent = [panel.remark, `In ${found.folder}.`, ...found.wrong].join(" ");
 }
 
 async function send(panel, part, name, body) {
-  const answer = await fetch(address(part, name), { method: "POST", body }).catch(() => null);
-  const found = (await answer?.json().catch(() => null)) ?? { message: "Not kept: the server does not answer." };
+  const found = await fetch(address(part, name), { method: "POST", body }).then((answer) => answer.json()).catch(() => ({ message: "Not kept: the server does not answer." }));
   note(found.message ?? `Kept as ${part}/${found.name}.`);
   look(panel);
 }
@@ -99,10 +92,8 @@ async function send(panel, part, name, body) {
 async function keep(panel) {
   const { store, ready } = panel.app;
   const [state, text] = [JSON.stringify(store.whole), panel.notes.value];
-  if (panel.dirty && ready) {
-    const frame = await ask(panel, "notes", { text, key: panel.key });
-    if (frame) [panel.key, panel.dirty] = [frame.key, text !== panel.notes.value];
-  }
+  const kept = panel.dirty && ready && (await ask(panel, "notes", { text, key: panel.key }));
+  if (kept) [panel.key, panel.dirty] = [kept.key, text !== panel.notes.value];
   if (!ready || store.before || state === panel.state || (!panel.state && same(store.design, Store.plain("drum_brake")))) return;
   if (await ask(panel, "keep", { state: store.whole })) panel.state = state;
   if (panel.view.visible) look(panel);
