@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -341,22 +342,25 @@ def test_broken_files_are_said_by_line(project, ask):
     assert ask("left").get("state") is None
 
 
-def pieces(*parts):
-    async def given():
-        for part in parts:
-            yield part
+def taken(project, part, name, *pieces):
+    """What the page sends, kept; in a thread, since a browser's loop may run in this one."""
 
-    return given()
+    async def given():
+        for piece in pieces:
+            yield piece
+
+    with ThreadPoolExecutor(1) as thread:
+        thread.submit(lambda: asyncio.run(project.take(part, name, given()))).result()
 
 
 def test_a_recording_is_kept_by_name_and_an_older_goes_to_the_trash(project):
-    asyncio.run(project.take("measurements", "stop 1.wav", pieces(b"one")))
-    asyncio.run(project.take("measurements", "stop 1.wav", pieces(b"two", b"three")))
+    taken(project, "measurements", "stop 1.wav", b"one")
+    taken(project, "measurements", "stop 1.wav", b"two", b"three")
     assert project.file("measurements", "stop 1.wav").read_bytes() == b"twothree"
     assert len(project.names("trash", ".wav")) == 1
     for part, name in (("measurements", "a.exe"), ("designs", "a.toml"), ("results", "../a.png")):
         with pytest.raises(ProjectError):
-            asyncio.run(project.take(part, name, pieces(b"x")))
+            taken(project, part, name, b"x")
     assert not [path for path in project.folder.rglob("*") if path.suffix in (".exe", ".part", ".png")]
 
 
