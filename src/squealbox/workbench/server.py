@@ -20,6 +20,7 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from squealbox.workbench.apart import Processes
+from squealbox.workbench.beside import Beside
 from squealbox.workbench.folder import FOLDER, Project
 from squealbox.workbench.frames import frame
 from squealbox.workbench.guard import Headers, SameOrigin, Token
@@ -48,7 +49,7 @@ class Workbench:
         self.pools = {"quick": ThreadPoolExecutor(2, "quick"), "warming": ThreadPoolExecutor(1, "warming")}
         self.pools["project"] = ThreadPoolExecutor(1, "project")
         self.files = {path.relative_to(STATIC).as_posix(): path.read_bytes() for path in STATIC.rglob("*.*")}
-        self.recordings = Recordings()
+        self.recordings, self.beside = Recordings(), Beside()
         self.processes = Processes()
         self.first = threading.Event()  # a page has its first figure
         self.pages = 0
@@ -60,6 +61,7 @@ class Workbench:
             Route("/favicon.ico", _file(STATIC / "favicon.svg", "image/svg+xml")),
             Route("/vendor/d3.js", _file(chart_library(), "text/javascript")),
             Route("/recording", self.record, methods=["POST"]),
+            Route("/beside/{group}/{name}", self.stand, methods=["POST"]),
             Route("/paper/{kind}", self.paper, methods=["POST"]),
             Route("/project/{part}/{name}", self.kept, methods=["GET", "POST"]),
             WebSocketRoute("/ws", self.talk),
@@ -82,6 +84,7 @@ class Workbench:
             self.first.set()
             self.processes.close()
             self.recordings.close()
+            self.beside.close()
             for pool in self.pools.values():
                 pool.shutdown(wait=False, cancel_futures=True)
 
@@ -111,6 +114,16 @@ class Workbench:
         except (ValueError, ClientDisconnect) as error:
             return JSONResponse({"message": str(error)}, status_code=400)
         return JSONResponse({"id": kept})
+
+    async def stand(self, request: Request) -> Response:
+        """Take a file that a design names, for when that is read."""
+        if not self.token.known(request.scope):
+            return JSONResponse({"message": "this address needs its token"}, status_code=403)
+        try:
+            await self.beside.take(request.path_params["group"], request.path_params["name"], request.stream())
+        except (ValueError, OSError, ClientDisconnect) as error:
+            return JSONResponse({"message": str(error)}, status_code=400)
+        return JSONResponse({})
 
     async def paper(self, request: Request) -> Response:
         """A figure of the page as a file for paper."""
@@ -166,7 +179,9 @@ class Workbench:
                 except (WebSocketDisconnect, RuntimeError):  # the page left while its answer was computed
                     session.close()
 
-        session = Session(send, self.pools, self.processes, told=self._answered, project=self.project)
+        session = Session(
+            send, self.pools, self.processes, told=self._answered, project=self.project, beside=self.beside
+        )
         if self.file is not None:
             session.give(self.file)
         self.pages += 1

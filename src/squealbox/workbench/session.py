@@ -4,7 +4,7 @@ A question is a JSON text, an answer a binary frame (`frames`) with the question
 
     {"id": 7, "view": "locus", "state": {...}, "options": {...}}    ask a panel
     {"id": 8, "ask": "sheet", "state": {...}}                       fields of a design; with "toml": true its text
-    {"id": 9, "ask": "open", "text": "brake = ..."}                 read a design file
+    {"id": 9, "ask": "open", "text": "brake = ..."}                 read a design file, "beside": those it names
     {"id": 10, "ask": "stop", "view": "motion"}                     stop a panel's computation
     {"id": 11, "ask": "project", "do": "save", "name": "bench 7"}   what is kept on disk (`project`)
 
@@ -35,6 +35,7 @@ from squealbox.workbench.state import StateError, UnknownBase, design_of
 
 if TYPE_CHECKING:
     from squealbox.files.reading import DesignFile
+    from squealbox.workbench.beside import Beside
 
 LONGEST_TEXT = 1_000_000  # characters of an opened file
 MOST_BASES = 8  # opened files kept for a page; the page sends an older one again
@@ -43,7 +44,8 @@ LARGE = 40  # degrees of freedom from which every answer gets a process of its o
 SINGLE = 160  # the same, of answers that take one spectrum
 PER_CUBE = 5e-6  # s an answer takes about, times the cube of the degrees of freedom
 SAID = 0.1  # s after which a progress is told again
-SPARSE = "a finite-element brake is made small first, which takes a while: open it with squealbox lab FILE"
+LARGE_FILE = "open it with squealbox lab FILE"
+SPARSE = "a finite-element brake is made small first, which takes a while: " + LARGE_FILE
 LONGEST_ID = 9_007_199_254_740_991  # the largest whole number a page can count to
 
 
@@ -86,6 +88,7 @@ class Session:
     bases: dict[str, Design] = field(default_factory=dict)
     files: dict[str, Opened] = field(default_factory=dict)
     project: Project = field(default_factory=lambda: Project(standing()))
+    beside: "Beside | None" = None
     slots: dict[str, Slot] = field(default_factory=dict)
     tasks: set[asyncio.Task[None]] = field(default_factory=set)
 
@@ -226,18 +229,35 @@ class Session:
         if not isinstance(text, str) or len(text) > LONGEST_TEXT:
             problem = {"line": 0, "field": "", "message": f"expected a text of at most {LONGEST_TEXT} characters"}
             return frame({**about, "kind": "wrong", "wrong": [problem]})
-        from squealbox.files import DesignFileError  # loads much, and few open a file at once
+        from squealbox.files import DesignFileError, NotWritable  # loads much, and few open a file at once
         from squealbox.workbench.rewriting import settings_of
 
         try:
-            file = self._file(text)
+            file = self._file(text) if message.get("beside") is None else self._whole(text, message["beside"])
         except DesignFileError as error:
             wrong = [{"line": each.line, "field": each.key, "message": each.message} for each in error.problems]
             return frame({**about, "kind": "wrong", "wrong": wrong})
+        except NotWritable as error:
+            return frame({**about, "kind": "wrong", "wrong": [{"line": 0, "field": "", "message": str(error)}]})
         if file.found.design.system().is_sparse:
             return frame({**about, "kind": "wrong", "wrong": [{"line": 0, "field": "", "message": SPARSE}]})
         opened = {"base": self.give(file), "brake": _name(file.found.design), "settings": settings_of(file.found)}
-        return frame({**about, "kind": "opened", **opened})
+        return frame({**about, "kind": "opened", "text": file.text, **opened})
+
+    def _whole(self, text: str, group: object) -> Opened:
+        """A design file that names others, which the page has sent: as one text."""
+        from squealbox.files import NotWritable
+        from squealbox.workbench.beside import in_one_text
+
+        if self.beside is None:
+            return self._file(text)
+        found = self.beside.read(group, text)
+        if found.design.system().is_sparse:
+            return Opened(text, found, lambda text: found)  # refused, with the way out
+        whole = in_one_text(found, text)
+        if len(whole) > LONGEST_TEXT:
+            raise NotWritable(f"its matrices are a text of more than {LONGEST_TEXT} characters: {LARGE_FILE}")
+        return self._file(whole)
 
     def _toml(self, design: Design, message: Mapping[str, Any]) -> dict[str, Any]:
         """The text of a file of the design: that of the opened file with its changes, where it came from one."""

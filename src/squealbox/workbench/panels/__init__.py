@@ -72,6 +72,11 @@ def number(text: str, name: str, usual: float, low: float, high: float, step: fl
     return {"kind": "number", "text": text, "name": name, "usual": usual, "low": low, "high": high, "step": step}
 
 
+def shared(panel: str, name: str) -> dict[str, Any]:
+    """The option `name` as it was chosen in another panel."""
+    return {"kind": "shared", "name": name, "panel": panel}
+
+
 FREEDOM = {"kind": "freedom", "text": "of"}  # a choice among the degrees of freedom that the answer names
 FRICTION = "friction.static"
 LOADS = ("load", "load1", "sliding_speed", "theta1")
@@ -104,7 +109,7 @@ PANELS: dict[str, Panel] = {
         figures=(Place("time", "Displacement", 190), Place("spectrum", "Spectrum of the second half", 190),
                  Place("phase", "Phase plane of the second half"), Place("spectrogram", "Spectrogram")),
     ),
-    "energy": Panel("Energy by contact", figures=(Place("energy", bars=True),)),
+    "energy": Panel("Energy by contact", figures=(Place("energy", bars=True),), choices=(shared("moving", "mode"),)),
     "sensitivity": Panel(
         "Which parameter to change", slow=True, choices=(words("for", "step", *STEPS),),
         figures=(Place("sensitivity", bars=True),), layout="beside",

@@ -1,4 +1,4 @@
-"""Who feeds the mode that grows first and who damps it: what each contact and damper brings to its growth rate."""
+"""Who feeds a mode and who damps it: what each contact and damper brings to its growth rate."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ from squealbox.stability import mode_energy
 from squealbox.words import number, quantity
 from squealbox.workbench.figures import Bars
 from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.modes import modes_of
+from squealbox.workbench.panels.modes import modes_of, ranked
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
 MOST_BARS = 24
@@ -17,13 +17,14 @@ LOOKS = {"normal force": "b0", "slope": "b1", "damping": "b2"}
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
-    """Bars [1/s] that add up to the growth rate of the mode with the largest one."""
+    """Bars [1/s] that add up to the growth rate of the mode that is seen to move, usually the one that grows first."""
     modes = modes_of(design)
     if not bool(modes.exists):
         return Answer(
             {"outcome": str(modes.outcome), "words": f"{modes.outcome.message}."}, figures=[Bars("energy", "", [])]
         )
-    parts = mode_energy(design, modes.most_unstable)
+    order = ranked(design)
+    parts = mode_energy(design, modes.mode(order[min(int(options.number("mode", 0, 0, 1e6)), len(order) - 1)]))
     per = 1.0 / (2.0 * parts.total)
     bars: list[dict[str, Any]] = []
     for i, name in enumerate(parts.contacts):

@@ -5,6 +5,7 @@ import functools
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.parameters import ParameterError
 from squealbox.stability import (
     ComplexModes,
@@ -18,12 +19,26 @@ from squealbox.stability import (
 KEPT = 8  # designs of the last questions
 POINTS, COARSE = 201, 21  # of a range, between which crossings are looked for: of brakes small and large
 LARGE = 40  # degrees of freedom
+MOST_MODES = 12
 
 
 @functools.lru_cache(maxsize=KEPT)
 def modes_of(design: Design) -> ComplexModes:
     """The modes about steady sliding, solved once for all panels that show one design."""
     return complex_modes(design)
+
+
+def ranked(design: Design) -> list[int]:
+    """Indices of the modes that are shown: the one that grows first, then the others; of a reduced brake its band's."""
+    modes = modes_of(design)
+    half = modes.eigenvalues.shape[-1] // 2
+    growth = np.nan_to_num(modes.growth_rate[:half], nan=-np.inf)
+    first = modes.most_unstable.index
+    order = [first, *(int(i) for i in np.argsort(-growth, kind="stable") if i != first)]
+    if isinstance(design, ReducedBrake):
+        low, high = design.band
+        order = [i for i in order if low <= modes.frequency[i] <= high] or order
+    return order[:MOST_MODES]
 
 
 def crossings_of(design: Design, parameter: str, ends: tuple[float, float]) -> CriticalValues:

@@ -9,10 +9,9 @@ from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.fe.surface import Surface
 from squealbox.plots.moving import moving_strokes
 from squealbox.system import equilibrium
-from squealbox.workbench.panels.modes import modes_of
+from squealbox.workbench.panels.modes import modes_of, ranked
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
-MOST_MODES = 12
 SEEN = 0.05  # of the freedom that moves most: what moves less has no phase to tell
 
 
@@ -34,7 +33,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         arrays |= {name: drawn[name] for name in ("points", "moves", "contactMoves")}
     if not bool(modes.exists):
         return Answer({**data, "modes": [], "message": modes.outcome.message}, arrays)
-    order = _order(modes, design)
+    order = ranked(design)
     chosen = min(int(options.number("mode", 0, 0, 1e6)), len(order) - 1)
     mode = modes.mode(order[chosen])
     shape = mode.shape[: system.size]
@@ -58,19 +57,6 @@ def surface_shape(surface: Surface, shape: Any) -> Any:
     """
     moved = np.asarray(surface.moves, dtype=float) @ shape
     return moved / moved.flat[np.argmax(np.abs(moved))]
-
-
-def _order(modes: Any, design: Design) -> list[int]:
-    """Modes, the one that grows first before the others; of a reduced brake those in the band it is good for."""
-    half = modes.eigenvalues.shape[-1] // 2
-    growth = np.nan_to_num(modes.growth_rate[:half], nan=-np.inf)
-    first = modes.most_unstable.index
-    order = [first, *(int(i) for i in np.argsort(-growth, kind="stable") if i != first)]
-    if isinstance(design, ReducedBrake):
-        low, high = design.band
-        inside = [i for i in order if low <= modes.frequency[i] <= high]
-        order = inside or order
-    return order[:MOST_MODES]
 
 
 def _phases(shape: Any, names: Any) -> str:

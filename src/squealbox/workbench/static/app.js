@@ -131,12 +131,17 @@ class App extends EventTarget {
   }
 
   /** Read a design file's text; resolves to what is wrong with it, or nothing. */
-  async open(text, wanted = () => true, name = null) {
-    const frame = await this.connection.ask({ ask: "open", text });
+  async open(text, wanted = () => true, name = null, files = []) {
+    const beside = files.length ? crypto.randomUUID().replaceAll("-", "") : undefined;
+    for (const file of files) {
+      const answer = await fetch(`/beside/${beside}/${encodeURIComponent(file.name)}`, { method: "POST", body: file });
+      if (!answer.ok) return [{ line: 0, field: "", message: (await answer.json().catch(() => null))?.message ?? "the server does not answer" }];
+    }
+    const frame = await this.connection.ask({ ask: "open", text, beside });
     if (!wanted()) return [];
     if (frame.kind === "opened") {
       for (const [panel, asked] of Object.entries(frame.settings)) this.store.settings = { ...this.store.settings, [panel]: { ...this.store.settings[panel], ...asked } };
-      this.store.replace({ base: frame.base, brake: frame.brake, laws: {}, values: {} }, text, name);
+      this.store.replace({ base: frame.base, brake: frame.brake, laws: {}, values: {} }, frame.text, name);
       return [];
     }
     return frame.wrong ?? [{ line: 0, field: "", message: frame.message }];

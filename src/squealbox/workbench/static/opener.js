@@ -3,6 +3,8 @@
 import { make, note } from "./elements.js";
 import { Store } from "./store.js";
 
+const OWN = "sliding_speed = \"1 m/s\"\nnormal_force = \"500 N\"\nfriction = { law = \"coulomb\", static = 0.4 }\n\n[[contacts]]   # one number for each degree of freedom\nn = [0, 0]     # normal force for each metre [N/m]\nd = [0, 0]     # where friction acts";
+
 export class Opener {
   constructor(app) {
     this.app = app;
@@ -12,29 +14,35 @@ export class Opener {
     this.list = get("opener-problems");
     get("opener-go").addEventListener("click", () => this.#open());
     get("opener-cancel").addEventListener("click", () => this.dialog.close());
-    get("opener-file").addEventListener("change", (event) => this.#read(event.target.files[0]));
+    get("opener-file").addEventListener("change", (event) => this.#read([...event.target.files]));
     document.addEventListener("dragover", (event) => event.preventDefault());
     document.addEventListener("drop", (event) => {
       event.preventDefault();
-      const [file] = event.dataTransfer.files;
-      if (!file) return;
-      if (/\.(wav|flac|ogg|csv|npy|uff|unv)$/i.test(file.name)) return this.app.panels.get("recording")?.take(file);
+      const files = [...event.dataTransfer.files];
+      if (files.length === 1 && /\.(wav|flac|ogg|csv|npy|uff|unv)$/i.test(files[0].name)) return this.app.panels.get("recording")?.take(files[0]);
       this.show();
-      this.#read(file);
+      this.#read(files);
     });
   }
 
   show() {
-    this.name = null;
+    [this.name, this.files] = [null, []];
     this.list.replaceChildren();
     if (!this.dialog.open) this.dialog.showModal();
   }
 
-  async #read(file) {
-    if (!file) return;
-    if (file.size > 1_000_000) return this.#say([{ message: `${file.name} has ${file.size} bytes, expected at most 1000000` }]);
-    this.name = file.name.replace(/\.toml$/i, "");
-    this.text.value = await file.text();
+  /** A design file, with the files it names; of matrices alone the text of a file that names them. */
+  async #read(files) {
+    const design = files.find(({ name }) => /\.(toml|txt)$/i.test(name));
+    this.files = files.filter((file) => file !== design);
+    if (!design) {
+      const matrices = this.files.filter(({ name }) => /^[MCK]\b|^[MCK]_/i.test(name)).map(({ name }) => `${name[0].toUpperCase()} = "${name}"`);
+      this.text.value = ['brake = "own"', ...matrices, OWN].join("\n");
+      return this.#say([{ message: matrices.length ? "say where it rubs, then press Open" : "expected a design file, or matrices named M, C and K" }]);
+    }
+    if (design.size > 1_000_000) return this.#say([{ message: `${design.name} has ${design.size} bytes, expected at most 1000000` }]);
+    this.name = design.name.replace(/\.toml$/i, "");
+    this.text.value = await design.text();
     await this.#open();
   }
 
@@ -46,7 +54,7 @@ export class Opener {
       return;
     }
     this.#say([{ message: "reading …" }]);
-    const wrong = await this.app.open(text, () => this.dialog.open, this.name).catch((error) => [{ message: error.message }]);
+    const wrong = await this.app.open(text, () => this.dialog.open, this.name, this.files).catch((error) => [{ message: error.message }]);
     if (!this.dialog.open) return; // cancelled meanwhile
     if (wrong.length) return this.#say(wrong);
     this.dialog.close();

@@ -39,7 +39,7 @@ export class Panel {
       draw: (frame) => this.draw(frame),
       status: (kind, frame) => this.status(kind, frame),
     });
-    for (const choice of about.choices) this[choice.kind](choice);
+    for (const choice of about.choices) this[choice.kind]?.(choice);
     for (const figure of about.figures) this.figure(figure);
     this.place.hidden = !about.figures.length;
     if (about.table) this.body.append((this.list = make("div", { class: "scroller", role: "region", tabindex: 0, "aria-label": about.table })));
@@ -201,13 +201,14 @@ export class Panel {
     if (!store.sheet) return null;
     const asked = {};
     const along = [];
-    for (const { kind, name, usual, span, numbers } of this.about.choices) {
+    for (const { kind, name, usual, span, numbers, panel } of this.about.choices) {
       if (kind === "over") {
         asked[name] = this.parameter(name, ...usual);
         if (!asked[name]) return null;
         asked[span] = this.span(asked[name]);
         along.push(asked[name]);
-      } else if (kind === "freedom") asked.dof = this.chosen.dof ?? 0;
+      } else if (kind === "shared") asked[name] = store.settings[panel]?.[name];
+      else if (kind === "freedom") asked.dof = this.chosen.dof ?? 0;
       else asked[name] = this.chosen[name] ?? (numbers ? Number(usual) : usual);
     }
     const own = this.module.options ? this.module.options(this) : {};
