@@ -20,7 +20,7 @@ export default {
     panel.asked = new Asked(panel, "Press Play.");
     panel.keys = {
       now: button("Play", () => play(panel, "now"), { title: "Compute and play the motion of this design" }),
-      keep: button("Keep as before", () => keep(panel), { disabled: true, title: "Keep this sound, then change the design and play again" }),
+      keep: button("Keep as before", () => figure(panel, (panel.heard.kept = panel.heard.now), (panel.keys.kept.disabled = false)), { disabled: true, title: "Keep this sound, then change the design and play again" }),
       kept: button("Play before", () => play(panel, "kept"), { disabled: true }),
       still: button("Stop", silence),
       wav: button("WAV", () => save(panel), { disabled: true, title: "Save the sound as WAV files" }),
@@ -28,10 +28,10 @@ export default {
     panel.ratio = make("input", { type: "checkbox", checked: true });
     panel.degrees = make("span");
     panel.controls.append(panel.degrees);
-    const heard = choose("heard", SLOW, panel.chosen.slow ?? "1", (slow) => panel.choose({ slow }));
-    const stops = choose("while", STOPS, String(panel.chosen.braking ?? 0), (braking) => panel.choose({ braking: Number(braking) }));
-    const ratio = make("label", { title: "Both as loud as they are to each other; else each as loud as can be" }, panel.ratio, " true ratio");
-    panel.body.append(make("div", { class: "buttons" }, ...Object.values(panel.keys), heard, stops, ratio));
+    panel.body.append(make("div", { class: "buttons" }, ...Object.values(panel.keys),
+      choose("heard", SLOW, panel.chosen.slow ?? "1", (slow) => panel.choose({ slow })),
+      choose("while", STOPS, String(panel.chosen.braking ?? 0), (braking) => panel.choose({ braking: Number(braking) })),
+      make("label", { title: "Both as loud as they are to each other; else each as loud as can be" }, panel.ratio, " true ratio")));
     panel.words = make("div", { class: "quiet" });
     panel.charts = [new Chart(panel.body, { name: "sound", height: 170, awaited: "the sound: press Play" })];
     panel.body.append(panel.words);
@@ -62,12 +62,6 @@ function play(panel, which) {
     panel.waiting = true;
     panel.asked.ask();
   }
-}
-
-function keep(panel) {
-  panel.heard.kept = panel.heard.now;
-  panel.keys.kept.disabled = false;
-  figure(panel);
 }
 
 const loudest = (panel, heard) => fullScale(heard, Object.values(panel.heard).filter(Boolean), panel.ratio.checked);

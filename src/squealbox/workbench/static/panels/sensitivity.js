@@ -30,18 +30,14 @@ export default {
     panel.needs.replaceChildren(...data.bars.filter((bar) => bar.needed?.near).map(go));
     panel.remark = data.outcome !== "completed" ? `${data.message}.` : data.near ? "Two modes nearly merge here: derivatives mean little." : typographic(data.words);
     panel.stage.replaceChildren();
-    if (!data.strokes) return;
+    if (!data.strokes || !data.bars.length) return;
     const { svg, at } = drawn(data, arrays.points, "Drawing of the brake, with what each parameter does");
     const most = Math.abs(data.bars[0].growth);
     for (const bar of data.bars.filter((each) => each.place)) {
       const [x, y] = at(bar.place);
-      const words = element("text", { x, y: y + 7, "text-anchor": "middle" });
-      words.textContent = shown(bar.growth, 2);
-      const name = element("title", {});
-      name.textContent = `${bar.name}: ${shown(bar.growth, 3)} 1/s`;
       const disc = element("circle", { cx: x, cy: y, r: 6 + 18 * Math.sqrt(Math.abs(bar.growth) / most), class: look(bar), "data-of": bar.name });
-      disc.append(name);
-      svg.append(disc, words);
+      svg.append(disc, element("text", { x, y: y + 7, "text-anchor": "middle" }));
+      svg.lastChild.textContent = shown(bar.growth, 2);
     }
     panel.stage.append(svg);
   },
