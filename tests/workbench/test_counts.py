@@ -133,7 +133,7 @@ def test_back_at_what_is_drawn_nothing_is_asked(counted):
         ("verdict", 1_000, 600),  # 201 values for crossings, each refined in some steps
         ("map", 60_000, 0),  # 101 x 101 and its boundary by the compiled kernel, which solves no matrix here
         ("energy", 1_000, 4),
-        ("sensitivity", 2_000, 4),
+        ("sensitivity", 16_000, 4_500),  # the drawing, and and of each of 14 parameters what it needs
         ("friction", 3_000, 0),
         ("motion", 150_000, 4),
     ],

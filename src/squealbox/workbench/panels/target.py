@@ -22,7 +22,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     try:
         lot = lot_of(design, top, say=lambda part: work.progress(part, "trying the lot"))
     except (ParameterError, ValueError) as error:
-        raise OptionError(f"no lot is known of this brake: {error}") from error
+        raise OptionError(f"a target needs {getattr(error, 'expectation', error)}") from error
     reached, least = 100.0 * float(lot.stable(friction)), lot.friction(share / 100.0)
     low, high = _seen(lot, friction)
     axis = np.linspace(low, high, POINTS)

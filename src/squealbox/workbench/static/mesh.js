@@ -33,18 +33,18 @@ export class Mesh {
       onkeydown: (event) => {
         if (event.ctrlKey || event.metaKey || event.altKey || !(event.key in KEYS || event.key in VIEWS)) return;
         event.preventDefault();
-        if (event.key in KEYS) by(KEYS[event.key]);
-        else move(VIEWS[event.key]);
+        event.key in KEYS ? by(KEYS[event.key]) : move(VIEWS[event.key]);
       },
     });
     place.replaceChildren(this.canvas);
     new ResizeObserver(drawn).observe(place);
   }
 
-  /** What the colours mean: [colour, words]. */
+  /** What the colours mean, as swatches and words. */
   keys() {
     const { most, slip, lifted } = this.#colours();
-    return [...this.palette.map((colours, part) => [colours[LIGHTS - 1], this.names[part]]), [`rgb(${most})`, "moves most"], ...(this.touching.length ? [[slip, "contact slips"], [lifted, "lifted"]] : [])];
+    const keys = [...this.palette.map((colours, part) => [colours[LIGHTS - 1], this.names[part]]), [`rgb(${most})`, "moves most"], ...(this.touching.length ? [[slip, "contact slips"], [lifted, "lifted"]] : [])];
+    return keys.flatMap(([colour, name]) => [Object.assign(make("i", { class: "swatch" }), { style: `background: ${colour}` }), `${name} `]);
   }
 
   /** Colours of each part by movement and light, as the page is coloured now. */

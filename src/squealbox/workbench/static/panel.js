@@ -61,7 +61,7 @@ export class Panel {
 
   /** The table that will stand there: its heads and names of rows. */
   like(heads, names) {
-    this.list.replaceChildren(table(heads, names.map((name) => [name, ...Array(heads.length - 1).fill("…")]), { class: "cures" }));
+    this.list.replaceChildren(table(heads, names.map((name) => [name, ...Array(heads.length - 1).fill("…")]), { class: "numbers" }));
   }
 
   /** A button above the figures. */
@@ -83,7 +83,7 @@ export class Panel {
       const spec = figure.bars ? figure : resolved(figure, arrays, this.app.measured);
       this.charts.find((chart) => chart.name === figure.name).draw(this.module.more ? this.module.more(this, spec) : spec);
     }
-    if (data.table) this.list?.replaceChildren(table(data.table.heads, data.table.rows, { class: "cures" }));
+    if (data.table) this.list?.replaceChildren(table(data.table.heads, data.table.rows, { class: "numbers" }));
     this.mark();
     this.module.draw?.(this, frame);
   }

@@ -97,19 +97,12 @@ function scene(panel) {
     panel.scene = { at, period: SLOW };
     panel.remark = `${data.mode ? "A mode" : "The mode that grows first"}, ${withUnit(data.modes[data.mode][0], "Hz")}: ${data.words}`;
   }
-  if (!data.mesh) panel.scale = (REACH * panel.size) / (largest(panel) || 1);
-  const keys = data.mesh ? panel.mesh.keys() : ["slip", "stick", "lifted"].map((state) => [state, state]);
-  panel.legend.replaceChildren(...keys.flatMap(([look, name]) => [swatch(look), `${name} `]));
+  if (!data.mesh) enlarge(panel);
+  if (data.mesh) panel.legend.replaceChildren(...panel.mesh.keys());
+  else panel.legend.replaceChildren(...["slip", "stick", "lifted"].flatMap((state) => [make("i", { class: `swatch ${state}` }), `${state} `]));
   panel.legend.hidden = !moves && !data.mesh;
   panel.says.textContent = panel.remark;
   frame(panel, panel.held ? (panel.since ?? 0) : performance.now()); // held, the same instant again
-}
-
-/** A swatch in a colour, or in the look of a state. */
-function swatch(look) {
-  const made = make("i", { class: `swatch ${look}` });
-  if (look.includes("(") || look.includes("#")) made.style.background = look;
-  return made;
 }
 
 /** Motion of all freedoms (instants, freedoms) about its mean, with force and state of each contact. */
@@ -127,40 +120,25 @@ function motionOf(panel, q, force, state) {
 
 /** A sound plays: the brake stands where its clock is, { share, q, force, state }; null when it is over. */
 function played(panel, now) {
-  if (!now) {
-    panel.played = null;
-    return scene(panel);
-  }
+  if (!now) return scene(panel, (panel.played = null));
   if (panel.held || panel.element.hidden || !panel.answer || panel.answer.data.mesh || now.q.length % panel.answer.data.names.length) return;
   if (panel.played !== now.q) {
     panel.played = now.q;
     panel.scene = motionOf(panel, now.q, now.force, now.state);
-    panel.scale = (REACH * panel.size) / (largest(panel) || 1);
+    enlarge(panel);
     panel.says.textContent = "Goes along with the sound, lit as by a flash once a period, so that its vibration is seen slowly.";
   }
   frame(panel, panel.since ?? 0, now.share);
 }
 
 /** What displacements q add to a point, of the points whose moves (freedoms, points, 2) these are. */
-function shift(moves, q, p) {
-  const [many, count] = moves.shape;
-  let x = 0, y = 0;
-  for (let i = 0; i < many; i++) {
-    x += q[i] * moves[2 * (i * count + p)];
-    y += q[i] * moves[2 * (i * count + p) + 1];
-  }
-  return [x, y];
-}
+const shift = (moves, q, p) => [0, 1].map((way) => q.reduce((sum, each, i) => sum + each * moves[2 * (i * moves.shape[1] + p) + way], 0));
 
-/** The largest movement of a point over a period, in units of the drawing. */
-function largest(panel) {
+/** Enlarge so that the largest movement of a point over a period is seen well. */
+function enlarge(panel) {
   const { moves } = panel.answer.arrays;
-  let found = 0;
-  for (let share = 0; share < 1; share += 1 / 24) {
-    const { q } = panel.scene.at(share);
-    for (let p = 0; p < moves.shape[1]; p++) found = Math.max(found, Math.hypot(...shift(moves, q, p)));
-  }
-  return found;
+  const sizes = Array.from({ length: 24 }, (_, k) => panel.scene.at(k / 24).q).flatMap((q) => Array.from({ length: moves.shape[1] }, (_, p) => Math.hypot(...shift(moves, q, p))));
+  panel.scale = (REACH * panel.size) / (Math.max(...sizes) || 1);
 }
 
 /** One picture. */

@@ -62,5 +62,5 @@ function events(panel, data) {
   const rate = (value, error) => (value === null ? "–" : `${shown(value, 3)}${error === null ? "" : ` ± ${shown(error, 2)}`}`);
   const pick = (each, i) => button(`${shown(each.onset, 4)} s`, () => panel.choose({ event: i }), { "aria-label": `Event at ${shown(each.onset, 4)} s`, "aria-pressed": i === data.event });
   const rows = data.events.map((each, i) => [pick(each, i), `${shown(each.end - each.onset, 3)} s`, withUnit(each.frequency, "Hz", 5), shown(each.level, 3), rate(each.growth_rate, each.growth_error)]);
-  return table(["onset", "lasts", "frequency", `level ${data.unit}`, "growth 1/s"], rows, { class: "cures" });
+  return table(["onset", "lasts", "frequency", `level ${data.unit}`, "growth 1/s"], rows, { class: "numbers" });
 }

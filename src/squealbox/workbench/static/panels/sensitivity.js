@@ -17,18 +17,14 @@ export default {
     const go = ({ name, needed }) => make("button", { type: "button", onclick: () => panel.app.store.commit({ [name]: needed.beyond }), title: "Put this value, and one hundredth of the way more, on the page", data: { needs: name } }, `${name} ${typographic(` ${needed.told}`).trim()}`);
     panel.needs.replaceChildren(...data.bars.filter((bar) => bar.needed?.near).map(go));
     panel.stage.replaceChildren();
-    if (!data.strokes) return;
+    if (!data.strokes || !data.bars.length) return;
     const { svg, at } = drawn(data, arrays.points, "Drawing of the brake, with what each parameter does");
     const most = Math.abs(data.bars[0].growth);
     for (const bar of data.bars.filter((each) => each.place)) {
       const [x, y] = at(bar.place);
-      const words = element("text", { x, y: y + 7, "text-anchor": "middle" });
-      words.textContent = shown(bar.growth, 2);
-      const name = element("title", {});
-      name.textContent = `${bar.name}: ${shown(bar.growth, 3)} 1/s`;
       const disc = element("circle", { cx: x, cy: y, r: 6 + 18 * Math.sqrt(Math.abs(bar.growth) / most), class: bar.growth > 0 ? "b0" : "b2", "data-of": bar.name });
-      disc.append(name);
-      svg.append(disc, words);
+      svg.append(disc, element("text", { x, y: y + 7, "text-anchor": "middle" }));
+      svg.lastChild.textContent = shown(bar.growth, 2);
     }
     panel.stage.append(svg);
   },

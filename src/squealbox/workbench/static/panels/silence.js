@@ -104,8 +104,7 @@ async function hear(panel) {
   panel.turned = panel.applied;
   const heard = both.map((state) => panel.heard.get(JSON.stringify(state)));
   const now = heard[panel.turn === "before" ? 0 : 1];
-  const loud = (each) => each.wave && each.weighted !== null && each.weighted > 0;
   if (now.wave) sound(now, fullScale(now, heard.filter((each) => each.wave)));
   panel.element.dataset.heard = panel.turn;
-  panel.says.textContent = `${panel.turn === "before" ? "Before" : `After, with ${panel.applied.row.name}`}: ${loud(now) ? `${withUnit(now.pitch, "Hz", 4)}, about ${Math.round(now.weighted)} dB(A) at 1 m` : "it dies away, in the end nothing is left to hear"}. Press B for the other.`;
+  panel.says.textContent = `${panel.turn === "before" ? "Before" : `After, with ${panel.applied.row.name}`}: ${now.silent ?? now.words}. Press B for the other.`;
 }
