@@ -62,7 +62,7 @@ def scaled(unit: str, *arrays: Any, to: str | None = None) -> tuple[float, str]:
     largest = max((float(np.nanmax(np.abs(a), initial=0.0)) for a in map(np.asarray, arrays)), default=0.0)
     choices = PREFIXES.get(unit, ((1.0, unit),))
     if largest == 0.0 or not np.isfinite(largest):
-        return choices[0]
+        return next((choice for choice in choices if choice[0] == 1.0), choices[0])
     return next(((factor, name) for factor, name in choices if largest >= 0.999 * factor), choices[-1])
 
 

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -53,7 +54,8 @@ async def pieces(content):
 
 
 def put(beside, name, content, group=GROUP):
-    asyncio.run(beside.take(group, name, pieces(content)))
+    with ThreadPoolExecutor(1) as thread:  # the browser's driver keeps a loop in this one
+        thread.submit(asyncio.run, beside.take(group, name, pieces(content))).result()
 
 
 def opened(beside, text, group=GROUP):

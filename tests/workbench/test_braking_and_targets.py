@@ -19,9 +19,10 @@ def drum(friction):
 def test_the_ridge_of_a_stop_is_the_eigenfrequency_while_it_is_small():
     brake = drum(0.334)
     found = function_of("listen")(brake, Options({"braking": 2.0}), Work(apart=True))
-    grid = np.asarray(found.arrays["grid"])
-    row = found.data["gridTop"] / len(grid)
-    times = np.linspace(*found.data["gridTime"], grid.shape[1])
+    (figure,) = found.figures
+    grid = np.asarray(figure.heat["values"])
+    row = 1e3 * figure.y.domain[1] / len(grid)
+    times = np.linspace(*figure.x.domain, grid.shape[1])
     ridge = (0.5 + np.argmax(grid, axis=0)) * row
     grows = (times > 0.4) & (times < 0.9)
     frequency = complex_modes(brake).most_unstable.frequency
@@ -80,7 +81,7 @@ def test_the_words_of_a_target_say_its_numbers():
     assert 0.0 < found.data["stable"] < 90.0
     assert found.data["words"].startswith(f"Missed: {found.data['stable']:.3g} % of the lot")
     assert "springs 3 %" in found.data["words"]
-    assert found.arrays["curve"][0] == 100.0
+    assert found.figures[0].layers[0]["y"][0] == 100.0
     met = function_of("target")(drum(0.3), Options({"friction": 0.25}), Work())
     assert met.data["met"]
     with pytest.raises(OptionError, match="share"):
@@ -131,6 +132,5 @@ def test_a_stop_is_ended_within_a_second(same_page):
     page.option("listen", braking=4)
     page.page.click("section[data-panel=listen] >> text=Play >> nth=0")
     page.page.wait_for_selector("section[data-panel=listen] .says .stop")
-    page.page.wait_for_timeout(1500)
     page.page.click("section[data-panel=listen] .says .stop")
     page.until("document.querySelector('section[data-panel=listen]').dataset.state === 'stopped'", timeout=1.0)

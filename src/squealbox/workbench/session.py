@@ -239,7 +239,7 @@ class Session:
             return frame({**about, "kind": "wrong", "wrong": wrong})
         except NotWritable as error:
             return frame({**about, "kind": "wrong", "wrong": [{"line": 0, "field": "", "message": str(error)}]})
-        if file.found.design.system().is_sparse:
+        if (file.design or file.found.design).system().is_sparse:
             return frame({**about, "kind": "wrong", "wrong": [{"line": 0, "field": "", "message": SPARSE}]})
         opened = {"base": self.give(file), "brake": _name(file.found.design), "settings": settings_of(file.found)}
         return frame({**about, "kind": "opened", "text": file.text, **opened})

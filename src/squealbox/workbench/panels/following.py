@@ -2,12 +2,29 @@
 
 from typing import Any
 
+from squealbox.designs import Design
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.system import System
 from squealbox.transient import Trajectory, needs_compiling, simulate
-from squealbox.workbench.panels.panel import Elsewhere, Work
+from squealbox.workbench.panels.panel import Elsewhere, OptionError, Work
 
 COMPILING = "compiling the kernel for this design, which happens once"
+LARGE = 5_000  # coordinates times contacts from which no motion is followed here
 SECONDS = 4.0  # of an idle processor of 2020 and later, for the kernel with exact contacts
+
+
+def moving(design: Design) -> System:
+    """The system of a design as its motion is followed: a finite-element brake slides along its own way only.
+
+    Raises `OptionError` for one whose motion takes minutes.
+    """
+    if not isinstance(design, ReducedBrake):
+        return design.system()
+    system = design.sliding_one_way().system()
+    if system.size * len(system.contacts) > LARGE:
+        size = f"{system.size} coordinates and {len(system.contacts)} contacts"
+        raise OptionError(f"a motion of {size} takes minutes: squealbox simulate FILE follows it")
+    return system
 
 
 def followed(system: System, duration: float, work: Work, share: float, **how: Any) -> Trajectory:

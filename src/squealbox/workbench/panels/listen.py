@@ -12,7 +12,7 @@ from squealbox.signals.wav import SAMPLING
 from squealbox.transient import Trajectory
 from squealbox.words import number, quantity, scaled
 from squealbox.workbench.figures import Axis, Figure, heat, line, text
-from squealbox.workbench.panels.following import followed
+from squealbox.workbench.panels.following import followed, moving
 from squealbox.workbench.panels.loudness import loudest, loudness
 from squealbox.workbench.panels.panel import Answer, Elsewhere, OptionError, Options, Work
 from squealbox.workbench.panels.start import start_and_dof
@@ -41,7 +41,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     seconds = options.number("braking", 0.0, 0.0, LONGEST)
     if seconds:
         return _stop(design, seconds, options, work)
-    system = design.system()
+    system = moving(design)
     start, dof = start_and_dof(design, options)
     area = options.number("area", AREA, 1e-6, 10.0)
     motion = followed(system, SECONDS, work, 0.8, start=start, times=int(SECONDS * RATE) + 1)
@@ -96,7 +96,7 @@ def _stop(design: Design, seconds: float, options: Options, work: Work) -> Answe
     if not work.apart:
         raise Elsewhere("following the stop", 1.0 + LATE * seconds)
     area = options.number("area", AREA, 1e-6, 10.0)
-    system = stopping.system()
+    system = moving(stopping)
     motion = followed(system, seconds, work, 0.6, start="rest", times=int(seconds * RATE) + 1)
     if not motion.outcome.ok:
         data = {"names": list(system.names), "dof": 0, "rate": SAMPLING, "outcome": str(motion.outcome)}

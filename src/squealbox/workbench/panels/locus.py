@@ -5,9 +5,10 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.words import scaled
 from squealbox.workbench.figures import Axis, Figure, across, band, line, modes_named, points, span, upright
-from squealbox.workbench.panels.modes import modes_of, tracks_of
+from squealbox.workbench.panels.modes import modes_of, ranked, tracks_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, try_value
 
 POINTS = 97  # values along the axis; about 15 ms for two degrees of freedom
@@ -26,6 +27,10 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     values = np.linspace(low, high, POINTS if half <= 2 else FEWER if half <= LARGE else FEWEST)
     tracks = tracks_of(design, parameter, (low, high), len(values))
     upper = _one_of_each_pair(tracks.eigenvalues)
+    shown = slice(None) if not isinstance(design, ReducedBrake) else np.array(ranked(design), dtype=int)
+    if isinstance(design, ReducedBrake):  # beyond its band a reduced brake says nothing
+        heard = np.abs(upper.imag) / TURN
+        upper = upper[:, np.any((heard >= design.band[0]) & (heard <= design.band[1]), axis=0)]
     axis = options.axis(design, parameter, (low, high))
     unstable = _unstable(values / axis.factor, upper.real)
     value = try_value(design, parameter)
@@ -37,7 +42,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "marks": {"value": value},
     }
     present = None if value is None else value / axis.factor
-    modes = (here.frequency[:half], here.growth_rate[:half])
+    modes = (here.frequency[:half][shown], here.growth_rate[:half][shown])
     return Answer(data, figures=_figures(axis, values / axis.factor, upper, present, modes, unstable))
 
 

@@ -12,7 +12,7 @@ from squealbox.transient import Trajectory, Verdict, verdict
 from squealbox.words import number, scaled
 from squealbox.workbench.figures import Axis, Figure, across, heat, hull, line, span, text
 from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.following import followed
+from squealbox.workbench.panels.following import followed, moving
 from squealbox.workbench.panels.loudness import loudest, loudness
 from squealbox.workbench.panels.panel import Answer, Options, Work
 from squealbox.workbench.panels.start import start_and_dof
@@ -27,7 +27,7 @@ CONTACTS = ("exact", "smooth")
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """The motion of one degree of freedom over time, and what a signal analysis says of it."""
-    system = design.system()
+    system = moving(design)
     start, dof = start_and_dof(design, options)
     contact = options.word("contact", CONTACTS)
     duration = options.number("duration", 0.0, 0.0, 1e6) or usual_duration(design, periods=PERIODS)

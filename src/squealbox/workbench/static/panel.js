@@ -48,7 +48,7 @@ export class Panel {
     this.files.append(make("select", { "aria-label": `Save ${about.title}`, onchange: save }, ...kinds));
     module.setup?.(this);
     for (const event of ["shown", "changed"]) app.store.addEventListener(event, () => this.mark());
-    app.addEventListener("measured", () => this.frame && !this.element.hidden && this.draw(this.frame));
+    app.addEventListener("measured", () => this.frame?.data.figures && !this.element.hidden && this.draw(this.frame));
     new IntersectionObserver((entries) => this.#seen(entries.at(-1).isIntersecting), { rootMargin: "120px" }).observe(this.element);
   }
 
