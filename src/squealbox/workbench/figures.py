@@ -4,7 +4,7 @@ A panel hands back `Figure`s whose layers hold arrays; `packed` names each array
 several figures travels once. `static/figures.js` is the other end, `paper` draws the same data with Matplotlib.
 
 >>> axis = Axis("time", "s", (0.0, 1.0))
->>> figure = Figure("time", axis, Axis("x", "mm", (0.0, 1.0)), [line([0.0, 1.0], [0.0, 1.0], name="x")])
+>>> figure = Figure("time", axis, Axis("x", "mm", (0.0, 1.0)), [line(np.zeros(9), np.ones(9), name="x")])
 >>> packed([figure])[0][0]["layers"][0]["x"]
 '@a0'
 """

@@ -83,7 +83,7 @@ export class Chart {
     this.#named(spec.layers.filter((layer) => layer.name && layer.kind !== "band"), spec.legend);
     this.#heat(spec.heat);
     this.#keys(spec.heat);
-    if (this.marked) this.present(...this.marked);
+    if (this.marked) this.#mark(...this.marked);
     this.svg.attr("data-drawn", (this.count = (this.count ?? 0) + 1));
   }
 
@@ -202,8 +202,12 @@ export class Chart {
 
   /** The present design: a line, or a point on a figure over two parameters. */
   present(x, y) {
+    if (this.marked?.[0] === x && this.marked[1] === y) return;
     this.marked = [x, y];
-    if (!this.x) return;
+    if (this.x) this.#mark(x, y);
+  }
+
+  #mark(x, y) {
     const known = [x, y].filter((each) => typeof each === "number");
     this.here ??= this.svg.append("g").attr("clip-path", `url(#${this.clip})`);
     const mark = (this.markLayer = known.length < 2 ? { kind: "upright", x, cls: "present" } : { kind: "points", x: [x], y: [y], cls: "here big", r: 6 });

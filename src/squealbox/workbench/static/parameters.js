@@ -38,6 +38,7 @@ export class Parameters {
   }
 
   #mark(row, message) {
+    if (row.problem.textContent === message) return;
     row.problem.textContent = message;
     row.element.classList.toggle("wrong", Boolean(message));
     for (const input of row.element.querySelectorAll("input, select")) input.setAttribute("aria-invalid", Boolean(message));

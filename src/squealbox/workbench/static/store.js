@@ -31,7 +31,11 @@ export class Store extends EventTarget {
 
   /** The fields of the design, each in the unit that was chosen for it. */
   get fields() {
-    return (this.sheet?.fields ?? []).map((field) => (this.units?.[field.path] ? inUnit(field, ...this.units[field.path]) : field));
+    if (this.read?.sheet !== this.sheet || this.read.units !== this.units) {
+      const fields = (this.sheet?.fields ?? []).map((field) => (this.units?.[field.path] ? inUnit(field, ...this.units[field.path]) : field));
+      this.read = { sheet: this.sheet, units: this.units, fields };
+    }
+    return this.read.fields;
   }
 
   /** Units chosen for parameters, { path: [unit, factor] }, where there are any. */

@@ -9,6 +9,7 @@ const SLOW = 2.4; // s that a period of a mode takes, and a sixth of the last pe
 const REACH = 0.14; // of the drawing's height: the largest movement shown
 const STATES = { 0: "stick", 1: "slip", "-1": "slip", 2: "lifted" };
 const FORCE = 0.28; // of the height: the arrow of the largest force
+const [MOVING, RARE] = [400, 28]; // ms after a change, and ms between pictures then
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 
 export default {
@@ -25,12 +26,12 @@ export default {
     still.addEventListener("change", () => hold(panel, still.matches));
     panel.app.addEventListener("motion", () => scene(panel));
     panel.app.addEventListener("played", ({ detail }) => played(panel, detail));
-    panel.app.store.addEventListener("changed", () => scene(panel));
+    panel.app.store.addEventListener("changed", () => motionNow(panel) !== panel.moves && scene(panel));
     const step = (now) => {
       requestAnimationFrame(step);
-      const asked = panel.app.verdict.view.busy || panel.app.store.busy(); // a slider moves: every second picture leaves time for it
+      const wait = now - panel.app.movedAt < MOVING ? RARE : 0; // a slider moves: fewer pictures leave time for it
       const shown = !panel.element.hidden && panel.view.visible && panel.scene && !panel.held && !panel.played;
-      if (shown && !(panel.skipped = asked && !panel.skipped)) frame(panel, now);
+      if (shown && now - (panel.pictured ?? 0) >= wait) frame(panel, (panel.pictured = now));
     };
     requestAnimationFrame(step);
   },
@@ -77,12 +78,15 @@ async function solid(panel, { data, arrays }) {
   scene(panel);
 }
 
+/** The displacements of the last motion, while it is asked what happens and they are of the design on the page. */
+const motionNow = ({ answer, app }) => !answer?.data.mesh && app.questions.asked === "happens" && app.motion?.arrays?.lastQ;
+
 /** What is shown: the motion where it is asked what happens and one of this design is known, else the mode. */
 function scene(panel) {
   if (!panel.answer || panel.played || (panel.answer.data.mesh && !panel.mesh)) return;
   const { data, arrays } = panel.answer;
   const { motion } = panel.app;
-  const moves = !data.mesh && panel.app.questions.asked === "happens" && motion?.arrays?.lastQ;
+  const moves = (panel.moves = motionNow(panel));
   panel.pick.hidden = Boolean(moves);
   if (moves) {
     panel.scene = motionOf(panel, motion.arrays.lastQ, motion.arrays.lastForce, motion.arrays.lastState);
@@ -98,10 +102,10 @@ function scene(panel) {
     panel.remark = `${data.mode ? "A mode" : "The mode that grows first"}, ${withUnit(data.modes[data.mode][0], "Hz")}: ${data.words}`;
   }
   if (!data.mesh) enlarge(panel);
-  if (data.mesh) panel.legend.replaceChildren(...panel.mesh.keys());
-  else panel.legend.replaceChildren(...["slip", "stick", "lifted"].flatMap((state) => [make("i", { class: `swatch ${state}` }), `${state} `]));
   panel.legend.hidden = !moves && !data.mesh;
-  panel.says.textContent = panel.remark;
+  if (data.mesh) panel.legend.replaceChildren(...panel.mesh.keys());
+  else if (moves) panel.legend.replaceChildren(...["slip", "stick", "lifted"].flatMap((state) => [make("i", { class: `swatch ${state}` }), `${state} `]));
+  if (panel.says.textContent !== panel.remark) panel.says.textContent = panel.remark;
   frame(panel, panel.held ? (panel.since ?? 0) : performance.now()); // held, the same instant again
 }
 
@@ -132,13 +136,24 @@ function played(panel, now) {
 }
 
 /** What displacements q add to a point, of the points whose moves (freedoms, points, 2) these are. */
-const shift = (moves, q, p) => [0, 1].map((way) => q.reduce((sum, each, i) => sum + each * moves[2 * (i * moves.shape[1] + p) + way], 0));
+function shift(moves, q, p) {
+  let [x, y] = [0, 0];
+  for (let i = 0, at = 2 * p; i < q.length; i++, at += 2 * moves.shape[1]) {
+    x += q[i] * moves[at];
+    y += q[i] * moves[at + 1];
+  }
+  return [x, y];
+}
 
 /** Enlarge so that the largest movement of a point over a period is seen well. */
 function enlarge(panel) {
   const { moves } = panel.answer.arrays;
-  const sizes = Array.from({ length: 24 }, (_, k) => panel.scene.at(k / 24).q).flatMap((q) => Array.from({ length: moves.shape[1] }, (_, p) => Math.hypot(...shift(moves, q, p))));
-  panel.scale = (REACH * panel.size) / (Math.max(...sizes) || 1);
+  let most = 0;
+  for (let k = 0; k < 24; k++) {
+    const { q } = panel.scene.at(k / 24);
+    for (let p = 0; p < moves.shape[1]; p++) most = Math.max(most, Math.hypot(...shift(moves, q, p)));
+  }
+  panel.scale = (REACH * panel.size) / (most || 1);
 }
 
 /** One picture. */
