@@ -346,9 +346,10 @@ def _same(a: Any, b: Any) -> bool:
         return a is b or (type(a) is type(b) and a.shape == b.shape and (a != b).nnz == 0)
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         return np.array_equal(a, b)
-    a, b = (tuple(each.items()) if isinstance(each, dict) else each for each in (a, b))
-    if isinstance(a, (tuple, list)) and isinstance(b, (tuple, list)):
-        return len(a) == len(b) and all(_same(x, y) for x, y in zip(a, b, strict=True))
+    if isinstance(a, (tuple, list, dict)) and isinstance(b, type(a)):
+        return len(a) == len(b) and all(
+            map(_same, *(each.items() if isinstance(each, dict) else each for each in (a, b)))
+        )
     return bool(a == b)
 
 
@@ -356,10 +357,9 @@ def _hashable(value: Any) -> Any:
     if hasattr(value, "tocoo"):
         entries = value.tocoo()
         return value.shape, float(np.sum(entries.data)), float(np.sum(entries.data * (entries.coords[0] + 1.0)))
-    if isinstance(value, np.ndarray):
-        return value.shape, value.tobytes()
-    several = tuple(value.items()) if isinstance(value, dict) else value
-    return tuple(_hashable(item) for item in several) if isinstance(several, (tuple, list)) else value
+    if isinstance(value, (tuple, list, dict)):
+        return tuple(_hashable(item) for item in (value.items() if isinstance(value, dict) else value))
+    return (value.shape, value.tobytes()) if isinstance(value, np.ndarray) else value
 
 
 def _told(sheet: DataSheet, indent: str = "  ", usual: Mapping[str, Any] | None = None) -> Iterator[str]:
