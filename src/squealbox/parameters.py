@@ -318,10 +318,8 @@ def _checked(sheet: DataSheet, name: str, about: Parameter) -> Any:
     owner = type(sheet).__name__
     if type(value) is float and about.low < value < about.high:  # most of them, without an array
         return value
-    if isinstance(value, DataSheet) and about.schedule:
+    if (isinstance(value, DataSheet) and about.schedule) or (value is None and about.optional):
         return value
-    if value is None and about.optional:
-        return None
     if isinstance(value, (bool, np.bool_, str)) or value is None:
         raise ParameterError(owner, name, value, about.expected)
     try:
@@ -347,9 +345,8 @@ def _same(a: Any, b: Any) -> bool:
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         return np.array_equal(a, b)
     if isinstance(a, (tuple, list, dict)) and isinstance(b, type(a)):
-        return len(a) == len(b) and all(
-            map(_same, *(each.items() if isinstance(each, dict) else each for each in (a, b)))
-        )
+        ours, theirs = (each.items() if isinstance(each, dict) else each for each in (a, b))
+        return len(a) == len(b) and all(map(_same, ours, theirs))
     return bool(a == b)
 
 
