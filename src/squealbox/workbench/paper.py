@@ -36,7 +36,7 @@ def drawn(text: bytes, kind: str = "pdf") -> bytes:
             return _drawn(spec, kind)
     except NoFigure:
         raise
-    except (ValueError, TypeError, KeyError, IndexError, AttributeError, RecursionError, OverflowError) as error:
+    except (ValueError, TypeError, LookupError, AttributeError, RecursionError, ArithmeticError) as error:
         raise NoFigure(f"this is no figure that can be drawn: {type(error).__name__}") from error
 
 

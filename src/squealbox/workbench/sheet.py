@@ -9,7 +9,6 @@ import numpy as np
 
 from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
-from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files.sheets import LAW_NAMES, field_type, name_of
 from squealbox.files.varied import scalar_parameters
 from squealbox.friction import FrictionLaw
@@ -87,10 +86,10 @@ def _fields(owner: DataSheet, prefix: str) -> Iterator[dict[str, Any]]:
             yield {"path": path, "kind": "choice", "value": value, "options": about.options, "meaning": about.meaning}
         elif name in parameters:
             yield _parameter(owner, name, value, path, parameters[name])
-    if isinstance(owner, ReducedBrake):
-        for name, about, value in owner.leaves():
-            if name in owner.values:
-                yield _number(name, about, value, value, whole=False)
+    reduced_for = getattr(owner, "values", {})  # of a reduced brake, whose room takes long to load
+    for name, about, value in owner.leaves() if reduced_for else ():
+        if name in reduced_for:
+            yield _number(name, about, value, value, whole=False)
 
 
 def _parameter(owner: DataSheet, name: str, value: Any, path: str, about: Parameter) -> dict[str, Any]:
