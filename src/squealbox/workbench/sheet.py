@@ -87,9 +87,9 @@ def _fields(owner: DataSheet, prefix: str) -> Iterator[dict[str, Any]]:
         elif name in parameters:
             yield _parameter(owner, name, value, path, parameters[name])
     reduced_for = getattr(owner, "values", {})  # of a reduced brake, whose room takes long to load
-    for name, about, value in owner.leaves() if reduced_for else ():
+    for name, quantity, value in owner.leaves() if reduced_for else ():
         if name in reduced_for:
-            yield _number(name, about, value, value, whole=False)
+            yield _number(name, quantity, value, value, whole=False)
 
 
 def _parameter(owner: DataSheet, name: str, value: Any, path: str, about: Parameter) -> dict[str, Any]:
