@@ -20,7 +20,8 @@ def frame(header: Mapping[str, Any], arrays: Mapping[str, Any] | None = None) ->
     >>> len(frame({"id": 1}, {"x": [0.0, 1.0]})) % 4
     0
     """
-    blocks = {name: np.ascontiguousarray(array, dtype="<f4") for name, array in (arrays or {}).items()}
+    with np.errstate(over="ignore"):  # beyond the range of float32 is infinity, which no figure draws
+        blocks = {name: np.ascontiguousarray(array, dtype="<f4") for name, array in (arrays or {}).items()}
     named = [[name, list(block.shape)] for name, block in blocks.items()]
     text = json.dumps(
         {**_known(header), "arrays": named}, allow_nan=False, default=_number, separators=(",", ":")

@@ -19,6 +19,7 @@ MECHANISMS = ("#deebf7", "#d55e00", "#009e73", "#783c96", "#e69f00")
 BANDS = {"unstable": "#f7e2d3", "operating": "#dfeee8", "together": "#ecd9ac"}
 BARS = {"b0": "#d55e00", "b1": "#b87f00", "b2": "#0072b2"}
 DECADES = 3.0
+LEAST = (240.0, 180.0)  # px: smaller, words and axes have no room
 _ONE = threading.Lock()  # Matplotlib's text is not made for several threads
 
 
@@ -46,7 +47,9 @@ def _drawn(spec: dict[str, Any], kind: str) -> bytes:
     from squealbox import plots
     from squealbox.plots.style import styled
 
-    width, height = (min(max(float(size), 100.0), 4000.0) / DOTS for size in spec["size"])
+    width, height = (
+        min(max(float(size), least), 4000.0) / DOTS for size, least in zip(spec["size"], LEAST, strict=True)
+    )
     with styled(), np.errstate(all="ignore"):
         figure = Figure(figsize=(width, height), layout="constrained")
         panel = figure.add_subplot()

@@ -111,7 +111,7 @@ class App extends EventTarget {
 
   /** What the motion panel found goes into the verdict and onto the friction curve. */
   heard({ data, arrays }) {
-    const text = typographic(data.verdict ?? data.message);
+    const text = typographic(data.verdict ?? data.words);
     this.lastMotion = { design: this.store.design, text, arrays, clock: data.clock, from: data.lastFrom, speeds: data.speeds, fate: data.fate, loud: data.loud };
     this.verdict.amplitude();
     this.dispatchEvent(new Event("motion"));

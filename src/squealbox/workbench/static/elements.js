@@ -31,8 +31,8 @@ export function table(heads, rows, about = {}) {
 
 /** A number asked for in a dialog; null where none is given. */
 export function askNumber(words) {
-  const input = make("input", { type: "number", min: 0, step: "any", required: true, id: "asked-number" });
-  const go = make("form", { method: "dialog" }, make("label", { for: input.id }, `${words} `), input, make("p", { class: "buttons" }, make("button", { value: "ok" }, "OK"), " ", make("button", { type: "button", onclick: () => dialog.close() }, "Cancel")));
+  const input = make("input", { type: "number", min: 0, step: "any", id: "asked-number" });
+  const go = make("form", { method: "dialog", novalidate: true }, make("label", { for: input.id }, `${words} `), input, make("p", { class: "buttons" }, make("button", { value: "ok" }, "OK"), " ", make("button", { type: "button", onclick: () => dialog.close() }, "Cancel")));
   const dialog = make("dialog", { "aria-label": words }, go);
   document.body.append(dialog);
   dialog.showModal();

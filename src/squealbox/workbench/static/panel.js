@@ -43,7 +43,7 @@ export class Panel {
     for (const figure of about.figures) this.figure(figure);
     this.place.hidden = !about.figures.length;
     if (about.table) this.body.append((this.list = make("div", { class: "scroller", role: "region", tabindex: 0, "aria-label": about.table })));
-    const save = ({ target }) => (exportCharts(this.charts, `${this.app.stem()}-${this.name}`, target.value), (target.value = ""));
+    const save = ({ target }) => target.value && (exportCharts(this.charts, `${this.app.stem()}-${this.name}`, target.value), (target.value = ""));
     const kinds = [["", "Save…"], ...KINDS].map(([kind, words]) => make("option", { value: kind, hidden: !kind }, words));
     this.files.append(make("select", { "aria-label": `Save ${about.title}`, onchange: save }, ...kinds));
     module.setup?.(this);
