@@ -15,10 +15,11 @@ from browsers import driven
 from squealbox import DrumBrake, LinearSlope, Ramp, complex_modes, simulate
 from squealbox.cli import BAD_INPUT, DONE, main
 from squealbox.files import write_design
-from squealbox.report import Examination, ReportError, design_page, examine, report
+from squealbox.report import Examination, ReportError, design_page, examine, report, words
 from squealbox.report.blocks import Chart, Drawing, Page, Section
+from squealbox.report.moving import vibrating
 from squealbox.report.page import packed_library, render
-from squealbox.signals import dominant_frequency
+from squealbox.signals import dominant_frequency, sound_level
 from squealbox.studies import sweep
 
 FLAGS = [
@@ -133,7 +134,7 @@ def test_it_says_what_an_engineer_asks(opened):
     text = opened.page.inner_text("main")
     critical = re.search(r"Stability changes at friction\.static = ([\d.]+)", text)
     assert float(critical[1]) == pytest.approx(0.33269, abs=5e-6)  # the digits printed
-    assert "Steady sliding is unstable" in text
+    assert "Unstable: it will squeal at about 2.086 kHz" in text
     assert "flutter" in text
     assert "it pulls, which a real contact cannot" in text  # shoe 1 carries -612 N in this reading
     assert "stable limit cycle" in text
@@ -188,6 +189,27 @@ def test_a_cycle_beside_stable_sliding_is_found_and_said(quiet):
     assert len(quiet.tried) > 1
     text = " ".join(str(block) for section in design_page(quiet).sections for block in section.blocks)
     assert "beside stable sliding" in text
+
+
+def test_a_stable_brake_is_said_to_decay_and_the_level_is_that_of_its_cycle(quiet):
+    said = " ".join(words.verdict(quiet))
+    assert "The least damped mode decays" in said
+    assert "grows" not in said.partition("There is a")[0]
+    assert "dies away" in said
+    cycle = quiet.cycle
+    motion = simulate(quiet.system, 40.0 * cycle.period, start=(cycle.q[0], cycle.qd[0]), times=8001)
+    level = float(sound_level(motion, dof=1).weighted)  # y moves most; by the motion itself, not the cycle repeated
+    assert float(quiet.cycle_loudness.weighted) == pytest.approx(level, abs=0.5)
+    tiles = {what: number for number, what, _ in design_page(quiet).sections[0].blocks[0].tiles}
+    assert tiles["estimated level of the limit cycle at 1 m"] == f"{level:.0f} dB(A)"
+
+
+def test_the_brake_vibrates_in_its_worst_mode_without_a_script_and_still_on_paper(quiet):
+    svg = vibrating(quiet.design, quiet.modes).content.decode()
+    assert svg.count("<animate ") > 10
+    assert "prefers-reduced-motion: reduce" in svg
+    assert "script" not in svg
+    assert "print { .moves { display: none }" in svg
 
 
 def test_what_cannot_be_computed_is_said(tmp_path):

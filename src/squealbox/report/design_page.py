@@ -57,8 +57,11 @@ def _tiles(found: Examination) -> Tiles:
         tiles.append(
             (words.quantity(found.cycle.frequency, "Hz"), f"limit cycle{beside}", "unstable" if beside else "")
         )
-    if found.loudness is not None and found.loudness.outcome.ok:
-        tiles.append((f"{float(found.loudness.weighted):.0f} dB(A)", "estimated level at 1 m", ""))
+    cycled = found.cycle_loudness is not None and found.cycle_loudness.outcome.ok
+    for loud, known, of in ((found.cycle_loudness, cycled, " of the limit cycle"),
+                            (found.loudness, not cycled and not found.dies_away, "")):  # fmt: skip
+        if known and loud is not None and loud.outcome.ok:
+            tiles.append((f"{float(loud.weighted):.0f} dB(A)", f"estimated level{of} at 1 m", ""))
     return Tiles(tuple(tiles))
 
 

@@ -47,6 +47,7 @@ class Examination:
     loudness: SoundLevel | None = None
     cycle: Cycle | None = None
     tried: tuple[str, ...] = ()
+    cycle_loudness: SoundLevel | None = None
     hopf: HopfPoint | None = None
     remedies: Remedies | None = None
     missing: dict[str, str] = field(default_factory=dict)
@@ -72,6 +73,11 @@ class Examination:
         """The change of stability nearest to the design's own value; None where there is none."""
         found = [one for one in self.crossings or () if one.changes_stability]
         return min(found, key=lambda one: abs(float(one.value) - self.present)) if found else None
+
+    @property
+    def dies_away(self) -> bool:
+        """True when of the transient nothing is left in the end."""
+        return bool(self.verdicts) and self.verdicts[self.liveliest].fate == "decays"
 
     @property
     def liveliest(self) -> int:

@@ -15,13 +15,13 @@ from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files.analyses import Axis, Map, Simulate
 from squealbox.files.runs import lasting, run, run_closely, usual_duration
 from squealbox.files.varied import quantity_of, scalar_parameters
-from squealbox.limit_cycles import hopf_point, shooting
+from squealbox.limit_cycles import Cycle, hopf_point, shooting
 from squealbox.matrices import liveliest
 from squealbox.parameters import ParameterError
 from squealbox.remedies import silence
 from squealbox.report.examination import Examination
 from squealbox.schedules import Schedule, value_at
-from squealbox.signals import SignalError, sound_level
+from squealbox.signals import SignalError, SoundLevel, sound_level
 from squealbox.stability import (
     Sensitivity,
     complex_modes,
@@ -42,6 +42,7 @@ MOST_MAP_POINTS = 151
 CYCLE = "squealbox cycle looks for it, in its own time"
 HEARD = 2.0  # seconds of motion that are made audible
 SAMPLING = 88_200.0  # [Hz] of that motion
+CYCLED = 0.5  # seconds of a limit cycle whose level is estimated
 LARGE = 5_000  # coordinates times contacts from which no motion is followed unasked, and no cycle looked for
 OF_LARGE = (0.05, 1.6)  # shares of its friction over which a finite-element brake is looked at
 SPECTRA = 61  # values at which modes of a reduced brake are drawn
@@ -191,6 +192,10 @@ class _Work:
                     self.found["cycle"] = found
                     break
         self.found["tried"] = tuple(tried)
+        cycle = self.found.get("cycle")
+        if cycle is not None and cycle.outcome.ok and cycle.stable:
+            with self.part("sound of the cycle", "sound of the limit cycle"):
+                self.found["cycle_loudness"] = _loudness(cycle)
 
     def cures(self) -> None:
         """What would silence it, or keep it silent with more friction."""
@@ -255,6 +260,13 @@ class _Work:
 
     def _about(self, name: str, low: float, high: float) -> Axis:
         return _about(self.design, name, low, high)
+
+
+def _loudness(cycle: Cycle) -> SoundLevel:
+    """How loud a limit cycle is: the freedom that moves most, over many periods."""
+    dof = liveliest(list(cycle.amplitude), cycle.system.units)
+    t = np.arange(int(CYCLED * SAMPLING)) / SAMPLING
+    return sound_level(np.interp(t, cycle.t, cycle.qd[:, dof], period=cycle.period), t)
 
 
 def usual_friction(design: Design, shares: tuple[float, float]) -> Axis | None:

@@ -6,6 +6,7 @@ import numpy as np
 
 from squealbox.files.varied import quantity_of
 from squealbox.report.examination import Examination
+from squealbox.signals import SoundLevel
 from squealbox.stability import sentences
 from squealbox.system import equilibrium
 from squealbox.words import number, quantity, read_in
@@ -99,13 +100,17 @@ def _cycle(found: Examination) -> Iterator[str]:
 
 
 def _loudness(found: Examination) -> Iterator[str]:
-    loud = found.loudness
-    if loud is None or not loud.outcome.ok:
-        return
-    yield (
-        f"Were the last quarter of the transient to go on, it would be about {float(loud.level):.0f} dB "
-        f"({float(loud.weighted):.0f} dB(A)). {loud.assumption}"
-    )
+    loud, cycled = found.loudness, found.cycle_loudness
+    if found.dies_away:
+        yield "The transient dies away: in the end nothing of it is left to hear."
+    elif loud is not None and loud.outcome.ok:
+        yield f"Were the last quarter of the transient to go on, it would be {_level(loud)}. {loud.assumption}"
+    if cycled is not None and cycled.outcome.ok:
+        yield f"The limit cycle would be {_level(cycled)}. {cycled.assumption}"
+
+
+def _level(loud: SoundLevel) -> str:
+    return f"about {float(loud.level):.0f} dB ({float(loud.weighted):.0f} dB(A))"
 
 
 def caveats(found: Examination) -> list[str]:

@@ -25,7 +25,7 @@ Words = list[str | tuple[str, bool]]  # texts, those with True to be seen first
 
 
 def headline(modes: ComplexModes, why: Mechanism | None) -> str:
-    """The answer in a line; `why` is the mechanism of an unstable brake."""
+    """The answer in a line; `why` is the mechanism, None where it is not known."""
     if not bool(modes.exists):
         return "No steady sliding"
     if bool(modes.stable):
@@ -42,7 +42,7 @@ def growth(modes: ComplexModes, why: Mechanism | None) -> str:
     if not bool(modes.exists):
         return f"{modes.outcome.message}."
     worst = modes.most_unstable
-    if why is not None:
+    if why is not None and not bool(modes.stable):
         several = min(int(modes.unstable_modes), modes.eigenvalues.shape[-1] // 2)
         grow = f"{several} modes grow, the fastest" if several > 1 else "One mode grows,"
         fed = f", {100.0 * why.flutter_share:.0f} % of what feeds it from circulation"
