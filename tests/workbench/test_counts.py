@@ -2,11 +2,12 @@
 
 import json
 from collections import Counter
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from squealbox import DrumBrake
+from squealbox import DrumBrake, workbench
 from squealbox.workbench.frames import frame, unframed
 from squealbox.workbench.panels import Options, Work, function_of
 from workbench.browsing import Page
@@ -152,3 +153,10 @@ def test_spectra_and_bytes_of_an_answer(monkeypatch, panel, bytes_, solved):
     assert sum(matrices) <= solved
     data, arrays = answer.sent()
     assert len(frame({"id": 1, "data": data}, arrays)) <= bytes_
+
+
+def test_the_page_is_short():
+    """What the page is drawn with stays small enough to be read: scripts and styles together."""
+    static = Path(workbench.__file__).parent / "static"
+    lines = sum(path.read_text().count("\n") for kind in ("*.js", "*.css") for path in static.rglob(kind))
+    assert lines <= 3_500
