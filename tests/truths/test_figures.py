@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from squealbox import plots
+from squealbox import plots, words
 from squealbox.designs import DrumBrake
 from squealbox.friction import Coulomb, LinearSlope, Stribeck
 from squealbox.plots import style
@@ -185,14 +185,14 @@ def test_lines_and_their_greys_differ():
     ],
 )  # fmt: skip
 def test_scale_for_reading(unit, value, expected):
-    assert style.scaled(unit, [0.0, -value]) == expected
+    assert words.scaled(unit, [0.0, -value]) == expected
     with pytest.raises(ValueError, match="unit = 'furlong': expected one of"):
-        style.scaled(unit, [value], to="furlong")
+        words.scaled(unit, [value], to="furlong")
 
 
 def test_numbers_as_a_reader_writes_them():
     minus = "\N{MINUS SIGN}"
-    assert [style.number(x) for x in (0.0, 2.0, 0.33271, 12566.37, -53.16, 1e-7)] == [
+    assert [words.number(x) for x in (0.0, 2.0, 0.33271, 12566.37, -53.16, 1e-7)] == [
         "0", "2", "0.3327", "12566", f"{minus}53.16", f"1e{minus}07",
     ]  # fmt: skip
     assert style.uncertain(-117.3, 18.0) == f"{minus}120 ± 20"

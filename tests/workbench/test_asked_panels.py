@@ -169,7 +169,7 @@ def test_two_designs_beside_each_other(page):
     assert [line["cls"] for line in lines] == ["s0", "s0", "s1", "s1"]
     press(page, "compare", "Swap A and B")
     last = page.page.locator("section[data-panel=compare] tbody tr").last
-    last.filter(has_text="theta2").filter(has_text="100°").locator("td").first.filter(has_text="100°").wait_for()
+    last.filter(has_text="theta2").filter(has_text="100 deg").locator("td").first.filter(has_text="100 deg").wait_for()
     assert page.page.locator("input[data-path=theta2]").input_value() == "115"
 
 
