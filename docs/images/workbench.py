@@ -46,7 +46,7 @@ def taken(browser: Browser, address: str, scheme: str, path: Path) -> None:
     page.wait_for_selector("#verdict .heard b", timeout=120_000)
     page.wait_for_timeout(500)
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
-    picture.quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
+    picture.quantize(256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)
     page.context.close()
 
 
