@@ -11,7 +11,9 @@ from squealbox.files import DesignFileError, read_text
 from squealbox.report import examine
 from squealbox.system import equilibrium
 from squealbox.transient import verdict
-from squealbox.workbench import session
+from squealbox.workbench import panels, server, session
+from squealbox.workbench.folder import Project
+from squealbox.workbench.guard import Token
 from squealbox.workbench.panels import Elsewhere, Options, Work, function_of, listen, panel
 from squealbox.workbench.state import design_of
 
@@ -141,3 +143,17 @@ def test_a_unit_without_quotes_is_told_how(line, hint):
         read_text(f'brake = "drum_brake"\n{line}\n', "the file", beside=False)
     assert (hint or "not TOML") in str(said.value)
     assert ("stands in quotes" in str(said.value)) is (hint is not None)
+
+
+def test_warming_comes_to_its_end(monkeypatch, tmp_path):
+    asked_of = []
+    monkeypatch.setattr(panels, "function_of", lambda name: asked_of.append(name) or function_of(name))
+    monkeypatch.setattr(server, "PATIENCE", 0.0)
+    warmed = server.Workbench(Token("x" * 24, 1), Project(tmp_path))
+    try:
+        warmed._warm()
+    finally:
+        warmed.recordings.close()
+        warmed.beside.close()
+    assert "mesh" in asked_of, "which has nothing to say of the drum brake"
+    assert asked_of[-1] == "map"

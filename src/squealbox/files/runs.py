@@ -25,6 +25,7 @@ def start_of(system: System, settings: Simulate) -> tuple[Any, Any]:
 
 PERIODS = 200.0  # of the worst mode, followed where nobody says how long
 SAMPLES = 12  # kept in a period of the quickest mode, at least, of a run that is judged
+LARGE = 5_000  # coordinates times contacts from which no motion is followed unasked
 MOST_NUMBERS = 40_000_000  # kept of one run: displacements and velocities together
 
 

@@ -27,6 +27,7 @@ MOST_ROWS = 20  # of a summary
 Z = 1.96  # of a 95 % interval
 FEWER = "{} brakes in the lot, as each is large: P(squeal) is known to {:.0f} % or better, with more samples closer"
 HALF = 0.5
+READ_IN = {"rad": ("deg", np.pi / 180.0), "N/m": ("kN/mm", 1e6), "m/N": ("mm/kN", 1e-6)}
 NO_DOSE = "no dose up to"
 
 
@@ -59,6 +60,11 @@ class Remedies(Result):
 
     def __len__(self) -> int:
         return len(self.name)
+
+    def dose_as_read(self, row: int) -> tuple[float, str]:
+        """The dose of that row and its unit as a reader has them: degrees, kN/mm, mm/kN."""
+        unit, factor = READ_IN.get(str(self.unit[row]), (str(self.unit[row]), 1.0))
+        return float(self.dose[row]) / factor, unit
 
     def design(self, row: int) -> Design:
         """The brake with the cure of that row, made by its line of Python."""

@@ -71,8 +71,7 @@ class Examination:
     @property
     def critical(self) -> CriticalValue | None:
         """The change of stability nearest to the design's own value; None where there is none."""
-        found = [one for one in self.crossings or () if one.changes_stability]
-        return min(found, key=lambda one: abs(float(one.value) - self.present)) if found else None
+        return None if self.crossings is None else self.crossings.nearest(self.present)
 
     @property
     def dies_away(self) -> bool:
@@ -94,5 +93,6 @@ class Examination:
 def results_of(found: Examination) -> list[Result]:
     """Every result an examination holds, for a table of how each ended."""
     parts = [found.modes, found.crossings, found.ranking, found.energy, found.map, found.boundary, found.motion,
-             *found.verdicts, found.loudness, found.hopf, found.cycle]  # fmt: skip
+             *found.verdicts, found.loudness, found.hopf, found.cycle, found.cycle_loudness,
+             found.remedies]  # fmt: skip
     return [part for part in parts if part is not None]

@@ -13,7 +13,7 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files.analyses import Axis, Map, Simulate
-from squealbox.files.runs import lasting, run, run_closely, usual_duration
+from squealbox.files.runs import LARGE, lasting, run, run_closely, usual_duration
 from squealbox.files.varied import quantity_of, scalar_parameters
 from squealbox.limit_cycles import Cycle, hopf_point, shooting
 from squealbox.matrices import liveliest
@@ -22,6 +22,7 @@ from squealbox.remedies import silence
 from squealbox.report.examination import Examination
 from squealbox.schedules import Schedule, value_at
 from squealbox.signals import SignalError, SoundLevel, sound_level
+from squealbox.signals.radiation import AUDIBLE
 from squealbox.stability import (
     Sensitivity,
     complex_modes,
@@ -43,7 +44,6 @@ CYCLE = "squealbox cycle looks for it, in its own time"
 HEARD = 2.0  # seconds of motion that are made audible
 SAMPLING = 88_200.0  # [Hz] of that motion
 CYCLED = 0.5  # seconds of a limit cycle whose level is estimated
-LARGE = 5_000  # coordinates times contacts from which no motion is followed unasked, and no cycle looked for
 OF_LARGE = (0.05, 1.6)  # shares of its friction over which a finite-element brake is looked at
 SPECTRA = 61  # values at which modes of a reduced brake are drawn
 COARSE = 11  # points along each axis of a reduced brake's map
@@ -165,7 +165,7 @@ class _Work:
             last = motion.t[-1] - 0.25 * (motion.t[-1] - motion.t[0])
             self.found["loudness"] = sound_level(motion, dof=dof, begin=last)
             pitch = float(self.found["verdicts"][dof].frequency)
-            if not 20.0 <= pitch <= 20e3:
+            if not AUDIBLE[0] <= pitch <= AUDIBLE[1]:
                 raise SignalError(f"its frequency, {pitch:.4g} Hz, is not one people hear")
             self._not_too_large("two seconds of motion to be heard", "squealbox listen makes sound of a recording")
             longer = settings.replace({"duration": max(HEARD, settings.duration or 0.0)})

@@ -10,7 +10,7 @@ from squealbox.report.examination import Examination, results_of
 from squealbox.report.words import in_reading_unit, quantity
 from squealbox.stability import ComplexModes, ModeEnergy, Sensitivity
 from squealbox.system import System, equilibrium
-from squealbox.words import number, plain_unit, scaled
+from squealbox.words import number, plain_unit
 
 MOST_MODES = 12
 MOST_PARAMETERS = 10
@@ -100,12 +100,12 @@ def cures(found: Remedies) -> Table:
     """The best cures: dose, what is left of the squeal, cost and what to know before."""
     rows = []
     for i in range(min(len(found), MOST_CURES)):
-        factor, unit = scaled(str(found.unit[i]), found.dose[i])
+        dose, unit = found.dose_as_read(i)
         left = "not known" if np.isnan(found.amplitude[i]) else quantity(found.amplitude[i], "m", 2)
         mark = "stable" if found.reached[i] else "not-decidable"
         rows.append((
             Cell(str(found.name[i]), str(found.caution[i])),
-            f"{number(found.dose[i] / factor, 3)} {plain_unit(unit)}".strip(),
+            f"{number(dose, 3)} {plain_unit(unit)}".strip(),
             f"{number(found.growth[i], 3)} 1/s", Cell(f"{number(100.0 * found.probability[i], 3)} %", mark=mark), left,
             str(found.cost[i]),
         ))  # fmt: skip

@@ -44,8 +44,9 @@ def _margin(found: Examination) -> Iterator[str]:
     if found.varied is None or found.crossings is None:
         return
     name, ends = found.varied.name, (float(found.varied.low), float(found.varied.high))
-    changes = [each for each in found.crossings if each.changes_stability]
-    said = sentences.margin(name, found.present, changes, ends, lambda value: value_in_words(found, name, value))
+    said = sentences.margin(
+        name, found.present, found.crossings, ends, lambda value: value_in_words(found, name, value)
+    )
     yield sentences.plain(said)
 
 

@@ -93,6 +93,20 @@ class CriticalValues(Result):
     uncertainty: Array = quantity("crossing", "", "bound on the error of the value, in the parameter's own unit")
     parameter: str = ""
 
+    @property
+    def changes(self) -> list[CriticalValue]:
+        """Those at which the stability of the system as a whole changes, in rising order."""
+        return [each for each in self if each.changes_stability]
+
+    def nearest(self, value: float) -> CriticalValue | None:
+        """The change of stability nearest to a value [own unit of the parameter]; None where there is none.
+
+        >>> from squealbox import DrumBrake, critical_values
+        >>> round(float(critical_values(DrumBrake(), "friction.static", (0.0, 1.0)).nearest(0.3).value), 5)
+        0.33269
+        """
+        return min(self.changes, key=lambda each: abs(float(each.value) - value), default=None)
+
     def __len__(self) -> int:
         return len(self.value)
 

@@ -5,11 +5,11 @@
 'Steady sliding is stable'
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 from squealbox.stability.eigenvalues import ComplexModes
 from squealbox.stability.mechanism import Mechanism
-from squealbox.stability.onset import CriticalValue
+from squealbox.stability.onset import CriticalValues
 from squealbox.words import number, quantity
 
 MECHANISMS = {
@@ -61,16 +61,17 @@ def growth(modes: ComplexModes, why: Mechanism | None) -> str:
 def margin(
     parameter: str,
     here: float | None,
-    changes: Sequence[CriticalValue],
+    found: CriticalValues,
     ends: tuple[float, float],
     worded: Callable[[float], str],
 ) -> Words:
     """Where stability changes over a parameter and how far the design is from there; `worded` writes an SI value."""
+    changes = found.changes
     if not changes:
         return [f"Over {parameter} from {worded(ends[0])} to {worded(ends[1])} that does not change."]
     if here is None:
         return [f"Critical {parameter}: {', '.join(worded(float(each.value)) for each in changes)}."]
-    near = min(changes, key=lambda each: abs(float(each.value) - here))
+    near = found.nearest(here) or changes[0]
     value = float(near.value)
     away = f" ({number(100.0 * (value - here) / abs(here), 3)} %)" if here else ""
     way = "above" if value >= here else "below"

@@ -10,6 +10,8 @@ from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from squealbox.workbench.recorded import received
+
 if TYPE_CHECKING:
     from squealbox.files import DesignFile
 
@@ -35,17 +37,7 @@ class Beside:
             folder.mkdir()
         if len(list(folder.iterdir())) >= MOST:
             raise ValueError(f"{name[-60:]!r}: at most {MOST} files stand beside a design")
-        size, path = 0, folder / name
-        try:
-            with path.open("wb") as file:
-                async for piece in content:
-                    size += len(piece)
-                    if size > LARGEST:
-                        raise ValueError(f"{name[-60:]!r} has more than {LARGEST} bytes")
-                    file.write(piece)
-        except BaseException:
-            path.unlink(missing_ok=True)
-            raise
+        await received(folder / name, name, content, LARGEST)
 
     def read(self, group: object, text: str) -> "DesignFile":
         """The design file of a text with the files of its group beside it, which are deleted then.
@@ -75,11 +67,7 @@ def in_one_text(found: "DesignFile", text: str) -> str:
     """
     import tomlkit
 
-    from squealbox.files.reading import SECTIONS, STUDY
     from squealbox.files.writing import design_text
+    from squealbox.workbench.rewriting import with_sections
 
-    whole = tomlkit.parse(design_text(found.design))
-    for name, section in tomlkit.parse(text).items():
-        if name in (*SECTIONS, STUDY):
-            whole[name] = section
-    return tomlkit.dumps(whole)
+    return with_sections(design_text(found.design), tomlkit.parse(text))

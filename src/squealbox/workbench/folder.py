@@ -26,7 +26,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from squealbox.workbench.recorded import KINDS, LARGEST
+from squealbox.workbench.recorded import KINDS, LARGEST, received
 
 FOLDER = (
     "SQUEALBOX_PROJECT"  # of the environment: the folder used where none is given; the server sets it for processes
@@ -162,16 +162,12 @@ class Project:
         kinds = PARTS.get(part, ())
         if not name.lower().endswith(kinds):
             raise ProjectError(f"{name[-60:]!r}: expected one of {', '.join(kinds)}")
-        path, size, temporary = self._place(part, name), 0, ""
+        path, temporary = self._place(part, name), ""
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=".part")
-            with os.fdopen(handle, "wb") as file:
-                async for piece in content:
-                    size += len(piece)
-                    if size > LARGEST:
-                        raise ProjectError(f"{name[-60:]!r} has more than {LARGEST} bytes")
-                    file.write(piece)
+            os.close(handle)
+            await received(Path(temporary), name, content, LARGEST)
             self.throw(part, name)
             os.chmod(temporary, 0o644)
             os.replace(temporary, path)
@@ -204,7 +200,7 @@ class Project:
         if text is not None:
             if not isinstance(text, str) or len(text) > LARGEST_TEXT:
                 raise ProjectError(f"expected a text of at most {LARGEST_TEXT} characters")
-            kept = hashlib.sha256(text.encode()).hexdigest()[:16]
+            kept = key_of(text)
             carried |= {"text": kept, "name": str(state.get("name") or "")[:80]}
             if not self._place("texts", f"{kept}.toml").exists():
                 self.write("texts", f"{kept}.toml", text)
@@ -282,6 +278,11 @@ class Project:
         if (folder / name).is_symlink():
             raise ProjectError(f"{name} is a link, which is not followed")
         return folder / name
+
+
+def key_of(text: str) -> str:
+    """A short name for a text: the same for the same text."""
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def good(name: str) -> bool:

@@ -9,14 +9,23 @@
 Every answer is of kind "project" or, with one sentence, "failed".
 """
 
-import hashlib
 import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from squealbox.designs import Design
 from squealbox.plots.cards import parameter_rows
-from squealbox.workbench.folder import LARGEST_STATE, LARGEST_TEXT, PARTS, SAID, Project, ProjectError, good, now
+from squealbox.workbench.folder import (
+    LARGEST_STATE,
+    LARGEST_TEXT,
+    PARTS,
+    SAID,
+    Project,
+    ProjectError,
+    good,
+    key_of,
+    now,
+)
 
 LONGEST_NAME = 80
 LONGEST_NOTE = 2000
@@ -50,7 +59,7 @@ def _look(project: Project, message: Mapping[str, Any], written: Written) -> dic
         "folder": str(project.folder),
         "history": [{each: line[each] for each in SAID} for line in lines if line["id"] not in older],
         "notes": notes,
-        "key": _key(notes),
+        "key": key_of(notes),
         **{part: [project.about(part, name) for name in project.names(part, *PARTS[part])] for part in PARTS},
         "presets": [[name, BRAKES[name].title or name] for name in BEGINNINGS],
         "thrown": [[stamp, name.removesuffix(".toml")] for stamp, name in thrown if name and name not in here][-1:],
@@ -142,11 +151,11 @@ def _take_notes(project: Project, message: Mapping[str, Any], written: Written) 
     if not isinstance(text, str) or len(text) > LARGEST_TEXT:
         raise ProjectError(f"expected notes of at most {LARGEST_TEXT} characters")
     said = ""
-    if _key(before) != message.get("key") and before != text:
+    if key_of(before) != message.get("key") and before != text:
         said = f"Another page had changed the notes: its text is trash/{project.throw('', NOTES, stays=True)}."
     if before != text:
         project.write("", NOTES, text)
-    return {"key": _key(text), "said": said}
+    return {"key": key_of(text), "said": said}
 
 
 VERBS: dict[str, Callable[[Project, Mapping[str, Any], Written], dict[str, Any]]] = {
@@ -184,10 +193,6 @@ def _about(project: Project, name: str) -> dict[str, Any]:
 
 def _notes(project: Project) -> str:
     return project.text("", NOTES) if NOTES in project.names("", ".md") else ""
-
-
-def _key(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def _named(message: Mapping[str, Any]) -> str:

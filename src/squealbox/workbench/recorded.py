@@ -28,17 +28,7 @@ class Recordings:
         if kind not in KINDS:
             raise ValueError(f"{name[-60:]!r}: expected a recording, one of {', '.join(KINDS)}")
         path = self.folder / f"{secrets.token_hex(16)}{kind}"
-        size = 0
-        try:
-            with path.open("wb") as file:
-                async for piece in content:
-                    size += len(piece)
-                    if size > LARGEST:
-                        raise ValueError(f"{name[-60:]!r} has more than {LARGEST} bytes")
-                    file.write(piece)
-        except BaseException:
-            path.unlink(missing_ok=True)
-            raise
+        await received(path, name, content, LARGEST)
         for old in sorted(self.folder.iterdir(), key=lambda each: each.stat().st_mtime_ns)[:-MOST]:
             old.unlink(missing_ok=True)
         return path.name
@@ -46,6 +36,24 @@ class Recordings:
     def close(self) -> None:
         """Delete them."""
         shutil.rmtree(self.folder, ignore_errors=True)
+
+
+async def received(path: Path, name: str, content: AsyncIterator[bytes], most: int) -> None:
+    """Write what a page sends to `path`, piece by piece: all of it, or no file.
+
+    Raises `ValueError`, which calls it `name`, for more than `most` bytes.
+    """
+    size = 0
+    try:
+        with path.open("wb") as file:
+            async for piece in content:
+                size += len(piece)
+                if size > most:
+                    raise ValueError(f"{name[-60:]!r} has more than {most} bytes")
+                file.write(piece)
+    except BaseException:
+        path.unlink(missing_ok=True)
+        raise
 
 
 def path_of(name: object) -> Path | None:

@@ -51,11 +51,16 @@ def rewritten(
             return whole, ""
     except (TOMLKitError, DesignFileError):  # a way to write TOML that is not known here: the values come first
         found = tomlkit.parse(text)
-    wanted = tomlkit.parse(new)
-    for name, section in found.items():
+    return with_sections(new, found), LOST
+
+
+def with_sections(text: str, asked: Mapping[str, Any]) -> str:
+    """The text of a design followed by what is asked of it: the sections of another file, as tomlkit has read it."""
+    whole = tomlkit.parse(text)
+    for name, section in asked.items():
         if name in (*SECTIONS, STUDY):
-            wanted[name] = section
-    return tomlkit.dumps(wanted), LOST
+            whole[name] = section
+    return tomlkit.dumps(whole)
 
 
 def _put(found: Any, before: Mapping[str, Any], after: Mapping[str, Any], design: Design | None = None) -> None:

@@ -15,7 +15,6 @@ that cannot look every tenth of a second whether they are still wanted have proc
 
 import asyncio
 import functools
-import hashlib
 import json
 import time
 from collections.abc import Awaitable, Callable, Mapping
@@ -27,7 +26,7 @@ import numpy as np
 
 from squealbox.designs import DESIGNS, Design
 from squealbox.workbench.apart import Died, Processes
-from squealbox.workbench.folder import Project, ProjectError, standing
+from squealbox.workbench.folder import Project, ProjectError, key_of, standing
 from squealbox.workbench.frames import frame
 from squealbox.workbench.panels import PANELS, Answer, Elsewhere, OptionError, Options, Stopped, Work, function_of
 from squealbox.workbench.sheet import sheet
@@ -197,7 +196,7 @@ class Session:
 
     def give(self, file: Opened) -> str:
         """Make a design file known to the page; the name under which it speaks of it."""
-        base = name_of_text(file.text)
+        base = key_of(file.text)
         while base not in self.bases and len(self.bases) >= MOST_BASES:
             self.files.pop(next(iter(self.bases)), None)
             self.bases.pop(next(iter(self.bases)))
@@ -209,7 +208,7 @@ class Session:
         from squealbox.files.reading import read_text
 
         read = functools.partial(read_text, name="the file", beside=False)
-        return self.files.get(name_of_text(text)) or Opened(text, read(text), read)
+        return self.files.get(key_of(text)) or Opened(text, read(text), read)
 
     def _sheet(self, message: dict[str, Any]) -> bytes:
         about = {"id": message["id"], "ask": "sheet"}
@@ -253,7 +252,7 @@ class Session:
             return self._file(text)
         found = self.beside.read(group, text)
         if found.design.system().is_sparse:
-            return Opened(text, found, lambda text: found)  # refused, with the way out
+            raise NotWritable(SPARSE)
         whole = in_one_text(found, text)
         if len(whole) > LONGEST_TEXT:
             raise NotWritable(f"its matrices are a text of more than {LONGEST_TEXT} characters: {LARGE_FILE}")
@@ -303,11 +302,6 @@ class Session:
             return found["toml"], found["said"]
 
         return design, made
-
-
-def name_of_text(text: str) -> str:
-    """The name under which a page speaks of a text it opened: the same for the same text."""
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design], work: Work) -> bytes:

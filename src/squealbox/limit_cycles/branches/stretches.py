@@ -24,7 +24,7 @@ Stretch = tuple[float, float]
 
 def onsets(design: Any, parameter: str, bounds: Stretch) -> list[float]:
     """Values at which steady sliding changes its stability, in rising order."""
-    return [float(one.value) for one in critical_values(design, parameter, bounds) if one.changes_stability]
+    return [float(one.value) for one in critical_values(design, parameter, bounds).changes]
 
 
 def stretches(one: Branch, births: Sequence[float] = (), margin: float = 0.0) -> list[tuple[float, float, bool]]:

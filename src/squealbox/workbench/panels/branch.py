@@ -88,7 +88,7 @@ def _nearest_onset(watched: _Watched, parameter: str, span: tuple[float, float],
     """The onset of flutter nearest to the present value, the one the verdict speaks of."""
     make = watched.at_part(0.02, "looking for the onset")
     found = critical_values(watched.design, parameter, span)
-    places = [float(each.value) for each in found if each.changes_stability and each.mechanism != "divergence"]
+    places = [float(each.value) for each in found.changes if each.mechanism != "divergence"]
     if not places:
         return hopf_point(make, parameter, span)
     near, room = min(places, key=lambda value: abs(value - at)), ROOM * (span[1] - span[0])

@@ -111,8 +111,9 @@ def _state(design: Design) -> dict[str, Any]:
 
 
 def _margin(design: Design, parameter: str, span: tuple[float, float], value: float | None) -> dict[str, Any]:
-    changes = [float(one.value) for one in crossings_of(design, parameter, span) if one.changes_stability]
-    if not changes or value is None:
-        return {"critical": changes[0] if changes else None, "margin": None}
-    nearest = min(changes, key=lambda each: abs(each - value))
+    found = crossings_of(design, parameter, span)
+    near = found.nearest(span[0] if value is None else value)
+    if near is None or value is None:
+        return {"critical": None if near is None else float(near.value), "margin": None}
+    nearest = float(near.value)
     return {"critical": nearest, "margin": (nearest - value) / abs(value) if value else None}

@@ -9,7 +9,7 @@ from squealbox.stability import mode_energy
 from squealbox.words import number, quantity
 from squealbox.workbench.figures import Bars
 from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.modes import modes_of, ranked
+from squealbox.workbench.panels.modes import modes_of, seen
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
 MOST_BARS = 24
@@ -23,8 +23,8 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         return Answer(
             {"outcome": str(modes.outcome), "words": f"{modes.outcome.message}."}, figures=[Bars("energy", "", [])]
         )
-    order = ranked(design)
-    parts = mode_energy(design, modes.mode(order[min(int(options.number("mode", 0, 0, 1e6)), len(order) - 1)]))
+    order, chosen = seen(design, options)
+    parts = mode_energy(design, modes.mode(order[chosen]))
     per = 1.0 / (2.0 * parts.total)
     bars: list[dict[str, Any]] = []
     for i, name in enumerate(parts.contacts):

@@ -4,12 +4,12 @@ from typing import Any
 
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.files.runs import LARGE
 from squealbox.system import System
 from squealbox.transient import Trajectory, needs_compiling, simulate
 from squealbox.workbench.panels.panel import Elsewhere, OptionError, Work
 
 COMPILING = "compiling the kernel for this design, which happens once"
-LARGE = 5_000  # coordinates times contacts from which no motion is followed here
 SECONDS = 4.0  # of an idle processor of 2020 and later, for the kernel with exact contacts
 
 

@@ -27,9 +27,9 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     values = np.linspace(low, high, POINTS if half <= 2 else FEWER if half <= LARGE else FEWEST)
     tracks = tracks_of(design, parameter, (low, high), len(values))
     upper = _one_of_each_pair(tracks.eigenvalues)
-    shown = slice(None) if not isinstance(design, ReducedBrake) else np.array(ranked(design), dtype=int)
+    shown: Any = slice(half)
     if isinstance(design, ReducedBrake):  # beyond its band a reduced brake says nothing
-        heard = np.abs(upper.imag) / TURN
+        shown, heard = ranked(design) if bool(here.exists) else [], np.abs(upper.imag) / TURN
         upper = upper[:, np.any((heard >= design.band[0]) & (heard <= design.band[1]), axis=0)]
     axis = options.axis(design, parameter, (low, high))
     unstable = _unstable(values / axis.factor, upper.real)
@@ -42,7 +42,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "marks": {"value": value},
     }
     present = None if value is None else value / axis.factor
-    modes = (here.frequency[:half][shown], here.growth_rate[:half][shown])
+    modes = (here.frequency[shown], here.growth_rate[shown])
     return Answer(data, figures=_figures(axis, values / axis.factor, upper, present, modes, unstable))
 
 

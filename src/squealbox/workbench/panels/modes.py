@@ -15,6 +15,7 @@ from squealbox.stability import (
     critical_values,
     tracked_modes,
 )
+from squealbox.workbench.panels.panel import Options
 
 KEPT = 8  # designs of the last questions
 POINTS, COARSE = 201, 21  # of a range, between which crossings are looked for: of brakes small and large
@@ -39,6 +40,12 @@ def ranked(design: Design) -> list[int]:
         low, high = design.band
         order = [i for i in order if low <= modes.frequency[i] <= high] or order
     return order[:MOST_MODES]
+
+
+def seen(design: Design, options: Options) -> tuple[list[int], int]:
+    """The modes that are shown, and which of them the option `mode` chooses; the last where there are fewer."""
+    order = ranked(design)
+    return order, min(int(options.number("mode", 0, 0, 1e6)), len(order) - 1)
 
 
 def crossings_of(design: Design, parameter: str, ends: tuple[float, float]) -> CriticalValues:

@@ -9,7 +9,7 @@ from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.fe.surface import Surface
 from squealbox.plots.moving import moving_strokes
 from squealbox.system import equilibrium
-from squealbox.workbench.panels.modes import modes_of, ranked
+from squealbox.workbench.panels.modes import modes_of, seen
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
 SEEN = 0.05  # of the freedom that moves most: what moves less has no phase to tell
@@ -33,8 +33,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         arrays |= {name: drawn[name] for name in ("points", "moves", "contactMoves")}
     if not bool(modes.exists):
         return Answer({**data, "modes": [], "message": modes.outcome.message}, arrays)
-    order = ranked(design)
-    chosen = min(int(options.number("mode", 0, 0, 1e6)), len(order) - 1)
+    order, chosen = seen(design, options)
     mode = modes.mode(order[chosen])
     shape = mode.shape[: system.size]
     told = [(float(modes.frequency[i]), float(modes.growth_rate[i]), float(modes.damping_ratio[i])) for i in order]

@@ -77,8 +77,8 @@ def _critical(design: Design) -> list[str]:
     if options.parameter("parameter", design, FRICTION) != FRICTION:
         return [NONE, NONE]
     span, value = options.span("span", design, FRICTION), float(design.value_of(FRICTION))
-    changes = [float(each.value) for each in crossings_of(design, FRICTION, span) if each.changes_stability]
-    if not changes:
+    near = crossings_of(design, FRICTION, span).nearest(value)
+    if near is None:
         return [NONE, NONE]
-    nearest = min(changes, key=lambda each: abs(each - value))
+    nearest = float(near.value)
     return [number(nearest, 4), f"{number(100.0 * (nearest - value) / value, 3)} %" if value else NONE]

@@ -3,7 +3,7 @@
 from squealbox.designs import Design
 from squealbox.workbench.panels.panel import Answer, Options, Work
 
-PARTS = 9  # of an examination, and writing
+PARTS = 11  # of an examination, and writing
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:

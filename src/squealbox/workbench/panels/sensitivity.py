@@ -98,16 +98,14 @@ def _steps(design: Design, found: Any, step: str) -> Any:
 
 def _needed(design: Design, name: str) -> dict[str, Any] | None:
     """The nearest value of a parameter at which stability changes, within its slider's range; None without one."""
-    span = Options({}).span("span", design, name)
+    span, value = Options({}).span("span", design, name), float(design.value_of(name))
     try:
-        crossings = critical_values(design, name, span, points=POINTS)
+        change = critical_values(design, name, span, points=POINTS).nearest(value)
     except (ParameterError, InvalidSystem):  # a part of the range is none for this design
         return None
-    value = float(design.value_of(name))
-    places = [float(each.value) for each in crossings if each.changes_stability]
-    if not places:
+    if change is None:
         return None
-    near = min(places, key=lambda place: abs(place - value))
+    near = float(change.value)
     axis = axis_of(design, name)
     way = (near - value) / axis["factor"]
     told = f"{way:+.3g}°" if axis["unit"] == "deg" or not value else f"{100.0 * (near - value) / abs(value):+.3g} %"

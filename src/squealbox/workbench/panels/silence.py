@@ -4,8 +4,6 @@ import dataclasses
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
 from squealbox.designs import Design
 from squealbox.files import NotWritable
 from squealbox.files.writing import design_text
@@ -16,7 +14,6 @@ from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
 
 SAMPLES = 1024  # brakes of the lot
-READ_IN = {"rad": ("deg", np.pi / 180.0), "N/m": ("kN/mm", 1e6), "m/N": ("mm/kN", 1e-6)}
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
@@ -51,9 +48,9 @@ def _watched(each: Candidate, work: Work, share: float) -> Candidate:
 
 
 def _row(table: Remedies, i: int) -> dict[str, Any]:
-    unit, factor = READ_IN.get(str(table.unit[i]), (str(table.unit[i]), 1.0))
+    dose, unit = table.dose_as_read(i)
     row: dict[str, Any] = {
-        "name": str(table.name[i]), "dose": float(table.dose[i]) / factor, "unit": unit,
+        "name": str(table.name[i]), "dose": dose, "unit": unit,
         "reached": bool(table.reached[i]), "growth": finite(table.growth[i]),
         "atMargin": finite(table.growth_at_margin[i]), "probability": float(table.probability[i]),
         "amplitude": finite(table.amplitude[i]), "cost": str(table.cost[i]), "caution": str(table.caution[i]),

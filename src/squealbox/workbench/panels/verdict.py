@@ -36,10 +36,9 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     bilateral = np.zeros(len(system.contacts), dtype=bool)  # an open unilateral contact has N = 0
     data["pulled"] = [list(each) for each in pulled(system.contact_names, bilateral, equilibrium(system).normal_force)]
     found = crossings_of(design, parameter, ends)
-    changes = [each for each in found if each.changes_stability]
     data["crossings"] = [{"value": float(each.value), "changes": each.changes_stability} for each in found]
-    if found.outcome.ok or changes:
-        data["why"] += [" ", *sentences.margin(axis.label, value, changes, ends, axis.value)]
+    if found.outcome.ok or found.changes:
+        data["why"] += [" ", *sentences.margin(axis.label, value, found, ends, axis.value)]
     else:
         data["why"].append(f" {found.outcome.message}.")
     near = bool(np.any(modes.near_defective))

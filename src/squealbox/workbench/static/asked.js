@@ -1,6 +1,6 @@
 // A panel that computes only when it is asked to: it remembers for which design that was, and says when it is another.
 
-import { make, note } from "./elements.js";
+import { note } from "./elements.js";
 
 export class Asked {
   /** `state()` is what of the design the panel depends on; `words` says what to press. */
@@ -34,6 +34,3 @@ export class Asked {
     this.panel.says.textContent = `Of an earlier design. ${this.words}`;
   }
 }
-
-/** A button of a panel. */
-export const button = (text, onclick, about = {}) => make("button", { type: "button", onclick, ...about }, text);

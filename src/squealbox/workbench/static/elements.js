@@ -13,6 +13,8 @@ export function make(tag, about = {}, ...children) {
   return element;
 }
 
+export const button = (text, onclick, about = {}) => make("button", { type: "button", onclick, ...about }, text);
+
 /** A select with its label; `choices` are [value, text] pairs. */
 export function choose(text, choices, value, onchange) {
   const select = make("select", { "aria-label": text });

@@ -5,7 +5,7 @@
 
 import { Bars } from "./bars.js";
 import { Chart } from "./chart.js";
-import { choose, make, table } from "./elements.js";
+import { button, choose, make, table } from "./elements.js";
 import { KINDS, exportCharts } from "./export.js";
 import { resolved } from "./figures.js";
 import { plain, typed, typographic } from "./numbers.js";
@@ -66,7 +66,7 @@ export class Panel {
 
   /** A button above the figures. */
   button(text, onclick, about = {}) {
-    const made = make("button", { type: "button", onclick, ...about }, text);
+    const made = button(text, onclick, about);
     this.buttons.hidden = false;
     this.buttons.append(made);
     return made;

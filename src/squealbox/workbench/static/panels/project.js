@@ -1,7 +1,6 @@
 // The project on disk: designs side by side, notes, history and files; the page's state goes there after each gesture.
 
-import { button } from "../asked.js";
-import { choose, make, note, table } from "../elements.js";
+import { button, choose, make, note, table } from "../elements.js";
 import { Store, same } from "../store.js";
 
 const REST = 800; // ms without a change after which something is kept

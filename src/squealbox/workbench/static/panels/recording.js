@@ -1,7 +1,6 @@
 // A recording of the brake: dropped onto the page, kept on this machine; its events, beside what the model says.
 
-import { button } from "../asked.js";
-import { choose, make, note, table } from "../elements.js";
+import { button, choose, make, note, table } from "../elements.js";
 import { shown, withUnit } from "../numbers.js";
 import { sound } from "../sound.js";
 

@@ -1,7 +1,7 @@
 // The report of the present design: one HTML file, handed over when it is made.
 
-import { Asked, button } from "../asked.js";
-import { make } from "../elements.js";
+import { Asked } from "../asked.js";
+import { button, make } from "../elements.js";
 import { download } from "../export.js";
 
 export default {

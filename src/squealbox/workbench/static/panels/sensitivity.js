@@ -1,7 +1,7 @@
 // Which parameter to change: bars, the same as discs where the drawing names the parameter, and how far each must go.
 
 import { drawn, element } from "../drawing.js";
-import { make } from "../elements.js";
+import { button, make } from "../elements.js";
 import { shown, typographic } from "../numbers.js";
 
 export default {
@@ -14,7 +14,7 @@ export default {
   },
 
   draw(panel, { data, arrays }) {
-    const go = ({ name, needed }) => make("button", { type: "button", onclick: () => panel.app.store.commit({ [name]: needed.beyond }), title: "Put this value, and one hundredth of the way more, on the page", data: { needs: name } }, `${name} ${typographic(` ${needed.told}`).trim()}`);
+    const go = ({ name, needed }) => button(`${name} ${typographic(` ${needed.told}`).trim()}`, () => panel.app.store.commit({ [name]: needed.beyond }), { title: "Put this value, and one hundredth of the way more, on the page", data: { needs: name } });
     panel.needs.replaceChildren(...data.bars.filter((bar) => bar.needed?.near).map(go));
     panel.stage.replaceChildren();
     if (!data.strokes || !data.bars.length) return;

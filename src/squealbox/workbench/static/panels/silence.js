@@ -1,7 +1,7 @@
 // The cures, the best first: a click applies one, another takes it back, and one key plays before and after.
 
-import { Asked, button } from "../asked.js";
-import { choose, make, note, table } from "../elements.js";
+import { Asked } from "../asked.js";
+import { button, choose, make, note, table } from "../elements.js";
 import { shown, withUnit } from "../numbers.js";
 import { fullScale, sound } from "../sound.js";
 import { same } from "../store.js";

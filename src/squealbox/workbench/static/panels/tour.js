@@ -1,7 +1,7 @@
 // A guided tour of the paper of 2011: steps that set the design, what to look at, and the verdicts on its claims.
 
-import { Asked, button } from "../asked.js";
-import { make } from "../elements.js";
+import { Asked } from "../asked.js";
+import { button, make } from "../elements.js";
 import { Store } from "../store.js";
 
 const SIGNS = { agree: "✓ agree", disagree: "✗ disagree", "not decidable": "? not decidable" };
