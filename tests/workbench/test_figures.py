@@ -182,6 +182,12 @@ def test_what_was_measured_is_drawn_over_what_is_computed(page):
         2,
         3,
     ]  # and the legend
+    page.drawn("map")  # the modes are out of sight, and what is measured meanwhile is there when they come back
+    page.page.evaluate(MEASURED, {"frequency": 2050.0})
+    page.drawn("locus")
+    lines = "f => document.querySelectorAll(`section[data-panel=locus] [data-figure=${f}] .measured`).length"
+    page.until(lines, arg="frequency")
+    assert page.page.evaluate(lines, "growth") == 0
     page.page.evaluate(MEASURED, {})
     assert not any("measured" in each["cls"] for each in page.strokes("locus", "plane"))
 

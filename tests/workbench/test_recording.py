@@ -70,6 +70,8 @@ def test_the_event_is_the_one_that_was_rendered(kept):
     worst = complex_modes(TRUTH).most_unstable
     assert float(said["frequency Hz"][1]) == pytest.approx(worst.frequency, rel=1e-4)
     assert "no calibration" in found["words"]
+    (figure,) = asked("recording", id=kept).figures
+    assert figure.heat["unit"] == "", "an amplitude is no level: its picture has no dB"
     assert asked("recording", id=kept, unit="Pa", full_scale=20.0).data["unit"] == "dB(A)"
 
 

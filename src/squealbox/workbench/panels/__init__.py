@@ -56,7 +56,7 @@ class Panel:
 
 
 def over(text: str, name: str, *usual: str, span: str = "span") -> dict[str, Any]:
-    """A choice among the parameters that can be varied: the option `name`, the ends of its axis the option `span`."""
+    """A choice among the parameters that can be varied: the option `name`; the ends of its axis `span`, "" for none."""
     return {"kind": "over", "text": text, "name": name, "usual": usual, "span": span}
 
 
@@ -140,7 +140,7 @@ PANELS: dict[str, Panel] = {
     ),
     "calibrate": Panel(
         "Calibrate", columns=2, slow=True, apart=True, table="Fitted values",
-        choices=(over("fit", "p0", FRICTION, span="s0"), over("and", "p1", "k3", "k2", "k", "k11", span="s1"),
+        choices=(over("fit", "p0", FRICTION, span=""), over("and", "p1", "k3", "k2", "k", "k11", span=""),
                  words("within", "share", ("0.1", "10 %"), ("0.3", "30 %"), ("0.6", "60 %"), usual="0.3")),
     ),
     "report": Panel("Report", slow=True, apart=True),

@@ -48,7 +48,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         for i in range(min(events.count, MOST_EVENTS))
     ]  # fmt: skip
     upward = Axis("frequency", "kHz", (0.0, top / 1e3), factor=1e3)
-    seen = heat(picture, "decades", "amplitude", events.settings["unit"], smooth=True)
+    seen = heat(picture, "decades", "amplitude", "", smooth=True)
     return Answer(data, figures=[Figure("recording", Axis("time", "s", stretch), upward, lines, heat=seen)])
 
 

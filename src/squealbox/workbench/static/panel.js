@@ -48,7 +48,7 @@ export class Panel {
     this.files.append(make("select", { "aria-label": `Save ${about.title}`, onchange: save }, ...kinds));
     module.setup?.(this);
     for (const event of ["shown", "changed"]) app.store.addEventListener(event, () => this.mark());
-    app.addEventListener("measured", () => this.frame?.data.figures && !this.element.hidden && this.draw(this.frame));
+    app.addEventListener("measured", () => this.frame?.data.figures && this.draw(this.frame));
     new IntersectionObserver((entries) => this.#seen(entries.at(-1).isIntersecting), { rootMargin: "120px" }).observe(this.element);
   }
 
@@ -107,14 +107,14 @@ export class Panel {
   }
 
   /** A select among the parameters that can be varied, kept as option `name`, and the ends of its axis. */
-  over({ text, name, usual }) {
+  over({ text, name, usual, span }) {
     const { store } = this.app;
     const place = make("span", { class: "parameter-choice" });
     const fill = () => {
       const varied = store.sheet?.varied ?? [];
       const value = this.parameter(name, ...usual);
       const field = value && this.field(value);
-      const ends = field ? this.span(value)?.map((end) => plain(end / field.factor)) : null;
+      const ends = field && span ? this.span(value)?.map((end) => plain(end / field.factor)) : null;
       const key = JSON.stringify([varied, value, ends, field?.unit]);
       if (place.dataset.key === key || place.contains(document.activeElement)) return;
       place.dataset.key = key;
@@ -205,7 +205,7 @@ export class Panel {
       if (kind === "over") {
         asked[name] = this.parameter(name, ...usual);
         if (!asked[name]) return null;
-        asked[span] = this.span(asked[name]);
+        if (span) asked[span] = this.span(asked[name]);
         along.push(asked[name]);
       } else if (kind === "shared") asked[name] = store.settings[panel]?.[name];
       else if (kind === "freedom") asked.dof = this.chosen.dof ?? 0;

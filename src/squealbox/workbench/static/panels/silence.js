@@ -52,7 +52,7 @@ const of = (panel) => (panel.applied && same(panel.applied.design, panel.app.sto
 
 function list(panel, rows) {
   const percent = (share) => `${shown(100 * share, 3)} %`;
-  const cells = (row) => [row.name, `${shown(row.dose, 3)} ${row.unit}`, shown(row.growth, 3), shown(row.atMargin, 3), percent(row.probability), row.amplitude === null ? "–" : withUnit(row.amplitude, "m", 2), row.cost, row.caution];
+  const cells = (row) => [row.name, `${shown(row.dose, 3)} ${row.unit}`, shown(row.growth, 3), shown(row.atMargin, 2), percent(row.probability), row.amplitude === null ? "–" : withUnit(row.amplitude, "m", 2), row.cost, row.caution];
   const body = rows.map((row) => {
     const known = "dose" in row;
     const key = button("Apply", () => apply(panel, row), { disabled: !known || Boolean(row.refused), title: row.refused ?? row.python, "aria-label": `Apply ${row.name}` });
