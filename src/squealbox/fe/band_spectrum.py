@@ -22,8 +22,8 @@ from squealbox.fe.small import Small
 SLOW = 2.2  # times the end of the band: coordinates above it are fast
 PASSES = 40
 GROUPS = 3  # of neighbouring modes, whose fast coordinates are solved for with one factor
-SETTLED, ROUGH = 1e-11, 1e-7  # of |lambda|: change of an eigenvalue at which it has settled
-RESIDUAL = 1e-5  # of |K x|: residual of a shape; its eigenvalue is better by the same factor again
+SETTLED, ROUGH = 1e-9, 1e-7  # of |lambda|: last change of an eigenvalue; what is left of it is a thirtieth or less
+RESIDUAL = 1e-4  # of |K x|: residual of a shape; its eigenvalue is better by the same factor again
 
 
 class Pairs(NamedTuple):
@@ -83,15 +83,16 @@ def band_pairs(small: Small, band: tuple[float, float], *, rough: bool = False) 
     near = every[:, None] - values  # (2 l, k); its zeros are the modes themselves
     near[kept, np.arange(len(kept))] = np.inf
     u, w, near = _single(u), _single(w), _single(near)  # corrections: single precision halves their price, costs none
+    right, left = right.astype(np.float32), left.astype(np.float32)
     back_u, back_w = np.conj(u).T, np.conj(w).T
     both, back = np.concatenate([stiffness, damping]), np.concatenate([stiffness.T, damping.T])
     holds = _holds(small, h, values)
     unit = bool(np.max(np.abs(mass - np.eye(len(mass)))) < 1e-9)
     settled = False
     for made in range(PASSES):
-        missed, pulled = _applied(both, None if unit else mass, values, x)
-        missed_left, pulled_left = _applied(back, None if unit else mass.T, np.conj(values), y)
-        slope = np.sum(np.conj(y) * (2.0 * values * (x if unit else _times(mass, x)) + _times(damping, x)), axis=0)
+        missed, pulled, slope = _applied(both, None if unit else mass, values, x)
+        missed_left, pulled_left, _ = _applied(back, None if unit else mass.T, np.conj(values), y)
+        slope = np.sum(np.conj(y) * slope, axis=0)
         step = np.sum(np.conj(y) * missed, axis=0) / slope
         moved = np.abs(step) / np.abs(values)
         if not np.all(np.isfinite(moved)):
@@ -105,11 +106,12 @@ def band_pairs(small: Small, band: tuple[float, float], *, rough: bool = False) 
         settled = bool(made > 1 and np.all(moved <= ROUGH) if rough else np.all(moved <= SETTLED) and off <= RESIDUAL)
         if settled:
             break
+        rest, rest_left = _single(missed), _single(missed_left)
         for columns, held in holds:
-            x[np.ix_(h, columns)] -= lu_solve(held, _single(missed[np.ix_(h, columns)]), check_finite=False)
-            y[np.ix_(h, columns)] -= lu_solve(held, _single(missed_left[np.ix_(h, columns)]), 2, check_finite=False)
-        x += _times(right, u @ ((back_w @ _single(_times(left.T, missed))) / near))
-        y += _times(left, w @ ((back_u @ _single(_times(right.T, missed_left))) / np.conj(near)))
+            x[np.ix_(h, columns)] -= lu_solve(held, rest[np.ix_(h, columns)], check_finite=False)
+            y[np.ix_(h, columns)] -= lu_solve(held, rest_left[np.ix_(h, columns)], 2, check_finite=False)
+        x += _times(right, u @ ((back_w @ _times(left.T, rest)) / near))
+        y += _times(left, w @ ((back_u @ _times(right.T, rest_left)) / np.conj(near)))
     if not settled:
         return None
     inside = np.flatnonzero((values.imag >= low) & (values.imag <= high) & vibrating(values))
@@ -125,11 +127,11 @@ def band_pairs(small: Small, band: tuple[float, float], *, rough: bool = False) 
     return Pairs(values, x, y, length * dual)
 
 
-def _applied(both: Any, mass: Any, values: Any, x: Any) -> tuple[Any, Any]:
-    """Q(lambda) x and K x from K and C stacked and M, None for the unit matrix."""
+def _applied(both: Any, mass: Any, values: Any, x: Any) -> tuple[Any, Any, Any]:
+    """Q(lambda) x, K x and Q'(lambda) x from K and C stacked and M, None for the unit matrix."""
     product = _times(both, x)
-    pulled = product[: len(x)]
-    return pulled + product[len(x) :] * values + (x if mass is None else _times(mass, x)) * values**2, pulled
+    pulled, damped, heavy = product[: len(x)], product[len(x) :], (x if mass is None else _times(mass, x)) * values
+    return pulled + (damped + heavy) * values, pulled, damped + 2.0 * heavy
 
 
 def _single(x: Any) -> Any:

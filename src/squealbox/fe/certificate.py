@@ -2,27 +2,29 @@
 
 The number of eigenvalues inside a contour is 1/(2 pi) times the turn of the phase of det Q along it. Along a brake's
 contour that phase turns fast: by lightly damped modes beside the contour, and by a smooth drift of many turns that the
-damping of all the modes far away brings. So what is followed is det Q(lambda) / prod (lambda - lambda_k), lambda_k the
-eigenvalues already known, and at every point its rate along the contour is measured, by a second determinant close by.
-An interval is taken when the rates at its ends and its middle agree on how far the phase turns, and the measured phases
-agree with that; else it is halved. A turn that is left over is an eigenvalue that nobody knew.
+damping of all the modes far away brings. So what is followed is det Q(lambda) / prod (lambda - lambda_k), lambda_k
+eigenvalues that are known or believed to be, and at every point its rate along the contour is measured, by a second
+determinant close by. An interval is taken when the rates at its ends and its middle agree on how far the phase turns,
+and the measured phases agree with that; by how much each lambda - lambda_k turns there is known and added again. Where
+they do not agree, the eigenvalues nearest to its middle are found by the factors that are there anyway and take the
+place of those believed to be there; after that it is halved. What det Q turns in all is the number of modes inside.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from squealbox.factorisation import SingularMatrix, factor
-from squealbox.fe.pencil import Pencil
+from squealbox.factorisation import Factor, SingularMatrix, factor
+from squealbox.fe.pencil import Pencil, vibrating
+from squealbox.fe.quadratic import modes_near
 
 MOST = 150  # factorisations
 RATES_AGREE = 0.8  # rad by which two formulas for the turn of an interval may differ
 PHASES_AGREE = 0.4  # rad by which measured phases may differ from the turn the rates give
 PIECES = (1, 4, 1, 4)  # of each side of the rectangle at first
+NEAREST = 12  # eigenvalues that are looked for where a phase cannot be followed
 PROBE = 1e-5  # distance of the second determinant, as a share of the largest |lambda|
 GROWTH = 1000.0  # growth rate [1/s] up to which a rectangle reaches at least
 
@@ -71,7 +73,8 @@ def certificate(
     pencil : the brake's matrices
     eigenvalues : all known eigenvalues [1/s] with Im > 0, also those outside the band: shape (k,)
     band : (f1, f2) [Hz]; widened a little to where no known mode is close to its ends
-    largest_growth : [1/s] right side of the rectangle; by default 1000, or four times the largest known
+    largest_growth : [1/s] right side of the rectangle; by default 1000, or four times the largest of the known modes
+        in the band whose damping ratio is below 0.1 in size
     most : factorisations after which the search gives up
     phases : of det Q at points, kept from one list of eigenvalues to the next for the same brake; those found are added
     """
@@ -79,7 +82,8 @@ def certificate(
     known = known[known.imag > 0.0]
     low, high = _band_gaps(known, band)
     left = _left_side(known, low, high)
-    right = largest_growth or max(GROWTH, 4.0 * float(np.max(known.real, initial=0.0)))
+    modes = known[vibrating(known) & (known.imag > low) & (known.imag < high)]
+    right = largest_growth or max(GROWTH, 4.0 * float(np.max(modes.real, initial=0.0)))
     inside = (known.real > left) & (known.real < right) & (known.imag > low) & (known.imag < high)
     search = _Winding(pencil, known, PROBE * abs(complex(right, high)), most, {} if phases is None else phases)
     corners = [complex(left, low), complex(right, low), complex(right, high), complex(left, high)]
@@ -87,7 +91,7 @@ def certificate(
     try:
         for start, end, parts in zip(corners, [*corners[1:], corners[0]], PIECES, strict=True):
             turn += search.turn(start, end, parts)
-        missing: int | None = round(turn / (2.0 * np.pi))
+        missing: int | None = round(turn / (2.0 * np.pi)) - int(np.sum(inside))
     except _TooMany as error:
         missing, reason = None, str(error)
     except SingularMatrix as error:
@@ -104,24 +108,33 @@ class _TooMany(Exception):
 
 
 class _Winding:
-    """Phases of det Q(lambda) / prod (lambda - lambda_k) and their rates along a contour."""
+    """Phases of det Q(lambda) and their rates along a contour, beside those of eigenvalues believed to be there."""
 
     def __init__(self, pencil: Pencil, known: Any, probe: float, most: int, phases: dict[complex, float]) -> None:
-        self.pencil, self.known, self.probe, self.most, self.made = pencil, known, probe, most, 0
+        self.pencil, self.believed, self.probe, self.most, self.made = pencil, known, probe, most, 0
         self.phases = phases
-        self.seen: dict[tuple[complex, complex], tuple[float, float]] = {}
+        self.counted: set[complex] = set()
+        self.looked: set[complex] = set()
+        self.last: tuple[complex, Factor] | None = None
 
     def turn(self, start: complex, end: complex, parts: int) -> float:
-        """By how much the phase turns from `start` to `end` [rad]."""
+        """By how much the phase of det Q turns from `start` to `end` [rad]."""
         marks = [start + (end - start) * i / parts for i in range(parts + 1)]
-        along = (end - start) / abs(end - start)
-        look = partial(self.phase, along=along)
-        return sum(self._between(a, b, look) for a, b in pairwise(marks))
+        return sum(self._between(a, b) for a, b in pairwise(marks))
 
-    def _between(self, a: complex, b: complex, look: Callable[[complex], tuple[float, float]]) -> float:
+    def _between(self, a: complex, b: complex) -> float:
+        found = self._followed(a, b)
+        if found is None and self._look_near(0.5 * (a + b)):
+            found = self._followed(a, b)
+        if found is not None:
+            return found
         middle = 0.5 * (a + b)
-        length = abs(b - a)
-        (first, rate_a), (half, rate), (last, rate_b) = look(a), look(middle), look(b)
+        return self._between(a, middle) + self._between(middle, b)
+
+    def _followed(self, a: complex, b: complex) -> float | None:
+        """The turn from a to b; None where rates and phases do not agree on it."""
+        middle, along, length = 0.5 * (a + b), (b - a) / abs(b - a), abs(b - a)
+        (first, rate_a), (last, rate_b), (half, rate) = (self._phase(point, along) for point in (a, b, middle))
         plain = 0.5 * length * (rate_a + rate_b)
         better = length * (rate_a + 4.0 * rate + rate_b) / 6.0
         first_half, second_half = (
@@ -130,25 +143,43 @@ class _Winding:
         )
         misses = [_wrapped(half - first - first_half), _wrapped(last - half - second_half)]
         if abs(plain - better) < RATES_AGREE and max(map(abs, misses)) < PHASES_AGREE:
-            return better + sum(misses)
-        return self._between(a, middle, look) + self._between(middle, b, look)
+            return better + sum(misses) + float(np.sum(np.angle((b - self.believed) / (a - self.believed))))
+        return None
 
-    def phase(self, point: complex, along: complex) -> tuple[float, float]:
-        """Phase [rad] at a point and its rate along the contour [rad s]."""
-        key = (point, along)
-        if key not in self.seen:
-            here, ahead = self._at(point), self._at(point + self.probe * along)
-            self.seen[key] = here, _wrapped(ahead - here) / self.probe
-        return self.seen[key]
+    def _phase(self, point: complex, along: complex) -> tuple[float, float]:
+        """Phase [rad] less that of the eigenvalues believed to be there, and its rate along the contour [rad s]."""
+        ahead, here = self._at(point + self.probe * along), self._at(point)
+        return here, _wrapped(ahead - here) / self.probe
 
     def _at(self, point: complex) -> float:
+        if point not in self.counted and point in self.phases:
+            self._count()
+        elif point not in self.counted:
+            self.phases[point] = self._factor(point).log_determinant.imag
+        self.counted.add(point)
+        return self.phases[point] - float(np.sum(np.angle(point - self.believed)))
+
+    def _look_near(self, point: complex) -> bool:
+        """Put the eigenvalues nearest to a point in the place of those believed to be there; False the second time."""
+        if point in self.looked:
+            return False
+        self.looked.add(point)
+        base = self.last[1] if self.last is not None and self.last[0] == point else self._factor(point)
+        found, _ = modes_near(self.pencil, point, NEAREST, base)
+        reach = float(np.max(np.abs(found - point), initial=0.0)) * (1.0 + 1e-9)
+        self.believed = np.concatenate([self.believed[np.abs(self.believed - point) > reach], found])
+        return True
+
+    def _factor(self, point: complex) -> Factor:
+        self._count()
+        self.last = None  # it may be large
+        self.last = point, factor(self.pencil.at(point), symmetric=False, library="superlu")
+        return self.last[1]
+
+    def _count(self) -> None:
         if self.made >= self.most:
             raise _TooMany(f"the phase of det Q could not be followed with {self.most} factorisations")
         self.made += 1
-        if point not in self.phases:
-            whole = factor(self.pencil.at(point), symmetric=False, library="superlu")
-            self.phases[point] = whole.log_determinant.imag
-        return self.phases[point] - float(np.sum(np.angle(point - self.known)))
 
 
 def _wrapped(angle: float) -> float:

@@ -23,12 +23,17 @@ ROWS = ("n", "d", "t", "normal", "across")
 
 
 class _Product:
-    """A V, A' V and V' A V of one sparse matrix A, for a basis V that grows by blocks of columns."""
+    """A V, A' V and V' A V of one sparse matrix A, for a basis V that grows by blocks of columns.
+
+    The products are kept in single precision: residuals are made of them, which round-off of 1e-7 of a product leaves
+    as they are. `whole` holds A V in double precision for the matrix that the basis is orthogonal by.
+    """
 
     def __init__(self, matrix: Any) -> None:
         self.matrix, self.symmetric = matrix, is_symmetric(matrix)
         self.right: list[Any] = []
         self.left: list[Any] = self.right if self.symmetric else []
+        self.whole: list[Any] | None = None
         self.gram = np.zeros((0, 0))
 
     def extend(self, basis: Sequence[Any], fresh: Any) -> None:
@@ -36,10 +41,13 @@ class _Product:
         above = np.concatenate([np.zeros((0, fresh.shape[1])), *(block.T @ new for block in basis)])
         below = above.T
         if not self.symmetric:
-            below = np.concatenate([np.zeros((fresh.shape[1], 0)), *(fresh.T @ old for old in self.right)], axis=1)
-            self.left.append(self.matrix.T @ fresh)
+            back = self.matrix.T @ fresh
+            below = np.concatenate([np.zeros((fresh.shape[1], 0)), *(back.T @ block for block in basis)], axis=1)
+            self.left.append(back.astype(np.float32))
         self.gram = np.block([[self.gram, above], [below, fresh.T @ new]])
-        self.right.append(new)
+        self.right.append(new.astype(np.float32))
+        if self.whole is not None:
+            self.whole.append(new)
 
 
 class _Rows:
@@ -57,6 +65,7 @@ class GrowingBasis:
         self._products: list[_Product] = []
         self._tables: list[_Rows] = []
         self._of = [[self._known(self._products, _Product, part) for part in p.structural] for p in self.pencils]
+        self._of[0][0].whole = []
         self._rows = [self._rows_of(pencil) for pencil in self.pencils]
         self.blocks: list[Any] = []
         self._undamped = np.zeros((0, 0))
@@ -69,14 +78,14 @@ class GrowingBasis:
 
     def add(self, vectors: Any) -> None:
         """Take in what is new of the columns of `vectors` (n, k)."""
-        self._extend(fresh_directions(self.pencils[0].M, self.blocks, self._of[0][0].right, vectors))
+        self._extend(fresh_directions(self.pencils[0].M, self.blocks, self._of[0][0].whole, vectors))
 
     def turn(self) -> None:
         """V becomes undamped modes on itself; the products of size n are given up, so it grows no more."""
         turns = self.undamped
         for product in self._products:
             product.gram = turns.T @ product.gram @ turns
-            product.right = product.left = []
+            product.right = product.left = product.whole = []
         for table in self._tables:
             table.dense = table.dense @ turns
         self.blocks = [times(self.blocks, turns)]
@@ -157,7 +166,7 @@ class GrowingBasis:
         """(lambda^2 M + lambda C + K) V x from the products with M, C and K."""
         found = np.zeros((self.pencils[0].size, 2 * x.shape[1]))
         for blocks, factor in zip(products, (values**2, values, np.ones_like(values)), strict=True):
-            times(blocks, parts(x * factor), found)
+            times(blocks, parts(x * factor).astype(np.float32), found)
         return found
 
     def _extend(self, fresh: Any) -> None:

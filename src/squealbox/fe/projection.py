@@ -71,6 +71,7 @@ def basis_for(pencil: Pencil, band: tuple[float, float], order: Order | None = N
     while modes.count < min(FEWEST, pencil.size // 2):
         top *= 1.5
         modes = real_modes(pencil.elastic, pencil.M, top, modes.base.order)
+    modes = replace(modes, base=modes.base.in_single())  # from here on it gives directions and estimates
     return modes, enriched_basis(pencil, modes, REACH * band[1])
 
 

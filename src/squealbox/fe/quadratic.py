@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
 
-from squealbox.factorisation import factor
+from squealbox.factorisation import Factor, factor
 from squealbox.fe.pencil import MOST_DAMPED, Pencil, vibrating
 
 MOST_SHIFTS = 60  # disks that a band may take before the search gives up
@@ -34,10 +34,10 @@ class FullModes:
     factorisations: int
 
 
-def modes_near(pencil: Pencil, shift: complex, count: int) -> tuple[Any, Any]:
-    """The `count` eigenvalues nearest to `shift` [1/s] and their shapes (n, count)."""
+def modes_near(pencil: Pencil, shift: complex, count: int, base: Factor | None = None) -> tuple[Any, Any]:
+    """The `count` eigenvalues nearest to `shift` [1/s] and shapes (n, count); `base` is a factor of Q(shift)."""
     size, scale = pencil.size, abs(shift)
-    base = factor(pencil.at(shift))
+    base = factor(pencil.at(shift)) if base is None else base
 
     def applied(state: Any) -> Any:
         u, v = state[:size], state[size:] * scale

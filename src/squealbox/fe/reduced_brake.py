@@ -8,6 +8,7 @@ projected. Where a parameter changes matrices, they are known at Chebyshev point
 """
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -16,13 +17,14 @@ from squealbox.contacts import Contact
 from squealbox.designs.base import Design
 from squealbox.fe.band_spectrum import Pairs, band_pairs
 from squealbox.fe.full_brake import FullBrake
-from squealbox.fe.reduced_sliding import steady_small, without_friction
+from squealbox.fe.reduced_sliding import Sums, steady_small, sums_of, untouched, without_friction
 from squealbox.fe.small import Small
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, known_names
 from squealbox.system import Equilibrium, InvalidSystem, System, linearise
 
 FIELDS = ("M", "C", "K", "load", "n", "d", "t", "normal", "across", "N0", "V")
+SUMMED = {"n", "d", "normal", "across", "N0"}  # fields that sums over contacts are made of
 
 
 class Axis(DataSheet):
@@ -80,6 +82,13 @@ class Reduction(DataSheet):
         object.__setattr__(self, "arrays", arrays)
         for field in ("contact_names", "axes", "errors", "band"):
             object.__setattr__(self, field, tuple(getattr(self, field)))
+
+    @cached_property
+    def sums(self) -> Sums | None:
+        """Sums over the contacts that all points of the ranges share; None where a parameter changes what is summed."""
+        if any(SUMMED & axis.change.keys() for axis in self.axes):
+            return None
+        return sums_of(self.arrays, np.asarray(self.unilateral))
 
     @property
     def error(self) -> float:
@@ -189,9 +198,10 @@ class ReducedBrake(Design):
     def array(self, field: str) -> Any:
         """A projected field at the present values; leading axes of the values are kept. None where there is none."""
         known = self.reduction.arrays[field]
-        if known is None:
-            return None
-        return known + sum(axis.at(field, self.values[axis.name]) for axis in self.reduction.axes)
+        changing = [axis for axis in self.reduction.axes if field in axis.change]
+        if known is None or not changing:
+            return known
+        return known + sum(axis.at(field, self.values[axis.name]) for axis in changing)
 
     def system(self) -> System:
         """The small, dense system."""
@@ -267,12 +277,14 @@ class ReducedBrake(Design):
 
     def _quickly(self, without: Any) -> tuple[Small, Equilibrium] | None:
         """Linearised from tables of contacts, less some damping; None where that road does not go."""
-        shared = self.friction is not None and not any(np.ndim(value) for value in self.values.values())
-        if not shared or not len(self.reduction.contact_names):
+        touching = len(self.reduction.contact_names) > 0
+        if (touching and self.friction is None) or any(np.ndim(value) for value in self.values.values()):
             return None
         rows = {field: self.array(field) for field in FIELDS}
         rows["C"] = rows["C"] - without
-        return steady_small(rows, self.friction, np.asarray(self.reduction.unilateral))
+        if not touching:
+            return untouched(rows)
+        return steady_small(rows, self.friction, np.asarray(self.reduction.unilateral), self.reduction.sums)
 
     def law_of(self, index: int) -> FrictionLaw:
         """The friction law of one contact."""

@@ -1,10 +1,10 @@
 """Steady sliding of a reduced brake and its linearisation from tables of contacts: no `Contact` is made, none asked.
 
-Sums D' diag(w) N over thousands of contacts are taken once; at other values of friction only the contacts that have
-opened or closed since, or whose weight does not follow the others', are added or taken away.
+Sums D' diag(w) [N, N0] over thousands of contacts are taken once, at the reference; at other values of friction only
+the contacts that have opened or closed since, or whose weight does not follow the others', are added or taken away.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,7 @@ STEP = 1e-12  # change of the normal forces, relative to them, at which the set 
 
 @dataclass
 class Sum:
-    """left' diag(weight) right of contacts' rows, kept for the last weights asked for."""
+    """left' diag(weight) right of rows (contacts, m) and (contacts, k), kept for the last weights asked for."""
 
     left: Any
     right: Any
@@ -45,53 +45,88 @@ class Sum:
         return (self.left[rows] * weight[rows, None]).T @ self.right[rows]
 
 
-def steady_small(rows: dict[str, Any], law: Any, unilateral: Any) -> tuple[Small, Equilibrium] | None:
+@dataclass(frozen=True, eq=False)
+class Sums:
+    """What all values of friction share: the sums of closed and of open contacts, and the rows across in single."""
+
+    pushing: Sum
+    lifting: Sum | None
+    across: Any
+
+
+def sums_of(rows: dict[str, Any], unilateral: Any, *, added: bool = True) -> Sums:
+    """The sums of the contacts that press at q = 0, for mu = 1; not `added` up yet where they serve one value alone."""
+    pressed = np.concatenate([rows["n"], rows["N0"][:, None]], axis=1)
+    pushing, closed = Sum(rows["d"], pressed), (rows["N0"] > 0.0) | ~unilateral
+    lifting = None if rows["normal"] is None else Sum(rows["normal"], pressed)
+    if added:
+        pushing.at(np.where(closed, np.sign(rows["V"]), 0.0))
+        if lifting is not None:
+            lifting.at(np.where(closed, 0.0, 1.0))
+    across = None if rows["across"] is None else np.asarray(rows["across"], dtype=np.float32)
+    return Sums(pushing, lifting, across)
+
+
+def steady_small(
+    rows: dict[str, Any], law: Any, unilateral: Any, sums: Sums | None = None
+) -> tuple[Small, Equilibrium] | None:
     """M, C_eff, K_eff and steady sliding; None where there is none that is settled, or the law has memory, is a
     family of laws, or leaves its range: then the general road answers, and says so.
 
-    rows holds the fields of a `Reduction` at one value of each parameter.
+    rows holds the fields of a `Reduction` at one value of each parameter, sums those of the same n, d, normal, across
+    and N0.
     """
     if law.has_memory or any(np.ndim(value) for value in law.coefficients()):
         return None
-    speed, preload, n, d, normal_rows = rows["V"], rows["N0"], rows["n"], rows["d"], rows["normal"]
+    speed, preload, n = rows["V"], rows["N0"], rows["n"]
     mu = np.broadcast_to(law.mu(speed), speed.shape)
     if np.any(mu < 0.0) or (isinstance(law, Table) and np.max(np.abs(speed)) > np.max(law.speeds)):
         return None  # the general road says what is wrong with the law
     drag = mu * np.sign(speed)
-    pushing = Sum(d, n)
-    lifting = None if normal_rows is None else Sum(normal_rows, n)
-    q = np.zeros(len(rows["load"]))
+    sums = sums_of(rows, unilateral, added=False) if sums is None else sums
+    pushing, lifting = replace(sums.pushing), None if sums.lifting is None else replace(sums.lifting)
+    q, normal = np.zeros(len(rows["load"])), preload
     settled = False
     for _ in range(2 + 2 * len(speed)):
-        normal = preload + n @ q
         closed = (normal > 0.0) | ~unilateral
-        residual = rows["K"] @ q - rows["load"] - d.T @ (np.where(closed, drag, 0.0) * normal)
-        stiffness = rows["K"] - pushing.at(np.where(closed, drag, 0.0))
+        pressed = pushing.at(np.where(closed, drag, 0.0))
         if lifting is not None:
-            residual = residual - normal_rows.T @ np.where(closed, 0.0, normal)
-            stiffness = stiffness - lifting.at(np.where(closed, 0.0, 1.0))
+            pressed = pressed + lifting.at(np.where(closed, 0.0, 1.0))
+        stiffness = rows["K"] - pressed[:, :-1]
+        residual = stiffness @ q - rows["load"] - pressed[:, -1]
         try:
             step = np.linalg.solve(stiffness, residual)
         except np.linalg.LinAlgError:
             return None
         q = q - step
-        after = preload + n @ q
-        same = np.array_equal((after > 0.0) | ~unilateral, closed)
-        if (same and np.linalg.norm(n @ step) <= STEP * np.linalg.norm(after)) or not np.any(unilateral):
+        before, normal = normal, preload + n @ q
+        same = np.array_equal((normal > 0.0) | ~unilateral, closed)
+        if (same and np.linalg.norm(normal - before) <= STEP * np.linalg.norm(normal)) or not np.any(unilateral):
             settled = True
             break
     if not settled or np.any(speed == 0.0):
         return None
-    force = np.where(closed, preload + n @ q, 0.0)
+    force = np.where(closed, normal, 0.0)
     damping = rows["C"]
     slope = np.broadcast_to(law.direct_slope(speed), speed.shape)
     if np.any(slope):
-        damping = damping + (d * (force * slope)[:, None]).T @ rows["t"]
-    if rows["across"] is not None:
-        damping = damping + _square(rows["across"], force * mu / np.abs(speed))
+        damping = damping + (rows["d"] * (force * slope)[:, None]).T @ rows["t"]
+    if sums.across is not None:  # in single precision: damping is a thousandth of |lambda|
+        damping = damping + _square(sums.across, (force * mu / np.abs(speed)).astype(np.float32))
     outcome = ended(np.array(False), np.array(True), np.array(True), speed)
     state = Equilibrium(q, force, speed, np.array(mu), np.array(True), outcome, np.array(0))
     return Small(rows["M"], damping, stiffness), state
+
+
+def untouched(rows: dict[str, Any]) -> tuple[Small, Equilibrium] | None:
+    """M, C, K and the deflection of a brake whose friction is in its matrices; None where K is singular."""
+    try:
+        q = np.linalg.solve(rows["K"], rows["load"])
+    except np.linalg.LinAlgError:
+        return None
+    nothing, yes = np.zeros(0), np.array(True)
+    outcome = ended(np.array(False), yes, yes, nothing)
+    return Small(rows["M"], rows["C"], rows["K"]), Equilibrium(q, nothing, nothing, nothing, yes, outcome, np.array(0))
 
 
 def without_friction(rows: dict[str, Any], unilateral: Any, small: Small, state: Equilibrium) -> tuple[Any, Any]:

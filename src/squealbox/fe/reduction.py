@@ -14,6 +14,7 @@ import numpy as np
 
 from squealbox.arguments import named, public
 from squealbox.factorisation import Order
+from squealbox.fe.band_spectrum import band_pairs
 from squealbox.fe.basis import joined
 from squealbox.fe.craig_bampton import craig_bampton_basis
 from squealbox.fe.full_brake import FullBrake, full_system
@@ -24,19 +25,21 @@ from squealbox.fe.projection import HEADROOM, ROUNDS, Projected, basis_for, refi
 from squealbox.fe.quadratic import full_modes
 from squealbox.fe.real_modes import real_modes
 from squealbox.fe.reduced_brake import FIELDS, Axis, ReducedBrake, Reduction, chebyshev_points, lagrange
+from squealbox.fe.reduced_sliding import steady_small
 from squealbox.fe.small import Small
 from squealbox.sparse_sliding import Start, at_rest
-from squealbox.system import InvalidSystem, as_system
+from squealbox.system import InvalidSystem, System, as_system
 
 Basis = Literal["enriched", "craig-bampton", "pod"]
 METHODS = ("enriched", "craig-bampton", "pod")
 POINTS = (3, 5, 9, 17, 33)  # Chebyshev points of a parameter that changes matrices, until the new ones were foreseen
 FORESEEN = 1e-5  # by so much of the largest entry; what lies between the new ones is then known far better
 MOST_AXES = 4
-OPENING = 10.0  # of the tolerance: what the shapes of contacts that open may lack before residuals are looked at
+STEPS = 8  # of the way from the reference to each corner, at each of which open contacts are looked at
+OPENING = 2.0  # of the tolerance: what the shapes of contacts that open may lack before residuals are looked at
 HIGH_DAMPING = (0.02, 0.2)  # damping ratios that are tried
 SEEN = 1e-5  # share of the strongest direction from which on the band's modes have a part in a direction
-INSIDE = (0.25, 0.5, 0.75)  # shares of the ranges at which added damping is checked, beside their corners
+INSIDE = (0.25, 0.75)  # shares of the ranges at which added damping is checked, beside their corners
 HELD = 3.0  # times the band up to which modes with held contacts are taken
 SNAPSHOTS = 3  # values of each parameter at which POD looks
 
@@ -72,20 +75,22 @@ def reduce(
     system = as_system(design_or_system, linear=True)
     if not system.is_sparse:
         raise InvalidSystem(f"the system is dense, with {system.size} degrees of freedom: it needs no reduction")
-    corners = [dict(zip(ranges, values, strict=True)) for values in product(*ranges.values())] if ranges else []
-    corners += [{name: 0.5 * (start + end) for name, (start, end) in ranges.items()}] if ranges else []
+    corners = _corners(design_or_system, ranges)
     rest = at_rest(system.K)
     reference = pencil_of(system, time, start=rest)
-    order = None if rest.base is None else rest.base.order
+    order, tried = None if rest.base is None else rest.base.order, rest.tried
     del rest  # its factor is large
     steady = reference.state.q
     modes, basis = _first_basis(method, design_or_system, reference, ranges, (low, high), time, order)
-    near = Start(steady, modes.base)
+    near = Start(steady, modes.base, tried)
     pencils = [pencil_of(full_system(design_or_system, corner), time, start=near) for corner in corners]
     basis = _with_statics(reference, pencils, basis)
-    if method == "enriched":
-        basis = joined(reference, basis, opening_directions(modes, [reference, *pencils], high, OPENING * tolerance))
+    del near, tried
     onto = GrowingBasis([reference, *pencils], basis)
+    if method == "enriched" and len(corners):
+        full = FullBrake(design_or_system, onto.blocks[0], steady, modes.base, time)
+        pushed = _pushed_between(full, onto.structural(0), corners, [reference, *pencils])
+        onto.add(opening_directions(modes, reference, pushed, high, OPENING * tolerance))
     found = refined(onto, modes.base, (low, high), 0.5 * tolerance, ROUNDS if method == "enriched" else 0)
     onto.turn()
     full = FullBrake(design_or_system, onto.blocks[0], steady, modes.base, time)
@@ -122,6 +127,27 @@ def reduce(
     points = zip([{}, *corners], found, strict=True)
     errors = [(point, _error(small.replace(point), modes_there, time)) for point, modes_there in points]
     return small.replace({"reduction": reduction.replace(errors=tuple(errors))})
+
+
+def _corners(design: Any, ranges: Mapping[str, tuple[float, float]]) -> list[dict[str, float]]:
+    """The corners of all ranges, and their middle where the design is none that lies within them.
+
+    A corner that is the design itself is left out, for that is looked at anyway.
+    """
+    if not ranges:
+        return []
+    corners = [dict(zip(ranges, values, strict=True)) for values in product(*ranges.values())]
+    present = {name: _present(design, name) for name in ranges}
+    if not all(low < present[name] < high for name, (low, high) in ranges.items()):
+        corners.append({name: 0.5 * (low + high) for name, (low, high) in ranges.items()})
+    return [corner for corner in corners if corner != present]
+
+
+def _present(design: Any, name: str) -> float:
+    if not isinstance(design, System):
+        return float(design.value_of(name))
+    law, known = design.contacts.law, name.startswith("friction.")
+    return float(law.value_of(name.removeprefix("friction."))) if known and not isinstance(law, tuple) else float("nan")
 
 
 def _checked(band: Any, varying: Any, method: str) -> tuple[float, float]:
@@ -181,6 +207,36 @@ def _with_statics(reference: SlidingPencil, pencils: list[SlidingPencil], basis:
     return joined(reference, basis, np.stack(columns, axis=1)) if columns else basis
 
 
+def _pushed_between(
+    full: FullBrake, known: dict[str, Any], points: list[dict[str, float]], pencils: list[SlidingPencil]
+) -> Any:
+    """N0 + n . q at the reference, at other points and at STEPS of the way to each, (linearisations, contacts).
+
+    On the way steady sliding is that on the basis, for a point with the stiffness and contacts of the reference; for
+    others, and where there is none, N is taken to change evenly. known is what the basis makes of the reference.
+    """
+    first, *others = pencils
+    found = [first.sliding.pushed]
+    for point, pencil in zip(points, others, strict=True):
+        same = pencil.sliding.system.K is first.sliding.system.K
+        for share in np.arange(1, STEPS) / STEPS:
+            between = {n: (1.0 - share) * _present(full.design, n) + share * value for n, value in point.items()}
+            pushed = _pushed_on_basis(full, between, known) if same else None
+            even = (1.0 - share) * found[0] + share * pencil.sliding.pushed
+            found.append(even if pushed is None else pushed)
+        found.append(pencil.sliding.pushed)
+    return np.stack(found)
+
+
+def _pushed_on_basis(full: FullBrake, point: dict[str, float], known: dict[str, Any]) -> Any:
+    """N0 + n . q (contacts,) of steady sliding on the basis; None where the quick road has none."""
+    system = full.system(point)
+    law = system.contacts.law
+    rows = full.projected_arrays(system, known)
+    found = None if isinstance(law, tuple) else steady_small(rows, law, np.asarray(system.contacts.unilateral))
+    return None if found is None else rows["N0"] + rows["n"] @ found[1].q
+
+
 def _axis(full: FullBrake, name: str, low: float, high: float, arrays: dict[str, Any]) -> Axis | None:
     """What changes along one parameter; None for a coefficient of the friction law, which the contacts know."""
     if name.startswith("friction."):
@@ -237,16 +293,16 @@ def _damped_above(smalls: list[Small], elastic: Any, top: float, allowed: float)
     """
     mass, end = smalls[0].M, 2.0 * np.pi * top
     nothing = np.zeros_like(mass)
-    shapes, light, rising = [], [], []
-    for small in smalls:
-        values, right = small.right_shapes()
-        rising.append(_growth_above(values, end))
-        below = (values.imag >= 0.0) & (values.imag <= end)
-        shapes += [right[:, below].real, right[:, below].imag]
-        light.append(values[below & vibrating(values)])
+    rising = [_growth_above(small.eigenvalues(), end) for small in smalls]
     growth = max(rising)
     if growth == 0.0:
         return nothing, 0.0, 0.0
+    shapes, light = [], []
+    for small in smalls:
+        values, right = small.right_shapes()
+        below = (values.imag >= 0.0) & (values.imag <= end)
+        shapes += [right[:, below].real, right[:, below].imag]
+        light.append(values[below & vibrating(values)])
     half = np.linalg.cholesky(mass).T  # lengths by M
     columns = half @ np.concatenate(shapes, axis=1)
     columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
@@ -292,6 +348,7 @@ def _error(small: ReducedBrake, found: Projected, time: float) -> float:
     there = small.linearised(time)
     if there is None:
         return float("inf")
-    values = there.eigenvalues()
-    beside = np.array([np.min(np.abs(values - value)) for value in found.eigenvalues])
+    pairs = band_pairs(there, small.band, rough=True)
+    values = there.eigenvalues() if pairs is None else pairs.values
+    beside = np.array([np.min(np.abs(values - value), initial=np.inf) for value in found.eigenvalues])
     return float(np.max(np.abs(found.error) + beside, initial=0.0))
