@@ -29,33 +29,14 @@ DIRECTIONS = 100  # that a step may try; more, and a factorisation is the quicke
 DEPENDENT = 1e-8  # share of the largest square length below which a remembered direction is no new one
 
 
-Directions = list[tuple[Any, Any, Any]]  # z, K z, N z
-
-
-class Tried:
-    """Directions z that searches have tried, with K z and N z, for brakes of one stiffness K and one table N."""
-
-    def __init__(self) -> None:
-        self.stiffness: Any = None
-        self.rows: Any = None
-        self.found: Directions = []
-
-    def of(self, stiffness: Any, rows: Any) -> Directions:
-        """What was found of this very stiffness and table, to be added to; of others it knows nothing."""
-        if self.stiffness is not stiffness or self.rows is not rows:
-            self.stiffness, self.rows, self.found = stiffness, rows, []
-        return self.found
-
-
 class Start(NamedTuple):
     """Steady sliding q (n,) of a similar brake and the factor of a similar stiffness, to begin a search with.
 
-    base is None where that stiffness is singular; tried, where it is given, is what searches tell each other.
+    base is None where that stiffness is singular.
     """
 
     q: Any
     base: Factor | None
-    tried: Tried | None = None
 
 
 class SlidingState(NamedTuple):
@@ -76,12 +57,11 @@ def sliding_state(
 
     Where rough steps lead astray, as they may where the brake is all but rigid, exact ones begin anew.
     """
-    begin, base, known = at_rest(stiffness) if start is None else start
+    begin, base = at_rest(stiffness) if start is None else start
     steps = 3 + 2 * len(contacts)
-    tried = [] if known is None else known.of(stiffness, contacts.n)
-    found = _search(_Steps(stiffness, contacts, base, tried), begin, load, time, steps)
+    found = _search(_Steps(stiffness, contacts, base), begin, load, time, steps)
     if not found.settled and base is not None and np.any(contacts.unilateral):
-        exact = _Steps(stiffness, contacts, None, [])
+        exact = _Steps(stiffness, contacts, None)
         found = _search(exact, np.zeros(stiffness.shape[0]), load, time, min(steps, EXACT_STEPS))
     return found
 
@@ -120,9 +100,9 @@ def _search(steps: "_Steps", q: Any, load: Any, time: float, most: int) -> Slidi
 def at_rest(stiffness: Any) -> Start:
     """No displacement, and the factor of the stiffness with every contact closed."""
     try:
-        return Start(np.zeros(stiffness.shape[0]), factor(stiffness), Tried())
+        return Start(np.zeros(stiffness.shape[0]), factor(stiffness))
     except SingularMatrix:
-        return Start(np.zeros(stiffness.shape[0]), None, Tried())
+        return Start(np.zeros(stiffness.shape[0]), None)
 
 
 def _pressing(normal: Any, closed: Any) -> Any:
@@ -132,11 +112,12 @@ def _pressing(normal: Any, closed: Any) -> Any:
 class _Steps:
     """Newton's steps J y = r of one search, J = K - D' diag(drag) N - R' diag(open) N, never formed.
 
-    Every direction z = B^-1 r that was `tried` is kept with K z and N z: for other contacts J z is had from these.
+    Every direction z = B^-1 r that was tried is kept with K z and N z: for other contacts J z is had from these.
     """
 
-    def __init__(self, stiffness: Any, contacts: Contacts, base: Factor | None, tried: Directions) -> None:
-        self.stiffness, self.contacts, self.base, self.tried = stiffness, contacts, base, tried
+    def __init__(self, stiffness: Any, contacts: Contacts, base: Factor | None) -> None:
+        self.stiffness, self.contacts, self.base = stiffness, contacts, base
+        self.tried: list[tuple[Any, Any, Any]] = []
 
     def solved(self, drag: Any, closed: Any, residual: Any, accuracy: float) -> Any:
         found = None if self.base is None else self._iterated(self.base, drag, closed, residual, accuracy)

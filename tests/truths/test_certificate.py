@@ -57,6 +57,19 @@ def test_two_hidden_modes_and_one_invented_are_counted(brake):
     assert certificate(pencil, invented, BAND).missing == -1
 
 
+def test_a_list_of_which_most_are_wrong_is_counted_all_the_same(brake):
+    """The eigenvalues near the contour are found where it is hard to follow, whatever the list says of them."""
+    pencil, values, _ = brake
+    random = np.random.default_rng(3)
+    off = 40.0 * (random.standard_normal(len(values)) + 1j * random.standard_normal(len(values)))
+    wrong = np.delete(values + off, unstable(values)[0])
+    found = certificate(pencil, wrong, BAND)
+    (left, right), (low, high) = found.growth, 2 * np.pi * np.array(found.band)
+    inside = (values.real > left) & (values.real < right) & (values.imag > low) & (values.imag < high)
+    assert found.missing == np.sum(inside) - found.known
+    assert found.factorisations <= 150
+
+
 def test_too_few_factorisations_certify_nothing(brake):
     pencil, values, _ = brake
     found = certificate(pencil, values, BAND, most=10)

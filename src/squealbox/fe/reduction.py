@@ -18,7 +18,7 @@ from squealbox.fe.band_spectrum import band_pairs
 from squealbox.fe.basis import joined
 from squealbox.fe.craig_bampton import craig_bampton_basis
 from squealbox.fe.full_brake import FullBrake, full_system
-from squealbox.fe.growing_basis import GrowingBasis
+from squealbox.fe.growing_basis import ROWS, GrowingBasis
 from squealbox.fe.opening import opening_directions
 from squealbox.fe.pencil import Pencil, SlidingPencil, pencil_of, vibrating
 from squealbox.fe.projection import HEADROOM, ROUNDS, Projected, basis_for, refined
@@ -78,14 +78,13 @@ def reduce(
     corners = _corners(design_or_system, ranges)
     rest = at_rest(system.K)
     reference = pencil_of(system, time, start=rest)
-    order, tried = None if rest.base is None else rest.base.order, rest.tried
+    order = None if rest.base is None else rest.base.order
     del rest  # its factor is large
     steady = reference.state.q
     modes, basis = _first_basis(method, design_or_system, reference, ranges, (low, high), time, order)
-    near = Start(steady, modes.base, tried)
-    pencils = [pencil_of(full_system(design_or_system, corner), time, start=near) for corner in corners]
+    full = FullBrake(design_or_system, basis, steady, modes.base, time)
+    pencils = _pencils_at(full, reference, corners)
     basis = _with_statics(reference, pencils, basis)
-    del near, tried
     onto = GrowingBasis([reference, *pencils], basis)
     if method == "enriched" and len(corners):
         full = FullBrake(design_or_system, onto.blocks[0], steady, modes.base, time)
@@ -221,20 +220,35 @@ def _pushed_between(
         same = pencil.sliding.system.K is first.sliding.system.K
         for share in np.arange(1, STEPS) / STEPS:
             between = {n: (1.0 - share) * _present(full.design, n) + share * value for n, value in point.items()}
-            pushed = _pushed_on_basis(full, between, known) if same else None
+            there = _on_basis(full, full.system(between), known) if same else None
             even = (1.0 - share) * found[0] + share * pencil.sliding.pushed
-            found.append(even if pushed is None else pushed)
+            found.append(even if there is None else there[1])
         found.append(pencil.sliding.pushed)
     return np.stack(found)
 
 
-def _pushed_on_basis(full: FullBrake, point: dict[str, float], known: dict[str, Any]) -> Any:
-    """N0 + n . q (contacts,) of steady sliding on the basis; None where the quick road has none."""
-    system = full.system(point)
+def _pencils_at(full: FullBrake, reference: SlidingPencil, points: list[dict[str, float]]) -> list[SlidingPencil]:
+    """The matrices about steady sliding at other points, which is looked for first on the basis where it may do."""
+    system, basis = reference.sliding.system, full.basis
+    known = {name: None if (rows := getattr(system.contacts, name)) is None else rows @ basis for name in ROWS}
+    known |= {"M": None, "C": 0.0, "K": basis.T @ (system.K @ basis), "across": None}
+    found = []
+    for point in points:
+        there = full.system(point)
+        near = _on_basis(full, there, known) if there.K is system.K else None
+        q = full.steady if near is None else full.steady + basis @ near[0]
+        found.append(pencil_of(there, full.time, start=Start(q, full.base)))
+    return found
+
+
+def _on_basis(full: FullBrake, system: System, known: dict[str, Any]) -> tuple[Any, Any] | None:
+    """Steady sliding on the basis, from that of the reference, and N0 + n . q; None where the quick road has none."""
     law = system.contacts.law
+    if isinstance(law, tuple):
+        return None
     rows = full.projected_arrays(system, known)
-    found = None if isinstance(law, tuple) else steady_small(rows, law, np.asarray(system.contacts.unilateral))
-    return None if found is None else rows["N0"] + rows["n"] @ found[1].q
+    found = steady_small(rows, law, np.asarray(system.contacts.unilateral))
+    return None if found is None else (found[1].q, rows["N0"] + rows["n"] @ found[1].q)
 
 
 def _axis(full: FullBrake, name: str, low: float, high: float, arrays: dict[str, Any]) -> Axis | None:
