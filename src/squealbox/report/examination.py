@@ -17,6 +17,7 @@ from squealbox.stability import (
     ModeEnergy,
     Sensitivity,
     StabilityMap,
+    TrackedModes,
 )
 from squealbox.stability.mechanism import Mechanism
 from squealbox.system import System
@@ -34,7 +35,7 @@ class Examination:
     why: Mechanism | None = None
     varied: Axis | None = None
     crossings: CriticalValues | None = None
-    spectra: ComplexModes | None = None
+    spectra: ComplexModes | TrackedModes | None = None
     ranking: Sensitivity | None = None
     energy: ModeEnergy | None = None
     plane: Map | None = None

@@ -32,6 +32,7 @@ from squealbox.stability import (
     mode_energy,
     sensitivity,
     stability_map,
+    tracked_modes,
 )
 from squealbox.system import InvalidSystem
 from squealbox.transient import verdict
@@ -128,7 +129,10 @@ class _Work:
             )
             drawn = varied.replace(points=min(int(varied.points), SPECTRA)) if self.reduced else varied
             values = np.sort(np.append(drawn.values, crossings.value))
-            self.found["spectra"] = complex_modes(self.design.replace({varied.name: values}), self.time)
+            if self.reduced:
+                self.found["spectra"] = tracked_modes(self.design, varied.name, values, time=self.time)
+            else:
+                self.found["spectra"] = complex_modes(self.design.replace({varied.name: values}), self.time)
             self.found["varied"] = drawn
 
     def margins(self, plane: Map | None) -> None:

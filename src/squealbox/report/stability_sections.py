@@ -51,7 +51,7 @@ def _coalescence(found: Examination) -> Chart:
     for panel in figure.axes:
         panel.axvline(here, color="#000000", linewidth=0.7, linestyle=":")
     caption = f"Frequencies and growth rates over {varied.name}; hatched: unstable; dotted: this design."
-    moving = charts.modes_over_parameter(factor * inputs, spectra.eigenvalues, varied.name, unit, here)
+    moving = charts.modes_over_parameter(factor * inputs, spectra, varied.name, unit, here)
     return Chart(picture(figure, caption), moving)
 
 
