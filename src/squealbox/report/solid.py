@@ -15,7 +15,6 @@ from squealbox.system import equilibrium
 from squealbox.words import quantity
 
 MOST_FACES = 2500
-TURN = "Drag or arrow keys turn it, a click and the wheel come nearer, Z looks along the axis."
 
 
 def vibrating_solid(small: ReducedBrake, modes: ComplexModes) -> Solid | None:
@@ -37,7 +36,7 @@ def vibrating_solid(small: ReducedBrake, modes: ComplexModes) -> Solid | None:
     }
     mode = f"The mode that grows first, {quantity(worst.frequency, 'Hz')}, slowed down and enlarged"
     lines = "" if surface.lone else "; lines: at rest"
-    caption = f"{mode}{lines}. {largest_motion(surface, moved)} {TURN}"
+    caption = f"{mode}{lines}. {largest_motion(surface, moved)}"
     drawing = picture(mode_on_surface(surface, moved), caption, "The brake vibrating in its worst mode")
     normal = tuple(float(force) for force in np.nan_to_num(modes.normal_force))
     return Solid(drawing, {"names": list(surface.names), "size": surface.size}, arrays, normal)

@@ -97,7 +97,7 @@ def table_text(table: Mapping[str, Any]) -> str:
             f"{table[f'MAC {k} [-]'][i]:.2f} to {table[f'of mode at mu = 0 {k} [Hz]'][i]:.6g} Hz" for k in (1, 2)
         )
         printed = (
-            f"Abaqus damping ratio {table['Abaqus damping ratio [-]'][i]:+.5f}, "
+            f"Abaqus damping ratio {table['Abaqus damping ratio [-]'][i]:+.4g}, "
             f"Ansys stability {table['Ansys stability [Hz]'][i]:+.4g} Hz"
         )
         lines.append(f"mode {int(table['mode'][i])}, {table['frequency [Hz]'][i]:.6g} Hz: {printed}")

@@ -1,5 +1,6 @@
 // Every brake in 3-D in place of its printed picture: it vibrates, and is turned by hand.
 const period = 2400; // ms
+const HOW = "Drag it or use the arrow keys to turn it; click it and use the wheel to come nearer; Z looks along the axis.";
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
 /** The outline of the brake at rest, over its picture. */
@@ -32,8 +33,9 @@ for (const figure of document.querySelectorAll("figure.solid")) {
   const play = button("", () => say(!held));
   const say = (now) => (play.textContent = (held = now) ? "Move" : "Pause");
   say(held);
-  figure.querySelector(".keys").replaceChildren(play, " ", ...mesh.keys());
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (draw(), figure.querySelector(".keys").replaceChildren(play, " ", ...mesh.keys())));
+  const keys = () => figure.querySelector(".keys").replaceChildren(play, " ", ...mesh.keys(), make("small", {}, HOW));
+  keys();
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (draw(), keys()));
   new IntersectionObserver(([now]) => (seen = now.isIntersecting)).observe(figure);
   const step = (now) => {
     requestAnimationFrame(step);
