@@ -12,13 +12,14 @@ import numpy as np
 import pytest
 
 from browsers import driven
-from squealbox import DrumBrake, LinearSlope, Ramp, complex_modes, simulate
+from squealbox import Coulomb, DiscBrake, DrumBrake, LinearSlope, Ramp, complex_modes, reduce, simulate
 from squealbox.cli import BAD_INPUT, DONE, main
 from squealbox.files import write_design
 from squealbox.report import Examination, ReportError, design_page, examine, report, words
 from squealbox.report.blocks import Chart, Drawing, Page, Section
 from squealbox.report.moving import vibrating
-from squealbox.report.page import packed_library, render
+from squealbox.report.page import packed_library, render, write_page
+from squealbox.report.solid import vibrating_solid
 from squealbox.signals import dominant_frequency, sound_level
 from squealbox.studies import sweep
 
@@ -210,6 +211,33 @@ def test_the_brake_vibrates_in_its_worst_mode_without_a_script_and_still_on_pape
     assert "prefers-reduced-motion: reduce" in svg
     assert "script" not in svg
     assert "print { .moves { display: none }" in svg
+
+
+def test_a_finite_element_brake_vibrates_and_is_turned_by_hand(browser, tmp_path):
+    brake = reduce(DiscBrake(element_size=0.05, friction=Coulomb(0.5)), (2500.0, 5000.0))
+    solid = vibrating_solid(brake, complex_modes(brake))
+    path = write_page(Page("a page", "a lead", (Section("one", (solid,)),)), tmp_path / "solid.html")
+    assert path.stat().st_size < 1e6
+    reading = Opened(browser, path)
+    page = reading.page
+    seen = "document.querySelector('figure.solid canvas').toDataURL()"
+    page.wait_for_function(f"{seen}.length > 5000")
+    first = page.evaluate(seen)
+    page.wait_for_function(f"first => {seen} !== first", arg=first)  # it moves
+    page.get_by_role("button", name="Pause").click()
+    still = page.evaluate(seen)
+    page.wait_for_timeout(150)
+    assert page.evaluate(seen) == still
+    page.locator("figure.solid canvas").press("ArrowRight")
+    assert page.evaluate(seen) != still  # it was turned
+    assert "contact slips" in page.inner_text(".keys")
+    assert not page.locator("figure.solid img").is_visible()
+    page.emulate_media(media="print")
+    assert page.locator("figure.solid img").is_visible()
+    assert not page.locator("figure.solid canvas").is_visible()
+    assert reading.errors == []
+    assert [url for url in reading.requests if not url.startswith("data:")] == [path.as_uri()]
+    page.close()
 
 
 def test_what_cannot_be_computed_is_said(tmp_path):

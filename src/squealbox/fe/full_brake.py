@@ -26,6 +26,10 @@ class FullBrake:
 
     left_out_of_files = True
 
+    def at(self, values: Mapping[str, Any]) -> Any:
+        """The full design at other parameters, or the full system."""
+        return full_system(self.design, values) if isinstance(self.design, System) else self.design.replace(values)
+
     def system(self, values: Mapping[str, Any]) -> System:
         """The full system at other parameters."""
         return full_system(self.design, values)

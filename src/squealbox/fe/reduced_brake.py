@@ -310,6 +310,10 @@ class ReducedBrake(Design):
         named = {self._full_name(name): value for name, value in values.items()}
         return self._attached().checked(self._present(named), self.band)
 
+    def whole(self) -> Any:
+        """The full design at the present values, or the full system."""
+        return self._attached().at(self._present({}))
+
     def missed(self, eigenvalue: complex, x: Any, y: Any) -> complex | None:
         """The estimate [1/s] of the full brake's eigenvalue less one found here, with right and left shape (m,).
 

@@ -39,6 +39,42 @@ class Surface:
 
     left_out_of_files: ClassVar[bool] = True
 
+    @property
+    def lone(self) -> bool:
+        """True where it has no faces, only nodes."""
+        return bool(np.all(self.faces[:, :1] == self.faces))
+
+    @property
+    def size(self) -> float:
+        """Half the diagonal of the box it stands in [m]."""
+        return 0.5 * float(np.linalg.norm(np.ptp(self.places, axis=0)))
+
+    @property
+    def middle(self) -> Any:
+        """Middle of that box, (3,) [m]."""
+        return 0.5 * (self.places.min(axis=0) + self.places.max(axis=0))
+
+    def moved(self, shape: Any) -> Any:
+        """Displacement (k, 3) of the nodes in a shape, turned and scaled so that its largest component is 1.
+
+        The shape is one of all freedoms (n,), of a reduced brake one of its coordinates (m,).
+        """
+        if self.moves is None:
+            moved = np.where(self.rows >= 0, np.asarray(shape)[self.rows], 0.0)
+        else:
+            moved = np.asarray(self.moves, dtype=float) @ shape
+        return moved / moved.flat[np.argmax(np.abs(moved))]
+
+    def shares(self, moved: Any) -> Any:
+        """Of the motion of each face, the share (f,) of that of the node that moves most."""
+        size = np.linalg.norm(np.abs(moved), axis=1)
+        return np.mean(size[self.faces], axis=1) / np.max(size)
+
+    def next_to_contacts(self) -> Any:
+        """The node nearest to each contact (contacts,)."""
+        nearest = [int(np.argmin(np.sum((self.places - at) ** 2, axis=1))) for at in self.touching]
+        return np.array(nearest, dtype=int)
+
 
 def surface_of(brake: Any, most: int = MOST_FACES) -> Surface | None:
     """The surface of a finite-element brake with at most `most` faces, coarser where it has more; None of others.
@@ -53,10 +89,10 @@ def surface_of(brake: Any, most: int = MOST_FACES) -> Surface | None:
     return _cloud(brake, most) if isinstance(brake, AssembledBrake) else None
 
 
-def with_surface(small: ReducedBrake) -> ReducedBrake:
+def with_surface(small: ReducedBrake, most: int = MOST_FACES) -> ReducedBrake:
     """The reduced brake with its surface and without the full one, so that it goes to where it is drawn."""
     full = small.full
-    found = None if full is None else surface_of(full.design)
+    found = None if full is None else surface_of(full.design, most)
     if found is None:
         return small.replace({"full": None})
     moves = np.where((found.rows >= 0)[..., None], full.basis[found.rows], 0.0).astype(np.float32)

@@ -193,8 +193,8 @@ def promise(brake: ReducedBrake) -> str:
     return (
         f"{done} for {about.band[0]:g} to {about.band[1]:g} "
         f"Hz{' and ' + ', '.join(over) if over else ''}: eigenvalues in the band within {about.error:.2g} 1/s{held}, "
-        f"estimated at {len(about.errors)} points; that no growing mode is missing is not certified here "
-        "(squealbox modes --certify)."
+        f"estimated at {len(about.errors)} point{'s' * (len(about.errors) != 1)}; that no growing mode is missing is "
+        "not certified here (squealbox modes --certify)."
     )
 
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.plots.style import LINES, UNSTABLE, drawing, figure_of, line, note
+from squealbox.stability import TrackedModes
 from squealbox.words import number, quantity_label, scaled
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ def coalescence(
     Parameters
     ----------
     parameter : (k,), increasing values
-    modes : batched complex modes, or their eigenvalues (k, 2n) [1/s]
+    modes : batched complex modes, their eigenvalues (k, 2n) [1/s], or tracked modes
     name, unit : of the parameter, for the axis
     frequency_unit : "kHz", "Hz", "rad/s" or "10³ rad/s"; by default what suits the numbers
     axes : a pair of panels
@@ -42,12 +43,10 @@ def coalescence(
         raise ValueError(
             f"eigenvalues of shape {eigenvalues.shape} for {values.size} values: expected (k, 2n), a row for each"
         )
-    branches = followed(eigenvalues)
-    branches = np.where(np.imag(branches) >= 0.0, branches, np.nan)
-    branches = branches[:, np.any(np.isfinite(branches), axis=0)]
+    branches = upper_branches(modes)
     frequency, growth = np.imag(branches) / (2.0 * np.pi), np.real(branches)
     hertz, read = scaled("Hz", frequency, to=frequency_unit)
-    worst = np.max(np.real(eigenvalues), axis=-1)
+    worst = np.fmax.reduce(np.real(eigenvalues), axis=-1)
     with drawing(axes, rows=2, height=3.8, sharex=True) as (above, below):
         named = _told(growth)
         for i, told in enumerate(named):
@@ -81,6 +80,14 @@ def _told(growth: Any) -> Any:
     told = np.zeros(highest.size, dtype=bool)
     told[np.argsort(-highest, kind="stable")[: highest.size if highest.size <= len(LINES) else MOST_NAMED]] = True
     return told
+
+
+def upper_branches(modes: Any) -> Any:
+    """The modes with Im >= 0, or their eigenvalues (k, m), each a column that runs on smoothly; NaN where it is not."""
+    rows = np.asarray(getattr(modes, "eigenvalues", modes))
+    rows = rows if isinstance(modes, TrackedModes) else followed(rows)
+    rows = np.where(np.isfinite(rows) & (np.imag(rows) >= 0.0), rows, complex(np.nan, np.nan))
+    return rows[:, np.any(np.isfinite(rows), axis=0)]
 
 
 def followed(eigenvalues: Any) -> Any:

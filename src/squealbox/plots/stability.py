@@ -90,7 +90,7 @@ def eigenvalues(modes: ComplexModes, *, title: str = "", axes: Any = None) -> "F
 def tracked_modes(tracked: TrackedModes, **keywords: Any) -> "Figure":
     """Frequency and growth rate of every tracked mode against the parameter."""
     keywords.setdefault("name", tracked.parameter)
-    return coalescence(tracked.value, tracked.eigenvalues, **keywords)
+    return coalescence(tracked.value, tracked, **keywords)
 
 
 @drawn_by.register(StabilityMap)

@@ -125,6 +125,22 @@ class Chart:
 
 
 @dataclass(frozen=True)
+class Solid:
+    """A brake in 3-D that vibrates in a mode and is turned by hand, as the workbench draws it.
+
+    data holds the names of its parts and its size [m]; arrays the places, faces, parts and touching nodes of a surface,
+    a mode as re and im (k, 3), its shares (f,), the outline (e, 2); normal [N] the forces of the contacts. The
+    drawing is what is printed, and what is seen where scripts do not run.
+    """
+
+    drawing: Drawing
+    data: Mapping[str, Any]
+    arrays: Mapping[str, Any]
+    normal: tuple[float, ...]
+    kind = "solid"
+
+
+@dataclass(frozen=True)
 class Sound:
     """A WAV file to listen to, with a caption."""
 

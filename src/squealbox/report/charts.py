@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.plots.modes import followed, unstable_stretches
+from squealbox.plots.modes import unstable_stretches, upper_branches
 from squealbox.plots.style import LINES
 from squealbox.words import quantity_label, scaled
 
@@ -19,11 +19,9 @@ AXIS = {"ticks": "inside", "showline": True, "mirror": True, "linecolor": "#0000
 MOST = 6000  # points of a line that are worth their bytes
 
 
-def modes_over_parameter(values: Any, eigenvalues: Any, name: str, unit: str, present: float) -> Figure:
+def modes_over_parameter(values: Any, modes: Any, name: str, unit: str, present: float) -> Figure:
     """Frequencies above, growth rates below, unstable stretches shaded, the present value as a line."""
-    tracks = followed(eigenvalues)
-    tracks = np.where(np.imag(tracks) >= 0.0, tracks, np.nan)
-    tracks = tracks[:, np.any(np.isfinite(tracks), axis=0)]
+    tracks = upper_branches(modes)
     factor, read = scaled("Hz", np.imag(tracks) / (2.0 * np.pi))
     data = []
     for i in range(tracks.shape[1]):
@@ -32,7 +30,7 @@ def modes_over_parameter(values: Any, eigenvalues: Any, name: str, unit: str, pr
         hertz = np.imag(tracks[:, i]) / (2.0 * np.pi) / factor
         data.append(_line(values, hertz, label, line, yaxis="y"))
         data.append(_line(values, np.real(tracks[:, i]), label, line, yaxis="y2", showlegend=False))
-    worst = np.max(np.real(eigenvalues), axis=-1)
+    worst = np.fmax.reduce(np.real(modes.eigenvalues), axis=-1)
     shapes = [
         {"type": "rect", "x0": left, "x1": right, "yref": "paper", "y0": 0, "y1": 1, **SHADE}
         for left, right in unstable_stretches(values, worst)

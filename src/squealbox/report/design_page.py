@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from squealbox import plots
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files import NotWritable
 from squealbox.files.writing import design_text
 from squealbox.plots.cards import has_drawing
@@ -14,19 +15,20 @@ from squealbox.report import motion_sections, stability_sections, tables, words
 from squealbox.report.blocks import Code, Page, Points, Section, Text, Tiles
 from squealbox.report.examination import Examination
 from squealbox.report.pictures import picture
+from squealbox.report.solid import pressed
 from squealbox.result import provenance
 from squealbox.system import equilibrium
 
 
-def design_page(found: Examination, *, title: str = "", command: str = "", note: str = "") -> Page:
+def design_page(found: Examination, *, title: str = "", command: str = "", notes: tuple[str, ...] = ()) -> Page:
     """The page of an examination; `title` and `command` say which file it came from and how to make it again.
 
-    `note` is a sentence that belongs to the caveats.
+    `notes` belong to the caveats.
     """
-    design = found.design
+    design = found.shown
     parts = [
         Section("Verdict", (_tiles(found), Points(tuple(words.verdict(found))))),
-        Section("Caveats", (Points((*words.caveats(found), *filter(None, [note]))),)),
+        Section("Caveats", (Points((*words.caveats(found), *notes)),)),
         Section("The brake", tuple(_brake(found))),
         Section("Stability", tuple(stability_sections.stability(found))),
         Section("Two parameters", tuple(stability_sections.map_of_two(found))),
@@ -71,6 +73,9 @@ def _brake(found: Examination) -> Iterator[Any]:
         caption = "The brake, angles to scale. Blue is what slides, orange are loads."
         yield picture(plots.brake_drawing(found.design), caption, f"Drawing of {found.design.title}")
     yield tables.parameters(found)
+    pressure = pressed(found) if isinstance(found.design, ReducedBrake) else None
+    if pressure is not None:
+        yield pressure
     yield tables.contacts(found.system, found.time)
     law = getattr(found.design, "friction", None)
     state = equilibrium(found.system, found.time)
@@ -79,7 +84,8 @@ def _brake(found: Examination) -> Iterator[Any]:
         swept = _operating(found)
         top = 1.25 * max(float(np.max(speeds)), swept[1])
         figure = plots.friction_curve(law, upto=top, operating=swept, speed=float(np.max(speeds)))
-        yield picture(figure, "The friction law. Grey: the sliding speeds of the transient below.")
+        grey = "" if found.motion is None else " Grey: the sliding speeds of the transient below."
+        yield picture(figure, f"The friction law.{grey}")
 
 
 def _operating(found: Examination) -> tuple[float, float]:
@@ -91,7 +97,7 @@ def _operating(found: Examination) -> tuple[float, float]:
 
 
 def _assumptions(found: Examination) -> Iterator[Any]:
-    told = (inspect.getdoc(type(found.design)) or "").split(">>>")[0]
+    told = (inspect.getdoc(type(found.shown)) or "").split(">>>")[0]
     said = [" ".join(paragraph.replace("`", "").split()) for paragraph in told.split("\n\n") if paragraph.strip()]
     yield Section("What is assumed", (
         Text("Motion of a linear structure with frictional contacts, q in m and N positive in compression:"),
@@ -106,7 +112,7 @@ def _assumptions(found: Examination) -> Iterator[Any]:
 def _provenance(found: Examination, command: str) -> Iterator[Any]:
     yield Section("How each computation ended", (tables.endings(found),), folded=True)
     try:
-        text = design_text(found.design)
+        text = design_text(found.shown)
     except NotWritable as error:
         yield Text(f"This design cannot be written to a file: {error}")
         text = ""

@@ -1,6 +1,7 @@
 """Everything a report knows of one design: results, no words, no figures."""
 
 from dataclasses import dataclass, field, fields
+from typing import Any
 
 from squealbox.designs import Design
 from squealbox.files.analyses import Axis, Map, Simulate
@@ -10,6 +11,7 @@ from squealbox.remedies import Remedies
 from squealbox.result import Result
 from squealbox.signals import SoundLevel
 from squealbox.stability import (
+    BandModes,
     Boundary,
     ComplexModes,
     CriticalValue,
@@ -17,6 +19,7 @@ from squealbox.stability import (
     ModeEnergy,
     Sensitivity,
     StabilityMap,
+    TrackedModes,
 )
 from squealbox.stability.mechanism import Mechanism
 from squealbox.system import System
@@ -25,16 +28,23 @@ from squealbox.transient import Trajectory, Verdict
 
 @dataclass(frozen=True, kw_only=True)
 class Examination:
-    """What was computed of one design; a part that could not be is None (or empty), and `missing` says why."""
+    """What was computed of one design; a part that could not be is None (or empty), and `missing` says why.
+
+    Of a reduced brake `whole` is the full one at the present values, `band` its modes with their error bars and
+    `mode_table` what :func:`squealbox.stability.mode_table.mode_table` tells of them.
+    """
 
     design: Design
     system: System
     modes: ComplexModes
     time: float = 0.0
+    whole: Any = None
+    band: BandModes | None = None
+    mode_table: dict[str, Any] | None = None
     why: Mechanism | None = None
     varied: Axis | None = None
     crossings: CriticalValues | None = None
-    spectra: ComplexModes | None = None
+    spectra: ComplexModes | TrackedModes | None = None
     ranking: Sensitivity | None = None
     energy: ModeEnergy | None = None
     plane: Map | None = None
@@ -52,9 +62,14 @@ class Examination:
     remedies: Remedies | None = None
     missing: dict[str, str] = field(default_factory=dict)
 
+    @property
+    def shown(self) -> Design:
+        """The design as its reader knows it: of a reduced brake the whole one, where that is kept."""
+        return self.whole if isinstance(self.whole, Design) else self.design
+
     def __repr__(self) -> str:
         parts = [each.name for each in fields(self) if isinstance(getattr(self, each.name), Result)]
-        lines = [f"Examination of {self.design.title or type(self.design).__name__}", self.modes.summary()]
+        lines = [f"Examination of {self.shown.title or type(self.shown).__name__}", self.modes.summary()]
         lines += [f"parts: {', '.join(parts)}"] + [f"{name}: {why}" for name, why in self.missing.items()]
         return "\n".join(lines)
 
@@ -92,7 +107,7 @@ class Examination:
 
 def results_of(found: Examination) -> list[Result]:
     """Every result an examination holds, for a table of how each ended."""
-    parts = [found.modes, found.crossings, found.ranking, found.energy, found.map, found.boundary, found.motion,
-             *found.verdicts, found.loudness, found.hopf, found.cycle, found.cycle_loudness,
+    parts = [found.modes, found.band, found.crossings, found.ranking, found.energy, found.map, found.boundary,
+             found.motion, *found.verdicts, found.loudness, found.hopf, found.cycle, found.cycle_loudness,
              found.remedies]  # fmt: skip
     return [part for part in parts if part is not None]

@@ -25,6 +25,7 @@ from squealbox.signals import SignalError, SoundLevel, sound_level
 from squealbox.signals.radiation import AUDIBLE
 from squealbox.stability import (
     Sensitivity,
+    band_modes,
     complex_modes,
     critical_values,
     map_boundary,
@@ -32,7 +33,9 @@ from squealbox.stability import (
     mode_energy,
     sensitivity,
     stability_map,
+    tracked_modes,
 )
+from squealbox.stability.mode_table import mode_table
 from squealbox.system import InvalidSystem
 from squealbox.transient import verdict
 from squealbox.transient.simulate import TIME_STEPPING
@@ -95,6 +98,7 @@ class _Work:
         self.system = design.system()
         self.moving = design.sliding_one_way().system() if isinstance(design, ReducedBrake) else self.system
         self.reduced = isinstance(design, ReducedBrake)
+        self.long = 0 if self.reduced else LARGE  # coordinates times contacts that long motions are made of unasked
         self.modes = complex_modes(design, time)
         self.found: dict[str, Any] = {}
         self.missing: dict[str, str] = {}
@@ -115,6 +119,11 @@ class _Work:
         if not self.modes.exists:
             self.missing["stability"] = f"there is no steady sliding: {self.modes.outcome.message}"
             return
+        if isinstance(self.design, ReducedBrake) and self.design.full is not None:
+            with self.part("error bars", "modes with their error bars"):
+                self.found["whole"] = whole = self.design.whole()
+                self.found["band"] = band = band_modes(whole, self.design.band, time=self.time)
+                self.found["mode_table"] = mode_table(whole, band, self.time)
         with self.part("ranking", "sensitivity"):
             self.found["ranking"] = sensitivity(self.design, self._leaves(), time=self.time)
         with self.part("energy", "energy of the worst mode"):
@@ -128,7 +137,10 @@ class _Work:
             )
             drawn = varied.replace(points=min(int(varied.points), SPECTRA)) if self.reduced else varied
             values = np.sort(np.append(drawn.values, crossings.value))
-            self.found["spectra"] = complex_modes(self.design.replace({varied.name: values}), self.time)
+            if self.reduced:
+                self.found["spectra"] = tracked_modes(self.design, varied.name, values, time=self.time)
+            else:
+                self.found["spectra"] = complex_modes(self.design.replace({varied.name: values}), self.time)
             self.found["varied"] = drawn
 
     def margins(self, plane: Map | None) -> None:
@@ -167,7 +179,8 @@ class _Work:
             pitch = float(self.found["verdicts"][dof].frequency)
             if not AUDIBLE[0] <= pitch <= AUDIBLE[1]:
                 raise SignalError(f"its frequency, {pitch:.4g} Hz, is not one people hear")
-            self._not_too_large("two seconds of motion to be heard", "squealbox listen makes sound of a recording")
+            hear = "squealbox listen makes sound of a recording"
+            self._not_too_large("two seconds of motion to be heard", hear, self.long)
             longer = settings.replace({"duration": max(HEARD, settings.duration or 0.0)})
             self.found["heard"] = run(moving, longer, points=int((longer.duration or HEARD) * SAMPLING) + 1)
 
@@ -176,12 +189,12 @@ class _Work:
         if self.modes.exists:
             with self.part("hopf", "how the cycle is born"):
                 varied = self.found.get("varied")
-                self._not_too_large("the birth of a cycle", CYCLE)
+                self._not_too_large("the birth of a cycle", CYCLE, self.long)
                 if varied is not None:
                     self.found["hopf"] = hopf_point(self.design, varied.name, (varied.low, varied.high))
         tried: list[str] = []
         with self.part("cycle", "limit cycle"):
-            self._not_too_large("a limit cycle", CYCLE)
+            self._not_too_large("a limit cycle", CYCLE, self.long)
             for name, start in self._starts():
                 tried.append(name)
                 found = shooting(self.moving, start)
@@ -206,9 +219,9 @@ class _Work:
                 raise InvalidSystem("squealbox silence looks for cures of a finite-element brake, in its own time")
             self.found["remedies"] = silence(self.design, samples=LOT)
 
-    def _not_too_large(self, what: str, way_out: str) -> None:
+    def _not_too_large(self, what: str, way_out: str, most: int = LARGE) -> None:
         """Raise `InvalidSystem` where this would run for minutes."""
-        if self.system.size * len(self.system.contacts) > LARGE:
+        if self.system.size * len(self.system.contacts) > most:
             raise InvalidSystem(
                 f"{what} of {self.system.size} coordinates and {len(self.system.contacts)} contacts takes minutes and "
                 f"is not looked for unasked: {way_out}"

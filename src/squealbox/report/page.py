@@ -1,7 +1,8 @@
 """A page of blocks as one HTML file that needs nothing else: no network, no folder beside it.
 
-Charts come to life by plotly.js, which lies packed in the same file and is unpacked by the browser. The page's own
-policy allows exactly that script and the one that starts it, by their hashes, and no connection to anywhere.
+Charts come to life by plotly.js, which lies packed in the same file and is unpacked by the browser, brakes in 3-D by
+the workbench's own script. The page's policy allows exactly these scripts and what starts them, by their hashes, and no
+connection to anywhere.
 """
 
 import base64
@@ -12,14 +13,17 @@ import os
 import re
 from collections.abc import Iterator
 from functools import cache
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from squealbox.report.blocks import Chart, Page, Section
+from squealbox.report.blocks import Chart, Page, Section, Solid
 
 TEMPLATE = "page.html.j2"
+DRAWS = ("elements.js", "theme.js", "mesh.js")  # of the workbench
+MODULE = re.compile(r"^(import .*;\n|export )", re.MULTILINE)
 MICRO = re.compile(r"(\d |\[)u(?=[msNJ]\b)")
 
 
@@ -35,13 +39,40 @@ def render(page: Page) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    figures = [plain_json(chart.figure) for chart in charts(page.sections)]
+    figures = [plain_json(chart.figure) for chart in every(Chart, page.sections)]
+    solids = [packed_solid(solid) for solid in every(Solid, page.sections)]
     library = packed_library() if figures else None
     start = environment.get_template("charts.js").render() if library else ""
-    allowed = " ".join(f"'sha256-{digest}'" for digest in (_digest(start), library[1])) if library else ""
+    turn = turning(environment.get_template("solid.js").render()) if solids else ""
+    digests = [_digest(start), library[1]] if library else []
+    digests += [_digest(turn)] if turn else []
     return environment.get_template(TEMPLATE).render(
-        page=page, figures=figures, start=start, library=library[0] if library else "", allowed=allowed
+        page=page,
+        figures=figures,
+        solids=solids,
+        start=start,
+        turn=turn,
+        library=library[0] if library else "",
+        allowed=" ".join(f"'sha256-{digest}'" for digest in digests),
     )
+
+
+def turning(start: str) -> str:
+    """What draws a brake in 3-D in the workbench, and what starts it here, as one script."""
+    static = files("squealbox") / "workbench" / "static"
+    parts = [(static / name).read_text(encoding="utf-8") for name in DRAWS]
+    return "(() => {\n" + MODULE.sub("", "".join(parts)) + start + "})();"
+
+
+def packed_solid(solid: Solid) -> str:
+    """A brake in 3-D as JSON, its arrays as the base64 of typed arrays; safe inside a script element."""
+    arrays = {}
+    for name, values in solid.arrays.items():
+        whole = np.issubdtype(np.asarray(values).dtype, np.integer)
+        packed = np.asarray(values, dtype="<u2" if whole else "<f4")
+        kind = "Uint16Array" if whole else "Float32Array"
+        arrays[name] = [kind, base64.b64encode(packed.tobytes()).decode("ascii")]
+    return plain_json({"data": solid.data, "arrays": arrays, "normal": solid.normal})
 
 
 def _micro(value: Any) -> Any:
@@ -58,12 +89,12 @@ def write_page(page: Page, path: str | os.PathLike[str]) -> Path:
     return path
 
 
-def charts(blocks: tuple[Any, ...]) -> Iterator[Chart]:
-    """Every chart among nested blocks, in the order of the page."""
+def every(kind: type[Any], blocks: tuple[Any, ...]) -> Iterator[Any]:
+    """Every block of a kind among nested ones, in the order of the page."""
     for block in blocks:
         if isinstance(block, Section):
-            yield from charts(block.blocks)
-        elif isinstance(block, Chart):
+            yield from every(kind, block.blocks)
+        elif isinstance(block, kind):
             yield block
 
 

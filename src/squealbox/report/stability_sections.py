@@ -6,12 +6,14 @@ from typing import Any
 import numpy as np
 
 from squealbox import plots
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.plots.cards import has_drawing
 from squealbox.report import charts, tables, words
 from squealbox.report.blocks import Chart, Section, Text
 from squealbox.report.examination import Examination
 from squealbox.report.moving import vibrating
 from squealbox.report.pictures import picture, why_not
+from squealbox.report.solid import vibrating_solid
 from squealbox.words import quantity_label
 
 
@@ -20,8 +22,10 @@ def stability(found: Examination) -> Iterator[Any]:
     if not found.modes.exists:
         yield Text(found.missing.get("stability", "there is no steady sliding"))
         return
-    yield tables.modes(found.modes)
-    moving = vibrating(found.design, found.modes) if has_drawing(found.design) else None
+    yield tables.modes(found.modes) if found.mode_table is None else tables.modes_in_band(found.mode_table)
+    moving: Any = vibrating(found.design, found.modes) if has_drawing(found.design) else None
+    if isinstance(found.design, ReducedBrake):
+        moving = vibrating_solid(found.design, found.modes)
     if moving is not None:
         yield moving
     yield picture(plots.plot(found.modes), "Eigenvalues. To the right of the line a mode grows.")
@@ -33,11 +37,12 @@ def stability(found: Examination) -> Iterator[Any]:
             tables.ranking(found, found.ranking),
         ))  # fmt: skip
     if found.energy is not None:
+        fed = found.energy if len(found.energy.contacts) <= tables.MOST_CONTACTS else found.energy.by_group()
         yield Section("Where the energy comes from", (
-            picture(plots.plot(found.energy), "What each contact and damper adds to the worst growth rate."),
-            tables.energy(found.energy),
+            picture(plots.plot(fed), "What each contact and damper adds to the worst growth rate."),
+            tables.energy(fed),
         ))  # fmt: skip
-    yield from why_not(found, "ranking", "energy", "onset")
+    yield from why_not(found, "error bars", "ranking", "energy", "onset")
 
 
 def _coalescence(found: Examination) -> Chart:
@@ -51,7 +56,7 @@ def _coalescence(found: Examination) -> Chart:
     for panel in figure.axes:
         panel.axvline(here, color="#000000", linewidth=0.7, linestyle=":")
     caption = f"Frequencies and growth rates over {varied.name}; hatched: unstable; dotted: this design."
-    moving = charts.modes_over_parameter(factor * inputs, spectra.eigenvalues, varied.name, unit, here)
+    moving = charts.modes_over_parameter(factor * inputs, spectra, varied.name, unit, here)
     return Chart(picture(figure, caption), moving)
 
 

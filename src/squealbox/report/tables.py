@@ -1,5 +1,7 @@
 """Tables of a report: parameters, contacts, modes, sensitivity, energy, claims of how each computation ended."""
 
+from typing import Any
+
 import numpy as np
 
 from squealbox.plots.cards import parameter_rows
@@ -9,19 +11,22 @@ from squealbox.report.blocks import Cell, Table
 from squealbox.report.examination import Examination, results_of
 from squealbox.report.words import in_reading_unit, quantity
 from squealbox.stability import ComplexModes, ModeEnergy, Sensitivity
-from squealbox.system import System, equilibrium
+from squealbox.stability.energy import contact_groups
+from squealbox.system import Equilibrium, System, equilibrium
 from squealbox.words import number, plain_unit
 
 MOST_MODES = 12
 MOST_PARAMETERS = 10
 MOST_CURES = 8
+MOST_CONTACTS = 24  # told one by one
+ALIKE = 0.05  # MAC from which a mode without friction is named
 
 
 def parameters(found: Examination) -> Table:
     """Every parameter with value, range, meaning and source."""
     rows = tuple(
         (name, value, limits, meaning, source or "not given") for name, value, limits, meaning, source in
-        parameter_rows(found.design)
+        parameter_rows(found.shown)
     )  # fmt: skip
     return Table(("parameter", "value", "may be", "meaning", "source"), rows)
 
@@ -29,6 +34,8 @@ def parameters(found: Examination) -> Table:
 def contacts(system: System, time: float) -> Table:
     """What each contact carries in steady sliding, and its law."""
     state = equilibrium(system, time)
+    if len(system.contacts) > MOST_CONTACTS and state.exists:
+        return _many_contacts(system, state)
     rows = []
     for i, contact in enumerate(system.contacts):
         numbers = ("not known",) * 3
@@ -42,6 +49,57 @@ def contacts(system: System, time: float) -> Table:
         rows.append((system.contact_names[i], *numbers, slope, type(contact.law).__name__, kind))
     head = ("contact", "normal force", "sliding speed", "friction coefficient", "its slope", "law", "")
     return Table(head, tuple(rows), "Contacts in steady sliding. A negative normal force pulls: the model then lies.")
+
+
+def _many_contacts(system: System, state: Equilibrium) -> Table:
+    """Contacts by their name without its number, each group in one row."""
+    rows = []
+    for name, at in contact_groups(system.contact_names).items():
+        speed, mu = np.abs(state.sliding_speed[at]), state.friction[at]
+        rows.append((
+            name, str(len(at)), str(int(np.sum(state.normal_force[at] <= 0.0))),
+            quantity(np.sum(state.normal_force[at]), "N", 4), quantity(np.max(state.normal_force[at]), "N", 3),
+            f"{number(np.min(speed), 3)} to {number(np.max(speed), 3)} m/s",
+            number(mu[0], 4) if np.ptp(mu) < 1e-9 else f"{number(np.min(mu), 4)} to {number(np.max(mu), 4)}",
+            type(system.contacts[at[0]].law).__name__,
+        ))  # fmt: skip
+    head = ("contacts", "points", "lifted off", "normal force", "largest", "sliding speed", "friction", "law")
+    return Table(head, tuple(rows), "Contacts in steady sliding, in groups.")
+
+
+def modes_in_band(table: dict[str, Any]) -> Table:
+    """Modes of a finite-element brake: error bars, other codes' numbers, who moves, of which modes without friction."""
+    growth, error = table["growth rate [1/s]"], table["error [1/s]"]
+    damping = table["damping ratio [-]"]
+    order = np.argsort(damping, kind="stable")[: max(MOST_MODES, int(np.sum(growth > -error)))]
+    rows = []
+    for i in order:
+        grows, known = growth[i] > 0.0, abs(growth[i]) > error[i]
+        moves = [(name[9:-4], table[name][i]) for name in table if name.startswith("share of")]
+        likes = [
+            f"{table[f'MAC {k} [-]'][i]:.2f} to that at {quantity(table[f'of mode at mu = 0 {k} [Hz]'][i], 'Hz', 5)}"
+            for k in (1, 2)
+            if table[f"MAC {k} [-]"][i] > ALIKE
+        ] or ["to none"]
+        rows.append((
+            str(int(table["mode"][i])), quantity(table["frequency [Hz]"][i], "Hz", 6),
+            Cell(f"{number(growth[i], 5)} 1/s", f"± {number(error[i], 2)} 1/s"),
+            Cell(
+                f"{number(100.0 * damping[i], 4)} %",
+                f"Abaqus {number(table['Abaqus damping ratio [-]'][i], 4)}\n"
+                f"Ansys {number(table['Ansys stability [Hz]'][i], 4)} Hz",
+            ),
+            Cell(", ".join(f"{name} {100.0 * share:.0f} %" for name, share in moves) or "not known"),
+            Cell(*[*likes, ""][:2]),
+            Cell(
+                ("grows" if grows else "decays") if known else "not decided", "" if known else "within its error bar",
+                ("unstable" if grows else "stable") if known else "not-decidable",
+            ),
+        ))  # fmt: skip
+    left = f" The first {len(rows)} of {len(growth)}." if len(rows) < len(growth) else ""
+    said = "Modes of the whole brake in the band, least damped first. Moves: kinetic energy. MAC: likeness to the "
+    head = ("mode", "frequency", "growth rate", "damping ratio", "moves", "MAC", "")
+    return Table(head, tuple(rows), f"{said}modes without friction.{left}")
 
 
 def modes(spectrum: ComplexModes) -> Table:
@@ -83,8 +141,13 @@ def energy(fed: ModeEnergy) -> Table:
     per = 1.0 / (2.0 * fed.total)
     rows = [
         (name, f"{number(fed.circulation[i] * per, 4)} 1/s", f"{number(fed.slope[i] * per, 4)} 1/s",
-         f"{number(np.rad2deg(fed.phase[i]), 4)}°", f"{number(fed.work_per_cycle[i] / fed.total, 3)}")
+         "" if np.isnan(fed.phase[i]) else f"{number(np.rad2deg(fed.phase[i]), 4)}°",
+         f"{number(fed.work_per_cycle[i] / fed.total, 3)}")
         for i, name in enumerate(fed.contacts)
+    ]  # fmt: skip
+    rows += [
+        (f"friction of {name} across its sliding", f"{number(-fed.across[i] * per, 4)} 1/s", "", "", "")
+        for i, name in enumerate(fed.contacts) if fed.across[i] != 0.0
     ]  # fmt: skip
     rows += [
         (f"damping of {name}", f"{number(-fed.dissipated[i] * per, 4)} 1/s", "", "",

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files.varied import quantity_of
 from squealbox.report.examination import Examination
 from squealbox.signals import SoundLevel
@@ -116,8 +117,9 @@ def _level(loud: SoundLevel) -> str:
 
 def caveats(found: Examination) -> list[str]:
     """What a reader must know before leaning on the numbers."""
+    size = found.design.reduction.size if isinstance(found.design, ReducedBrake) else found.system.size
     said = [
-        f"The model has {found.system.size} degrees of freedom and {len(found.system.contacts)} contacts: modes of the "
+        f"The model has {size} degrees of freedom and {len(found.system.contacts)} contacts: modes of the "
         "real parts that are not in it, temperature, wear and the scatter of friction are not in the result either.",
         "A positive growth rate says that steady sliding is left, not how large or how loud the vibration becomes; a "
         "negative one says that small disturbances decay, not that large ones do.",

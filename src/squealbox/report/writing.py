@@ -97,7 +97,7 @@ def _file_page(found: DesignFile, progress: Progress) -> Page:
         time=time,
         progress=progress,
     )
-    title = f"{found.design.title}: {found.path.name}"
+    title = f"{whole.title}: {found.path.name}"
     name = found.path.name
     note = (
         f"The study in this file is not run for this page: squealbox run {name} --out DIR runs it, and squealbox "
@@ -109,13 +109,13 @@ def _file_page(found: DesignFile, progress: Progress) -> Page:
         notes.append(promise(found.design))
         if isinstance(whole, MeshedBrake):
             progress("a second mesh")
-            modes = complex_modes(whole, time, band=found.design.reduction.band)
+            modes = about.band or complex_modes(whole, time, band=found.design.reduction.band)
             notes.append(mesh_doubt(whole, modes).sentence)
         else:
             notes.append(ONE_MESH)
         if found.design.reduction.arrays["across"] is not None:
             notes.append(ONE_WAY)
-    return design_page(about, title=title, command=f"squealbox report {name}", note=" ".join(notes))
+    return design_page(about, title=title, command=f"squealbox report {name}", notes=tuple(notes))
 
 
 def _name(what: Any) -> str:

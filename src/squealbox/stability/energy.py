@@ -14,7 +14,9 @@ that is one damper from each degree of freedom to ground and one between each tw
 damping kinetic and strain energy cancel: E = 0, and the powers add up to nothing.
 """
 
-from dataclasses import dataclass
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -96,6 +98,20 @@ class ModeEnergy(Result):
         rows += [("damping of the structure", -float(np.sum(self.dissipated)) * per)] * (not self.damper_names)
         return [(name, float(value) + 0.0) for name, value in rows]
 
+    def by_group(self) -> "ModeEnergy":
+        """The same with contacts summed by their name without its number, and all damping in one; no phases."""
+        rows = contact_groups(self.contacts)
+
+        def summed(values: Any) -> Any:
+            return np.array([np.sum(values[each]) for each in rows.values()])
+
+        arrays: dict[str, Any] = {name: summed(getattr(self, name)) for name in ("circulation", "slope", "across")}
+        for name in ("dissipated", "dampers", "kinetic", "strain"):
+            arrays[name] = np.array([np.sum(getattr(self, name))])
+        names: dict[str, Any] = {"contacts": tuple(rows), "dofs": ("the structure",)}
+        names["damper_names"] = ("damping of the structure",)
+        return replace(self, **arrays, phase=np.full(len(rows), np.nan), **names)
+
     @property
     def _size(self) -> float:
         return float(np.sum(np.abs(self.kinetic)) + np.sum(np.abs(self.strain)))
@@ -124,6 +140,12 @@ class ModeEnergy(Result):
             for name, phase in zip(self.contacts, self.phase, strict=True)
         ]
         return "\n".join(rows)
+
+
+def contact_groups(names: Sequence[str]) -> dict[str, Any]:
+    """Contacts by their name without the number at its end."""
+    heads = [re.sub(r"[ _]*\d+$", "", name) or name for name in names]
+    return {head: np.flatnonzero(np.array(heads) == head) for head in dict.fromkeys(heads)}
 
 
 @public()

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.system import Equilibrium, Linearised, System, as_system, linearise
+from squealbox.parameters import ParameterError
+from squealbox.system import Equilibrium, InvalidSystem, Linearised, System, as_system, linearise
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,12 @@ class Family:
         shape = arrays[0].shape
         if self.recipe is None and self.band is None:
             named = dict(zip(self.parameters, arrays, strict=True))
-            steady = steady_sliding(self.design.replace(named), self.time)
+            try:
+                steady = steady_sliding(self.design.replace(named), self.time)
+            except (InvalidSystem, ParameterError):
+                if as_system(self.design, linear=True).is_sparse:
+                    as_system(self.design)  # of no large brake there is a batch: it says so
+                raise
             if steady.K.shape[:-2] == shape:
                 return steady
             return _joined([steady], lambda parts, rank: np.broadcast_to(parts[0], shape + _tail(parts[0], rank)))

@@ -6,17 +6,17 @@ share of a component = its part of the kinetic energy u^H M u
 MAC to real mode j  = |phi_j' M u|^2 / ((phi_j' M phi_j) (u^H M u)), phi_j undamped and without friction (mu = 0)
 """
 
-import re
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from squealbox.fe.meshed import MeshedBrake
 from squealbox.fe.pencil import pencil_of
 from squealbox.fe.real_modes import real_modes
 from squealbox.stability.band_modes import BandModes
 from squealbox.stability.conventions import as_printed_by
-from squealbox.stability.energy import mode_energy
+from squealbox.stability.energy import contact_groups, mode_energy
 from squealbox.system import as_system
 
 ABOVE = 1.1  # times the band's end up to which uncoupled modes are looked for
@@ -46,10 +46,9 @@ def mode_table(design_or_system: Any, modes: BandModes, time: float = 0.0) -> di
         "Ansys stability [Hz]": as_printed_by("ansys", values)["stability"],
         "Nastran damping [-]": as_printed_by("nastran", values)["damping"],
     }
-    for name, rows in components(design_or_system).items():
-        part = np.real(np.einsum("ij,ij->j", shapes[rows].conj(), moved[rows])) / size
-        table[f"share of {name} [-]"] = part
-    groups = _groups(system.contacts.names)
+    for name, part in _kinetic(design_or_system, shapes, moved).items():
+        table[f"share of {name} [-]"] = part / size
+    groups = contact_groups(system.contacts.names)
     fed = np.zeros((half, len(groups)))
     for i in range(half):
         energy = mode_energy(system, modes.mode(i), time)
@@ -67,6 +66,15 @@ def mode_table(design_or_system: Any, modes: BandModes, time: float = 0.0) -> di
             table[f"MAC {which + 1} [-]"] = likeness[best, np.arange(half)]
             table[f"of mode at mu = 0 {which + 1} [Hz]"] = bare.frequency[best]
     return table
+
+
+def _kinetic(design: Any, shapes: Any, moved: Any) -> dict[str, Any]:
+    """Kinetic energy u^H M u of each component in each shape (n, k), with M u of the whole known, (k,) each."""
+    if isinstance(design, MeshedBrake):
+        masses = {name: mass @ shapes for name, (mass, _) in design.components().items() if mass.nnz}
+        return {name: np.real(np.einsum("ij,ij->j", shapes.conj(), each)) for name, each in masses.items()}
+    parts = components(design).items()
+    return {name: np.real(np.einsum("ij,ij->j", shapes[rows].conj(), moved[rows])) for name, rows in parts}
 
 
 def components(design: Any) -> Mapping[str, Any]:
@@ -89,16 +97,10 @@ def table_text(table: Mapping[str, Any]) -> str:
             f"{table[f'MAC {k} [-]'][i]:.2f} to {table[f'of mode at mu = 0 {k} [Hz]'][i]:.6g} Hz" for k in (1, 2)
         )
         printed = (
-            f"Abaqus damping ratio {table['Abaqus damping ratio [-]'][i]:+.5f}, "
+            f"Abaqus damping ratio {table['Abaqus damping ratio [-]'][i]:+.4g}, "
             f"Ansys stability {table['Ansys stability [Hz]'][i]:+.4g} Hz"
         )
         lines.append(f"mode {int(table['mode'][i])}, {table['frequency [Hz]'][i]:.6g} Hz: {printed}")
         lines += [f"  moves: {moving}"] * bool(moving) + [f"  fed by [1/s]: {feeding}"] * bool(feeding)
         lines.append(f"  MAC to the modes without friction: {mac}")
     return "\n".join(lines)
-
-
-def _groups(names: tuple[str, ...]) -> dict[str, Any]:
-    """Contacts by their name without the number at its end."""
-    heads = [re.sub(r"[ _]*\d+$", "", name) or name for name in names]
-    return {head: np.flatnonzero(np.array(heads) == head) for head in dict.fromkeys(heads)}

@@ -26,11 +26,11 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     half = here.eigenvalues.shape[-1] // 2
     values = np.linspace(low, high, POINTS if half <= 2 else FEWER if half <= LARGE else FEWEST)
     tracks = tracks_of(design, parameter, (low, high), len(values))
-    upper = _one_of_each_pair(tracks.eigenvalues)
     shown: Any = slice(half)
-    if isinstance(design, ReducedBrake):  # beyond its band a reduced brake says nothing
-        shown, heard = ranked(design) if bool(here.exists) else [], np.abs(upper.imag) / TURN
-        upper = upper[:, np.any((heard >= design.band[0]) & (heard <= design.band[1]), axis=0)]
+    if isinstance(design, ReducedBrake):  # its tracks are those of the band, the conjugates last
+        shown, upper = ranked(design) if bool(here.exists) else [], np.split(tracks.eigenvalues, 2, axis=1)[0]
+    else:
+        upper = _one_of_each_pair(tracks.eigenvalues)
     axis = options.axis(design, parameter, (low, high))
     unstable = _unstable(values / axis.factor, upper.real)
     value = try_value(design, parameter)

@@ -6,8 +6,8 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.fe.surface import Surface
 from squealbox.plots.moving import moving_strokes
+from squealbox.plots.surfaces import largest_motion
 from squealbox.system import equilibrium
 from squealbox.workbench.panels.modes import modes_of, seen
 from squealbox.workbench.panels.panel import Answer, Options, Work
@@ -39,23 +39,13 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     told = [(float(modes.frequency[i]), float(modes.growth_rate[i]), float(modes.damping_ratio[i])) for i in order]
     data |= {"modes": told, "mode": chosen}
     if surface is not None:
-        moved = surface_shape(surface, shape)
-        size = np.linalg.norm(np.abs(moved), axis=1)
-        shares = np.mean(size[surface.faces], axis=1) / np.max(size)
-        data |= {"mesh": True, "words": _said(surface, size)}
-        return Answer(data, {"re": moved.real, "im": moved.imag, "shares": shares})
+        moved = surface.moved(shape)
+        data |= {"mesh": True, "words": largest_motion(surface, moved)}
+        return Answer(data, {"re": moved.real, "im": moved.imag, "shares": surface.shares(moved)})
     press = [contact.n @ shape for contact in system.contacts]
     data |= {"words": f"{_phases(shape, system.names)}. Its size is free; growth is left out."}
     arrays |= {"re": shape.real, "im": shape.imag, "pressRe": np.real(press), "pressIm": np.imag(press)}
     return Answer(data, arrays)
-
-
-def surface_shape(surface: Surface, shape: Any) -> Any:
-    """Displacement (k, 3) of the nodes in a mode of the reduced brake (m,), turned and scaled so that the largest of
-    its components is 1.
-    """
-    moved = np.asarray(surface.moves, dtype=float) @ shape
-    return moved / moved.flat[np.argmax(np.abs(moved))]
 
 
 def _phases(shape: Any, names: Any) -> str:
@@ -69,14 +59,3 @@ def _phases(shape: Any, names: Any) -> str:
             way = "behind" if degrees < 0 else "before"
             told.append(f"{names[i]} {sizes[i] / sizes[most]:.2g} of {names[most]} and {abs(degrees)}° {way}")
     return ", ".join(told[:3]) or f"only {names[most]} moves"
-
-
-def _said(surface: Surface, size: Any) -> str:
-    """What is drawn of the surface, and how the parts share the motion, of size (k,) at the nodes."""
-    nodes = [np.unique(surface.faces[surface.parts == i]) for i in range(len(surface.names))]
-    shares = [float(np.max(size[each])) / float(np.max(size)) for each in nodes]
-    said = ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in zip(surface.names, shares, strict=True))
-    lone = bool(np.all(surface.faces[:, :1] == surface.faces))
-    what = "node of the files, which name no elements" if lone else "line of the mesh"
-    each = f"every {what}" if surface.step == 1 else f"one {what} in {surface.step}"
-    return f"Largest motion: {said} of it. Drawn: {each}, {len(surface.faces)} {'points' if lone else 'faces'}."

@@ -1,0 +1,47 @@
+// Every brake in 3-D in place of its printed picture: it vibrates, and is turned by hand.
+const period = 2400; // ms
+const HOW = "Drag it or use the arrow keys to turn it; click it and use the wheel to come nearer; Z looks along the axis.";
+const calm = matchMedia("(prefers-reduced-motion: reduce)");
+
+/** The outline of the brake at rest, over its picture. */
+function rest({ canvas, view, size }, { places, outline }) {
+  const pen = canvas.getContext("2d");
+  const scale = (0.47 * view.near * Math.min(canvas.width, canvas.height)) / size;
+  const [ct, st, ce, se] = [Math.cos(view.turn), Math.sin(view.turn), Math.cos(view.tilt), Math.sin(view.tilt)];
+  const at = (i) => [canvas.width / 2 + scale * (ct * places[i] - st * places[i + 1]), canvas.height / 2 - scale * (ce * (st * places[i] + ct * places[i + 1]) + se * places[i + 2])];
+  pen.strokeStyle = shade() === "dark" ? "rgb(255 255 255 / 45%)" : "rgb(0 0 0 / 45%)";
+  pen.lineWidth = 0.8 * (window.devicePixelRatio || 1);
+  pen.beginPath();
+  for (let k = 0; k < outline.length; k += 2) {
+    pen.moveTo(...at(3 * outline[k]));
+    pen.lineTo(...at(3 * outline[k + 1]));
+  }
+  pen.stroke();
+}
+
+for (const figure of document.querySelectorAll("figure.solid")) {
+  const { data, arrays: packed, normal } = JSON.parse(figure.querySelector("script").textContent);
+  const unpacked = ([kind, text]) => new globalThis[kind](Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer);
+  const arrays = Object.fromEntries(Object.entries(packed).map(([name, each]) => [name, unpacked(each)]));
+  figure.classList.add("moves");
+  let [phase, held, seen] = [0, calm.matches, false];
+  const mesh = new Mesh(figure.querySelector(".live"), { arrays, data }, () => draw());
+  Object.assign(mesh, { re: arrays.re, im: arrays.im, shares: arrays.shares, normal });
+  mesh.view.near = 1.3;
+  const draw = () => (mesh.draw(phase), rest(mesh, arrays));
+  mesh.canvas.parentElement.addEventListener("wheel", (event) => document.activeElement === mesh.canvas || event.stopPropagation(), { capture: true }); // the page scrolls by
+  const play = button("", () => say(!held));
+  const say = (now) => (play.textContent = (held = now) ? "Move" : "Pause");
+  say(held);
+  const keys = () => figure.querySelector(".keys").replaceChildren(play, " ", ...mesh.keys(), make("small", {}, HOW));
+  keys();
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (draw(), keys()));
+  new IntersectionObserver(([now]) => (seen = now.isIntersecting)).observe(figure);
+  const step = (now) => {
+    requestAnimationFrame(step);
+    if (!seen || held) return;
+    phase = (2 * Math.PI * now) / period;
+    draw();
+  };
+  requestAnimationFrame(step);
+}
