@@ -34,6 +34,7 @@ from squealbox import (
     simulate_ensemble,
 )
 from squealbox.fe import certificate, full_modes, pencil_of
+from squealbox.fe.certificate import certified_band
 from squealbox.fe.disc_brake import DiscBrake
 from squealbox.fe.growing_basis import GrowingBasis
 from squealbox.fe.projection import modes_on
@@ -95,10 +96,10 @@ def hidden_modes(small, points, clock: Clock) -> None:
         if not len(growing):
             continue  # there is none to hide
         trials += 1
-        proof = certificate(pencil, known_eigenvalues(whole), BAND, phases=phases)
+        proof = counted(pencil, whole, phases)
         hidden = random.choice(growing)
         less = projected(pencil, without(pencil, full.basis, whole, hidden), full.base)
-        doubt = certificate(pencil, known_eigenvalues(less), BAND, phases=phases)
+        doubt = counted(pencil, less, phases)
         false, found = false + (not proof.certified), found + (doubt.missing is not None and doubt.missing > 0)
         most = max(most, proof.factorisations, doubt.factorisations)
         what = f"{whole.eigenvalues[hidden].imag / (2.0 * np.pi):.0f} Hz hidden"
@@ -107,8 +108,13 @@ def hidden_modes(small, points, clock: Clock) -> None:
     print(f"  {found} of {trials} hidden modes found, {false} false alarms, at most {most} factorisations")
 
 
+def counted(pencil, found, phases):
+    known, others = known_eigenvalues(found)
+    return certificate(pencil, known, BAND, believed=others, phases=phases)
+
+
 def projected(pencil, basis, base):
-    return modes_on(GrowingBasis([pencil], basis), 0, base, BAND)[0]
+    return modes_on(GrowingBasis([pencil], basis), 0, base, certified_band(BAND))[0]
 
 
 def without(pencil, basis, found, hidden: int):

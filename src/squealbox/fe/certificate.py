@@ -62,6 +62,7 @@ def certificate(
     eigenvalues: Any,
     band: tuple[float, float],
     *,
+    believed: Any = (),
     largest_growth: float | None = None,
     most: int = MOST,
     phases: dict[complex, float] | None = None,
@@ -71,8 +72,10 @@ def certificate(
     Parameters
     ----------
     pencil : the brake's matrices
-    eigenvalues : all known eigenvalues [1/s] with Im > 0, also those outside the band: shape (k,)
+    eigenvalues : all known eigenvalues [1/s] with Im > 0, shape (k,)
     band : (f1, f2) [Hz]; widened a little to where no known mode is close to its ends
+    believed : others, shape (l,), that nobody vouches for or that are outside the band: none of them is counted as
+        known, but they make the phase smooth
     largest_growth : [1/s] right side of the rectangle; by default 1000, or four times the largest of the known modes
         in the band whose damping ratio is below 0.1 in size
     most : factorisations after which the search gives up
@@ -80,12 +83,14 @@ def certificate(
     """
     known = np.asarray(eigenvalues, dtype=complex)
     known = known[known.imag > 0.0]
-    low, high = _band_gaps(known, band)
-    left = _left_side(known, low, high)
+    every = np.concatenate([known, np.asarray(believed, dtype=complex)])
+    every = every[every.imag > 0.0]
+    low, high = _band_gaps(every, band)
+    left = _left_side(every, low, high)
     modes = known[vibrating(known) & (known.imag > low) & (known.imag < high)]
     right = largest_growth or max(GROWTH, 4.0 * float(np.max(modes.real, initial=0.0)))
     inside = (known.real > left) & (known.real < right) & (known.imag > low) & (known.imag < high)
-    search = _Winding(pencil, known, PROBE * abs(complex(right, high)), most, {} if phases is None else phases)
+    search = _Winding(pencil, every, PROBE * abs(complex(right, high)), most, {} if phases is None else phases)
     corners = [complex(left, low), complex(right, low), complex(right, high), complex(left, high)]
     turn, reason = 0.0, ""
     try:
@@ -194,11 +199,16 @@ def _left_side(known: Any, low: float, high: float) -> float:
     return float(_widest(marks))
 
 
+def certified_band(band: tuple[float, float]) -> tuple[float, float]:
+    """The widest band (f1, f2) [Hz] that a certificate for a band may look at."""
+    return 0.9 * band[0], 1.05 * band[1]
+
+
 def _band_gaps(known: Any, band: tuple[float, float]) -> tuple[float, float]:
     """The band [rad/s] with its ends moved outwards, by up to a tenth, into the widest gap between known modes."""
     near = known[known.real > -0.1 * known.imag].imag
     ends = []
-    for inner, outer in ((band[0], 0.9 * band[0]), (band[1], 1.05 * band[1])):
+    for inner, outer in zip(band, certified_band(band), strict=True):
         first, last = sorted((2.0 * np.pi * inner, 2.0 * np.pi * outer))
         marks = np.sort(np.concatenate([[first, last], near[(near > first) & (near < last)]]))
         ends.append(_widest(marks))

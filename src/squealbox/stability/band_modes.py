@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from squealbox.fe.certificate import Certificate, certificate
+from squealbox.fe.certificate import Certificate, certificate, certified_band
 from squealbox.fe.growing_basis import GrowingBasis
 from squealbox.fe.pencil import Pencil, pencil_of
 from squealbox.fe.projection import Projected, basis_for, modes_on, refined, with_shapes
@@ -23,6 +23,7 @@ from squealbox.system import InvalidSystem, System, as_system, equilibrium
 
 Way = Literal["projection", "full"]
 TOLERANCE = 0.05  # [1/s]
+KNOWN = 1e-3  # of |lambda|: estimated error above which a mode on the basis is none that is known
 MOST_TOLD = 30  # modes of a table; of more only the least damped are told
 NOT_ASKED = (
     "whether a growing mode is missing was not counted: certify=True, or --certify, does so by the winding number"
@@ -120,7 +121,9 @@ def band_modes(
     found = with_shapes(onto, modes_on(onto, 0, modes.base, (low, high))[0])
     common |= {"real_frequency": modes.frequency, "real_modes_complete": modes.complete}
     if certify:
-        proof = certificate(pencil, known_eigenvalues(found), (low, high))
+        wide, _ = modes_on(onto, 0, modes.base, certified_band((low, high)))
+        known, others = known_eigenvalues(wide)
+        proof = certificate(pencil, known, (low, high), believed=others)
         common |= {"missing": proof.missing, "certified": proof.certified, "certificate": str(proof)}
     return BandModes(
         eigenvalues=_both(found.eigenvalues),
@@ -148,11 +151,12 @@ def certified(
     return certificate(pencil_of(system, time), eigenvalues, _checked_band(band), most=most)
 
 
-def known_eigenvalues(found: Projected) -> Any:
-    """The modes of the band, corrected, and all others of the basis as they are."""
+def known_eigenvalues(found: Projected) -> tuple[Any, Any]:
+    """The modes of the band, corrected, whose estimated error is small; and all others of the basis as they are."""
+    known = np.abs(found.error) <= KNOWN * np.abs(found.eigenvalues)
     others = found.every[found.every.imag > 0.0]
-    shown = np.array([np.any(np.abs(found.eigenvalues - v) <= 1e-9 * abs(v)) for v in others], dtype=bool)
-    return np.concatenate([found.eigenvalues + found.error, others[~shown]])
+    shown = np.array([np.any(np.abs(found.eigenvalues[known] - v) <= 1e-9 * abs(v)) for v in others], dtype=bool)
+    return (found.eigenvalues + found.error)[known], others[~shown]
 
 
 def band_table(modes: BandModes) -> str:
