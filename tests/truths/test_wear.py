@@ -146,6 +146,9 @@ def test_from_a_file(tmp_path):
     assert (brake.running_in, brake.piston_offset) == (pytest.approx(2e-5), pytest.approx(2e-3))
     with pytest.raises(ParameterError, match="running_in"):
         brake.replace({"running_in": -1e-6})
+    for worn in (disc, drum):
+        with pytest.raises(ParameterError, match="less than the thickness of the lining"):
+            worn(running_in=0.02)
 
 
 def test_a_shifted_piston_shifts_the_pressure_by_as_much():

@@ -28,7 +28,7 @@ from squealbox.fe.meshed import (
     stiffness_of_contact,
 )
 from squealbox.fe.real_modes import RealModes
-from squealbox.fe.wear import depth_worn, friction_while_wearing
+from squealbox.fe.wear import check_depth, depth_worn, friction_while_wearing
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, parameter
 
@@ -114,6 +114,7 @@ class DiscBrake(MeshedBrake):
                 f"within the disc, {disc.inner_radius:g} to {disc.outer_radius:g} m, and the inner less than the outer"
             )
             raise ParameterError("Pads", "outer_radius", pads.outer_radius, expected)
+        check_depth("DiscBrake", self.running_in, pads.thickness)
         if np.ndim(self.piston_offset) == 0 and np.ndim(self.piston_radius) == 0 and self.piston_offset != 0.0:
             room = patch_room(pads.inner_radius, pads.outer_radius, pads.angle, self.piston_offset)
             if not self.piston_radius <= room:

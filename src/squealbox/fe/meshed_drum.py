@@ -36,7 +36,7 @@ from squealbox.fe.meshed import (
     stiffness_of_contact,
 )
 from squealbox.fe.real_modes import RealModes
-from squealbox.fe.wear import depth_worn, friction_while_wearing
+from squealbox.fe.wear import check_depth, depth_worn, friction_while_wearing
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, parameter
 
@@ -100,6 +100,7 @@ class MeshedDrumBrake(MeshedBrake):
     def __post_init__(self) -> None:
         super().__post_init__()
         drum, shoes = self.drum, self.shoes
+        check_depth("MeshedDrumBrake", self.running_in, shoes.lining_thickness)
         if not shoes.width <= drum.width:
             raise ParameterError("Shoes", "width", shoes.width, f"at most that of the drum, {drum.width:g} m")
         if not shoes.lining_thickness + shoes.table_thickness < drum.radius:

@@ -27,7 +27,7 @@ from scipy import sparse
 from squealbox.contacts import Contacts
 from squealbox.factorisation import factor
 from squealbox.friction import Coulomb
-from squealbox.parameters import parameter
+from squealbox.parameters import ParameterError, parameter
 from squealbox.sparse_sliding import SlidingState, Start, sliding_state
 from squealbox.system import InvalidSystem
 
@@ -66,6 +66,12 @@ def depth_worn() -> Any:
     return parameter("m", 0.0, default=0.0, meaning="mean depth worn off the linings since they were new")
 
 
+def check_depth(brake: str, running_in: Any, thickness: Any) -> None:
+    """Raise `ParameterError` where more is worn off than the lining is thick [m]."""
+    if not np.all(np.asarray(running_in) < thickness):
+        raise ParameterError(brake, "running_in", running_in, "less than the thickness of the lining")
+
+
 def friction_while_wearing() -> Any:
     """The parameter `running_in_friction`."""
     return parameter("-", 0.0, default=0.4, meaning="friction with which the linings wore")
@@ -99,6 +105,8 @@ def run_in(brake: Pressed, mean: float, following: Any = None, steps: int = STEP
             if at < steps or abs(share - 1.0) < DEPTH_FOUND:  # only all of them together have a given length
                 break
             a /= share
+        else:
+            raise InvalidSystem(f"running_in: the last step wears {share:.6g} of what it should after {TRIES} tries")
         depth = depth + worn
     if ends:
         return Worn(depth, depth - reach @ q[-ends:])
