@@ -32,7 +32,6 @@ Basis = Literal["enriched", "craig-bampton", "pod"]
 METHODS = ("enriched", "craig-bampton", "pod")
 POINTS = (3, 5, 9, 17, 33)  # Chebyshev points of a parameter that changes matrices, until the new ones were foreseen
 FORESEEN = 1e-5  # by so much of the largest entry; what lies between the new ones is then known far better
-LOADS = {"load": 2e-3, "N0": 2e-3}  # what running in changes point by point: it is known to a per cent itself
 MOST_AXES = 4
 OPENING = 10.0  # of the tolerance: what the shapes of contacts that open may lack before residuals are looked at
 HIGH_DAMPING = (0.02, 0.2)  # damping ratios that are tried
@@ -218,7 +217,7 @@ def _not_foreseen(name: str, samples: list[Any], found: list[Any], weights: Any)
             raise InvalidSystem(f"{name} changes the contacts themselves: expected a parameter that keeps the mesh")
         there = np.stack([one[field] for one in found])
         off = there - np.tensordot(weights, np.stack([one[field] for one in samples]), axes=1)
-        if np.max(np.abs(off), initial=0.0) > LOADS.get(field, FORESEEN) * np.max(np.abs(there), initial=0.0):
+        if np.max(np.abs(off), initial=0.0) > FORESEEN * np.max(np.abs(there), initial=0.0):
             return field
     return ""
 
