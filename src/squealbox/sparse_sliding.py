@@ -24,6 +24,7 @@ LAST = 1e-6  # size of a fine step, relative to the displacement, after which no
 BALANCED = 1e-10  # of the forces that act: what is left of them in balance
 ASTRAY = 1e-3  # of these: what is left where round-off of a stiff brake lets nothing smaller be reached
 EXACT_STEPS = 60  # of a search that factors every step
+ROUGH_STEPS = 100  # of one that does not; those that settle take some ten
 ROOM = 16  # directions for which memory is taken at a time
 DIRECTIONS = 100  # that a step may try; more, and a factorisation is the quicker way
 DEPENDENT = 1e-8  # share of the largest square length below which a remembered direction is no new one
@@ -58,7 +59,7 @@ def sliding_state(
     Where rough steps lead astray, as they may where the brake is all but rigid, exact ones begin anew.
     """
     begin, base = at_rest(stiffness) if start is None else start
-    steps = 3 + 2 * len(contacts)
+    steps = min(3 + 2 * len(contacts), ROUGH_STEPS)
     found = _search(_Steps(stiffness, contacts, base), begin, load, time, steps)
     if not found.settled and base is not None and np.any(contacts.unilateral):
         exact = _Steps(stiffness, contacts, None)
@@ -73,7 +74,7 @@ def _search(steps: "_Steps", q: Any, load: Any, time: float, most: int) -> Slidi
     acting = float(np.linalg.norm(load) + np.linalg.norm(contacts.d.T @ (mu * preload)))
     exactly, step = not np.any(contacts.unilateral), None
     normal = preload + contacts.n @ q
-    closed = normal >= 0.0  # what just touches is held at first, or nothing might hold the brake
+    closed = (normal >= 0.0) | (not np.any(q))  # at rest all is held at first, or nothing might hold the brake
     for made in range(most):
         before, closed = closed, ((normal > 0.0) if made else closed) | ~contacts.unilateral
         drag = np.where(closed, mu * np.sign(speed), 0.0)

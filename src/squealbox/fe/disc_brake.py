@@ -28,6 +28,7 @@ from squealbox.fe.meshed import (
     stiffness_of_contact,
 )
 from squealbox.fe.real_modes import RealModes
+from squealbox.fe.wear import check_depth, depth_worn, friction_while_wearing
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, parameter
 
@@ -76,6 +77,7 @@ class DiscBrake(MeshedBrake):
 
     title: ClassVar[str] = "Disc brake of finite elements"
     source: ClassVar[str] = "dimensions of a passenger car's brake, chosen here"
+    followers: ClassVar[str] = "caliper"
 
     disc: Disc = Disc()
     pads: Pads = Pads()
@@ -88,7 +90,15 @@ class DiscBrake(MeshedBrake):
     piston_radius: float = parameter(
         "m", 0.0, low_open=True, default=0.021, meaning="radius of the patch that is pressed", source=OWN
     )
+    piston_offset: float = parameter(
+        "m", default=0.0, meaning="of the patch from the pad's middle, along the disc's turning", source=OWN
+    )
     angular_speed: float = speed_of("disc")
+    running_in: float = depth_worn()
+    running_in_friction: float = friction_while_wearing()
+    running_in_pressure: float = parameter(
+        "Pa", 0.0, low_open=True, default=1.5e6, meaning="pressure with which the linings wore", source=OWN
+    )
     contact_stiffness: float = stiffness_of_contact()
     element_size: float = longest_side("in the plane of the disc")
 
@@ -104,6 +114,12 @@ class DiscBrake(MeshedBrake):
                 f"within the disc, {disc.inner_radius:g} to {disc.outer_radius:g} m, and the inner less than the outer"
             )
             raise ParameterError("Pads", "outer_radius", pads.outer_radius, expected)
+        check_depth("DiscBrake", self.running_in, pads.thickness)
+        if np.ndim(self.piston_offset) == 0 and np.ndim(self.piston_radius) == 0 and self.piston_offset != 0.0:
+            room = patch_room(pads.inner_radius, pads.outer_radius, pads.angle, self.piston_offset)
+            if not self.piston_radius <= room:
+                expected = f"an offset that leaves the patch on the plate: its radius may be {max(room, 0.0):.4g} m"
+                raise ParameterError("DiscBrake", "piston_offset", self.piston_offset, expected)
 
     def structure(self) -> Structure:
         self.one_system()
@@ -111,7 +127,7 @@ class DiscBrake(MeshedBrake):
         shape = (
             *(self.disc.inner_radius, self.disc.outer_radius, self.disc.thickness, disc.poisson),
             *(self.pads.inner_radius, self.pads.outer_radius, self.pads.angle, self.pads.thickness, lining.poisson),
-            *(self.backplates.thickness, plate.poisson, self.piston_radius, self.element_size),
+            *(self.backplates.thickness, plate.poisson, self.piston_radius, self.piston_offset, self.element_size),
         )
         return structure(*(float(value) for value in shape))
 
@@ -123,6 +139,9 @@ class DiscBrake(MeshedBrake):
 
     def pressed_by(self) -> dict[str, float]:
         return {"pressure": self.pressure}
+
+    def wearing_under(self) -> dict[str, float]:
+        return {"pressure": self.running_in_pressure}
 
     def touching(self, made: Structure) -> Any:
         """Contact points outside chamfers and slot."""
@@ -145,6 +164,7 @@ def structure(
     plate: float,
     plate_poisson: float,
     piston: float,
+    offset: float,
     size: float,
 ) -> Structure:
     """Mesh and assemble a disc and two pads; all lengths in m, the angle in rad."""
@@ -165,7 +185,7 @@ def structure(
         both = list(enumerate(zip(pads, marks, strict=True), 1))
         mass[name] = sum(frame.square(pad.mass(m), i) for i, (pad, m) in both)
         stiffness[name] = sum(frame.square(pad.stiffness(poisson, m), i) for i, (pad, m) in both)
-    caliper, abutment, load = 0.0, 0.0, np.zeros(frame.size)
+    caliper, abutment, load, moving = 0.0, 0.0, np.zeros(frame.size), np.zeros((frame.size, 2))
     points = ContactPoints(frame, 0, disc)
     for i, pad in enumerate(pads):
         sign, bottom = (1.0, 0) if i == 0 else (-1.0, -1)  # the pad above presses downwards
@@ -175,16 +195,21 @@ def structure(
         back = pad.face(2, -1 - bottom)
         into = _directions(back.place, sign)[0]
         caliper = caliper + frame.spring(back, i + 1, into)
+        moving[frame.freedoms(i + 1)[2::3], i] = -sign
         pressed = np.hypot(back.place[0] - 0.5 * (inner + outer), back.place[1]) < piston
         if not np.any(pressed):
             raise ParameterError(
                 "DiscBrake", "piston_radius", piston, "a patch that holds at least one quadrature point"
             )
-        middle, loaded = 0.5 * (inner + outer), float(np.sum(back.area[pressed]))
-        if piston <= 0.5 * (outer - inner) and piston <= middle * np.sin(min(0.5 * angle, 0.5 * np.pi)):
+        loaded = float(np.sum(back.area[pressed]))
+        if piston <= patch_room(inner, outer, angle, 0.0):
             loaded = np.pi * piston**2  # the patch lies within the plate: its area is known better than by points
         force = np.where(pressed, back.area * loaded / np.sum(back.area[pressed]), 0.0)
         load += frame.rows(back.along(into), i + 1).T @ force
+        if offset != 0.0:
+            height, middle = sign * (half + lining + plate), 0.5 * (inner + outer)
+            moved, still = (_patch(pad, middle, at, piston, height) for at in (offset, 0.0))
+            load += frame.rows(-sign * (moved - still)[None, :], i + 1).toarray()[0]
         for end in (0, -1):
             side = pad.face(1, end, lambda _r, _t, z: np.abs(z) > half + lining)
             abutment = abutment + frame.spring(side, i + 1, *_directions(side.place, sign)[1:])
@@ -195,6 +220,7 @@ def structure(
         springs={"caliper": caliper, "abutment": abutment},
         loads={"pressure": load},
         **points.fields("pad"),
+        moving=moving,
         bodies=bodies,
         kept=frame.kept,
     )
@@ -208,6 +234,26 @@ def free_disc_modes(disc: Disc, element_size: float, top: float, *, held: bool =
     body = Body(radii, around, breaks(-half, half, element_size, 2), closed=True)
     at_bore = np.hypot(*body.places[:2]) <= disc.inner_radius * (1.0 + 1e-6)
     return modes_alone(body, disc.material, top, at_bore if held else None)
+
+
+def patch_room(inner: float, outer: float, angle: float, offset: float) -> float:
+    """The largest radius [m] of a patch on the plate's middle radius, `offset` [m] along the arc from its middle."""
+    middle = 0.5 * (inner + outer)
+    aside = 0.5 * angle - abs(offset) / middle
+    return float(min(0.5 * (outer - inner), middle * np.sin(np.clip(aside, -0.5 * np.pi, 0.5 * np.pi))))
+
+
+def _patch(pad: Body, middle: float, offset: float, piston: float, height: float) -> Any:
+    """Row (n,) of the displacement along z over a round patch [m^3] at `height` [m], by points of its own.
+
+    They are Gauss's along the radius and equally spaced round it, so force and centre are those of the patch.
+    """
+    along, weight = np.polynomial.legendre.leggauss(8)
+    radius, turns = 0.5 * piston * (along + 1.0), 2.0 * np.pi * (np.arange(32) + 0.5) / 32
+    x = middle * np.cos(offset / middle) + np.outer(radius, np.cos(turns)).ravel()
+    y = middle * np.sin(offset / middle) + np.outer(radius, np.sin(turns)).ravel()
+    area = np.repeat(0.5 * piston * weight * radius * 2.0 * np.pi / 32, 32)
+    return area @ pad.points(np.array([x, y, np.full(len(x), height)]))[2]
 
 
 def _directions(place: Any, sign: float) -> tuple[Any, Any, Any]:

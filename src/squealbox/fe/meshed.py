@@ -11,7 +11,7 @@ so each point may lift off; how many do, and what friction adds to the pressure 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy import sparse
@@ -20,6 +20,7 @@ from squealbox.contacts import Contacts, unchanging
 from squealbox.designs.base import Design
 from squealbox.fe.grids import Body, FacePoints
 from squealbox.fe.real_modes import RealModes, real_modes
+from squealbox.fe.wear import Pressed, Worn, run_in
 from squealbox.parameters import DataSheet, ParameterError, parameter
 from squealbox.system import Equilibrium, System, equilibrium
 
@@ -46,7 +47,8 @@ class Structure:
 
     mass, stiffness and springs are matrices (n, n) by name, loads vectors (n,) by name; normal, along and across are
     rows (k, n) at the contact points, with their area, place (3, k), radius of sliding, side (which lining) and name,
-    and for each the angle from the middle of its lining. kept lists what of the bodies' freedoms is not held.
+    and for each the angle from the middle of its lining. moving (n, linings) is how each lining follows what is worn
+    off it, as `wear` has it. kept lists what of the bodies' freedoms is not held.
     """
 
     size: int
@@ -63,6 +65,7 @@ class Structure:
     angle: Any
     side: Any
     names: tuple[str, ...]
+    moving: Any
     bodies: tuple[Body, ...]
     kept: Any
 
@@ -99,8 +102,11 @@ def some_of(inside: Any, sheet: str, chamfer: float) -> Any:
 class MeshedBrake(Design):
     """A brake that meshes itself; a subclass says of what it is made.
 
-    It has the parameters `friction`, `angular_speed` and `contact_stiffness`.
+    It has the parameters `friction`, `angular_speed`, `contact_stiffness`, `running_in` and `running_in_friction`.
     """
+
+    followers: ClassVar[str] = ""
+    """The springs whose ends come along with a lining that wears, if there are such."""
 
     def structure(self) -> Structure:
         """Matrices per unit of modulus and density, contact points and faces; the same for all that shares a mesh."""
@@ -116,6 +122,10 @@ class MeshedBrake(Design):
 
     def pressed_by(self) -> dict[str, float]:
         """How much of each load acts, by its name."""
+        raise NotImplementedError
+
+    def wearing_under(self) -> dict[str, float]:
+        """How much of each load acts while the linings wear, by its name."""
         raise NotImplementedError
 
     def touching(self, made: Structure) -> Any:
@@ -156,14 +166,20 @@ class MeshedBrake(Design):
         made = self.structure()
         touching = self.touching(made)
         stiffness = float(self.value_of("contact_stiffness"))
-        elastic = tuple((name, *(float(x) for x in vars_of(part))) for name, part in self.materials().items())
-        springs = tuple((name, float(value)) for name, value in self.held_by().items())
-        matrices, (normal, pushed, along, across) = summed(made, elastic, springs, stiffness, touching.tobytes())
+        matrices, (normal, pushed, along, across) = summed(*self._sums(made, touching))
+        worn, preload, load = (
+            self.worn(),
+            0.0,
+            sum(value * made.loads[name] for name, value in self.pressed_by().items()),
+        )
+        if worn is not None:
+            preload = -stiffness * made.area[touching] * worn.uneven
+            load = load - normal.T @ preload  # of closed contacts, as `Contact` has it
         contacts = Contacts(
             n=pushed,
             d=along,
             t=along,
-            N0=0.0,
+            N0=preload,
             V=self.value_of("angular_speed") * made.radius[touching],
             law=self.value_of("friction"),
             names=tuple(np.array(made.names)[touching]),
@@ -171,14 +187,30 @@ class MeshedBrake(Design):
             normal=normal,
             across=across,
         )
-        load = sum(value * made.loads[name] for name, value in self.pressed_by().items())
         return System(*matrices, load, contacts)
 
-    def preload(self) -> "Preload":
-        """Steady sliding under what presses: which points lift off, how unevenly the others press."""
-        made, system = self.structure(), self.system()
-        touching = self.touching(made)
-        return Preload(equilibrium(system), made.area[touching], made.place[:, touching], made.side[touching])
+    def worn(self) -> Worn | None:
+        """What running in has worn off each contact point that touches; None of new linings."""
+        depth, friction = (float(self.value_of(name)) for name in ("running_in", "running_in_friction"))
+        if depth == 0.0:
+            return None
+        made = self.structure()
+        loads = tuple((name, float(value)) for name, value in self.wearing_under().items())
+        return worn_linings(self._sums(made, self.touching(made)), loads, self.followers, friction, depth)
+
+    def _sums(self, made: Structure, touching: Any) -> tuple[Any, ...]:
+        """What `summed` takes."""
+        elastic = tuple((name, *(float(x) for x in vars_of(part))) for name, part in self.materials().items())
+        springs = tuple((name, float(value)) for name, value in self.held_by().items())
+        return made, elastic, springs, float(self.value_of("contact_stiffness")), touching.tobytes()
+
+    def preload(self, state: Equilibrium | None = None) -> "Preload":
+        """Steady sliding, found here or known: which points lift off, how unevenly the others press."""
+        made = self.structure()
+        touching, worn = self.touching(made), self.worn()
+        about = made.area[touching], made.place[:, touching], made.side[touching]
+        state = equilibrium(self.system()) if state is None else state
+        return Preload(state, *about, np.zeros(len(touching)) if worn is None else worn.depth)
 
     def shares(self, shape: Any) -> dict[str, tuple[float, float]]:
         """Each component's share of a mode's kinetic and of its strain energy, for a shape (n,)."""
@@ -192,12 +224,15 @@ class MeshedBrake(Design):
 
 @dataclass(frozen=True, eq=False)
 class Preload:
-    """Steady sliding of a brake, and of each contact point its area [m^2], place (3, k) [m] and lining, 0 or 1."""
+    """Steady sliding of a brake, and of each contact point its area [m^2], place (3, k) [m], lining, 0 or 1, and the
+    depth worn off [m].
+    """
 
     equilibrium: Equilibrium
     area: Any
     place: Any
     side: Any
+    worn: Any
 
     @property
     def lifted(self) -> Any:
@@ -243,6 +278,26 @@ def summed(
     return tuple(tuple(unchanging(sparse.csr_array(table)) for table in tables) for tables in (matrices, rows))  # type: ignore[return-value]
 
 
+@lru_cache(maxsize=8)
+def worn_linings(sums: Any, loads: Any, followers: str, friction: float, depth: float) -> Worn:
+    """What running in wears off the linings of a brake that `summed` sums up; kept, because sweeps ask for it again."""
+    made, _, springs, contact, touching = sums
+    some = np.frombuffer(touching, dtype=np.int64)
+    (_, _, stiffness), (normal, _, along, _) = summed(*sums)
+    brake = Pressed(
+        stiffness=stiffness,
+        load=sum(value * made.loads[name] for name, value in loads),
+        normal=normal,
+        along=along,
+        area=made.area[some],
+        radius=made.radius[some],
+        contact=contact,
+        friction=friction,
+        moving=made.moving,
+    )
+    return run_in(brake, depth, dict(springs)[followers] * made.springs[followers] if followers else None)
+
+
 def modes_alone(body: Body, material: Material, top: float, held: Any = None) -> RealModes:
     """Undamped modes below `top` [Hz] of one body, free or without the freedoms marked `held` (n,)."""
     kept = np.arange(body.size) if held is None else np.flatnonzero(~held)
@@ -259,6 +314,10 @@ class Frame:
         self.size = int(self.starts[-1])
         whole = np.cumsum([0, *(body.size for body in bodies)])
         self.kept = np.concatenate([start + inner for start, inner in zip(whole, self.inner, strict=False)])
+
+    def freedoms(self, body: int) -> Any:
+        """Where a body's freedoms stand."""
+        return np.arange(self.starts[body], self.starts[body + 1])
 
     def square(self, matrix: Any, body: int) -> Any:
         """A body's matrix on all freedoms."""

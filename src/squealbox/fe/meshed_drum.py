@@ -36,6 +36,7 @@ from squealbox.fe.meshed import (
     stiffness_of_contact,
 )
 from squealbox.fe.real_modes import RealModes
+from squealbox.fe.wear import check_depth, depth_worn, friction_while_wearing
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, parameter
 
@@ -88,12 +89,18 @@ class MeshedDrumBrake(MeshedBrake):
         "N", 0.0, low_open=True, default=2000.0, meaning="of the wheel cylinder on each shoe", source=OWN
     )
     angular_speed: float = speed_of("drum")
+    running_in: float = depth_worn()
+    running_in_friction: float = friction_while_wearing()
+    running_in_force: float = parameter(
+        "N", 0.0, low_open=True, default=2000.0, meaning="force with which the linings wore", source=OWN
+    )
     contact_stiffness: float = stiffness_of_contact()
     element_size: float = longest_side("along arc and axis")
 
     def __post_init__(self) -> None:
         super().__post_init__()
         drum, shoes = self.drum, self.shoes
+        check_depth("MeshedDrumBrake", self.running_in, shoes.lining_thickness)
         if not shoes.width <= drum.width:
             raise ParameterError("Shoes", "width", shoes.width, f"at most that of the drum, {drum.width:g} m")
         if not shoes.lining_thickness + shoes.table_thickness < drum.radius:
@@ -117,6 +124,9 @@ class MeshedDrumBrake(MeshedBrake):
 
     def pressed_by(self) -> dict[str, float]:
         return {"force": self.force}
+
+    def wearing_under(self) -> dict[str, float]:
+        return {"force": self.running_in_force}
 
     def touching(self, made: Structure) -> Any:
         """Contact points outside chamfers."""
@@ -154,7 +164,7 @@ def drum_structure(
         both = list(enumerate(zip(shoes, marks, strict=True), 1))
         mass[name] = sum(frame.square(shoe.mass(m), i) for i, (shoe, m) in both)
         stiffness[name] = sum(frame.square(shoe.stiffness(poisson, m), i) for i, (shoe, m) in both)
-    pin, guide, load = 0.0, 0.0, np.zeros(frame.size)
+    pin, guide, load, moving = 0.0, 0.0, np.zeros(frame.size), np.zeros((frame.size, 2))
     points = ContactPoints(frame, 0, drum)
     for i, (shoe, middle) in enumerate(zip(shoes, MIDDLES, strict=True), 1):
         face = shoe.face(0, -1)
@@ -170,6 +180,9 @@ def drum_structure(
         for direction in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)):
             row = frame.pin(held, i, direction)
             pin = pin + row.T @ row
+        anchor, own = held.place @ held.area / np.sum(held.area), frame.freedoms(i)
+        moving[own[0::3], i - 1] = outwards * (shoe.places[1, 0::3] - anchor[1])
+        moving[own[1::3], i - 1] = outwards * (anchor[0] - shoe.places[0, 1::3])
         inner = shoe.face(0, 0)
         guide = guide + frame.spring(inner, i, _directions(inner.place)[2])
     return Structure(
@@ -179,6 +192,7 @@ def drum_structure(
         springs={"pin": pin, "guide": guide},
         loads={"force": load},
         **points.fields("shoe"),
+        moving=moving,
         bodies=bodies,
         kept=frame.kept,
     )

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from squealbox.fe.meshed import MeshedBrake, Preload
+from squealbox.fe.meshed import MeshedBrake
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.fe.surface import Surface, with_surface
 from squealbox.plots.surfaces import contact_pressure, largest_motion, mode_on_surface, outline
@@ -47,9 +47,7 @@ def pressed(found: Examination) -> Drawing | None:
     whole, state = found.whole, equilibrium(found.system, found.time)
     if not isinstance(whole, MeshedBrake) or not bool(state.exists):
         return None
-    made = whole.structure()
-    touching = whole.touching(made)
-    preload = Preload(state, made.area[touching], made.place[:, touching], made.side[touching])
+    preload = whole.preload(state)
     names = tuple(str(head).removesuffix(" point") for head in contact_groups(found.system.contact_names))
     up = int(np.sum(preload.lifted))
     caption = (
