@@ -90,7 +90,7 @@ def hidden_modes(small, points, clock: Clock) -> None:
             break
         brake = small.replace(point)
         full, phases = brake.full, {}
-        pencil = full.pencil(brake._present({}))
+        pencil = full.pencil(brake.present())
         whole = projected(pencil, full.basis, full.base)
         growing = np.flatnonzero(whole.eigenvalues.real > np.abs(whole.error))
         if not len(growing):

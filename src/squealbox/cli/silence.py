@@ -5,10 +5,11 @@ from pathlib import Path
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Changes, folder, in_motion, read
+from squealbox.cli.inputs import Changes, folder, in_motion, read, small
 from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files import NotWritable
 from squealbox.files.writing import cure_text
 from squealbox.remedies import Remedies
@@ -28,8 +29,9 @@ def silence(
 ) -> None:
     """What would silence this brake: cures ranked by the squeal they leave, with dose, costs and cautions.
 
-    The section [scatter] of the file says how parameters scatter in production; without it a usual scatter is assumed
-    and said.
+    Of a finite-element brake: masses on nodes, and components stiffer, softer, heavier, lighter or more damped, judged
+    by all modes of its band. The section [scatter] of the file says how parameters scatter in production; without it a
+    usual scatter is assumed and said.
 
     Parameters
     ----------
@@ -55,13 +57,14 @@ def silence(
         raise UsageError(f"--margin {margin}: expected a finite number of at least 0")
     if out is not None:
         folder(out, "silence")
-    brake = in_motion(found).design
+    brake = (small if found.design.system().is_sparse else in_motion)(found).design
     with Progress("looking for what silences it"):
         lot = found.scatter.scatter if found.scatter is not None else None
         table = silenced(brake, lot, margin=margin, samples=samples, seed=seed)
     print(f"{found.design.title}, {file}\n{table.summary(len(table))}")
-    lines = [_in_a_file(table, row) for row in range(len(table))]
-    if lines:
+    reduced = isinstance(brake, ReducedBrake)
+    lines = [f"# {line}" if reduced else _in_a_file(table, row) for row, line in enumerate(table.line)]
+    if lines and not reduced:
         where = "with these values" if table.values[0] else "with these lines at its end"
         print(f"{table.name[0]}: {file.name} {where}\n\n{lines[0]}")
     keep(table)

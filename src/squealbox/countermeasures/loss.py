@@ -14,7 +14,9 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability.family import steady_sliding
+from squealbox.stability.in_band import eigenvalues_in_band, worst_in_band
 from squealbox.stability.spectra import largest_growth
 from squealbox.system import Linearised
 
@@ -24,7 +26,11 @@ REAL = 1e-6  # imaginary part below which a place is one; beside a window that c
 
 
 def growth_of(design: Any) -> Any:
-    """The largest growth rate [1/s] of a design of arrays; inf without steady sliding."""
+    """The largest growth rate [1/s] of a design of arrays, inf without steady sliding; of a reduced one in its band."""
+    if isinstance(design, ReducedBrake):
+        every = [design.entry(at) for at in np.ndindex(design.shape)] if design.shape else [design]
+        found = np.array([worst_in_band(eigenvalues_in_band(one, 0.0))[0] for one in every])
+        return np.where(np.isfinite(found), found, np.inf).reshape(design.shape)
     return growth_about(steady_sliding(design))
 
 

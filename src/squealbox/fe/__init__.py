@@ -8,6 +8,7 @@ from squealbox.fe.export import write_shape
 from squealbox.fe.interfaces import CoordinateSystem, Interface, Rotation
 from squealbox.fe.meshed import Material, MeshedBrake, Preload
 from squealbox.fe.meshed_drum import Anchors, Drum, MeshedDrumBrake, Shoes, free_drum_modes
+from squealbox.fe.modified import with_component, with_mass
 from squealbox.fe.pencil import Pencil, pencil_of
 from squealbox.fe.published import PublishedDiscBrake
 from squealbox.fe.quadratic import FullModes, full_modes
@@ -60,5 +61,7 @@ __all__ = [
     "read_structure",
     "real_modes",
     "reduce",
+    "with_component",
+    "with_mass",
     "write_shape",
 ]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,18 @@ class FullBrake:
     def at(self, values: Mapping[str, Any]) -> Any:
         """The full design at other parameters, or the full system."""
         return full_system(self.design, values) if isinstance(self.design, System) else self.design.replace(values)
+
+    def component(self, name: str) -> tuple[Any, Any, Any]:
+        """V' M V, V' K V (m, m) and V' K q0 (m,) of one component of a brake that meshes itself."""
+        if name not in self._components:
+            mass, stiffness = self.design.components()[name]
+            moved = stiffness @ self.basis
+            self._components[name] = self.basis.T @ (mass @ self.basis), self.basis.T @ moved, moved.T @ self.steady
+        return self._components[name]
+
+    @cached_property
+    def _components(self) -> dict[str, tuple[Any, Any, Any]]:
+        return {}
 
     def system(self, values: Mapping[str, Any]) -> System:
         """The full system at other parameters."""

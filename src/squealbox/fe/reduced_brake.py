@@ -308,11 +308,11 @@ class ReducedBrake(Design):
         values are parameters of the full brake with `_` for `.`, or none: the present ones. Returns a `Projected`.
         """
         named = {self._full_name(name): value for name, value in values.items()}
-        return self._attached().checked(self._present(named), self.band)
+        return self._attached().checked(self.present(named), self.band)
 
     def whole(self) -> Any:
         """The full design at the present values, or the full system."""
-        return self._attached().at(self._present({}))
+        return self._attached().at(self.present())
 
     def missed(self, eigenvalue: complex, x: Any, y: Any) -> complex | None:
         """The estimate [1/s] of the full brake's eigenvalue less one found here, with right and left shape (m,).
@@ -322,10 +322,11 @@ class ReducedBrake(Design):
         if self.full is None:
             return None
         like = self.reduction.arrays["across"] is not None, type(self.friction)
-        return self._attached().missed(self._present({}), eigenvalue, x, y, like)
+        return self._attached().missed(self.present(), eigenvalue, x, y, like)
 
-    def _present(self, named: Mapping[str, Any]) -> dict[str, Any]:
+    def present(self, named: Mapping[str, Any] | None = None) -> dict[str, Any]:
         """Parameters of the full brake at the present values, but for those named."""
+        named = named or {}
         present = {**{axis.name: self.values[axis.name] for axis in self.reduction.axes}, **named}
         if self.friction is not None:
             inner = {f"friction.{name}": value for name, _, value in self.friction.leaves() if isinstance(value, float)}

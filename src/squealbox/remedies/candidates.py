@@ -37,7 +37,8 @@ class Candidate:
     """One cure: `make(dose)` is the brake with it, `doses` rise with the effort, `line(dose)` is it in Python.
 
     `make` takes an array of doses as well. cost says in words what it costs; cautions are known beforehand. `values`
-    are the parameters of the brake that have another value with it, for a cure that is nothing else.
+    are the parameters of the brake that have another value with it, for a cure that is nothing else. A `slow` one is
+    looked at for fewer doses.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Candidate:
     cost: Callable[[float], str]
     cautions: tuple[str, ...] = ()
     values: Callable[[float], dict[str, float]] | None = None
+    slow: bool = False
     tuned: str = ""  # the parameter that scatters with production though the brake's data do not know it
 
 
@@ -108,10 +110,11 @@ def _parameters(brake: Design) -> Iterator[Candidate]:
         for sign in (1.0, -1.0):
             if in_friction and (path.rpartition(".")[2] != "static" or sign > 0.0):
                 continue  # of friction only less of it is a cure
-            yield _parameter(brake, path, about, value, sign)
+            yield parameter_candidate(brake, path, about, value, sign)
 
 
-def _parameter(brake: Design, path: str, about: Any, value: float, sign: float) -> Candidate:
+def parameter_candidate(brake: Design, path: str, about: Any, value: float, sign: float) -> Candidate:
+    """More (`sign` 1) or less (-1) of one parameter, by up to half of it."""
     turn = about.unit == "rad"
     most = sign * (LARGEST_TURN if turn else LARGEST_CHANGE * abs(value))
     low, high = about.low, about.high

@@ -1,11 +1,13 @@
 """How parameters scatter in production where nobody says: a stated assumption, not knowledge of this brake."""
 
 from squealbox.designs import Design
+from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.parameters import ParameterError
 from squealbox.studies.uncertainty.distributions import Lognormal, TruncatedNormal
 from squealbox.studies.uncertainty.scatter import Scatter
 
 FRICTION, SPRINGS, DAMPERS = 0.08, 0.03, 0.20  # coefficients of variation
+REDUCED_LOT = 24  # brakes, each of which costs a spectrum of its band
 LOT, LEAST_LOT, SMALL = 2048, 128, 20  # brakes, and degrees of freedom up to which LOT of them take seconds
 ASSUMED = (
     f"Assumed scatter, since none was given: friction {100.0 * FRICTION:.0f} %, stiffnesses {100.0 * SPRINGS:.0f} %, "
@@ -15,6 +17,8 @@ ASSUMED = (
 
 def lot_size(brake: Design, most: int = LOT) -> int:
     """Brakes in the lot of a brake of n degrees of freedom: the fewer the larger, as a spectrum costs n^2 to n^3."""
+    if isinstance(brake, ReducedBrake):
+        return REDUCED_LOT
     return max(LEAST_LOT, int(most * min(1.0, (SMALL / brake.system().size) ** 2)))
 
 

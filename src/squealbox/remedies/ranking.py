@@ -11,17 +11,19 @@ from squealbox.control.closed_loop import closed_loop
 from squealbox.countermeasures import Controlled, Countermeasure, Dithered
 from squealbox.countermeasures.loss import growth_of
 from squealbox.designs.base import Design
+from squealbox.fe.modified import with_component, with_mass
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.parameters import ParameterError
 from squealbox.remedies.candidates import Candidate, candidates_for, more_friction
 from squealbox.remedies.production import ASSUMED, LOT, lot_size, usual_scatter
+from squealbox.remedies.structural import ON_THE_BASIS, structural_candidates
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.uncertainty.scatter import Scatter
 from squealbox.system import InvalidSystem, equilibrium
 from squealbox.transient import simulate
 
 TUNING = 0.03  # standard deviation of an absorber's frequency in production, relative
-ZOOM = 17
+ZOOM, SLOW_ZOOM = 17, 6
 PUSH, PERIODS = 0.05, 100.0  # m/s of the push, and how many periods of the worst mode it is followed
 MOST_ROWS = 20  # of a summary
 Z = 1.96  # of a 95 % interval
@@ -72,6 +74,7 @@ class Remedies(Result):
 
         known = {name: getattr(countermeasures, name) for name in countermeasures.__all__}
         known |= {name: getattr(loops, name) for name in ("PID", "ActiveForce", "StateFeedback", "DelayedFeedback")}
+        known |= {"with_component": with_component, "with_mass": with_mass}
         made: Design = _made(str(self.line[row]), {**known, "brake": self.inputs["system"]})
         return made
 
@@ -141,7 +144,8 @@ def silence(
     brake : any design with a friction law
     scatter : how its parameters scatter in production; None takes `usual_scatter`, and the summary says so
     candidates : None takes `candidates_for`: each parameter, absorbers, dampers, masses, springs, shims, asymmetry,
-        dither, velocity feedback, active force control, combinations of two
+        dither, velocity feedback, active force control, combinations of two. Of a reduced brake less friction,
+        components stiffer, softer, heavier, lighter or more damped, and masses on nodes, by the modes of its band
     margin : by which friction may rise without squeal
     samples, seed : of the lot, the same for every candidate; absorbers scatter in their tuning by 3 % besides. None
         takes 2048 brakes, fewer of more than 20 degrees of freedom, which take longer; the summary says so
@@ -156,18 +160,17 @@ def silence(
     """
     if not (np.isfinite(margin) and margin >= 0.0):
         raise ParameterError("silence", "margin", margin, "a finite number of at least 0")
-    if isinstance(brake, ReducedBrake):
-        raise InvalidSystem(
-            "the coordinates of a reduced brake are modes, on which no damper or absorber can be put: "
-            "local_sensitivity(brake, mode) of the full brake says where a gram, a spring, a damper or a modulus calms "
-            "a mode, squealbox onset and map how far its parameters do"
-        )
+    said: list[str] = []
+    if isinstance(brake, ReducedBrake):  # nothing can be fastened to its coordinates: the structure is changed
+        candidates = structural_candidates(brake) if candidates is None else candidates
+        push, said = 0.0, [ON_THE_BASIS]
     assumed = scatter is None
     scatter = usual_scatter(brake) if scatter is None else scatter
     if not isinstance(scatter, Scatter):
         raise ParameterError("silence", "scatter", scatter, "a Scatter of the brake's parameters")
     fewer = samples is None and lot_size(brake) < LOT
     samples = lot_size(brake) if samples is None else samples
+    said += [ASSUMED] * assumed + [FEWER.format(samples, 50.0 * Z / np.sqrt(samples))] * fewer
     lot = scatter.sample(samples, seed=seed)
     tuning = 1.0 + TUNING * np.random.default_rng(seed + 1).standard_normal(samples)
     worse = more_friction(brake, 1.0 + margin)
@@ -193,7 +196,7 @@ def silence(
         **columns, values=tuple(row["values"] for row in rows), before=_share(brake, lot),
         growth_before=float(growth_of(brake)), amplitude_before=_pushed(brake, brake, push), margin=margin,
         inputs={"system": brake}, settings={"samples": samples, "seed": seed, "push": push}, outcome=outcome,
-        assumption="\n".join([ASSUMED] * assumed + [FEWER.format(samples, 50.0 * Z / np.sqrt(samples))] * fewer),
+        assumption="\n".join(said),
     )  # fmt: skip
 
 
@@ -232,8 +235,8 @@ def _dose(each: Candidate, margin: float) -> tuple[float, bool]:
     if first == 0:
         return float(doses[0]), True
     low, high = doses[first - 1], doses[first]
-    for _ in range(4):
-        fine = np.linspace(low, high, ZOOM)
+    for _ in range(1 if each.slow else 4):
+        fine = np.linspace(low, high, SLOW_ZOOM if each.slow else ZOOM)
         quiet = _growths(each, fine, margin) <= 0.0
         k = max(int(np.argmax(quiet)), 1)
         low, high = fine[k - 1], fine[k]
@@ -249,7 +252,7 @@ def _growths(each: Candidate, doses: Any, margin: float) -> Any:
         except (ParameterError, InvalidSystem):
             return np.inf  # refused: the table says that no such dose is possible
 
-    together = growth(doses) if len(doses) > 1 else np.inf
+    together = growth(doses) if len(doses) > 1 and not each.slow else np.inf
     if np.ndim(together):
         return together
     return np.array([growth(float(dose)) for dose in doses])  # one by one: some of them may be possible
