@@ -191,7 +191,8 @@ def factor(
     """
     if library not in LIBRARIES:
         raise ValueError(f"library = {library!r}: expected one of {', '.join(LIBRARIES)}")
-    matrix = sparse.csc_array(A)
+    mirrored = symmetric and getattr(A, "format", "") == "csr" and A.has_canonical_format  # its rows are its columns
+    matrix = sparse.csc_array((A.data, A.indices, A.indptr), shape=A.shape) if mirrored else sparse.csc_array(A)
     matrix.sort_indices()
     matrix.sum_duplicates()
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
