@@ -143,10 +143,13 @@ def _corners(design: Any, ranges: Mapping[str, tuple[float, float]]) -> list[dic
 
 
 def _present(design: Any, name: str) -> float:
-    if not isinstance(design, System):
-        return float(design.value_of(name))
-    law, known = design.contacts.law, name.startswith("friction.")
-    return float(law.value_of(name.removeprefix("friction."))) if known and not isinstance(law, tuple) else float("nan")
+    """The value behind a name; NaN where it has none yet."""
+    if isinstance(design, System):
+        law, known = design.contacts.law, name.startswith("friction.")
+        value = law.value_of(name.removeprefix("friction.")) if known and not isinstance(law, tuple) else None
+    else:
+        value = design.value_of(name)
+    return float("nan") if value is None else float(value)
 
 
 def _checked(band: Any, varying: Any, method: str) -> tuple[float, float]:
@@ -220,7 +223,8 @@ def _pushed_between(
         same = pencil.sliding.system.K is first.sliding.system.K
         for share in np.arange(1, STEPS) / STEPS:
             between = {n: (1.0 - share) * _present(full.design, n) + share * value for n, value in point.items()}
-            there = _on_basis(full, full.system(between), known) if same else None
+            known_there = same and all(map(np.isfinite, between.values()))
+            there = _on_basis(full, full.system(between), known) if known_there else None
             even = (1.0 - share) * found[0] + share * pencil.sliding.pushed
             found.append(even if there is None else there[1])
         found.append(pencil.sliding.pushed)
