@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_BARS = 24
+ALL = 0.995  # share of a lot that is all of it
 
 
 @drawn_by.register(Countermeasure)
@@ -35,12 +36,16 @@ def countermeasure_drawing(design: Countermeasure, *, axes: Any = None) -> "Figu
 
 @drawn_by.register(Remedies)
 def remedies_figure(found: Remedies, *, title: str = "", axes: Any = None) -> "Figure":
-    """The share of the lot that squeals with each cure, ranked, beside that without; hollow where no dose is enough."""
+    """The share of the lot that squeals with each cure, ranked, beside that without; hollow where no dose is enough.
+
+    Where all of it squeals with any of them, the growth rate tells them apart.
+    """
     from matplotlib.patches import Patch
 
     count = min(len(found), MOST_BARS)
     with drawing(axes, width=1.8 * COLUMN, height=0.6 + 0.19 * count) as panel:
-        places = np.arange(count)
+        places, shares = np.arange(count), bool(np.any(found.probability[:count] < ALL))
+        values, without = (found.probability, found.before) if shares else (found.growth, found.growth_before)
         friction = f" at {100.0 * found.margin:.3g} % more friction" if found.margin else ""
         looks: dict[bool, dict[str, Any]] = {
             True: {"facecolor": "#0072B2"},
@@ -48,16 +53,17 @@ def remedies_figure(found: Remedies, *, title: str = "", axes: Any = None) -> "F
         }
         words = {True: f"quiet{friction}", False: f"no dose is quiet{friction}"}
         for place in places:
-            panel.barh(
-                place, max(float(found.probability[place]), 1e-3), height=0.7, **looks[bool(found.reached[place])]
-            )
-        before = panel.axvline(found.before, color="#D55E00", linewidth=1.0, label="without a cure")
+            panel.barh(place, max(float(values[place]), 1e-3), height=0.7, **looks[bool(found.reached[place])])
+        before = panel.axvline(without, color="#D55E00", linewidth=1.0, label="without a cure")
         kinds = [each for each in (True, False) if each in found.reached[:count]]
         panel.set_yticks(places, [str(name) for name in found.name[:count]], fontsize=6)
         panel.invert_yaxis()
-        panel.set_xlim(0.0, 1.0)
+        panel.set_xlim(0.0, 1.0 if shares else None)
         left_out = f" (the best {count} of {len(found)} cures)" if count < len(found) else ""
-        panel.set_xlabel(f"share of the lot that squeals{left_out}")
+        what = (
+            "share of the lot that squeals" if shares else quantity_label("growth rate; all of the lot squeals", "1/s")
+        )
+        panel.set_xlabel(f"{what}{left_out}")
         panel.set_title(title)
         key = [Patch(label=words[each], **looks[each]) for each in kinds]
         panel.legend(handles=[*key, before], loc="best", fontsize=6)
