@@ -96,7 +96,7 @@ def test_the_critical_friction_of_a_meshed_brake_is_that_of_its_1656_freedoms(me
         near = complex_modes(there, band=(found.frequency - 20.0, found.frequency + 20.0), method="full")
         growth.append(float(near.largest_growth_rate))
     assert growth[0] < 0.0 < growth[1]
-    assert found.uncertainty < 1e-4
+    assert found.uncertainty < 2e-4
 
 
 def test_a_map_and_an_array_of_values_are_the_modes_of_the_band_at_each(meshed):

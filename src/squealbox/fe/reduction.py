@@ -36,7 +36,7 @@ POINTS = (3, 5, 9, 17, 33)  # Chebyshev points of a parameter that changes matri
 FORESEEN = 1e-5  # by so much of the largest entry; what lies between the new ones is then known far better
 MOST_AXES = 4
 STEPS = 8  # of the way from the reference to each corner, at each of which open contacts are looked at
-OPENING = 2.0  # of the tolerance: what the shapes of contacts that open may lack before residuals are looked at
+OPENING = 10.0  # of the tolerance: what the shapes of contacts that open may lack before residuals are looked at
 HIGH_DAMPING = (0.02, 0.2)  # damping ratios that are tried
 SEEN = 1e-5  # share of the strongest direction from which on the band's modes have a part in a direction
 INSIDE = (0.25, 0.75)  # shares of the ranges at which added damping is checked, beside their corners
@@ -87,8 +87,7 @@ def reduce(
     basis = _with_statics(reference, pencils, basis)
     onto = GrowingBasis([reference, *pencils], basis)
     if method == "enriched" and len(corners):
-        full = FullBrake(design_or_system, onto.blocks[0], steady, modes.base, time)
-        pushed = _pushed_between(full, onto.structural(0), corners, [reference, *pencils])
+        pushed = _pushed_between([reference, *pencils])
         onto.add(opening_directions(modes, reference, pushed, high, OPENING * tolerance))
     found = refined(onto, modes.base, (low, high), 0.5 * tolerance, ROUNDS if method == "enriched" else 0)
     onto.turn()
@@ -129,16 +128,12 @@ def reduce(
 
 
 def _corners(design: Any, ranges: Mapping[str, tuple[float, float]]) -> list[dict[str, float]]:
-    """The corners of all ranges, and their middle where the design is none that lies within them.
-
-    A corner that is the design itself is left out, for that is looked at anyway.
-    """
+    """The corners of all ranges and their middle, but for the design itself, which is looked at anyway."""
     if not ranges:
         return []
     corners = [dict(zip(ranges, values, strict=True)) for values in product(*ranges.values())]
+    corners.append({name: 0.5 * (low + high) for name, (low, high) in ranges.items()})
     present = {name: _present(design, name) for name in ranges}
-    if not all(low < present[name] < high for name, (low, high) in ranges.items()):
-        corners.append({name: 0.5 * (low + high) for name, (low, high) in ranges.items()})
     return [corner for corner in corners if corner != present]
 
 
@@ -209,26 +204,12 @@ def _with_statics(reference: SlidingPencil, pencils: list[SlidingPencil], basis:
     return joined(reference, basis, np.stack(columns, axis=1)) if columns else basis
 
 
-def _pushed_between(
-    full: FullBrake, known: dict[str, Any], points: list[dict[str, float]], pencils: list[SlidingPencil]
-) -> Any:
-    """N0 + n . q at the reference, at other points and at STEPS of the way to each, (linearisations, contacts).
-
-    On the way steady sliding is that on the basis, for a point with the stiffness and contacts of the reference; for
-    others, and where there is none, N is taken to change evenly. known is what the basis makes of the reference.
-    """
-    first, *others = pencils
-    found = [first.sliding.pushed]
-    for point, pencil in zip(points, others, strict=True):
-        same = pencil.sliding.system.K is first.sliding.system.K
-        for share in np.arange(1, STEPS) / STEPS:
-            between = {n: (1.0 - share) * _present(full.design, n) + share * value for n, value in point.items()}
-            known_there = same and all(map(np.isfinite, between.values()))
-            there = _on_basis(full, full.system(between), known) if known_there else None
-            even = (1.0 - share) * found[0] + share * pencil.sliding.pushed
-            found.append(even if there is None else there[1])
-        found.append(pencil.sliding.pushed)
-    return np.stack(found)
+def _pushed_between(pencils: list[SlidingPencil]) -> Any:
+    """N0 + n . q of the first pencil, of each other, and at STEPS of the way to it, taken to change evenly."""
+    first, *others = (pencil.sliding.pushed for pencil in pencils)
+    shares = np.arange(1, STEPS + 1) / STEPS
+    between = [(1.0 - share) * first + share * other for other in others for share in shares]
+    return np.stack([first, *between])
 
 
 def _pencils_at(full: FullBrake, reference: SlidingPencil, points: list[dict[str, float]]) -> list[SlidingPencil]:
@@ -238,21 +219,13 @@ def _pencils_at(full: FullBrake, reference: SlidingPencil, points: list[dict[str
     known |= {"M": None, "C": 0.0, "K": basis.T @ (system.K @ basis), "across": None}
     found = []
     for point in points:
-        there = full.system(point)
-        near = _on_basis(full, there, known) if there.K is system.K else None
-        q = full.steady if near is None else full.steady + basis @ near[0]
+        there, near = full.system(point), None
+        law = there.contacts.law
+        if there.K is system.K and not isinstance(law, tuple):
+            near = steady_small(full.projected_arrays(there, known), law, np.asarray(there.contacts.unilateral))
+        q = full.steady if near is None else full.steady + basis @ near[1].q
         found.append(pencil_of(there, full.time, start=Start(q, full.base)))
     return found
-
-
-def _on_basis(full: FullBrake, system: System, known: dict[str, Any]) -> tuple[Any, Any] | None:
-    """Steady sliding on the basis, from that of the reference, and N0 + n . q; None where the quick road has none."""
-    law = system.contacts.law
-    if isinstance(law, tuple):
-        return None
-    rows = full.projected_arrays(system, known)
-    found = steady_small(rows, law, np.asarray(system.contacts.unilateral))
-    return None if found is None else (found[1].q, rows["N0"] + rows["n"] @ found[1].q)
 
 
 def _axis(full: FullBrake, name: str, low: float, high: float, arrays: dict[str, Any]) -> Axis | None:
