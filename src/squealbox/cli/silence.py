@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Changes, folder, in_motion, read, small
+from squealbox.cli.inputs import Changes, folder, read, small
 from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -57,7 +57,7 @@ def silence(
         raise UsageError(f"--margin {margin}: expected a finite number of at least 0")
     if out is not None:
         folder(out, "silence")
-    brake = (small if found.design.system().is_sparse else in_motion)(found).design
+    brake = small(found).design
     with Progress("looking for what silences it"):
         lot = found.scatter.scatter if found.scatter is not None else None
         table = silenced(brake, lot, margin=margin, samples=samples, seed=seed)

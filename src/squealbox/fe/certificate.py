@@ -119,7 +119,6 @@ class _Winding:
         self.pencil, self.believed, self.probe, self.most, self.made = pencil, known, probe, most, 0
         self.phases = phases
         self.counted: set[complex] = set()
-        self.looked: set[complex] = set()
         self.last: tuple[complex, Factor] | None = None
 
     def turn(self, start: complex, end: complex, parts: int) -> float:
@@ -128,12 +127,13 @@ class _Winding:
         return sum(self._between(a, b) for a, b in pairwise(marks))
 
     def _between(self, a: complex, b: complex) -> float:
+        middle = 0.5 * (a + b)
         found = self._followed(a, b)
-        if found is None and self._look_near(0.5 * (a + b)):
+        if found is None:
+            self._look_near(middle)
             found = self._followed(a, b)
         if found is not None:
             return found
-        middle = 0.5 * (a + b)
         return self._between(a, middle) + self._between(middle, b)
 
     def _followed(self, a: complex, b: complex) -> float | None:
@@ -164,16 +164,12 @@ class _Winding:
         self.counted.add(point)
         return self.phases[point] - float(np.sum(np.angle(point - self.believed)))
 
-    def _look_near(self, point: complex) -> bool:
-        """Put the eigenvalues nearest to a point in the place of those believed to be there; False the second time."""
-        if point in self.looked:
-            return False
-        self.looked.add(point)
+    def _look_near(self, point: complex) -> None:
+        """Put the eigenvalues nearest to a point in the place of those believed to be there."""
         base = self.last[1] if self.last is not None and self.last[0] == point else self._factor(point)
         found, _ = modes_near(self.pencil, point, NEAREST, base)
         reach = float(np.max(np.abs(found - point), initial=0.0)) * (1.0 + 1e-9)
         self.believed = np.concatenate([self.believed[np.abs(self.believed - point) > reach], found])
-        return True
 
     def _factor(self, point: complex) -> Factor:
         self._count()

@@ -167,11 +167,8 @@ class MeshedBrake(Design):
         touching = self.touching(made)
         stiffness = float(self.value_of("contact_stiffness"))
         matrices, (normal, pushed, along, across) = summed(*self._sums(made, touching))
-        worn, preload, load = (
-            self.worn(),
-            0.0,
-            sum(value * made.loads[name] for name, value in self.pressed_by().items()),
-        )
+        load = sum(value * made.loads[name] for name, value in self.pressed_by().items())
+        worn, preload = self.worn(), 0.0
         if worn is not None:
             preload = -stiffness * made.area[touching] * worn.uneven
             load = load - normal.T @ preload  # of closed contacts, as `Contact` has it

@@ -33,7 +33,7 @@ def with_component(
     `name` is one of the full brake's `components()` but the contact. Raises `ParameterError` for another, or for a
     factor that is not positive, and `InvalidSystem` where the full brake is not kept.
     """
-    full = attached(small)
+    full = small.attached()
     known = changeable(full)
     if name not in known:
         raise ParameterError("with_component", "name", name, known_names(name, list(known)))
@@ -47,7 +47,7 @@ def with_component(
 
 def with_mass(small: ReducedBrake, node: int, mass: float) -> ReducedBrake:
     """The brake with a mass [kg] on a node of the full brake's mesh, by its number as `local_sensitivity` gives it."""
-    full = attached(small)
+    full = small.attached()
     if not hasattr(full.design, "node_rows"):
         raise InvalidSystem("of this brake the nodes are not known: a mass cannot be put on one")
     if not 0.0 <= mass < np.inf:
@@ -57,14 +57,6 @@ def with_mass(small: ReducedBrake, node: int, mass: float) -> ReducedBrake:
         raise ParameterError("with_mass", "node", node, "the number of a node of the mesh that is not held")
     moves = full.basis[rows]
     return _added(small, mass * moves.T @ moves, 0.0, 0.0, 0.0)
-
-
-def attached(small: ReducedBrake) -> FullBrake:
-    """The full brake of a reduced one; `InvalidSystem` where it is not kept."""
-    if small.full is None:
-        raise InvalidSystem("the full brake is not kept in files: reduce it again to change its structure")
-    full: FullBrake = small.full
-    return full
 
 
 def _added(small: ReducedBrake, mass: Any, damping: Any, stiffness: Any, load: Any) -> ReducedBrake:

@@ -6,7 +6,7 @@ K0 bends to first order in its frequency, and to all orders in the springs, by
     K0^-1 R' b,   b = (1 - s H)^-1 s N u,   H = N K0^-1 R'  on S
 
 and in a mode of angular frequency w leaving that out costs about b' R K0^-1 R' b / (2 w) [1/s]. Which contacts belong
-to S between two linearisations follows from their gaps on the way.
+to S between two linearisations follows from their gaps, taken to change evenly on the way.
 """
 
 from typing import Any
@@ -16,21 +16,19 @@ import numpy as np
 from squealbox.fe.pencil import SlidingPencil
 from squealbox.fe.real_modes import RealModes
 
+STEPS = 8  # of the way from the first linearisation to each other one, at each of which a set of contacts is looked at
 REACH = 1.1  # times the end of the band up to which modes are looked at
 SMALLEST = 1e-12  # share of the largest energy below which a combination of contacts is round-off
 
 
-def opening_directions(modes: RealModes, pencil: SlidingPencil, pushed: Any, top: float, tolerance: float) -> Any:
-    """Columns (n, k) that hold the bent shapes of all modes up to `top` [Hz] but for `tolerance` [1/s] in each.
-
-    pushed (points, contacts) is N0 + n . q, below 0 at a gap, wherever contacts may be open or closed.
-    """
-    table, open_ = pencil.sliding.system.contacts, pencil.sliding.lifted > 0.0
-    sets = np.unique((pushed <= 0.0) & table.unilateral, axis=0)
+def opening_directions(modes: RealModes, pencils: list[SlidingPencil], top: float, tolerance: float) -> Any:
+    """Columns (n, k) that hold the bent shapes of all modes up to `top` [Hz] but for `tolerance` [1/s] in each."""
+    sets, table = _sets(pencils), pencils[0].sliding.system.contacts
+    open_ = pencils[0].sliding.lifted > 0.0
     changing = np.flatnonzero(np.any(sets != open_, axis=0))
     below = modes.frequency < REACH * top
     if not len(changing) or not np.any(below):
-        return np.zeros((pencil.size, 0))
+        return np.zeros((pencils[0].size, 0))
     rows, springs, shapes = table.normal[changing], table.n[changing], modes.shapes[:, below]
     moved = modes.base.solve_many(rows.T.toarray())
     held, felt = springs @ moved, springs @ shapes
@@ -53,3 +51,11 @@ def opening_directions(modes: RealModes, pencil: SlidingPencil, pushed: Any, top
     left = np.cumsum((sizes[:, None] * parts)[::-1] ** 2, axis=0)[::-1]  # of each column less i directions
     count = int(np.sum(np.max(left, axis=1) > tolerance))
     return moved @ (turns @ (main[:, :count] / length[:, None]))
+
+
+def _sets(pencils: list[SlidingPencil]) -> Any:
+    """Which contacts are open in the first pencil and on the way from it to each other one, (sets, contacts)."""
+    first, *others = (pencil.sliding.pushed for pencil in pencils)
+    shares = np.arange(1, STEPS + 1) / STEPS
+    between = [(1.0 - share) * first + share * other for other in others for share in shares]
+    return np.unique((np.stack([first, *between]) <= 0.0) & pencils[0].sliding.system.contacts.unilateral, axis=0)

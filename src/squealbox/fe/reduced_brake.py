@@ -300,7 +300,7 @@ class ReducedBrake(Design):
 
     def expand(self, shape: Any) -> Any:
         """A displacement or mode of the small system (m,) or (m, k) on all degrees of freedom, without q0."""
-        return self._attached().basis @ shape
+        return self.attached().basis @ shape
 
     def checked(self, **values: Any) -> Any:
         """Modes in the band at parameters, each with the estimate of its error against the full brake there.
@@ -308,11 +308,11 @@ class ReducedBrake(Design):
         values are parameters of the full brake with `_` for `.`, or none: the present ones. Returns a `Projected`.
         """
         named = {self._full_name(name): value for name, value in values.items()}
-        return self._attached().checked(self.present(named), self.band)
+        return self.attached().checked(self.present(named), self.band)
 
     def whole(self) -> Any:
         """The full design at the present values, or the full system."""
-        return self._attached().at(self.present())
+        return self.attached().at(self.present())
 
     def missed(self, eigenvalue: complex, x: Any, y: Any) -> complex | None:
         """The estimate [1/s] of the full brake's eigenvalue less one found here, with right and left shape (m,).
@@ -322,7 +322,7 @@ class ReducedBrake(Design):
         if self.full is None:
             return None
         like = self.reduction.arrays["across"] is not None, type(self.friction)
-        return self._attached().missed(self.present(), eigenvalue, x, y, like)
+        return self.attached().missed(self.present(), eigenvalue, x, y, like)
 
     def present(self, named: Mapping[str, Any] | None = None) -> dict[str, Any]:
         """Parameters of the full brake at the present values, but for those named."""
@@ -337,7 +337,8 @@ class ReducedBrake(Design):
         matches = [known for known in self._names() if known in (name, name.replace("_", ".", 1))]
         return matches[0] if matches else name
 
-    def _attached(self) -> FullBrake:
+    def attached(self) -> FullBrake:
+        """The full brake; `InvalidSystem` where it is not kept."""
         if self.full is None:
             raise InvalidSystem("the full brake is not kept in files: reduce it again to expand or check")
         full: FullBrake = self.full

@@ -35,7 +35,6 @@ METHODS = ("enriched", "craig-bampton", "pod")
 POINTS = (3, 5, 9, 17, 33)  # Chebyshev points of a parameter that changes matrices, until the new ones were foreseen
 FORESEEN = 1e-5  # by so much of the largest entry; what lies between the new ones is then known far better
 MOST_AXES = 4
-STEPS = 8  # of the way from the reference to each corner, at each of which open contacts are looked at
 OPENING = 10.0  # of the tolerance: what the shapes of contacts that open may lack before residuals are looked at
 HIGH_DAMPING = (0.02, 0.2)  # damping ratios that are tried
 SEEN = 1e-5  # share of the strongest direction from which on the band's modes have a part in a direction
@@ -85,10 +84,9 @@ def reduce(
     full = FullBrake(design_or_system, basis, steady, modes.base, time)
     pencils = _pencils_at(full, reference, corners)
     basis = _with_statics(reference, pencils, basis)
+    if method == "enriched":
+        basis = joined(reference, basis, opening_directions(modes, [reference, *pencils], high, OPENING * tolerance))
     onto = GrowingBasis([reference, *pencils], basis)
-    if method == "enriched" and len(corners):
-        pushed = _pushed_between([reference, *pencils])
-        onto.add(opening_directions(modes, reference, pushed, high, OPENING * tolerance))
     found = refined(onto, modes.base, (low, high), 0.5 * tolerance, ROUNDS if method == "enriched" else 0)
     onto.turn()
     full = FullBrake(design_or_system, onto.blocks[0], steady, modes.base, time)
@@ -202,14 +200,6 @@ def _with_statics(reference: SlidingPencil, pencils: list[SlidingPencil], basis:
     moved = [pencil.state.q - reference.state.q for pencil in pencils]
     columns = [q for q in moved if np.any(q)]
     return joined(reference, basis, np.stack(columns, axis=1)) if columns else basis
-
-
-def _pushed_between(pencils: list[SlidingPencil]) -> Any:
-    """N0 + n . q of the first pencil, of each other, and at STEPS of the way to it, taken to change evenly."""
-    first, *others = (pencil.sliding.pushed for pencil in pencils)
-    shares = np.arange(1, STEPS + 1) / STEPS
-    between = [(1.0 - share) * first + share * other for other in others for share in shares]
-    return np.stack([first, *between])
 
 
 def _pencils_at(full: FullBrake, reference: SlidingPencil, points: list[dict[str, float]]) -> list[SlidingPencil]:

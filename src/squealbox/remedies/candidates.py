@@ -38,7 +38,7 @@ class Candidate:
 
     `make` takes an array of doses as well. cost says in words what it costs; cautions are known beforehand. `values`
     are the parameters of the brake that have another value with it, for a cure that is nothing else. A `slow` one is
-    looked at for fewer doses.
+    made for one dose at a time, and for fewer of them.
     """
 
     name: str

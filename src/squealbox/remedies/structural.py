@@ -5,15 +5,13 @@ Which way to go and where a mass helps most is what the derivatives of the worst
 is then computed on the reduced brake.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
-from squealbox.designs.base import Design
-from squealbox.fe.modified import attached, changeable, with_component, with_mass
+from squealbox.fe.modified import changeable, with_component, with_mass
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.parameters import ParameterError
 from squealbox.remedies.candidates import Candidate, parameter_candidate
 from squealbox.stability.local_sensitivity import LocalSensitivity, local_sensitivity
 from squealbox.stability.mode import Mode
@@ -30,14 +28,13 @@ ON_THE_BASIS = (
 
 def structural_candidates(small: ReducedBrake) -> list[Candidate]:
     """Every candidate a reduced brake suggests whose full brake is kept."""
-    full = attached(small)
     found = [
         parameter_candidate(small, path, about, value, -1.0)
         for path, about, value in small.leaves()
         if path == "friction.static" and value
     ]
     local = _worst(small)
-    damped = changeable(full)
+    damped = changeable(small.attached())
     for name, slope, heavier in zip(local.parts, local.modulus.real, local.density.real, strict=True):
         both = (("modulus", slope), ("density", heavier)) if name in damped else ()
         found += [_component(small, name, what, change) for what, change in both if change != 0.0]
@@ -47,18 +44,19 @@ def structural_candidates(small: ReducedBrake) -> list[Candidate]:
 
 def _worst(small: ReducedBrake) -> LocalSensitivity:
     """Derivatives of the mode that grows most, at the present values."""
-    full, found = attached(small), small.checked()
+    found = small.checked()
     k = int(np.argmax(found.eigenvalues.real))
-    mode = Mode(complex(found.eigenvalues[k]), found.right[:, k], found.left[:, k], full.steady, k)
-    present = small.present()
-    return local_sensitivity(full.design.replace(present) if present else full.design, mode)
+    steady = small.attached().steady
+    return local_sensitivity(
+        small.whole(), Mode(complex(found.eigenvalues[k]), found.right[:, k], found.left[:, k], steady, k)
+    )
 
 
 def _component(small: ReducedBrake, name: str, what: str, slope: float) -> Candidate:
     sign = -1.0 if slope > 0.0 else 1.0
     word = {"modulus": "stiffer" if sign > 0.0 else "softer", "density": "heavier" if sign > 0.0 else "lighter"}[what]
     return Candidate(
-        f"{name} {word}", _one(lambda dose: with_component(small, name, **{what: 1.0 + sign * dose})), SHARES, "-",
+        f"{name} {word}", lambda dose: with_component(small, name, **{what: 1.0 + sign * dose}), SHARES, "-",
         lambda dose: f"with_component(brake, {name!r}, {what}={float(1.0 + sign * dose)!r})",
         lambda dose: f"redesign, {what} of {name} {100.0 * sign * dose:+.3g} %", slow=True,
     )  # fmt: skip
@@ -66,7 +64,7 @@ def _component(small: ReducedBrake, name: str, what: str, slope: float) -> Candi
 
 def _damping(small: ReducedBrake, name: str) -> Candidate:
     return Candidate(
-        f"{name} more damped", _one(lambda dose: with_component(small, name, damping=dose)), FACTORS, "-",
+        f"{name} more damped", lambda dose: with_component(small, name, damping=dose), FACTORS, "-",
         lambda dose: f"with_component(brake, {name!r}, damping={float(dose)!r})",
         lambda dose: f"a shim or a lossy material, {dose:.3g} times the damping of {name}", slow=True,
     )  # fmt: skip
@@ -88,18 +86,7 @@ def _masses(small: ReducedBrake, local: LocalSensitivity) -> Iterator[Candidate]
 def _mass(small: ReducedBrake, node: int, place: Any) -> Candidate:
     where = ", ".join(f"{1e3 * x:.0f}" for x in place)
     return Candidate(
-        f"mass on node {node}", _one(lambda dose: with_mass(small, node, dose)), MASSES, "kg",
+        f"mass on node {node}", lambda dose: with_mass(small, node, dose), MASSES, "kg",
         lambda dose: f"with_mass(brake, {node}, {float(dose)!r})",
         lambda dose: f"{1e3 * dose:.3g} g at ({where}) mm", slow=True,
     )  # fmt: skip
-
-
-def _one(make: Callable[[float], Design]) -> Callable[[Any], Design]:
-    """`make` for one dose at a time."""
-
-    def made(dose: Any) -> Design:
-        if np.ndim(dose):
-            raise ParameterError("silence", "dose", np.shape(dose), "one dose: each is a brake of its own")
-        return make(float(dose))
-
-    return made
