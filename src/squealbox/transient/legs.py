@@ -57,7 +57,7 @@ MESSAGES = {
 
 
 class MarchOrders(NamedTuple):
-    """What the general march is told: instants, where rows and events go, the end, the largest and the least step,
+    """What the scalar march is told: instants, where rows and events go, the end, the largest and the least step,
     how many may be tried in all, and how many until the next look at the keyboard.
     """
 

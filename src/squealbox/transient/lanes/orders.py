@@ -8,7 +8,7 @@ NOTHING = np.zeros((1, 1))
 
 
 class Orders(NamedTuple):
-    """The jobs of a kernel and where their results go; `p`, `r` and `s` are the records of the general march.
+    """The jobs of a kernel and where their results go; `p`, `r` and `s` are the records of the scalar march.
 
     table (jobs, columns), varies (rows,), fixed : as `table.Jobs` has them
     times (k,), samples (jobs, k, 2n) : instants at which states are kept
