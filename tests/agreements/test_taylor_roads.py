@@ -245,3 +245,12 @@ def test_the_audit_of_a_damped_motion_is_as_exact_as_the_motion():
     for rtol in (1e-6, 1e-8, 1e-10, 1e-12):
         motion = simulate(damped, 300.0, ([1.0], [0.0]), method="taylor", rtol=rtol)
         assert motion.energy.relative_residual < 30.0 * rtol
+
+
+def test_a_smoothed_measured_law_has_a_series():
+    """A law of points under tanh, which is compared with its series at speeds inside the step."""
+    design, ways = drum(reading="consistent").replace({"friction": MEASURED}), {"contact": "tanh", "width": 0.02}
+    one = simulate(design, 0.01, times=21, **ways)
+    close = simulate(design, 0.01, times=21, method=Method("dormand-prince-8", rtol=1e-13), **ways)
+    assert one.settings["tableau"] == "taylor"
+    assert distance(one.q, close.q) < 1e-8
