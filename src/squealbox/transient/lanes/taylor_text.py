@@ -221,12 +221,13 @@ class TaylorStep(EquationText):
 
     def compared(self, c: int, row: int, found: dict[str, list[str]]) -> tuple[str, str]:
         """Force, and rate of the memory, by the series and by the law itself at `away`, one less the other."""
-        p, k = self.given(f"law{c}_", self.shape.laws[c][1], False, 1), self.tag
+        law, count = self.shape.laws[c]
+        p, k = self.given(f"law{c}_", count, is_table(LAWS, law), 1), self.tag
         normal = f"value({found['normal'][c]}, away, {ORDER})"
         if not self.shape.exact and not self.shape.is_smooth(c):
             return f"value(f{c}_{k}, away, {ORDER - 1}) - {self.smoothed(c, 'slide', normal, p)}", ""
         if not self.shape.is_smooth(c):
-            mu = f"lane_mu_{self.shape.laws[c][0]}(maximum({self.row(f's{c}')} * slide, 0.0 * t_), {p})"
+            mu = f"lane_mu_{law}(maximum({self.row(f's{c}')} * slide, 0.0 * t_), {p})"
             return f"(value(mu{c}_{k}, away, {ORDER}) - {mu}) * {normal}", ""
         kind, z, rate = self.shape.smooth[c] - 1, "0.0", "0.0"
         if row >= 0:
