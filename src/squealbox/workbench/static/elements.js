@@ -13,6 +13,28 @@ export function make(tag, about = {}, ...children) {
   return element;
 }
 
+/** The same of a picture in SVG. */
+export function element(tag, about = {}, ...children) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  set(made, about);
+  made.append(...children);
+  return made;
+}
+
+/** Attributes of a node; a number that is none leaves its attribute out. */
+export function set(node, about) {
+  for (const [name, value] of Object.entries(about)) {
+    if (typeof value === "number" && !Number.isFinite(value)) node.removeAttribute(name);
+    else node.setAttribute(name, value);
+  }
+}
+
+/** Where on a node the pointer is. */
+export function spot(node, event) {
+  const box = node.getBoundingClientRect();
+  return [event.clientX - box.left, event.clientY - box.top];
+}
+
 export const button = (text, onclick, about = {}) => make("button", { type: "button", onclick, ...about }, text);
 
 /** A select with its label; `choices` are [value, text] pairs. */

@@ -34,7 +34,7 @@ export function download(content, name, type) {
 /** The chart as PDF, SVG or PNG. */
 async function onPaper(chart, kind) {
   const { x, y, layers = [], heat, ...rest } = chart.spec;
-  const axis = (each, scale) => each?.label && { label: each.label, domain: scale.domain() };
+  const axis = (each, scale) => each?.label && { label: each.label, domain: scale.ends };
   const picture = heat && { ...heat, span: [x.domain, y.domain], scale: heat.kind };
   const figure = { ...rest, size: [chart.size.width, chart.size.height], x: axis(x, chart.x), y: axis(y, chart.y), layers: [...layers, chart.markLayer].filter(Boolean), heat: picture };
   const plain = (key, value) => (value instanceof Float32Array ? Array.from(value, (v) => (Number.isFinite(v) ? Number(v.toPrecision(7)) : null)) : value);
