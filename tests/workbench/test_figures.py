@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from squealbox import DrumBrake, LinearSlope
-from squealbox.workbench.figures import Axis, Bars, Figure, across, heat, line, packed, span, unpacked
+from squealbox.plots.figure_data import Bars, FigureAxis, FigureData, across, heat, line, packed, span, unpacked
+from squealbox.plots.paper import KINDS, NoFigure
+from squealbox.plots.paper import drawn as pdf
 from squealbox.workbench.panels import OptionError, Options, Work, function_of
-from squealbox.workbench.paper import KINDS, NoFigure
-from squealbox.workbench.paper import drawn as pdf
 
 PLAIN = {
     "size": [300, 200], "x": {"label": "time [s]", "domain": [0, 1]}, "y": {"label": "x [mm]", "domain": [-1, 1]},
@@ -30,8 +30,8 @@ def asked(name, **options):
 
 def test_an_array_that_stands_in_several_figures_travels_once():
     x, y = np.linspace(0.0, 1.0, 9), np.linspace(0.0, 2.0, 9)
-    axes = Axis("time", "s", (0.0, 1.0)), Axis("x", "m", span(y))
-    figures, arrays = packed([Figure("a", *axes, [line(x, y)]), Figure("b", *axes, [line(x, -y), across(0.0)])])
+    axes = FigureAxis("time", "s", (0.0, 1.0)), FigureAxis("x", "m", span(y))
+    figures, arrays = packed([FigureData("a", *axes, [line(x, y)]), FigureData("b", *axes, [line(x, -y), across(0.0)])])
     assert len(arrays) == 3
     assert unpacked({"figures": figures}, arrays, "b")["layers"][0]["y"] == pytest.approx(-y)
     assert packed([Bars("c", "N", [{"name": "one", "parts": [("b0", 1.0)], "sum": 1.0}])])[1] == {}
@@ -50,7 +50,7 @@ def test_an_axis_is_read_in_the_unit_that_was_chosen():
 def test_the_other_design_of_a_comparison_is_checked_like_its_own():
     kept = {"brake": "drum_brake", "values": {"friction.static": 0.3}}
     both = asked("compare", a=kept)
-    heads, rows = both.data["table"].heads, {row[0]: row for row in both.data["table"].rows}
+    heads, rows = both.data["table"]["heads"], {row[0]: row for row in both.data["table"]["rows"]}
     assert list(heads) == ["", "A (kept)", "B (this page)"]
     assert rows["friction.static"][1:] == ["0.3", "0.45"]
     assert rows["its growth rate"][2][1] == "worse"

@@ -8,7 +8,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
-from squealbox.workbench.figures import unpacked
+from squealbox.plots.figure_data import unpacked
 from squealbox.workbench.frames import unframed
 
 STATE = {"brake": "drum_brake", "laws": {}, "values": {}}

@@ -130,7 +130,7 @@ class Workbench:
 
     async def paper(self, request: Request) -> Response:
         """A figure of the page as a file for paper."""
-        from squealbox.workbench.paper import KINDS, LARGEST, drawn
+        from squealbox.plots.paper import KINDS, LARGEST, drawn
 
         kind = request.path_params["kind"]
         if kind not in KINDS:

@@ -6,8 +6,8 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.plots.figure_data import FigureAxis, FigureData, across, band, line, modes_named, points, span, upright
 from squealbox.words import scaled
-from squealbox.workbench.figures import Axis, Figure, across, band, line, modes_named, points, span, upright
 from squealbox.workbench.panels.modes import modes_of, ranked, tracks_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, try_value
 
@@ -46,7 +46,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     return Answer(data, figures=_figures(axis, values / axis.factor, upper, present, modes, unstable))
 
 
-def _figures(axis: Axis, x: Any, upper: Any, present: float | None, here: Any, unstable: Any) -> list[Figure]:
+def _figures(axis: FigureAxis, x: Any, upper: Any, present: float | None, here: Any, unstable: Any) -> list[FigureData]:
     """Frequencies and growth rates over the axis, and both in their plane; the modes of the design itself as points."""
     factor, hertz = scaled("Hz", upper.imag / TURN)
     frequency = list(np.abs(upper.imag).T / (TURN * factor))
@@ -56,20 +56,20 @@ def _figures(axis: Axis, x: Any, upper: Any, present: float | None, here: Any, u
     at = [] if present is None else [(np.full(len(f), present), y) for y in (f, g)]
     high = span(*frequency, f)
     reach = span(*growth, g, zero=True)
-    upward = Axis("frequency", hertz, high, factor=factor, quantity="frequency")
-    rate = Axis("growth rate", "1/s", reach, quantity="growth rate")
+    upward = FigureAxis("frequency", hertz, high, factor=factor, quantity="frequency")
+    rate = FigureAxis("growth rate", "1/s", reach, quantity="growth rate")
     begins = np.array([[g[0], f[0]] for g, f in zip(growth, frequency, strict=True) if np.isfinite(g[0] + f[0])])
     names = [modes_named(count, i) for i in range(count)]
     plain = [{**each, "name": ""} for each in names]
     dots = [points(x0, y, column="present design") for x0, y in at]
     return [
-        Figure("frequency", axis, upward, [
+        FigureData("frequency", axis, upward, [
             *bands, *(line(x, y, **names[i]) for i, y in enumerate(frequency)), *dots[:1],
         ], "bottom right"),
-        Figure("growth", axis, rate, [
+        FigureData("growth", axis, rate, [
             *bands, across(0.0), *(line(x, y, **plain[i]) for i, y in enumerate(growth)), *dots[1:],
         ]),
-        Figure("plane", rate, upward, [
+        FigureData("plane", rate, upward, [
             band(0.0, reach[1]), upright(0.0, "axis-line"),
             *(line(a, b, **plain[i]) for i, (a, b) in enumerate(zip(growth, frequency, strict=True))),
             points(g, f, column="present design"),

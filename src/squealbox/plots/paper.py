@@ -1,4 +1,4 @@
-"""A figure of the page as PDF, SVG or PNG: the numbers and axes the page shows, drawn with Matplotlib for paper.
+"""A figure given as data as PDF, SVG or PNG: the numbers and axes a page shows, drawn with Matplotlib for paper.
 
 What comes from a page is not trusted: sizes are bounded, and what is no figure is a `NoFigure` with one sentence.
 """
@@ -28,7 +28,7 @@ class NoFigure(ValueError):
 
 
 def drawn(text: bytes, kind: str = "pdf") -> bytes:
-    """The file, one of KINDS, of a figure given as JSON: as `figures.packed` has it, with the arrays in place."""
+    """The file, one of KINDS, of a figure given as JSON: as `figure_data.packed` has it, with the arrays in place."""
     try:
         spec = json.loads(text)
         if not isinstance(spec, dict):

@@ -1,31 +1,30 @@
-"""Figures and tables as data: axes with units, layers, words. The page draws, reads out, zooms and saves them.
+"""Figures as data: axes with units, layers, words, the same for the workbench, a report and Python.
 
-A panel hands back `Figure`s whose layers hold arrays; `packed` names each array once, so that one that stands in
-several figures travels once. `static/figures.js` is the other end, `paper` draws the same data with Matplotlib.
+The layers of a `FigureData` hold arrays; `packed` names each once, so that one that stands in several figures travels
+once. A browser draws, reads out, zooms and saves them with `workbench/static/figures.js`; `paper` draws the same data
+with Matplotlib.
 
->>> axis = Axis("time", "s", (0.0, 1.0))
->>> figure = Figure("time", axis, Axis("x", "mm", (0.0, 1.0)), [line(np.zeros(9), np.ones(9), name="x")])
+>>> axis = FigureAxis("time", "s", (0.0, 1.0))
+>>> figure = FigureData("time", axis, FigureAxis("x", "mm", (0.0, 1.0)), [line(np.zeros(9), np.ones(9), name="x")])
 >>> packed([figure])[0][0]["layers"][0]["x"]
 '@a0'
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from squealbox.words import number
-from squealbox.workbench.frames import finite
 
 Layer = dict[str, Any]
 FEW = 3  # numbers up to which an array travels in the header
 NAMED = 4  # curves up to which a legend helps
-NONE = "\u2013"  # in a table, where nothing is known
 
 
 @dataclass(frozen=True)
-class Axis:
+class FigureAxis:
     """An axis: what it shows, the unit it is read in, its ends in that unit, and where it is over a parameter, which.
 
     `factor` is one of the unit in SI; `quantity` names what may be measured too ("frequency", "growth rate").
@@ -50,12 +49,12 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Figure:
+class FigureData:
     """A figure: axes, layers from behind to the front, where the legend stands, and a picture of values beneath."""
 
     name: str
-    x: Axis
-    y: Axis
+    x: FigureAxis
+    y: FigureAxis
     layers: Sequence[Layer]
     legend: str = "top right"
     heat: Mapping[str, Any] | None = None
@@ -69,18 +68,6 @@ class Bars:
     label: str
     bars: Sequence[Mapping[str, Any]]
     legend: Sequence[tuple[str, str]] = ()
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table: heads, and rows whose first cell names them; a cell is a text or (text, look)."""
-
-    heads: Sequence[str]
-    rows: Sequence[Sequence[Any]] = field(default_factory=list)
-
-    def data(self) -> dict[str, Any]:
-        """For the page."""
-        return {"heads": list(self.heads), "rows": [list(row) for row in self.rows]}
 
 
 def line(x: Any, y: Any, look: str = "s0", name: str = "", column: str = "") -> Layer:
@@ -151,7 +138,7 @@ def span(*arrays: Any, zero: bool = False, room: float = 0.06) -> tuple[float, f
     return low - more, high + more
 
 
-def packed(figures: Iterable[Figure | Bars]) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+def packed(figures: Iterable[FigureData | Bars]) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     """The figures as plain data, in which ``"@name"`` stands for an array, and the arrays by name."""
     arrays: dict[str, Any] = {}
     known: dict[int, tuple[str, Any]] = {}
@@ -161,7 +148,7 @@ def packed(figures: Iterable[Figure | Bars]) -> tuple[list[dict[str, Any]], dict
             return value
         array = np.asarray(value, dtype=float)
         if array.ndim == 1 and array.size <= FEW:
-            return [finite(each) for each in array]
+            return array.tolist()
         if id(value) not in known:
             known[id(value)] = (f"a{len(arrays)}", value)  # kept, so that no other takes its place in memory
             arrays[known[id(value)][0]] = array
@@ -180,7 +167,7 @@ def unpacked(data: Mapping[str, Any], arrays: Mapping[str, Any], name: str) -> d
     return {**figure, "layers": [{key: read(value) for key, value in layer.items()} for layer in figure["layers"]]}
 
 
-def _figure(figure: Figure | Bars, take: Any) -> dict[str, Any]:
+def _figure(figure: FigureData | Bars, take: Any) -> dict[str, Any]:
     if isinstance(figure, Bars):
         bars = [{**bar, "parts": [list(part) for part in bar["parts"]]} for bar in figure.bars]
         return {
