@@ -111,7 +111,11 @@ def path(rings: Sequence[Any], column: str = "") -> Layer:
 
 
 def heat(values: Any, scale: str, name: str, unit: str, **about: Any) -> dict[str, Any]:
-    """A picture (rows from below, columns): `scale` is ``diverging``, ``sequential``, ``decades`` or ``mechanism``."""
+    """A picture (rows from below, columns): `scale` is ``diverging``, ``sequential``, ``decades`` or ``mechanism``.
+
+    Of `about`, ``words`` says what colours mean, ``names`` are those of codes, ``smooth`` blurs, and ``beside`` are
+    numbers in ``besideUnit`` that are read out with the values.
+    """
     return {"values": values, "scale": scale, "name": name, "unit": unit, **about}
 
 
@@ -179,7 +183,8 @@ def _figure(figure: FigureData | Bars, take: Any) -> dict[str, Any]:
     about: dict[str, Any] = {"name": figure.name, "x": figure.x.data(), "y": figure.y.data(), "legend": figure.legend}
     if figure.heat is not None:
         rows, columns = np.shape(figure.heat["values"])
-        about["heat"] = {**figure.heat, "values": take(figure.heat["values"]), "rows": rows, "columns": columns}
+        taken = {name: take(value) if name in ("values", "beside") else value for name, value in figure.heat.items()}
+        about["heat"] = {**taken, "rows": rows, "columns": columns}
     wrapped = ("x", "y", "low", "high")
     about["layers"] = [
         {key: take(value) if key in wrapped else value for key, value in layer.items()} for layer in figure.layers

@@ -4,13 +4,13 @@
 //   chart.draw({ x: { label, domain }, y: { label, domain }, layers: [{ kind: "line", x, y, cls: "s0", name }] }); // kinds: DRAW below
 
 import { element, make, set, spot } from "./elements.js";
-import { shown } from "./numbers.js";
+import { raised, shown } from "./numbers.js";
 import { shade } from "./theme.js";
 
 const MARGIN = { top: 8, right: 14, bottom: 42, left: 58 };
 const WAVE = Array.from({ length: 60 }, (_, i) => [i / 59, 0.5 + 0.4 * Math.sin(i / 3) * Math.exp(-i / 60)]);
 const MIDDLE = { class: "axis-label", "text-anchor": "middle" };
-const LETTER = 7; // px a digit of the axes is wide
+const LETTER = 7.7; // px a digit of the axes is wide
 
 const LIKE = {
   wave: [WAVE],
@@ -85,7 +85,7 @@ export class Chart {
   /** Room for the label and the longest number of the upright axis. */
   #room(axis) {
     const numbers = ticks(scale(axis.domain, [0, 1]).ends, 5).map((value) => shown(value, 5).length);
-    return 30 + LETTER * Math.max(2, ...numbers);
+    return 32 + LETTER * Math.max(2, ...numbers);
   }
 
   #axes({ x, y, heat }) {
@@ -164,17 +164,17 @@ export class Chart {
         for (let i = 0; i < values.length; i++) {
           const [dx, dy] = [this.x(layer.x[i]) - x, this.y(values[i]) - y];
           const far = dx * dx + (layer.kind === "hull" ? 0 : dy * dy);
-          if (far < (best?.far ?? 900)) best = { far, px: this.x(layer.x[i]), py: this.y(values[i]), words: `${layer.name ? `${layer.name}: ` : ""}${shown(layer.x[i])}, ${layer.kind === "hull" ? `${shown(layer.low[i])} to ${shown(layer.high[i])}` : shown(values[i])}` };
+          if (far < (best?.far ?? 900)) best = { far, px: this.x(layer.x[i]), py: this.y(values[i]), words: `${layer.name ? `${layer.name}: ` : ""}${read(this.spec.x, layer.x[i])}, ${layer.kind === "hull" ? `${shown(layer.low[i])} to ${read(this.spec.y, layer.high[i])}` : read(this.spec.y, values[i])}` };
         }
       }
     }
     best ??= this.spec?.heat && this.#below(x, y);
     if (!best) return this.#silent();
-    const right = best.px > this.margin.left + 0.6 * this.inner.width;
     this.reader.removeAttribute("hidden");
     set(this.reader, { transform: `translate(${best.px},${best.py})` });
-    set(this.reading, { x: right ? -8 : 8, y: best.py < 30 ? 18 : -8, "text-anchor": right ? "end" : "start" });
     this.reading.textContent = best.words;
+    const length = this.reading.getComputedTextLength();
+    set(this.reading, { x: best.px + 10 + length > this.size.width ? Math.max(-8 - length, 2 - best.px) : 8, y: best.py < 30 ? 18 : -8 });
   }
 
   /** The value of the picture below a place. */
@@ -184,8 +184,9 @@ export class Chart {
     const cell = (value, [low, high], count) => Math.round(((value - low) / (high - low)) * (count - 1));
     const [i, j] = [cell(vx, along.domain, heat.columns), cell(vy, up.domain, heat.rows)];
     if (!(i >= 0 && j >= 0 && i < heat.columns && j < heat.rows)) return null;
-    const value = heat.values[j * heat.columns + i];
-    return { px: x, py: y, words: `${shown(vx)}, ${shown(vy)}: ${heat.names?.[value] ?? `${shown(value, 3)} ${heat.unit}`}` };
+    const [value, also] = [heat.values, heat.beside].map((values) => values?.[j * heat.columns + i]);
+    const words = heat.names?.[value] ?? `${shown(value, 3)} ${heat.unit}`;
+    return { px: x, py: y, words: `${read(along, vx)}, ${read(up, vy)}: ${words}${also > 0 ? `, ${shown(also)} ${heat.besideUnit}` : ""}` };
   }
 
   /** The present design: a line, or a point on a figure over two parameters. */
@@ -244,6 +245,9 @@ export function sized(chart, draw) {
   }).observe(chart.frame);
 }
 
+/** A number of an axis with its unit. */
+const read = ({ unit }, value) => `${shown(value)} ${unit && unit !== "-" ? raised(unit) : ""}`.trim();
+
 const LARGEST = 1e150; // beyond which differences and squares of an axis are no numbers
 
 /** False for a mark whose place is no number: it would be an attribute no browser reads. */
@@ -253,7 +257,7 @@ const drawable = (layer) => ["x", "y", "from", "to"].every((name) => typeof laye
 export function scale(domain, sides) {
   const ends = domain.every((end) => Math.abs(end) < LARGEST) ? domain : [0, 1];
   const by = (sides[1] - sides[0]) / (ends[1] - ends[0] || 1);
-  return Object.assign((value) => sides[0] + by * (value - ends[0]), { ends, sides, invert: (px) => ends[0] + (px - sides[0]) / by });
+  return Object.assign((value) => sides[0] + by * ((value ?? NaN) - ends[0]), { ends, sides, invert: (px) => ends[0] + (px - sides[0]) / by });
 }
 
 /** Round numbers between two ends, about that many: 1, 2 or 5 times a power of ten apart. */

@@ -15,7 +15,7 @@ export function resolved(figure, arrays, measured = {}) {
     const value = measured[axis.quantity] / axis.factor;
     if (value >= axis.domain[0] && value <= axis.domain[1]) layers.push({ kind, [at]: value, cls: "measured", name: "measured" });
   }
-  return { x, y, layers, legend: figure.legend, heat: figure.heat && picture(figure.heat, read(figure.heat.values)) };
+  return { x, y, layers, legend: figure.legend, heat: figure.heat && picture({ ...figure.heat, beside: read(figure.heat.beside) }, read(figure.heat.values)) };
 }
 
 /** The ends of an axis, wider where what is measured lies not far outside. */

@@ -41,7 +41,9 @@ export function zoomable(chart, narrow) {
   function show(x, y) {
     const ends = { x, y };
     for (const way of ["x", "y"]) if (ends[way] !== false && narrow(chart.spec[way], ends[way])) ends[way] = null;
-    chart.zoom = { x: ends.x || null, y: ends.y || null, of: chart.spec.x.label + chart.spec.y.label };
+    const of = chart.spec.x.label + chart.spec.y.label;
+    const [was, now] = [chart.zoom?.of === of ? chart.zoom : {}, (way) => (ends[way] === false ? was[way] : ends[way]) || null];
+    chart.zoom = { x: now("x"), y: now("y"), of };
     chart.draw(chart.spec);
   }
 }
