@@ -16,10 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.words import number
+from squealbox.words import number, quantity_label
 
 Layer = dict[str, Any]
 FEW = 3  # numbers up to which an array travels in the header
+SIZE = (600.0, 400.0)  # px of the page a figure has, where no page says
 NAMED = 4  # curves up to which a legend helps
 
 
@@ -168,7 +169,21 @@ def unpacked(data: Mapping[str, Any], arrays: Mapping[str, Any], name: str) -> d
     def read(value: Any) -> Any:
         return arrays[value[1:]] if isinstance(value, str) and value.startswith("@") else value
 
-    return {**figure, "layers": [{key: read(value) for key, value in layer.items()} for layer in figure["layers"]]}
+    heat = {key: read(value) for key, value in (figure.get("heat") or {}).items()}
+    layers = [{key: read(value) for key, value in layer.items()} for layer in figure["layers"]]
+    return {**figure, "layers": layers, "heat": heat}
+
+
+def whole(figure: FigureData | Bars) -> dict[str, Any]:
+    """A figure with its arrays and labels in place, as a page sends one to be drawn for paper."""
+    (plain,), arrays = packed([figure])
+    if isinstance(figure, Bars):
+        return {**plain, "size": SIZE}
+    found, ends = unpacked({"figures": [plain]}, arrays, figure.name), (figure.x.domain, figure.y.domain)
+    axes = {way: {**found[way], "label": quantity_label(found[way]["name"], found[way]["unit"])} for way in ("x", "y")}
+    if heat := found["heat"]:
+        heat |= {"span": ends, "name": quantity_label(heat["name"], heat["unit"])}
+    return {**found, **axes, "size": SIZE}
 
 
 def _figure(figure: FigureData | Bars, take: Any) -> dict[str, Any]:

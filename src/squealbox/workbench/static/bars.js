@@ -48,10 +48,6 @@ export class Bars {
     const entry = ([cls, name], i) => element("g", { transform: `translate(${left - 60 + 110 * i},2)` }, element("rect", { class: cls, width: 12, height: 12, y: 2 }), element("text", { x: 17, y: 13 }, name));
     this.legend.replaceChildren(...(legend ? spec.legend.map(entry) : []));
   }
-
-  columns() {
-    return [["name", this.spec.bars.map((bar) => bar.name)], [this.spec.label, this.spec.bars.map((bar) => bar.sum)]];
-  }
 }
 
 /** The parts of a bar one after the other, those above zero to the right and those below to the left. */

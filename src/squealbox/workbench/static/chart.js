@@ -98,7 +98,9 @@ export class Chart {
     const lines = heat ? [] : up.map((value) => element("line", { x1: left, x2: left + this.inner.width, y1: this.y(value), y2: this.y(value) }));
     this.grid.replaceChildren(...lines);
     set(this.labels[0], { x: left + this.inner.width / 2, y: this.height - 6 });
-    set(this.labels[1], { transform: `translate(14,${Math.max(top + this.inner.height / 2, 0.5 * LETTER * y.label.length)}) rotate(-90)` }); // a long one ends above
+    const [long, room] = [6.4 * y.label.length, this.height - 4]; // px; a long label is moved and pressed into the height
+    const middle = Math.max(top + this.inner.height / 2, Math.min(long, room) / 2 + 2);
+    set(this.labels[1], { transform: `translate(14,${middle}) rotate(-90)`, textLength: long > room ? room : NaN, lengthAdjust: "spacingAndGlyphs" });
     [x, y].forEach(({ label }, i) => (this.labels[i].textContent = label));
   }
 
@@ -164,7 +166,7 @@ export class Chart {
         for (let i = 0; i < values.length; i++) {
           const [dx, dy] = [this.x(layer.x[i]) - x, this.y(values[i]) - y];
           const far = dx * dx + (layer.kind === "hull" ? 0 : dy * dy);
-          if (far < (best?.far ?? 900)) best = { far, px: this.x(layer.x[i]), py: this.y(values[i]), words: `${layer.name ? `${layer.name}: ` : ""}${read(this.spec.x, layer.x[i])}, ${layer.kind === "hull" ? `${shown(layer.low[i])} to ${read(this.spec.y, layer.high[i])}` : read(this.spec.y, values[i])}` };
+          if (far < (best?.far ?? 900)) best = { far, px: this.x(layer.x[i]), py: this.y(values[i]), words: `${layer.name || layer.column ? `${layer.name || layer.column}: ` : ""}${read(this.spec.x, layer.x[i])}, ${layer.kind === "hull" ? `${shown(layer.low[i])} to ${read(this.spec.y, layer.high[i])}` : read(this.spec.y, values[i])}` };
         }
       }
     }
@@ -198,7 +200,7 @@ export class Chart {
 
   #mark(x, y) {
     const known = [x, y].filter((each) => typeof each === "number");
-    const mark = (this.markLayer = known.length < 2 ? { kind: "upright", x, cls: "present" } : { kind: "points", x: [x], y: [y], cls: "here big", r: 6 });
+    const mark = (this.markLayer = known.length < 2 ? { kind: "upright", x, cls: "present" } : { kind: "points", x: [x], y: [y], cls: "here big", r: 6, column: "present design" });
     this.#layers(this.here, [mark].filter(drawable));
     this.figure.dataset.at = known.join(",");
   }
@@ -212,26 +214,6 @@ export class Chart {
 
   #silent() {
     set(this.reader, { hidden: "" });
-  }
-
-  /** The numbers drawn, as columns: [[name, values], ...]. */
-  columns() {
-    const columns = [];
-    const { x, y, layers, heat } = this.spec;
-    for (const [i, layer] of layers.entries()) {
-      if (layer.cls === "measured") columns.push(["measured", [layer.x ?? layer.y]]);
-      const name = layer.name || layer.column || `line ${i + 1}`;
-      if (layer.kind === "line" || layer.kind === "points") columns.push([`${name}: ${x.label}`, layer.x], [`${name}: ${y.label}`, layer.y]);
-      if (layer.kind === "path") columns.push([`${name}: ${x.label}`, layer.rings.flatMap((ring) => [...ring.map((at) => at[0]), NaN])], [`${name}: ${y.label}`, layer.rings.flatMap((ring) => [...ring.map((at) => at[1]), NaN])]);
-      if (layer.kind === "hull") columns.push([`${x.label}`, layer.x], [`least ${y.label}`, layer.low], [`largest ${y.label}`, layer.high]);
-    }
-    if (heat) {
-      const at = (axis, count, i) => axis.domain[0] + ((axis.domain[1] - axis.domain[0]) * i) / (count - 1);
-      const xs = [], ys = [];
-      for (let j = 0; j < heat.rows; j++) for (let i = 0; i < heat.columns; i++) xs.push(at(x, heat.columns, i)), ys.push(at(y, heat.rows, j));
-      columns.unshift([x.label, xs], [y.label, ys], [heat.name, heat.values]);
-    }
-    return columns;
   }
 }
 
