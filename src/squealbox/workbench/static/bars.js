@@ -1,7 +1,7 @@
 // Bars to the left and right of zero, one row each, with their numbers: for few named things.
 
 import { axis, scale, sized, ticks } from "./chart.js";
-import { element, make, set } from "./elements.js";
+import { element, fill, make, set } from "./elements.js";
 import { shown } from "./numbers.js";
 
 const ROW = 24;
@@ -38,15 +38,15 @@ export class Bars {
     const x = scale([Math.min(0, ...ends), Math.max(0, ...ends) || 1], [left, left + this.inner.width]);
     set(this.axis, { transform: `translate(0,${height - bottom})` });
     axis(this.axis, x, ticks(x.ends, Math.max(2, this.inner.width / 50)), 4);
-    const words = (cls, at, said, about) => element("text", { class: cls, x: at, y: 16, ...about }, said);
-    const part = ({ cls, from, to }) => element("rect", { class: cls, y: 4, height: ROW - 9, x: x(Math.min(from, to)), width: Math.abs(x(to) - x(from)) });
-    const row = (bar, i) => element("g", { class: "bar", transform: `translate(0,${top + legend + ROW * i})`, "data-name": bar.name, "data-value": bar.sum },
-      ...stacked(bar).map(part), words("name", left - 8, bar.name, { "text-anchor": "end" }), words("value", width - right + 6, shown(bar.sum, 3)));
-    this.rows.replaceChildren(...spec.bars.map(row));
+    const words = (cls, at, said, about) => ["text", { class: cls, x: at, y: 16, ...about }, said];
+    const part = ({ cls, from, to }) => ["rect", { class: cls, y: 4, height: ROW - 9, x: x(Math.min(from, to)), width: Math.abs(x(to) - x(from)) }];
+    const row = (bar, i) => ["g", { class: "bar", transform: `translate(0,${top + legend + ROW * i})`, "data-name": bar.name, "data-value": bar.sum },
+      [...stacked(bar).map(part), words("name", left - 8, bar.name, { "text-anchor": "end" }), words("value", width - right + 6, shown(bar.sum, 3))]];
+    fill(this.rows, spec.bars.map(row));
     set(this.label, { x: left + this.inner.width / 2, y: height - 5 });
     this.label.textContent = spec.label;
-    const entry = ([cls, name], i) => element("g", { transform: `translate(${left - 60 + 110 * i},2)` }, element("rect", { class: cls, width: 12, height: 12, y: 2 }), element("text", { x: 17, y: 13 }, name));
-    this.legend.replaceChildren(...(legend ? spec.legend.map(entry) : []));
+    const entry = ([cls, name], i) => ["g", { transform: `translate(${left - 60 + 110 * i},2)` }, [["rect", { class: cls, width: 12, height: 12, y: 2 }], ["text", { x: 17, y: 13 }, name]]];
+    fill(this.legend, legend ? spec.legend.map(entry) : []);
   }
 }
 

@@ -3,7 +3,7 @@
 //   const chart = new Chart(place, { height: 220, title: "frequency" });
 //   chart.draw({ x: { label, domain }, y: { label, domain }, layers: [{ kind: "line", x, y, cls: "s0", name }] }); // kinds: DRAW below
 
-import { element, make, set, spot } from "./elements.js";
+import { element, fill, make, set, spot } from "./elements.js";
 import { raised, shown } from "./numbers.js";
 import { shade } from "./theme.js";
 
@@ -54,8 +54,8 @@ export class Chart {
     set(this.svg, { width, height, viewBox: `0 0 ${width} ${height}` });
     this.sketched ??= this.svg.appendChild(element("g", { class: "sketch" }));
     const place = ([x, y]) => `${(width * (0.08 + 0.86 * x)).toFixed(1)},${(height * (0.86 - 0.72 * y)).toFixed(1)}`;
-    const curves = [[[0, 1], [0, 0], [1, 0]], ...this.like].map((curve) => element("path", { d: `M${curve.map(place).join("L")}` }));
-    this.sketched.replaceChildren(...curves, element("text", { x: width / 2, y: height * 0.97 }, this.awaited));
+    const curves = [[[0, 1], [0, 0], [1, 0]], ...this.like].map((curve) => ["path", { d: `M${curve.map(place).join("L")}` }]);
+    fill(this.sketched, [...curves, ["text", { x: width / 2, y: height * 0.97 }, this.awaited]]);
   }
 
   draw(given) {
@@ -95,8 +95,8 @@ export class Chart {
     set(this.axes[1], { transform: `translate(${left},0)` });
     axis(this.axes[0], this.x, across, 5);
     axis(this.axes[1], this.y, up, 5, true);
-    const lines = heat ? [] : up.map((value) => element("line", { x1: left, x2: left + this.inner.width, y1: this.y(value), y2: this.y(value) }));
-    this.grid.replaceChildren(...lines);
+    const lines = heat ? [] : up.map((value) => ["line", { x1: left, x2: left + this.inner.width, y1: this.y(value), y2: this.y(value) }]);
+    fill(this.grid, lines);
     set(this.labels[0], { x: left + this.inner.width / 2, y: this.height - 6 });
     const [long, room] = [6.4 * y.label.length, this.height - 4]; // px; a long label is moved and pressed into the height
     const middle = Math.max(top + this.inner.height / 2, Math.min(long, room) / 2 + 2);
@@ -105,7 +105,7 @@ export class Chart {
   }
 
   #layers(group, layers) {
-    group.replaceChildren(...layers.map((layer) => element("g", { class: `layer ${layer.cls}` }, ...[DRAW[layer.kind](layer, this)].flat())));
+    fill(group, layers.map((layer) => ["g", { class: `layer ${layer.cls}` }, DRAW[layer.kind](layer, this)]));
   }
 
   #named(layers, place = "top right") {
@@ -114,8 +114,8 @@ export class Chart {
     const { left, top } = this.margin;
     const x = horizontal === "left" ? left + 8 : left + this.inner.width - 108;
     const first = vertical === "top" ? top + 16 : top + this.inner.height - 8 - 16 * (names.length - 1);
-    const entry = ({ name, cls }, i) => element("g", { class: `layer ${cls}`, transform: `translate(${x},${first + 16 * i})` }, element("line", { x1: 0, x2: 22, y1: -4, y2: -4 }), element("text", { x: 27 }, name));
-    this.legend.replaceChildren(...names.map(entry));
+    const entry = ({ name, cls }, i) => ["g", { class: `layer ${cls}`, transform: `translate(${x},${first + 16 * i})` }, [["line", { x1: 0, x2: 22, y1: -4, y2: -4 }], ["text", { x: 27 }, name]]];
+    fill(this.legend, names.map(entry));
   }
 
   #heat(heat) {
@@ -259,9 +259,9 @@ export function axis(group, scaled, places, digits, upright = false) {
   const number = upright ? { x: -9, dy: "0.32em", "text-anchor": "end" } : { y: 9, dy: "0.71em", "text-anchor": "middle" };
   const marks = places.map((value) => {
     const at = scaled(value) + 0.5;
-    return element("g", { class: "tick", transform: `translate(${upright ? `0,${at}` : `${at},0`})` }, element("line", tick), element("text", number, shown(value, digits)));
+    return ["g", { class: "tick", transform: `translate(${upright ? `0,${at}` : `${at},0`})` }, [["line", tick], ["text", number, shown(value, digits)]]];
   });
-  group.replaceChildren(element("path", { d: upright ? `M.5,${a}V${b}` : `M${a},.5H${b}` }), ...marks);
+  fill(group, [["path", { d: upright ? `M.5,${a}V${b}` : `M${a},.5H${b}` }], ...marks]);
 }
 
 /** The span of some arrays, a little wider; `with0` keeps zero inside. */
@@ -279,7 +279,7 @@ export function span(arrays, { with0 = false, room = 0.06 } = {}) {
   return [low - extra, high + extra];
 }
 
-const path = (d) => element("path", { d, fill: "none" });
+const path = (d) => [["path", { d, fill: "none" }]];
 
 const DRAW = {
   line(layer, { x, y }) {
@@ -304,16 +304,16 @@ const DRAW = {
       up.push(`${px},${top}`);
       down.push(`${px},${foot}`);
     }
-    return element("path", { class: "area", d: up.length ? `M${up.join("L")}L${down.reverse().join("L")}Z` : "" });
+    return [["path", { class: "area", d: up.length ? `M${up.join("L")}L${down.reverse().join("L")}Z` : "" }]];
   },
   points: (layer, { x, y }) => Array.from(layer.x, (value, i) => ({ cx: x(value), cy: y(layer.y[i]), r: layer.r }))
-    .filter(({ cx, cy }) => Number.isFinite(cx) && Number.isFinite(cy)).map((about) => element("circle", about)),
-  across: (layer, { y, margin, inner }) => element("line", { x1: margin.left, x2: margin.left + inner.width, y1: y(layer.y), y2: y(layer.y) }),
-  upright: (layer, { x, margin, inner }) => element("line", { x1: x(layer.x), x2: x(layer.x), y1: margin.top, y2: margin.top + inner.height }),
+    .filter(({ cx, cy }) => Number.isFinite(cx) && Number.isFinite(cy)).map((about) => ["circle", about]),
+  across: (layer, { y, margin, inner }) => [["line", { x1: margin.left, x2: margin.left + inner.width, y1: y(layer.y), y2: y(layer.y) }]],
+  upright: (layer, { x, margin, inner }) => [["line", { x1: x(layer.x), x2: x(layer.x), y1: margin.top, y2: margin.top + inner.height }]],
   band(layer, { x, margin, inner }) {
     const [a, b] = [x(layer.from), x(layer.to)];
-    return element("rect", { x: Math.min(a, b), width: Math.abs(b - a), y: margin.top, height: inner.height });
+    return [["rect", { x: Math.min(a, b), width: Math.abs(b - a), y: margin.top, height: inner.height }]];
   },
-  text: (layer, { x, y }) => element("text", { x: x(layer.x), y: y(layer.y), dx: layer.dx ?? 0, dy: layer.dy ?? -6, "text-anchor": layer.anchor ?? "middle" }, layer.words),
+  text: (layer, { x, y }) => [["text", { x: x(layer.x), y: y(layer.y), dx: layer.dx ?? 0, dy: layer.dy ?? -6, "text-anchor": layer.anchor ?? "middle" }, layer.words]],
   path: (layer, { x, y }) => path(layer.rings.map((ring) => "M" + ring.map(([a, b]) => `${x(a).toFixed(1)},${y(b).toFixed(1)}`).join("L")).join("")),
 };

@@ -25,8 +25,23 @@ export function element(tag, about = {}, ...children) {
 export function set(node, about) {
   for (const [name, value] of Object.entries(about)) {
     if (typeof value === "number" && !Number.isFinite(value)) node.removeAttribute(name);
-    else node.setAttribute(name, value);
+    else if (node.getAttribute(name) !== String(value)) node.setAttribute(name, value);
   }
+}
+
+/** The children of a node: [tag, attributes, text or children] each. What is there is kept: to style new nodes takes the browser longer. */
+export function fill(node, parts) {
+  parts.forEach(([tag, about, inside = []], i) => {
+    const there = node.children[i];
+    const child = there?.tagName === tag ? there : element(tag);
+    if (!there) node.append(child);
+    else if (child !== there) there.replaceWith(child);
+    for (const { name } of [...child.attributes]) if (!(name in about)) child.removeAttribute(name);
+    set(child, about);
+    if (typeof inside !== "string") fill(child, inside);
+    else if (child.textContent !== inside) child.textContent = inside;
+  });
+  while (node.children.length > parts.length) node.lastElementChild.remove();
 }
 
 /** Where on a node the pointer is. */
