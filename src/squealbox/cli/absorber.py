@@ -12,6 +12,8 @@ from squealbox.countermeasures import best_absorber
 from squealbox.files import write_design
 from squealbox.waiting import Progress
 
+ABOUT = {"absorber": "the best tuned mass: frequency, damping, how narrow it is"}
+
 
 def absorber(
     file: Path,

@@ -17,6 +17,8 @@ from squealbox.limit_cycles.attractors.basins import half_widths
 from squealbox.limit_cycles.attractors.sections import state_names
 from squealbox.waiting import Progress
 
+ABOUT = {"basin_": "which starts lead to which motion: shares, a picture, the smallest push"}
+
 Two = Annotated[tuple[str, str] | None, Parameter(negative="")]
 Push = Annotated[bool, Parameter(negative="")]
 

@@ -27,6 +27,8 @@ from squealbox.matrices import liveliest
 from squealbox.result import Outcome
 from squealbox.waiting import Progress
 
+ABOUT = {"branch": "limit cycles over a range of a parameter: stable, unstable, folds, onset"}
+
 if TYPE_CHECKING:
     from squealbox.designs import Design
     from squealbox.files.analyses import Axis

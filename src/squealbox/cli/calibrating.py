@@ -18,6 +18,11 @@ from squealbox.signals.events import BAND
 from squealbox.stability import ComplexModes, complex_modes
 from squealbox.waiting import Progress
 
+ABOUT = {
+    "calibrate": "parameters fitted to what was measured, with what stays open",
+    "compare_": "a design beside the squeal of a recording: frequency, growth, level",
+}
+
 
 def calibrate(
     file: Path,

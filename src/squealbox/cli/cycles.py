@@ -16,6 +16,8 @@ from squealbox.limit_cycles.attractors.exponents import LOST
 from squealbox.stability import complex_modes
 from squealbox.transient import simulate
 
+ABOUT = {"cycle": "what the motion settles to: the limit cycle, its stability, figure and data"}
+
 if TYPE_CHECKING:
     from squealbox.designs import Design
 

@@ -29,6 +29,8 @@ from squealbox.limit_cycles.attractors.settling import KINDS
 from squealbox.parameters import known_names
 from squealbox.waiting import Progress
 
+ABOUT = {"diagram": "what transients settle to over a parameter, with a Poincare section"}
+
 if TYPE_CHECKING:
     from squealbox.designs import Design
     from squealbox.files.analyses import Axis

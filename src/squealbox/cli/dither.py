@@ -11,6 +11,8 @@ from squealbox.cli.tables import write_csv, written
 from squealbox.countermeasures import Dithered
 from squealbox.stability import complex_modes
 
+ABOUT = {"dither": "fast dither of the sliding: growth rate and friction left over its amplitude"}
+
 
 def dither(
     file: Path,

@@ -19,6 +19,8 @@ from squealbox.system import as_system
 from squealbox.transient import Ensemble, simulate_ensemble
 from squealbox.waiting import Progress
 
+ABOUT = {"ensemble": "transients over two parameters: amplitude and frequency of each"}
+
 
 def ensemble(
     file: Path,

@@ -13,6 +13,8 @@ from squealbox.files.runs import run
 from squealbox.signals import SignalError, column, dominant_frequency, sound, sound_level
 from squealbox.waiting import Progress
 
+ABOUT = {"listen": "the motion as sound at its true frequency (WAV), and how loud it may be"}
+
 SAMPLES = 88_200.0  # a second: twice what a sound needs, so that nothing heard is folded down
 
 

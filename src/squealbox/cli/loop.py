@@ -9,6 +9,8 @@ from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.control import closed_loop
 
+ABOUT = {"loop": "poles and margins of a brake with loops: gain, phase, delay, sampling"}
+
 
 def loop(
     file: Path,

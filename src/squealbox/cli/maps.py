@@ -15,6 +15,8 @@ from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability import Boundary, StabilityMap, map_boundary, stability_boundary, stability_map
 from squealbox.waiting import Progress
 
+ABOUT = {"map_": "stability over two parameters, with the boundary as curves"}
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 

@@ -16,6 +16,8 @@ from squealbox.studies import optimise as optimised
 from squealbox.studies.quantity import unit_of
 from squealbox.waiting import Progress
 
+ABOUT = {"optimise": "the best design within bounds: before and after, or a Pareto front"}
+
 
 def optimise(
     file: Path,

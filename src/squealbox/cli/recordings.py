@@ -25,6 +25,13 @@ from squealbox.signals import (
 from squealbox.signals.events import BAND, LEAST_LEVEL
 from squealbox.waiting import Progress
 
+ABOUT = {
+    "events": "squeal events in recordings: when, which frequency, how loud, how quick",
+    "noise": "a folder of stops: how often it squeals, at which speed and pressure",
+    "damping": "damping of the modes before squeal, and the onset it points to",
+    "quality": "loudness, sharpness and roughness of recordings",
+}
+
 SOUNDS = (".wav", ".flac", ".csv", ".uff", ".unv")
 Band = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
 

@@ -14,6 +14,8 @@ from squealbox.fe.reduced_files import save_reduced
 from squealbox.files.reduced import Reduce, Reduced, dense, error_table, promise
 from squealbox.waiting import Progress
 
+ABOUT = {"reduce_": "a small brake from a finite-element one, with its error, in a file"}
+
 
 def reduce_(file: Path, *, out: Path, band: Ends = None, changes: Changes = (), allow_code: AllowCode = False) -> None:
     """Make a small brake of a finite-element one: its modes in a band are those of the full one, with a known error.

@@ -11,6 +11,8 @@ from squealbox.report import report as write
 from squealbox.result import ResultFileError
 from squealbox.waiting import Progress
 
+ABOUT = {"report": "a design examined from every side, or any result, as one HTML page"}
+
 
 def report(source: Path, *, out: Path | None = None, changes: Changes = (), allow_code: AllowCode = False) -> None:
     """Write one HTML page that opens anywhere, prints well and needs no network.

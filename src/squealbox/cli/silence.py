@@ -16,6 +16,8 @@ from squealbox.remedies import Remedies
 from squealbox.remedies import silence as silenced
 from squealbox.waiting import Progress
 
+ABOUT = {"silence": "what would silence this brake: cures ranked, with dose, cost and cautions"}
+
 
 def silence(
     file: Path,

@@ -23,6 +23,11 @@ from squealbox.stability import (
 )
 from squealbox.waiting import Progress
 
+ABOUT = {
+    "modes": "is steady sliding stable? complex eigenvalues of a design file",
+    "onset": "the value of a parameter at which squeal begins, and how",
+}
+
 SPECTRA = 61  # values at which the modes of a reduced brake are drawn
 
 if TYPE_CHECKING:

@@ -19,6 +19,13 @@ from squealbox.studies import Space, Store, open_sweep, sweep
 from squealbox.studies.store import LOG, RESULT
 from squealbox.waiting import Progress
 
+ABOUT = {
+    "run": "a study: any analysis over a space of parameters; stopped or killed, it goes on",
+    "status": "how far a study is, and what it said last",
+    "show": "what a study has found, also while it runs: table and figure",
+    "export": "what a study has found as CSV, NetCDF or MAT",
+}
+
 if TYPE_CHECKING:
     from squealbox.studies import Sweep
 

@@ -14,6 +14,8 @@ from squealbox.files.runs import lasting, run, start_of
 from squealbox.parameters import ParameterError
 from squealbox.waiting import Progress
 
+ABOUT = {"simulate": "what happens in time: a transient with verdict, figures and data"}
+
 if TYPE_CHECKING:
     from squealbox.transient.trajectory import Trajectory
     from squealbox.transient.verdict import Verdict

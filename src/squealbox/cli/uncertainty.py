@@ -19,6 +19,8 @@ from squealbox.result import Result
 from squealbox.studies.quantity import unit_of
 from squealbox.waiting import Progress
 
+ABOUT = {"scatter": "parameters scatter: how probable is squeal, and which matters?"}
+
 if TYPE_CHECKING:
     from squealbox.designs import Design
 

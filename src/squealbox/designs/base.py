@@ -36,6 +36,9 @@ class Design(DataSheet):
         """The equation of motion with these parameters."""
         raise NotImplementedError
 
+    def draw(self, panel: Any) -> None:
+        """Where `plots.brakes` knows no drawing: with `plot`, `text`, `annotate`, `add_patch` of a Matplotlib panel."""
+
     def __str__(self) -> str:
         return self.summary()
 

@@ -8,7 +8,12 @@ from squealbox.designs import Design
 from squealbox.system import linearise
 from squealbox.words import number, quantity
 from squealbox.workbench.figures import Axis, Figure, Table, line, points, span, upright
+from squealbox.workbench.panels.declared import Panel, Place
 from squealbox.workbench.panels.panel import Answer, Options, Work
+
+PANEL = Panel(
+    "Friction curve", questions=("why",), figures=(Place("friction", "", 300),), table="Contacts in steady sliding",
+)  # fmt: skip
 
 POINTS = 241
 

@@ -8,8 +8,16 @@ from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.words import scaled
 from squealbox.workbench.figures import Axis, Figure, across, band, line, modes_named, points, span, upright
+from squealbox.workbench.panels.declared import FRICTION, Panel, Place, over
 from squealbox.workbench.panels.modes import modes_of, ranked, tracks_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, try_value
+
+PANEL = Panel(
+    "Modes over a parameter", questions=("why",), columns=2, choices=(over("over", "parameter", FRICTION),),
+    layout="three",
+    figures=(Place("frequency", "Frequency", 216), Place("growth", "Growth rate (above zero: squeal)", 216),
+             Place("plane", "Eigenvalue plane", 216)),
+)  # fmt: skip
 
 POINTS = 97  # values along the axis; about 15 ms for two degrees of freedom
 NONE = 1e-7  # growth rates up to this, or this share of themselves, are round-off
