@@ -31,7 +31,7 @@ ABOUT = {"branch": "limit cycles over a range of a parameter: stable, unstable, 
 
 if TYPE_CHECKING:
     from squealbox.designs import Design
-    from squealbox.files.analyses import Axis
+    from squealbox.files.analyses import Varied
 
 Start = Literal["all", "hopf", "runs"]
 
@@ -106,7 +106,12 @@ def branch(
 
 
 def all_branches(
-    design: "Design", varied: "Axis", start: Start = "all", runs: int = 8, at: int = 3, progress: Progress | None = None
+    design: "Design",
+    varied: "Varied",
+    start: Start = "all",
+    runs: int = 8,
+    at: int = 3,
+    progress: Progress | None = None,
 ) -> tuple[HopfPoint, tuple[Branch, ...]]:
     """The Hopf point, the branch from it and those that runs lead to."""
     bounds, points, say = (varied.low, varied.high), int(varied.points), progress or (lambda text: None)
@@ -123,7 +128,7 @@ def all_branches(
     return born, tuple(x for i, x in enumerate(several) if not any(lies_on(x, later) for later in several[i + 1 :]))
 
 
-def _said(name: str, one: Branch, quiet: list[tuple[float, float]], design: "Design", varied: "Axis") -> str:
+def _said(name: str, one: Branch, quiet: list[tuple[float, float]], design: "Design", varied: "Varied") -> str:
     def shown(value: float) -> str:
         number, unit = readable(design, varied, value)
         return f"{float(number):.7g} {unit}".rstrip()
@@ -144,7 +149,7 @@ def _said(name: str, one: Branch, quiet: list[tuple[float, float]], design: "Des
 
 
 def _coexistence(
-    several: tuple[Branch, ...], quiet: list[tuple[float, float]], design: "Design", varied: "Axis"
+    several: tuple[Branch, ...], quiet: list[tuple[float, float]], design: "Design", varied: "Varied"
 ) -> str:
     """Where a stable cycle exists beside stable steady sliding."""
     both = beside_sliding(several, quiet)
@@ -163,7 +168,7 @@ def _files(
     born: HopfPoint,
     curves: tuple[EstimateCurve, ...],
     design: "Design",
-    varied: "Axis",
+    varied: "Varied",
     title: str,
     out: Path,
 ) -> list[Path]:

@@ -33,7 +33,7 @@ ABOUT = {"diagram": "what transients settle to over a parameter, with a Poincare
 
 if TYPE_CHECKING:
     from squealbox.designs import Design
-    from squealbox.files.analyses import Axis
+    from squealbox.files.analyses import Varied
 
 Sweep = Literal["up", "down", "rest"]
 Sweeps = Annotated[tuple[Sweep, ...], Parameter(negative="", consume_multiple=True)]
@@ -146,7 +146,7 @@ def _section(design: "Design", text: str, dof: str | None) -> Section:
     return Section(name, where, number(words[2], unit, f"--section {text[:60]}") if len(words) == 3 else 0.0, way)
 
 
-def _said(result: BifurcationDiagram, design: "Design", varied: "Axis") -> str:
+def _said(result: BifurcationDiagram, design: "Design", varied: "Varied") -> str:
     def shown(value: float) -> str:
         read_, unit = readable(design, varied, value)
         return f"{float(read_):.6g} {unit}".rstrip()
@@ -181,7 +181,7 @@ def _units(result: BifurcationDiagram) -> dict[str, str]:
 
 
 def _files(
-    result: BifurcationDiagram, several: tuple[Branch, ...], design: "Design", varied: "Axis", title: str, out: Path
+    result: BifurcationDiagram, several: tuple[Branch, ...], design: "Design", varied: "Varied", title: str, out: Path
 ) -> list[Path]:
     """Figure, tables and data."""
     from squealbox import plots

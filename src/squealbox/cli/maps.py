@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from squealbox.designs import Design
     from squealbox.files import DesignFile
-    from squealbox.files.analyses import Axis
+    from squealbox.files.analyses import Varied
 
 COARSE = 11  # points along each axis of a reduced brake's map, unless more are asked for
 CLOSE = 0.02  # share of a cell to which its boundary is located
@@ -91,7 +91,7 @@ def map_(
 class Plane:
     """The two axes, in the units one reads them in."""
 
-    def __init__(self, design: "Design", across: "Axis", up: "Axis") -> None:
+    def __init__(self, design: "Design", across: "Varied", up: "Varied") -> None:
         self.design, self.axes = design, (across, up)
         self.names = (across.name, up.name)
         (self.x, x_unit), (self.y, y_unit) = (readable(design, each, each.values) for each in self.axes)
@@ -109,7 +109,7 @@ class Plane:
         return {f"{n} [{u or '-'}]": v for n, u, v in zip(self.names, self.units, (x, y), strict=True)}
 
 
-def axes_of(found: "DesignFile", x: Span, y: Span, points: int | None) -> tuple["Axis", "Axis"]:
+def axes_of(found: "DesignFile", x: Span, y: Span, points: int | None) -> tuple["Varied", "Varied"]:
     """The two axes of a plane, from the options or the section [map] of the file."""
     given = found.map
     across = with_points(axis(found.design, given.x if given else None, *_split(x), ACROSS), points)

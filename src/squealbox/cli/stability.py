@@ -33,7 +33,7 @@ SPECTRA = 61  # values at which the modes of a reduced brake are drawn
 if TYPE_CHECKING:
     from squealbox.designs import Design
     from squealbox.files import DesignFile
-    from squealbox.files.analyses import Axis
+    from squealbox.files.analyses import Varied
 
 
 def modes(
@@ -174,7 +174,7 @@ def _mode_files(spectrum: ComplexModes, found: "DesignFile", time: float, out: P
     return paths
 
 
-def _crossing(crossing: CriticalValue, design: "Design", varied: "Axis") -> str:
+def _crossing(crossing: CriticalValue, design: "Design", varied: "Varied") -> str:
     value, unit = readable(design, varied, crossing.value)
     side = "above" if crossing.direction == "destabilising" else "below"
     shares = ", ".join(f"{name.replace('_', ' ')} {100.0 * share:.0f} %" for name, share in crossing.shares.items())
@@ -186,7 +186,7 @@ def _crossing(crossing: CriticalValue, design: "Design", varied: "Axis") -> str:
     )
 
 
-def _onset_files(found: "DesignFile", varied: "Axis", crossings: CriticalValues, out: Path) -> list[Path]:
+def _onset_files(found: "DesignFile", varied: "Varied", crossings: CriticalValues, out: Path) -> list[Path]:
     """The crossings, and a figure and table of the modes over the range with the crossings among its points."""
     from squealbox import plots
 

@@ -13,7 +13,7 @@ from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.study_analyses import UNITS, analysis_of
 from squealbox.cli.tables import write_csv, written
-from squealbox.files.analyses import Axis as Span
+from squealbox.files.analyses import Varied as Span
 from squealbox.files.study import read_study
 from squealbox.studies import Space, Store, open_sweep, sweep
 from squealbox.studies.store import LOG, RESULT

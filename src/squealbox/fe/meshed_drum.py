@@ -19,16 +19,16 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.fe.contact_points import ContactPoints
-from squealbox.fe.grids import Body, breaks
+from squealbox.fe.grids import MeshedBody, breaks
 from squealbox.fe.meshed import (
     IRON,
     LINING,
     OWN,
     STEEL,
-    Frame,
+    FreedomsOfBodies,
     Material,
     MeshedBrake,
-    Structure,
+    MeshedStructure,
     longest_side,
     modes_alone,
     some_of,
@@ -106,7 +106,7 @@ class MeshedDrumBrake(MeshedBrake):
         if not shoes.lining_thickness + shoes.table_thickness < drum.radius:
             raise ParameterError("Shoes", "table_thickness", shoes.table_thickness, "a shoe that fits into the drum")
 
-    def structure(self) -> Structure:
+    def structure(self) -> MeshedStructure:
         self.one_system()
         drum, shoes = self.drum, self.shoes
         shape = (
@@ -128,7 +128,7 @@ class MeshedDrumBrake(MeshedBrake):
     def wearing_under(self) -> dict[str, float]:
         return {"force": self.running_in_force}
 
-    def touching(self, made: Structure) -> Any:
+    def touching(self, made: MeshedStructure) -> Any:
         """Contact points outside chamfers."""
         inside = np.abs(made.angle) < 0.5 * self.shoes.angle - self.shoes.chamfer
         return some_of(inside, "Shoes", self.shoes.chamfer)
@@ -147,16 +147,16 @@ def drum_structure(
     lining_poisson: float,
     table_poisson: float,
     size: float,
-) -> Structure:
+) -> MeshedStructure:
     """Mesh and assemble a drum and two shoes; all lengths in m, the angle in rad."""
     drum = _ring(radius, wall, deep, size)
     under = radius - lining
     through = np.concatenate([breaks(under - table, under, size), breaks(under, radius, size)[1:]])
     across = breaks(0.5 * (deep - width), 0.5 * (deep + width), size, 2)
-    shoes = [Body(through, breaks(m - 0.5 * angle, m + 0.5 * angle, size / radius, 4), across) for m in MIDDLES]
+    shoes = [MeshedBody(through, breaks(m - 0.5 * angle, m + 0.5 * angle, size / radius, 4), across) for m in MIDDLES]
     bodies = (drum, *shoes)
     edge = np.abs(drum.places[2]) < 1e-6 * deep
-    frame = Frame(bodies, [edge, *(np.zeros(shoe.size, dtype=bool) for shoe in shoes)])
+    frame = FreedomsOfBodies(bodies, [edge, *(np.zeros(shoe.size, dtype=bool) for shoe in shoes)])
     mass: dict[str, Any] = {"drum": frame.square(drum.mass(), 0)}
     stiffness: dict[str, Any] = {"drum": frame.square(drum.stiffness(drum_poisson), 0)}
     for name, poisson, outside in (("linings", lining_poisson, True), ("tables", table_poisson, False)):
@@ -185,7 +185,7 @@ def drum_structure(
         moving[own[1::3], i - 1] = outwards * (anchor[0] - shoe.places[0, 1::3])
         inner = shoe.face(0, 0)
         guide = guide + frame.spring(inner, i, _directions(inner.place)[2])
-    return Structure(
+    return MeshedStructure(
         size=frame.size,
         mass=mass,
         stiffness=stiffness,
@@ -205,9 +205,9 @@ def free_drum_modes(drum: Drum, element_size: float, top: float, *, held: bool =
     return modes_alone(body, drum.material, top, edge if held else None)
 
 
-def _ring(radius: float, wall: float, deep: float, size: float) -> Body:
+def _ring(radius: float, wall: float, deep: float, size: float) -> MeshedBody:
     around = breaks(0.0, 2.0 * np.pi, size / radius, 12)
-    return Body(breaks(radius, radius + wall, size, 2), around, breaks(0.0, deep, size, 2), closed=True)
+    return MeshedBody(breaks(radius, radius + wall, size, 2), around, breaks(0.0, deep, size, 2), closed=True)
 
 
 def _directions(place: Any) -> tuple[Any, Any, Any]:
