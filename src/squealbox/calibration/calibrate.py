@@ -135,9 +135,6 @@ class Calibration(Result):
             lines.append(f"{self.outcome}: {self.outcome.message}")
         return "\n".join([*lines, *self.cannot_tell])
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 @public()
 def calibrate(

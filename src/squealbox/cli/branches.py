@@ -144,8 +144,7 @@ def _said(name: str, one: Branch, quiet: list[tuple[float, float]], design: "Des
     for kind, value in zip(one.special_kind, one.special_value, strict=True):
         lines.append(f"  {str(kind).replace('_', ' ')} at {shown(value)}")
     lines.append(f"  ends: {one.outcome.message or one.outcome}")
-    lines += [f"  Caution: {one.caution}"] if one.caution else []
-    return "\n".join(lines)
+    return one.warned(lines)
 
 
 def _coexistence(

@@ -167,10 +167,9 @@ def _said(result: BifurcationDiagram, design: "Design", varied: "Varied") -> str
     if np.any(result.coexist):
         over = result.stretches(result.coexist, shown)
         lines.append(f"Rest and vibration coexist at {int(np.sum(result.coexist))} values, {over}.")
-    lines += [f"Caution: {result.caution}"] if result.caution else []
     if not result.outcome.ok:
         lines.append(f"Note: {result.outcome.message}")
-    return "\n".join(lines)
+    return result.warned(lines)
 
 
 def _units(result: BifurcationDiagram) -> dict[str, str]:

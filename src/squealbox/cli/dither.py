@@ -9,6 +9,7 @@ from squealbox.cli.options import AllowCode
 from squealbox.cli.running import UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.countermeasures import Dithered
+from squealbox.parameters import with_cautions
 from squealbox.stability import complex_modes
 
 ABOUT = {"dither": "fast dither of the sliding: growth rate and friction left over its amplitude"}
@@ -63,7 +64,7 @@ def dither(
     for w, g, part in zip(amplitudes, growth, left, strict=True):
         print(f"{w:14.5g}  {g:+12.5g}  {100.0 * part:10.3g}")
     said = dict.fromkeys(text for cure in (cures[0], cures[-1]) for text in cure.cautions())
-    print("\n".join(f"Caution: {text}" for text in said))
+    print(with_cautions([], *said))
     if out is not None:
         columns = {"velocity [m/s]": amplitudes, "growth rate [1/s]": growth, "friction left [-]": left}
         print(written(write_csv(out / "dither.csv", columns)))

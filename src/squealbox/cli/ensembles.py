@@ -106,16 +106,15 @@ def _summary(many: Ensemble, plane: Plane) -> str:
     amplitude, frequency, which, unit = _largest(many, plane.design)
     ended = ", ".join(f"{np.count_nonzero(many.ended == name)} {name}" for name in np.unique(many.ended))
     lines = [f"{many.ended.size} transients of {many.settings['duration']:g} s from rest: {ended}; {many.rate:.0f}/s"]
-    lines += [f"Caution: {many.caution}"] if many.caution else []
     if np.all(np.isnan(amplitude)):
-        return "\n".join(lines)
+        return many.warned(lines)
     column, row = np.unravel_index(np.nanargmax(amplitude), amplitude.shape)
     where = plane.place((plane.axes[0].values[column], plane.axes[1].values[row]))
     lines.append(
         f"amplitude over the last fifth, {which}: median {np.nanmedian(amplitude):.4g} {unit}, "
         f"largest {amplitude[column, row]:.4g} {unit} at {frequency[column, row]:.5g} Hz, {where}"
     )
-    return "\n".join(lines)
+    return many.warned(lines)
 
 
 def _files(many: Ensemble, plane: Plane, title: str, out: Path) -> list[Path]:

@@ -11,7 +11,7 @@ from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files.analyses import Simulate
 from squealbox.files.runs import lasting, run, start_of
-from squealbox.parameters import ParameterError
+from squealbox.parameters import ParameterError, with_cautions
 from squealbox.waiting import Progress
 
 ABOUT = {"simulate": "what happens in time: a transient with verdict, figures and data"}
@@ -107,7 +107,7 @@ def _judged(motion: "Trajectory") -> tuple[str, list["Verdict"]]:
             f"Note: {len(motion.t)} kept instants do not carry these frequencies (give more points for data and "
             "sound); the verdict and the figures come from every step of the run"
         )
-    return "\n".join([*lines, *(f"Caution: {said}" for said in motion.caution.split("; ") if said)]), judged
+    return with_cautions(lines, *motion.caution.split("; ")), judged
 
 
 def _files(motion: "Trajectory", text: str, judged: list["Verdict"], title: str, out: Path) -> list[Path]:

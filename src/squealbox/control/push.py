@@ -51,9 +51,6 @@ class DefeatingPush(Result):
             f"{float(np.max(self.amplitude)):.6g} m ({self.runs} runs)"
         )
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 @public()
 def defeating_push(

@@ -40,9 +40,6 @@ class LoopRun(Result):
             f"at the limit {100.0 * float(np.max(self.saturated, initial=0.0)):.3g} % of the time"
         )
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def run_loops(design_or_system: Any, duration: float, start: Any = None, *, rtol: float = 1e-10) -> LoopRun:
     """The motion over `duration` [s] of a brake whose loops are sampled, or late, or both; limits are kept.

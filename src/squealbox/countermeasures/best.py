@@ -72,9 +72,6 @@ class BestAbsorber(Result):
             + (f"; stable from {low:.6g} to {high:.6g} Hz" if np.isfinite(low) else "; not stable")
         )
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 @public(bounds=None, brake=with_parameters)
 def best_absorber(

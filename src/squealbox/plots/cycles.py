@@ -74,7 +74,7 @@ def cycle_overview(cycle: Cycle | ForcedCycle, *, dof: int | None = None, title:
     kind = cycle.stability
     what = "forced motion" if isinstance(cycle, ForcedCycle) else "cycle"
     said = f"{kind} {what}, {number(cycle.frequency)} Hz" if cycle.outcome.ok else str(cycle.outcome)
-    caution = f"Caution: {cycle.warning}" if cycle.warning else ""
+    caution = cycle.warned()
     figure.suptitle(". ".join(filter(None, (title, said))) + (f"\n{caution}" if caution else ""), fontsize=8, wrap=True)
     return figure
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.parameters import with_cautions
 from squealbox.plots.ticks import spread_ticks
 from squealbox.signals import with_error
 from squealbox.words import MINUS
@@ -302,7 +303,7 @@ def cautioned(panel: "Axes", cautions: Sequence[str], alone: bool) -> None:
         return
     figure = figure_of(panel)
     width = max(int(figure.get_size_inches()[0] * CHARACTERS), 40)
-    figure.supxlabel(textwrap.fill(f"Caution: {said}", width, max_lines=4, placeholder=" ..."), fontsize=6.5)
+    figure.supxlabel(textwrap.fill(with_cautions([], said), width, max_lines=4, placeholder=" ..."), fontsize=6.5)
 
 
 def note(axes: "Axes", text: str, where: str = "upper right") -> None:

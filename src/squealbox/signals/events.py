@@ -107,9 +107,6 @@ class SquealEvents(Result):
             ]
         )
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 @public()
 def squeal_events(
