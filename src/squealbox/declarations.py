@@ -121,7 +121,10 @@ def parameter(
     optional: bool = False,
     schedule: bool = False,
 ) -> Any:
-    """Declare a field of a data sheet: unit, range, default, meaning, source; may it be None, or a schedule?"""
+    """Declare a field of a data sheet: unit, range, default, meaning, source; may it be None, or a schedule?
+
+    `low` [SI]: least value; `high` [SI]: largest value.
+    """
     about = Parameter(unit, low, high, low_open, high_open, meaning, source, optional, schedule)
     if default_factory is not dataclasses.MISSING:
         return dataclasses.field(default_factory=default_factory, metadata={"parameter": about})

@@ -100,7 +100,7 @@ def fit_friction(
     law : name of a law or several; left out, all of coulomb, linear_slope, stribeck, hyperbolic, cubic. Of lugre and
         elasto_plastic the curve of steady sliding is fitted: static, kinetic and speed; what their bristles do, a
         stiffness from pre-sliding, is not in such points and keeps its usual value
-    level : confidence level of the bands, between 0 and 1
+    level : [-] confidence level of the bands, between 0 and 1
 
     Returns the fits. A sliding measurement cannot tell the static limit: the fitted laws take mu(v -> 0) for it.
     Raises `ParameterError` for points that are no such measurement. Laws with three coefficients need points on both

@@ -95,7 +95,7 @@ def best_absorber(
     mass : of the absorber [kg]
     aim : "decay" (least growth rate), "margin" (largest critical value of `parameter` within `bounds`) or "probability"
         (least share of the lot drawn from `scatter` that squeals)
-    bounds : None takes 0 to 2 times the parameter's value
+    bounds : [SI] None takes 0 to 2 times the parameter's value
     samples, seed : of the lot, the same for every tuning
 
     Returns

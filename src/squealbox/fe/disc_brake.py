@@ -227,7 +227,10 @@ def structure(
 
 
 def free_disc_modes(disc: Disc, element_size: float, top: float, *, held: bool = False) -> RealModes:
-    """Undamped modes below `top` [Hz] of the disc alone, free or held at its bore: what a hammer test finds."""
+    """Undamped modes below `top` [Hz] of the disc alone, free or held at its bore: what a hammer test finds.
+
+    `element_size` [m]: of the mesh.
+    """
     half = 0.5 * disc.thickness
     around = breaks(0.0, 2.0 * np.pi, element_size / (0.5 * (disc.inner_radius + disc.outer_radius)), 12)
     radii = breaks(disc.inner_radius, disc.outer_radius, element_size, 2)

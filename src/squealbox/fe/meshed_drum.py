@@ -199,7 +199,10 @@ def drum_structure(
 
 
 def free_drum_modes(drum: Drum, element_size: float, top: float, *, held: bool = False) -> RealModes:
-    """Undamped modes below `top` [Hz] of the drum alone, free or held at its edge: what a hammer test finds."""
+    """Undamped modes below `top` [Hz] of the drum alone, free or held at its edge: what a hammer test finds.
+
+    `element_size` [m]: of the mesh.
+    """
     body = _ring(drum.radius, drum.thickness, drum.width, element_size)
     edge = np.abs(body.places[2]) < 1e-6 * drum.width
     return modes_alone(body, drum.material, top, edge if held else None)

@@ -93,7 +93,7 @@ def stribeck_slope(v: Any, p: Any) -> Any:
 class Stribeck(FrictionLaw):
     """Exponential decay from static to kinetic over the Stribeck speed.
 
-    mu = kinetic + (static - kinetic) exp(-|v|/speed).
+    mu = kinetic + (static - kinetic) exp(-|v|/speed). Source: Bo and Pavelescu 1982, Wear 82, 277-289.
 
     >>> round(float(Stribeck(0.5, 0.3, 0.1).mu(0.1)), 6)
     0.373576

@@ -175,6 +175,8 @@ def panels(
 ) -> "tuple[Figure, Any]":
     """A figure of rows x columns panels; width and height in inches. Keywords go to ``Figure.subplots``.
 
+    `width` [in]: of the figure; `height` [in]: of the figure.
+
     Returns the figure and its axes: one, or an array. Hand each to a function of this room as ``axes=``. In a `Look`
     of another width the height follows, and a row of panels that would get too narrow becomes a column.
     """
@@ -242,8 +244,8 @@ def save(
 ) -> list[Path]:
     """Write a figure as path.png and path.svg, as path.pdf where it ends so, or as `formats`; returns the paths.
 
-    `dots` an inch, 200 by default. The files hold no date and no version, so equal figures give equal files. The figure
-    is laid out once for all formats, where `Figure.savefig` alone would draw it twice for each.
+    `dots` [1/in] an inch, 200 by default. The files hold no date and no version, so equal figures give equal files.
+    The figure is laid out once for all formats, where `Figure.savefig` alone would draw it twice for each.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -263,7 +265,7 @@ def save(
 
 
 def drawn(figure: "Figure", kind: str = "png", dots: float | None = None, *, trimmed: bool = False) -> bytes:
-    """The figure as the content of a PNG, SVG or PDF file, `dots` an inch, `trimmed` of an empty margin."""
+    """The figure as the content of a PNG, SVG or PDF file, `dots` [1/in] an inch, `trimmed` of an empty margin."""
     stream = io.BytesIO()
     with looked(figure), laid_out(figure, dots):
         box = "tight" if trimmed else None

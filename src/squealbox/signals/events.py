@@ -128,7 +128,8 @@ def squeal_events(
     band : lowest and highest frequency [Hz]
     least_level : peak level an event must reach [dB(A)]; not asked of a recording without calibration, nor for None
     frame : length of a frame [s]; the next begins a quarter later
-    chance : probability that noise passes the threshold in one line of one frame; `FRAMES` of them on end make an event
+    chance : [-] probability that noise passes the threshold in one line of one frame; `FRAMES` of them on end make an
+        event
 
     Accuracy: tones of 15 dB above the noise in their line are found, to two hops of their onset; tones 100 Hz apart are
     told apart. Raises `SignalError` for a band outside what the sampling rate can carry, or too few frames.

@@ -23,7 +23,7 @@ USUAL_RTOL = {
 
 @dataclass(frozen=True, eq=False)
 class Tableau:
-    """An explicit embedded Runge-Kutta pair.
+    """An explicit embedded Runge-Kutta pair. Source: Hairer, Norsett and Wanner 1993, Solving ODEs I, II.4 to II.6.
 
     With S stages a step is y1 = y + h sum_i b_i k_i. The stage after them, k_S = f(t + h, y1), serves the error, the
     dense output and the next step. a (R, R), c (R,) cover R >= S + 1 stages; those after S serve the dense output only.
