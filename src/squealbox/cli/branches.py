@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import RANGE, Changes, Ends, axis, folder, in_motion, read, readable, with_points
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import RANGE, Ends, axis, folder, in_motion, read, readable, with_points
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.tables import write_csv, written
 from squealbox.limit_cycles import (
@@ -46,8 +46,7 @@ def branch(
     at: int = 3,
     points: int | None = None,
     estimates: bool = True,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """The limit cycles over a range of a parameter: amplitude, stability, and where they begin and end.
@@ -70,14 +69,10 @@ def branch(
         most cycles of one branch each way
     estimates
         quick estimates beside the branches: describing function, and averaging for a block on a belt
-    changes
-        other values for this run: --set load="2 kN" reading=eq3
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for a figure, the tables branch.csv and special.csv, and the data of each branch
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     varied = with_points(axis(found.design, found.branch, parameter, range, RANGE), points)
     if out is not None:
         folder(out, "branch", "special")

@@ -10,7 +10,6 @@ from squealbox.cli.answers import keep
 from squealbox.cli.branches import all_branches
 from squealbox.cli.inputs import (
     RANGE,
-    Changes,
     Ends,
     axis,
     folder,
@@ -21,7 +20,7 @@ from squealbox.cli.inputs import (
     time_of,
     with_points,
 )
-from squealbox.cli.options import AllowCode
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.limit_cycles import BifurcationDiagram, Branch, Section, bifurcation_diagram
@@ -56,8 +55,7 @@ def diagram(
     duration: str | None = None,
     branches: Drawn = False,
     seed: int = 0,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """What the motion settles to over a range of a parameter, by transients alone: a bifurcation diagram.
@@ -93,14 +91,10 @@ def diagram(
         follow the cycles as well (as squealbox branch) and draw them beneath
     seed
         of the drawn starts
-    changes
-        other values for this run: --set load="2 kN" reading=eq3
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for a figure, the tables diagram.csv and section.csv, and diagram.nc
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     varied = with_points(axis(found.design, found.branch, parameter, range, RANGE), points)
     found = in_motion(found, varied)
     length = None if duration is None else time_of("--duration", duration)

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from squealbox.cli.inputs import Changes, folder, number, read
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import folder, number, read
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.countermeasures import Dithered
@@ -22,8 +22,7 @@ def dither(
     frequency: str = "40 kHz",
     along: str = "",
     points: int = 25,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """Fast dither of the sliding velocity: growth rate and mean friction left over its amplitude.
@@ -40,14 +39,10 @@ def dither(
         name of the contact that is shaken; all when left out
     points
         amplitudes looked at
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for the table
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     low, high = (number(text, "m/s", f"--velocity {text[:60]}") for text in velocity)
     if not 0.0 < low < high or points < 2:
         raise UsageError(

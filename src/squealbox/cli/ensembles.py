@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Changes, folder, in_motion, read, time_of
+from squealbox.cli.inputs import folder, in_motion, read, time_of
 from squealbox.cli.maps import Plane, Span, axes_of
-from squealbox.cli.options import AllowCode
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.reduced_brake import ReducedBrake
@@ -29,8 +29,7 @@ def ensemble(
     y: Span = None,
     points: int | None = None,
     duration: str | None = None,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """Transients over two parameters, with exact contact: how large each vibration is in the end, and how fast.
@@ -50,14 +49,10 @@ def ensemble(
         number of values along each axis
     duration
         length of each transient; left out, 200 periods of the worst mode of the brake in the file
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for the figure and the numbers
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     across, up = axes_of(found, x, y, points)
     seconds = usual_duration(found.design) if duration is None else time_of("--duration", duration)
     if not seconds > 0.0:

@@ -10,6 +10,7 @@ import cyclopts
 import numpy as np
 
 from squealbox.cli.answers import manner
+from squealbox.cli.options import AS_WRITTEN, HowAsked
 from squealbox.cli.running import UsageError
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
@@ -21,16 +22,15 @@ from squealbox.parameters import Parameter, ParameterError
 from squealbox.transient.simulate import TIME_STEPPING
 from squealbox.waiting import Progress
 
-Changes = Annotated[tuple[str, ...], cyclopts.Parameter(name="--set", negative="", show_default=False)]
 Ends = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
 
 
-def read(file: Path, changes: Sequence[str] = (), allow_code: bool = False) -> DesignFile:
+def read(file: Path, asked: HowAsked = AS_WRITTEN) -> DesignFile:
     """The design file with ``--set friction.static=0.4`` and the like applied."""
-    found = read_file(file, allow_code=allow_code)
+    found = read_file(file, allow_code=asked.allow_code)
     if found.caution:
         print(f"Caution: {found.caution}", file=sys.stderr)
-    return dataclasses.replace(found, design=changed(found.design, changes))
+    return dataclasses.replace(found, design=changed(found.design, asked.changes))
 
 
 def small(found: DesignFile, *axes: Varied) -> DesignFile:

@@ -7,8 +7,8 @@ import numpy as np
 from cyclopts import Parameter
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Changes, Option, axis, folder, read, readable, small, with_points
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import Option, axis, folder, read, readable, small, with_points
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.reduced_brake import ReducedBrake
@@ -37,8 +37,7 @@ def map_(
     y: Span = None,
     points: int | None = None,
     show: Literal["growth", "mechanism"] = "growth",
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """Stability over two parameters: which part of the plane squeals, why, how fast it grows, and its boundary.
@@ -55,14 +54,10 @@ def map_(
         number of values along each axis
     show
         what the figure shades: the growth rate, or the mechanism
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for the figure, the grid and the points of the boundary
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     across, up = axes_of(found, x, y, points)
     if out is not None:
         folder(out, "map", "boundary")

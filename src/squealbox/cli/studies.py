@@ -8,8 +8,8 @@ import numpy as np
 from cyclopts import Parameter
 
 from squealbox.cli import answers
-from squealbox.cli.inputs import Changes, changed, folder, free, in_motion, small
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import changed, folder, free, in_motion, small
+from squealbox.cli.options import AllowCode, Changes
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.study_analyses import UNITS, analysis_of
 from squealbox.cli.tables import write_csv, written

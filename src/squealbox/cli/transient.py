@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Changes, folder, in_motion, read, time_of
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import folder, in_motion, read, time_of
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files.analyses import Simulate
@@ -32,8 +32,7 @@ def simulate(
     start: str | None = None,
     method: str | None = None,
     contact: str | None = None,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
 ) -> None:
     """Follow the motion in time and say what becomes of it; with --out, write figures, data and sound.
 
@@ -51,12 +50,8 @@ def simulate(
         usual (the Taylor series where the equation has one), or one that squealbox list names
     contact
         exact (stick, slip and lift-off by events), raw (plain sgn), smooth, tanh or time-stepping
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     options = {"start": start, "method": method, "contact": contact}
     settings = _settings(found.simulate or Simulate(), duration, options)
     found = in_motion(dataclasses.replace(found, simulate=settings), contact=settings.contact)

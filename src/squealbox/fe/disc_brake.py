@@ -6,7 +6,7 @@ own; their contact is that of `squealbox.fe.meshed`, with e_t along the turning 
 """
 
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -129,7 +129,7 @@ class DiscBrake(MeshedBrake):
             *(self.pads.inner_radius, self.pads.outer_radius, self.pads.angle, self.pads.thickness, lining.poisson),
             *(self.backplates.thickness, plate.poisson, self.piston_radius, self.piston_offset, self.element_size),
         )
-        return structure(*(float(value) for value in shape))
+        return structure(DiscBrakeShape(*(float(value) for value in shape)))
 
     def materials(self) -> dict[str, Material]:
         return {"disc": self.disc.material, "linings": self.pads.material, "backplates": self.backplates.material}
@@ -150,24 +150,30 @@ class DiscBrake(MeshedBrake):
         return some_of(inside, "Pads", self.pads.chamfer)
 
 
+class DiscBrakeShape(NamedTuple):
+    """What the mesh of a disc brake depends on: lengths [m], the angle [rad] and Poisson's ratios [-]."""
+
+    bore: float
+    rim: float
+    thick: float
+    disc_poisson: float
+    inner: float
+    outer: float
+    angle: float
+    lining: float
+    lining_poisson: float
+    plate: float
+    plate_poisson: float
+    piston: float
+    offset: float
+    size: float
+
+
 @lru_cache(maxsize=4)
-def structure(
-    bore: float,
-    rim: float,
-    thick: float,
-    disc_poisson: float,
-    inner: float,
-    outer: float,
-    angle: float,
-    lining: float,
-    lining_poisson: float,
-    plate: float,
-    plate_poisson: float,
-    piston: float,
-    offset: float,
-    size: float,
-) -> MeshedStructure:
+def structure(shape: DiscBrakeShape) -> MeshedStructure:
     """Mesh and assemble a disc and two pads; all lengths in m, the angle in rad."""
+    bore, rim, thick, disc_poisson, inner, outer, angle = shape[:7]
+    lining, lining_poisson, plate, plate_poisson, piston, offset, size = shape[7:]
     half = 0.5 * thick
     around = breaks(0.0, 2.0 * np.pi, size / (0.5 * (inner + outer)), 12)
     disc = MeshedBody(breaks(bore, rim, size, 2), around, breaks(-half, half, size, 2), closed=True)

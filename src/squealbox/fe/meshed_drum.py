@@ -14,7 +14,7 @@ Contact is that of `squealbox.fe.meshed`, with e_n outwards, e_t along the turni
 """
 
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -114,7 +114,7 @@ class MeshedDrumBrake(MeshedBrake):
             *(shoes.angle, shoes.width, shoes.lining_thickness, shoes.table_thickness),
             *(shoes.lining.poisson, shoes.table.poisson, self.element_size),
         )
-        return drum_structure(*(float(value) for value in shape))
+        return drum_structure(DrumBrakeShape(*(float(value) for value in shape)))
 
     def materials(self) -> dict[str, Material]:
         return {"drum": self.drum.material, "linings": self.shoes.lining, "tables": self.shoes.table}
@@ -134,21 +134,26 @@ class MeshedDrumBrake(MeshedBrake):
         return some_of(inside, "Shoes", self.shoes.chamfer)
 
 
+class DrumBrakeShape(NamedTuple):
+    """What the mesh of a drum brake depends on: lengths [m], the angle [rad] and Poisson's ratios [-]."""
+
+    radius: float
+    wall: float
+    deep: float
+    drum_poisson: float
+    angle: float
+    width: float
+    lining: float
+    table: float
+    lining_poisson: float
+    table_poisson: float
+    size: float
+
+
 @lru_cache(maxsize=4)
-def drum_structure(
-    radius: float,
-    wall: float,
-    deep: float,
-    drum_poisson: float,
-    angle: float,
-    width: float,
-    lining: float,
-    table: float,
-    lining_poisson: float,
-    table_poisson: float,
-    size: float,
-) -> MeshedStructure:
+def drum_structure(shape: DrumBrakeShape) -> MeshedStructure:
     """Mesh and assemble a drum and two shoes; all lengths in m, the angle in rad."""
+    radius, wall, deep, drum_poisson, angle, width, lining, table, lining_poisson, table_poisson, size = shape
     drum = _ring(radius, wall, deep, size)
     under = radius - lining
     through = np.concatenate([breaks(under - table, under, size), breaks(under, radius, size)[1:]])
