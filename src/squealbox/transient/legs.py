@@ -108,13 +108,14 @@ def leg(
     if method.tableau == TAYLOR:
         from squealbox.transient.lanes.single import Single
 
-        found = by_series(Single(system, method, q, qd, begin, duration, times), begin + duration, progress)
+        run = Single(system, method, q, qd, begin, duration, times, SCHEMES[ways.contact], ways.width)
+        found = by_series(run, begin + duration, progress)
         if found.outcome != "step_underflow" or ways.named:
             return found
         method = chosen_method(OTHER, *ways.given)  # a law without a series at zero speed, such as one with sqrt(v)
         instead = f"taylor, which ended as step_underflow at {found.outcome.evidence['time']:.6g} s"
-    run = Scalar(system, method, SCHEMES[ways.contact], ways.width, q, qd, begin, times)
-    return replace(run.leg(run.to(begin + duration, duration, progress)), instead_of=instead)
+    march = Scalar(system, method, SCHEMES[ways.contact], ways.width, q, qd, begin, times)
+    return replace(march.leg(march.to(begin + duration, duration, progress)), instead_of=instead)
 
 
 def by_series(run: Any, end: float, progress: Progress | None = None) -> Leg:
@@ -133,7 +134,8 @@ def by_series(run: Any, end: float, progress: Progress | None = None) -> Leg:
     lowest, fastest = (np.array([run.at(f"{name}{c}") for c in range(m)]) for name in ("lowest", "fastest"))
     taken, tried = int(reached[1]), int(reached[2])
     rows, events = run.columns()
-    return Leg(rows, events, outcome, lowest, fastest, (taken, tried - taken, tried), run.method, run.atol)
+    steps = taken, tried - taken, tried
+    return Leg(rows, events, outcome, lowest, fastest, steps, run.method, run.atol, int(run.at("reversals")))
 
 
 class Scalar:

@@ -52,7 +52,7 @@ def run(A, live, table, varies, fixed, times, samples, counter, total, out, p, r
                 A[g * size + ROW_ALIVE * WIDTH + lane] = 0.0
                 live[g] += refill(A, g * size, lane, table, varies, fixed, times, counter, total, out, p, s)
         if RECORDED and live[0] > 0:
-            first_row(A, 0, 0, times, rows, count, s)
+            first_row(A, 0, 0, times, rows, count, p, s)
     while True:
         busy = 0
         for _ in range(every):
@@ -102,7 +102,7 @@ def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out
         if SAMPLES and code & DUE:
             write_samples(A, b, lane, times, samples, p, r, s)
         if RECORDED and code & DUE:
-            write_rows(A, b, lane, times, rows, count)
+            write_rows(A, b, lane, times, rows, count, p)
         ended = RUNNING
         if code & LOST:
             ended = UNDERFLOW if is_finite(A, b, lane) else NOT_FINITE

@@ -13,6 +13,7 @@ from squealbox.parameters import ParameterError
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
 from squealbox.transient import packing
 from squealbox.transient._march import COMPLETED, NOT_CONFIRMED
+from squealbox.transient.choosing import pays
 from squealbox.transient.lanes.batch import stacked
 from squealbox.transient.lanes.shape import layout, parameter_rows
 from squealbox.transient.lanes.table import Jobs, tabulate
@@ -26,7 +27,6 @@ GROUPS = 2  # groups of lanes that a thread advances in turn: one hides the late
 EVERY = 2_000  # trials of each group between two looks at the stop flag, some milliseconds
 ONE_IN = 1_000  # trajectories is run once more, looked at more closely
 SHARE = 1e-3  # of the end state by which the two may differ
-LONGEST = 5_000  # products that the text of a kernel spells out, n^2 and three rows of n for each contact
 HEAD = 5  # numbers of a row of results before its state: how it ended, time, accepted, tried, events
 Progress = Callable[[int, int, float], None]
 
@@ -69,8 +69,8 @@ class Work:
     def _block(self, system: System, shape: tuple[int, ...], part: slice, total: int) -> None:
         count = part.stop - part.start
         self.system = self.system or base_of(system)
-        if system.size * (system.size + 3 * len(system.contacts)) > LONGEST:
-            raise RunApart("a kernel of so many freedoms and contacts takes minutes to compile: run them apart")
+        if not pays(system, self.method.tableau, total):
+            raise RunApart("a kernel of so many freedoms and contacts takes longer to compile than they run apart")
         batch = system.shape if system.shape != () else (count,)
         given, z = parted("simulate_ensemble", self.start, system)
         start = _starts(base_of(system), given, self.begin, shape, part, batch)
