@@ -19,11 +19,6 @@ from squealbox.parameters import ParameterError, parameter
 class BristleLaw(FrictionLaw):
     """Base of the laws with memory: what a linearisation needs of them beside their curve."""
 
-    @classmethod
-    def kind(cls) -> str:
-        """The name a file knows it by: all laws are of `friction`."""
-        return f"friction.{cls.__name__}"
-
     @property
     def grip(self) -> tuple[Any, Any, Any]:
         """s0 [1/m], s1 [s/m] and s2 [s/m]."""
@@ -164,6 +159,10 @@ class Dahl(BristleLaw):
     def grip(self) -> tuple[Any, Any, Any]:
         """s0 [1/m], s1 [s/m] and s2 [s/m]."""
         return self.stiffness, 0.0, 0.0
+
+    @classmethod
+    def guess(cls, speeds: Any, values: Any) -> dict[str, float]:
+        return {}  # its curve is that of Coulomb
 
     def coefficients(self) -> tuple[Any, ...]:
         weights = (1.0 * (np.asarray(self.exponent) == i) for i in (1, 2, 3))

@@ -266,7 +266,7 @@ def follow(residual: Residual, x: Any, p: float, **options: Any) -> Follower:
     Parameters
     ----------
     residual : function of x (n,) and p that returns (n,)
-    x, p : start, corrected before the walk: at fixed p, or across `tangent` when that is given
+    x, p : [SI] start, corrected before the walk: at fixed p, or across `tangent` when that is given
     jacobian : function of x and p that returns (d residual/dx (n, n), d residual/dp (n,)); default central differences
     control : :class:`StepControl`
     direction : +1 walks towards larger p first, -1 towards smaller

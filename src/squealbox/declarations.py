@@ -4,6 +4,8 @@ import dataclasses
 import difflib
 import functools
 import math
+import textwrap
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -119,7 +121,10 @@ def parameter(
     optional: bool = False,
     schedule: bool = False,
 ) -> Any:
-    """Declare a field of a data sheet: unit, range, default, meaning, source; may it be None, or a schedule?"""
+    """Declare a field of a data sheet: unit, range, default, meaning, source; may it be None, or a schedule?
+
+    `low` [SI]: least value; `high` [SI]: largest value.
+    """
     about = Parameter(unit, low, high, low_open, high_open, meaning, source, optional, schedule)
     if default_factory is not dataclasses.MISSING:
         return dataclasses.field(default_factory=default_factory, metadata={"parameter": about})
@@ -146,11 +151,33 @@ def known_names(given: str, names: list[str]) -> str:
     return f"{hint}one of {', '.join(names)}"
 
 
+def screenful(text: str, lines: int = 30, width: int = 120) -> str:
+    """What a terminal shows of a text: long lines go on below, and at most so many of them.
+
+    >>> screenful("one two three", lines=2, width=9).splitlines()
+    ['one two', '    three']
+    """
+    told = [part for line in text.splitlines() for part in _within(line, width)]
+    more = [f"  ... and {len(told) + 1 - lines} more lines"] * (len(told) > lines)
+    return "\n".join([*told[: lines - len(more)], *more])
+
+
+def _within(line: str, width: int) -> list[str]:
+    return textwrap.wrap(line, width, subsequent_indent="    ", break_on_hyphens=False) if len(line) > width else [line]
+
+
+def with_cautions(lines: Iterable[str], *cautions: str) -> str:
+    """The lines of a summary, then a line for each thing to know before it is used."""
+    return "\n".join([*lines, *(f"Caution: {caution}" for caution in cautions if caution)])
+
+
 def shown(value: object) -> str:
     """A value as an error says it: in 60 letters, a class or a whole table by its name."""
     if isinstance(value, type):
         return f"the class {value.__name__}"
     text = repr(value) if not isinstance(value, (float, int)) else f"{value:g}"
+    if hasattr(value, "field_names"):
+        text = " ".join(text.split())
     if "\n" in text and not isinstance(value, np.ndarray):
         return f"a {type(value).__name__}"  # a whole table, or a sheet of arrays
     return text if len(text) <= 60 else text[:57] + "..."

@@ -7,59 +7,24 @@ laws are compared by Akaike's criterion AIC = n ln(RSS/n) + 2 (k + 1), k coeffic
 
 import dataclasses
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.friction import Coulomb, Cubic, ElastoPlastic, FrictionLaw, Hyperbolic, LinearSlope, LuGre, Stribeck
+from squealbox.friction import LAWS, FrictionLaw
 from squealbox.parameters import ParameterError, known_names
+from squealbox.registers import name_of
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 
 LEAST_POINTS = 5
+MOST_USUAL = 3  # numbers of the usual laws
 CARRIES = 0.9  # leverage of a point from which it carries a coefficient nearly alone
 
 
-@dataclasses.dataclass(frozen=True)
-class Candidate:
-    """A law that can be fitted: its class, the names of its free numbers, their least values and a first guess."""
-
-    law: type[FrictionLaw]
-    names: tuple[str, ...]
-    low: tuple[float, ...]
-    guess: Callable[[Any, Any], tuple[float, ...]]
-
-
-CANDIDATES: dict[str, Candidate] = {
-    "coulomb": Candidate(Coulomb, ("static",), (0.0,), lambda v, mu: (float(np.mean(mu)),)),
-    "linear_slope": Candidate(LinearSlope, ("static", "slope"), (0.0, -np.inf), lambda v, mu: (float(np.max(mu)), 0.0)),
-    "stribeck": Candidate(
-        Stribeck,
-        ("static", "kinetic", "speed"),
-        (0.0, 0.0, 1e-12),
-        lambda v, mu: (float(np.max(mu)), float(np.min(mu)), float(np.ptp(v)) / 3.0),
-    ),
-    "hyperbolic": Candidate(
-        Hyperbolic, ("static", "delta"), (0.0, 0.0), lambda v, mu: (float(np.max(mu)), 1.0 / float(np.max(v)))
-    ),
-    "cubic": Candidate(
-        Cubic,
-        ("static", "kinetic", "speed"),
-        (0.0, 0.0, 1e-12),
-        lambda v, mu: (float(np.max(mu)), float(np.min(mu)), float(np.max(v))),
-    ),
-    **{
-        name: Candidate(
-            law,
-            ("static", "kinetic", "speed"),
-            (1e-12, 1e-12, 1e-12),
-            lambda v, mu: (float(np.max(mu)), float(np.min(mu)), float(np.ptp(v)) / 3.0),
-        )
-        for name, law in (("lugre", LuGre), ("elasto_plastic", ElastoPlastic))
-    },
-}
-USUAL = tuple(name for name, candidate in CANDIDATES.items() if candidate.law.creep_formula is None)
+FITTED = {name_of(law): law for law in LAWS if law.guess(np.array([0.1, 1.0]), np.array([0.4, 0.3]))}
+USUAL = tuple(name for name, law in FITTED.items() if law.creep_formula is None)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -102,8 +67,11 @@ class FrictionFit(Result):
         row = self.names.index(name) if name in self.names else -1
         if row < 0 or not np.isfinite(self.aic[row]):
             raise ParameterError("FrictionFit", "law", name, "the name of a law that was fitted")
-        candidate = CANDIDATES[name]
-        return candidate.law(*self.coefficients[row, : len(candidate.names)])
+        names = self._fitted_names(name)
+        return FITTED[name](**dict(zip(names, self.coefficients[row].tolist(), strict=False)))
+
+    def _fitted_names(self, law: str) -> list[str]:
+        return list(FITTED[law].guess(self.speeds, self.values))
 
     def summary(self) -> str:
         """A table of the laws, the best first."""
@@ -113,7 +81,7 @@ class FrictionFit(Result):
             if not np.isfinite(self.aic[row]):
                 lines.append(f"{name:14}{'-':>10}{'-':>11}  could not be fitted")
                 continue
-            parts = zip(CANDIDATES[name].names, self.coefficients[row], self.errors[row], strict=False)
+            parts = zip(self._fitted_names(name), self.coefficients[row], self.errors[row], strict=False)
             text = ", ".join(f"{part} = {value:.4g} +- {error:.2g}" for part, value, error in parts)
             lines.append(f"{name:14}{self.aic[row]:10.2f}{self.rms[row]:11.3g}  {text}")
         return "\n".join(lines)
@@ -132,7 +100,7 @@ def fit_friction(
     law : name of a law or several; left out, all of coulomb, linear_slope, stribeck, hyperbolic, cubic. Of lugre and
         elasto_plastic the curve of steady sliding is fitted: static, kinetic and speed; what their bristles do, a
         stiffness from pre-sliding, is not in such points and keeps its usual value
-    level : confidence level of the bands, between 0 and 1
+    level : [-] confidence level of the bands, between 0 and 1
 
     Returns the fits. A sliding measurement cannot tell the static limit: the fitted laws take mu(v -> 0) for it.
     Raises `ParameterError` for points that are no such measurement. Laws with three coefficients need points on both
@@ -145,12 +113,13 @@ def fit_friction(
     v, mu = _points(speeds, values)
     names = list(USUAL) if law is None else [law] if isinstance(law, str) else list(law)
     for name in names:
-        if name not in CANDIDATES:
-            raise ParameterError("fit_friction", "law", name, known_names(str(name), list(CANDIDATES)))
+        if name not in FITTED:
+            raise ParameterError("fit_friction", "law", name, known_names(str(name), list(FITTED)))
     if not 0.0 < level < 1.0:
         raise ParameterError("fit_friction", "level", level, "a number in (0, 1)")
     along = np.linspace(0.0, float(np.max(v)), 201)
-    fits = [_fitted(CANDIDATES[name], v, mu, along, level) for name in names]
+    room = max(MOST_USUAL, *(len(FITTED[name].guess(v, mu)) for name in names))
+    fits = [_fitted(FITTED[name], v, mu, along, level, room) for name in names]
     arrays: dict[str, Any] = {key: np.array([fit[key] for fit in fits]) for key in fits[0]}
     found = np.any(np.isfinite(arrays["aic"]))
     outcome = Outcome(COMPLETED) if found else Outcome("no_fit", "none of the laws could be fitted", laws=names)
@@ -179,14 +148,16 @@ def _points(speeds: Any, values: Any) -> tuple[Any, Any]:
     return v, mu
 
 
-def _fitted(candidate: Candidate, v: Any, mu: Any, along: Any, level: float) -> dict[str, Any]:
+def _fitted(law: type[FrictionLaw], v: Any, mu: Any, along: Any, level: float, room: int) -> dict[str, Any]:
     from scipy.optimize import OptimizeWarning, curve_fit
     from scipy.stats import t as student
 
-    count, room = len(candidate.names), 3
+    guess = law.guess(v, mu)
+    count, about = len(guess), law.parameters()
+    low = [about[name].low + 1e-12 * about[name].low_open for name in guess]
 
     def curve(speed: Any, *p: float) -> Any:
-        return candidate.law.formula(speed, _formula_numbers(candidate, p))
+        return law.formula(speed, _coefficients(law, dict(zip(guess, p, strict=True))))
 
     nothing = np.full(along.shape, np.nan)
     failed = {"curves": nothing, "low": nothing, "high": nothing, "aic": np.inf, "rms": np.nan}
@@ -194,9 +165,9 @@ def _fitted(candidate: Candidate, v: Any, mu: Any, along: Any, level: float) -> 
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("error", OptimizeWarning)
-            bounds = (candidate.low, np.inf)
-            p, covariance = curve_fit(curve, v, mu, p0=candidate.guess(v, mu), bounds=bounds, max_nfev=20000)
-        candidate.law(*p)
+            begin = list(guess.values())
+            p, covariance = curve_fit(curve, v, mu, p0=begin, bounds=(low, np.inf), max_nfev=20000)
+        law(**dict(zip(guess, p.tolist(), strict=True)))
     except (RuntimeError, ValueError, OptimizeWarning):  # not converged, or numbers that are no such law
         return failed
     residual = float(np.sum((mu - curve(v, *p)) ** 2))
@@ -247,10 +218,9 @@ def _robust(curve: Callable[[Any], Any], p: Any, mu: Any, usual: Any) -> Any:
     return usual * np.outer(scale, scale)
 
 
-def _formula_numbers(candidate: Candidate, p: Sequence[float]) -> tuple[float, ...]:
-    """The free numbers as the formula of the law wants them, before they are known to make a law."""
-    if candidate.law is Coulomb:
-        return (p[0], p[0])
-    if candidate.law.creep_formula is not None:
-        return (*p, 1.0, 0.0, 0.0)
-    return (*p, -np.inf) if candidate.law is LinearSlope else tuple(p)
+def _coefficients(law: type[FrictionLaw], numbers: Mapping[str, float]) -> tuple[Any, ...]:
+    """Those of the formula, before the numbers are known to make a law."""
+    sheet = object.__new__(law)
+    for name, value in numbers.items():
+        object.__setattr__(sheet, name, value)
+    return sheet.coefficients()

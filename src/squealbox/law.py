@@ -5,7 +5,7 @@ to in steady sliding. Depends on: parameters.
 """
 
 from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -40,6 +40,48 @@ class FrictionLaw(DataSheet):
             expected = f"at least mu(0) = {start}" if self.level == "static" else f"at most static = {limit}"
             expected += "; what pushes between the two could neither hold the contact nor move it"
             raise ParameterError(type(self).__name__, self.level, getattr(self, self.level, limit), expected)
+
+    @classmethod
+    def kind(cls) -> str:
+        """The name a file knows it by: all laws of the house are of `friction`, whichever module defines them."""
+        place = super().kind()
+        return f"friction.{cls.__name__}" if place.startswith(("friction.", "bristles.")) else place
+
+    @classmethod
+    def required(cls) -> tuple[str, ...]:
+        """The names of the numbers that are not left out."""
+        return tuple(name for name in cls.parameters() if not hasattr(cls, name))
+
+    @classmethod
+    def like(cls, law: "FrictionLaw", speed: float) -> Self | None:
+        """The law of this kind that continues `law`: same static limit, and near `speed` [m/s] about the same fall.
+
+        By the names of its numbers; None for a law with others, whose kind then cannot be chosen in place of another.
+
+        >>> from squealbox import Hyperbolic, LinearSlope
+        >>> Hyperbolic.like(LinearSlope(0.4, -0.05), 0.2)
+        Hyperbolic(static=0.4, delta=0.125)
+        """
+        static, speed = float(law.static_limit), abs(speed) or 1.0
+        slope = float(law.slope_at(speed))
+        known = {"static": static, "kinetic": min(max(float(law.mu(speed)), 0.0), static), "speed": speed,
+                 "slope": slope, "delta": max(-slope, 0.0) / static if static else 0.0,
+                 "stiffness": float(getattr(law, "stiffness", 1e5))}  # fmt: skip
+        if not set(cls.required()) <= set(known):
+            return None
+        least = {name: 1e-3 if about.low_open and about.unit == "-" else -np.inf  # bristles need friction to bend
+                 for name, about in cls.parameters().items() if name in known}  # fmt: skip
+        return cls(**{name: max(known[name], low) for name, low in least.items()})
+
+    @classmethod
+    def guess(cls, speeds: Any, values: Any) -> dict[str, float]:
+        """Where a fit to measured points (speeds [m/s], coefficients) begins, by name of each number that is fitted.
+
+        By the names of its numbers; empty for a law with others, which is then not fitted.
+        """
+        fall = {"static": float(np.max(values)), "kinetic": float(np.min(values)), "speed": float(np.ptp(speeds)) / 3.0,
+                "slope": 0.0, "delta": 1.0 / float(np.max(speeds))}  # fmt: skip
+        return {name: fall[name] for name in cls.required()} if set(cls.required()) <= set(fall) else {}
 
     def coefficients(self) -> tuple[Any, ...]:
         """The coefficients p of the formula; p[0] is the static limit. Scalars, or arrays with leading axes."""

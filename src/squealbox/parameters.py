@@ -25,15 +25,16 @@ from squealbox.declarations import (  # what stands here is known by this room's
     complete,
     known_names,
     parameter,
+    screenful,
     shown,
+    with_cautions,
 )  # fmt: skip
 
 __all__ = [
     "Choice", "DataSheet", "Missing", "Parameter", "ParameterError", "choice", "from_plain", "known_names", "load_kind",
-    "members", "parameter", "shown", "to_plain",
+    "members", "parameter", "screenful", "shown", "to_plain", "with_cautions",
 ]  # fmt: skip
 DRAWN_BY = "squealbox.plots"  # by name, when asked: a sheet may know that it can be drawn, but not by whom
-MOST_LINES = 30  # of a summary
 MOST_ENTRIES = 16  # of an array that is printed in full
 _SHEETS: dict[str, type["DataSheet"]] = {}
 
@@ -86,7 +87,7 @@ class DataSheet:
 
     def __repr__(self) -> str:
         fields = ", ".join(f"{name}={_brief(getattr(self, name))}" for name in self.field_names())
-        return f"{type(self).__name__}({fields})"
+        return screenful(f"{type(self).__name__}({fields})")
 
     def summary(self) -> str:
         """At most a screenful: each field with its value, unit and meaning, the sheets it holds indented.
@@ -97,8 +98,7 @@ class DataSheet:
           static         0.3                          static limit; kinetic when that is left out
           kinetic        None                         coefficient while sliding
         """
-        lines = [type(self).__name__, *_told(self)]
-        return "\n".join(lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES - 1], "  ..."])
+        return screenful("\n".join([type(self).__name__, *_told(self)]))
 
     def _repr_html_(self) -> str:
         """What a notebook shows: a drawing where there is one, and the fields with value, unit, range and meaning."""
@@ -386,7 +386,8 @@ def _told(sheet: DataSheet, indent: str = "  ", usual: Mapping[str, Any] | None 
 def _compact(value: object) -> str:
     """A value in a line: a small array as it stands, a larger one by its shape."""
     if isinstance(value, np.ndarray) and value.size <= MOST_ENTRIES:
-        return np.array2string(value, precision=6, separator=", ", max_line_width=1000).replace("\n", "")
+        text = np.array2string(value, precision=6, separator=", ", max_line_width=1000).replace("\n", "")
+        return text if len(text) <= 60 else f"<{' x '.join(map(str, value.shape))} numbers>"
     return f"{value:.8g}" if isinstance(value, float) else _brief(value)
 
 
@@ -396,4 +397,4 @@ def _brief(value: object) -> str:
         return f"<{' x '.join(map(str, value.shape))} numbers>"
     if isinstance(value, tuple) and len(value) > (1 if members(value) else MOST_ENTRIES // 2):
         return f"<{len(value)} of {type(value[0]).__name__}>"
-    return " ".join(repr(value).split()) if isinstance(value, np.ndarray) else repr(value)
+    return str(value.tolist()) if isinstance(value, np.ndarray) else repr(value)

@@ -20,7 +20,9 @@ from squealbox.transient import simulate_ensemble
 
 
 def growth_rate(*, limit: float = 0.0, time: float = 0.0) -> Quantity:
-    """The largest growth rate of steady sliding [1/s]; above `limit` the brake squeals.
+    """The largest growth rate of steady sliding [1/s]; above `limit` [1/s] the brake squeals.
+
+    `time` [s]: instant at which schedules are taken.
 
     Round-off about an undamped mode counts as zero. It has a kink where two modes meet, so a polynomial follows it
     badly there: `critical_value` and `margin` are smooth.
@@ -38,7 +40,9 @@ def growth_rate(*, limit: float = 0.0, time: float = 0.0) -> Quantity:
 
 
 def damping_ratio(*, limit: float = 0.0, time: float = 0.0) -> Quantity:
-    """The least damping ratio of steady sliding, -Re lambda / |lambda| [-]; below `limit` the brake squeals.
+    """The least damping ratio of steady sliding, -Re lambda / |lambda| [-]; below `limit` [-] the brake squeals.
+
+    `time` [s]: instant at which schedules are taken.
 
     >>> from squealbox.designs import MassOnBelt
     >>> damping_ratio()(MassOnBelt()).shape
@@ -56,7 +60,7 @@ def damping_ratio(*, limit: float = 0.0, time: float = 0.0) -> Quantity:
 def critical_value(
     parameter: str, bounds: tuple[float, float], *, limit: float, unit: str = "", points: int = 65
 ) -> Quantity:
-    """The value of `parameter` between `bounds` at which squeal begins; below `limit` the brake squeals.
+    """The value of `parameter` between `bounds` [SI] at which squeal begins; below `limit` [SI] the brake squeals.
 
     `limit` is the value the brake runs at. Infinite where sliding is stable all over the bounds, minus infinite where
     it is unstable at the lower one.
@@ -70,6 +74,8 @@ def critical_value(
 
 def margin(parameter: str, bounds: tuple[float, float], *, unit: str = "", points: int = 65) -> Quantity:
     """How far `parameter` is below the value at which squeal begins, in its own unit; below 0 the brake squeals.
+
+    `bounds` [SI]: range of the parameter that is searched.
 
     It is smooth where the growth rate has its kink. Infinite where stability does not change within the bounds.
 
@@ -86,7 +92,9 @@ def margin(parameter: str, bounds: tuple[float, float], *, unit: str = "", point
 
 
 def amplitude(duration: float = 0.05, *, limit: float, contact: str = "exact", rtol: float | None = None) -> Quantity:
-    """The largest amplitude of a transient from rest [m], over its last fifth; above `limit` the brake squeals.
+    """The largest amplitude of a transient from rest [m], over its last fifth; above `limit` [m] the brake squeals.
+
+    `rtol` [-]: relative tolerance of the integration.
 
     By `simulate_ensemble` over `duration` [s]; NaN for a transient that does not reach its end.
     """

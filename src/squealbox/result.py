@@ -11,8 +11,7 @@ import json
 import os
 import platform
 import tempfile
-import textwrap
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib import metadata
 from pathlib import Path
@@ -22,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squealbox.labelled import Labelled, Labels
-from squealbox.parameters import DRAWN_BY, from_plain, load_kind, to_plain
+from squealbox.parameters import DRAWN_BY, from_plain, load_kind, screenful, to_plain, with_cautions
 
 if TYPE_CHECKING:
     import xarray
@@ -131,8 +130,7 @@ class Result:
 
     kinds: ClassVar[dict[str, type["Result"]]] = {}
     coordinates: ClassVar[Mapping[str, str]] = {}
-    """Dimension to the attribute that holds its coordinate; those called dof, contact and state are named by the
-    system, others by what has the words of `NAMED_BY`."""
+    """Dimension to its attribute; dof, contact, state are named by the system, others as `NAMED_BY`."""
     derived: ClassVar[Mapping[str, tuple[str, str, str]]] = {}
     """Attributes that follow from the arrays and stand in the dataset too, with dimensions, unit and meaning."""
     table_over: ClassVar[tuple[str, ...]] = ()
@@ -147,8 +145,7 @@ class Result:
         Result.kinds[cls.kind_name()] = cls
 
     def __repr__(self) -> str:
-        said = type(self).__str__ is not object.__str__  # a kind that says itself in one sentence
-        return str(self) if said else self.summary()
+        return screenful(str(self) if type(self).__str__ is not object.__str__ else self.summary())
 
     def summary(self) -> str:
         """At most a screenful: how it ended, each number with its unit, each array by its shape and range."""
@@ -157,8 +154,11 @@ class Result:
         lines = [f"  {field.name:<20s} {_told(field, getattr(self, field.name))}" for field in fields[:MOST_LINES]]
         if len(fields) > MOST_LINES:
             lines.append(f"  and {len(fields) - MOST_LINES} more arrays, listed by .to_dataset()")
-        caution = textwrap.fill(f"Caution: {self.warning}", 118, initial_indent="  ", subsequent_indent="    ")
-        return "\n".join([said, *lines, *[caution] * bool(self.warning)])
+        return self.warned([said, *lines])
+
+    def warned(self, lines: Iterable[str] = ()) -> str:
+        """The lines of a summary, and what is to be known of the whole before it is used."""
+        return with_cautions(lines, self.warning)
 
     @property
     def warning(self) -> str:

@@ -2,7 +2,8 @@
 
 A schedule is a data sheet with one plain formula ``value(t, p)`` and its rate, run by NumPy here and compiled by the
 transient engine. `breaks` names the instants at which the formula has a kink, so an integrator can step onto them.
-Schedules add, and multiply by a number or an array: ``load1 * [sin, -cos] + load2 * [-sin, cos]`` is a load vector.
+A formula, elementary by definition, and its rate take instants t [s], array in, array out. Schedules add, and multiply
+by a number or an array: ``load1 * [sin, -cos] + load2 * [-sin, cos]`` is a load vector.
 """
 
 from collections.abc import Callable, Iterable
@@ -337,5 +338,5 @@ def swinging(parts: dict[str, list[Any]]) -> list[str]:
 
 
 def value_at(value: Any, time: Any) -> Any:
-    """The value of a number or a schedule at `time` [s]."""
+    """The value of a number or a schedule at `time` [s]; array in, array out."""
     return value.value(time) if isinstance(value, Schedule) else value

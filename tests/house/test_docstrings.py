@@ -1,11 +1,16 @@
-"""Every public thing says what it is."""
+"""Every public thing says what it is, and what docs/house.md promises of it: units, shapes, sources."""
 
+import collections
 import inspect
+import re
 import types
+from collections.abc import Sequence
+from typing import Any
 
 import pytest
 
 from house.rooms import load, module_names
+from squealbox.files.units import unit
 
 MODULES = module_names()
 
@@ -50,3 +55,111 @@ def test_a_silent_function_class_and_method_are_found():
     exec(source, silent.__dict__)
     silent.__doc__ = "Says."
     assert undocumented(silent) == ["silent.f", "silent.C", "silent.C.m", "silent.C.p"]
+
+
+# What the docstrings of public functions and classes owe: a unit for every number, a shape for every array, a source
+# for every formula. The numbers of data sheets and the arrays of results have theirs where they are declared.
+
+FACES = ["squealbox"] + [f"squealbox.{room}" for room in (
+    "calibration", "control", "countermeasures", "designs", "fe", "files", "friction", "limit_cycles", "loops", "plots",
+    "quantities", "schedules", "signals", "stability", "studies", "transient",
+)]  # fmt: skip
+ONE = (float, float | None, tuple[float, float], tuple[float, float] | None)
+NUMBERS = (*ONE, Sequence[float], Sequence[float] | None, float | Sequence[float] | None)
+IN_WORDS = re.compile(r"\bSI\b|\bunits? of\b|\bown unit\b|\bin Hz\b|\bdB\b")
+SHAPE = re.compile(
+    r"\bshapes? |\(\.\.\.|\((?:\d+|[a-z_]+),(?: (?:\d+|2 ?n|[a-z_]+),?)*\)|\bscalars?\b|for each\b"
+    r"|[Aa]rray in, array out"
+)
+FORMULA = re.compile(r"^ {4,}[^\n]* = |^[A-Za-z_|']+(?:\(.*?\))? = ", re.M)
+SOURCE = re.compile(r"\bSource|\bEq\.|\b(?:1[89]|20)\d\d\b|\b[Dd]erived\b|\bby definition\b")
+NO_ARRAYS = {"design", "design_or_system", "analysis", "band"}  # typed Any, and no arrays
+NO_ARRAY_BACK = {"folded", "near_sliding", "parameter", "panels"}  # return a system, a field, a figure, typed Any
+LEFT = {"limit_cycles": 21, "transient": 4}  # public things that lack something, by room: falls, and never rises
+
+
+def has_unit(text: str) -> bool:
+    """Whether a text names a unit: [Hz], [m, m/s], [-], or in words."""
+    for told in re.findall(r"\[([^\[\]]+)\]", text):
+        parts = [part.strip() for part in re.split(r",| or | and ", told)]
+        try:
+            if all(part == "-" or unit(part) for part in parts):
+                return True
+        except (ValueError, KeyError):
+            continue
+    return bool(IN_WORDS.search(text))
+
+
+def told_of(text: str) -> dict[str, str]:
+    """What a docstring says of each parameter: its entry, and what stands behind its name in backticks."""
+    section = re.search(r"^Parameters\n-+\n(.*?)(?=\n\n(?! )|\Z)", text, re.M | re.S)
+    entry = r"^(\*{0,2}\w+(?:, \*{0,2}\w+)*) ?:(.*(?:\n +.*)*)"
+    found: dict[str, str] = collections.defaultdict(str)
+    for names, told in re.findall(entry, section[1] if section else "", re.M):
+        for name in names.split(", "):
+            found[name.lstrip("*")] += told
+    for name, told in re.findall(r"`(\w+)`([^`]{0,80})", text):
+        found[name] += told
+    return found
+
+
+def owed(thing) -> tuple[bool, list[str]]:
+    """Whether a docstring owes a unit, a shape or a source, and which it lacks."""
+    text, owes, lacks = inspect.getdoc(thing) or "", False, []
+    around = f" {inspect.getmodule(thing).__doc__ or ''} {getattr(thing, 'source', '')}"
+    if inspect.isfunction(thing):
+        told, signature = told_of(text), inspect.signature(thing)
+        for name, about in signature.parameters.items():
+            array = about.annotation is Any and name not in NO_ARRAYS and re.search(r"\barrays?\b|\bmatri", told[name])
+            owes |= about.annotation in NUMBERS or bool(array)
+            lacks += [f"{name} has no unit"] * (about.annotation in NUMBERS and not has_unit(told[name]))
+            lacks += [f"{name} has no shape"] * (bool(array) and not SHAPE.search(told[name]))
+        back = signature.return_annotation
+        arrays = back is Any or ("tuple" in str(back) and "Any" in str(back)) or "ndarray" in str(back)
+        if arrays and thing.__name__ not in NO_ARRAY_BACK:
+            owes = True
+            lacks += [] if SHAPE.search(text + around) else ["what it returns has no shape"]
+    if FORMULA.search(text.partition(">>>")[0].partition("Parameters\n---")[0]):
+        owes = True
+        lacks += [] if SOURCE.search(text + around) else ["its formula has no source"]
+    return owes, lacks
+
+
+def public_things() -> dict[str, object]:
+    """Functions and classes of the front door and of the faces of rooms, each once."""
+    seen: dict[object, str] = {}
+    for face in FACES:
+        module = load(face)
+        for name in getattr(module, "__all__", None) or [name for name in vars(module) if not name.startswith("_")]:
+            thing = getattr(module, name)
+            thing = inspect.unwrap(thing) if callable(thing) else thing
+            if (inspect.isfunction(thing) or inspect.isclass(thing)) and thing.__module__.startswith("squealbox"):
+                seen.setdefault(thing, f"{thing.__module__.split('.')[1]}: {name}")
+    return {name: thing for thing, name in seen.items()}
+
+
+def test_docstrings_keep_their_promise():
+    judged = {name: owed(thing) for name, thing in public_things().items()}
+    owing = {name for name, (owes, _) in judged.items() if owes}
+    lacking = {name: lacks for name, (_, lacks) in judged.items() if lacks}
+    rooms = collections.Counter(name.partition(":")[0] for name in lacking)
+    assert len(owing) > 140
+    said = "; ".join(f"{name}: {', '.join(lacks)}" for name, lacks in sorted(lacking.items()))
+    more = {room: count for room, count in rooms.items() if count > LEFT.get(room, 0)}
+    assert not more, f"a unit for every number, a shape for every array, a source for every formula; missing: {said}"
+    assert dict(rooms) == LEFT, f"fewer lack something: LEFT = {dict(rooms)}"
+
+
+def test_a_silent_number_array_and_formula_are_found():
+    def plain(width: float, mass: float, low: float) -> Any:
+        """A force that nobody knows.
+
+        F = 3 width
+
+        `mass` [kg] is known, and `low` in its own unit.
+        """
+
+    assert owed(plain) == (True, ["width has no unit", "what it returns has no shape", "its formula has no source"])
+    assert not has_unit("in [0, 1)")
+    assert not has_unit("a list [of words]")
+    assert has_unit("speed [m, m/s]")

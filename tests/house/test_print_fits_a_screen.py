@@ -3,36 +3,92 @@
 import numpy as np
 import pytest
 
+from fe_brakes import pad_brake
 from result_examples import EXAMPLES
-from squealbox import Contact, Coulomb, DrumBrake, System, simulate_ensemble
+from squealbox import (
+    Contact,
+    Coulomb,
+    DrumBrake,
+    MeshedDrumBrake,
+    System,
+    complex_modes,
+    reduce,
+    simulate_ensemble,
+    stability_map,
+    sweep,
+    tracked_modes,
+)
 from squealbox.designs import DESIGNS
 from squealbox.limit_cycles import coexistence
 from squealbox.result import Result
 
-LINES, WIDTH = 40, 240  # of a terminal on a laptop; a sentence may wrap once
+LINES, WIDTH = 30, 120  # of a terminal on a laptop
+
+
+def unfit(thing) -> list[str]:
+    """What of its `repr` and `print` is no screenful."""
+    found = []
+    for how in (repr, str):
+        text, lines = how(thing), how(thing).splitlines()
+        name = f"{how.__name__} of a {type(thing).__name__}"
+        found += [] if 0 < len(lines) <= LINES else [f"{name} has {len(lines)} lines: expected at most {LINES}"]
+        wide = max(map(len, lines), default=0)
+        found += [] if wide <= WIDTH else [f"{name} is {wide} wide: expected at most {WIDTH}"]
+        found += [f"{name} shows raw arrays"] * ("array(" in text)
+    return found
 
 
 @pytest.mark.parametrize("name", list(EXAMPLES))
 def test_every_result_prints_on_a_screen(name):
-    result = EXAMPLES[name]()
-    for text in (repr(result), str(result)):
-        lines = text.splitlines()
-        assert 0 < len(lines) <= LINES, f"print({name}) takes {len(lines)} lines: expected at most {LINES}"
-        assert max(map(len, lines)) <= WIDTH, f"print({name}) is {max(map(len, lines))} wide: expected at most {WIDTH}"
-        assert "array(" not in text, f"print({name}) shows raw arrays"
-
-
-def test_an_ensemble_of_many_prints_on_a_screen():
-    brake = DrumBrake().replace({"friction.static": np.linspace(0.1, 0.4, 450)})
-    text = repr(simulate_ensemble(brake, duration=1e-4))
-    assert len(text.splitlines()) <= LINES
-    assert "450 completed" in text
+    assert unfit(EXAMPLES[name]()) == []
 
 
 @pytest.mark.parametrize("name", list(DESIGNS))
 def test_every_design_prints_on_a_screen(name):
-    assert len(repr(DESIGNS[name]())) < 2000
-    assert len(repr(DESIGNS[name]().system())) < 5000
+    brake = DESIGNS[name]()
+    assert unfit(brake) == unfit(brake.system()) == []
+    assert "complex_modes" in str(brake).splitlines()[-1]  # how to go on
+    assert all(word in repr(brake) for word in brake.field_names())
+
+
+def thousand():
+    """Results of a thousand points of one brake, and a brake that stands for them all."""
+    brake = DrumBrake().replace({"friction.static": np.linspace(0.1, 0.4, 1000)})
+    values = np.linspace(0.1, 0.4, 1000)
+    return {
+        "the brakes": brake,
+        "their systems": brake.system(),
+        "modes": complex_modes(brake),
+        "ensemble": simulate_ensemble(brake, duration=1e-4),
+        "sweep": sweep(DrumBrake(), {"friction.static": values}, complex_modes),
+        "map": stability_map(DrumBrake(), {"friction.static": values, "load": np.array([900.0, 1e3])}),
+        "tracked": tracked_modes(DrumBrake(), "friction.static", values),
+    }
+
+
+def test_a_thousand_points_print_on_a_screen():
+    found = thousand()
+    assert {name: unfit(each) for name, each in found.items() if unfit(each)} == {}
+    assert "1000 completed" in repr(found["ensemble"])
+
+
+def test_finite_element_brakes_print_on_a_screen():
+    full = MeshedDrumBrake(element_size=0.03)
+    few = reduce(full, band=(500.0, 4000.0), varying={"friction.static": (0.1, 0.6)})
+    large = pad_brake()
+    for each in (full, full.system(), few, few.system(), large, large.contacts, complex_modes(few)):
+        assert unfit(each) == []
+
+
+def test_what_is_no_screenful_is_seen():
+    class Long:
+        def __repr__(self):
+            return "array([1])" + "x" * 120 + "\n" * 40
+
+    said = "of a Long has 40 lines: expected at most 30", "of a Long is 130 wide: expected at most 120"
+    assert unfit(Long()) == [
+        f"{how} {each}" for how in ("repr", "str") for each in (*said, "of a Long shows raw arrays")
+    ]
 
 
 def test_a_system_of_many_freedoms_prints_its_size():

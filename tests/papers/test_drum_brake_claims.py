@@ -13,8 +13,8 @@ from squealbox.papers.drum_brake_2011.claims import (
     RAW,
     ROADS,
     UNDECIDED,
+    ClaimPart,
     Finding,
-    Part,
     claims,
     combined,
     judge,
@@ -45,7 +45,7 @@ def test_the_papers_digits(key: str, digits: str) -> None:
 
 
 @pytest.mark.parametrize("part", PARTS.values(), ids=lambda part: part.key)
-def test_a_part_says_how_it_is_judged(part: Part) -> None:
+def test_a_part_says_how_it_is_judged(part: ClaimPart) -> None:
     assert part.meaning
     assert part.reason
     assert part.roads
@@ -64,12 +64,12 @@ def test_what_is_assumed_is_said() -> None:
     assert len(paper()["contradictions"]) >= 6
 
 
-def number(**changes) -> Part:
+def number(**changes) -> ClaimPart:
     given = {
         "claim": "c", "name": "n", "meaning": "m", "published": "15", "unit": "kN", "below": 5.0, "above": 0.0,
         "reason": "r", "roads": (EIGENVALUES,),
     }  # fmt: skip
-    return Part(**{**given, **changes})
+    return ClaimPart(**{**given, **changes})
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,9 @@ from squealbox.designs import DrumBrake
 from squealbox.papers.drum_brake_2011 import family_search, page_why, reconstruction
 from squealbox.papers.drum_brake_2011.cases import HALF, RECONSTRUCTED, WHOLE, Case
 from squealbox.papers.drum_brake_2011.claims import claims
-from squealbox.papers.drum_brake_2011.family import PRINTED_BELTS, SHARES, SIGNS, Grid, Variant
+from squealbox.papers.drum_brake_2011.family import PRINTED_BELTS, SHARES, SIGNS, TriedValues, Variant
 from squealbox.papers.drum_brake_2011.family_judged import MemberCase, claims_met
-from squealbox.papers.drum_brake_2011.family_modes import CLAIMS, Found, Members, published, scrambled
+from squealbox.papers.drum_brake_2011.family_modes import CLAIMS, Members, MembersFound, published, scrambled
 from squealbox.stability import complex_modes, critical_value
 
 FRONT, BELTS = SIGNS.index((1.0, -1.0, 1.0, -1.0)), SIGNS.index(PRINTED_BELTS)
@@ -43,7 +43,7 @@ def test_the_closed_form_is_what_eigenvalues_say() -> None:
     draw = np.random.default_rng(1)
     compared = 0
     for front, belts, loads, share in zip(*(draw.integers(0, n, 12) for n in (16, 16, 16, 7)), strict=True):
-        found = Found.of(Members(front, belts, Grid((0.06,), (0.05,))))
+        found = MembersFound.of(Members(front, belts, TriedValues((0.06,), (0.05,))))
         variant = member(front=front, belts=belts, loads=loads, share=share, alpha=0.06, sliding_speed=0.05 / 0.06)
         exact = critical_value(variant, "friction.static", (0.10, 0.60))
         onset = found.onset[loads, share, 0, 0]
@@ -58,7 +58,7 @@ def test_the_closed_form_is_what_eigenvalues_say() -> None:
 
 
 def test_the_reconstruction_meets_six_of_the_eight() -> None:
-    found = Found.of(Members(FRONT, BELTS, Grid((0.0653,), (0.0653 * 1.48,))))
+    found = MembersFound.of(Members(FRONT, BELTS, TriedValues((0.0653,), (0.0653 * 1.48,))))
     met = {name for name, each in found.met(published()).items()
            if np.broadcast_to(each, found.onset.shape)[LOADS, SHARE, 0, 0]}  # fmt: skip
     assert met == {"mu-1", "mu-2", "mu-3", "mu-4", "N-1", "N-2"}

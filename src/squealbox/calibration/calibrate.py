@@ -135,9 +135,6 @@ class Calibration(Result):
             lines.append(f"{self.outcome}: {self.outcome.message}")
         return "\n".join([*lines, *self.cannot_tell])
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 @public()
 def calibrate(
@@ -159,7 +156,7 @@ def calibrate(
     measured : the measured numbers with their standard deviations; lists of them, as `from_signal`, `from_events` and
         `from_friction` make of a signal, an event and a friction curve, may stand among them
     loss : "squares"; or "robust", 2 (sqrt(1 + r^2) - 1), under which one bad number does not pull the rest
-    level : of the intervals
+    level : [-] of the intervals
     profile : False takes the intervals from the covariance, which is quicker
     seed : of the first points
 

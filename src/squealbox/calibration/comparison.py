@@ -54,9 +54,6 @@ class Comparison(Result):
         known = np.isfinite(self.away[i]) and self.measured[i] != 0.0
         return f"{100.0 * change / abs(self.measured[i]):+.3g} %" if known else f"{change:+.3g}"
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def compare(simulated: Any, events: Any, *, event: int | None = None, dof: int | str = 0) -> Comparison:
     """A motion, a limit cycle or modes beside a squeal event.

@@ -140,6 +140,8 @@ def from_signal(signal: Any, t: Any = None, *, mode: str | int = "unstable", **c
 def from_friction(speeds: Any, values: Any, sd: float, at: Mapping[str, float] | None = None) -> list[Measured]:
     """A measured friction curve, coefficients at sliding speeds [m/s], as measured numbers.
 
+    `sd` [-]: standard deviation of a coefficient.
+
     >>> len(from_friction([0.1, 1.0], [0.42, 0.38], sd=0.01))
     2
     """

@@ -1,7 +1,8 @@
 """The command line. Depends on: everything, each command only on what it needs.
 
-One table names the commands; it makes the first page of help without loading anything, and a command's module is
-imported only when that command is called. Exit codes: 0 done, 1 the computation failed with a named outcome, 2 bad
+A module with commands says in ``ABOUT = {"name": "a line about it"}`` what each of its functions does, with an
+underscore behind a name that Python has already. The first page of help is made of these texts, and a module is
+imported only when a command of it is called. Exit codes: 0 done, 1 the computation failed with a named outcome, 2 bad
 input, 3 unstable where --exit-code asks for that, 130 stopped by the user.
 """
 
@@ -11,6 +12,9 @@ import os
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
+
+from squealbox.registers import assigned
 
 DONE, FAILED, BAD_INPUT, STOPPED = 0, 1, 2, 130
 
@@ -28,54 +32,17 @@ class Command:
     about: str
 
 
-COMMANDS = {
-    "init": Command("starter", "init", "write a commented example file that runs"),
-    "list": Command("catalogue", "list_", "designs with their parameters, friction laws, schedules, methods, papers"),
-    "modes": Command("stability", "modes", "is steady sliding stable? complex eigenvalues of a design file"),
-    "matrices": Command(
-        "matrices", "matrices", "what files of Abaqus, Nastran, Ansys ... hold: matrices, labels, frequencies"
-    ),
-    "reduce": Command("reducing", "reduce_", "a small brake from a finite-element one, with its error, in a file"),
-    "onset": Command("stability", "onset", "the value of a parameter at which squeal begins, and how"),
-    "map": Command("maps", "map_", "stability over two parameters, with the boundary as curves"),
-    "simulate": Command("transient", "simulate", "what happens in time: a transient with verdict, figures and data"),
-    "ensemble": Command("ensembles", "ensemble", "transients over two parameters: amplitude and frequency of each"),
-    "scatter": Command("uncertainty", "scatter", "parameters scatter: how probable is squeal, and which matters?"),
-    "optimise": Command("optimising", "optimise", "the best design within bounds: before and after, or a Pareto front"),
-    "silence": Command(
-        "silence", "silence", "what would silence this brake: cures ranked, with dose, cost and cautions"
-    ),
-    "absorber": Command("absorber", "absorber", "the best tuned mass: frequency, damping, how narrow it is"),
-    "dither": Command(
-        "dither", "dither", "fast dither of the sliding: growth rate and friction left over its amplitude"
-    ),
-    "loop": Command("loop", "loop", "poles and margins of a brake with loops: gain, phase, delay, sampling"),
-    "fit": Command("fitting", "fit", "measured friction coefficients (CSV) to a friction law, with confidence bands"),
-    "events": Command(
-        "recordings", "events", "squeal events in recordings: when, which frequency, how loud, how quick"
-    ),
-    "noise": Command("recordings", "noise", "a folder of stops: how often it squeals, at which speed and pressure"),
-    "damping": Command("recordings", "damping", "damping of the modes before squeal, and the onset it points to"),
-    "quality": Command("recordings", "quality", "loudness, sharpness and roughness of recordings"),
-    "calibrate": Command("calibrating", "calibrate", "parameters fitted to what was measured, with what stays open"),
-    "compare": Command(
-        "calibrating", "compare_", "a design beside the squeal of a recording: frequency, growth, level"
-    ),
-    "cycle": Command("cycles", "cycle", "what the motion settles to: the limit cycle, its stability, figure and data"),
-    "report": Command("reports", "report", "a design examined from every side, or any result, as one HTML page"),
-    "listen": Command("listening", "listen", "the motion as sound at its true frequency (WAV), and how loud it may be"),
-    "lab": Command("lab", "lab", "the workbench: a page in the browser where a brake is explored live"),
-    "branch": Command("branches", "branch", "limit cycles over a range of a parameter: stable, unstable, folds, onset"),
-    "diagram": Command("diagrams", "diagram", "what transients settle to over a parameter, with a Poincare section"),
-    "run": Command("studies", "run", "a study: any analysis over a space of parameters; stopped or killed, it goes on"),
-    "status": Command("studies", "status", "how far a study is, and what it said last"),
-    "show": Command("studies", "show", "what a study has found, also while it runs: table and figure"),
-    "export": Command("studies", "export", "what a study has found as CSV, NetCDF or MAT"),
-    "basin": Command("basins", "basin_", "which starts lead to which motion: shares, a picture, the smallest push"),
-    "paper": Command("papers", "paper", "reproduce a published study: figures, claims and one page"),
-    "schema": Command("starter", "schema", "the JSON schema of a design file, for editors"),
-    "completion": Command("starter", "completion", "a script that completes commands and options in bash, zsh or fish"),
+_FIRST = """
+init list modes matrices reduce onset map simulate ensemble scatter optimise silence absorber dither loop fit
+events noise damping quality calibrate compare cycle report listen lab branch diagram run status show export
+basin paper schema completion
+"""  # in the order of the overview; a command in a further file of this folder stands behind them
+_FOUND = {
+    function.rstrip("_"): Command(module, function, about)
+    for module, text in assigned(Path(__file__).parent, "ABOUT").items()
+    for function, about in eval(text).items()
 }
+COMMANDS = {name: _FOUND[name] for name in dict.fromkeys((*_FIRST.split(), *_FOUND))}
 OPTIONS = {
     "--force": "overwrite files that are there already",
     "--json": "one JSON object on standard output: exit code, results with units, and the text",

@@ -4,13 +4,15 @@ from pathlib import Path
 from typing import Literal
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import Changes, folder, number, read
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import folder, number, read
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import UsageError
 from squealbox.cli.tables import written
 from squealbox.countermeasures import best_absorber
 from squealbox.files import write_design
 from squealbox.waiting import Progress
+
+ABOUT = {"absorber": "the best tuned mass: frequency, damping, how narrow it is"}
 
 
 def absorber(
@@ -19,8 +21,7 @@ def absorber(
     on: str,
     mass: str,
     aim: Literal["decay", "margin", "probability"] = "decay",
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """The best tuned mass: frequency and damping, what it brings, and how narrow it is.
@@ -35,14 +36,10 @@ def absorber(
         of the absorber, with or without a unit: "50 g"
     aim
         fastest decay, highest critical friction, or least probability of squeal
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for the detuning map and the brake with its absorber as a design file
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     if aim == "probability" and found.scatter is None:
         raise UsageError(f"{file} has no section [scatter], which --aim probability needs")
     kilograms = number(mass, "kg", f"--mass {mass[:60]}")

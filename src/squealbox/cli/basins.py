@@ -7,8 +7,8 @@ import numpy as np
 from cyclopts import Parameter
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import Changes, folder, in_motion, read
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import folder, in_motion, read
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.states import States, box_from
 from squealbox.cli.tables import write_csv, written
@@ -16,6 +16,8 @@ from squealbox.limit_cycles import Basin, basin, dangerous_push
 from squealbox.limit_cycles.attractors.basins import half_widths
 from squealbox.limit_cycles.attractors.sections import state_names
 from squealbox.waiting import Progress
+
+ABOUT = {"basin_": "which starts lead to which motion: shares, a picture, the smallest push"}
 
 Two = Annotated[tuple[str, str] | None, Parameter(negative="")]
 Push = Annotated[bool, Parameter(negative="")]
@@ -30,8 +32,7 @@ def basin_(
     plane: Two = None,
     push: Push = False,
     seed: int = 1,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """Which starts lead to which motion: the share of each with its interval, for starts in a box.
@@ -56,16 +57,12 @@ def basin_(
         look for the smallest push that ends in a vibration, too
     seed
         of the starts
-    changes
-        other values for this run: --set friction.static=0.3
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for basin.nc, basin.csv and the figure
     """
     if starts < 1 or not (np.isfinite(spread) and spread > 0.0):
         raise UsageError(f"--starts {starts} --spread {spread:g}: expected at least one start and a spread above 0")
-    found = in_motion(read(file, changes, allow_code))
+    found = in_motion(read(file, asked))
     if out is not None:
         folder(out, "basin", "push")
     half: Any = spread

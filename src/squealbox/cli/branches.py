@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import RANGE, Changes, Ends, axis, folder, in_motion, read, readable, with_points
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import RANGE, Ends, axis, folder, in_motion, read, readable, with_points
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.tables import write_csv, written
 from squealbox.limit_cycles import (
@@ -27,9 +27,11 @@ from squealbox.matrices import liveliest
 from squealbox.result import Outcome
 from squealbox.waiting import Progress
 
+ABOUT = {"branch": "limit cycles over a range of a parameter: stable, unstable, folds, onset"}
+
 if TYPE_CHECKING:
     from squealbox.designs import Design
-    from squealbox.files.analyses import Axis
+    from squealbox.files.analyses import Varied
 
 Start = Literal["all", "hopf", "runs"]
 
@@ -44,8 +46,7 @@ def branch(
     at: int = 3,
     points: int | None = None,
     estimates: bool = True,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """The limit cycles over a range of a parameter: amplitude, stability, and where they begin and end.
@@ -68,14 +69,10 @@ def branch(
         most cycles of one branch each way
     estimates
         quick estimates beside the branches: describing function, and averaging for a block on a belt
-    changes
-        other values for this run: --set load="2 kN" reading=eq3
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for a figure, the tables branch.csv and special.csv, and the data of each branch
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     varied = with_points(axis(found.design, found.branch, parameter, range, RANGE), points)
     if out is not None:
         folder(out, "branch", "special")
@@ -104,7 +101,12 @@ def branch(
 
 
 def all_branches(
-    design: "Design", varied: "Axis", start: Start = "all", runs: int = 8, at: int = 3, progress: Progress | None = None
+    design: "Design",
+    varied: "Varied",
+    start: Start = "all",
+    runs: int = 8,
+    at: int = 3,
+    progress: Progress | None = None,
 ) -> tuple[HopfPoint, tuple[Branch, ...]]:
     """The Hopf point, the branch from it and those that runs lead to."""
     bounds, points, say = (varied.low, varied.high), int(varied.points), progress or (lambda text: None)
@@ -121,7 +123,7 @@ def all_branches(
     return born, tuple(x for i, x in enumerate(several) if not any(lies_on(x, later) for later in several[i + 1 :]))
 
 
-def _said(name: str, one: Branch, quiet: list[tuple[float, float]], design: "Design", varied: "Axis") -> str:
+def _said(name: str, one: Branch, quiet: list[tuple[float, float]], design: "Design", varied: "Varied") -> str:
     def shown(value: float) -> str:
         number, unit = readable(design, varied, value)
         return f"{float(number):.7g} {unit}".rstrip()
@@ -137,12 +139,11 @@ def _said(name: str, one: Branch, quiet: list[tuple[float, float]], design: "Des
     for kind, value in zip(one.special_kind, one.special_value, strict=True):
         lines.append(f"  {str(kind).replace('_', ' ')} at {shown(value)}")
     lines.append(f"  ends: {one.outcome.message or one.outcome}")
-    lines += [f"  Caution: {one.caution}"] if one.caution else []
-    return "\n".join(lines)
+    return one.warned(lines)
 
 
 def _coexistence(
-    several: tuple[Branch, ...], quiet: list[tuple[float, float]], design: "Design", varied: "Axis"
+    several: tuple[Branch, ...], quiet: list[tuple[float, float]], design: "Design", varied: "Varied"
 ) -> str:
     """Where a stable cycle exists beside stable steady sliding."""
     both = beside_sliding(several, quiet)
@@ -161,7 +162,7 @@ def _files(
     born: HopfPoint,
     curves: tuple[EstimateCurve, ...],
     design: "Design",
-    varied: "Axis",
+    varied: "Varied",
     title: str,
     out: Path,
 ) -> list[Path]:

@@ -5,8 +5,8 @@ from pathlib import Path
 from squealbox.calibration import Comparison, Measured, compare, from_events, read_mode_table
 from squealbox.calibration import calibrate as fitted
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import Changes, folder, read
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import folder, read
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.recordings import Band, ends_of
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import written
@@ -18,14 +18,18 @@ from squealbox.signals.events import BAND
 from squealbox.stability import ComplexModes, complex_modes
 from squealbox.waiting import Progress
 
+ABOUT = {
+    "calibrate": "parameters fitted to what was measured, with what stays open",
+    "compare_": "a design beside the squeal of a recording: frequency, growth, level",
+}
+
 
 def calibrate(
     file: Path,
     *,
     out: Path | None = None,
     heard: bool = False,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
 ) -> None:
     """Fit parameters to what was measured: values, intervals, and what the data cannot tell apart.
 
@@ -37,12 +41,8 @@ def calibrate(
         design file with the fitted values
     heard
         take frequency and growth of the loudest event of the [recording] as measured too
-    changes
-        other values for this run: --set load1=900
-    allow_code
-        run the Python file of a friction law that the design file names
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     if found.calibrate is None:
         raise UsageError(f"{file}: has no section [calibrate], which says what is fitted to what")
     measured: list[Measured] = list(found.calibrate.measured)
@@ -68,8 +68,7 @@ def compare_(
     band: Band = None,
     modes: Path | None = None,
     out: Path | None = None,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
 ) -> None:
     """The modes and the motion of a design beside the loudest squeal event of a recording, or a table of modes.
 
@@ -90,12 +89,8 @@ def compare_(
         table (.csv) or universal file of the modes of a test or another code, to compare with those of the design
     out
         folder for a figure of each comparison and the spectrogram of the motion beside that of the recording
-    changes
-        other values for this run
-    allow_code
-        run the Python file of a friction law that the design file names
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     figures: dict[str, Comparison] = {}
     if out is not None:
         folder(out, "mode_table", "modes", "motion", "spectrograms")

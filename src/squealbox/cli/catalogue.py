@@ -7,6 +7,8 @@ import numpy as np
 from squealbox.cli.running import UsageError
 from squealbox.parameters import DataSheet, Parameter, known_names
 
+ABOUT = {"list_": "designs with their parameters, friction laws, schedules, methods, papers"}
+
 READ_TITLES = {  # brakes that files beside the design describe
     "assembled": "A finite-element brake from matrices of a code, with labels (docs/finite_elements.md)",
     "reduced": "A reduced brake, as squealbox reduce writes it",

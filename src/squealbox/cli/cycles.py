@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import Changes, folder, in_motion, read, time_of
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import folder, in_motion, read, time_of
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.states import States, start_from
 from squealbox.cli.tables import written
@@ -15,6 +15,8 @@ from squealbox.limit_cycles import Cycle, lyapunov_exponents, shooting
 from squealbox.limit_cycles.attractors.exponents import LOST
 from squealbox.stability import complex_modes
 from squealbox.transient import simulate
+
+ABOUT = {"cycle": "what the motion settles to: the limit cycle, its stability, figure and data"}
 
 if TYPE_CHECKING:
     from squealbox.designs import Design
@@ -30,8 +32,7 @@ def cycle(
     period: str | None = None,
     settle: str | None = None,
     exponents: int = 0,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """What does the motion settle to? The limit cycle, with stick and slip, and its Floquet multipliers.
@@ -50,16 +51,12 @@ def cycle(
     exponents
         number of periods over which Lyapunov exponents are computed as well, such as 50; where no cycle is found, of
         the motion from rest after 300 periods of the slowest mode
-    changes
-        other values for this run: --set friction.static=0.45
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for cycle.nc, cycle.png and cycle.svg
     """
     if exponents < 0:
         raise UsageError(f"--exponents {exponents}: expected a number of periods")
-    found = in_motion(read(file, changes, allow_code))
+    found = in_motion(read(file, asked))
     begin = start_from(found.design.system(), start)
     if period is not None and begin is None:
         raise UsageError(f"--period {period[:40]}: expected --start with the state that is on the cycle")

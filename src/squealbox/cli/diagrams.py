@@ -10,7 +10,6 @@ from squealbox.cli.answers import keep
 from squealbox.cli.branches import all_branches
 from squealbox.cli.inputs import (
     RANGE,
-    Changes,
     Ends,
     axis,
     folder,
@@ -21,7 +20,7 @@ from squealbox.cli.inputs import (
     time_of,
     with_points,
 )
-from squealbox.cli.options import AllowCode
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.limit_cycles import BifurcationDiagram, Branch, Section, bifurcation_diagram
@@ -29,9 +28,11 @@ from squealbox.limit_cycles.attractors.settling import KINDS
 from squealbox.parameters import known_names
 from squealbox.waiting import Progress
 
+ABOUT = {"diagram": "what transients settle to over a parameter, with a Poincare section"}
+
 if TYPE_CHECKING:
     from squealbox.designs import Design
-    from squealbox.files.analyses import Axis
+    from squealbox.files.analyses import Varied
 
 Sweep = Literal["up", "down", "rest"]
 Sweeps = Annotated[tuple[Sweep, ...], Parameter(negative="", consume_multiple=True)]
@@ -54,8 +55,7 @@ def diagram(
     duration: str | None = None,
     branches: Drawn = False,
     seed: int = 0,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """What the motion settles to over a range of a parameter, by transients alone: a bifurcation diagram.
@@ -91,14 +91,10 @@ def diagram(
         follow the cycles as well (as squealbox branch) and draw them beneath
     seed
         of the drawn starts
-    changes
-        other values for this run: --set load="2 kN" reading=eq3
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for a figure, the tables diagram.csv and section.csv, and diagram.nc
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     varied = with_points(axis(found.design, found.branch, parameter, range, RANGE), points)
     found = in_motion(found, varied)
     length = None if duration is None else time_of("--duration", duration)
@@ -144,7 +140,7 @@ def _section(design: "Design", text: str, dof: str | None) -> Section:
     return Section(name, where, number(words[2], unit, f"--section {text[:60]}") if len(words) == 3 else 0.0, way)
 
 
-def _said(result: BifurcationDiagram, design: "Design", varied: "Axis") -> str:
+def _said(result: BifurcationDiagram, design: "Design", varied: "Varied") -> str:
     def shown(value: float) -> str:
         read_, unit = readable(design, varied, value)
         return f"{float(read_):.6g} {unit}".rstrip()
@@ -165,10 +161,9 @@ def _said(result: BifurcationDiagram, design: "Design", varied: "Axis") -> str:
     if np.any(result.coexist):
         over = result.stretches(result.coexist, shown)
         lines.append(f"Rest and vibration coexist at {int(np.sum(result.coexist))} values, {over}.")
-    lines += [f"Caution: {result.caution}"] if result.caution else []
     if not result.outcome.ok:
         lines.append(f"Note: {result.outcome.message}")
-    return "\n".join(lines)
+    return result.warned(lines)
 
 
 def _units(result: BifurcationDiagram) -> dict[str, str]:
@@ -179,7 +174,7 @@ def _units(result: BifurcationDiagram) -> dict[str, str]:
 
 
 def _files(
-    result: BifurcationDiagram, several: tuple[Branch, ...], design: "Design", varied: "Axis", title: str, out: Path
+    result: BifurcationDiagram, several: tuple[Branch, ...], design: "Design", varied: "Varied", title: str, out: Path
 ) -> list[Path]:
     """Figure, tables and data."""
     from squealbox import plots

@@ -4,12 +4,15 @@ from pathlib import Path
 
 import numpy as np
 
-from squealbox.cli.inputs import Changes, folder, number, read
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import folder, number, read
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.countermeasures import Dithered
+from squealbox.parameters import with_cautions
 from squealbox.stability import complex_modes
+
+ABOUT = {"dither": "fast dither of the sliding: growth rate and friction left over its amplitude"}
 
 
 def dither(
@@ -19,8 +22,7 @@ def dither(
     frequency: str = "40 kHz",
     along: str = "",
     points: int = 25,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """Fast dither of the sliding velocity: growth rate and mean friction left over its amplitude.
@@ -37,14 +39,10 @@ def dither(
         name of the contact that is shaken; all when left out
     points
         amplitudes looked at
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for the table
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     low, high = (number(text, "m/s", f"--velocity {text[:60]}") for text in velocity)
     if not 0.0 < low < high or points < 2:
         raise UsageError(
@@ -61,7 +59,7 @@ def dither(
     for w, g, part in zip(amplitudes, growth, left, strict=True):
         print(f"{w:14.5g}  {g:+12.5g}  {100.0 * part:10.3g}")
     said = dict.fromkeys(text for cure in (cures[0], cures[-1]) for text in cure.cautions())
-    print("\n".join(f"Caution: {text}" for text in said))
+    print(with_cautions([], *said))
     if out is not None:
         columns = {"velocity [m/s]": amplitudes, "growth rate [1/s]": growth, "friction left [-]": left}
         print(written(write_csv(out / "dither.csv", columns)))

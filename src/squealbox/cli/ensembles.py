@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Changes, folder, in_motion, read, time_of
+from squealbox.cli.inputs import folder, in_motion, read, time_of
 from squealbox.cli.maps import Plane, Span, axes_of
-from squealbox.cli.options import AllowCode
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.reduced_brake import ReducedBrake
@@ -19,6 +19,8 @@ from squealbox.system import as_system
 from squealbox.transient import Ensemble, simulate_ensemble
 from squealbox.waiting import Progress
 
+ABOUT = {"ensemble": "transients over two parameters: amplitude and frequency of each"}
+
 
 def ensemble(
     file: Path,
@@ -27,8 +29,7 @@ def ensemble(
     y: Span = None,
     points: int | None = None,
     duration: str | None = None,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """Transients over two parameters, with exact contact: how large each vibration is in the end, and how fast.
@@ -48,14 +49,10 @@ def ensemble(
         number of values along each axis
     duration
         length of each transient; left out, 200 periods of the worst mode of the brake in the file
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for the figure and the numbers
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     across, up = axes_of(found, x, y, points)
     seconds = usual_duration(found.design) if duration is None else time_of("--duration", duration)
     if not seconds > 0.0:
@@ -104,16 +101,15 @@ def _summary(many: Ensemble, plane: Plane) -> str:
     amplitude, frequency, which, unit = _largest(many, plane.design)
     ended = ", ".join(f"{np.count_nonzero(many.ended == name)} {name}" for name in np.unique(many.ended))
     lines = [f"{many.ended.size} transients of {many.settings['duration']:g} s from rest: {ended}; {many.rate:.0f}/s"]
-    lines += [f"Caution: {many.caution}"] if many.caution else []
     if np.all(np.isnan(amplitude)):
-        return "\n".join(lines)
+        return many.warned(lines)
     column, row = np.unravel_index(np.nanargmax(amplitude), amplitude.shape)
     where = plane.place((plane.axes[0].values[column], plane.axes[1].values[row]))
     lines.append(
         f"amplitude over the last fifth, {which}: median {np.nanmedian(amplitude):.4g} {unit}, "
         f"largest {amplitude[column, row]:.4g} {unit} at {frequency[column, row]:.5g} Hz, {where}"
     )
-    return "\n".join(lines)
+    return many.warned(lines)
 
 
 def _files(many: Ensemble, plane: Plane, title: str, out: Path) -> list[Path]:

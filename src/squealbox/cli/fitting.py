@@ -9,6 +9,8 @@ from squealbox.cli.tables import write_csv, written
 from squealbox.files.measured import read_points
 from squealbox.fit import fit_friction
 
+ABOUT = {"fit": "measured friction coefficients (CSV) to a friction law, with confidence bands"}
+
 
 def fit(file: Path, *, law: tuple[str, ...] = (), level: float = 0.95, out: Path | None = None) -> None:
     """Fit friction laws to measured points, with confidence bands; the law with the least AIC comes first.

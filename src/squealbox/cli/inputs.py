@@ -10,30 +10,30 @@ import cyclopts
 import numpy as np
 
 from squealbox.cli.answers import manner
+from squealbox.cli.options import AS_WRITTEN, HowAsked
 from squealbox.cli.running import UsageError
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files import DesignFile, read_file
-from squealbox.files.analyses import Axis
+from squealbox.files.analyses import Varied
 from squealbox.files.units import UnitError, in_si
 from squealbox.files.varied import quantity_of, words_of
 from squealbox.parameters import Parameter, ParameterError
 from squealbox.transient.simulate import TIME_STEPPING
 from squealbox.waiting import Progress
 
-Changes = Annotated[tuple[str, ...], cyclopts.Parameter(name="--set", negative="", show_default=False)]
 Ends = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
 
 
-def read(file: Path, changes: Sequence[str] = (), allow_code: bool = False) -> DesignFile:
+def read(file: Path, asked: HowAsked = AS_WRITTEN) -> DesignFile:
     """The design file with ``--set friction.static=0.4`` and the like applied."""
-    found = read_file(file, allow_code=allow_code)
+    found = read_file(file, allow_code=asked.allow_code)
     if found.caution:
         print(f"Caution: {found.caution}", file=sys.stderr)
-    return dataclasses.replace(found, design=changed(found.design, changes))
+    return dataclasses.replace(found, design=changed(found.design, asked.changes))
 
 
-def small(found: DesignFile, *axes: Axis) -> DesignFile:
+def small(found: DesignFile, *axes: Varied) -> DesignFile:
     """The file with a finite-element brake reduced for `axes` and its sections, and what that promises printed."""
     from squealbox.files.reduced import dense, promise
 
@@ -44,7 +44,7 @@ def small(found: DesignFile, *axes: Axis) -> DesignFile:
     return made
 
 
-def in_motion(found: DesignFile, *axes: Axis, contact: str = "exact") -> DesignFile:
+def in_motion(found: DesignFile, *axes: Varied, contact: str = "exact") -> DesignFile:
     """As :func:`small`, for motions in time by a contact scheme.
 
     All but one leave out friction across the sliding direction, and that is said.
@@ -81,7 +81,9 @@ class Option:
 RANGE = Option("--range", "--parameter NAME --range LOW HIGH")
 
 
-def axis(design: Design, given: Axis | None, name: str | None, ends: tuple[str, str] | None, option: Option) -> Axis:
+def axis(
+    design: Design, given: Varied | None, name: str | None, ends: tuple[str, str] | None, option: Option
+) -> Varied:
     """The axis of the file, or the one the options name."""
     name = name if name is not None else given.name if given else None
     if name is None:
@@ -97,10 +99,10 @@ def axis(design: Design, given: Axis | None, name: str | None, ends: tuple[str, 
         raise UsageError(f"{label}: expected finite numbers in {about.range}")
     if not low < high:
         raise UsageError(f"{label}: expected the lower value first")
-    return Axis(name, low, high) if given is None else given.replace(name=name, low=low, high=high)
+    return Varied(name, low, high) if given is None else given.replace(name=name, low=low, high=high)
 
 
-def with_points(given: Axis, points: int | None) -> Axis:
+def with_points(given: Varied, points: int | None) -> Varied:
     """The axis with another number of values."""
     try:
         return given if points is None else given.replace(points=points)
@@ -108,7 +110,7 @@ def with_points(given: Axis, points: int | None) -> Axis:
         raise UsageError(f"--points {points}: {error.expectation}") from error
 
 
-def readable(design: Design, varied: Axis, values: Any) -> tuple[Any, str]:
+def readable(design: Design, varied: Varied, values: Any) -> tuple[Any, str]:
     """Values of a parameter in the unit people read it in, and that unit: angles in degrees, the rest in SI."""
     unit = quantity_of(design, varied.name).unit
     if unit == "rad":

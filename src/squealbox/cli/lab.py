@@ -8,6 +8,8 @@ from cyclopts import Parameter
 from squealbox.cli import UsageError
 from squealbox.cli.options import AllowCode
 
+ABOUT = {"lab": "the workbench: a page in the browser where a brake is explored live"}
+
 LINK = "#d="  # what a link to a design carries behind its address
 
 

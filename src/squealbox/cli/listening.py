@@ -5,13 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.cli.inputs import Changes, free, in_motion, read, time_of
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import free, in_motion, read, time_of
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.files.analyses import Simulate
 from squealbox.files.runs import run
 from squealbox.signals import SignalError, column, dominant_frequency, sound, sound_level
 from squealbox.waiting import Progress
+
+ABOUT = {"listen": "the motion as sound at its true frequency (WAV), and how loud it may be"}
 
 SAMPLES = 88_200.0  # a second: twice what a sound needs, so that nothing heard is folded down
 
@@ -23,8 +25,7 @@ def listen(
     duration: str = "2s",
     dof: str | None = None,
     slower: float = 1.0,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
 ) -> None:
     """Write the motion as a WAV file at its true frequency, and say how loud it may be.
 
@@ -40,12 +41,8 @@ def listen(
         name of the degree of freedom; by default the one that moves most at the end
     slower
         play it this many times slower, for what is too high to hear
-    changes
-        other values for this run: --set friction.static=0.4
-    allow_code
-        run the Python file of a friction law that the design file names
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     if out.suffix.lower() != ".wav":
         raise UsageError(f"--out {out}: expected a name that ends in .wav")
     free(out)

@@ -3,18 +3,19 @@
 from pathlib import Path
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import Changes, folder, read
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import folder, read
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.control import closed_loop
+
+ABOUT = {"loop": "poles and margins of a brake with loops: gain, phase, delay, sampling"}
 
 
 def loop(
     file: Path,
     *,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """Poles of the closed loop, margins of gain, phase, delay and sampling.
@@ -23,14 +24,10 @@ def loop(
     ----------
     file
         design file with sections [[loops]]
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for the poles as table and figure, root locus and Nyquist curve of the first loop
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     if not found.design.system().loops:
         raise UsageError(f"{file} has no section [[loops]], which says what senses and acts")
     if out is not None:

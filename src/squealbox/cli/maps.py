@@ -7,20 +7,22 @@ import numpy as np
 from cyclopts import Parameter
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Changes, Option, axis, folder, read, readable, small, with_points
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import Option, axis, folder, read, readable, small, with_points
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability import Boundary, StabilityMap, map_boundary, stability_boundary, stability_map
 from squealbox.waiting import Progress
 
+ABOUT = {"map_": "stability over two parameters, with the boundary as curves"}
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squealbox.designs import Design
     from squealbox.files import DesignFile
-    from squealbox.files.analyses import Axis
+    from squealbox.files.analyses import Varied
 
 COARSE = 11  # points along each axis of a reduced brake's map, unless more are asked for
 CLOSE = 0.02  # share of a cell to which its boundary is located
@@ -35,8 +37,7 @@ def map_(
     y: Span = None,
     points: int | None = None,
     show: Literal["growth", "mechanism"] = "growth",
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """Stability over two parameters: which part of the plane squeals, why, how fast it grows, and its boundary.
@@ -53,14 +54,10 @@ def map_(
         number of values along each axis
     show
         what the figure shades: the growth rate, or the mechanism
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for the figure, the grid and the points of the boundary
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     across, up = axes_of(found, x, y, points)
     if out is not None:
         folder(out, "map", "boundary")
@@ -89,7 +86,7 @@ def map_(
 class Plane:
     """The two axes, in the units one reads them in."""
 
-    def __init__(self, design: "Design", across: "Axis", up: "Axis") -> None:
+    def __init__(self, design: "Design", across: "Varied", up: "Varied") -> None:
         self.design, self.axes = design, (across, up)
         self.names = (across.name, up.name)
         (self.x, x_unit), (self.y, y_unit) = (readable(design, each, each.values) for each in self.axes)
@@ -107,7 +104,7 @@ class Plane:
         return {f"{n} [{u or '-'}]": v for n, u, v in zip(self.names, self.units, (x, y), strict=True)}
 
 
-def axes_of(found: "DesignFile", x: Span, y: Span, points: int | None) -> tuple["Axis", "Axis"]:
+def axes_of(found: "DesignFile", x: Span, y: Span, points: int | None) -> tuple["Varied", "Varied"]:
     """The two axes of a plane, from the options or the section [map] of the file."""
     given = found.map
     across = with_points(axis(found.design, given.x if given else None, *_split(x), ACROSS), points)

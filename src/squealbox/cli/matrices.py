@@ -7,6 +7,8 @@ from squealbox.fe.describing import described
 from squealbox.fe.readers import MatrixFileError
 from squealbox.parameters import ParameterError
 
+ABOUT = {"matrices": "what files of Abaqus, Nastran, Ansys ... hold: matrices, labels, frequencies"}
+
 
 def matrices(*files: Path, units: str | None = None, count: int = 6) -> None:
     """What matrix files hold: format, size, entries, symmetry, labels, digits, massless and constrained freedoms.

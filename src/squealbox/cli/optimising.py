@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import Changes, folder, read, small
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import folder, read, small
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files import write_design
@@ -16,13 +16,14 @@ from squealbox.studies import optimise as optimised
 from squealbox.studies.quantity import unit_of
 from squealbox.waiting import Progress
 
+ABOUT = {"optimise": "the best design within bounds: before and after, or a Pareto front"}
+
 
 def optimise(
     file: Path,
     *,
     seed: int | None = None,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """The best design within bounds and constraints: before and after, what binds, and with several goals their front.
@@ -36,14 +37,10 @@ def optimise(
         design file with a section [optimise]
     seed
         another seed than that of the file
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for the figure, the designs as a table, and the best one as a design file
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     section = found.optimise
     if section is None:
         raise UsageError(f"{file} has no section [optimise], which says what may be changed and what is wanted")

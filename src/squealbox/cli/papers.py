@@ -8,6 +8,8 @@ from squealbox.cli.running import UsageError
 from squealbox.parameters import known_names
 from squealbox.waiting import Progress
 
+ABOUT = {"paper": "reproduce a published study: figures, claims and one page"}
+
 
 @dataclass(frozen=True)
 class Paper:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -25,18 +26,63 @@ from squealbox.signals import (
 from squealbox.signals.events import BAND, LEAST_LEVEL
 from squealbox.waiting import Progress
 
+ABOUT = {
+    "events": "squeal events in recordings: when, which frequency, how loud, how quick",
+    "noise": "a folder of stops: how often it squeals, at which speed and pressure",
+    "damping": "damping of the modes before squeal, and the onset it points to",
+    "quality": "loudness, sharpness and roughness of recordings",
+}
+
 SOUNDS = (".wav", ".flac", ".csv", ".uff", ".unv")
 Band = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
+
+
+@dataclass(frozen=True)
+class HowRead:
+    """How a recording is read, options of every command that takes one.
+
+    Parameters
+    ----------
+    unit
+        unit of the channels: Pa for sound pressure
+    full_scale
+        what full scale (of sound files) or one unit is worth: 20 for 20 Pa
+    rate
+        sampling rate of files that do not tell it: 48kHz
+    channel
+        number from 0 on, or name
+    """
+
+    unit: str = ""
+    full_scale: float | None = None
+    rate: str | None = None
+    channel: str = "0"
+
+    def read(self, path: Path) -> Recording:
+        """A recording with the braking quantities of the table beside it."""
+        braking = {}
+        beside = path.with_suffix(".braking.csv")
+        if beside.is_file():
+            table = read_recording(beside)
+            braking = {name: (table.t, table.samples[:, i]) for i, name in enumerate(table.names)}
+        own = None if self.rate is None else number(self.rate, "Hz", f"--rate {self.rate[:40]}")
+        return read_recording(path, unit=self.unit, full_scale=self.full_scale, rate=own, braking=braking)
+
+    @property
+    def place(self) -> int | str:
+        """The channel as a number or a name."""
+        return int(self.channel) if self.channel.isdigit() else self.channel
+
+
+How = Annotated[HowRead, cyclopts.Parameter(name="*")]
+AS_TOLD = HowRead()
 
 
 def events(
     recordings: tuple[Path, ...],
     /,
     *,
-    unit: str = "",
-    full_scale: float | None = None,
-    rate: str | None = None,
-    channel: str = "0",
+    how: How = AS_TOLD,
     band: Band = None,
     least_level: float = LEAST_LEVEL,
     out: Path | None = None,
@@ -47,14 +93,6 @@ def events(
     ----------
     recordings
         .wav, .flac, .csv, .npy, .uff files
-    unit
-        unit of the channels: Pa for sound pressure
-    full_scale
-        what full scale (of sound files) or one unit is worth: 20 for 20 Pa
-    rate
-        sampling rate of files that do not tell it: 48kHz
-    channel
-        number from 0 on, or name
     band
         lowest and highest frequency: --band 2kHz 16kHz
     least_level
@@ -67,7 +105,7 @@ def events(
     if out is not None and len(recordings) > 1:
         raise UsageError("--out: expected one recording")
     for path in recordings:
-        found = _found(path, unit, full_scale, rate, channel, band, least_level)
+        found = _found(path, how, band, least_level)
         show(f"{path}", found)
         if out is not None:
             print(f"written: {found.save(out)}")
@@ -78,10 +116,7 @@ def noise(
     *,
     x: str = "speed",
     y: str = "pressure",
-    unit: str = "",
-    full_scale: float | None = None,
-    rate: str | None = None,
-    channel: str = "0",
+    how: How = AS_TOLD,
     band: Band = None,
     least_level: float = LEAST_LEVEL,
 ) -> None:
@@ -97,14 +132,6 @@ def noise(
         braking quantity of the rows
     y
         braking quantity of the columns
-    unit
-        unit of the channels: Pa for sound pressure
-    full_scale
-        what full scale or one unit is worth
-    rate
-        sampling rate of files that do not tell it
-    channel
-        number from 0 on, or name
     band
         lowest and highest frequency: --band 2kHz 16kHz
     least_level
@@ -118,7 +145,7 @@ def noise(
     stops, refused = [], []
     for path in paths:
         try:
-            stops.append(_found(path, unit, full_scale, rate, channel, band, least_level))
+            stops.append(_found(path, how, band, least_level))
         except UsageError as error:
             refused.append(str(error))
     for text in refused:
@@ -135,10 +162,7 @@ def damping(
     band: Annotated[tuple[str, str], cyclopts.Parameter(negative="")],
     against: str = "",
     near: str | None = None,
-    unit: str = "",
-    full_scale: float | None = None,
-    rate: str | None = None,
-    channel: str = "0",
+    how: How = AS_TOLD,
     out: Path | None = None,
 ) -> None:
     """Damping of the modes in recordings without squeal, and where it ends: the onset of squeal, continued.
@@ -155,14 +179,6 @@ def damping(
         braking quantity along which the growth rate is continued to zero: pressure, speed
     near
         frequency of the mode that is followed; left out, the least damped of the first record
-    unit
-        unit of the channels
-    full_scale
-        what full scale (of sound files) or one unit is worth
-    rate
-        sampling rate of files that do not tell it: 48kHz
-    channel
-        number from 0 on, or name
     out
         file for the onset as a dataset (.nc)
     """
@@ -173,8 +189,8 @@ def damping(
     found, at = [], []
     for path in recordings:
         with _named(path):
-            sound = _sound(path, unit, full_scale, rate)
-            found.append(operational_modes(sound, channel=_place(channel), band=ends_of(band)))
+            sound = how.read(path)
+            found.append(operational_modes(sound, channel=how.place, band=ends_of(band)))
             show(f"{path}", found[-1])
             if against and against not in sound.braking:
                 known = ", ".join(sound.braking) or f"nothing: {path.with_suffix('.braking.csv').name} is missing"
@@ -221,40 +237,22 @@ def quality(
     ends = [None if each is None else number(each, "s", f"--{name}") for name, each in (("begin", begin), ("end", end))]
     for path in recordings:
         with _named(path):
-            sound = _sound(path, "Pa", full_scale, rate)
+            how = HowRead("Pa", full_scale, rate, channel)
             with Progress(f"{path.name}: roughness takes some seconds for each second of sound"):
-                found = sound_quality(sound, channel=_place(channel), begin=ends[0], end=ends[1])
+                found = sound_quality(how.read(path), channel=how.place, begin=ends[0], end=ends[1])
             show(str(path), found)
 
 
-def _found(
-    path: Path, unit: str, full_scale: float | None, rate: str | None, channel: str, band: Band, least_level: float
-) -> SquealEvents:
+def _found(path: Path, how: "HowRead", band: Band, least_level: float) -> SquealEvents:
     ends = BAND if band is None else ends_of(band)
     with _named(path):
-        sound = _sound(path, unit, full_scale, rate)
-        return squeal_events(sound, channel=_place(channel), band=ends, least_level=least_level)
+        return squeal_events(how.read(path), channel=how.place, band=ends, least_level=least_level)
 
 
 def ends_of(band: tuple[str, str]) -> tuple[float, float]:
     """The ends of a --band [Hz]."""
     low, high = (number(each, "Hz", f"--band {each[:40]}") for each in band)
     return low, high
-
-
-def _sound(path: Path, unit: str, full_scale: float | None, rate: str | None) -> Recording:
-    """A recording with the braking quantities of the table beside it."""
-    braking = {}
-    beside = path.with_suffix(".braking.csv")
-    if beside.is_file():
-        table = read_recording(beside)
-        braking = {name: (table.t, table.samples[:, i]) for i, name in enumerate(table.names)}
-    own = None if rate is None else number(rate, "Hz", f"--rate {rate[:40]}")
-    return read_recording(path, unit=unit, full_scale=full_scale, rate=own, braking=braking)
-
-
-def _place(channel: str) -> int | str:
-    return int(channel) if channel.isdigit() else channel
 
 
 @contextmanager

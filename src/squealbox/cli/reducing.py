@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from squealbox.cli.inputs import Changes, Ends, free, number, read
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import Ends, free, number, read
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import UsageError
 from squealbox.cli.tables import written
 from squealbox.fe.reduced_brake import ReducedBrake
@@ -14,8 +14,10 @@ from squealbox.fe.reduced_files import save_reduced
 from squealbox.files.reduced import Reduce, Reduced, dense, error_table, promise
 from squealbox.waiting import Progress
 
+ABOUT = {"reduce_": "a small brake from a finite-element one, with its error, in a file"}
 
-def reduce_(file: Path, *, out: Path, band: Ends = None, changes: Changes = (), allow_code: AllowCode = False) -> None:
+
+def reduce_(file: Path, *, out: Path, band: Ends = None, asked: Asked = AS_WRITTEN) -> None:
     """Make a small brake of a finite-element one: its modes in a band are those of the full one, with a known error.
 
     It is reduced for everything that the file varies: varying of [reduce], [onset], [branch], [map], [scatter]. A file
@@ -29,12 +31,8 @@ def reduce_(file: Path, *, out: Path, band: Ends = None, changes: Changes = (), 
         the .npz file that is written; M, C and K in it are for any program
     band
         lowest and highest frequency, with or without a unit: 500 10kHz; left out, that of [reduce] or [modes]
-    changes
-        other values for this run: --set friction.static=0.4
-    allow_code
-        run the Python file of a friction law that the design file names
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     if out.suffix.lower() != ".npz":
         raise UsageError(f"--out {out}: expected a name that ends in .npz")
     if not found.design.system().is_sparse:

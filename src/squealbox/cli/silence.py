@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Changes, folder, read, small
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import folder, read, small
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.reduced_brake import ReducedBrake
@@ -16,6 +16,8 @@ from squealbox.remedies import Remedies
 from squealbox.remedies import silence as silenced
 from squealbox.waiting import Progress
 
+ABOUT = {"silence": "what would silence this brake: cures ranked, with dose, cost and cautions"}
+
 
 def silence(
     file: Path,
@@ -23,8 +25,7 @@ def silence(
     margin: float = 0.1,
     samples: int | None = None,
     seed: int = 0,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """What would silence this brake: cures ranked by the squeal they leave, with dose, costs and cautions.
@@ -43,14 +44,10 @@ def silence(
         brakes in the lot; left out, 2048, of large brakes fewer
     seed
         of the lot
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for the table and a figure
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     if (samples is not None and samples < 1) or seed < 0:
         raise UsageError(f"--samples {samples} --seed {seed}: expected at least 1 and at least 0")
     if not (np.isfinite(margin) and margin >= 0.0):

@@ -7,8 +7,8 @@ import numpy as np
 
 from squealbox.cli.answers import keep, show
 from squealbox.cli.finite_elements import print_more
-from squealbox.cli.inputs import RANGE, Changes, Ends, axis, folder, number, read, readable, small
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import RANGE, Ends, axis, folder, number, read, readable, small
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.fe.reduced_brake import ReducedBrake
@@ -23,19 +23,23 @@ from squealbox.stability import (
 )
 from squealbox.waiting import Progress
 
+ABOUT = {
+    "modes": "is steady sliding stable? complex eigenvalues of a design file",
+    "onset": "the value of a parameter at which squeal begins, and how",
+}
+
 SPECTRA = 61  # values at which the modes of a reduced brake are drawn
 
 if TYPE_CHECKING:
     from squealbox.designs import Design
     from squealbox.files import DesignFile
-    from squealbox.files.analyses import Axis
+    from squealbox.files.analyses import Varied
 
 
 def modes(
     file: Path,
     *,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     band: Ends = None,
     certify: bool = False,
     second_mesh: str | None = None,
@@ -47,10 +51,6 @@ def modes(
     ----------
     file
         design file; squealbox init writes a first one
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     band
         of a finite-element brake: lowest and highest frequency, with or without a unit: 500 10kHz
     certify
@@ -60,7 +60,7 @@ def modes(
     out
         folder for the table, a figure of the eigenvalues and one of what feeds and damps the worst mode
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     time = found.modes.time if found.modes else 0.0
     if out is not None:
         folder(out, "modes", "mode_energy", "coalescence")
@@ -109,8 +109,7 @@ def onset(
     *,
     parameter: str | None = None,
     range: Ends = None,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """The value of a parameter at which steady sliding changes its stability: where squeal begins.
@@ -123,14 +122,10 @@ def onset(
         dotted name, such as friction.static
     range
         lowest and highest value, with or without a unit: 0 1, or 20deg 160deg
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for a figure of frequencies and growth rates over the range, and its numbers
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     varied = axis(found.design, found.onset, parameter, range, RANGE)
     if out is not None:
         folder(out, "onset")
@@ -169,7 +164,7 @@ def _mode_files(spectrum: ComplexModes, found: "DesignFile", time: float, out: P
     return paths
 
 
-def _crossing(crossing: CriticalValue, design: "Design", varied: "Axis") -> str:
+def _crossing(crossing: CriticalValue, design: "Design", varied: "Varied") -> str:
     value, unit = readable(design, varied, crossing.value)
     side = "above" if crossing.direction == "destabilising" else "below"
     shares = ", ".join(f"{name.replace('_', ' ')} {100.0 * share:.0f} %" for name, share in crossing.shares.items())
@@ -181,7 +176,7 @@ def _crossing(crossing: CriticalValue, design: "Design", varied: "Axis") -> str:
     )
 
 
-def _onset_files(found: "DesignFile", varied: "Axis", crossings: CriticalValues, out: Path) -> list[Path]:
+def _onset_files(found: "DesignFile", varied: "Varied", crossings: CriticalValues, out: Path) -> list[Path]:
     """The crossings, and a figure and table of the modes over the range with the crossings among its points."""
     from squealbox import plots
 

@@ -12,6 +12,12 @@ from squealbox.cli import COMMANDS, OPTIONS, UsageError
 from squealbox.cli.answers import manner
 from squealbox.parameters import known_names
 
+ABOUT = {
+    "init": "write a commented example file that runs",
+    "schema": "the JSON schema of a design file, for editors",
+    "completion": "a script that completes commands and options in bash, zsh or fish",
+}
+
 FILE = "brake.toml"
 
 

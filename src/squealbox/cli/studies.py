@@ -8,16 +8,23 @@ import numpy as np
 from cyclopts import Parameter
 
 from squealbox.cli import answers
-from squealbox.cli.inputs import Changes, changed, folder, free, in_motion, small
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import changed, folder, free, in_motion, small
+from squealbox.cli.options import AllowCode, Changes
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.study_analyses import UNITS, analysis_of
 from squealbox.cli.tables import write_csv, written
-from squealbox.files.analyses import Axis as Span
+from squealbox.files.analyses import Varied as Span
 from squealbox.files.study import read_study
 from squealbox.studies import Space, Store, open_sweep, sweep
 from squealbox.studies.store import LOG, RESULT
 from squealbox.waiting import Progress
+
+ABOUT = {
+    "run": "a study: any analysis over a space of parameters; stopped or killed, it goes on",
+    "status": "how far a study is, and what it said last",
+    "show": "what a study has found, also while it runs: table and figure",
+    "export": "what a study has found as CSV, NetCDF or MAT",
+}
 
 if TYPE_CHECKING:
     from squealbox.studies import Sweep

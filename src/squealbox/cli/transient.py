@@ -5,14 +5,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Changes, folder, in_motion, read, time_of
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import folder, in_motion, read, time_of
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files.analyses import Simulate
 from squealbox.files.runs import lasting, run, start_of
-from squealbox.parameters import ParameterError
+from squealbox.parameters import ParameterError, with_cautions
 from squealbox.waiting import Progress
+
+ABOUT = {"simulate": "what happens in time: a transient with verdict, figures and data"}
 
 if TYPE_CHECKING:
     from squealbox.transient.trajectory import Trajectory
@@ -30,8 +32,7 @@ def simulate(
     start: str | None = None,
     method: str | None = None,
     contact: str | None = None,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
 ) -> None:
     """Follow the motion in time and say what becomes of it; with --out, write figures, data and sound.
 
@@ -49,12 +50,8 @@ def simulate(
         usual (the Taylor series where the equation has one), or one that squealbox list names
     contact
         exact (stick, slip and lift-off by events), raw (plain sgn), smooth, tanh or time-stepping
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     options = {"start": start, "method": method, "contact": contact}
     settings = _settings(found.simulate or Simulate(), duration, options)
     found = in_motion(dataclasses.replace(found, simulate=settings), contact=settings.contact)
@@ -105,7 +102,7 @@ def _judged(motion: "Trajectory") -> tuple[str, list["Verdict"]]:
             f"Note: {len(motion.t)} kept instants do not carry these frequencies (give more points for data and "
             "sound); the verdict and the figures come from every step of the run"
         )
-    return "\n".join([*lines, *(f"Caution: {said}" for said in motion.caution.split("; ") if said)]), judged
+    return with_cautions(lines, *motion.caution.split("; ")), judged
 
 
 def _files(motion: "Trajectory", text: str, judged: list["Verdict"], title: str, out: Path) -> list[Path]:

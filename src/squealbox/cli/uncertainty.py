@@ -9,8 +9,8 @@ from cyclopts import Parameter
 
 from squealbox import studies
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Changes, folder, read, small
-from squealbox.cli.options import AllowCode
+from squealbox.cli.inputs import folder, read, small
+from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files.uncertain import STUDIES, Sampled, Scattered
@@ -18,6 +18,8 @@ from squealbox.parameters import ParameterError
 from squealbox.result import Result
 from squealbox.studies.quantity import unit_of
 from squealbox.waiting import Progress
+
+ABOUT = {"scatter": "parameters scatter: how probable is squeal, and which matters?"}
 
 if TYPE_CHECKING:
     from squealbox.designs import Design
@@ -32,8 +34,7 @@ def scatter(
     study: Several = (),
     samples: int | None = None,
     seed: int | None = None,
-    changes: Changes = (),
-    allow_code: AllowCode = False,
+    asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
     """Parameters scatter: how probable is squeal, and which parameter is it that matters?
@@ -50,14 +51,10 @@ def scatter(
         points of the samples, instead of those of the file
     seed
         another seed than that of the file
-    changes
-        other values for this run: --set friction.static=0.4 load="2 kN"
-    allow_code
-        run the Python file of a friction law that the design file names
     out
         folder for figures, tables and results
     """
-    found = read(file, changes, allow_code)
+    found = read(file, asked)
     section = found.scatter
     if section is None:
         raise UsageError(f"{file} has no section [scatter], which says what scatters and how")

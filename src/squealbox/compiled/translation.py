@@ -28,7 +28,7 @@ from squealbox.compiled.kinds import (
 SMALL = 60  # lines of a function that becomes part of its callers
 
 
-class Wider(Exception):
+class WiderKind(Exception):
     """A variable, or what is returned, turned out to be of a wider kind: write the function anew."""
 
 
@@ -89,7 +89,7 @@ class Function(Expressions):
                     else:
                         self.lines.append("ret void")
                 return self.returned
-            except Wider:
+            except WiderKind:
                 continue
 
     def text(self, name: str, returned: Any, linkage: str, inline: bool) -> str:
@@ -149,7 +149,7 @@ class Function(Expressions):
             found = wider(self.returned, kind)
             if found != self.returned:
                 self.returned = found
-                raise Wider
+                raise WiderKind
         self.lines.append("ret void" if value is None else f"ret {self.packed(value, self.returned)}")
         self.open = False
 
@@ -220,7 +220,7 @@ class Function(Expressions):
             held = self.wide[name] = kind
         elif wider(held, kind) != held:
             self.wide[name] = wider(held, kind)
-            raise Wider
+            raise WiderKind
         if name not in self.local:
             self.rooms.append(f"%v.{name} = alloca {TEXTS[held]}")
             self.local[name] = Room(held)

@@ -10,7 +10,7 @@ from squealbox.control import margins, sampled
 from squealbox.control.plant import Plant, plant
 from squealbox.control.poles import Late, late_poles
 from squealbox.extras import extra
-from squealbox.parameters import ParameterError
+from squealbox.parameters import ParameterError, with_cautions
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 
 MOST_HELD = 200.0  # samples in a delay up to which a sampling rate is looked for
@@ -166,10 +166,7 @@ class ClosedLoop(Result):
                 f"delay margin {self.delay_margin:.6g} s, sampling above {self.sampling_margin():.6g} Hz"
             )
         lines += [f"{s.real:+.6g} 1/s at {s.imag / (2.0 * np.pi):.6g} Hz" for s in self.poles if s.imag >= 0.0]
-        return "\n".join([*lines, *(f"Caution: {text}" for text in self.cautions)])
-
-    def __repr__(self) -> str:
-        return self.summary()
+        return with_cautions(lines, *self.cautions)
 
 
 @public()

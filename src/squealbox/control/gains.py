@@ -47,9 +47,6 @@ class StableGains(Result):
             f"stable with the loops' forces times {spans}; fastest decay {self.least_growth:.6g} 1/s at {self.best:.6g}"
         )
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 @public()
 def stable_gains(design_or_system: Any, loop: int | None = None, *, time: float = 0.0) -> StableGains:

@@ -63,9 +63,6 @@ class Placement(Result):
         ]
         return "\n".join(lines)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 @public()
 def placement(design_or_system: Any, time: float = 0.0) -> Placement:

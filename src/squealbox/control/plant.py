@@ -51,7 +51,10 @@ def with_loops(design_or_system: Any) -> System:
 
 
 def plant(design_or_system: Any, time: float = 0.0) -> Plant:
-    """The linear form of a brake with loops; `ParameterError` without loops or with leading axes."""
+    """The linear form of a brake with loops; `ParameterError` without loops or with leading axes.
+
+    `time` [s]: instant at which schedules are taken.
+    """
     system = with_loops(design_or_system)
     if not system.loops:
         raise ParameterError(

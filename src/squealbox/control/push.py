@@ -51,9 +51,6 @@ class DefeatingPush(Result):
             f"{float(np.max(self.amplitude)):.6g} m ({self.runs} runs)"
         )
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 @public()
 def defeating_push(
@@ -65,8 +62,8 @@ def defeating_push(
     ----------
     design_or_system : `Controlled(brake, loops)` with a `limit` on some loop
     direction : velocities (n,) of the brake's freedoms; None takes the mode that grows fastest without the loops
-    precision : relative distance of the two pushes between which the edge lies
-    rtol : of the motions
+    precision : [-] relative distance of the two pushes between which the edge lies
+    rtol : [-] of the motions
 
     >>> from squealbox import PID, System
     >>> block = System([[1.0]], [[-0.1]], [[1.0]], loops=(PID(on="q1", derivative=0.3, limit=0.01),))

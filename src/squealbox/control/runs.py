@@ -40,9 +40,6 @@ class LoopRun(Result):
             f"at the limit {100.0 * float(np.max(self.saturated, initial=0.0)):.3g} % of the time"
         )
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def run_loops(design_or_system: Any, duration: float, start: Any = None, *, rtol: float = 1e-10) -> LoopRun:
     """The motion over `duration` [s] of a brake whose loops are sampled, or late, or both; limits are kept.
@@ -51,6 +48,7 @@ def run_loops(design_or_system: Any, duration: float, start: Any = None, *, rtol
     ----------
     design_or_system : `Controlled(brake, loops)`, some loops of it sampled or late
     start : (q, qd); None is steady sliding without the loops' forces
+    rtol : [-] relative tolerance of the integration
 
     The outcome is that of the motion, or "saturated" where the force of a loop was at its limit for more than half of
     the last quarter. A late command is a polynomial between its kinks, as exact as the motion; see `transient.pieces`.

@@ -72,9 +72,6 @@ class BestAbsorber(Result):
             + (f"; stable from {low:.6g} to {high:.6g} Hz" if np.isfinite(low) else "; not stable")
         )
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 @public(bounds=None, brake=with_parameters)
 def best_absorber(
@@ -98,7 +95,7 @@ def best_absorber(
     mass : of the absorber [kg]
     aim : "decay" (least growth rate), "margin" (largest critical value of `parameter` within `bounds`) or "probability"
         (least share of the lot drawn from `scatter` that squeals)
-    bounds : None takes 0 to 2 times the parameter's value
+    bounds : [SI] None takes 0 to 2 times the parameter's value
     samples, seed : of the lot, the same for every tuning
 
     Returns

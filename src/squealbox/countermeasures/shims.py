@@ -131,7 +131,8 @@ def _with(system: System, place: int, contact: Any) -> System:
 
 
 def ross_kerwin_ungar(loss_factor: Any, stiffness_parameter: Any, shear_parameter: Any = None) -> Any:
-    """Loss factor of a plate with a constrained viscoelastic layer, after Ross, Kerwin and Ungar.
+    """Loss factor [-] of a plate with a constrained viscoelastic layer, array in, array out, after Ross, Kerwin and
+    Ungar.
 
         eta = eta_v Y X/(1 + (2 + Y) X + (1 + Y)(1 + eta_v^2) X^2)
 

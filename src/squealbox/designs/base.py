@@ -4,7 +4,7 @@ import importlib
 from typing import Any, ClassVar
 
 from squealbox.friction import FrictionLaw
-from squealbox.parameters import DRAWN_BY, DataSheet, ParameterError
+from squealbox.parameters import DRAWN_BY, DataSheet, ParameterError, screenful
 from squealbox.system import System
 
 
@@ -36,8 +36,12 @@ class Design(DataSheet):
         """The equation of motion with these parameters."""
         raise NotImplementedError
 
+    def draw(self, panel: Any) -> None:
+        """Where `plots.brakes` knows no drawing: with `plot`, `text`, `annotate`, `add_patch` of a Matplotlib panel."""
+
     def __str__(self) -> str:
-        return self.summary()
+        further = "complex_modes(it), simulate(it, 0.05), plot(it); it.replace({name: value}) has another value"
+        return f"{screenful(self.summary(), lines=29)}\n{further}"
 
     def plot(self, **keywords: Any) -> Any:
         """The drawing of this brake, as `squealbox.plots.brake_drawing` makes it."""

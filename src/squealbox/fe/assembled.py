@@ -81,7 +81,7 @@ class AssembledBrake(Design):
     O is the angular speed in units of 1 rad/s. O_ref is 0 where the matrices do not hold these terms yet, and then
     D_R / O and O^2 K_geo are added whole; with O_ref = 1 it is assembly (b) of the published 4,669-freedom brake.
     Friction that turns with the sliding velocity comes from the pairs (`Contact.across`); D_R is only for an export
-    that holds it as a matrix.
+    that holds it as a matrix. Derived from the equation of `system.py`, with the terms of rotating friction.
     """
 
     title: ClassVar[str] = "A brake assembled from exported matrices"

@@ -1,12 +1,12 @@
-"""Rows at the quadrature points of faces that touch another body, gathered face by face for a `Structure`."""
+"""Rows at the quadrature points of faces that touch another body, gathered face by face for a `MeshedStructure`."""
 
 from typing import Any
 
 import numpy as np
 from scipy import sparse
 
-from squealbox.fe.grids import Body, FacePoints
-from squealbox.fe.meshed import Frame
+from squealbox.fe.grids import FacePoints, MeshedBody
+from squealbox.fe.meshed import FreedomsOfBodies
 
 ROWS = ("normal", "along", "across")
 
@@ -14,7 +14,7 @@ ROWS = ("normal", "along", "across")
 class ContactPoints:
     """The contact points of a brake's linings, which touch body number `other` of the frame."""
 
-    def __init__(self, frame: Frame, other: int, touched: Body) -> None:
+    def __init__(self, frame: FreedomsOfBodies, other: int, touched: MeshedBody) -> None:
         self.frame, self.other, self.touched = frame, other, touched
         self._found: dict[str, list[Any]] = {key: [] for key in (*ROWS, "area", "place", "angle", "side")}
 

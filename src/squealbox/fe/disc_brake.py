@@ -6,21 +6,21 @@ own; their contact is that of `squealbox.fe.meshed`, with e_t along the turning 
 """
 
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from squealbox.fe.contact_points import ContactPoints
-from squealbox.fe.grids import Body, breaks
+from squealbox.fe.grids import MeshedBody, breaks
 from squealbox.fe.meshed import (
     IRON,
     LINING,
     OWN,
     STEEL,
-    Frame,
+    FreedomsOfBodies,
     Material,
     MeshedBrake,
-    Structure,
+    MeshedStructure,
     longest_side,
     modes_alone,
     some_of,
@@ -121,7 +121,7 @@ class DiscBrake(MeshedBrake):
                 expected = f"an offset that leaves the patch on the plate: its radius may be {max(room, 0.0):.4g} m"
                 raise ParameterError("DiscBrake", "piston_offset", self.piston_offset, expected)
 
-    def structure(self) -> Structure:
+    def structure(self) -> MeshedStructure:
         self.one_system()
         lining, disc, plate = self.pads.material, self.disc.material, self.backplates.material
         shape = (
@@ -129,7 +129,7 @@ class DiscBrake(MeshedBrake):
             *(self.pads.inner_radius, self.pads.outer_radius, self.pads.angle, self.pads.thickness, lining.poisson),
             *(self.backplates.thickness, plate.poisson, self.piston_radius, self.piston_offset, self.element_size),
         )
-        return structure(*(float(value) for value in shape))
+        return structure(DiscBrakeShape(*(float(value) for value in shape)))
 
     def materials(self) -> dict[str, Material]:
         return {"disc": self.disc.material, "linings": self.pads.material, "backplates": self.backplates.material}
@@ -143,41 +143,47 @@ class DiscBrake(MeshedBrake):
     def wearing_under(self) -> dict[str, float]:
         return {"pressure": self.running_in_pressure}
 
-    def touching(self, made: Structure) -> Any:
+    def touching(self, made: MeshedStructure) -> Any:
         """Contact points outside chamfers and slot."""
         offset = np.abs(made.angle)
         inside = (offset < 0.5 * self.pads.angle - self.pads.chamfer) & (offset >= 0.5 * self.pads.slot)
         return some_of(inside, "Pads", self.pads.chamfer)
 
 
+class DiscBrakeShape(NamedTuple):
+    """What the mesh of a disc brake depends on: lengths [m], the angle [rad] and Poisson's ratios [-]."""
+
+    bore: float
+    rim: float
+    thick: float
+    disc_poisson: float
+    inner: float
+    outer: float
+    angle: float
+    lining: float
+    lining_poisson: float
+    plate: float
+    plate_poisson: float
+    piston: float
+    offset: float
+    size: float
+
+
 @lru_cache(maxsize=4)
-def structure(
-    bore: float,
-    rim: float,
-    thick: float,
-    disc_poisson: float,
-    inner: float,
-    outer: float,
-    angle: float,
-    lining: float,
-    lining_poisson: float,
-    plate: float,
-    plate_poisson: float,
-    piston: float,
-    offset: float,
-    size: float,
-) -> Structure:
+def structure(shape: DiscBrakeShape) -> MeshedStructure:
     """Mesh and assemble a disc and two pads; all lengths in m, the angle in rad."""
+    bore, rim, thick, disc_poisson, inner, outer, angle = shape[:7]
+    lining, lining_poisson, plate, plate_poisson, piston, offset, size = shape[7:]
     half = 0.5 * thick
     around = breaks(0.0, 2.0 * np.pi, size / (0.5 * (inner + outer)), 12)
-    disc = Body(breaks(bore, rim, size, 2), around, breaks(-half, half, size, 2), closed=True)
+    disc = MeshedBody(breaks(bore, rim, size, 2), around, breaks(-half, half, size, 2), closed=True)
     sector = breaks(-0.5 * angle, 0.5 * angle, size / (0.5 * (inner + outer)), 3)
     radii = breaks(inner, outer, size, 2)
     through = np.concatenate([breaks(0.0, lining, size), breaks(lining, lining + plate, size)[1:]])
-    pads = [Body(radii, sector, half + through), Body(radii, sector, -(half + through)[::-1])]
+    pads = [MeshedBody(radii, sector, half + through), MeshedBody(radii, sector, -(half + through)[::-1])]
     bodies = (disc, *pads)
     held = [np.hypot(*disc.places[:2]) < bore * (1.0 + 1e-6), *(np.zeros(pad.size, dtype=bool) for pad in pads)]
-    frame = Frame(bodies, held)
+    frame = FreedomsOfBodies(bodies, held)
     mass: dict[str, Any] = {"disc": frame.square(disc.mass(), 0)}
     stiffness: dict[str, Any] = {"disc": frame.square(disc.stiffness(disc_poisson), 0)}
     for name, poisson, inside in (("linings", lining_poisson, True), ("backplates", plate_poisson, False)):
@@ -213,7 +219,7 @@ def structure(
         for end in (0, -1):
             side = pad.face(1, end, lambda _r, _t, z: np.abs(z) > half + lining)
             abutment = abutment + frame.spring(side, i + 1, *_directions(side.place, sign)[1:])
-    return Structure(
+    return MeshedStructure(
         size=frame.size,
         mass=mass,
         stiffness=stiffness,
@@ -227,11 +233,14 @@ def structure(
 
 
 def free_disc_modes(disc: Disc, element_size: float, top: float, *, held: bool = False) -> RealModes:
-    """Undamped modes below `top` [Hz] of the disc alone, free or held at its bore: what a hammer test finds."""
+    """Undamped modes below `top` [Hz] of the disc alone, free or held at its bore: what a hammer test finds.
+
+    `element_size` [m]: of the mesh.
+    """
     half = 0.5 * disc.thickness
     around = breaks(0.0, 2.0 * np.pi, element_size / (0.5 * (disc.inner_radius + disc.outer_radius)), 12)
     radii = breaks(disc.inner_radius, disc.outer_radius, element_size, 2)
-    body = Body(radii, around, breaks(-half, half, element_size, 2), closed=True)
+    body = MeshedBody(radii, around, breaks(-half, half, element_size, 2), closed=True)
     at_bore = np.hypot(*body.places[:2]) <= disc.inner_radius * (1.0 + 1e-6)
     return modes_alone(body, disc.material, top, at_bore if held else None)
 
@@ -243,7 +252,7 @@ def patch_room(inner: float, outer: float, angle: float, offset: float) -> float
     return float(min(0.5 * (outer - inner), middle * np.sin(np.clip(aside, -0.5 * np.pi, 0.5 * np.pi))))
 
 
-def _patch(pad: Body, middle: float, offset: float, piston: float, height: float) -> Any:
+def _patch(pad: MeshedBody, middle: float, offset: float, piston: float, height: float) -> Any:
     """Row (n,) of the displacement along z over a round patch [m^3] at `height` [m], by points of its own.
 
     They are Gauss's along the radius and equally spaced round it, so force and centre are those of the patch.

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.extras import extra
-from squealbox.fe.grids import Body
+from squealbox.fe.grids import MeshedBody
 from squealbox.fe.meshed import MeshedBrake
 
 FORMATS = (".vtu", ".uff")
@@ -51,7 +51,7 @@ def write_shape(brake: MeshedBrake, shape: Any, eigenvalue: complex, path: str |
     return path
 
 
-def _corners(body: Body, values: Any) -> tuple[Any, Any, Any]:
+def _corners(body: MeshedBody, values: Any) -> tuple[Any, Any, Any]:
     """Places (k, 3), displacements (k, 3) and corners of the elements (cells, 8) in the order of VTK."""
     corner, cells = body.corners
     local = np.asarray(body.reference_corners).T.astype(int)

@@ -44,7 +44,7 @@ class FacePoints:
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class MeshedBody:
     """A grid: breaks in r [m], theta [rad] (equal steps) and z [m]; closed where theta goes round."""
 
     r: Any

@@ -50,7 +50,7 @@ class _Product:
             self.whole.append(new)
 
 
-class _Rows:
+class _SparseRows:
     """A V of one sparse table A (contacts, n)."""
 
     def __init__(self, matrix: Any) -> None:
@@ -63,7 +63,7 @@ class GrowingBasis:
     def __init__(self, pencils: Sequence[Pencil], basis: Any) -> None:
         self.pencils = list(pencils)
         self._products: list[_Product] = []
-        self._tables: list[_Rows] = []
+        self._tables: list[_SparseRows] = []
         self._of = [[self._known(self._products, _Product, part) for part in p.structural] for p in self.pencils]
         self._of[0][0].whole = []
         self._rows = [self._rows_of(pencil) for pencil in self.pencils]
@@ -177,10 +177,10 @@ class GrowingBasis:
             table.dense = np.concatenate([table.dense, np.asarray(table.matrix @ fresh)], axis=1)
         self.blocks.append(fresh)
 
-    def _rows_of(self, pencil: Pencil) -> dict[str, _Rows]:
+    def _rows_of(self, pencil: Pencil) -> dict[str, _SparseRows]:
         contacts = None if pencil.sliding is None else pencil.sliding.system.contacts
         tables = {name: getattr(contacts, name, None) for name in ROWS}
-        return {n: self._known(self._tables, _Rows, table) for n, table in tables.items() if table is not None}
+        return {n: self._known(self._tables, _SparseRows, table) for n, table in tables.items() if table is not None}
 
     def _known(self, among: list[Any], kind: type, matrix: Any) -> Any:
         for one in among:

@@ -101,7 +101,7 @@ def contacts_of(
     """
     from scipy.sparse import csr_array, vstack
 
-    table = _Rows(structure, systems)
+    table = _ContactRows(structure, systems)
     laws: list[FrictionLaw] = []
     for interface in interfaces:
         pairs = interface.read()
@@ -133,7 +133,7 @@ def contacts_of(
     return contacts, added
 
 
-class _Rows:
+class _ContactRows:
     """Rows of the contacts as they come."""
 
     def __init__(self, structure: Structure, systems: tuple[CoordinateSystem, ...]) -> None:

@@ -18,7 +18,7 @@ from scipy import sparse
 
 from squealbox.contacts import Contacts, unchanging
 from squealbox.designs.base import Design
-from squealbox.fe.grids import Body, FacePoints
+from squealbox.fe.grids import FacePoints, MeshedBody
 from squealbox.fe.real_modes import RealModes, real_modes
 from squealbox.fe.wear import Pressed, Worn, run_in
 from squealbox.parameters import DataSheet, ParameterError, parameter
@@ -42,7 +42,7 @@ LINING = Material(young=4e9, poisson=0.25, density=2500.0, damping=1e-7)
 
 
 @dataclass(frozen=True, eq=False)
-class Structure:
+class MeshedStructure:
     """A meshed brake per unit of each modulus, density, spring and load, on all n freedoms, and its contact points.
 
     mass, stiffness and springs are matrices (n, n) by name, loads vectors (n,) by name; normal, along and across are
@@ -66,7 +66,7 @@ class Structure:
     side: Any
     names: tuple[str, ...]
     moving: Any
-    bodies: tuple[Body, ...]
+    bodies: tuple[MeshedBody, ...]
     kept: Any
 
     def by_body(self, values: Any) -> list[Any]:
@@ -108,7 +108,7 @@ class MeshedBrake(Design):
     followers: ClassVar[str] = ""
     """The springs whose ends come along with a lining that wears, if there are such."""
 
-    def structure(self) -> Structure:
+    def structure(self) -> MeshedStructure:
         """Matrices per unit of modulus and density, contact points and faces; the same for all that shares a mesh."""
         raise NotImplementedError
 
@@ -128,7 +128,7 @@ class MeshedBrake(Design):
         """How much of each load acts while the linings wear, by its name."""
         raise NotImplementedError
 
-    def touching(self, made: Structure) -> Any:
+    def touching(self, made: MeshedStructure) -> Any:
         """Contact points that touch, as numbers."""
         return np.arange(len(made.area))
 
@@ -195,7 +195,7 @@ class MeshedBrake(Design):
         loads = tuple((name, float(value)) for name, value in self.wearing_under().items())
         return worn_linings(self._sums(made, self.touching(made)), loads, self.followers, friction, depth)
 
-    def _sums(self, made: Structure, touching: Any) -> tuple[Any, ...]:
+    def _sums(self, made: MeshedStructure, touching: Any) -> tuple[Any, ...]:
         """What `summed` takes."""
         elastic = tuple((name, *(float(x) for x in vars_of(part))) for name, part in self.materials().items())
         springs = tuple((name, float(value)) for name, value in self.held_by().items())
@@ -258,7 +258,7 @@ def vars_of(material: Material) -> tuple[float, float, float]:
 
 @lru_cache(maxsize=2)
 def summed(
-    made: Structure, elastic: Any, springs: Any, contact: float, touching: bytes
+    made: MeshedStructure, elastic: Any, springs: Any, contact: float, touching: bytes
 ) -> tuple[tuple[Any, Any, Any], tuple[Any, ...]]:
     """M, C and K of a structure, and the rows normal, n, along and across of its contacts.
 
@@ -295,17 +295,17 @@ def worn_linings(sums: Any, loads: Any, followers: str, friction: float, depth: 
     return run_in(brake, depth, dict(springs)[followers] * made.springs[followers] if followers else None)
 
 
-def modes_alone(body: Body, material: Material, top: float, held: Any = None) -> RealModes:
+def modes_alone(body: MeshedBody, material: Material, top: float, held: Any = None) -> RealModes:
     """Undamped modes below `top` [Hz] of one body, free or without the freedoms marked `held` (n,)."""
     kept = np.arange(body.size) if held is None else np.flatnonzero(~held)
     stiffness, mass = material.young * body.stiffness(material.poisson), material.density * body.mass()
     return real_modes(sparse.csr_array(stiffness[kept][:, kept]), sparse.csr_array(mass[kept][:, kept]), top)
 
 
-class Frame:
+class FreedomsOfBodies:
     """Where the freedoms of several bodies stand among all, without those that are held."""
 
-    def __init__(self, bodies: Sequence[Body], held: Sequence[Any]) -> None:
+    def __init__(self, bodies: Sequence[MeshedBody], held: Sequence[Any]) -> None:
         self.inner = [np.flatnonzero(~at) for at in held]
         self.starts = np.cumsum([0, *(len(inner) for inner in self.inner)])
         self.size = int(self.starts[-1])

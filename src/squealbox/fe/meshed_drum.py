@@ -14,21 +14,21 @@ Contact is that of `squealbox.fe.meshed`, with e_n outwards, e_t along the turni
 """
 
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from squealbox.fe.contact_points import ContactPoints
-from squealbox.fe.grids import Body, breaks
+from squealbox.fe.grids import MeshedBody, breaks
 from squealbox.fe.meshed import (
     IRON,
     LINING,
     OWN,
     STEEL,
-    Frame,
+    FreedomsOfBodies,
     Material,
     MeshedBrake,
-    Structure,
+    MeshedStructure,
     longest_side,
     modes_alone,
     some_of,
@@ -106,7 +106,7 @@ class MeshedDrumBrake(MeshedBrake):
         if not shoes.lining_thickness + shoes.table_thickness < drum.radius:
             raise ParameterError("Shoes", "table_thickness", shoes.table_thickness, "a shoe that fits into the drum")
 
-    def structure(self) -> Structure:
+    def structure(self) -> MeshedStructure:
         self.one_system()
         drum, shoes = self.drum, self.shoes
         shape = (
@@ -114,7 +114,7 @@ class MeshedDrumBrake(MeshedBrake):
             *(shoes.angle, shoes.width, shoes.lining_thickness, shoes.table_thickness),
             *(shoes.lining.poisson, shoes.table.poisson, self.element_size),
         )
-        return drum_structure(*(float(value) for value in shape))
+        return drum_structure(DrumBrakeShape(*(float(value) for value in shape)))
 
     def materials(self) -> dict[str, Material]:
         return {"drum": self.drum.material, "linings": self.shoes.lining, "tables": self.shoes.table}
@@ -128,35 +128,40 @@ class MeshedDrumBrake(MeshedBrake):
     def wearing_under(self) -> dict[str, float]:
         return {"force": self.running_in_force}
 
-    def touching(self, made: Structure) -> Any:
+    def touching(self, made: MeshedStructure) -> Any:
         """Contact points outside chamfers."""
         inside = np.abs(made.angle) < 0.5 * self.shoes.angle - self.shoes.chamfer
         return some_of(inside, "Shoes", self.shoes.chamfer)
 
 
+class DrumBrakeShape(NamedTuple):
+    """What the mesh of a drum brake depends on: lengths [m], the angle [rad] and Poisson's ratios [-]."""
+
+    radius: float
+    wall: float
+    deep: float
+    drum_poisson: float
+    angle: float
+    width: float
+    lining: float
+    table: float
+    lining_poisson: float
+    table_poisson: float
+    size: float
+
+
 @lru_cache(maxsize=4)
-def drum_structure(
-    radius: float,
-    wall: float,
-    deep: float,
-    drum_poisson: float,
-    angle: float,
-    width: float,
-    lining: float,
-    table: float,
-    lining_poisson: float,
-    table_poisson: float,
-    size: float,
-) -> Structure:
+def drum_structure(shape: DrumBrakeShape) -> MeshedStructure:
     """Mesh and assemble a drum and two shoes; all lengths in m, the angle in rad."""
+    radius, wall, deep, drum_poisson, angle, width, lining, table, lining_poisson, table_poisson, size = shape
     drum = _ring(radius, wall, deep, size)
     under = radius - lining
     through = np.concatenate([breaks(under - table, under, size), breaks(under, radius, size)[1:]])
     across = breaks(0.5 * (deep - width), 0.5 * (deep + width), size, 2)
-    shoes = [Body(through, breaks(m - 0.5 * angle, m + 0.5 * angle, size / radius, 4), across) for m in MIDDLES]
+    shoes = [MeshedBody(through, breaks(m - 0.5 * angle, m + 0.5 * angle, size / radius, 4), across) for m in MIDDLES]
     bodies = (drum, *shoes)
     edge = np.abs(drum.places[2]) < 1e-6 * deep
-    frame = Frame(bodies, [edge, *(np.zeros(shoe.size, dtype=bool) for shoe in shoes)])
+    frame = FreedomsOfBodies(bodies, [edge, *(np.zeros(shoe.size, dtype=bool) for shoe in shoes)])
     mass: dict[str, Any] = {"drum": frame.square(drum.mass(), 0)}
     stiffness: dict[str, Any] = {"drum": frame.square(drum.stiffness(drum_poisson), 0)}
     for name, poisson, outside in (("linings", lining_poisson, True), ("tables", table_poisson, False)):
@@ -185,7 +190,7 @@ def drum_structure(
         moving[own[1::3], i - 1] = outwards * (anchor[0] - shoe.places[0, 1::3])
         inner = shoe.face(0, 0)
         guide = guide + frame.spring(inner, i, _directions(inner.place)[2])
-    return Structure(
+    return MeshedStructure(
         size=frame.size,
         mass=mass,
         stiffness=stiffness,
@@ -199,15 +204,18 @@ def drum_structure(
 
 
 def free_drum_modes(drum: Drum, element_size: float, top: float, *, held: bool = False) -> RealModes:
-    """Undamped modes below `top` [Hz] of the drum alone, free or held at its edge: what a hammer test finds."""
+    """Undamped modes below `top` [Hz] of the drum alone, free or held at its edge: what a hammer test finds.
+
+    `element_size` [m]: of the mesh.
+    """
     body = _ring(drum.radius, drum.thickness, drum.width, element_size)
     edge = np.abs(body.places[2]) < 1e-6 * drum.width
     return modes_alone(body, drum.material, top, edge if held else None)
 
 
-def _ring(radius: float, wall: float, deep: float, size: float) -> Body:
+def _ring(radius: float, wall: float, deep: float, size: float) -> MeshedBody:
     around = breaks(0.0, 2.0 * np.pi, size / radius, 12)
-    return Body(breaks(radius, radius + wall, size, 2), around, breaks(0.0, deep, size, 2), closed=True)
+    return MeshedBody(breaks(radius, radius + wall, size, 2), around, breaks(0.0, deep, size, 2), closed=True)
 
 
 def _directions(place: Any) -> tuple[Any, Any, Any]:

@@ -28,7 +28,7 @@ def changeable(full: FullBrake) -> dict[str, float]:
 def with_component(
     small: ReducedBrake, name: str, *, modulus: float = 1.0, density: float = 1.0, damping: float = 1.0
 ) -> ReducedBrake:
-    """The brake with the modulus, the density and the damping per stiffness of one component times factors.
+    """The brake with the `modulus` [-], `density` [-] and `damping` [-] per stiffness of one component times factors.
 
     `name` is one of the full brake's `components()` but the contact. Raises `ParameterError` for another, or for a
     factor that is not positive, and `InvalidSystem` where the full brake is not kept.
@@ -46,7 +46,7 @@ def with_component(
 
 
 def with_mass(small: ReducedBrake, node: int, mass: float) -> ReducedBrake:
-    """The brake with a mass [kg] on a node of the full brake's mesh, by its number as `local_sensitivity` gives it."""
+    """The brake with a `mass` [kg] on a node of the full brake's mesh, numbered as `local_sensitivity` does."""
     full = small.attached()
     if not hasattr(full.design, "node_rows"):
         raise InvalidSystem("of this brake the nodes are not known: a mass cannot be put on one")

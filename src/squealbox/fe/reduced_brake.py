@@ -27,7 +27,7 @@ FIELDS = ("M", "C", "K", "load", "n", "d", "t", "normal", "across", "N0", "V")
 SUMMED = {"n", "d", "normal", "across", "N0"}  # fields that sums over contacts are made of
 
 
-class Axis(DataSheet):
+class ChangeAlong(DataSheet):
     """One parameter that changes the matrices: its range, the points where they are known, and their change there.
 
     change[field] has shape (points, ...): the projected field there, less that at the reference.
@@ -38,6 +38,11 @@ class Axis(DataSheet):
     high: float
     points: Any
     change: Any
+
+    @classmethod
+    def kind(cls) -> str:
+        """The name files know it by."""
+        return "fe.reduced_brake.Axis"
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -67,7 +72,7 @@ class Reduction(DataSheet):
     band: tuple[float, float]
     top: float
     size: int
-    axes: tuple[Axis, ...] = ()
+    axes: tuple[ChangeAlong, ...] = ()
     errors: Any = ()
     tolerance: float = 0.05
     method: str = "enriched"
@@ -345,7 +350,7 @@ class ReducedBrake(Design):
         return full
 
 
-def _in_range(axis: Axis, value: Any) -> Any:
+def _in_range(axis: ChangeAlong, value: Any) -> Any:
     number = np.asarray(value, dtype=float)
     if not np.all((number >= axis.low) & (number <= axis.high)):
         raise ParameterError(

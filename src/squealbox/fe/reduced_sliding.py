@@ -19,7 +19,7 @@ STEP = 1e-12  # change of the normal forces, relative to them, at which the set 
 
 
 @dataclass
-class Sum:
+class WeightedSum:
     """left' diag(weight) right of rows (contacts, m) and (contacts, k), kept for the last weights asked for."""
 
     left: Any
@@ -49,16 +49,16 @@ class Sum:
 class Sums:
     """What all values of friction share: the sums of closed and of open contacts, and the rows across in single."""
 
-    pushing: Sum
-    lifting: Sum | None
+    pushing: WeightedSum
+    lifting: WeightedSum | None
     across: Any
 
 
 def sums_of(rows: dict[str, Any], unilateral: Any, *, added: bool = True) -> Sums:
     """The sums of the contacts that press at q = 0, for mu = 1; not `added` up yet where they serve one value alone."""
     pressed = np.concatenate([rows["n"], rows["N0"][:, None]], axis=1)
-    pushing, closed = Sum(rows["d"], pressed), (rows["N0"] > 0.0) | ~unilateral
-    lifting = None if rows["normal"] is None else Sum(rows["normal"], pressed)
+    pushing, closed = WeightedSum(rows["d"], pressed), (rows["N0"] > 0.0) | ~unilateral
+    lifting = None if rows["normal"] is None else WeightedSum(rows["normal"], pressed)
     if added:
         pushing.at(np.where(closed, np.sign(rows["V"]), 0.0))
         if lifting is not None:

@@ -24,7 +24,7 @@ from squealbox.fe.pencil import Pencil, SlidingPencil, pencil_of, vibrating
 from squealbox.fe.projection import HEADROOM, ROUNDS, Projected, basis_for, refined
 from squealbox.fe.quadratic import full_modes
 from squealbox.fe.real_modes import real_modes
-from squealbox.fe.reduced_brake import FIELDS, Axis, ReducedBrake, Reduction, chebyshev_points, lagrange
+from squealbox.fe.reduced_brake import FIELDS, ChangeAlong, ReducedBrake, Reduction, chebyshev_points, lagrange
 from squealbox.fe.reduced_sliding import steady_small
 from squealbox.fe.small import Small
 from squealbox.sparse_sliding import Start, at_rest
@@ -218,7 +218,7 @@ def _pencils_at(full: FullBrake, reference: SlidingPencil, points: list[dict[str
     return found
 
 
-def _axis(full: FullBrake, name: str, low: float, high: float, arrays: dict[str, Any]) -> Axis | None:
+def _axis(full: FullBrake, name: str, low: float, high: float, arrays: dict[str, Any]) -> ChangeAlong | None:
     """What changes along one parameter; None for a coefficient of the friction law, which the contacts know."""
     if name.startswith("friction."):
         return None
@@ -242,7 +242,7 @@ def _axis(full: FullBrake, name: str, low: float, high: float, arrays: dict[str,
             difference = np.stack([sample[field] for sample in samples]) - arrays[field]
             if np.max(np.abs(difference), initial=0.0) > 1e-13 * np.max(np.abs(arrays[field]), initial=0.0):
                 change[field] = difference
-    return Axis(name=name, low=low, high=high, points=points, change=change)
+    return ChangeAlong(name=name, low=low, high=high, points=points, change=change)
 
 
 def _not_foreseen(name: str, samples: list[Any], found: list[Any], weights: Any) -> str:

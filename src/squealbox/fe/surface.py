@@ -11,7 +11,7 @@ import numpy as np
 
 from squealbox.fe.assembled import AssembledBrake
 from squealbox.fe.disc_brake import DiscBrake
-from squealbox.fe.grids import Body
+from squealbox.fe.grids import MeshedBody
 from squealbox.fe.meshed import MeshedBrake
 from squealbox.fe.reduced_brake import ReducedBrake
 
@@ -118,7 +118,7 @@ def _meshed(brake: MeshedBrake, step: int) -> Surface:
     return Surface(whole, quads, kinds, names, freedoms, touching, step)
 
 
-def _outside(body: Body, step: int) -> Any:
+def _outside(body: MeshedBody, step: int) -> Any:
     """Quadrilaterals (f, 4) of corners of the open grid on the outside of a body, over every `step`-th line."""
     at = [np.rint(np.interp(x, b, np.arange(len(b)))).astype(int) for b, x in
           zip(body.breaks, body.grid_points, strict=True)]  # fmt: skip

@@ -55,7 +55,7 @@ class Simulate(DataSheet):
     points: int = parameter("-", 2, 1_000_000, default=5001, meaning="number of instants kept")
 
 
-class Axis(DataSheet):
+class Varied(DataSheet):
     """One parameter and the values it takes; `low` and `high` are in the parameter's own SI unit."""
 
     aliases: ClassVar[dict[str, tuple[str, ...]]] = {"parameter": ("name",)}
@@ -75,8 +75,8 @@ class Axis(DataSheet):
 class Map:
     """[map]: stability over two parameters."""
 
-    x: Axis
-    y: Axis
+    x: Varied
+    y: Varied
 
 
 def read_modes(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Modes | None:
@@ -97,14 +97,14 @@ def read_simulate(document: Document, table: Mapping[str, Any], key: Key, design
     return section
 
 
-def read_onset(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Axis | None:
+def read_onset(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Varied | None:
     """The section [onset] or [branch]: ``parameter = "friction.static"`` and ``range = [0, 1]``."""
     return read_axis(document, table, key, design)
 
 
 def read_map(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Map | None:
     """The section [map]: ``x`` and ``y``, each a table of parameter, range and points."""
-    axes: dict[str, Axis | None] = {}
+    axes: dict[str, Varied | None] = {}
     for name in table:
         if name not in ("x", "y"):
             document.problem((*key, name), f"unknown key, {known_names(name[:60], ['x', 'y'])}")
@@ -121,14 +121,14 @@ def read_map(document: Document, table: Mapping[str, Any], key: Key, design: Des
     return None if x is None or y is None else Map(x, y)
 
 
-def read_axis(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Axis | None:
+def read_axis(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Varied | None:
     """A parameter of the design and a range in its unit."""
     if "range" not in table:
         document.problem(key, "the key 'range' is missing, expected two values such as [0, 1]")
     given = {name: value for name, value in table.items() if name != "range"}
     ends = read_ends(document, table.get("range"), _about(document, table, key, design), (*key, "range"))
     low, high = ends or (0.0, 1.0)
-    axis = read_sheet(document, Axis, {**given, "low": low, "high": high}, key)
+    axis = read_sheet(document, Varied, {**given, "low": low, "high": high}, key)
     return axis if ends else None
 
 

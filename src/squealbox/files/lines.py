@@ -24,7 +24,7 @@ _STRINGS = {
 
 def key_lines(text: str) -> dict[Key, int]:
     """The line, from 1, of every key, table and array element of a valid TOML text."""
-    return _Walk(text).lines
+    return _TextWalk(text).lines
 
 
 def line_of(lines: dict[Key, int], key: Key) -> int:
@@ -44,7 +44,7 @@ def dotted(key: Key) -> str:
     return text
 
 
-class _Walk:
+class _TextWalk:
     """One pass over the text; `at` is the place reached."""
 
     def __init__(self, text: str) -> None:

@@ -18,7 +18,7 @@ COEFFICIENT = re.compile(r"\b(mu|µ|μ|cof)\b|friction|coefficient|reibwert", re
 
 
 def read_points(path: str | os.PathLike[str]) -> tuple[Any, Any]:
-    """Sliding speeds [m/s] and friction coefficients of a CSV file; cells may carry units.
+    """Sliding speeds [m/s] and friction coefficients [-], shape (k,) each, of a CSV file; cells may carry units.
 
     Of more than two columns the names tell which are meant. Titles above them, lines of one text, are passed over.
     A first line without numbers is taken for names, with a unit in brackets or behind a comma or slash where there is

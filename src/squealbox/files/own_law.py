@@ -92,7 +92,8 @@ def own_law(
 ) -> OwnLaw:
     """A law from two plain functions of (v, p), or from their text; `slope` may be left out (see the module).
 
-    `static` left out is mu(0). Raises `ParameterError` for text that is not such functions, or a mu(0) outside [0, 10].
+    `numbers` [SI]: the law's own numbers, in the units the functions give them. `static` [-] left out is mu(0).
+    Raises `ParameterError` for text that is not such functions, or a mu(0) outside [0, 10].
 
     >>> law = own_law("def mu(v, p): return 0.3 + 0.1 * np.exp(-v)")
     >>> round(law.static, 12)
@@ -106,7 +107,10 @@ def own_law(
 
 
 def law_from_file(path: Path, numbers: Sequence[float] = (), static: float | None = None) -> OwnLaw:
-    """The law in the Python file at `path`. Calling this allows its code."""
+    """The law in the Python file at `path`. Calling this allows its code.
+
+    `numbers` [SI]: the law's own numbers, in the units its file gives them; `static` [-]: static limit.
+    """
     return own_law(path.read_text(encoding="utf-8"), numbers=numbers, static=static)
 
 

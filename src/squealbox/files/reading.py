@@ -57,8 +57,8 @@ class DesignFile:
     path: Path
     design: Design
     modes: analyses.Modes | None = None
-    onset: analyses.Axis | None = None
-    branch: analyses.Axis | None = None
+    onset: analyses.Varied | None = None
+    branch: analyses.Varied | None = None
     map: analyses.Map | None = None
     simulate: analyses.Simulate | None = None
     scatter: Scattered | None = None

@@ -23,7 +23,7 @@ from squealbox.fe.readers.matrix import MatrixFileError
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.fe.reduced_files import load_reduced
 from squealbox.fe.surface import with_surface
-from squealbox.files.analyses import Axis, Simulate, read_ends
+from squealbox.files.analyses import Simulate, Varied, read_ends
 from squealbox.files.arrays import ArrayFileError, Vector, path_beside
 from squealbox.files.asked import flattened, known
 from squealbox.files.document import Document
@@ -115,7 +115,7 @@ def read_reduced(document: Document, tables: Mapping[str, Any], beside: tuple[st
     return brake if len(document.problems) == before else None
 
 
-def dense(found: "DesignFile", axes: Iterable[Axis] = ()) -> "DesignFile":
+def dense(found: "DesignFile", axes: Iterable[Varied] = ()) -> "DesignFile":
     """The file with its finite-element brake reduced for `axes` and for what its sections vary.
 
     A brake with dense matrices is returned as it is. Raises `InvalidSystem`, one sentence, without a band.
@@ -207,7 +207,7 @@ def error_table(brake: ReducedBrake) -> str:
     return "\n".join(rows)
 
 
-def _ranges(found: "DesignFile", axes: Iterable[Axis]) -> dict[str, tuple[float, float]]:
+def _ranges(found: "DesignFile", axes: Iterable[Varied]) -> dict[str, tuple[float, float]]:
     """Everything that is varied, each over the union of its ranges."""
     spans = [(axis.name, float(axis.low), float(axis.high)) for axis in axes]
     if found.reduce is not None:

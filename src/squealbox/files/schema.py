@@ -8,7 +8,7 @@ from typing import Any
 
 from squealbox.fe.assembled import AssembledBrake
 from squealbox.files import countermeasures
-from squealbox.files.analyses import Axis, Modes, Simulate
+from squealbox.files.analyses import Modes, Simulate, Varied
 from squealbox.files.arrays import TRIANGLES
 from squealbox.files.assembled import ASSEMBLED
 from squealbox.files.measurements import measurement_schemas
@@ -186,7 +186,7 @@ def _axis() -> Schema:
         "properties": {
             "parameter": {"type": "string", "description": "dotted name, such as friction.static"},
             "range": {"type": "array", "items": end, "minItems": 2, "maxItems": 2, "description": "low and high"},
-            "points": _number(Axis.parameters()["points"], whole=True),
+            "points": _number(Varied.parameters()["points"], whole=True),
         },
         "required": ["parameter", "range"],
         "additionalProperties": False,

@@ -22,19 +22,10 @@ from squealbox.files.own_law import LARGEST as LARGEST_LAW
 from squealbox.files.own_law import OwnLaw, own_law
 from squealbox.friction import LAWS, FrictionLaw
 from squealbox.parameters import DataSheet, Parameter, ParameterError, known_names
+from squealbox.registers import name_of
 from squealbox.schedules import SCHEDULES, Schedule, Sum, as_schedule
 
 Sheet = TypeVar("Sheet", bound=DataSheet)
-
-
-NAMES = {"LuGre": "lugre"}  # words that are written as one
-
-
-def name_of(sheet: type[DataSheet]) -> str:
-    """The name a file knows a class by: ``linear_slope`` for `LinearSlope`."""
-    name = sheet.__name__
-    return NAMES.get(name) or re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
-
 
 LAW_NAMES: dict[str, type[FrictionLaw]] = {name_of(law): law for law in LAWS}
 OWN = "own"  # the law that is a Python file

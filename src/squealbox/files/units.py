@@ -33,7 +33,7 @@ class UnitError(ValueError):
 
 
 @dataclass(frozen=True)
-class Unit:
+class UnitOfMeasure:
     """What a unit is worth in SI, and its powers of mass, length, time and angle."""
 
     factor: float
@@ -83,11 +83,11 @@ _PLAIN = {
     "rev": (2.0 * math.pi, _ANGLE),
     "rpm": (2.0 * math.pi / 60.0, (0, 0, -1, 1)),
 }
-NAMES: dict[str, Unit] = {
-    prefix + name: Unit(worth * factor, dimension)
+NAMES: dict[str, UnitOfMeasure] = {
+    prefix + name: UnitOfMeasure(worth * factor, dimension)
     for name, (factor, dimension) in _PREFIXED.items()
     for prefix, worth in _PREFIXES.items()
-} | {name: Unit(factor, dimension) for name, (factor, dimension) in _PLAIN.items()}
+} | {name: UnitOfMeasure(factor, dimension) for name, (factor, dimension) in _PLAIN.items()}
 
 _KINDS: dict[Dimension, str] = {
     _NONE: "a plain number",
@@ -149,10 +149,10 @@ def split(text: str) -> tuple[float, str]:
 
 
 @functools.lru_cache(256)
-def unit(text: str) -> Unit:
+def unit(text: str) -> UnitOfMeasure:
     """What the unit `text` is worth; `UnitError` when it is not one."""
     if text in ("", "-"):
-        return Unit(1.0, _NONE)
+        return UnitOfMeasure(1.0, _NONE)
     if not _ALLOWED.fullmatch(text):
         odd = next(c for c in text if not _ALLOWED.fullmatch(c))
         raise UnitError(f"{_short(text)} is not a unit: the character {odd!a} has no place in one")
@@ -161,10 +161,10 @@ def unit(text: str) -> Unit:
         part = _named(name)
         factor *= part.factor**power
         dimension = [a + power * b for a, b in zip(dimension, part.dimension, strict=True)]
-    return Unit(factor, (dimension[0], dimension[1], dimension[2], dimension[3]))
+    return UnitOfMeasure(factor, (dimension[0], dimension[1], dimension[2], dimension[3]))
 
 
-def kind(of: Unit) -> str:
+def kind(of: UnitOfMeasure) -> str:
     """What a unit measures, in words: "a force", or its SI units when there is no word for it."""
     if of.dimension in _KINDS:
         return _KINDS[of.dimension]
@@ -192,7 +192,7 @@ def _factors(text: str) -> list[tuple[int, str]]:
         sign, at = (-1 if operator[1] == "/" else 1), operator.end()
 
 
-def _named(name: str) -> Unit:
+def _named(name: str) -> UnitOfMeasure:
     if name in NAMES:
         return NAMES[name]
     found = _from_pint(name) if len(name) >= SHORTEST_FOR_PINT else None
@@ -203,7 +203,7 @@ def _named(name: str) -> Unit:
     return found
 
 
-def _from_pint(name: str) -> Unit | None:
+def _from_pint(name: str) -> UnitOfMeasure | None:
     """A single name looked up in pint; None for what pint does not know or what is not mechanical."""
     pint, registry = _pint()
     try:
@@ -218,7 +218,7 @@ def _from_pint(name: str) -> Unit | None:
     if not set(powers) <= set(base) or any(power != int(power) for power in powers.values()):
         return None
     mass, length, time, angle = (int(powers.get(each, 0)) for each in base)
-    return Unit(float(worth.magnitude), (mass, length, time, angle))
+    return UnitOfMeasure(float(worth.magnitude), (mass, length, time, angle))
 
 
 @functools.cache
@@ -235,7 +235,7 @@ def _alike(given: Dimension, wanted: Dimension) -> bool:
     return given[:3] == wanted[:3]
 
 
-def _wanted(expected: str, wanted: Unit) -> str:
+def _wanted(expected: str, wanted: UnitOfMeasure) -> str:
     if expected in ("", "-", "1"):
         return "a plain number without a unit"
     return f"{expected} ({kind(wanted)})"

@@ -37,19 +37,26 @@ def brake_drawing(design: Design, *, axes: Any = None) -> "Figure":
     Blue is what slides and where it moves, orange are loads. Raises `TypeError` for a design no drawing is known
     for, or one that stands for a whole map.
     """
-    kind = next((kind for kind in DRAWINGS if isinstance(design, kind)), None)
-    if kind is None:
+    draw = drawing_of(type(design))
+    if draw is None:
         known = ", ".join(sorted(each.__name__ for each in DRAWINGS))
         raise TypeError(f"no drawing is known for {type(design).__name__}: expected one of {known}")
     if any(np.ndim(value) for _, about, value in design.leaves() if about.unit != "-"):
         raise TypeError(f"{type(design).__name__} stands for a map of brakes: expected one")
     with drawing(axes, width=1.3 * COLUMN, height=3.2) as panel:
-        DRAWINGS[kind](panel, design)
+        draw(panel, design)
         panel.set_aspect("equal")
         panel.set_axis_off()
         panel.margins(0.06)
         panel.autoscale_view()
         return figure_of(panel)
+
+
+def drawing_of(kind: type[Design]) -> Callable[[Any, Any], None] | None:
+    """How designs of this kind are drawn on a panel; None where no drawing is known."""
+    if kind.draw is not Design.draw:
+        return lambda panel, design: design.draw(panel)
+    return next((draw for known, draw in DRAWINGS.items() if issubclass(kind, known)), None)
 
 
 def _line(panel: Any, *points: Point, **look: Any) -> None:

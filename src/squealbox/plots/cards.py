@@ -150,10 +150,10 @@ def _design_card(design: Design) -> str:
 
 def has_drawing(design: Design) -> bool:
     """True when a drawing is known for this design and it is one brake, not a map of them."""
-    from squealbox.plots.brakes import DRAWINGS
+    from squealbox.plots.brakes import drawing_of
 
     single = not any(np.ndim(value) for _, about, value in design.leaves() if about.unit != "-")
-    return single and any(isinstance(design, kind) for kind in DRAWINGS)
+    return single and drawing_of(type(design)) is not None
 
 
 def parameter_rows(design: DataSheet) -> list[tuple[str, str, str, str, str]]:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @drawn_by.register(ContactComparison)
 def contact_comparison(comparison: ContactComparison, *, periods: float = 3.0, axes: Any = None) -> "Figure":
-    """The last `periods` periods of every scheme, and the error of each against its number of evaluations.
+    """The last `periods` [-] of every scheme, and the error of each against its number of evaluations.
 
     `axes` may give the two panels to draw in. A run read from a file has lost its motions: only the second panel is
     filled then.

@@ -74,7 +74,7 @@ def cycle_overview(cycle: Cycle | ForcedCycle, *, dof: int | None = None, title:
     kind = cycle.stability
     what = "forced motion" if isinstance(cycle, ForcedCycle) else "cycle"
     said = f"{kind} {what}, {number(cycle.frequency)} Hz" if cycle.outcome.ok else str(cycle.outcome)
-    caution = f"Caution: {cycle.warning}" if cycle.warning else ""
+    caution = cycle.warned()
     figure.suptitle(". ".join(filter(None, (title, said))) + (f"\n{caution}" if caution else ""), fontsize=8, wrap=True)
     return figure
 
@@ -105,7 +105,7 @@ def branch_diagram(
     estimates : quick estimates, drawn as dotted curves with how far they are off; True computes those of
         :func:`limit_cycles.estimate_curves` where the branches know what they were followed in, False draws none
     labels, name : of the branches (each then has a colour of its own) and of the parameter, with its unit
-    scale : what the parameter is divided by
+    scale : [-] what the parameter is divided by
     axes : draw here instead of in a new figure
     """
     several = [branches] if isinstance(branches, Branch) else list(branches)

@@ -47,6 +47,7 @@ def bifurcation_diagram(
         section reads, a displacement beside steady sliding; branches lie over maxima and minima of `dof` only)
     name : of the parameter, with its unit; scale : what it is divided by
     axes : draw here instead of in a new figure
+    scale : [-] what the parameter is divided by
     """
     if show not in SHOWN:
         raise ValueError(f"show = {show!r}: expected one of {', '.join(SHOWN)}")
@@ -161,7 +162,7 @@ def coexistence_region(
     ----------
     region : of :func:`coexistence`
     ends : (rows,) the lower edge by exact cycles, from :func:`cycle_ends`, drawn as circles
-    names, scales : of the axes, with units, and what their values are divided by
+    names, scales : [-] of the axes, with units, and what their values are divided by
     axes : draw here instead of in a new figure
     """
     x, y = region.x / scales[0], region.y / scales[1]

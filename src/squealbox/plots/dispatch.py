@@ -3,6 +3,7 @@
 import importlib
 import inspect
 from functools import cache, singledispatch
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squealbox.arguments import public, real
@@ -15,18 +16,12 @@ if TYPE_CHECKING:
 INCHES = real(Parameter("inches", 0.5, 100.0))
 
 
-# The modules that say how a kind of result is drawn; they are loaded when something is first to be drawn.
-DRAWERS = (
-    "basins", "brakes", "contact", "cycles", "diagrams", "fits", "laws", "maps", "measured", "modes", "motion",
-    "optimisation", "points", "populations", "reliability", "remedies", "spectra", "stability", "sweeps", "uncertainty",
-)  # fmt: skip
-
-
 @cache
 def drawers() -> None:
     """Load every module that registers how a kind is drawn."""
-    for name in DRAWERS:
-        importlib.import_module(f"squealbox.plots.{name}")
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        if "\n@drawn_by.register" in path.read_text(encoding="utf-8"):
+            importlib.import_module(f"squealbox.plots.{path.stem}")
 
 
 @singledispatch

@@ -27,7 +27,10 @@ def friction_curve(
 ) -> "Figure":
     """mu(v) of one law, or of several given by name, up to a sliding speed [m/s].
 
-    `operating` is a range of sliding speeds to shade, `speed` the one of steady sliding, where the slope is written.
+    `upto` [m/s]: largest sliding speed drawn.
+
+    `operating` [m/s] is a range of sliding speeds to shade, `speed` [m/s] the one of steady sliding, where the slope
+    is written.
     """
     laws = law if isinstance(law, Mapping) else {"": law}
     speeds = np.linspace(0.0, upto, 401)

@@ -1,6 +1,7 @@
 """A map over two parameters: where steady sliding, or a run, is unstable."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,20 +17,31 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+@dataclass(frozen=True)
+class PlaneLabels:
+    """What the axes of a plane of two parameters and the bar beside it are called, with their units."""
+
+    x_name: str = "x"
+    x_unit: str = ""
+    y_name: str = "y"
+    y_unit: str = ""
+    value_name: str = "growth rate"
+    value_unit: str = "1/s"
+
+    def of_axes(self) -> dict[str, str]:
+        """For the axes of Matplotlib."""
+        return {"xlabel": quantity_label(self.x_name, self.x_unit), "ylabel": quantity_label(self.y_name, self.y_unit)}
+
+
 def stability_map(
     x: Any,
     y: Any,
     growth: Any,
     *,
-    x_name: str = "x",
-    x_unit: str = "",
-    y_name: str = "y",
-    y_unit: str = "",
-    value_name: str = "growth rate",
-    value_unit: str = "1/s",
     curves: Iterable[Any] | None = None,
     title: str = "",
     axes: Any = None,
+    **labels: str,
 ) -> "Figure":
     """Unstable region over two parameters: shaded by growth rate, hatched, and bounded by a line.
 
@@ -38,9 +50,10 @@ def stability_map(
     x, y : (nx,), (ny,), increasing, in the units named; convert angles to degrees first
     growth : (ny, nx), unstable where > 0; NaN, drawn as crosses, where nothing is known. Booleans (True = unstable) are
         drawn without shades
-    x_name, x_unit, y_name, y_unit, value_name, value_unit : for the axes and the bar
+    labels : x_name, x_unit, y_name, y_unit of the axes, value_name, value_unit of the bar
     curves : the boundary as traced, each curve (k, 2) in the units of the axes; without it the line is the grid's own
     """
+    about = PlaneLabels(**labels)
     x, y, grid = _checked("growth", x, y, growth)
     boolean = grid.dtype == bool
     level = np.where(grid, 1.0, -1.0) if boolean else grid.astype(float)
@@ -48,7 +61,9 @@ def stability_map(
     top = float(np.nanmax(level, initial=-np.inf))
     with drawing(axes, width=4.0, height=3.4) as panel:
         if top > 0.0:
-            _shade(panel, x, y, np.ma.masked_invalid(level), top, None if boolean else (value_name, value_unit))
+            _shade(
+                panel, x, y, np.ma.masked_invalid(level), top, None if boolean else (about.value_name, about.value_unit)
+            )
             if curves is None:
                 panel.contour(x, y, np.ma.masked_invalid(level), levels=[0.0], **EDGE)
         if np.any(unknown):
@@ -56,7 +71,7 @@ def stability_map(
         for points in curves or ():
             panel.plot(points[:, 0], points[:, 1], color=EDGE["colors"][0], linewidth=EDGE["linewidths"], zorder=3)
         _legend(panel, level > 0.0, unknown)
-        panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
+        panel.set(**about.of_axes(), title=title)
         panel.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))  # a map that is stable all over draws nothing else
         panel.set_facecolor("white")
         panel.tick_params(color="#000000")
@@ -107,14 +122,11 @@ def amplitude_map(
     y: Any,
     amplitude: Any,
     *,
-    x_name: str = "x",
-    x_unit: str = "",
-    y_name: str = "y",
-    y_unit: str = "",
     unit: str = "m",
     name: str = "amplitude",
     title: str = "",
     axes: Any = None,
+    **labels: str,
 ) -> "Figure":
     """What transients end in, over two parameters: colour by the square root, from zero to all but a hundredth.
 
@@ -125,7 +137,9 @@ def amplitude_map(
     x, y : (nx,), (ny,), increasing, in the units named
     amplitude : (ny, nx), one row for each y; NaN where a run did not end is drawn grey
     unit, name : of what is drawn, by default an amplitude in m
+    labels : x_name, x_unit, y_name, y_unit of the axes
     """
+    about = PlaneLabels(**labels)
     x, y, grid = _checked("amplitude", x, y, np.asarray(amplitude, dtype=float))
     from matplotlib.colors import PowerNorm
 
@@ -137,5 +151,5 @@ def amplitude_map(
         shown = np.ma.masked_invalid(grid / factor)
         mesh = panel.pcolormesh(x, y, shown, norm=PowerNorm(0.5, 0.0, top), cmap="magma_r", rasterized=True)
         panel.figure.colorbar(mesh, ax=panel, label=quantity_label(name, read), extend="max")
-        panel.set(xlabel=quantity_label(x_name, x_unit), ylabel=quantity_label(y_name, y_unit), title=title)
+        panel.set(**about.of_axes(), title=title)
         return figure_of(panel)

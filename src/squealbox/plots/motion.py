@@ -81,7 +81,7 @@ def phase_plane(
     title: str = "",
     axes: Any = None,
 ) -> "Figure":
-    """Velocity against displacement: the last `part` of the time dark, what came before pale, the start as a ring."""
+    """Velocity against displacement: the last `part` [-] of the time dark, before it pale, the start as a ring."""
     times, x, velocity = _drawn(motion, dof)
     system = getattr(motion, "system", None)
     factor, read = scaled(unit_at(system, dof), x, to=unit)

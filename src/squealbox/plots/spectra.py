@@ -110,7 +110,7 @@ def spectrogram(
     axes: Any = None,
     **cut: Any,
 ) -> "Figure":
-    """Amplitude over time and frequency, dark where it is large, over `decades` below the largest.
+    """Amplitude over time and frequency, dark where it is large, over `decades` [-] below the largest.
 
     `signal` is a `Spectrogram`, a trajectory, or an array (k,) in m with its times `t` [s]; `upto` [Hz] is the highest
     frequency drawn; `cut` goes to :func:`squealbox.signals.spectrogram`.

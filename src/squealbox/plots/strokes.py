@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.plots.brakes import BELT, DRAWINGS, LOAD
+from squealbox.plots.brakes import BELT, LOAD, drawing_of
 
 SAID = {  # what a drawing calls by another name than the design does
     "N": ("load",), "F": ("load",), "N0": ("load",), "N1": ("load1",), "N2": ("load2",), "V": ("sliding_speed",),
@@ -26,10 +26,9 @@ def brake_strokes(design: Design) -> dict[str, Any]:
     >>> sorted({stroke["kind"] for stroke in brake_strokes(MassOnBelt())["strokes"]})
     ['arrow', 'circle', 'line', 'polygon', 'text']
     """
-    kind = next((kind for kind in DRAWINGS if isinstance(design, kind)), None)
-    panel = Strokes()
-    if kind is not None:
-        DRAWINGS[kind](panel, design)
+    draw, panel = drawing_of(type(design)), Strokes()
+    if draw is not None:
+        draw(panel, design)
     points = np.array(panel.points) if panel.points else np.zeros((1, 2))
     low, high = points.min(axis=0), points.max(axis=0)
     return {"strokes": panel.strokes, "box": [float(x) for x in (low[0], high[0], low[1], high[1])]}

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.parameters import with_cautions
 from squealbox.plots.ticks import spread_ticks
 from squealbox.signals import with_error
 from squealbox.words import MINUS
@@ -174,6 +175,8 @@ def panels(
 ) -> "tuple[Figure, Any]":
     """A figure of rows x columns panels; width and height in inches. Keywords go to ``Figure.subplots``.
 
+    `width` [in]: of the figure; `height` [in]: of the figure.
+
     Returns the figure and its axes: one, or an array. Hand each to a function of this room as ``axes=``. In a `Look`
     of another width the height follows, and a row of panels that would get too narrow becomes a column.
     """
@@ -241,8 +244,8 @@ def save(
 ) -> list[Path]:
     """Write a figure as path.png and path.svg, as path.pdf where it ends so, or as `formats`; returns the paths.
 
-    `dots` an inch, 200 by default. The files hold no date and no version, so equal figures give equal files. The figure
-    is laid out once for all formats, where `Figure.savefig` alone would draw it twice for each.
+    `dots` [1/in] an inch, 200 by default. The files hold no date and no version, so equal figures give equal files.
+    The figure is laid out once for all formats, where `Figure.savefig` alone would draw it twice for each.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -262,7 +265,7 @@ def save(
 
 
 def drawn(figure: "Figure", kind: str = "png", dots: float | None = None, *, trimmed: bool = False) -> bytes:
-    """The figure as the content of a PNG, SVG or PDF file, `dots` an inch, `trimmed` of an empty margin."""
+    """The figure as the content of a PNG, SVG or PDF file, `dots` [1/in] an inch, `trimmed` of an empty margin."""
     stream = io.BytesIO()
     with looked(figure), laid_out(figure, dots):
         box = "tight" if trimmed else None
@@ -302,7 +305,7 @@ def cautioned(panel: "Axes", cautions: Sequence[str], alone: bool) -> None:
         return
     figure = figure_of(panel)
     width = max(int(figure.get_size_inches()[0] * CHARACTERS), 40)
-    figure.supxlabel(textwrap.fill(f"Caution: {said}", width, max_lines=4, placeholder=" ..."), fontsize=6.5)
+    figure.supxlabel(textwrap.fill(with_cautions([], said), width, max_lines=4, placeholder=" ..."), fontsize=6.5)
 
 
 def note(axes: "Axes", text: str, where: str = "upper right") -> None:

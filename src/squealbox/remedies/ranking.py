@@ -146,7 +146,7 @@ def silence(
     candidates : None takes `candidates_for`: each parameter, absorbers, dampers, masses, springs, shims, asymmetry,
         dither, velocity feedback, active force control, combinations of two. Of a reduced brake less friction,
         components stiffer, softer, heavier, lighter or more damped, and masses on nodes, by the modes of its band
-    margin : by which friction may rise without squeal
+    margin : [-] by which friction may rise without squeal
     samples, seed : of the lot, the same for every candidate; absorbers scatter in their tuning by 3 % besides. None
         takes 2048 brakes, fewer of more than 20 degrees of freedom, which take longer; the summary says so
     push : [m/s] velocity of the push along the worst mode after which the motion is followed; 0 follows none

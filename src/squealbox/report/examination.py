@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 from squealbox.designs import Design
-from squealbox.files.analyses import Axis, Map, Simulate
+from squealbox.files.analyses import Map, Simulate, Varied
 from squealbox.limit_cycles import Cycle, HopfPoint
 from squealbox.matrices import liveliest
 from squealbox.remedies import Remedies
@@ -42,7 +42,7 @@ class Examination:
     band: BandModes | None = None
     mode_table: dict[str, Any] | None = None
     why: Mechanism | None = None
-    varied: Axis | None = None
+    varied: Varied | None = None
     crossings: CriticalValues | None = None
     spectra: ComplexModes | TrackedModes | None = None
     ranking: Sensitivity | None = None

@@ -12,7 +12,7 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.files.analyses import Axis, Map, Simulate
+from squealbox.files.analyses import Map, Simulate, Varied
 from squealbox.files.runs import LARGE, lasting, run, run_closely, usual_duration
 from squealbox.files.varied import quantity_of, scalar_parameters
 from squealbox.limit_cycles import Cycle, hopf_point, shooting
@@ -58,7 +58,7 @@ PUSHES = (1.0, 3.0)  # velocities at the contacts, over the sliding speed, from 
 def examine(
     design: Design,
     *,
-    onset: Axis | None = None,
+    onset: Varied | None = None,
     plane: Map | None = None,
     simulate: Simulate | None = None,
     time: float = 0.0,
@@ -115,7 +115,7 @@ class _Work:
         except (InvalidSystem, SignalError, ValueError) as error:
             self.missing[name] = " ".join(str(error).split())
 
-    def stability(self, onset: Axis | None) -> None:
+    def stability(self, onset: Varied | None) -> None:
         if not self.modes.exists:
             self.missing["stability"] = f"there is no steady sliding: {self.modes.outcome.message}"
             return
@@ -250,14 +250,14 @@ class _Work:
         known = scalar_parameters(self.design)
         return tuple(name for name in numbers if name in known and name.partition(".")[0] not in heads)
 
-    def _usual_axis(self) -> Axis:
+    def _usual_axis(self) -> Varied:
         known = scalar_parameters(self.design)
         rubs = "friction.static" in known and self.system.contacts
         name = "friction.static" if rubs else self._strongest([])
         return self._about(name, 0.05, 2.5)
 
     def _usual_plane(self) -> Map:
-        varied: Axis = self.found["varied"]
+        varied: Varied = self.found["varied"]
         if self.reduced:
             raise InvalidSystem("a finite-element brake is reduced for what it varies, which [map] in the file says")
         other = self._about(self._strongest([varied.name]), 0.5, 1.5)
@@ -271,7 +271,7 @@ class _Work:
             raise ParameterError(type(self.design).__name__, "design", "it", "a parameter that changes the growth rate")
         return names[0]
 
-    def _about(self, name: str, low: float, high: float) -> Axis:
+    def _about(self, name: str, low: float, high: float) -> Varied:
         return _about(self.design, name, low, high)
 
 
@@ -282,17 +282,17 @@ def _loudness(cycle: Cycle) -> SoundLevel:
     return sound_level(np.interp(t, cycle.t, cycle.qd[:, dof], period=cycle.period), t)
 
 
-def usual_friction(design: Design, shares: tuple[float, float]) -> Axis | None:
+def usual_friction(design: Design, shares: tuple[float, float]) -> Varied | None:
     """The friction at rest over shares of its own value; None of a design that has none, or several."""
     known = scalar_parameters(design)
     return _about(design, "friction.static", *shares) if "friction.static" in known else None
 
 
-def _about(design: Design, name: str, low: float, high: float) -> Axis:
+def _about(design: Design, name: str, low: float, high: float) -> Varied:
     """A range about the design's own value in shares of it, inside what the parameter may be."""
     value, about = float(design.value_of(name)), quantity_of(design, name)
     ends = sorted((low * value, high * value))
     ends = [float(np.clip(end, about.low, about.high)) for end in ends]
     if about.low_open and ends[0] == about.low:
         ends[0] += 1e-3 * abs(value)
-    return Axis(name, ends[0], ends[1])
+    return Varied(name, ends[0], ends[1])

@@ -72,7 +72,7 @@ def _about(result: Result) -> Iterator[Any]:
     elif told is not None:
         yield Code(told())
     if result.warning:
-        yield Text(f"Caution: {result.warning}")
+        yield Text(result.warned())
     numbers = tuple((name, f"{value} {unit}".rstrip()) for name, value, unit in plots.facts(result))
     if numbers:
         yield Table(("", "value"), numbers)

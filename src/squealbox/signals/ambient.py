@@ -144,7 +144,7 @@ class DampingOnset(Result):
         ended = f"growth rate 0 at {name} = {self.value:.6g}, 95 % {self.low:.6g} to {self.high:.6g}"
         ended = ended if self.outcome.ok else f"{self.outcome}: {self.outcome.message}"
         head = f"{name:>12}  {'f [Hz]':>10}  {'growth rate [1/s]':>17}"
-        return "\n".join([head, *rows, ended, *([f"Caution: {self.caution}"] if self.caution else [])])
+        return self.warned([head, *rows, ended])
 
 
 def damping_onset(

@@ -107,9 +107,6 @@ class SquealEvents(Result):
             ]
         )
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 @public()
 def squeal_events(
@@ -131,7 +128,8 @@ def squeal_events(
     band : lowest and highest frequency [Hz]
     least_level : peak level an event must reach [dB(A)]; not asked of a recording without calibration, nor for None
     frame : length of a frame [s]; the next begins a quarter later
-    chance : probability that noise passes the threshold in one line of one frame; `FRAMES` of them on end make an event
+    chance : [-] probability that noise passes the threshold in one line of one frame; `FRAMES` of them on end make an
+        event
 
     Accuracy: tones of 15 dB above the noise in their line are found, to two hops of their onset; tones 100 Hz apart are
     told apart. Raises `SignalError` for a band outside what the sampling rate can carry, or too few frames.
@@ -170,7 +168,8 @@ def squeal_events(
         _of_samples(event, x, rate, length)
     untold = f"only of the {len(told)} loudest of {len(events)} events are frequency and rates read from the samples"
     notes = [*sound.notes, *([untold] if len(told) < len(events) else [])]
-    notes += _beneath(x, rate, length, chance, events, low, weigh, reference, least_level if calibrated else None)
+    beneath = Frames(x, rate, length, (BENEATH * low, low))
+    notes += _beneath(beneath, low, chance, events, weigh, reference, least_level if calibrated else None)
     events.sort(key=lambda event: event["onset"])
     names = list(sound.braking)
     settings = {"band": [low, high], "least_level": least_level, "frame": length / rate, "chance": chance}
@@ -208,11 +207,10 @@ _OF_SAMPLES = _NAMES[6:12]
 
 
 def _beneath(
-    x: Any, rate: float, length: int, chance: float, events: Sequence[dict[str, Any]], low: float, weigh: Any,
-    reference: float, least: float | None,
+    frames: Frames, low: float, chance: float, events: Sequence[dict[str, Any]], weigh: Any, reference: float,
+    least: float | None,
 ) -> list[str]:  # fmt: skip
     """A tone below the band that is louder than all in it: what is told may be no more than its harmonic."""
-    frames = Frames(x, rate, length, (BENEATH * low, low))
     found = [_event(each, frames, weigh, reference) for each in tracks(frames, chance)
              if stands_out(each, frames, SURE * chance / CHANCE)]  # fmt: skip
     loudest = max((event["level"] for event in events), default=-np.inf)

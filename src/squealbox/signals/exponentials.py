@@ -40,7 +40,7 @@ class Exponentials:
         return 0.5 * np.abs(self.amplitudes) ** 2 * power
 
 
-class Record:
+class FoldedSamples:
     """Samples x (n,) laid out in rows of about sqrt(n), ready for inner products with exponentials."""
 
     def __init__(self, x: Any) -> None:
@@ -118,7 +118,7 @@ def fit_exponentials(x: Any, guess: Any, *, offset: bool = True, close: float = 
     A step of less than `close` standard deviations is the last. Without convergence the best that was reached is
     returned, and `converged` is False.
     """
-    record = x if isinstance(x, Record) else Record(x)
+    record = x if isinstance(x, FoldedSamples) else FoldedSamples(x)
     exponents = np.asarray(guess, dtype=complex).copy()
     sums = _sums(record, exponents, offset)
     linear, cost = _linear(record, exponents, sums, offset)
@@ -154,7 +154,7 @@ def fit_exponentials(x: Any, guess: Any, *, offset: bool = True, close: float = 
     return Exponentials(exponents, amplitudes, float(constant), covariance, residual, converged)
 
 
-def matched_energy(record: Record, exponents: Any) -> Any:
+def matched_energy(record: FoldedSamples, exponents: Any) -> Any:
     """Energy that one component with each of these exponents would take out of the record, shape (k,)."""
     exponents = np.asarray(exponents, dtype=complex)
     found = record.projections(exponents)[:, 0]
@@ -197,7 +197,7 @@ def _geometric(rate: float, size: int) -> float:
 Sums = tuple[Any, Any, Any]  # moments of pairs, of pairs with the second conjugate, and products with the data
 
 
-def _sums(record: Record, exponents: Any, offset: bool) -> Sums:
+def _sums(record: FoldedSamples, exponents: Any, offset: bool) -> Sums:
     every = np.append(exponents, 0.0) if offset else exponents
     return (*record.moments(every), record.projections(every))
 
@@ -233,7 +233,7 @@ def _expanded(straight: Any, crossed: Any, column: Any, count: int, offset: bool
     return gram, data
 
 
-def _linear(record: Record, exponents: Any, sums: Sums, offset: bool) -> tuple[tuple[Any, float], float]:
+def _linear(record: FoldedSamples, exponents: Any, sums: Sums, offset: bool) -> tuple[tuple[Any, float], float]:
     """The best amplitudes and constant for these exponents, and the sum of squares left."""
     gram, data = _products(sums, np.ones(len(exponents)), offset, derivatives=False)
     found = _inverse(gram) @ data

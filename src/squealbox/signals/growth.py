@@ -106,7 +106,7 @@ def growth_rate(
     ----------
     signal, t : as for :func:`samples`, equal steps
     frequency : of the component [Hz]; it must stand above the noise within two resolutions
-    periods : length of a piece of `envelope`, which is for the eye and is not used for the rate
+    periods : [-] length of a piece of `envelope`, which is for the eye and is not used for the rate
     cut : `rate` [Hz], `dof`, `begin` [s], `end` [s]
 
     Returns
@@ -234,6 +234,8 @@ def _envelope(data: Samples, frequency: float, periods: float) -> tuple[Any, Any
 
 def with_error(value: float, error: float) -> str:
     """A value and its error, the error to one digit and the value to the same place.
+
+    `value` [SI]: what is written; `error` [SI]: its error, in the same unit.
 
     >>> with_error(-117.3, 18.0)
     '-120 +- 20'

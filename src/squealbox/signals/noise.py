@@ -62,9 +62,6 @@ class NoiseMatrix(Result):
             )
         return "\n".join(lines)
 
-    def __repr__(self) -> str:
-        return self.summary()
-
 
 def noise_matrix(
     stops: Sequence[SquealEvents],

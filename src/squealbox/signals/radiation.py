@@ -138,7 +138,10 @@ def sound_level(
 
 
 def piston_efficiency(frequency: Any, area: float) -> Any:
-    """Radiation efficiency sigma = 1 - J1(2 k a) / (k a) [-] of a circular piston of `area` [m^2] in a rigid wall."""
+    """Radiation efficiency sigma = 1 - J1(2 k a) / (k a) [-] of a circular piston of `area` [m^2] in a rigid wall.
+
+    Array in, array out.
+    """
     from scipy.special import j1
 
     x = np.asarray(2.0 * np.pi * np.asarray(frequency, dtype=float) / SPEED_OF_SOUND * np.sqrt(area / np.pi))
@@ -148,7 +151,7 @@ def piston_efficiency(frequency: Any, area: float) -> Any:
 
 
 def a_weighting(frequency: Any) -> Any:
-    """Factor by which A-weighting changes a pressure at `frequency` [Hz]: 1 at 1 kHz (IEC 61672-1, annex E)."""
+    """Factor [-] of A-weighting on a pressure at `frequency` [Hz], array in, array out (IEC 61672-1, annex E)."""
     f = np.asarray(frequency, dtype=float) ** 2
     low, first, second, high = (value**2 for value in (20.598997, 107.65265, 737.86223, 12194.217))
     response = high * f**2 / ((f + low) * (f + high) * np.sqrt((f + first) * (f + second)))

@@ -20,12 +20,14 @@ def rendered(
 ) -> Recording:
     """The sound pressure of a small surface that moves with the motion, as a `Recording` in Pa.
 
+    `area` [m^2]: of the sounding surface; `distance` [m]: from the surface to the ear.
+
         p(t) = rho S a(t) / (2 pi r) + noise
 
-    The low-frequency piston of `sound_level`. `noise` [Pa] is the standard deviation of white noise. Where the system
-    of the motion is known its sliding speed and normal force come along as braking channels, those of its first
-    contact. `motion` has equal time steps `t` and velocities `qd`; the acceleration is a central difference of them,
-    low by (omega h)^2/6 at a step h.
+    The low-frequency piston of `sound_level`, derived there. `noise` [Pa] is the standard deviation of white noise.
+    Where the system of the motion is known its sliding speed and normal force come along as braking channels, those of
+    its first contact. `motion` has equal time steps `t` and velocities `qd`; the acceleration is a central difference
+    of them, low by (omega h)^2/6 at a step h.
 
     Raises `SignalError` for unequal steps, and for an area or a distance that is not positive.
     """

@@ -41,6 +41,8 @@ def samples(
 ) -> Samples:
     """The equally spaced samples behind a signal, cut to begin <= t <= end [s].
 
+    `rate` [Hz]: of values without instants; `begin` [s]: first instant taken; `end` [s]: last instant taken.
+
     Raises `SignalError` for unequal steps, a value that is not finite, fewer than 8 samples, or missing times.
     """
     times, x = values(signal, t, dof=dof, rate=rate)
@@ -87,7 +89,8 @@ def last_digits(numbers: Sequence[str]) -> Any:
 def values(signal: Any, t: Any = None, *, dof: int | str = 0, rate: float | None = None) -> tuple[Any, Any]:
     """Times (k,) [s] and values (k,) of a signal, which need not be equally spaced.
 
-    `signal` is an array (k,) with `t` or `rate`, or has ``.t`` and ``.q`` (k, n); `dof` is then an index or a name.
+    `signal` is an array (k,) with `t` or `rate` [Hz], or has ``.t`` and ``.q`` (k, n); `dof` is then an index or a
+    name.
     """
     if hasattr(signal, "q") and hasattr(signal, "t"):
         t, x = signal.t, np.asarray(signal.q, dtype=float)

@@ -123,7 +123,7 @@ class Peaks:
 
 
 def peaks(spectrum: Spectrum, count: int | None = None, *, least: float = 0.03) -> Peaks:
-    """The lines of a spectrum, highest first, at most `count`, each at least `least` of the highest.
+    """The lines of a spectrum, highest first, at most `count`, each at least `least` [-] of the highest.
 
     Frequency and amplitude come from the parabola through the logarithms of the three points at the top. A line counts
     when it is a resolution away from the next, the dip before a higher one falls to half of it, and it is twice what
@@ -199,7 +199,7 @@ def _side_lobes(window: str) -> Any:
 def spectrogram(
     signal: Any, t: Any = None, *, segment: float | None = None, window: str = "hann", overlap: float = 0.9, **cut: Any
 ) -> Spectrogram:
-    """Amplitude spectra of successive pieces of a signal, which overlap by the share `overlap`.
+    """Amplitude spectra of successive pieces of a signal, which overlap by the share `overlap` [-].
 
     A piece is `segment` [s] long, by default an eighth of the record; the resolution is 1/segment [Hz]. Only pieces
     that lie whole inside the record are kept, so `time` starts and ends half a piece inside it. Each piece is taken

@@ -11,7 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.signals.exponentials import Exponentials, Record, fit_exponentials, matched_energy, prediction_filter
+from squealbox.signals.exponentials import (
+    Exponentials,
+    FoldedSamples,
+    fit_exponentials,
+    matched_energy,
+    prediction_filter,
+)
 from squealbox.signals.samples import SignalError
 
 CHANCE = 1e-4  # of taking noise for a line, per record
@@ -64,7 +70,7 @@ def tones(x: Any, rate: float, *, near: float | None = None, most: int = MOST, c
 
     Raises `SignalError` for a constant signal.
     """
-    record = Record(x - np.mean(x))
+    record = FoldedSamples(x - np.mean(x))
     if not record.power > ROUNDING * x.size * max(float(np.max(np.abs(x))), 1e-300) ** 2:
         raise SignalError(f"the signal is constant ({x[0]:g}): it has no frequency")
     found: Exponentials | None = None
@@ -85,7 +91,7 @@ def tones(x: Any, rate: float, *, near: float | None = None, most: int = MOST, c
         found = trial
         guesses = found.exponents
         sharp.append(narrow)
-        residual = Record(found.residual)
+        residual = FoldedSamples(found.residual)
         if residual.power <= ROUNDING * record.power:
             break
     if found is None:
@@ -119,7 +125,7 @@ def _sound(tried: Exponentials, power: float) -> bool:
     return bool(np.all(apart * size > 1.0)) if apart.size else True
 
 
-def _whitened(record: Record, found: Exponentials) -> tuple[Exponentials, Any]:
+def _whitened(record: FoldedSamples, found: Exponentials) -> tuple[Exponentials, Any]:
     from scipy.signal import lfilter
 
     white = prediction_filter(found.residual, ORDER)
@@ -129,7 +135,7 @@ def _whitened(record: Record, found: Exponentials) -> tuple[Exponentials, Any]:
     again = fit_exponentials(filtered, found.exponents)
     moved = np.abs(again.exponents - found.exponents) * record.size
     allowed = np.maximum(3.0, np.abs(found.exponents.real) * record.size)
-    good = _sound(again, CANCEL * Record(filtered).power) and np.all(moved < allowed)
+    good = _sound(again, CANCEL * FoldedSamples(filtered).power) and np.all(moved < allowed)
     if not good:
         return found, record.x
     left = np.repeat(np.sqrt(_about(again.residual, again.exponents)), 2)
@@ -158,7 +164,7 @@ def _windows(size: int) -> list[tuple[float, Any]]:
 
 
 def _strongest(
-    record: Record, looks: list[tuple[float, Any]], taken: Any, near: float | None
+    record: FoldedSamples, looks: list[tuple[float, Any]], taken: Any, near: float | None
 ) -> tuple[complex, bool] | None:
     """A first guess of the exponent [1/sample] of the strongest line above the noise; None when there is none.
 
@@ -222,7 +228,7 @@ def _beside(other: Any, seen: Any, width: float, step: float) -> Any:
     return (sums[high] - sums[low]) / (high - low)
 
 
-def _best_growth(record: Record, omega: float) -> tuple[float, complex]:
+def _best_growth(record: FoldedSamples, omega: float) -> tuple[float, complex]:
     """The energy and the exponent of the best match among growth rates and frequencies about a line."""
     rates = np.concatenate([-TRIED[::-1], TRIED[1:]]) / record.size
     rates = rates[np.abs(rates) <= max(0.7 * omega, 1.0 / record.size)]

@@ -28,10 +28,11 @@ def sound(
 ) -> Path:
     """Write a signal as a mono 16-bit WAV file and return its path.
 
-    The pitch is true (`slower` = 2 plays at half speed, an octave down). The largest value is `level` of full scale, so
-    nothing clips; with `loudest`, a value of that size is, so that two sounds written with the same `loudest` can be
-    compared by ear. `fade` [s] at each end keeps it from clicking. What lies above half of `sampling` [Hz] is filtered
-    out. Raises `SignalError` for a constant signal, and when a `loudest` is so small that it would clip.
+    The pitch is true (`slower` [-] = 2 plays at half speed, an octave down). The largest value is `level` [-] of full
+    scale, so nothing clips; with `loudest` [SI], a value of that size is, so that two sounds written with the same
+    `loudest` can be compared by ear. `fade` [s] at each end keeps it from clicking. What lies above half of `sampling`
+    [Hz] is filtered out. Raises `SignalError` for a constant signal, and when a `loudest` is so small that it would
+    clip.
     """
     from scipy.io import wavfile
 
@@ -43,9 +44,10 @@ def sound(
 def audible(
     signal: Any, t: Any = None, *, sampling: int = SAMPLING, fade: float = 0.005, slower: float = 1.0, **cut: Any
 ) -> Any:
-    """The signal about its mean, sampled at `sampling` [Hz] and faded in and out over `fade` [s], in its own unit.
+    """The signal about its mean, shape (k,), sampled at `sampling` [Hz] and faded in and out over `fade` [s], in its
+    own unit.
 
-    The true frequencies are kept; `slower` stretches time. What cannot be written at that rate is filtered out.
+    The true frequencies are kept; `slower` [-] stretches time. What cannot be written at that rate is filtered out.
     """
     data = samples(signal, t, **cut)
     if not (slower > 0.0 and fade >= 0.0):
@@ -79,7 +81,9 @@ def resampled(x: Any, ratio: Fraction) -> Any:
 
 
 def sixteen_bits(wave: Any, *, level: float = 0.9, loudest: float | None = None) -> Any:
-    """A wave as 16-bit samples; its largest value, or a value of size `loudest`, becomes `level` of full scale."""
+    """A wave (k,) as 16-bit samples; its largest value, or one of size `loudest` [SI], becomes `level` [-] of full
+    scale.
+    """
     if not 0.0 < level <= 1.0:
         raise SignalError(f"level = {level}: expected a share of full scale in (0, 1]")
     own = float(np.max(np.abs(wave)))

@@ -142,6 +142,8 @@ def certified(
 ) -> Certificate:
     """Whether a list of eigenvalues [1/s] holds every mode of a sparse system that grows in the band (f1, f2) [Hz].
 
+    `band` [Hz]: from and to; `time` [s]: instant at which schedules are taken.
+
     eigenvalues, shape (k,), should hold the modes somewhat outside the band too, so that the phase stays smooth; `most`
     is the number of factorisations after which the search gives up. The answer names how many modes are missing.
     """

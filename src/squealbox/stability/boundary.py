@@ -17,7 +17,7 @@ from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.stability.cells import Crossing, Samples, crossings
+from squealbox.stability.cells import Crossing, LevelsAtPoints, crossings
 from squealbox.stability.family import Family, Steady
 from squealbox.stability.plane_curves import between, onto_side, passed
 from squealbox.stability.scan import coalescence, is_neutral, on_divergence
@@ -141,13 +141,13 @@ class _Rectangle:
         eigenvalues = np.where(idle, -self.reference, eigenvalues)
         return np.where(on_divergence(about), 0.0, np.max(eigenvalues.real, axis=-1)), eigenvalues
 
-    def sample(self, u: Any, v: Any) -> Samples:
+    def sample(self, u: Any, v: Any) -> LevelsAtPoints:
         """Level and detectors at points (u, v) of the unit square."""
         about = self.family.at(self.low[0] + self.width[0] * u, self.low[1] + self.width[1] * v)
         level, eigenvalues = self._level(about)
         if np.any(np.isfinite(level)):
             self.scale = max(self.scale, float(np.nanmedian(np.abs(level)))) if not self.neutral else 1.0
-        return Samples(level, self._detectors(eigenvalues))
+        return LevelsAtPoints(level, self._detectors(eigenvalues))
 
     def _detectors(self, eigenvalues: Any) -> Any:
         """Smooth functions of the parameters (2, points) that vanish on the boundary; see the module `cells`."""

@@ -18,14 +18,14 @@ LEVELS_SURE = 1  # halvings of every cell that the boundary crosses
 
 
 @dataclass(frozen=True)
-class Samples:
+class LevelsAtPoints:
     """At each point: `level`, positive where a mode grows (NaN if unknown), and smooth detectors (k, points)."""
 
     level: Any
     detectors: Any
 
 
-Sampler = Callable[[Any, Any], Samples]
+Sampler = Callable[[Any, Any], LevelsAtPoints]
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class _Lattice:
         self.level = np.array([])
         self.detectors: Any = None
 
-    def at(self, x: Any, y: Any) -> Samples:
+    def at(self, x: Any, y: Any) -> LevelsAtPoints:
         wanted = x * (self.size + 1) + y
         new = np.setdiff1d(wanted, self.keys)
         if new.size:
@@ -78,7 +78,7 @@ class _Lattice:
             old = samples.detectors[:, :0] if self.detectors is None else self.detectors
             self.detectors = np.concatenate([old, samples.detectors], axis=1)[:, order]
         place = np.searchsorted(self.keys, wanted)
-        return Samples(self.level[place], self.detectors[:, place])
+        return LevelsAtPoints(self.level[place], self.detectors[:, place])
 
 
 def _examine(lattice: _Lattice, x: Any, y: Any, step: int) -> tuple[Any, Any, Any]:

@@ -30,7 +30,7 @@ def map_boundary(
     ----------
     found : the map, over two parameters with at least two values each
     design : what it was computed for, where that was a function: a map does not keep functions
-    close : share of a cell within which a crossing is located
+    close : [-] share of a cell within which a crossing is located
     engine : as of :func:`stability_map`
 
     Returns

@@ -50,7 +50,8 @@ def as_printed_by(code: str, eigenvalues: Any) -> Mapping[str, Any]:
 
 
 def eigenvalues_printed_by(code: str, first: Any, second: Any) -> Any:
-    """Eigenvalues [1/s] from the two columns a code prints them in, so that its modes can be compared or drawn here.
+    """Eigenvalues [1/s], shape (k,), from the two columns a code prints them in, so that its modes can be compared or
+    drawn here.
 
     Parameters
     ----------

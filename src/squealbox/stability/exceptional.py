@@ -46,6 +46,7 @@ def exceptional_points(
     design : a design, or a function of two floats that returns a design or a system
     bounds : name to (low, high) for two parameters
     points : grid points along each axis
+    time : [s] instant at which schedules are taken
 
     The outcome is "none_found" when nothing converged inside the rectangle. Where modes merge along a whole curve, as
     without damping, points of that curve are returned.
@@ -162,8 +163,8 @@ def damping_split(
     ----------
     design : a design
     dampers : names of two dampings, in one unit
-    total : their sum, in that unit
-    parameter, bounds : as for `critical_value`
+    total : [SI] their sum, in that unit
+    parameter, bounds : [SI] as for `critical_value`
     splits : shares tried between 0.02 and 0.98, between which the best is refined
 
     Damping one degree of freedom more than the other can lower the onset below that without damping: the result shows

@@ -17,24 +17,29 @@ SQUEAL_BAND = (1e3, 16e3)  # Hz: where brake noise is called squeal
 
 
 def squeal_index(eigenvalues: Any) -> Any:
-    """-2 Re/|Im| [-], as finite-element codes print it; negative grows, NaN where Im = 0."""
+    """-2 Re/|Im| [-], as finite-element codes print it; negative grows, NaN where Im = 0. Array in, array out."""
     with np.errstate(invalid="ignore", divide="ignore"):
         index = -2.0 * np.real(eigenvalues) / np.abs(np.imag(eigenvalues))
     return np.where(np.imag(eigenvalues) == 0.0, np.nan, index)
 
 
 def logarithmic_decrement(eigenvalues: Any) -> Any:
-    """ln of the ratio of two successive amplitudes, -2 pi Re/|Im| [-]; negative grows, NaN where Im = 0."""
+    """ln of the ratio of two successive amplitudes, -2 pi Re/|Im| [-]; negative grows, NaN where Im = 0.
+
+    Array in, array out.
+    """
     return np.pi * squeal_index(eigenvalues)
 
 
 def loss_factor(eigenvalues: Any) -> Any:
-    """Loss factor 2 zeta [-] of a lightly damped mode; negative grows."""
+    """Loss factor 2 zeta [-] of a lightly damped mode; negative grows. Array in, array out."""
     return 2.0 * damping_ratio(eigenvalues)
 
 
 def damping_ratio_from(value: Any, convention: str) -> Any:
     """Damping ratio [-] from another convention: "squeal_index", "logarithmic_decrement", "loss_factor" or "quality".
+
+    Array in, array out.
 
     Exact: -2 Re/|Im| = 2 zeta / sqrt(1 - zeta^2), the decrement pi times that; loss factor 2 zeta; quality 1/(2 zeta).
 

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squealbox.parameters import with_cautions
+
 if TYPE_CHECKING:
     from squealbox.stability.eigenvalues import ComplexModes
 
@@ -21,7 +23,8 @@ def summary(modes: "ComplexModes") -> str:
     table = [HEADER, *rows]
     widths = [max(len(row[i]) for row in table) for i in range(len(HEADER))]
     padded = [[cell.rjust(width) for cell, width in zip(row, widths, strict=True)] for row in table]
-    return "\n".join([_verdict(modes, entry), *("  ".join(row).rstrip() for row in padded), *_cautions(modes, entry)])
+    lines = [_verdict(modes, entry), *("  ".join(row).rstrip() for row in padded)]
+    return with_cautions(lines, *_cautions(modes, entry))
 
 
 def html(modes: "ComplexModes") -> str:
@@ -31,7 +34,7 @@ def html(modes: "ComplexModes") -> str:
     entry, rows = _rows(modes)
     head = "".join(f"<th>{cell}</th>" for cell in HEADER)
     body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
-    cautions = "".join(f"<p>{html_module.escape(text)}</p>" for text in _cautions(modes, entry))
+    cautions = "".join(f"<p>{html_module.escape(with_cautions([], text))}</p>" for text in _cautions(modes, entry))
     return f"<p>{html_module.escape(_verdict(modes, entry))}</p><table><tr>{head}</tr>{body}</table>{cautions}"
 
 
@@ -71,8 +74,8 @@ def _cautions(modes: "ComplexModes", entry: tuple[int, ...]) -> list[str]:
     """One sentence when steady sliding needs a contact to pull."""
     forces = zip(modes.contacts, modes.normal_force[entry], strict=bool(modes.contacts))
     pulled = [f"{name} ({force:.4g} N)" for name, force in forces if force < 0.0]
-    others = [f"Caution: {part}" for part in modes.caution.split("; ") if part and "have to pull" not in part]
+    others = [part for part in modes.caution.split("; ") if part and "have to pull" not in part]
     if not pulled:
         return others
-    return [f"Caution: in steady sliding the equations let {', '.join(pulled)} pull; a real contact would lift off.",
+    return [f"in steady sliding the equations let {', '.join(pulled)} pull; a real contact would lift off.",
             *others]  # fmt: skip

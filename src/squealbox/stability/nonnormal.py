@@ -96,6 +96,8 @@ def transient_growth(
 def pseudospectrum(design_or_system: Any, real: Any, imaginary: Any, at: float = 0.0) -> Any:
     """Least singular value of z - A [1/s] on the grid z = real + i imaginary, shape (len(imaginary), len(real)).
 
+    `at` [s]: instant at which schedules are taken.
+
     A is taken in energy coordinates, so a contour at epsilon encloses where a perturbation of A of that size in the
     energy norm can move eigenvalues. Raises `ValueError` without steady sliding.
     """

@@ -168,7 +168,9 @@ def critical_value(
 def critical_values(
     design: Any, parameter: str, bounds: tuple[float, float], *, points: int | None = None, time: float = 0.0
 ) -> CriticalValues:
-    """Every value between `bounds` at which any mode crosses zero growth; arguments as for :func:`critical_value`.
+    """Every value between `bounds` [SI] at which any mode crosses zero growth; arguments as for :func:`critical_value`.
+
+    `time` [s]: instant at which schedules are taken.
 
     For a system without damping only changes of the stability of the whole are seen: its modes merge, none crosses.
     """

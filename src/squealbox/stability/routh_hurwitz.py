@@ -38,6 +38,8 @@ def hurwitz_determinants(coefficients: Any) -> Any:
 def routh_hurwitz(design_or_system: Any, time: float = 0.0) -> Any:
     """True where steady sliding of two degrees of freedom is asymptotically stable, (...); False without equilibrium.
 
+    `time` [s]: instant at which schedules are taken.
+
     >>> from squealbox.system import System
     >>> bool(routh_hurwitz(System(M=[[1, 0], [0, 1]], C=[[1, 0], [0, 1]], K=[[2, 1], [1, 2]])))
     True

@@ -110,6 +110,7 @@ def track(design: Any, parameter: str, values: Any, *, time: float = 0.0) -> Ite
     design : a design, or a function of one value that returns a design or a system
     parameter : dotted name
     values : increasing or decreasing values; where the pairing between two is unclear, values between are tried too
+    time : [s] instant at which schedules are taken
 
     Values without steady sliding are passed over with NaN. Of a reduced brake the modes in its band are followed: one
     that leaves the band is NaN from there on and takes up its own place again where it comes back, one that comes into
@@ -181,7 +182,10 @@ def _place_in_band(family: Family, band: Band, value: float) -> "_Place | None":
 
 @public()
 def tracked_modes(design: Any, parameter: str, values: Any, *, time: float = 0.0) -> TrackedModes:
-    """The whole of :func:`track` as one result, a labelled dataset by ``to_dataset()``."""
+    """The whole of :func:`track` as one result, a labelled dataset by ``to_dataset()``.
+
+    `time` [s]: instant at which schedules are taken.
+    """
     points = list(track(design, parameter, values, time=time))
     columns = {name: np.array([getattr(p, name) for p in points]) for name in ("value", "clear")}
     columns |= {name: _stacked([getattr(p, name) for p in points]) for name in ("eigenvalues", "right", "criterion")}

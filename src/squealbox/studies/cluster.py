@@ -15,7 +15,7 @@ from squealbox.result import provenance
 from squealbox.studies.analysis import StudyError, evaluate
 from squealbox.studies.block import Block, failure
 from squealbox.studies.shipping import packed, unpacked
-from squealbox.studies.work import Piece, Work
+from squealbox.studies.work import Piece, WorkInPieces
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -28,7 +28,7 @@ PROBES = 5  # empty pieces that measure it
 DIED, LATE = "worker_died", "time_limit"
 
 
-def run_on_cluster(work: Work, address: str, time_limit: float | None) -> None:
+def run_on_cluster(work: WorkInPieces, address: str, time_limit: float | None) -> None:
     """Compute all pieces on the workers of the scheduler at `address`; `StudyError` when it cannot be reached."""
     try:
         from distributed import Client
@@ -43,7 +43,7 @@ def run_on_cluster(work: Work, address: str, time_limit: float | None) -> None:
 
 
 class _Cluster:
-    def __init__(self, work: Work, client: "Client", address: str, time_limit: float | None) -> None:
+    def __init__(self, work: WorkInPieces, client: "Client", address: str, time_limit: float | None) -> None:
         self.work, self.client, self.address, self.limit = work, client, address, time_limit
         self.payload, self.versions = packed(work.task), provenance()
         self.back: queue.Queue[Future] = queue.Queue()

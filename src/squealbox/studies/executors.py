@@ -5,9 +5,9 @@ import time
 from collections.abc import Callable
 
 from squealbox.studies.analysis import StudyError, evaluate
-from squealbox.studies.work import Work
+from squealbox.studies.work import WorkInPieces
 
-Executor = Callable[[Work], None]
+Executor = Callable[[WorkInPieces], None]
 
 
 def executor(workers: int | None, scheduler: str | None, time_limit: float | None) -> Executor:
@@ -31,7 +31,7 @@ def executor(workers: int | None, scheduler: str | None, time_limit: float | Non
     return run_embedded
 
 
-def run_embedded(work: Work) -> None:
+def run_embedded(work: WorkInPieces) -> None:
     """Compute one piece after the other in this process; the compiled engine has its own threads."""
     while (piece := work.take()) is not None:
         began = time.perf_counter()

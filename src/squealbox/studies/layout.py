@@ -18,7 +18,7 @@ HEADER = 8192  # bytes HDF5 needs at most to describe a variable
 Attributes = dict[str, Any]
 
 
-class Shape(NamedTuple):
+class ColumnShape(NamedTuple):
     """What a block says of one of its columns."""
 
     dtype: Any
@@ -31,7 +31,7 @@ class Shape(NamedTuple):
 class Summary(NamedTuple):
     """What is kept in memory of a block that is in the store."""
 
-    columns: Mapping[str, Shape]
+    columns: Mapping[str, ColumnShape]
     outcomes: Mapping[str, int]
     messages: Mapping[int, str]
 
@@ -99,7 +99,8 @@ class Layout:
 def summary_of(block: Block) -> Summary:
     """What is kept of a block."""
     columns = {
-        name: Shape(c.values.dtype, c.values.shape[1:], c.dims, c.unit, c.meaning) for name, c in block.columns.items()
+        name: ColumnShape(c.values.dtype, c.values.shape[1:], c.dims, c.unit, c.meaning)
+        for name, c in block.columns.items()
     }
     if np.all(block.outcome == COMPLETED):
         counted = {COMPLETED: len(block)}
@@ -112,7 +113,7 @@ def summary_of(block: Block) -> Summary:
 def layout(frame: Frame, done: Mapping[tuple[int, int], Summary]) -> Layout:
     """The variables that hold every block of `done`."""
     done = {place: summary for place, summary in done.items() if place[1] <= frame.total}
-    shapes: dict[str, list[Shape]] = {}
+    shapes: dict[str, list[ColumnShape]] = {}
     for place in sorted(done):
         for name, shape in done[place].columns.items():
             shapes.setdefault(name, []).append(shape)
@@ -201,7 +202,7 @@ def filled(plan: Layout, name: str, block: Block) -> Any:
     return whole
 
 
-def _sizes(shapes: Mapping[str, list[Shape]]) -> dict[str, int]:
+def _sizes(shapes: Mapping[str, list[ColumnShape]]) -> dict[str, int]:
     sizes: dict[str, int] = {}
     for found in shapes.values():
         for shape in found:
@@ -210,7 +211,7 @@ def _sizes(shapes: Mapping[str, list[Shape]]) -> dict[str, int]:
     return sizes
 
 
-def _variable(frame: Frame, found: list[Shape], sizes: Mapping[str, int], whole: bool) -> Variable:
+def _variable(frame: Frame, found: list[ColumnShape], sizes: Mapping[str, int], whole: bool) -> Variable:
     dims = max((shape.dims for shape in found), key=len)
     tail = tuple(sizes[dim] for dim in dims)
     dtype = common_type([shape.dtype for shape in found], whole and all(shape.tail == tail for shape in found))

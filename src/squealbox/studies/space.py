@@ -17,7 +17,7 @@ from squealbox.studies.uncertainty.scatter import Sampling, unit_points
 POINT = "point"  # the dimension of an axis with several parameters
 
 
-class Samples(Protocol):
+class JointDistribution(Protocol):
     """Anything with a joint distribution: `squealbox.studies.Scatter`, or the user's own."""
 
     def sample(self, count: int, method: Any, seed: int) -> Mapping[str, Any]:
@@ -150,7 +150,7 @@ def sobol_sequence(ranges: Mapping[str, Any], count: int, *, seed: int = 0, dim:
     return _within(ranges, count, "sobol", seed, dim)
 
 
-def sampled(scatter: Samples, count: int, *, method: str = "sobol", seed: int = 0, dim: str = POINT) -> Space:
+def sampled(scatter: JointDistribution, count: int, *, method: str = "sobol", seed: int = 0, dim: str = POINT) -> Space:
     """`count` points of a joint distribution, correlations included; "latin_hypercube", "sobol" or "random".
 
     `scatter` is a `squealbox.studies.Scatter`, or anything else with ``sample(count, method, seed)`` that returns the

@@ -12,7 +12,7 @@ from squealbox.studies.analysis import StudyError
 from squealbox.studies.block import failure
 from squealbox.studies.crew import BLOCK, ERROR, NOWHERE, READY, Worker
 from squealbox.studies.shipping import packed
-from squealbox.studies.work import Piece, Work
+from squealbox.studies.work import Piece, WorkInPieces
 
 TIME_LIMIT = 30.0  # seconds for a block when nothing else is asked for
 FIRST_LIMIT = 180.0  # and for blocks that begin before any is back, which may have to compile
@@ -21,7 +21,7 @@ STRIKES = 3  # times a point alone must see its process die, before it and not b
 LOOK = 0.5  # seconds between two looks at the clock
 
 
-def run_supervised(work: Work, workers: int, time_limit: float | None) -> None:
+def run_supervised(work: WorkInPieces, workers: int, time_limit: float | None) -> None:
     """Compute all pieces with `workers` processes; a point that kills its process or hangs has an outcome."""
     if os.name != "posix":
         raise StudyError("worker processes need Linux or macOS: elsewhere, use a Dask cluster on the same machine")
@@ -29,7 +29,7 @@ def run_supervised(work: Work, workers: int, time_limit: float | None) -> None:
 
 
 class _Supervisor:
-    def __init__(self, work: Work, workers: int, time_limit: float | None) -> None:
+    def __init__(self, work: WorkInPieces, workers: int, time_limit: float | None) -> None:
         self.work, self.limit, self.asked = work, time_limit or TIME_LIMIT, time_limit is not None
         self.payload = packed(work.task)
         self.count, self.threads = workers, max(1, (os.cpu_count() or 1) // workers)

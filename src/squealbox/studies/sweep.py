@@ -21,7 +21,7 @@ from squealbox.studies.fingerprint import plain, record
 from squealbox.studies.layout import Coordinate, Frame, Summary, layout, summary_of
 from squealbox.studies.space import Space, as_space
 from squealbox.studies.store import RESULT, Store, StoreDamaged
-from squealbox.studies.work import Progress, Work
+from squealbox.studies.work import Progress, WorkInPieces
 
 if TYPE_CHECKING:
     import xarray
@@ -282,7 +282,7 @@ def _run(
     while growing:
         if isinstance(target, Store):
             target.keep_frame(frame_of(task, points))
-        work = Work(task, points, target, chunk=chunk, progress=progress)
+        work = WorkInPieces(task, points, target, chunk=chunk, progress=progress)
         target.log(f"begins: {work.left} of {len(points)} points to compute")
         try:
             execute(work)

@@ -84,7 +84,7 @@ class Piece:
         return self.stop - self.start
 
 
-class Work:
+class WorkInPieces:
     """Pieces to be taken by an executor, and blocks it brings back.
 
     slots : how many pieces are computed at the same time

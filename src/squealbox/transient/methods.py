@@ -1,5 +1,6 @@
 """Integration methods as data: a Butcher tableau, its error weights and its dense output, over one Runge-Kutta loop."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -7,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.parameters import ParameterError, known_names
-from squealbox.transient import _dop853
+from squealbox.registers import later, names_in
+from squealbox.transient import _dop853, tableaux
 
 TAYLOR = "taylor"  # the solution's own series
 ELSEWHERE = {  # what other programs call them
@@ -21,7 +23,7 @@ USUAL_RTOL = {
 
 @dataclass(frozen=True, eq=False)
 class Tableau:
-    """An explicit embedded Runge-Kutta pair.
+    """An explicit embedded Runge-Kutta pair. Source: Hairer, Norsett and Wanner 1993, Solving ODEs I, II.4 to II.6.
 
     With S stages a step is y1 = y + h sum_i b_i k_i. The stage after them, k_S = f(t + h, y1), serves the error, the
     dense output and the next step. a (R, R), c (R,) cover R >= S + 1 stages; those after S serve the dense output only.
@@ -44,6 +46,7 @@ class Tableau:
     e3: Any = None
     growth: float = 10.0
     safety: float = 0.9
+    rtol: float = 1e-8  # the usual one
 
     @property
     def stages(self) -> int:
@@ -77,7 +80,8 @@ class Method:
             asked = ELSEWHERE.get(word.lower(), word)
             raise ParameterError("Method", "tableau", self.tableau, known_names(asked, [*TABLEAUX, TAYLOR]))
         if self.rtol is None:
-            object.__setattr__(self, "rtol", USUAL_RTOL[self.tableau])
+            usual = USUAL_RTOL.get(self.tableau) or TABLEAUX[self.tableau]().rtol
+            object.__setattr__(self, "rtol", usual)
         if not 1e-15 <= self.rtol < 1.0:
             raise ParameterError("Method", "rtol", self.rtol, "a number in [1e-15, 1)")
         for name in ("first_step", "largest_step"):
@@ -170,11 +174,12 @@ def dormand_prince_8() -> Tableau:
     return Tableau("dormand-prince-8", "Dormand-Prince 8(5,3)", source, 8, 7, a, b, c, e5, p, e3=e3, safety=0.8)
 
 
-TABLEAUX = {
+TABLEAUX: dict[str, Callable[[], Tableau]] = {
     "bogacki-shampine": bogacki_shampine,
     "dormand-prince": dormand_prince,
     "tsitouras": tsitouras,
     "dormand-prince-8": dormand_prince_8,
+    **{name.replace("_", "-"): later("squealbox.transient.tableaux", name) for name in names_in(tableaux)},
 }
 
 

@@ -9,10 +9,11 @@ import numpy as np
 
 from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
-from squealbox.files.sheets import LAW_NAMES, field_type, name_of
+from squealbox.files.sheets import LAW_NAMES, field_type
 from squealbox.files.varied import scalar_parameters
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, Parameter
+from squealbox.registers import name_of
 from squealbox.schedules import Schedule
 from squealbox.words import read_in
 from squealbox.workbench.frames import finite

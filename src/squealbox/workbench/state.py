@@ -13,19 +13,10 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import DESIGNS, Design
-from squealbox.files.sheets import LAW_NAMES, name_of
-from squealbox.friction import (
-    Coulomb,
-    Cubic,
-    Dahl,
-    ElastoPlastic,
-    FrictionLaw,
-    Hyperbolic,
-    LinearSlope,
-    LuGre,
-    Stribeck,
-)
+from squealbox.files.sheets import LAW_NAMES
+from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, known_names
+from squealbox.registers import name_of
 from squealbox.schedules import Schedule, value_at
 from squealbox.system import InvalidSystem
 
@@ -78,32 +69,7 @@ def design_of(state: Any, bases: Mapping[str, Design]) -> Design:
     return design
 
 
-def law_like(law: FrictionLaw, name: str, speed: float) -> FrictionLaw:
-    """The law called `name` that continues `law`: same static limit, and near `speed` about the same fall with speed.
-
-    >>> law_like(LinearSlope(0.4, -0.05), "hyperbolic", 0.2)
-    Hyperbolic(static=0.4, delta=0.125)
-    """
-    static = float(law.static_limit)
-    speed = abs(speed) or 1.0
-    falling = max(-float(law.slope_at(speed)), 0.0)
-    kinetic = min(max(float(law.mu(speed)), 0.0), static)
-    some = max(static, 1e-3), max(kinetic, 1e-3)  # bristles need friction to bend
-    stiffness = float(getattr(law, "stiffness", 1e5))
-    made: dict[str, FrictionLaw] = {
-        "coulomb": Coulomb(static, kinetic),
-        "linear_slope": LinearSlope(static, float(law.slope_at(speed))),
-        "stribeck": Stribeck(static, kinetic, speed),
-        "hyperbolic": Hyperbolic(static, falling / static if static else 0.0),
-        "cubic": Cubic(static, kinetic, speed),
-        "lugre": LuGre(*some, speed, stiffness),
-        "dahl": Dahl(some[1], stiffness),
-        "elasto_plastic": ElastoPlastic(*some, speed, stiffness),
-    }
-    return law if name_of(type(law)) == name else made[name]
-
-
-CHOOSABLE = tuple(name for name in LAW_NAMES if name != "table")
+CHOOSABLE = tuple(name for name, law in LAW_NAMES.items() if law.like(Coulomb(0.4, 0.25), 1.0) is not None)
 
 
 def speed_of(design: Design) -> float:
@@ -132,10 +98,12 @@ def _with_law(design: Design, field: str, name: Any, wrong: list[Wrong]) -> Desi
         return design
     if not isinstance(law, FrictionLaw):
         wrong.append(Wrong(path, "this is no friction law"))
-    elif name not in CHOOSABLE and name != name_of(type(law)):
+    elif name == name_of(type(law)):
+        return design
+    elif name not in CHOOSABLE:
         wrong.append(Wrong(path, f"expected {known_names(str(name)[:LONGEST_NAME], list(CHOOSABLE))}"))
     else:
-        return design.replace({path: law_like(law, name, speed_of(design))})
+        return design.replace({path: LAW_NAMES[name].like(law, speed_of(design))})
     return design
 
 

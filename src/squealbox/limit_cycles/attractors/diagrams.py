@@ -96,8 +96,7 @@ class BifurcationDiagram(Result):
         if np.any(self.coexist):
             over = self.stretches(self.coexist, lambda value: f"{value:.5g}")
             lines.append(f"rest and vibration coexist at {int(np.sum(self.coexist))} values, {over}")
-        lines += [f"Caution: {self.caution}"] if self.caution else []
-        return "\n".join(lines)
+        return self.warned(lines)
 
 
 @public()

@@ -91,8 +91,7 @@ class Branch(Result):
         if one_way:
             lines += [f"the other way from its start is another walk: direction={-one_way:g}"]
         lines += [f"{kind} at {value:.8g}" for kind, value in zip(self.special_kind, self.special_value, strict=True)]
-        lines += [f"Caution: {self.caution}"] if self.caution else []
-        return "\n".join(lines)
+        return self.warned(lines)
 
 
 @public()

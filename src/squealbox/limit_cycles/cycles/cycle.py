@@ -110,7 +110,7 @@ class Cycle(Result):
         said = (
             f"{self.stability} cycle, period {float(self.period):.10g} s ({self.frequency:.6g} Hz), amplitude {sizes}"
         )
-        return f"{said}\nCaution: {self.caution}" if self.caution else said
+        return self.warned([said])
 
 
 def stability_of(multipliers: Any) -> str:

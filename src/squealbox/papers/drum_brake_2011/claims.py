@@ -13,7 +13,7 @@ ROADS = (EIGENVALUES, RAW, EXACT)
 
 
 @dataclass(frozen=True)
-class Part:
+class ClaimPart:
     """One number or yes/no statement of a claim, with the tolerance it is judged by and its reason."""
 
     claim: str
@@ -55,7 +55,7 @@ class Claim:
     statement: str
     published: str
     deciding: tuple[str, ...]
-    parts: tuple[Part, ...]
+    parts: tuple[ClaimPart, ...]
 
 
 @dataclass(frozen=True)
@@ -71,14 +71,14 @@ class Finding:
     trusted: bool = True
 
 
-def read_as(part: Part, finding: Finding, halves: float) -> Finding:
+def read_as(part: ClaimPart, finding: Finding, halves: float) -> Finding:
     """A finding in the paper's measure: amplitudes are found as half peak to peak, and `halves` of them are meant."""
     if not part.is_amplitude or finding.value is None:
         return finding
     return dataclasses.replace(finding, value=halves * float(finding.value))
 
 
-def judge(part: Part, finding: Finding) -> str:
+def judge(part: ClaimPart, finding: Finding) -> str:
     """`agree`, `disagree` or `not decidable`: the published value against the computed one, by the part's tolerance."""
     if finding.value is None:
         return UNDECIDED
@@ -114,7 +114,7 @@ def _data() -> dict[str, Any]:
 
 def _claim(entry: dict[str, Any]) -> Claim:
     parts = tuple(
-        Part(
+        ClaimPart(
             claim=entry["id"],
             name=part["name"],
             meaning=part["meaning"],

@@ -36,7 +36,7 @@ SHARES = (
 
 
 @dataclass(frozen=True)
-class Grid:
+class TriedValues:
     """The values of alpha [s/m] and of alpha V [-] that are tried."""
 
     alpha: tuple[float, ...]
@@ -52,8 +52,8 @@ def _steps(low: float, high: float, step: float) -> tuple[float, ...]:
     return tuple(round(low + step * i, 6) for i in range(round((high - low) / step) + 1))
 
 
-COARSE = Grid(_steps(0.05, 0.15, 0.025), _steps(0.0, 0.15, 0.005))
-USUAL = Grid(_steps(0.03, 0.15, 0.0075), _steps(0.0, 0.15, 0.0025))
+COARSE = TriedValues(_steps(0.05, 0.15, 0.025), _steps(0.0, 0.15, 0.005))
+USUAL = TriedValues(_steps(0.03, 0.15, 0.0075), _steps(0.0, 0.15, 0.0025))
 
 
 class Variant(Design):

@@ -17,7 +17,7 @@ import numpy as np
 from squealbox.designs import DrumBrake
 from squealbox.papers.drum_brake_2011.cases import FRICTION, LOAD, RESOLUTION
 from squealbox.papers.drum_brake_2011.claims import claims
-from squealbox.papers.drum_brake_2011.family import SHARES, SIGNS, Grid, share_of_load
+from squealbox.papers.drum_brake_2011.family import SHARES, SIGNS, TriedValues, share_of_load
 
 BRAKE = DrumBrake(reading="eq1_printed")
 BISECTIONS = 14  # of the 0.5 in which an onset is looked for: to 3e-5
@@ -124,7 +124,7 @@ def _pair(mean: float, apart: float) -> tuple[float, float]:
 class Members:
     """All members with one choice of front and belts, arrays (loads, shares, alpha, alpha V)."""
 
-    def __init__(self, front: int, belts: int, grid: Grid) -> None:
+    def __init__(self, front: int, belts: int, grid: TriedValues) -> None:
         signs, belt = SIGNS[front], SIGNS[belts]
         s1, c1, s2, c2 = (float(each) for each in BRAKE.directions)
         self.weights = (c1**2, c2**2, s1**2, s2**2)
@@ -203,7 +203,7 @@ class Members:
 
 
 @dataclass(frozen=True)
-class Found:
+class MembersFound:
     """What the members do, to be compared with any set of numbers."""
 
     members: Members
@@ -213,7 +213,7 @@ class Found:
     difference: Any
 
     @classmethod
-    def of(cls, members: Members) -> "Found":
+    def of(cls, members: Members) -> "MembersFound":
         """All that does not depend on the numbers asked for."""
         lower, taken_lower, upper, taken_upper = members.decay()
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.papers.drum_brake_2011.family import COARSE, PRINTED_BELTS, SHARES, SIGNS, USUAL, Grid, Variant
-from squealbox.papers.drum_brake_2011.family_modes import CLAIMS, Found, Members, published, scrambled, stacked
+from squealbox.papers.drum_brake_2011.family import COARSE, PRINTED_BELTS, SHARES, SIGNS, USUAL, TriedValues, Variant
+from squealbox.papers.drum_brake_2011.family_modes import CLAIMS, Members, MembersFound, published, scrambled, stacked
 from squealbox.studies import sweep
 
 SETS = 400  # scrambled sets of numbers
@@ -44,10 +44,10 @@ class Searched:
         return int(np.max(np.nonzero(self.counts)[0]))
 
 
-def score(variant: Variant, grid: Grid = USUAL) -> dict[str, Any]:
+def score(variant: Variant, grid: TriedValues = USUAL) -> dict[str, Any]:
     """The counts of all members with the signs of `variant`, and the best of them."""
     members = Members(int(variant.front), int(variant.belts), grid)
-    met = Found.of(members).score(published())
+    met = MembersFound.of(members).score(published())
     most = int(met.max())
     places = np.argwhere(met == most)
     kept = places[np.unique(np.linspace(0, len(places) - 1, min(len(places), KEPT)).round().astype(int))]
@@ -60,7 +60,7 @@ def score(variant: Variant, grid: Grid = USUAL) -> dict[str, Any]:
 
 def chance(variant: Variant) -> dict[str, Any]:
     """The most claims one member with the signs of `variant` meets, of the published numbers and of scrambled ones."""
-    found = Found.of(Members(int(variant.front), int(variant.belts), COARSE))
+    found = MembersFound.of(Members(int(variant.front), int(variant.belts), COARSE))
     wanted = [published(), *scrambled(SETS)]
     return {"met": np.array([float(found.score(each).max()) for each in wanted])}
 
@@ -76,7 +76,7 @@ def short(sets: int = 200) -> Searched:
     counts = np.zeros(len(CLAIMS) + 1, int)
     met = np.zeros((len(SIGNS), len(wanted)))
     for front in range(len(SIGNS)):
-        found = Found.of(Members(front, belts, COARSE))
+        found = MembersFound.of(Members(front, belts, COARSE))
         counts += np.bincount(found.score(wanted[0]).ravel(), minlength=len(CLAIMS) + 1)
         met[front] = [found.score(each).max() for each in wanted]
     most = met.max(axis=0)
@@ -142,11 +142,11 @@ def stiffness_only(sets: int = 2000) -> tuple[list[int], float]:
     Those are the onset, both frequencies at mu = 0.1 and at 0.3, and the distance before the onset; friction without N,
     alpha V from 0 to 0.15. Returns the indices of `SIGNS` and the share of scrambled sets met as well.
     """
-    grid = Grid((1e-6,), USUAL.product)  # alpha V without alpha: nothing but stiffness
-    found = [Found.of(Members(front, SIGNS.index((1.0,) * 4), grid)) for front in range(len(SIGNS))]
+    grid = TriedValues((1e-6,), USUAL.product)  # alpha V without alpha: nothing but stiffness
+    found = [MembersFound.of(Members(front, SIGNS.index((1.0,) * 4), grid)) for front in range(len(SIGNS))]
     wanted = stacked([published(), *scrambled(sets)])
 
-    def all_met(each: Found) -> Any:
+    def all_met(each: MembersFound) -> Any:
         frequencies = each.members.frequencies(0.30)
         both = [np.abs(frequencies[i] - wanted.at_load[i]) <= np.pi * 40.0 for i in (0, 1)]
         met = [claim[:, 0] if claim.ndim == 4 else claim for claim in each.met(wanted, STIFFNESS[:3]).values()]

@@ -15,9 +15,9 @@ import numpy as np
 
 from squealbox.papers.drum_brake_2011.cases import AMPLITUDES
 from squealbox.papers.drum_brake_2011.claims import EXACT, claims
-from squealbox.papers.drum_brake_2011.family import Grid, Variant
+from squealbox.papers.drum_brake_2011.family import TriedValues, Variant
 from squealbox.papers.drum_brake_2011.family_judged import SAMPLES, MemberCase, claims_met, without_mirror_images
-from squealbox.papers.drum_brake_2011.family_modes import Found, Members, published
+from squealbox.papers.drum_brake_2011.family_modes import Members, MembersFound, published
 from squealbox.papers.drum_brake_2011.family_search import Searched, search
 from squealbox.papers.drum_brake_2011.motions import Run, Studies
 from squealbox.studies import sweep, zipped
@@ -118,8 +118,8 @@ def finer(rows: Any) -> Any:
         here = rows[np.all(rows[:, :4] == signs, axis=1)]
         alphas = np.unique(np.round((here[:, 4, None] + FINE_ALPHA * around).ravel(), 6))
         products = np.unique(np.round(((here[:, 4] * here[:, 5])[:, None] + FINE_PRODUCT * around).ravel(), 6))
-        members = Members(int(signs[0]), int(signs[1]), Grid(tuple(alphas), tuple(products)))
-        met = Found.of(members).score(published())[int(signs[2]), int(signs[3])]
+        members = Members(int(signs[0]), int(signs[1]), TriedValues(tuple(alphas), tuple(products)))
+        met = MembersFound.of(members).score(published())[int(signs[2]), int(signs[3])]
         for i, j in np.argwhere(met == met.max()):
             found.append((*signs, alphas[i], products[j] / alphas[i]))
     return np.array(found)

@@ -16,8 +16,8 @@ from squealbox.papers.drum_brake_2011.claims import (
     ROADS,
     UNDECIDED,
     Claim,
+    ClaimPart,
     Finding,
-    Part,
     claims,
     combined,
     judge,
@@ -108,9 +108,9 @@ def write_markdown(path: Path, found: list[Record]) -> Path:
     return path
 
 
-def shown(part: Part | Mapping[str, Any], value: float | bool | None) -> str:
+def shown(part: ClaimPart | Mapping[str, Any], value: float | bool | None) -> str:
     """A value as a reader reads it, with its unit."""
-    unit = part.unit if isinstance(part, Part) else part["unit"]
+    unit = part.unit if isinstance(part, ClaimPart) else part["unit"]
     if value is None:
         return "no answer"
     if isinstance(value, bool):
@@ -196,7 +196,7 @@ def _record(claim: Claim, reading: str, findings: Mapping[str, Any], measure: st
     }
 
 
-def _part(part: Part, findings: Mapping[str, Any], claim: Claim, measure: str) -> Record:
+def _part(part: ClaimPart, findings: Mapping[str, Any], claim: Claim, measure: str) -> Record:
     roads = {}
     for road in part.roads:
         finding = Finding(**findings[road][part.key])

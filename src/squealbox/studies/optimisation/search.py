@@ -112,7 +112,7 @@ def pareto_front(
 
     population, generations, seed = effort
 
-    class Design(Problem):
+    class Weighing(Problem):
         def __init__(self) -> None:
             count = 1 + 2 * len(constraints)  # the first: every goal has an answer
             super().__init__(n_var=len(box), n_obj=len(goals), n_ieq_constr=count, xl=box[:, 0], xu=box[:, 1])
@@ -126,7 +126,7 @@ def pareto_front(
                 kept += [np.maximum(low - found, -WORST), np.maximum(found - high, -WORST)]
             out["F"], out["G"] = cost, np.concatenate(kept, axis=1)
 
-    found = minimize(Design(), NSGA2(pop_size=population), ("n_gen", generations), seed=seed, verbose=False)
+    found = minimize(Weighing(), NSGA2(pop_size=population), ("n_gen", generations), seed=seed, verbose=False)
     if found.X is None:  # nothing keeps the constraints: the least bad of the last population
         last = found.pop
         worst = np.argmin(last.get("CV")[:, 0])

@@ -132,7 +132,7 @@ class Surrogate(Result):
             order = np.argsort(-self.total)
             parts = (f"{self.names[i]} {self.first[i]:.3f} / {self.total[i]:.3f}" for i in order)
             lines.append(f"Sobol' indices, first / total: {', '.join(parts)}")
-        return "\n".join(lines + [f"Caution: {self.caution}"] * bool(self.caution))
+        return self.warned(lines)
 
 
 @public(design=None)

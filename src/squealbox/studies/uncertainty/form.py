@@ -102,8 +102,8 @@ def form(
 
     Parameters
     ----------
-    design, scatter, quantity, seed, level : as for `squeal_probability`; a smooth quantity, such as the margin, serves
-        better than the growth rate, whose kink the search stumbles over
+    design, scatter, quantity, seed, level : as for `squeal_probability`, level [-]; a smooth quantity, such as the
+        margin, serves better than the growth rate, whose kink the search stumbles over
     samples : of the importance sampling
     iterations : of the search
 

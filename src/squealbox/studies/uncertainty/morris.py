@@ -65,7 +65,7 @@ def morris_effects(
 
     Parameters
     ----------
-    design, scatter, quantity, seed, level : as for `squeal_probability`
+    design, scatter, quantity, seed, level : as for `squeal_probability`, level [-]
     trajectories : r; the quantity is evaluated r (d + 1) times
 
     Accuracy: a ranking, not shares: `sobol_indices` gives those. Raises `ParameterError` for correlated parameters;

@@ -92,7 +92,7 @@ def squeal_probability(
         `replicates` independent randomisations, whose spread makes the interval; with fewer than 5 squealing or quiet
         points in one of them the exact binomial interval is given instead, which is wider than such points deserve
     seed : the same seed gives the same numbers
-    level : confidence level, between 0 and 1
+    level : [-] confidence level, between 0 and 1
 
     Accuracy: the error falls with samples^-1/2 for "random", faster for the others where the boundary of squeal is
     smooth. For probabilities below about 10/samples use `reliability`.

@@ -77,7 +77,7 @@ def sobol_indices(
 
     Parameters
     ----------
-    design, scatter, quantity, seed, level : as for `squeal_probability`
+    design, scatter, quantity, seed, level : as for `squeal_probability`, level [-]
     samples : n, base points in all; the quantity is evaluated n (d + 2) times. It is split over the replicates and
         rounded up so that each has a power of two
     replicates : independent randomisations, whose spread makes the intervals

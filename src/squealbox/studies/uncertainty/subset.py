@@ -77,10 +77,11 @@ def subset_simulation(
 
     Parameters
     ----------
-    design, scatter, quantity, seed, level : as for `squeal_probability`; no derivative is taken, so a kink does no harm
+    design, scatter, quantity, seed, level : as for `squeal_probability`, level [-]; no derivative is taken, so a kink
+        does no harm
     samples : points of a level; a probability of 10^-k takes about k levels
     runs : independent repetitions
-    smallest : a probability below this is given up with the outcome "too_rare"
+    smallest : [-] a probability below this is given up with the outcome "too_rare"
 
     Accuracy: the coefficient of variation. Chains are correlated, and what a run states of itself is a little too
     small as a rule: the larger of that and the scatter of the runs makes the interval, which takes the estimate for

@@ -30,7 +30,14 @@ from squealbox.stability import complex_modes, critical_values
 from squealbox.system import System
 from squealbox.words import number, scaled
 from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.declared import FREEDOM, FRICTION, Panel, Place, over
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
+
+PANEL = Panel(
+    "Limit cycles over a parameter", questions=("when",), slow=True, apart=True, along=True,
+    choices=(over("over", "parameter", FRICTION), FREEDOM),
+    figures=(Place("branch", "", 270, "bent", "amplitude of the cycles: press Follow"),),
+)  # fmt: skip
 
 POINTS = 200  # of each walk to one side, at most: round two folds and back
 STEP = 0.1  # longest, in shares of the range and of the motion

@@ -10,8 +10,15 @@ from squealbox.parameters import ParameterError
 from squealbox.signals import SignalError
 from squealbox.words import number
 from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.declared import FRICTION, Panel, over, words
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, table, try_value
 from squealbox.workbench.panels.recording import heard
+
+PANEL = Panel(
+    "Calibrate", questions=("matches",), columns=2, slow=True, apart=True, table="Fitted values",
+    choices=(over("fit", "p0", FRICTION, span=""), over("and", "p1", "k3", "k2", "k", "k11", span=""),
+             words("within", "share", ("0.1", "10 %"), ("0.3", "30 %"), ("0.6", "60 %"), usual="0.3")),
+)  # fmt: skip
 
 MOST = 4  # parameters
 HEADS = ("parameter", "now", "fitted", "95 % interval")

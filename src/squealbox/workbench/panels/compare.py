@@ -12,8 +12,15 @@ from squealbox.plots.modes import followed
 from squealbox.stability import complex_modes, mechanism
 from squealbox.words import number, quantity, scaled
 from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.declared import FRICTION, Panel, Place, over
 from squealbox.workbench.panels.modes import crossings_of, modes_of
 from squealbox.workbench.panels.panel import NONE, Answer, OptionError, Options, Work, table, try_value
+
+PANEL = Panel(
+    "Compare two designs", questions=("silences",), columns=2, choices=(over("over", "parameter", FRICTION),),
+    layout="two", figures=(Place("frequency", "Frequencies", 200), Place("growth", "Growth rate", 200)),
+    table="The two designs in numbers",
+)  # fmt: skip
 
 POINTS = 161
 KEEP = "Keep this design as A, then change it: A stays beside it."

@@ -5,7 +5,10 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.plots.moving import moving_strokes
+from squealbox.workbench.panels.declared import Panel
 from squealbox.workbench.panels.panel import Answer, Options, Work
+
+PANEL = Panel("The brake", light=True)
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:

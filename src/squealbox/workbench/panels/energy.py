@@ -9,8 +9,14 @@ from squealbox.plots.figure_data import Bars
 from squealbox.stability import mode_energy
 from squealbox.words import number, quantity
 from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.declared import Panel, Place, shared
 from squealbox.workbench.panels.modes import modes_of, seen
 from squealbox.workbench.panels.panel import Answer, Options, Work
+
+PANEL = Panel(
+    "Energy by contact", questions=("why",), figures=(Place("energy", bars=True),),
+    choices=(shared("moving", "mode"),),
+)  # fmt: skip
 
 MOST_BARS = 24
 LOOKS = {"normal force": "b0", "slope": "b1", "damping": "b2"}

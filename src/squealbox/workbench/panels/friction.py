@@ -8,7 +8,12 @@ from squealbox.designs import Design
 from squealbox.plots.figure_data import FigureAxis, FigureData, line, points, span, upright
 from squealbox.system import linearise
 from squealbox.words import number, quantity
+from squealbox.workbench.panels.declared import Panel, Place
 from squealbox.workbench.panels.panel import Answer, Options, Work, table
+
+PANEL = Panel(
+    "Friction curve", questions=("why",), figures=(Place("friction", "", 300),), table="Contacts in steady sliding",
+)  # fmt: skip
 
 POINTS = 241
 

@@ -12,11 +12,20 @@ from squealbox.signals.radiation import AREA, AUDIBLE
 from squealbox.signals.wav import SAMPLING
 from squealbox.transient import Trajectory
 from squealbox.words import number, quantity, scaled
+from squealbox.workbench.panels.declared import FREEDOM, Panel, Place, words
 from squealbox.workbench.panels.following import followed, moving
 from squealbox.workbench.panels.loudness import loudest, loudness
 from squealbox.workbench.panels.panel import Answer, Elsewhere, OptionError, Options, Work
 from squealbox.workbench.panels.start import start_and_dof
 from squealbox.workbench.panels.stop import LEFT_OUT, braking
+
+PANEL = Panel(
+    "Listen", questions=("happens",), slow=True,
+    choices=(FREEDOM, words("heard", "slow", ("1", "true"), ("8", "slowed 8 times"), ("32", "slowed 32 times")),
+             words("while", "braking", ("0", "as it slides"),
+                   *((f"{s:g}", f"braking to rest in {s:g} s") for s in (0.5, 1, 2, 4)))),
+    figures=(Place("sound", "", 170, awaited="the sound: press Play"),),
+)  # fmt: skip
 
 SECONDS = 1.5
 RATE = 2.0 * SAMPLING  # of the motion: nothing heard is folded down

@@ -8,8 +8,16 @@ from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.plots.as_data import modes_over_parameter
 from squealbox.plots.modes import unstable_stretches
+from squealbox.workbench.panels.declared import FRICTION, Panel, Place, over
 from squealbox.workbench.panels.modes import modes_of, ranked, tracks_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, try_value
+
+PANEL = Panel(
+    "Modes over a parameter", questions=("why",), columns=2, choices=(over("over", "parameter", FRICTION),),
+    layout="three",
+    figures=(Place("frequency", "Frequency", 216), Place("growth", "Growth rate (above zero: squeal)", 216),
+             Place("plane", "Eigenvalue plane", 216)),
+)  # fmt: skip
 
 POINTS = 97  # values along the axis; about 15 ms for two degrees of freedom
 FEWER = 61  # for designs of more degrees of freedom

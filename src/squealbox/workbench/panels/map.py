@@ -10,7 +10,14 @@ from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.plots.figure_data import FigureData, heat, path
 from squealbox.stability import StabilityMap, map_boundary, stability_map
 from squealbox.words import number
+from squealbox.workbench.panels.declared import FRICTION, LOADS, Panel, Place, over, words
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
+
+PANEL = Panel(
+    "Stability map", questions=("when",), slow=True, along=True, figures=(Place("map", "", 300),),
+    choices=(over("x", "x", FRICTION, span="xspan"), over("y", "y", *LOADS, span="yspan"),
+             words("show", "show", ("growth", "growth rate"), ("frequency", "frequency"), ("mechanism", "mechanism"))),
+)  # fmt: skip
 
 POINTS = 101
 FEWER = 51  # along each axis, for designs of more than two degrees of freedom

@@ -2,7 +2,10 @@
 
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.workbench.panels.declared import Panel
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
+
+PANEL = Panel("Its surface", light=True)
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:

@@ -12,10 +12,21 @@ from squealbox.signals import SignalError, peaks, spectrogram, spectrum
 from squealbox.transient import Trajectory, Verdict, verdict
 from squealbox.words import number, scaled
 from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.declared import FREEDOM, Panel, Place, words
 from squealbox.workbench.panels.following import followed, moving
 from squealbox.workbench.panels.loudness import loudest, loudness
 from squealbox.workbench.panels.panel import Answer, Options, Work
 from squealbox.workbench.panels.start import start_and_dof
+
+PANEL = Panel(
+    "Motion", questions=("happens",), columns=2, slow=True, layout="two",
+    choices=(words("start", "start", ("push", "steady sliding, pushed"), ("rest", "loads applied at rest"),
+                   ("sliding", "steady sliding")),
+             words("push", "push", ("0.001", "0.1 %"), ("0.05", "5 %"), ("0.5", "50 %"), ("2", "200 %"), usual="0.05"),
+             FREEDOM),
+    figures=(Place("time", "Displacement", 190), Place("spectrum", "Spectrum of the second half", 190),
+             Place("phase", "Phase plane of the second half"), Place("spectrogram", "Spectrogram")),
+)  # fmt: skip
 
 SAMPLES = 4096  # instants kept: 40 a period over a hundred periods
 DRAWN = 1024  # pairs of least and largest value along the time axis

@@ -9,8 +9,11 @@ from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.plots.moving import moving_strokes
 from squealbox.plots.surfaces import largest_motion
 from squealbox.system import equilibrium
+from squealbox.workbench.panels.declared import Panel
 from squealbox.workbench.panels.modes import modes_of, seen
 from squealbox.workbench.panels.panel import Answer, Options, Work
+
+PANEL = Panel("The brake, slowed down", questions=("why", "happens"), single=True)
 
 SEEN = 0.05  # of the freedom that moves most: what moves less has no phase to tell
 

@@ -15,8 +15,15 @@ from squealbox.signals.recordings import Recording
 from squealbox.stability import complex_modes
 from squealbox.words import number
 from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.declared import Panel, Place
 from squealbox.workbench.panels.panel import NONE, Answer, OptionError, Options, Work, table
 from squealbox.workbench.recorded import path_of
+
+PANEL = Panel(
+    "Recording", questions=("matches",), columns=2, slow=True, layout="two", table="Squeal events",
+    figures=(Place("recording", "Spectrogram with the events", 230, "events",
+                   "drop a recording here: WAV, FLAC, CSV, UFF"),),
+)  # fmt: skip
 
 UNITS = ("FS", "Pa", "g", "m/s^2")
 PIECE = 0.04  # s of sound behind a column of the spectrogram

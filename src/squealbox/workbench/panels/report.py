@@ -1,7 +1,10 @@
 """The report of the present design as one HTML file, the same that `squealbox report` writes."""
 
 from squealbox.designs import Design
+from squealbox.workbench.panels.declared import Panel
 from squealbox.workbench.panels.panel import Answer, Options, Work
+
+PANEL = Panel("Report", questions=("tells",), slow=True, apart=True)
 
 PARTS = 11  # of an examination, and writing
 

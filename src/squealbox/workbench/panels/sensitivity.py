@@ -15,8 +15,15 @@ from squealbox.remedies.production import usual_scatter
 from squealbox.stability import critical_values, sensitivity
 from squealbox.system import InvalidSystem
 from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.declared import Panel, Place, words
 from squealbox.workbench.panels.modes import modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, axis_of
+
+PANEL = Panel(
+    "Which parameter to change", questions=("silences",), slow=True,
+    choices=(words("for", "step", ("percent", "+1 %"), ("tolerance", "one tolerance")),),
+    figures=(Place("sensitivity", bars=True),), layout="beside",
+)  # fmt: skip
 
 MOST_BARS = 16
 MERGE = "Two modes nearly merge here: derivatives mean little."

@@ -11,7 +11,10 @@ from squealbox.parameters import ParameterError
 from squealbox.remedies import Candidate, Remedies, candidates_for, silence
 from squealbox.remedies.candidates import more_friction
 from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.declared import Panel
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
+
+PANEL = Panel("Cures", questions=("silences",), columns=2, slow=True, apart=True)
 
 SAMPLES = 1024  # brakes of the lot
 

@@ -7,7 +7,13 @@ from squealbox.parameters import ParameterError
 from squealbox.plots.figure_data import FigureAxis, FigureData, Layer, across, line, points, text, upright
 from squealbox.remedies.target import ASSUMED, Lot, lot_of
 from squealbox.workbench.frames import finite
+from squealbox.workbench.panels.declared import Panel, Place, number
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
+
+PANEL = Panel(
+    "A target", questions=("silences",), slow=True, figures=(Place("lot", "", 150),),
+    choices=(number("friction", "friction", 0.45, 0.01, 5.0, 0.01), number("for %", "share", 95.0, 1.0, 99.9, 0.1)),
+)  # fmt: skip
 
 FRICTION, SHARE = 0.45, 95.0
 POINTS = 241  # of the figure

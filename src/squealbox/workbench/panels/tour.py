@@ -16,7 +16,10 @@ from squealbox.papers.drum_brake_2011.cases import ALPHA, INFERRED, Case
 from squealbox.papers.drum_brake_2011.claims import paper
 from squealbox.papers.drum_brake_2011.record import Record, count
 from squealbox.papers.drum_brake_2011.verdicts import verdicts
+from squealbox.workbench.panels.declared import Panel
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
+
+PANEL = Panel("Tour: the drum-brake paper of 2011", questions=("tells",), slow=True, apart=True)
 
 _READY: dict[Case, list[Record]] = {}  # of this server: some seconds each, and the same for everybody
 

@@ -9,8 +9,11 @@ from squealbox.designs import Design
 from squealbox.stability import mechanism, sentences
 from squealbox.system import equilibrium
 from squealbox.words import quantity
+from squealbox.workbench.panels.declared import Panel
 from squealbox.workbench.panels.modes import crossings_of, modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, try_value
+
+PANEL = Panel("Verdict")
 
 LINEAR = ("Linear and about steady sliding: it says whether squeal can start, not how loud it gets; stable sliding can "
           "still squeal after a push.")  # fmt: skip

@@ -202,7 +202,7 @@ class App extends EventTarget {
     select.replaceChildren(...hello.brakes.map((brake) => make("option", { value: brake.name }, brake.title)));
     select.append(make("option", { value: "", hidden: true }, "from a file"));
     const address = location.hash;
-    this.loading = this.#panels(hello.panels.filter((about) => about.shown)); // meanwhile the sheet is asked
+    this.loading = this.#panels(hello.panels.filter((about) => about.questions.length)); // meanwhile the sheet is asked
     if (hello.text && !address) await this.open(hello.text, undefined, hello.name);
     else if (!(await this.follow(address))) await this.#sheet();
   }

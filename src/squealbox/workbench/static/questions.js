@@ -2,14 +2,10 @@
 
 import { make } from "./elements.js";
 
+// A panel's file says which of them it answers.
 const QUESTIONS = [
-  ["why", "Why does it squeal?", ["locus", "moving", "energy", "friction"]],
-  ["when", "When?", ["map", "branch"]],
-  ["happens", "What happens?", ["moving", "motion", "listen"]],
-  ["silences", "What silences it?", ["silence", "target", "sensitivity", "compare"]],
-  ["matches", "Does it match the test?", ["recording", "calibrate"]],
-  ["tells", "Report, tour", ["report", "tour"]],
-  ["project", "Project", ["project"]],
+  ["why", "Why does it squeal?"], ["when", "When?"], ["happens", "What happens?"], ["silences", "What silences it?"],
+  ["matches", "Does it match the test?"], ["tells", "Report, tour"], ["project", "Project"],
 ];
 
 export class Questions {
@@ -38,9 +34,10 @@ export class Questions {
 
   /** The question whose screen holds a panel: the present one where it does. */
   askFor(panel) {
-    const holds = ([, , panels]) => panels.includes(panel);
-    const now = QUESTIONS.find(([name]) => name === this.asked);
-    if (!holds(now)) this.ask(QUESTIONS.find(holds)[0]);
+    const { hello, connection } = this.app;
+    if (!hello) return connection.addEventListener("hello", () => this.askFor(panel), { once: true });
+    const { questions } = hello.panels.find(({ name }) => name === panel);
+    if (!questions.includes(this.asked)) this.ask(questions[0]);
   }
 
   show() {
@@ -53,7 +50,6 @@ export class Questions {
       tab.setAttribute("aria-selected", tab.dataset.question === asked);
       tab.tabIndex = tab.dataset.question === asked ? 0 : -1;
     }
-    const [, , panels] = QUESTIONS.find(([name]) => name === asked);
-    for (const [name, panel] of this.app.panels) panel.show(panels.includes(name));
+    for (const panel of this.app.panels.values()) panel.show(panel.about.questions.includes(asked));
   }
 }

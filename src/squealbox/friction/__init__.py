@@ -1,0 +1,21 @@
+"""Friction laws: the coefficient mu(|v|) at sliding speed |v|, and its slope dmu/d|v|.
+
+Each law is one plain formula ``law(v, p)`` and its derivative ``law_slope(v, p)`` of the speed v >= 0 and the law's
+coefficients p. The same functions serve NumPy arrays here and are compiled by the transient engine, so they use only
+arithmetic and NumPy functions. By convention p[0] is the static limit, the coefficient a sticking contact can reach.
+A file of this folder that holds a law makes it one of `LAWS`.
+"""
+
+from squealbox.bristles import Dahl, ElastoPlastic, LuGre
+from squealbox.friction.averaged import Averaged, averaged
+from squealbox.friction.curves import Coulomb, Cubic, Hyperbolic, LinearSlope, Stribeck, Table
+from squealbox.law import NEVER_STICKS, FrictionLaw
+from squealbox.registers import kinds_in
+
+# Their places are numbers in compiled code: what is found in further files stands behind these.
+_FIRST = (Coulomb, LinearSlope, Stribeck, Hyperbolic, Cubic, Table, LuGre, Dahl, ElastoPlastic)
+LAWS: tuple[type[FrictionLaw], ...] = kinds_in(__name__, FrictionLaw, _FIRST, having="formula")
+globals().update({law.__name__: law for law in LAWS})
+
+__all__ = ["LAWS", "NEVER_STICKS", "Averaged", "FrictionLaw", "averaged"]
+__all__ += [law.__name__ for law in LAWS]

@@ -1,0 +1,1 @@
+"""Methods in a file each: NAME.py has a function ``NAME() -> Tableau``, known to `TABLEAUX` by that name."""
