@@ -254,3 +254,17 @@ def test_a_smoothed_measured_law_has_a_series():
     close = simulate(design, 0.01, times=21, method=Method("dormand-prince-8", rtol=1e-13), **ways)
     assert one.settings["tableau"] == "taylor"
     assert distance(one.q, close.q) < 1e-8
+
+
+def test_a_contact_that_lifts_off_under_a_smoothed_sign():
+    """A block that hops on a belt: where it is open it is pulled by nothing, and what that is worth is counted."""
+    spring = Contact([2.0, 0.0], [0.3, 1.0], [0.0, 1.0], 0.5, 0.6, Coulomb(0.3), unilateral=True, normal=[-2.0, 0.0])
+    block = System(np.eye(2), 0.02 * np.eye(2), [[4.0, 0.5], [0.5, 3.0]], [0.1, 0.0], (spring,))
+    ways = {"contact": "tanh", "width": 0.05, "times": 101}
+    one = simulate(block, 20.0, ([0.8, 0.0], [0.0, 0.0]), **ways)
+    close = simulate(block, 20.0, ([0.8, 0.0], [0.0, 0.0]), method=Method("dormand-prince-8", rtol=1e-12), **ways)
+    assert one.settings["tableau"] == "taylor"
+    assert 0.05 < np.mean(one.mode == 2) < 0.95
+    assert np.array_equal(one.mode, close.mode)
+    assert distance(one.q, close.q) < 1e-7
+    assert np.max(np.abs(one.energy.residual)) < 1e-7

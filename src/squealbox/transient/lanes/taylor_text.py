@@ -334,7 +334,8 @@ class TaylorStep(EquationText):
             " + ".join(f"{x} * ({row})" for i, x in enumerate(v) if (row := " + ".join(self.product(f"c{i}", v))))
         )
         lifted = [(" + ".join(self.product(f"w{c}", v)), c) for c in range(m) if shape.unilateral[c]]
-        off = [(self.openness(c, found["normal"][c]), found["normal"][c], row) for row, c in lifted if row]
+        here = [f"at({normal}, 0)" for normal in found["normal"]]  # the choice was made when the step began
+        off = [(self.openness(c, here[c]), found["normal"][c], row) for row, c in lifted if row]
         rates.append(" + ".join(f"{share} * {normal} * ({row})" for share, normal, row in off))
         for k, rate in enumerate(rates):
             self.put(f"works{k} = integral({rate}) * unit" if rate else f"works{k} = 0.0")
