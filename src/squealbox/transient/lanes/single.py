@@ -13,7 +13,7 @@ from squealbox.transient import packing
 from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.kernel import lane_kernel
 from squealbox.transient.lanes.orders import Orders
-from squealbox.transient.lanes.shape import Rows, layout, parameter_rows
+from squealbox.transient.lanes.shape import Places, layout, parameter_rows
 from squealbox.transient.lanes.table import Jobs, limits, tabulate
 from squealbox.transient.latest import Latest
 from squealbox.transient.methods import TAYLOR, Method
@@ -30,7 +30,7 @@ class Prepared:
     """What runs of one system by one method share."""
 
     jobs: Jobs
-    rows: Rows
+    rows: Places
     names: dict[str, int]
     record: Any
     kernel: Any
