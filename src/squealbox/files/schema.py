@@ -37,7 +37,7 @@ def json_schema() -> Schema:
     }
     sections = {
         "modes": _sheet(Modes),
-        "simulate": _sheet(Simulate),
+        "simulate": _sheet(Simulate, more={"start": _start()}),
         "reduce": _sheet(Reduce, more={"varying": {"type": "object", "description": "parameters and their ranges"}}),
         "onset": _ref("axis"),
         "branch": _ref("axis"),
@@ -190,6 +190,17 @@ def _axis() -> Schema:
         },
         "required": ["parameter", "range"],
         "additionalProperties": False,
+    }
+
+
+def _start() -> Schema:
+    """A word, one of them with the number of a mode, or a table of mode and amplitude."""
+    keys = {name: _field(Simulate, name) for name in ("mode", "amplitude")}
+    table = {"type": "object", "properties": keys, "required": ["mode"], "additionalProperties": False}
+    words = _field(Simulate, "start")
+    return {
+        "description": words["description"],
+        "anyOf": [words, {"type": "string", "pattern": "^mode [0-9]+$"}, table],
     }
 
 

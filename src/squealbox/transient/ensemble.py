@@ -174,8 +174,8 @@ def simulate_ensemble(
         "dormand-prince-8" or a `Method`; None takes "taylor" wherever the equation has a series
     observe : names out of `OBSERVERS`, or an `Observer` of your own; no trajectory is stored
     contact : "exact", "raw", "smooth" = "arctan", or "tanh", as in `simulate`
-    start : "rest", "sliding", or (q, qd) whose arrays end with n and broadcast with the parameters; without parameters
-        their leading axes are those of the ensemble
+    start : as in `simulate`, the same for all; or (q, qd) whose arrays end with n and broadcast with the parameters;
+        without parameters their leading axes are those of the ensemble
     times : instants at which q and qd are sampled [s], or a whole number of equal ones; they do not influence the steps
     rtol, atol, width, start_time : as in `simulate`
     threads : how many; None takes one for each core

@@ -29,7 +29,7 @@ def settings_of(found: DesignFile) -> dict[str, dict[str, Any]]:
         made.setdefault(panel, {})[option] = axis.name
         made.setdefault("page", {"ranges": {}})["ranges"].setdefault(axis.name, [axis.low, axis.high])
     if found.simulate is not None:
-        made["motion"] = {"start": found.simulate.start}
+        made["motion"] = {"start": "push" if found.simulate.start == "mode" else found.simulate.start}
     return made
 
 

@@ -33,6 +33,7 @@ from squealbox.matrices import runs_of_true
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import complex_modes
+from squealbox.start import Start
 from squealbox.studies.quantity import unit_of
 
 SWEEPS = ("up", "down", "rest")
@@ -126,7 +127,7 @@ def bifurcation_diagram(
     starts : number of states drawn about steady sliding, with `seed`, from which every value starts as well
     section : a :class:`Section`; None keeps the last eight maxima of each degree of freedom only
     returns : about how many passages of the section are kept, in the time of as many returns
-    start : (q, qd) in which the sweeps up and down begin; None takes q = q' = 0
+    start : in which the sweeps up and down begin, as for `simulate`, counted at the first value
     duration : [s] of the first stretch at each value; None takes 60 periods of the slowest mode. What has not settled
         runs on, up to 15 times that
     threads : as in :func:`basin`
@@ -156,9 +157,7 @@ def bifurcation_diagram(
     if section is not None:
         section.column(batch.system), section.plane(batch.system, scales.rest)
     n = scales.rest.shape[-1]
-    begin = np.zeros(2 * n) if start is None else np.concatenate([np.asarray(x, dtype=float) for x in start])
-    if begin.shape != (2 * n,) or not np.all(np.isfinite(begin)):
-        raise ParameterError("bifurcation_diagram", "start", start, f"(q, qd), each of shape ({n},) and finite")
+    begin = Start.of("bifurcation_diagram", start, batch.one).state
     ways = [name for name in sweeps if name != "rest"]
     found = dict(zip(ways, _swept(batch, ways, begin, scales, duration, threads), strict=True))
     names = [*sweeps, *(f"start {i + 1}" for i in range(starts))]
