@@ -10,6 +10,7 @@ import numpy as np
 
 from squealbox.arguments import designs, public
 from squealbox.cautions import of_many_runs
+from squealbox.family import Family, values_of
 from squealbox.labelled import Labelled, Labels
 from squealbox.parameters import DataSheet, ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Column, Outcome, Result, batched, quantity
@@ -327,7 +328,8 @@ def _space(
         raise ParameterError(
             "simulate_ensemble", "parameters", list(parameters), "one design or system: of several each is run as it is"
         )
-    arrays = [np.asarray(value, dtype=float) for value in parameters.values()]
+    Family(design, parameters)  # says what it does not have
+    arrays = [values_of("simulate_ensemble", *each, axes=True) for each in parameters.items()]
     if grid:
         arrays = list(np.meshgrid(*arrays, indexing="ij"))
     try:

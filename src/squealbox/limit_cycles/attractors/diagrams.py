@@ -15,6 +15,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.cautions import along, told_place
+from squealbox.family import Family, Varied
 from squealbox.limit_cycles.attractors.sections import Section, passages
 from squealbox.limit_cycles.attractors.settling import (
     FAILED,
@@ -104,8 +105,8 @@ class BifurcationDiagram(Result):
 @public()
 def bifurcation_diagram(
     design: Any,
-    parameter: str,
-    values: Any,
+    parameter: Varied,
+    values: Any = None,
     *,
     sweeps: Sequence[str] = SWEEPS,
     starts: int = 0,
@@ -121,8 +122,8 @@ def bifurcation_diagram(
     Parameters
     ----------
     design : a design, or a function of one value that returns a design or system
-    parameter : dotted name, such as "friction.static"
-    values : (k,) in rising order
+    parameter, values : {name: values (k,)} in rising order, such as {"friction.static": np.linspace(0.1, 0.5, 41)}; or
+        the name and the values one after the other
     sweeps : some of "up", "down" (the state goes on from value to value) and "rest" (each from q = q' = 0)
     starts : number of states drawn about steady sliding, with `seed`, from which every value starts as well
     section : a :class:`Section`; None keeps the last eight maxima of each degree of freedom only
@@ -142,8 +143,9 @@ def bifurcation_diagram(
     >>> bifurcation_diagram(drum, "friction.static", [0.1, 0.15], sweeps=("rest",)).kind
     array([[1, 1]])
     """
-    values = np.asarray(values, dtype=float)
-    if values.ndim != 1 or values.size < 1 or not np.all(np.diff(values) > 0.0):
+    family = Family.along("bifurcation_diagram", design, parameter, values, count=1)
+    parameter, values = family.name, family.spans[0]
+    if not np.all(np.diff(values) > 0.0):
         raise ParameterError("bifurcation_diagram", "values", values, "a list of rising values")
     for name in sweeps:
         if name not in SWEEPS:
@@ -170,7 +172,7 @@ def bifurcation_diagram(
     read = [np.zeros((len(values), 0)) if section is None else _read(batch, each, section, int(returns), threads)
             for each in ends]  # fmt: skip
     return BifurcationDiagram(
-        inputs={"system": design} if hasattr(design, "replace") else {},
+        inputs={} if family.recipe else {"system": design},
         settings={"sweeps": list(sweeps), "starts": int(starts), "seed": seed, "returns": int(returns)},
         outcome=_outcome(kind), value=values, kind=kind, sliding=scales.rest, parameter=parameter,
         maxima=np.where(rests, scales.rest[None, :, :, None], np.array([each.maxima for each in ends])),
