@@ -39,7 +39,7 @@ class Family:
     def __init__(self, design: Any, parameters: Iterable[str], spans: Iterable[Any] = ()) -> None:
         self.design, self.parameters, self.spans = design, tuple(parameters), tuple(spans)
         self.recipe: Callable[..., Any] | None = design if is_recipe(design) else None
-        if isinstance(design, DataSheet):
+        if isinstance(design, DataSheet) and not isinstance(design, System):  # whose table of contacts has no names
             for name in self.parameters:
                 design.value_of(name)
 

@@ -26,6 +26,9 @@ from squealbox import (
     tracked_modes,
 )
 from squealbox.files.analyses import Axis
+from squealbox.files.document import DesignFileError
+from squealbox.files.reading import read_text
+from squealbox.files.study import read_study
 from squealbox.limit_cycles import (
     averaged_curve,
     bifurcation_diagram,
@@ -218,3 +221,75 @@ def test_an_axis_has_ends_and_values():
     axis = Axis(MU, 0.1, 0.6, points=3)
     assert critical_value(BRAKE, {MU: axis}).value == critical_value(BRAKE, {MU: ENDS}).value
     assert np.array_equal(tracked_modes(BRAKE, {MU: axis}).value, [0.1, 0.35, 0.6])
+
+
+FILE = 'brake = "drum_brake"\nfriction = { law = "linear_slope", static = 0.3, slope = -0.05 }\n'
+SAID = {  # section: by `vary`, as it was said before, and what else stands there
+    "onset": (
+        'vary = { "friction.static" = [0, "80 %"] }',
+        'parameter = "friction.static"\nrange = [0, "80 %"]',
+        "",
+    ),
+    "branch": (
+        "vary = { friction.static = { range = [0.1, 0.6], points = 50 } }",
+        'parameter = "friction.static"\nrange = [0.1, 0.6]\npoints = 50',
+        "",
+    ),
+    "map": (
+        'vary = { "friction.static" = [0, 1], load = { range = ["100 N", "2 kN"], points = 31 } }',
+        'x = { parameter = "friction.static", range = [0, 1] }\n'
+        'y = { parameter = "load", range = ["100 N", "2 kN"], points = 31 }',
+        "",
+    ),
+    "scatter": (
+        'vary = { k1 = { distribution = "normal", mean = "19 kN/mm", sd = "1 kN/mm" } }',
+        'parameters = { k1 = { distribution = "normal", mean = "19 kN/mm", sd = "1 kN/mm" } }',
+        'quantity = "growth_rate"',
+    ),
+    "optimise": (
+        'vary = { k1 = ["10 kN/mm", "20 kN/mm"] }',
+        'variables = { k1 = ["10 kN/mm", "20 kN/mm"] }',
+        'goals = [{ minimise = "growth_rate" }]',
+    ),
+}
+
+
+@pytest.mark.parametrize("section", SAID)
+def test_a_file_says_it_as_well(section):
+    *ways, more = SAID[section]
+    read = [getattr(read_text(f"{FILE}[{section}]\n{way}\n{more}\n"), section) for way in ways]
+    read = [each.variables if section == "optimise" else getattr(each, "scatter", each) for each in read]
+    assert read[0] == read[1]
+
+
+def test_a_study_says_it_as_well(tmp_path):
+    ways = [
+        'vary = { "friction.static" = [0.1, 0.2, 0.4], load = { range = [500, 1000], points = 3 } }',
+        '[[study.axis]]\nparameter = "friction.static"\nvalues = [0.1, 0.2, 0.4]\n'
+        '[[study.axis]]\nparameter = "load"\nrange = [500, 1000]\npoints = 3',
+    ]
+    found = []
+    for i, way in enumerate(ways):
+        path = tmp_path / f"study{i}.toml"
+        path.write_text(f'{FILE}[study]\nanalysis = "modes"\n{way}\n')
+        found.append(read_study(path).space)
+    assert found[0].names == found[1].names == (MU, LOAD)
+    assert all(np.array_equal(a, b) for a, b in zip(*(each.points(0, 9).values() for each in found), strict=True))
+
+
+@pytest.mark.parametrize(
+    ("section", "says"),
+    [
+        ("[onset]\nvary = { 'friction.statik' = [0, 1] }", "did you mean 'friction.static'"),
+        ("[onset]\nvary = { load = [2, 1] }", "4: onset.vary.load.range: [2, 1]: expected the lower value first"),
+        ("[onset]\nvary = { load = [1, 2], theta1 = [1, 2] }", "expected a table of 1 parameter such as"),
+        ("[map]\nvary = { load = [1, 2] }", "expected a table of 2 parameters such as"),
+        ("[branch]\nvary = [0, 1]", "expected a table of 1 parameter such as"),
+        ("[onset]\nvary = { load = [1, 2] }\nrange = [1, 2]", "unknown key"),
+    ],
+)
+def test_what_a_file_cannot_mean_is_one_sentence(section, says):
+    with pytest.raises(DesignFileError) as caught:
+        read_text(FILE + section)
+    assert says in str(caught.value)
+    assert "\n" not in str(caught.value)

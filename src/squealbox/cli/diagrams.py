@@ -9,9 +9,9 @@ from cyclopts import Parameter
 from squealbox.cli.answers import keep
 from squealbox.cli.branches import all_branches
 from squealbox.cli.inputs import (
-    RANGE,
     Changes,
     Ends,
+    Vary,
     axis,
     folder,
     in_motion,
@@ -19,6 +19,7 @@ from squealbox.cli.inputs import (
     read,
     readable,
     time_of,
+    varied_by,
     with_points,
 )
 from squealbox.cli.options import AllowCode
@@ -43,6 +44,7 @@ NAMED = {"maxima": Section.maxima, "minima": Section.minima, "return": Section.r
 def diagram(
     file: Path,
     *,
+    vary: Vary = (),
     parameter: str | None = None,
     range: Ends = None,
     points: int | None = None,
@@ -68,8 +70,10 @@ def diagram(
     ----------
     file
         design file; its section [branch] says what is varied, unless the options do
+    vary
+        a parameter and its lowest and highest value: friction.static=0.1:0.6, or theta1=20deg:160deg
     parameter
-        dotted name, such as friction.static
+        its dotted name, where --range stands beside it
     range
         lowest and highest value, with or without a unit: 0.1 0.6
     points
@@ -99,7 +103,7 @@ def diagram(
         folder for a figure, the tables diagram.csv and section.csv, and diagram.nc
     """
     found = read(file, changes, allow_code)
-    varied = with_points(axis(found.design, found.branch, parameter, range, RANGE), points)
+    varied = with_points(axis(found.design, found.branch, *varied_by(vary, parameter, range)), points)
     found = in_motion(found, varied)
     length = None if duration is None else time_of("--duration", duration)
     plane = _section(found.design, section, dof)

@@ -1,5 +1,6 @@
 """`squealbox map`: which part of a plane squeals, why, and where its boundary runs."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -7,7 +8,7 @@ import numpy as np
 from cyclopts import Parameter
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Changes, Option, axis, folder, read, readable, small, with_points
+from squealbox.cli.inputs import Changes, Option, Vary, axis, folder, read, readable, small, spans, with_points
 from squealbox.cli.options import AllowCode
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -31,6 +32,7 @@ ACROSS, UP = Option("--x", "--x NAME LOW HIGH"), Option("--y", "--y NAME LOW HIG
 def map_(
     file: Path,
     *,
+    vary: Vary = (),
     x: Span = None,
     y: Span = None,
     points: int | None = None,
@@ -45,6 +47,8 @@ def map_(
     ----------
     file
         design file; its section [map] says what is varied, unless the options do
+    vary
+        two parameters, each with its lowest and highest value: friction.static=0:1 theta1=20deg:160deg
     x
         parameter, lowest and highest value: friction.static 0 1
     y
@@ -61,7 +65,7 @@ def map_(
         folder for the figure, the grid and the points of the boundary
     """
     found = read(file, changes, allow_code)
-    across, up = axes_of(found, x, y, points)
+    across, up = axes_of(found, vary, x, y, points)
     if out is not None:
         folder(out, "map", "boundary")
     found = small(found, across, up)
@@ -107,9 +111,13 @@ class Plane:
         return {f"{n} [{u or '-'}]": v for n, u, v in zip(self.names, self.units, (x, y), strict=True)}
 
 
-def axes_of(found: "DesignFile", x: Span, y: Span, points: int | None) -> tuple["Axis", "Axis"]:
+def axes_of(
+    found: "DesignFile", vary: Sequence[str], x: Span, y: Span, points: int | None
+) -> tuple["Axis", "Axis"]:  # fmt: skip
     """The two axes of a plane, from the options or the section [map] of the file."""
     given = found.map
+    if vary:
+        x, y = ((name, *ends) for name, ends in spans(vary, 2))
     across = with_points(axis(found.design, given.x if given else None, *_split(x), ACROSS), points)
     up = with_points(axis(found.design, given.y if given else None, *_split(y), UP), points)
     if across.name == up.name:

@@ -16,7 +16,7 @@ from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_number, wrong
 from squealbox.files.sheets import read_sheet
-from squealbox.files.varied import quantity_of
+from squealbox.files.varied import VARY, axes_of, quantity_of
 from squealbox.parameters import DataSheet, Parameter, ParameterError, choice, known_names, parameter
 from squealbox.start import in_words
 from squealbox.transient.legs import SCHEMES
@@ -123,16 +123,24 @@ def read_simulate(document: Document, table: Mapping[str, Any], key: Key, design
 
 
 def read_onset(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Axis | None:
-    """The section [onset] or [branch]: ``parameter = "friction.static"`` and ``range = [0, 1]``."""
+    """The section [onset] or [branch]: ``vary = { "friction.static" = [0, 1] }``, or a parameter and its range."""
+    if VARY in table:
+        only(document, table, key, (VARY, "points"))
+        axes = axes_of(document, table, key, design, plain="range", count=1)
+        return next((read_axis(document, *axis, design) for axis in axes), None)
     return read_axis(document, table, key, design)
 
 
 def read_map(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Map | None:
-    """The section [map]: ``x`` and ``y``, each a table of parameter, range and points."""
+    """The section [map]: two parameters that `vary`, or tables ``x`` and ``y`` of parameter, range and points."""
+    if VARY in table:
+        only(document, table, key, (VARY, "points"))
+        plane = [
+            read_axis(document, *axis, design) for axis in axes_of(document, table, key, design, plain="range", count=2)
+        ]
+        return None if not plane or plane[0] is None or plane[1] is None else Map(plane[0], plane[1])
     axes: dict[str, Axis | None] = {}
-    for name in table:
-        if name not in ("x", "y"):
-            document.problem((*key, name), f"unknown key, {known_names(name[:60], ['x', 'y'])}")
+    only(document, table, key, ("x", "y"))
     for name in ("x", "y"):
         value = table.get(name)
         if not isinstance(value, Mapping):
@@ -144,6 +152,13 @@ def read_map(document: Document, table: Mapping[str, Any], key: Key, design: Des
             axes[name] = read_axis(document, value, (*key, name), design)
     x, y = axes.get("x"), axes.get("y")
     return None if x is None or y is None else Map(x, y)
+
+
+def only(document: Document, table: Mapping[str, Any], key: Key, known: tuple[str, ...]) -> None:
+    """A problem of the document for each key that is none of those known."""
+    for name in table:
+        if name not in known:
+            document.problem((*key, name), f"unknown key, {known_names(name[:60], list(known))}")
 
 
 def read_axis(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Axis | None:
