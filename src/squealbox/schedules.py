@@ -252,8 +252,15 @@ class Table(Schedule):
         if values.shape != times.shape:
             raise ParameterError("Table", "values", self.values, f"{times.size} values, one for each instant")
 
+    def value(self, time: Any) -> Any:
+        return np.interp(np.asarray(time, dtype=float), self.times, self.values)
+
+    def rate(self, time: Any) -> Any:
+        lines = np.r_[0.0, np.diff(self.values) / np.diff(self.times), 0.0]
+        return lines[np.searchsorted(self.times, np.asarray(time, dtype=float), side="right")]
+
     def coefficients(self) -> tuple[Any, ...]:
-        return tuple(float(x) for x in (len(self.times), *self.times, *self.values))
+        return (float(len(self.times)), *np.asarray([self.times, self.values], dtype=float).ravel().tolist())
 
     def breaks(self) -> tuple[float, ...]:
         return tuple(float(t) for t in self.times)

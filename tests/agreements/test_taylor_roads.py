@@ -11,15 +11,16 @@ from squealbox import (
     MassOnBelt,
     Method,
     ParameterError,
+    Ramp,
     Sinusoid,
     Stribeck,
     System,
+    schedules,
     simulate,
     simulate_ensemble,
 )
 from squealbox.files.own_law import own_law
 from squealbox.friction import Table
-from squealbox.system import InvalidSystem
 
 OBSERVE = ("amplitude", "peak", "frequency", "energy", "sticking")
 INSTANTS = np.linspace(0.0, 0.02, 41)
@@ -139,12 +140,65 @@ def test_what_has_no_series_is_refused_in_one_sentence():
         simulate_ensemble(drum(), varied, 1e-3, "taylor", contact="raw")
     with pytest.raises(ParameterError, match="jump of sgn"):
         simulate(drum(), 1e-3, method="taylor", contact="raw")
-    points = DrumBrake(friction=Table([0.0, 0.5, 1.0], [0.3, 0.25, 0.2]))
-    with pytest.raises(InvalidSystem, match="measured points"):
-        simulate_ensemble(points, {"theta1": [0.6, 0.65]}, 1e-3, "taylor")
-    with pytest.raises(InvalidSystem, match="measured points"):
-        simulate(points, 1e-3, method="taylor")
-    assert simulate(points, 1e-3).settings["tableau"] == "dormand-prince-8"
+
+
+SPEEDS = np.linspace(0.0, 4.0, 9)  # the drum's sliding speed of 1.5 m/s is one of them
+MEASURED = Table(SPEEDS, 0.3 + 0.15 * np.exp(-SPEEDS / 0.5))
+BRAKING = {
+    "at a knot": 1.5,
+    "from a knot": Ramp(1.5, -24.0, None),
+    "measured": schedules.Table([0.0, 0.01, 0.02, 0.05], [1.5, 1.2, 0.7, 0.3]),
+}
+
+
+@pytest.mark.parametrize("speed", BRAKING.values(), ids=BRAKING)
+def test_measured_points_end_a_step_of_the_series(speed):
+    """A knot passed unawares costs 1e-6: `dormand-prince-8` at its tightest tells."""
+    design = drum(reading="consistent").replace({"friction": MEASURED, "sliding_speed": speed})
+    one = simulate(design, 0.05, times=51)
+    close = simulate(design, 0.05, times=51, method=Method("dormand-prince-8", rtol=1e-13))
+    assert one.settings["tableau"] == "taylor"
+    assert len(one.event_time) == len(close.event_time)
+    assert isinstance(speed, float) or len(one.event_time) > 50
+    assert distance(one.q, close.q) < 5e-9
+    assert distance(one.friction_force, close.friction_force) < 1e-7
+    many = simulate_ensemble(design, {"theta1": [0.6, design.theta1]}, 0.05, None, ())
+    assert many.settings["tableau"] == "taylor"
+    assert distance(many.q[1], close.q[-1]) < 5e-9
+
+
+def test_a_measured_speed_of_many_points_is_no_burden():
+    """2,000 instants, some of a law of 40 speeds between them: half a minute by a formula that sums over intervals."""
+    rng = np.random.default_rng(3)
+    instants, speeds = np.linspace(0.0, 0.02, 2000), np.linspace(0.0, 4.0, 40)
+    speed = schedules.Table(instants, 1.5 - 20.0 * instants + 0.01 * rng.standard_normal(2000))
+    law = Table(speeds, 0.3 + 0.15 * np.exp(-2.0 * speeds) + 0.002 * rng.standard_normal(40))
+    design = drum(reading="consistent").replace({"friction": law, "sliding_speed": speed})
+    one, close = (simulate(design, 0.02, times=21, method=m) for m in (None, Method("dormand-prince-8", rtol=1e-12)))
+    assert one.settings["tableau"] == "taylor"
+    assert one.steps < 4000  # the other takes one for each instant too
+    assert distance(one.q, close.q) < 1e-8
+    for time in (0.0, 1e-3, instants[7], 0.5 * (instants[7] + instants[8]), 0.03):
+        assert speed.value(time) == pytest.approx(schedules.table(time, speed.coefficients()), rel=1e-12)
+        assert speed.rate(time) == pytest.approx(schedules.table_rate(time, speed.coefficients()), rel=1e-9)
+
+
+@pytest.mark.parametrize("contact", ["arctan", "tanh"])
+@pytest.mark.parametrize("width", [1e-3, 0.05])
+def test_a_smoothed_sign_has_a_series(contact, width):
+    """The same motion as by `dormand-prince-8` at its tightest, in one run and in lanes, and the same reversals."""
+    ways = {"contact": contact, "width": width}
+    one = simulate(drum(0.44), 0.01, times=21, **ways)
+    close = simulate(drum(0.44), 0.01, times=21, method=Method("dormand-prince-8", rtol=1e-13), **ways)
+    assert one.settings["tableau"] == "taylor"
+    assert distance(one.q, close.q) < 1e-8
+    assert distance(one.friction_force, close.friction_force) < 1e-6
+    assert np.array_equal(one.mode, close.mode)
+    assert np.max(np.abs(one.energy.residual)) < 1e-8 * np.max(np.abs(one.work_friction))
+    assert one.caution.split(";")[0] == close.caution.split(";")[0]  # how often sliding reversed
+    many = simulate_ensemble(drum(), {"friction.static": [0.3, 0.44]}, 0.01, None, (), **ways)
+    assert many.settings["tableau"] == "taylor"
+    assert distance(many.q[1], close.q[-1]) < 1e-8
 
 
 @pytest.mark.parametrize("law", [Coulomb(0.0), Stribeck(0.0, 0.0, 0.1), LinearSlope(0.0, 0.0), LinearSlope(0.0, 0.1)])
@@ -191,3 +245,12 @@ def test_the_audit_of_a_damped_motion_is_as_exact_as_the_motion():
     for rtol in (1e-6, 1e-8, 1e-10, 1e-12):
         motion = simulate(damped, 300.0, ([1.0], [0.0]), method="taylor", rtol=rtol)
         assert motion.energy.relative_residual < 30.0 * rtol
+
+
+def test_a_smoothed_measured_law_has_a_series():
+    """A law of points under tanh, which is compared with its series at speeds inside the step."""
+    design, ways = drum(reading="consistent").replace({"friction": MEASURED}), {"contact": "tanh", "width": 0.02}
+    one = simulate(design, 0.01, times=21, **ways)
+    close = simulate(design, 0.01, times=21, method=Method("dormand-prince-8", rtol=1e-13), **ways)
+    assert one.settings["tableau"] == "taylor"
+    assert distance(one.q, close.q) < 1e-8

@@ -31,7 +31,7 @@ C0 = 2.945830
 
 def settled(contact, width):
     """(instants, heights) of the maxima of a run; sticking forgets the start within one period."""
-    return maxima(simulate(BELT, 30.0, ([0.9], [SPEED]), contact=contact, width=width, rtol=1e-10))
+    return maxima(simulate(BELT, 30.0, ([0.9], [SPEED]), 30_001, contact=contact, width=width, rtol=1e-10))
 
 
 def smoothed(contact, width):

@@ -5,48 +5,59 @@ from typing import Any
 
 import numpy as np
 
-from squealbox import friction, schedules
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import ParameterError
-from squealbox.schedules import Schedule
 from squealbox.system import InvalidSystem, System
 from squealbox.transient.latest import Latest
-from squealbox.transient.methods import TAYLOR, Method
+from squealbox.transient.methods import TAYLOR, Method, tableau
 from squealbox.transient.one_motion import shares_vary
 from squealbox.transient.own_laws import texts_of, untraced
 
 USUAL = Latest()
-LARGE = 160  # products of an acceleration up to which a generated step is written out
+LARGE = 160  # products of an acceleration up to which a generated step is written out at once
+SERIES = 4  # stages that take as long to compile as a series
+LONGEST = 6_000  # products in all stages, which compile in half a minute
+EACH = 0.5  # runs by the scalar march in the time that one more product takes to compile
 
 
 def check_series(system: System, contact: str) -> None:
     """A method that was named and cannot serve is refused."""
-    if contact != "exact":
-        expected = "exact: a Taylor series does not see a jump of sgn, and a smoothed one makes its steps tiny"
+    if contact == "raw":
+        expected = "exact, or a smoothed sgn: a Taylor series does not see a jump of sgn"
         raise ParameterError("simulate", "contact", contact, expected)
     if why := no_series(system):
         raise InvalidSystem(f"{why}: take another method than {TAYLOR}")
 
 
-def usual_method(system: System, contact: str) -> str:
-    """The method of a run that names none: a Taylor series wherever the equation has one for the generated step."""
-    found: str = USUAL.of(system, contact, lambda: _usual_method(system, contact))
+def usual_method(system: System, contact: str, count: int = 1) -> str:
+    """The method of a run, or of so many, that name none: a Taylor series wherever the equation has one and to write
+    its step out pays.
+    """
+    worth = pays(system, TAYLOR, count)
+    found: str = USUAL.of(system, (contact, worth), lambda: _usual_method(system, contact, worth))
     return found
 
 
-def _usual_method(system: System, contact: str) -> str:
+def _usual_method(system: System, contact: str, worth: bool) -> str:
     rooted = any(texts_of(c.law) and has_root_at_rest(c.law) for c in system.contacts)
-    return (
-        TAYLOR
-        if contact == "exact" and is_small(system) and not rooted and not no_series(system)
-        else "dormand-prince-8"
-    )
+    return TAYLOR if contact != "raw" and worth and not rooted and not no_series(system) else "dormand-prince-8"
 
 
 def is_small(system: System) -> bool:
     """Whether a generated step of the system is written out, and so compiled in a second or two."""
+    return products(system) <= LARGE
+
+
+def products(system: System) -> int:
+    """How many products an acceleration takes."""
     n, m = system.size, len(system.contacts)
-    return n * (2 * n + 4 * m) + m * m <= LARGE
+    return n * (2 * n + 4 * m) + m * m
+
+
+def pays(system: System, method: str, count: int) -> bool:
+    """Whether to compile a step written out for so many runs takes less time than the scalar march of each."""
+    written = products(system) * (SERIES if method == TAYLOR else tableau(method).stages)
+    return is_small(system) or (written <= LONGEST and count > EACH * written)
 
 
 def has_root_at_rest(law: FrictionLaw) -> bool:
@@ -62,12 +73,6 @@ def no_series(system: System) -> str:
         return "what a loop is late by is known at instants, and has no Taylor series"
     if any(contact.rigid for contact in contacts):
         return "a rigid contact has impacts"
-    values = [system.load, *(value for c in contacts for value in (c.V, c.N0))]
-    parts = [part for value in values if isinstance(value, Schedule) for _, part in value.terms()]
-    if any(isinstance(part, schedules.Table) for part in parts):
-        return "a schedule of measured points has no Taylor series"
-    if any(isinstance(c.law, friction.Table) for c in contacts):
-        return "a friction law of measured points has no Taylor series"
     if system.shape == () and shares_vary(system):
         return "contacts that hold the same motion share its force by limits that vary within a step"
     return next((why for c in contacts if (own := texts_of(c.law)) and (why := untraced(own[0]))), "")

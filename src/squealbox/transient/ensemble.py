@@ -206,12 +206,11 @@ def simulate_ensemble(
     if times is not None:
         instants = instants_of("simulate_ensemble", times, start_time, duration, one=True)
     names, arrays, shape = _space(design_or_system, parameters, grid, start)
-    named = method or _usual(design_or_system, names, arrays, contact)
+    named = method or _usual(design_or_system, names, arrays, contact, int(np.prod(shape, dtype=int)))
     chosen = chosen_method(named, rtol, atol)
-    if chosen.tableau == TAYLOR and contact != "exact":
-        raise ParameterError(
-            "simulate_ensemble", "contact", contact, "exact: a Taylor series does not see a jump of sgn"
-        )
+    if chosen.tableau == TAYLOR and contact == "raw":
+        expected = "exact, or a smoothed sgn: a Taylor series does not see a jump of sgn"
+        raise ParameterError("simulate_ensemble", "contact", contact, expected)
     work = (
         chosen, SCHEMES[contact], width, start, duration, start_time, as_observers(observe), instants,
         _threads(threads), progress,
@@ -289,12 +288,12 @@ def _counts(column: Any) -> Any:
     return np.nan_to_num(column).astype(np.int64)
 
 
-def _usual(design: Any, names: tuple[str, ...], arrays: list[Any], contact: str) -> str:
-    """The method of a run that names none, as `simulate` would take it."""
+def _usual(design: Any, names: tuple[str, ...], arrays: list[Any], contact: str, count: int) -> str:
+    """The method of runs that name none, as `simulate` would take it."""
     first = design[0] if isinstance(design, (list, tuple)) and design else design
     if names:
         first = design.replace({name: float(np.ravel(array)[0]) for name, array in zip(names, arrays, strict=True)})
-    return usual_method(as_system(first), contact)
+    return usual_method(as_system(first), contact, count)
 
 
 def _outcome(ended: Any, interrupted: bool) -> Outcome:

@@ -3,7 +3,7 @@
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -54,6 +54,21 @@ MESSAGES = {
     ),
     _march.STEP_LIMIT: ("step_limit", "the largest number of steps was reached"),
 }
+
+
+class MarchOrders(NamedTuple):
+    """What the scalar march is told: instants, where rows and events go, the end, the largest and the least step,
+    how many may be tried in all, and how many until the next look at the keyboard.
+    """
+
+    times: Any
+    rows: Any
+    events: Any
+    end: float
+    largest: float
+    least: float
+    most: int
+    budget: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,13 +123,14 @@ def leg(
     if method.tableau == TAYLOR:
         from squealbox.transient.lanes.single import Single
 
-        found = by_series(Single(system, method, q, qd, begin, duration, times), begin + duration, progress)
+        run = Single(system, method, q, qd, begin, duration, times, SCHEMES[ways.contact], ways.width)
+        found = by_series(run, begin + duration, progress)
         if found.outcome != "step_underflow" or ways.named:
             return found
         method = chosen_method(OTHER, *ways.given)  # a law without a series at zero speed, such as one with sqrt(v)
         instead = f"taylor, which ended as step_underflow at {found.outcome.evidence['time']:.6g} s"
-    run = Scalar(system, method, SCHEMES[ways.contact], ways.width, q, qd, begin, times)
-    return replace(run.leg(run.to(begin + duration, duration, progress)), instead_of=instead)
+    march = Scalar(system, method, SCHEMES[ways.contact], ways.width, q, qd, begin, times)
+    return replace(march.leg(march.to(begin + duration, duration, progress)), instead_of=instead)
 
 
 def by_series(run: Any, end: float, progress: Progress | None = None) -> Leg:
@@ -133,7 +149,8 @@ def by_series(run: Any, end: float, progress: Progress | None = None) -> Leg:
     lowest, fastest = (np.array([run.at(f"{name}{c}") for c in range(m)]) for name in ("lowest", "fastest"))
     taken, tried = int(reached[1]), int(reached[2])
     rows, events = run.columns()
-    return Leg(rows, events, outcome, lowest, fastest, (taken, tried - taken, tried), run.method, run.atol)
+    steps = taken, tried - taken, tried
+    return Leg(rows, events, outcome, lowest, fastest, steps, run.method, run.atol, int(run.at("reversals")))
 
 
 class Scalar:
@@ -155,13 +172,13 @@ class Scalar:
 
     def to(self, end: float, span: float, progress: Progress | None = None) -> Outcome:
         """March from the start to `end`, `span` seconds later."""
-        march, arguments = self.call(end, span)
+        march, (p, r, s, orders) = self.call(end, span)
         code, budget, began = _march.RUNNING, BUDGET[0], clock.monotonic()
         try:
             while code == _march.RUNNING:
                 self._make_room()
                 before = clock.monotonic()
-                code = march(*arguments[:4], self.rows, self.events, *arguments[6:10], budget)
+                code = march(p, r, s, orders._replace(rows=self.rows, events=self.events, budget=budget))
                 now = clock.monotonic()
                 wanted = int(budget * LOOK / max(now - before, 1e-4))
                 budget = min(max(wanted, BUDGET[0]), BUDGET[1])
@@ -184,8 +201,8 @@ class Scalar:
         swing = float(packing.schedule_frequency(self.system))
         seen = self.period / 6.0 if events else np.pi / (3.0 * swing) if swing > 0.0 else np.inf
         largest = min(self.method.largest_step or np.inf, span, seen)
-        records = (self.problem, self.rule, self.scratch, self.times, self.rows, self.events)
-        return march, (*records, end, largest, 1e-14 * self.period, self.method.most_steps, BUDGET[0])
+        limits = end, largest, 1e-14 * self.period, self.method.most_steps, BUDGET[0]
+        return march, (self.problem, self.rule, self.scratch, MarchOrders(self.times, self.rows, self.events, *limits))
 
     def _counts(self) -> tuple[tuple[str, int], ...]:
         """What the kernel without events is compiled for; the one with events compiles longer and stays general."""

@@ -22,7 +22,7 @@ from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Polynomial, Schedule
 from squealbox.start import Start
 from squealbox.system import System
-from squealbox.transient.legs import Leg, Progress, by_series, leg, told, ways_of
+from squealbox.transient.legs import SCHEMES, Leg, Progress, by_series, leg, told, ways_of
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR
 from squealbox.transient.sensed import (
@@ -145,7 +145,9 @@ class _Walk:
         if self.ways.method.tableau == TAYLOR:
             from squealbox.transient.lanes.single import Pushed
 
-            self.pushed = Pushed(self._under, count + (NODES + 2) * len(self.flowing), self.ways.method, duration)
+            numbers, ways = count + (NODES + 2) * len(self.flowing), self.ways
+            scheme = SCHEMES[ways.contact]
+            self.pushed = Pushed(self._under, numbers, ways.method, duration, scheme, ways.width)
 
     def whole(self, times: Any, progress: Progress | None) -> list[Leg]:
         """Piece after piece to the end."""

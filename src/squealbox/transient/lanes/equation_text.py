@@ -8,6 +8,7 @@ rows H hold G_ss^-1, zero for the others, and change only at events.
 """
 
 from squealbox.schedules import SCHEDULES
+from squealbox.transient._motion import ARCTAN
 from squealbox.transient.lanes.formulas import is_table
 from squealbox.transient.lanes.shape import Shape, layout
 
@@ -136,6 +137,13 @@ class EquationText:
         shut = f" * (1.0 - {self.openness(c, normal)})" if self.shape.unilateral[c] else ""
         self.put(f"f{c}_{k} = lane_grip_{kind}({speed}, {z}, {rate}, {p}) * {normal}{shut}")
         return f"f{c}_{k}"
+
+    def smoothed(self, c: int, speed: str, normal: str, p: str) -> str:
+        """Friction force of a contact whose sgn is smoothed."""
+        at = f"{speed} / {self.row('width')}"
+        sign = f"({2.0 / 3.141592653589793!r} * arctan({at}))" if self.shape.scheme == ARCTAN else f"lane_tanh({at})"
+        shut = f" * (1.0 - {self.openness(c, normal)})" if self.shape.unilateral[c] else ""
+        return f"lane_mu_{self.shape.laws[c][0]}(abs({speed}), {p}) * {sign} * {normal}{shut}"
 
     def openness(self, c: int, normal: str) -> str:
         """1 where a unilateral contact is open, else 0."""

@@ -24,12 +24,18 @@ def formulas(shape: Shape) -> list[str]:
     """The laws, schedules and observers of a kernel as functions of lanes."""
     parts: list[str] = []
     for kind in sorted({kind for kind, _ in shape.laws}):
+        if shape.taylor and is_table(LAWS, kind):
+            parts.append(f"lane_mu_{kind} = law_of_points")
+            continue
         parts.append(lane_function(law_text(kind, shape.own), f"lane_mu_{kind}", in_memory(kind, shape.own)))
     for kind in sorted({kind - 1 for kind in shape.smooth if kind > 0}):
         law = SMOOTH[kind]
         for name, formula in (("creep", law.creep_formula), ("grip", law.grip_formula)):
             parts += [] if formula is None else [lane_function(inspect.getsource(formula), f"lane_{name}_{kind}")]
     for kind in sorted({kind for terms in shape.signals for kind, _ in terms}):
+        if shape.taylor and is_table(SCHEDULES, kind):
+            parts.append(f"lane_value_{kind}, lane_rate_{kind} = line_of_points, slope_of_points")
+            continue
         for name, formula in (("value", SCHEDULES[kind].formula), ("rate", SCHEDULES[kind].rate_formula)):
             text = inspect.getsource(formula)
             parts.append(lane_function(text, f"lane_{name}_{kind}", is_table(SCHEDULES, kind)))

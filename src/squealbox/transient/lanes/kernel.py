@@ -36,10 +36,13 @@ from squealbox.transient.lanes.series import (
     time_series, value, where,
 )
 from squealbox.transient.lanes.series import derivative as slope_series
+from squealbox.transient.lanes.tables import law_of_points, line_of_points, slope_of_points
 from squealbox.transient.lanes.taylor import grow, reach, ready, surely_slips
 from squealbox.transient.lanes.taylor_events import step_end
 """
-WRITERS = ("vectors.py", "tracing.py", "series.py", "taylor.py", "taylor_events.py")  # the first two of every kernel
+FEW = 12  # coefficients that are copied one by one
+# the first two of every kernel
+WRITERS = ("vectors.py", "tracing.py", "series.py", "tables.py", "taylor.py", "taylor_events.py")
 PLACES = {
     "ROW_JOB": "job", "ROW_ALIVE": "alive", "ROW_T": "t", "ROW_H": "h", "ROW_T_END": "t_end", "ROW_TRIES": "tries",
     "ROW_TAKEN": "taken", "ROW_CAUTIOUS": "cautious", "ROW_CODE": "code", "ROW_MOST": "most", "ROW_Q": "q0",
@@ -136,6 +139,9 @@ def _gather(shape: Shape, places: dict[str, int]) -> str:
         if name in places:
             lines.append(f"    {target} = A[b + {places[name] * shape.lanes} + lane]")
 
+    def many(target: str, first: str, count: int) -> None:
+        lines.extend(_numbers(target, places[first] if count else 0, count, shape.lanes))
+
     n, m = shape.n, shape.m
     for name in ("mk", "mc"):
         for i in range(n):
@@ -148,8 +154,7 @@ def _gather(shape: Shape, places: dict[str, int]) -> str:
     for c in range(m):
         for e in range(m):
             put(f"p.g[{c}, {e}]", f"g{c}_{e}")
-        for i in range(shape.laws[c][1]):
-            put(f"p.law_coefficients[{c}, {i}]", f"law{c}_{i}")
+        many(f"p.law_coefficients[{c}, {{}}]", f"law{c}_0", shape.laws[c][1])
         if shape.along(c):
             put(f"p.static[{c}]", f"law{c}_0")
         else:
@@ -211,10 +216,17 @@ def _signals(shape: Shape, places: dict[str, int]) -> list[str]:
         for k, (_, count) in enumerate(terms):
             at = f"p.signal_start[{index}] + {k}"
             lines.append(f"    p.term_weight[{at}] = A[b + {places[f'weight{index}_{k}'] * shape.lanes} + lane]")
-            for i in range(count):
-                row = places[f"given{index}_{k}_{i}"]
-                lines.append(f"    p.term_coefficients[{at}, {i}] = A[b + {row * shape.lanes} + lane]")
+            first = places[f"given{index}_{k}_0"] if count else 0
+            lines += _numbers(f"p.term_coefficients[{at}, {{}}]", first, count, shape.lanes)
     return lines
+
+
+def _numbers(target: str, first: int, count: int, lanes: int) -> list[str]:
+    """Text that copies `count` rows; in a loop where they are many, as those of a table."""
+    if count > FEW:
+        copied = f"{target.format('i')} = A[b + ({first} + i) * {lanes} + lane]"
+        return [f"    for i in range({count}):", f"        {copied}"]
+    return [f"    {target.format(i)} = A[b + {(first + i) * lanes} + lane]" for i in range(count)]
 
 
 def _observers(shape: Shape, places: dict[str, int]) -> str:

@@ -9,22 +9,29 @@ A step leaves the series of all that is followed, so a row costs no further eval
 import numpy as np
 
 from squealbox.transient._march import SAMPLED
+from squealbox.transient._motion import OPEN
 
 ROWS_WRITTEN, EVENTS_WRITTEN = 0, 1  # of `count`
 
 
-def room_left(times, rows, events, count):
+def room_left(o):
     """Whether one more step is sure to find room for its rows and its events."""
-    found = times.shape[0] > 0 or count[ROWS_WRITTEN] + SHARES <= rows.shape[0]
-    return found and count[EVENTS_WRITTEN] + CONTACTS <= events.shape[0]
+    found = o.times.shape[0] > 0 or o.count[ROWS_WRITTEN] + SHARES <= o.rows.shape[0]
+    return found and o.count[EVENTS_WRITTEN] + CONTACTS <= o.events.shape[0]
 
 
-def first_row(A, b, lane, times, rows, count, s):
+def sense(p, c, normal, speed):
+    """The mode of a contact without events: open, or the sign of its sliding speed."""
+    return OPEN if p.unilateral[c] != 0 and normal <= 0.0 else np.sign(speed)
+
+
+def first_row(A, b, lane, o):
     """The start, if it was asked for."""
+    times, rows, count, p, s = o.times, o.rows, o.count, o.p, o.s
     t = A[b + ROW_T * WIDTH + lane]
     for c in range(CONTACTS):
         A[b + (ROW_FASTEST + c) * WIDTH + lane] = abs(s.speed[c])
-        if s.mode[c] != 2:
+        if not EXACT_CONTACT or s.mode[c] != OPEN:
             A[b + (ROW_LOWEST + c) * WIDTH + lane] = s.normal[c]
     if times.shape[0] == 0:
         A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = -np.inf
@@ -39,7 +46,7 @@ def first_row(A, b, lane, times, rows, count, s):
             row[first + c] = s.normal[c]
             row[first + CONTACTS + c] = s.speed[c]
             row[first + 2 * CONTACTS + c] = s.force[c]
-            row[first + 3 * CONTACTS + c] = s.mode[c]
+            row[first + 3 * CONTACTS + c] = s.mode[c] if EXACT_CONTACT else sense(p, c, s.normal[c], s.speed[c])
         count[ROWS_WRITTEN] += 1
         if times.shape[0] == 0:
             return
@@ -56,8 +63,9 @@ def state(A, b, lane, row):
         row[1 + DOFS + i] = A[b + (ROW_V + i) * WIDTH + lane]
 
 
-def write_rows(A, b, lane, times, rows, count):
+def write_rows(A, b, lane, o):
     """The rows due in the step just taken: at most a sixth of the shortest period apart, or as asked for."""
+    times, rows, count, p = o.times, o.rows, o.count, o.p
     t0 = A[b + ROW_T_OLD * WIDTH + lane]
     t1 = A[b + ROW_T * WIDTH + lane]
     if times.shape[0] == 0:
@@ -66,13 +74,13 @@ def write_rows(A, b, lane, times, rows, count):
         parts = min(max(int(np.ceil(span / part - 1e-6)), 1), SHARES)
         for k in range(1, parts + 1):
             share = k / parts
-            write_row(A, b, lane, t1 if k == parts else t0 + share * span, share * span, rows[count[ROWS_WRITTEN]])
+            write_row(A, b, lane, t1 if k == parts else t0 + share * span, share * span, rows[count[ROWS_WRITTEN]], p)
             count[ROWS_WRITTEN] += 1
         state(A, b, lane, rows[count[ROWS_WRITTEN] - 1])
         return
     k = count[ROWS_WRITTEN]
     while k < times.shape[0] and times[k] <= t1:
-        write_row(A, b, lane, times[k], max(times[k] - t0, 0.0), rows[k])
+        write_row(A, b, lane, times[k], max(times[k] - t0, 0.0), rows[k], p)
         if times[k] == t1:
             state(A, b, lane, rows[k])
         k += 1
@@ -80,7 +88,7 @@ def write_rows(A, b, lane, times, rows, count):
     A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = times[k] if k < times.shape[0] else np.inf
 
 
-def write_row(A, b, lane, t, since, row):
+def write_row(A, b, lane, t, since, row, p):
     """One row from the series of the step: time, state, works, then N, v, force and mode of each contact."""
     unit = A[b + ROW_WINDOW * WIDTH + lane] * UNIT_OF_WINDOW
     A[b + ROW_SINCE] = since / unit
@@ -94,9 +102,13 @@ def write_row(A, b, lane, t, since, row):
     for j in range(DOFS + CONTACTS + 4, FOLLOWED):
         row[2 + DOFS + j] = A[b + ROW_VALUE + j]
     row[5 + 2 * DOFS + CONTACTS] = 0.0
+    first = 6 + 2 * DOFS + CONTACTS
     for c in range(CONTACTS):
-        mode = A[b + (ROW_SLIPS + c) * WIDTH + lane]
-        row[6 + 2 * DOFS + 4 * CONTACTS + c] = 2.0 if A[b + (ROW_OPENED + c) * WIDTH + lane] > 0.0 else mode
+        if not EXACT_CONTACT:
+            row[first + 3 * CONTACTS + c] = sense(p, c, row[first + c], row[first + CONTACTS + c])
+        else:
+            mode = A[b + (ROW_SLIPS + c) * WIDTH + lane]
+            row[first + 3 * CONTACTS + c] = OPEN if A[b + (ROW_OPENED + c) * WIDTH + lane] > 0.0 else mode
 
 
 def modes_held(A, b, p):
@@ -127,9 +139,9 @@ def modes_held(A, b, p):
     return held
 
 
-def log_event(A, b, lane, c, mode, events, count):
+def log_event(A, b, lane, c, mode, o):
     """Contact c has taken another mode."""
-    events[count[EVENTS_WRITTEN], 0] = A[b + ROW_T * WIDTH + lane]
-    events[count[EVENTS_WRITTEN], 1] = c
-    events[count[EVENTS_WRITTEN], 2] = mode
-    count[EVENTS_WRITTEN] += 1
+    o.events[o.count[EVENTS_WRITTEN], 0] = A[b + ROW_T * WIDTH + lane]
+    o.events[o.count[EVENTS_WRITTEN], 1] = c
+    o.events[o.count[EVENTS_WRITTEN], 2] = mode
+    o.count[EVENTS_WRITTEN] += 1

@@ -212,7 +212,7 @@ def layout(shape: Shape) -> Rows:
         else:
             rows.add(*(f"{x}_old{i}" for x in "qva" for i in range(n)))
     if shape.recorded:
-        rows.add("next", "sample", "t_old", "span", *(f"done{k}" for k in range(m + 4)))
+        rows.add("next", "sample", "t_old", "span", "reversals", *(f"done{k}" for k in range(m + 4)))
         rows.add(
             "since", *(f"value{j}" for j in range(shape.breadth)), *(f"slope_value{j}" for j in range(shape.breadth))
         )

@@ -12,6 +12,7 @@ from squealbox.system import System
 from squealbox.transient import packing
 from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.kernel import lane_kernel
+from squealbox.transient.lanes.orders import Orders
 from squealbox.transient.lanes.shape import Rows, layout, parameter_rows
 from squealbox.transient.lanes.table import Jobs, limits, tabulate
 from squealbox.transient.latest import Latest
@@ -39,28 +40,29 @@ KEPT, NUMBERS = Latest(), Latest()
 LONG = 1e9  # s that no run takes: nothing of what runs share depends on their length
 
 
-def prepared(system: System) -> Prepared:
+def prepared(system: System, scheme: int) -> Prepared:
     """The table of one job, the places of its rows, its record and its kernel."""
-    found: Prepared = KEPT.of(system, (), lambda: _prepared(system))
+    found: Prepared = KEPT.of(system, scheme, lambda: _prepared(system, scheme))
     return found
 
 
-def _prepared(system: System) -> Prepared:
+def _prepared(system: System, scheme: int) -> Prepared:
     rest, method = np.zeros(system.size), Method(TAYLOR)
-    jobs = tabulate(system, method, EXACT, 1e-3, (rest, rest), LONG, 0.0, (), (), False, recorded=True)
+    jobs = tabulate(system, method, scheme, 1e-3, (rest, rest), LONG, 0.0, (), (), False, recorded=True)
     names = {name: 3 + row for row, name in enumerate(parameter_rows(jobs.shape))}
-    packed = packing.pack(system, method, EXACT, 1e-3, False)
+    packed = packing.pack(system, method, scheme, 1e-3, False)
     record = np.zeros(1, dtype=packed.dtype)
     record[0] = packed
     return Prepared(jobs, layout(jobs.shape), names, record, lane_kernel(jobs.shape))
 
 
-def numbers(system: System, made: Prepared, method: Method, duration: float, begin: float) -> Any:
+def numbers(system: System, made: Prepared, method: Method, width: float, duration: float, begin: float) -> Any:
     """The fixed numbers of a run: those of the system, and the tolerances, limits and times of this run."""
     fixed = made.jobs.fixed.copy()
     fixed[:3] = begin + duration, begin, method.most_steps
-    for name, value in limits(system, method, made.jobs.own, len(system.contacts) > 0, duration).items():
+    for name, value in limits(system, method, made.jobs.own, made.jobs.shape.exact, duration).items():
         fixed[made.names[name]] = value
+    fixed[made.names["width"]] = width
     return fixed
 
 
@@ -68,13 +70,15 @@ class Single:
     """One run, resumed until it ends."""
 
     def __init__(
-        self, system: System, method: Method, q: Any, qd: Any, begin: float, duration: float, times: Any
-    ) -> None:
+        self, system: System, method: Method, q: Any, qd: Any, begin: float, duration: float, times: Any,
+        scheme: int = EXACT, width: float = 1e-3,
+    ) -> None:  # fmt: skip
         self.system, self.method = system, method
-        made = self.made = prepared(system)
+        made = self.made = prepared(system, scheme)
         atol = None if method.atol is None else np.asarray(method.atol, dtype=float).tobytes()
-        how = method.rtol, atol, method.first_step, method.largest_step, method.most_steps, duration, begin
-        self.fixed = NUMBERS.of(system, how, lambda: numbers(system, made, method, duration, begin)).copy()
+        how = method.rtol, atol, method.first_step, method.largest_step, method.most_steps, width, duration, begin
+        fixed = NUMBERS.of(system, (scheme, *how), lambda: numbers(system, made, method, width, duration, begin))
+        self.fixed = fixed.copy()
         self.record = made.record.copy()
         self.scratch = packing.scratch(made.record[0], q, qd, begin, 0.0).base
         self.restart(q, qd, begin, begin + duration, times)
@@ -92,10 +96,11 @@ class Single:
         self.events = np.empty((EVENTS + m, 3))
         self.count = np.zeros(2, dtype=np.int64)
         self.out = np.full((1, 5 + 2 * n + 2 * m), RUNNING)
-        self.shared = (
-            np.zeros(1, dtype=np.int64), made.jobs.table, made.jobs.varies, self.fixed, self.times, np.zeros((1, 1, 1)),
-            np.zeros(1, dtype=np.int64), 1, self.out, self.record, packing.rule("dormand-prince-8").base, self.scratch,
-            np.zeros(1, dtype=np.int64),
+        self.live = np.zeros(1, dtype=np.int64)
+        self.orders = Orders(
+            made.jobs.table, made.jobs.varies, self.fixed, self.times, np.zeros((1, 1, 1)), np.zeros(1, dtype=np.int64),
+            1, self.out, self.record, packing.rule("dormand-prince-8").base, self.scratch, np.zeros(1, dtype=np.int64),
+            FIRST, self.rows, self.events, self.count,
         )  # fmt: skip
 
     def at(self, name: str) -> float:
@@ -115,7 +120,8 @@ class Single:
 
     def call(self, budget: int = FIRST) -> tuple[Any, tuple[Any, ...]]:
         """The kernel of this run, and what it is called with."""
-        return self.made.kernel, (self.lanes, *self.shared, budget, self.rows, self.events, self.count)
+        orders = self.orders._replace(every=budget, rows=self.rows, events=self.events)
+        return self.made.kernel, (self.lanes, self.live, orders)
 
     def to(self, end: float, progress: Any = None) -> tuple[int | None, str]:
         """Run to the end; returns how the kernel says it ended, None and why where it was stopped."""
@@ -157,18 +163,20 @@ class Pushed:
     `under` gives the system in time that belongs to such numbers (count,), with a term for each even where it is zero.
     """
 
-    def __init__(self, under: Callable[[Any], System], count: int, method: Method, duration: float) -> None:
+    def __init__(
+        self, under: Callable[[Any], System], count: int, method: Method, duration: float, scheme: int, width: float
+    ) -> None:
         some, none = 1.0 + 0.618 * np.arange(count), np.zeros(count)  # that cancel in no row
-        system = under(some)
+        system, self.scheme = under(some), scheme
         start = np.zeros(system.size)
-        self.run = Single(system, method, start, start, 0.0, duration, None)
+        self.run = Single(system, method, start, start, 0.0, duration, None, scheme, width)
         bare = under(none)
-        without, pack = _numbers_by_name(bare), self._packed(bare)
+        without, pack = self._numbers_by_name(bare), self._packed(bare)
         self.rises = np.zeros((count, len(self.run.fixed)))
         self.fields: dict[str, tuple[Any, Any]] = {}
         for i in range(count):
             pushed = under(np.eye(count)[i])
-            for name, value in _numbers_by_name(pushed).items():
+            for name, value in self._numbers_by_name(pushed).items():
                 self.rises[i, self.run.made.names[name]] = _rise(value, without.get(name, 0.0))
             for name, value in self._packed(pushed).items():
                 if not np.array_equal(value, pack[name]):
@@ -177,8 +185,14 @@ class Pushed:
         self.origin = self.run.fixed - some @ self.rises
 
     def _packed(self, system: System) -> dict[str, Any]:
-        record = packing.pack(system, self.run.method, EXACT, 1e-3, False)
+        record = packing.pack(system, self.run.method, self.scheme, 1e-3, False)
         return {name: record[name].copy() for name in record.dtype.names if record.dtype[name].base.kind == "f"}
+
+    def _numbers_by_name(self, system: System) -> dict[str, float]:
+        """The numbers of a run that depend on the system alone."""
+        start, method = (np.zeros(system.size),) * 2, Method(TAYLOR)
+        jobs = tabulate(system, method, self.scheme, 1e-3, start, LONG, 0.0, (), (), False, recorded=True)
+        return dict(zip(parameter_rows(jobs.shape), jobs.fixed[3:].tolist(), strict=True))
 
     def ready(self, given: Any, q: Any, qd: Any, begin: float, end: float, times: Any) -> Single:
         """The run from a start of all rows under the load of the numbers given."""
@@ -193,10 +207,3 @@ def _rise(value: Any, before: Any) -> Any:
     """What is between two; nothing where both are the same infinity."""
     with np.errstate(invalid="ignore"):
         return np.where(value == before, 0.0, value - before)
-
-
-def _numbers_by_name(system: System) -> dict[str, float]:
-    """The numbers of a run that depend on the system alone."""
-    rest = np.zeros(system.size)
-    jobs = tabulate(system, Method(TAYLOR), EXACT, 1e-3, (rest, rest), LONG, 0.0, (), (), False, recorded=True)
-    return dict(zip(parameter_rows(jobs.shape), jobs.fixed[3:].tolist(), strict=True))

@@ -7,7 +7,7 @@ does not; `equation_text` tells how contacts stick.
 from typing import Any
 
 from squealbox.friction import LAWS
-from squealbox.transient._motion import ARCTAN, RAW
+from squealbox.transient._motion import RAW
 from squealbox.transient.lanes.equation_text import CALLED, minus
 from squealbox.transient.lanes.event_text import EventText, probes, slope_weights
 from squealbox.transient.lanes.formulas import in_memory
@@ -44,16 +44,11 @@ class Step(EventText):
             mu = f"(lane_mu_{kind}(maximum(u{c}_{k}, 0.0), {p}) + minimum(u{c}_{k}, 0.0) * {self.row(f'slope{c}')})"
             self.put(f"{force} = {s} * {mu} * {normal}")
             return force
-        mu = f"lane_mu_{kind}(abs({speed}), {p})"
-        shut = f" * (1.0 - {self.openness(c, normal)})" if shape.unilateral[c] else ""
         if shape.scheme == RAW:
-            self.put(f"{force} = with_sign({mu} * {normal}, {speed}){shut}")
+            shut = f" * (1.0 - {self.openness(c, normal)})" if shape.unilateral[c] else ""
+            self.put(f"{force} = with_sign(lane_mu_{kind}(abs({speed}), {p}) * {normal}, {speed}){shut}")
             return force
-        if shape.scheme == ARCTAN:
-            sign = f"({2.0 / 3.141592653589793!r} * arctan({speed} / {self.row('width')}))"
-        else:
-            sign = f"lane_tanh({speed} / {self.row('width')})"
-        self.put(f"{force} = {mu} * {sign} * {normal}{shut}")
+        self.put(f"{force} = {self.smoothed(c, speed, normal, p)}")
         return force
 
     def margin(self, c: int, k: int, normal: str) -> str:

@@ -8,8 +8,7 @@ Mathematics 14(1), 99-117, 2005) and ends at the first event, which is a root of
 from collections.abc import Iterator
 
 from squealbox.friction import LAWS
-from squealbox.schedules import SCHEDULES
-from squealbox.system import InvalidSystem
+from squealbox.transient._motion import TANH
 from squealbox.transient._sharing import RISES
 from squealbox.transient.lanes.equation_text import CALLED, EquationText
 from squealbox.transient.lanes.formulas import is_table, law_text, smooth_text
@@ -120,15 +119,10 @@ class TaylorStep(EquationText):
         """As usual; nothing where no contact sticks."""
         return [] if self.gliding else super().hold(k, a, forces, normals, time)
 
-    def signal(self, index: int, name: str, time: str, rate: bool = False) -> list[str]:
-        """As usual; a table is no formula to take a series of."""
-        kinds = self.shape.signals[index] if self.shape.varying else ()
-        if any(is_table(SCHEDULES, kind) for kind, _ in kinds):
-            raise InvalidSystem("a schedule of measured points has no Taylor series: take another method")
-        return super().signal(index, name, time, rate)
-
     def given(self, name: str, count: int, table: bool, at: int) -> str:
         """A bound that is infinite in the whole ensemble stays a plain number, which chooses nothing."""
+        if table:
+            return super().given(name, count, table, at)
         local = [f"{name}{i}" for i in range(count)]
         endless = dict(self.shape.endless)
         return "(" + "".join(f"{endless.get(x) or self.row(x)}, " for x in local) + ")"
@@ -136,10 +130,12 @@ class TaylorStep(EquationText):
     def friction(self, c: int, k: int, speed: str, normal: str) -> str:
         """Of a sliding contact; no step goes beyond a reversal, so the law needs no continuation there."""
         kind, count = self.shape.laws[c]
-        if is_table(LAWS, kind):
-            raise InvalidSystem("a friction law of measured points has no Taylor series: take another method")
-        s, force = self.row(f"s{c}"), f"f{c}_{k}"
-        self.put(f"mu{c}_{k} = lane_mu_{kind}(from_zero({s} * {speed}), {self.given(f'law{c}_', count, False, 1)})")
+        force, p = f"f{c}_{k}", self.given(f"law{c}_", count, is_table(LAWS, kind), 1)
+        if not self.shape.exact:
+            self.put(f"{force} = {self.smoothed(c, speed, normal, p)}")
+            return force
+        s = self.row(f"s{c}")
+        self.put(f"mu{c}_{k} = lane_mu_{kind}(from_zero({s} * {speed}), {p})")
         self.put(f"{force} = {s} * mu{c}_{k} * {normal}")
         return force
 
@@ -163,7 +159,7 @@ class TaylorStep(EquationText):
 
     def ending(self, found: dict[str, list[str]]) -> None:
         """`end`: where the step ends, at the first event; `event` and the number of its function."""
-        m = self.shape.m
+        m = self.shape.m if self.shape.exact else 0
         first, second = zip(*(self.functions_of(c, found) for c in range(m)), strict=True) if m else ((), ())
         watched = "".join(f"{name}, " for name in (*first, *second))
         largest = f"{self.row('largest')} / unit"
@@ -173,7 +169,7 @@ class TaylorStep(EquationText):
             slips = f"surely_slips({self.row(f's{c}')}, {found['speed'][c]}, x, {ORDER})"
             without = f" | (({self.row(f'law{c}_0')} <= 0.0) & ({self.row(f's{c}')} != 0.0))"
             safe.append(f"({slips}{without})" if c in self.shape.slick else slips)
-        safe += ["(x < 0.0)"] * any(self.shape.unilateral)
+        safe += ["(x < 0.0)"] * any(self.shape.unilateral[:m])
         self.put(f"safe = {' & '.join(safe) or 'x > 0.0'}")
         order = WORK_ORDER if self.shape.varying else ORDER  # a schedule's terms are known beyond those of the motion
         self.put(f"found = step_end(({watched}), kinks, safe, x, {largest}, {order})")
@@ -216,17 +212,22 @@ class TaylorStep(EquationText):
             self.put("end, event = where(misjudged, 0.0, end), event & ~misjudged")
 
     def hides(self, c: int) -> bool:
-        """Whether the law of a contact has an exponential."""
+        """Whether the law of a contact, or its smoothed sgn, has an exponential."""
         smooth = self.shape.is_smooth(c)
+        if self.shape.scheme == TANH and not smooth:
+            return True
         text = smooth_text(self.shape.smooth[c] - 1) if smooth else law_text(self.shape.laws[c][0], self.shape.own)
         return "exp(" in text or "tanh(" in text
 
     def compared(self, c: int, row: int, found: dict[str, list[str]]) -> tuple[str, str]:
         """Force, and rate of the memory, by the series and by the law itself at `away`, one less the other."""
-        p, k = self.given(f"law{c}_", self.shape.laws[c][1], False, 1), self.tag
+        law, count = self.shape.laws[c]
+        p, k = self.given(f"law{c}_", count, is_table(LAWS, law), 1), self.tag
         normal = f"value({found['normal'][c]}, away, {ORDER})"
+        if not self.shape.exact and not self.shape.is_smooth(c):
+            return f"value(f{c}_{k}, away, {ORDER - 1}) - {self.smoothed(c, 'slide', normal, p)}", ""
         if not self.shape.is_smooth(c):
-            mu = f"lane_mu_{self.shape.laws[c][0]}(maximum({self.row(f's{c}')} * slide, 0.0 * t_), {p})"
+            mu = f"lane_mu_{law}(maximum({self.row(f's{c}')} * slide, 0.0 * t_), {p})"
             return f"(value(mu{c}_{k}, away, {ORDER}) - {mu}) * {normal}", ""
         kind, z, rate = self.shape.smooth[c] - 1, "0.0", "0.0"
         if row >= 0:
@@ -240,7 +241,8 @@ class TaylorStep(EquationText):
     def ready(self, found: dict[str, list[str]]) -> None:
         """All that both the branch of the events and the rest read."""
         names = [*found["speed"], *found["normal"]]
-        names += [] if self.gliding else [f"hold{c}_{self.tag}" for c in range(self.shape.m)]
+        held = self.shape.exact and not self.gliding
+        names += [f"hold{c}_{self.tag}" for c in range(self.shape.m)] if held else []
         names += found["force"]  # their works are integrated outside the branch
         self.put(f"ready({WORK_ORDER}, {', '.join(names)})" if names else "pass")
 
@@ -311,8 +313,9 @@ class TaylorStep(EquationText):
         if of == "dof":
             return f"Motion({time}, q{i}p{part}, v{i}p{part}, a{i}p{part})"
         if of == "contact":
-            mode = f"(2.0 * (speed{i}p{part} > 0.0) - 1.0)" if self.shape.is_smooth(i) else self.row(f"s{i}")
-            if self.shape.unilateral[i]:
+            senses = self.shape.exact and not self.shape.is_smooth(i)
+            mode = self.row(f"s{i}") if senses else f"(2.0 * (speed{i}p{part} > 0.0) - 1.0)"
+            if self.shape.exact and self.shape.unilateral[i]:
                 mode = f"({mode} + 2.0 * {self.row(f'open{i}')})"
             return f"Sliding({time}, speed{i}p{part}, normal{i}p{part}, {mode}, work{i}p{part})"
         n = n if self.shape.seen < 0 else self.shape.seen
@@ -331,7 +334,8 @@ class TaylorStep(EquationText):
             " + ".join(f"{x} * ({row})" for i, x in enumerate(v) if (row := " + ".join(self.product(f"c{i}", v))))
         )
         lifted = [(" + ".join(self.product(f"w{c}", v)), c) for c in range(m) if shape.unilateral[c]]
-        rates.append(" + ".join(f"{self.row(f'open{c}')} * {found['normal'][c]} * ({row})" for row, c in lifted if row))
+        off = [(self.openness(c, found["normal"][c]), found["normal"][c], row) for row, c in lifted if row]
+        rates.append(" + ".join(f"{share} * {normal} * ({row})" for share, normal, row in off))
         for k, rate in enumerate(rates):
             self.put(f"works{k} = integral({rate}) * unit" if rate else f"works{k} = 0.0")
             done = self.row(f"done{k}")
@@ -347,6 +351,9 @@ class TaylorStep(EquationText):
                 self.put(f"store_known(A, b + {place}, {value})")
         self.keep("t_old", "t_")
         self.keep("span", "end * unit")
+        if not shape.exact and m:
+            back = [f"((at({x}, 0) > 0.0) ^ (value({x}, end, {ORDER}) > 0.0))" for x in found["speed"]]
+            self.keep("reversals", f"{self.row('reversals')} + where(moved & ({' | '.join(back)}), 1.0, 0.0)")
 
     def finish(self, found: dict[str, list[str]], q: list[str], v: list[str]) -> None:
         """Take the step, count, and say which lanes need service."""

@@ -210,6 +210,27 @@ class Given:
     def __getitem__(self, i: int) -> Any:
         return self.whole[i] if i in self.whole else load(self.group, self.place + i * WIDTH.get())
 
+    def of(self, index: Any, first: int) -> Lanes:
+        """In each lane the coefficient `index` places after that which comes `first`."""
+        builder, lanes = BUILDER.get(), WIDTH.get()
+        out = ir.Constant(packed_type(), ir.Undefined)
+        for i in range(lanes):
+            place = builder.mul(builder.extract_element(index, SHORT(i)), INTEGER(lanes))
+            place = builder.add(place, INTEGER(self.place + first * lanes + i))
+            one = builder.load(builder.gep(self.group.data, [place]))
+            out = builder.insert_element(out, one, SHORT(i))
+        return Lanes(out)
+
+    def last_below(self, x: Lanes, first: int, count: int) -> Any:
+        """In each lane the place of the last of `count` increasing coefficients that is not above x; 0 if none is."""
+        builder, lanes = BUILDER.get(), WIDTH.get()
+        found, end = (ir.Constant(wide_type(), [number] * lanes) for number in (0, count - 1))
+        for power in reversed(range((count - 1).bit_length())):
+            tried = builder.add(found, ir.Constant(wide_type(), [1 << power] * lanes))
+            tried = builder.select(builder.icmp_unsigned("<=", tried, end), tried, found)
+            found = builder.select((self.of(tried, first) <= x).vector, tried, found)
+        return found
+
 
 def load(group: Group, place: int, aligned: int | None = None) -> Lanes:
     """The row that begins there, at a multiple of so many bytes."""

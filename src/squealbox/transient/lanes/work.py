@@ -13,7 +13,9 @@ from squealbox.start import Start
 from squealbox.system import System, as_system
 from squealbox.transient import packing
 from squealbox.transient._march import COMPLETED, NOT_CONFIRMED
+from squealbox.transient.choosing import pays
 from squealbox.transient.lanes.batch import stacked
+from squealbox.transient.lanes.orders import Orders
 from squealbox.transient.lanes.shape import layout, parameter_rows
 from squealbox.transient.lanes.table import Jobs, tabulate
 from squealbox.transient.limited import in_time
@@ -26,7 +28,6 @@ GROUPS = 2  # groups of lanes that a thread advances in turn: one hides the late
 EVERY = 2_000  # trials of each group between two looks at the stop flag, some milliseconds
 ONE_IN = 1_000  # trajectories is run once more, looked at more closely
 SHARE = 1e-3  # of the end state by which the two may differ
-LONGEST = 5_000  # products that the text of a kernel spells out, n^2 and three rows of n for each contact
 HEAD = 5  # numbers of a row of results before its state: how it ended, time, accepted, tried, events
 Progress = Callable[[int, int, float], None]
 
@@ -69,8 +70,8 @@ class Work:
     def _block(self, system: System, made: Any, shape: tuple[int, ...], part: slice, total: int) -> None:
         count = part.stop - part.start
         self.system = self.system or base_of(system)
-        if system.size * (system.size + 3 * len(system.contacts)) > LONGEST:
-            raise RunApart("a kernel of so many freedoms and contacts takes minutes to compile: run them apart")
+        if not pays(system, self.method.tableau, total):
+            raise RunApart("a kernel of so many freedoms and contacts takes longer to compile than they run apart")
         members, base = (shape, part), base_of(system)
         begin = Start.of("simulate_ensemble", self.start, base, self.begin, modes_of=made, members=members)
         start = start_of(system, begin, self.begin)
@@ -129,10 +130,11 @@ class Work:
             groups[rows.places["alive"] * lanes] = -1.0
             n = jobs.shape.n
             scratch = packing.scratch(record, np.zeros(n), np.zeros(n), self.begin, 0.0)
-            kernel(
-                groups, live, jobs.table, jobs.varies, jobs.fixed, self.times, samples, counter, count, out,
-                record.copy(), rule, scratch, stop, EVERY, np.zeros((1, 1)), np.zeros((1, 1)), counter,
+            orders = Orders(
+                jobs.table, jobs.varies, jobs.fixed, self.times, samples, counter, count, out,
+                record.copy(), rule, scratch, stop, EVERY,
             )  # fmt: skip
+            kernel(groups, live, orders)
 
         def work() -> None:
             try:

@@ -1,0 +1,61 @@
+"""Tables of measured points as series: the polynomial of the interval in which a step begins; a knot ends the step.
+
+A friction law's knots are watched like any other choice that the state makes; the instants of a schedule are ends of
+pieces already, so its choice looks a little ahead.
+"""
+
+from typing import Any
+
+from squealbox.transient.lanes.series import AHEAD, DECISIONS, Series, at, plus, times
+from squealbox.transient.lanes.vectors import Given, Lanes, where
+
+FAR = 1e300  # where there is no further knot
+
+
+def law_of_points(x: Any, p: Given) -> Any:
+    """`friction.table` on a series of the speed, or on speeds."""
+    count, here = p[1], at(x, 0)
+    first, last = p[2], p[1 + count]
+    low, high, rest = _ends(here, p, 2, count)
+    (y0, y1), (left, right) = ((rest(p, 2 + k * count), rest(p, 3 + k * count)) for k in (1, 2))
+    below, above = here < first, here >= last
+    inside = where(below | above, 0.0, 1.0)
+    width, rise = high - low, y1 - y0
+    left, right, rise = inside * left * width, inside * right * width, inside * rise
+    s = (x - low) * (1.0 / width)
+    if isinstance(x, Series):
+        # chosen is x >= the knot below: that difference holds while it is not positive; zero speed is an event, no knot
+        DECISIONS.get().append(where(below | ((first <= 0.0) & (low <= first)), -FAR, where(above, last, low)) - x)
+        DECISIONS.get().append(where(above, FAR, where(below, first, high)) - x)
+    steeper = s * (left + right - 2.0 * rise) + (3.0 * rise - 2.0 * left - right)
+    return s * (s * steeper + left) + where(above, y1, y0)
+
+
+def line_of_points(t: Series, p: Given) -> Series:
+    """`schedules.table` on the series of time."""
+    start, low, value = _line(t, p)
+    return (t - low) * start + value
+
+
+def slope_of_points(t: Series, p: Given) -> Lanes:
+    """`schedules.table_rate` there."""
+    return _line(t, p)[0]
+
+
+def _line(t: Series, p: Given) -> tuple[Lanes, Any, Any]:
+    """Slope of the line on which a step begins, where that begins, and its value there."""
+    count, here = p[0], plus(at(t, 0), times(at(t, 1), AHEAD))
+    low, high, rest = _ends(here, p, 1, count)
+    y0, y1 = rest(p, 1 + count), rest(p, 2 + count)
+    outside = (here < p[1]) | (here >= p[count])
+    return where(outside, 0.0, (y1 - y0) / (high - low)), low, where(here >= p[count], y1, y0)
+
+
+def _ends(here: Lanes, p: Given, first: int, count: int) -> tuple[Lanes, Lanes, Any]:
+    """Both ends of the interval, the first or last where there is none, and what finds a coefficient for it."""
+    found = p.last_below(here, first, count - 1)
+
+    def rest(p: Given, place: int) -> Lanes:
+        return p.of(found, place)
+
+    return rest(p, first), rest(p, first + 1), rest
