@@ -15,7 +15,7 @@ from squealbox import (
 
 brake = DrumBrake(friction=LinearSlope(static=0.45, slope=-0.05))
 print(complex_modes(brake))
-print(critical_value(brake, "friction.static", (0.0, 0.6)))
+print(critical_value(brake, {"friction.static": (0.0, 0.6)}))
 print(mechanism(brake))
 
 # %% What happens in time, with exact stick and slip?

@@ -48,16 +48,19 @@ def is_real(value: Any) -> bool:
 
 
 def interval(value: Any) -> str:
-    """Two finite numbers (low, high) with low < high, or these for each of several names."""
-    if isinstance(value, Mapping):
-        return "" if all(interval(each) == "" for each in value.values()) else "(low, high) with low < high for each"
+    """Two finite numbers (low, high) with low < high."""
     pair = isinstance(value, (tuple, list, np.ndarray)) and len(value) == 2 and all(is_real(each) for each in value)
     return "" if pair and value[0] < value[1] else "two finite numbers (low, high) with low < high"
 
 
+def bounds(value: Any) -> str:
+    """An interval; those of several parameters by name are read by `squealbox.family`, which names the one to blame."""
+    return "" if isinstance(value, Mapping) else interval(value)
+
+
 def band(value: Any) -> str:
     """Frequencies (f1, f2) in Hz."""
-    good = not isinstance(value, Mapping) and interval(value) == "" and value[0] >= 0.0
+    good = interval(value) == "" and value[0] >= 0.0
     return "" if good else "(f1, f2) in Hz with 0 <= f1 < f2"
 
 
@@ -96,8 +99,9 @@ def named(value: Any) -> str:
 
 
 def word(value: Any) -> str:
-    """The name of a parameter."""
-    return "" if isinstance(value, str) else 'the name of a parameter, such as "friction.static"'
+    """The name of a parameter, or a dictionary of it and what it may be."""
+    good = isinstance(value, (str, Mapping))
+    return "" if good else 'the name of a parameter, such as "friction.static", or {"friction.static": ...}'
 
 
 def asked(value: Any) -> str:
@@ -118,7 +122,7 @@ KINDS: dict[str, Kind] = {
     **{name: whole(1) for name in ("samples", "points", "harmonics", "most_steps", "rounds", "shots", "threads")},
     **{name: whole(1) for name in ("population", "generations", "replicates")},
     "seed": whole(0),
-    "bounds": interval,
+    "bounds": bounds,
     "band": band,
     **dict.fromkeys(("design", "design_or_system", "brake", "system"), design),
     **dict.fromkeys(("scatter", "variables", "parameters"), named),
@@ -131,7 +135,8 @@ KINDS: dict[str, Kind] = {
 def public(**kinds: Kind | None) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """A function whose arguments are looked at first, by `KINDS` and by `kinds` of its own (None: not this one).
 
-    None passes where it is the default. What a function calls its owner "" is told under the function's own name.
+    None passes where it is the default. A dictionary in the place of `parameter` stands for it and for the argument
+    behind it, its bounds or values. What a function calls its owner "" is told under the function's own name.
 
     Raises `ParameterError` for an argument that is not what it shall be and, with the nearest name, for one that the
     function does not have.
@@ -152,6 +157,10 @@ def public(**kinds: Kind | None) -> Callable[[Callable[P, R]], Callable[P, R]]:
         at = [(i, name, kind, given[name].default) for i, (name, kind) in enumerate(looked.items()) if kind is not None]
         owner = function.__name__
         place = names.index("progress") if "progress" in names else None
+        placed = [name for name in names if given[name].kind is inspect.Parameter.POSITIONAL_OR_KEYWORD]
+        pair = (
+            placed.index("parameter") if "parameter" in placed[:-2] else len(names)
+        )  # something stands behind its bounds
         must = [name for name in names if given[name].default is inspect.Parameter.empty]
 
         @functools.wraps(function)
@@ -159,6 +168,8 @@ def public(**kinds: Kind | None) -> Callable[[Callable[P, R]], Callable[P, R]]:
             for name in keywords:
                 if not open_ended and name not in given:
                     raise ParameterError(owner, name, keywords[name], known_names(name, names))
+            if len(args) > pair + 1 and isinstance(args[pair], Mapping) and args[pair + 1] is not None:
+                args = (*args[: pair + 1], None, *args[pair + 1 :])  # type: ignore[assignment]
             for i, name, kind, usual in at:
                 if i < len(args):
                     value: Any = args[i]

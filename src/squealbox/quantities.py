@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.family import Bounds, Family, Varied
 from squealbox.parameters import ParameterError
 from squealbox.stability.crossings import first_crossings
 from squealbox.stability.family import steady_sliding
@@ -58,37 +59,39 @@ def damping_ratio(*, limit: float = 0.0, time: float = 0.0) -> Quantity:
 
 
 def critical_value(
-    parameter: str, bounds: tuple[float, float], *, limit: float, unit: str = "", points: int = 65
+    parameter: Varied, bounds: Bounds | None = None, *, limit: float, unit: str = "", points: int = 65
 ) -> Quantity:
-    """The value of `parameter` between `bounds` [SI] at which squeal begins; below `limit` [SI] the brake squeals.
+    """The value of a parameter at which squeal begins; below `limit` [SI] the brake squeals.
 
+    parameter, bounds : {name: (low, high)}, or the name and the bounds one after the other.
     `limit` is the value the brake runs at. Infinite where sliding is stable all over the bounds, minus infinite where
     it is unstable at the lower one.
     """
+    about = Family.within("critical_value", None, parameter, bounds)
 
     def critical(design: Any) -> Any:
-        return first_crossings(design, parameter, bounds, points=points)
+        return first_crossings(design, about.name, about.spans[0], points=points)
 
-    return Quantity(critical, f"critical {parameter}", unit, limit, "below", meaning="where squeal begins")
+    return Quantity(critical, f"critical {about.name}", unit, limit, "below", meaning="where squeal begins")
 
 
-def margin(parameter: str, bounds: tuple[float, float], *, unit: str = "", points: int = 65) -> Quantity:
-    """How far `parameter` is below the value at which squeal begins, in its own unit; below 0 the brake squeals.
+def margin(parameter: Varied, bounds: Bounds | None = None, *, unit: str = "", points: int = 65) -> Quantity:
+    """How far a parameter is below the value at which squeal begins, in its own unit; below 0 the brake squeals.
 
-    `bounds` [SI]: range of the parameter that is searched.
-
+    parameter, bounds : {name: (low, high)} [SI], or the name and the bounds one after the other.
     It is smooth where the growth rate has its kink. Infinite where stability does not change within the bounds.
 
     >>> from squealbox.designs import ModeCoupling
     >>> from squealbox.friction import Coulomb
-    >>> round(float(margin("friction.static", (0.0, 2.0))(ModeCoupling(friction=Coulomb(0.4)))), 9)
+    >>> round(float(margin({"friction.static": (0.0, 2.0)})(ModeCoupling(friction=Coulomb(0.4)))), 9)
     0.6
     """
+    about = Family.within("margin", None, parameter, bounds)
 
     def distance(design: Any) -> Any:
-        return first_crossings(design, parameter, bounds, points=points) - design.value_of(parameter)
+        return first_crossings(design, about.name, about.spans[0], points=points) - design.value_of(about.name)
 
-    return Quantity(distance, f"margin of {parameter}", unit, 0.0, "below", meaning="distance to the onset of squeal")
+    return Quantity(distance, f"margin of {about.name}", unit, 0.0, "below", meaning="distance to the onset of squeal")
 
 
 def amplitude(duration: float = 0.05, *, limit: float, contact: str = "exact", rtol: float | None = None) -> Quantity:

@@ -9,7 +9,7 @@ from squealbox.designs import DrumBrake
 from squealbox.friction import LinearSlope
 from squealbox.parameters import DataSheet, parameter
 from squealbox.stability import complex_modes, critical_value, stability_boundary, stability_map
-from squealbox.stability.family import Family, steady_sliding
+from squealbox.stability.family import SteadyFamily, steady_sliding
 from squealbox.stability.mechanism import contributions
 from squealbox.stability.spectra import asymptotically_stable, eigenvalues, largest_growth
 from squealbox.system import System
@@ -160,7 +160,7 @@ def test_boundary_passes_through_the_critical_values() -> None:
 def test_family_of_a_function_is_that_of_a_design() -> None:
     design = DrumBrake()
     values = np.array([0.2, 0.4])
-    batch = Family(design, ["friction.static"]).at(values)
-    single = Family(lambda mu: design.replace({"friction.static": mu}), ["friction.static"]).at(values)
+    batch = SteadyFamily(design, ["friction.static"]).at(values)
+    single = SteadyFamily(lambda mu: design.replace({"friction.static": mu}), ["friction.static"]).at(values)
     assert np.array_equal(batch.K, single.K)
     assert np.array_equal(batch.structural, single.structural)

@@ -59,7 +59,7 @@ def test_no_hopf_point():
     [
         (lambda: shooting(block_on_belt(Stribeck(0.4, 0.2, 0.1), Ramp(0.1, 0.1))), "constant"),
         (lambda: shooting(QUIET, "nowhere"), "start"),
-        (lambda: shooting(QUIET, ([0.0, 1.0], [0.0])), "1 finite"),
+        (lambda: shooting(QUIET, ([0.0, 1.0], [0.0])), "1 values each"),
         (lambda: shooting(QUIET, contact="raw"), "contact"),
         (lambda: shooting(QUIET, shots=0), "shots"),
         (lambda: harmonic_balance(QUIET, harmonics=8, samples=8), "at least 17"),

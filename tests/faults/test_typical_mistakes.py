@@ -143,7 +143,7 @@ MISTAKES = {
     "one bound": (lambda: critical_value(DRUM, "friction.static", 0.4), "critical_value.bounds = 0.4"),
     "bounds of three by name": (
         lambda: stability_boundary(DRUM, {"friction.static": (0, 1, 2), "load": (1, 2)}),
-        "stability_boundary.bounds",
+        "stability_boundary.friction.static = (0, 1, 2): expected two finite numbers (low, high) with low < high",
     ),
     "a band reversed": (
         lambda: reduce(DRUM, (2000.0, 100.0)),

@@ -37,7 +37,7 @@ def test_the_start_decides_what_a_cycle_is_found_from(block, capsys):
     [
         (["--start", "y=1"], "--start y=1: unknown state, one of x, x'"),
         (["--start", "x=1kg"], "expected m (a length)"),
-        (["--start", "x"], "expected rest, sliding, or NAME=VALUE"),
+        (["--start", "x"], "expected rest, sliding, mode 2, or NAME=VALUE"),
         (["--start", "x=1", "x=2"], "x is given twice"),
         (["--period", "1s"], "expected --start with the state that is on the cycle"),
         (["--settle", "0s"], "expected a time above 0 s"),

@@ -146,7 +146,7 @@ def test_seeds_reproduce_and_results_are_read_back(tmp_path):
 
 NONSENSE = [
     (lambda: optimise(None, {}, Goal(lambda at: 1.0)), "at least one"),
-    (lambda: optimise(None, {"x": (1.0, 0.0)}, Goal(lambda at: 1.0)), "the lower first"),
+    (lambda: optimise(None, {"x": (1.0, 0.0)}, Goal(lambda at: 1.0)), "low < high"),
     (lambda: optimise(None, {"x": (0.0, 1.0)}, []), "at least one Goal"),
     (lambda: optimise(None, {"x": (0.0, 1.0)}, Goal(lambda at: 1.0, over="mean")), "a Scatter"),
     (lambda: optimise(None, {"x": (0.0, 1.0)}, Goal(lambda at: 1.0), method="guess"), "global"),

@@ -5,7 +5,7 @@ import pytest
 
 from small_systems import two_blocks_on_belt
 from squealbox import DrumBrake, LinearSlope, shooting
-from squealbox.limit_cycles.branches.hopf import family
+from squealbox.family import Family
 from squealbox.limit_cycles.branches.phases import begun
 from squealbox.limit_cycles.branches.shooting_path import ShootingPath
 from squealbox.limit_cycles.cycles.variation import quick_flight
@@ -26,7 +26,7 @@ CASES = {
 
 def path_of(name):
     design, parameter, value, span, start = CASES[name]
-    make = family(design, parameter)
+    make = Family(design, [parameter]).system
     path = ShootingPath(make, 1e-12, span)
     cycle = shooting(make(value), start)
     assert cycle.outcome.ok
@@ -60,7 +60,7 @@ def test_without_the_events_own_shift_it_would_be_wrong():
 def test_where_the_range_ends_one_side_serves():
     """At a slope of 0, where a linear law may rise no further, the derivative is taken from below."""
     design = CONSISTENT.replace({"friction.slope": 0.0})
-    path = ShootingPath(family(design, "sliding_speed"), 1e-12, 1.0)
+    path = ShootingPath(Family(design, ["sliding_speed"]).system, 1e-12, 1.0)
     low, high, distance = path.beside(0.0)
     assert distance in (pytest.approx(1e-5), pytest.approx(2e-5))
     assert low.V is not high.V

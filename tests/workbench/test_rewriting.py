@@ -187,3 +187,16 @@ def _misread(text):
     found = read_text(text)
     object.__setattr__(found, "design", DrumBrake())
     return found
+
+
+def test_what_varies_in_one_key_is_kept_until_it_changes():
+    """`vary` of a section stays; where the page chooses an axis anew, each is said in words of its own."""
+    axes = TEXT[TEXT.index("[map]") : TEXT.index("[onset]")]
+    vary = '[map]\nvary = { "friction.static" = [0, 0.8], theta1 = ["20 deg", "160 deg"] }\n\n'
+    text = TEXT.replace(axes, vary)
+    assert settings_of(read_text(text)) == settings_of(read_text(TEXT))
+    found, _ = again(text, {"k3": 191e6})
+    assert vary in found
+    found, _ = again(text, {}, {"map": {"x": "load", "y": "theta1"}, "page": {"ranges": {"load": [100.0, 2e3]}}})
+    plane = read_text(found).map
+    assert (plane.x.name, plane.x.low, plane.x.high, plane.y) == ("load", 100.0, 2e3, read_text(TEXT).map.y)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import RANGE, Ends, axis, folder, in_motion, read, readable, with_points
+from squealbox.cli.inputs import Ends, Vary, axis, folder, in_motion, read, readable, varied_by, with_points
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.tables import write_csv, written
@@ -39,6 +39,7 @@ Start = Literal["all", "hopf", "runs"]
 def branch(
     file: Path,
     *,
+    vary: Vary = (),
     parameter: str | None = None,
     range: Ends = None,
     start: Start = "all",
@@ -55,8 +56,10 @@ def branch(
     ----------
     file
         design file; its section [branch] says what is varied, unless the options do
+    vary
+        a parameter and its lowest and highest value: friction.static=0.1:0.6, or theta1=20deg:160deg
     parameter
-        dotted name, such as friction.static
+        its dotted name, where --range stands beside it
     range
         lowest and highest value, with or without a unit: 0.1 0.6
     start
@@ -73,7 +76,7 @@ def branch(
         folder for a figure, the tables branch.csv and special.csv, and the data of each branch
     """
     found = read(file, asked)
-    varied = with_points(axis(found.design, found.branch, parameter, range, RANGE), points)
+    varied = with_points(axis(found.design, found.branch, *varied_by(vary, parameter, range)), points)
     if out is not None:
         folder(out, "branch", "special")
     found = in_motion(found, varied)

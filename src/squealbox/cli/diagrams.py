@@ -9,8 +9,8 @@ from cyclopts import Parameter
 from squealbox.cli.answers import keep
 from squealbox.cli.branches import all_branches
 from squealbox.cli.inputs import (
-    RANGE,
     Ends,
+    Vary,
     axis,
     folder,
     in_motion,
@@ -18,6 +18,7 @@ from squealbox.cli.inputs import (
     read,
     readable,
     time_of,
+    varied_by,
     with_points,
 )
 from squealbox.cli.options import AS_WRITTEN, Asked
@@ -44,6 +45,7 @@ NAMED = {"maxima": Section.maxima, "minima": Section.minima, "return": Section.r
 def diagram(
     file: Path,
     *,
+    vary: Vary = (),
     parameter: str | None = None,
     range: Ends = None,
     points: int | None = None,
@@ -68,8 +70,10 @@ def diagram(
     ----------
     file
         design file; its section [branch] says what is varied, unless the options do
+    vary
+        a parameter and its lowest and highest value: friction.static=0.1:0.6, or theta1=20deg:160deg
     parameter
-        dotted name, such as friction.static
+        its dotted name, where --range stands beside it
     range
         lowest and highest value, with or without a unit: 0.1 0.6
     points
@@ -95,7 +99,7 @@ def diagram(
         folder for a figure, the tables diagram.csv and section.csv, and diagram.nc
     """
     found = read(file, asked)
-    varied = with_points(axis(found.design, found.branch, parameter, range, RANGE), points)
+    varied = with_points(axis(found.design, found.branch, *varied_by(vary, parameter, range)), points)
     found = in_motion(found, varied)
     length = None if duration is None else time_of("--duration", duration)
     plane = _section(found.design, section, dof)

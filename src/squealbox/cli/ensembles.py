@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import folder, in_motion, read, time_of
+from squealbox.cli.inputs import Vary, folder, in_motion, read, time_of
 from squealbox.cli.maps import Plane, Span, axes_of
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
@@ -25,6 +25,7 @@ ABOUT = {"ensemble": "transients over two parameters: amplitude and frequency of
 def ensemble(
     file: Path,
     *,
+    vary: Vary = (),
     x: Span = None,
     y: Span = None,
     points: int | None = None,
@@ -41,6 +42,8 @@ def ensemble(
     ----------
     file
         design file; its section [map] says what is varied, unless the options do
+    vary
+        two parameters, each with its lowest and highest value: friction.static=0:1 theta1=20deg:160deg
     x
         parameter, lowest and highest value: friction.static 0 1
     y
@@ -53,7 +56,7 @@ def ensemble(
         folder for the figure and the numbers
     """
     found = read(file, asked)
-    across, up = axes_of(found, x, y, points)
+    across, up = axes_of(found, vary, x, y, points)
     seconds = usual_duration(found.design) if duration is None else time_of("--duration", duration)
     if not seconds > 0.0:
         raise UsageError(f"--duration {duration}: expected a time above 0 s")

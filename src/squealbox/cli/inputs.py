@@ -22,6 +22,7 @@ from squealbox.parameters import Parameter, ParameterError
 from squealbox.transient.simulate import TIME_STEPPING
 from squealbox.waiting import Progress
 
+Vary = Annotated[tuple[str, ...], cyclopts.Parameter(negative="", consume_multiple=True, show_default=False)]
 Ends = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
 
 
@@ -79,6 +80,28 @@ class Option:
 
 
 RANGE = Option("--range", "--parameter NAME --range LOW HIGH")
+
+
+VARY = Option("--vary", "--vary NAME=LOW:HIGH")
+
+
+def spans(vary: Sequence[str], count: int) -> list[tuple[str, tuple[str, str]]]:
+    """NAME and (LOW, HIGH) of each of ``--vary friction.static=0:1``, of which there must be `count`."""
+    found = []
+    for each in vary:
+        name, _, text = each.partition("=")
+        low, _, high = text.partition(":")
+        if not (name.strip() and low.strip() and high.strip()):
+            raise UsageError(f"--vary {each[:60]}: expected NAME=LOW:HIGH, such as friction.static=0:1")
+        found.append((name.strip(), (low.strip(), high.strip())))
+    if len(found) != count:
+        raise UsageError(f"--vary {' '.join(vary)[:60]}: expected {count} parameter{'s' * (count > 1)}")
+    return found
+
+
+def varied_by(vary: Sequence[str], name: str | None, ends: tuple[str, str] | None) -> tuple[Any, Any, Option]:
+    """What `axis` is asked for by ``--vary``, or by ``--parameter`` and ``--range``."""
+    return (*spans(vary, 1)[0], VARY) if vary else (name, ends, RANGE)
 
 
 def axis(

@@ -1,5 +1,6 @@
 """`squealbox map`: which part of a plane squeals, why, and where its boundary runs."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -7,7 +8,7 @@ import numpy as np
 from cyclopts import Parameter
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Option, axis, folder, read, readable, small, with_points
+from squealbox.cli.inputs import Option, Vary, axis, folder, read, readable, small, spans, with_points
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -33,6 +34,7 @@ ACROSS, UP = Option("--x", "--x NAME LOW HIGH"), Option("--y", "--y NAME LOW HIG
 def map_(
     file: Path,
     *,
+    vary: Vary = (),
     x: Span = None,
     y: Span = None,
     points: int | None = None,
@@ -46,6 +48,8 @@ def map_(
     ----------
     file
         design file; its section [map] says what is varied, unless the options do
+    vary
+        two parameters, each with its lowest and highest value: friction.static=0:1 theta1=20deg:160deg
     x
         parameter, lowest and highest value: friction.static 0 1
     y
@@ -58,7 +62,7 @@ def map_(
         folder for the figure, the grid and the points of the boundary
     """
     found = read(file, asked)
-    across, up = axes_of(found, x, y, points)
+    across, up = axes_of(found, vary, x, y, points)
     if out is not None:
         folder(out, "map", "boundary")
     found = small(found, across, up)
@@ -104,9 +108,13 @@ class Plane:
         return {f"{n} [{u or '-'}]": v for n, u, v in zip(self.names, self.units, (x, y), strict=True)}
 
 
-def axes_of(found: "DesignFile", x: Span, y: Span, points: int | None) -> tuple["Varied", "Varied"]:
+def axes_of(
+    found: "DesignFile", vary: Sequence[str], x: Span, y: Span, points: int | None
+) -> tuple["Varied", "Varied"]:  # fmt: skip
     """The two axes of a plane, from the options or the section [map] of the file."""
     given = found.map
+    if vary:
+        x, y = ((name, *ends) for name, ends in spans(vary, 2))
     across = with_points(axis(found.design, given.x if given else None, *_split(x), ACROSS), points)
     up = with_points(axis(found.design, given.y if given else None, *_split(y), UP), points)
     if across.name == up.name:

@@ -7,7 +7,7 @@ import numpy as np
 
 from squealbox.cli.answers import keep, show
 from squealbox.cli.finite_elements import print_more
-from squealbox.cli.inputs import RANGE, Ends, axis, folder, number, read, readable, small
+from squealbox.cli.inputs import Ends, Vary, axis, folder, number, read, readable, small, varied_by
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
@@ -107,6 +107,7 @@ def _modes_in_band(
 def onset(
     file: Path,
     *,
+    vary: Vary = (),
     parameter: str | None = None,
     range: Ends = None,
     asked: Asked = AS_WRITTEN,
@@ -118,15 +119,17 @@ def onset(
     ----------
     file
         design file; its section [onset] says what is varied, unless the options do
+    vary
+        a parameter and its lowest and highest value: friction.static=0.1:0.6, or theta1=20deg:160deg
     parameter
-        dotted name, such as friction.static
+        its dotted name, where --range stands beside it
     range
         lowest and highest value, with or without a unit: 0 1, or 20deg 160deg
     out
         folder for a figure of frequencies and growth rates over the range, and its numbers
     """
     found = read(file, asked)
-    varied = axis(found.design, found.onset, parameter, range, RANGE)
+    varied = axis(found.design, found.onset, *varied_by(vary, parameter, range))
     if out is not None:
         folder(out, "onset")
     found = small(found, varied)

@@ -1,6 +1,6 @@
 """A start, or a box of starts, from the command line: states by name, in their own units.
 
-    --start sliding    --start x=1mm "x'=0.2 m/s"    --box x=-1mm:1mm y=0 "y'=-0.1:0.1"
+    --start sliding    --start mode 2    --start x=1mm "x'=0.2 m/s"    --box x=-1mm:1mm y=0 "y'=-0.1:0.1"
 
 A prime marks a velocity. What is not named is as in steady sliding, or at zero where there is none.
 """
@@ -14,25 +14,29 @@ from cyclopts import Parameter
 from squealbox.cli.inputs import number
 from squealbox.cli.running import UsageError
 from squealbox.limit_cycles.attractors.sections import state_names
-from squealbox.parameters import known_names
-from squealbox.system import System, equilibrium
+from squealbox.limit_cycles.cycles.starting import VISIBLE
+from squealbox.parameters import ParameterError, known_names
+from squealbox.start import Start, in_words
+from squealbox.system import InvalidSystem, System, equilibrium
 
 States = Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=True, show_default=False)]
-WORDS = ("rest", "sliding")
 
 
 def start_from(system: System, given: Sequence[str]) -> tuple[Any, Any] | None:
-    """(q, qd) of ``--start``: None for nothing given, rest, sliding, or sliding with some states set."""
+    """(q, qd) of ``--start``: None for nothing given, rest, sliding, a mode, or sliding with some states set."""
     if not given:
         return None
-    n = system.size
-    if list(given) == ["rest"]:
-        return np.zeros(n), np.zeros(n)
-    x = np.concatenate([_sliding(system, must=list(given) == ["sliding"]), np.zeros(n)])
-    if list(given) != ["sliding"]:
-        expected = 'rest, sliding, or NAME=VALUE such as x=1mm "x\'=0.2"'
-        for i, text, label in _named(system, given, "--start", expected):
-            x[i] = number(text, _unit(system, i), label)
+    n, words = system.size, " ".join(given)
+    if words in ("rest", "sliding") or in_words(words):
+        try:
+            begin = Start.of("", words, system, share=VISIBLE)
+        except (InvalidSystem, ParameterError) as error:
+            raise UsageError(f"--start {words}: {getattr(error, 'expectation', error)}") from error
+        return begin.q, begin.qd
+    x = np.concatenate([_sliding(system), np.zeros(n)])
+    expected = 'rest, sliding, mode 2, or NAME=VALUE such as x=1mm "x\'=0.2"'
+    for i, text, label in _named(system, given, "--start", expected):
+        x[i] = number(text, _unit(system, i), label)
     return x[:n], x[n:]
 
 
@@ -69,11 +73,7 @@ def _unit(system: System, i: int) -> str:
     return unit if i < system.size else f"{unit}/s"
 
 
-def _sliding(system: System, must: bool = False) -> Any:
+def _sliding(system: System) -> Any:
     """Steady sliding, shape (n,); zeros where there is none."""
     state = equilibrium(system)
-    if np.all(state.exists):
-        return np.asarray(state.q, dtype=float)
-    if must:
-        raise UsageError(f"--start sliding: there is no steady sliding to start from: {state.outcome.message}")
-    return np.zeros(system.size)
+    return np.asarray(state.q, dtype=float) if np.all(state.exists) else np.zeros(system.size)

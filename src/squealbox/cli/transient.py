@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import folder, in_motion, read, time_of
+from squealbox.cli.inputs import folder, in_motion, number, read, time_of
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
-from squealbox.files.analyses import Simulate
+from squealbox.files.analyses import Simulate, start_keys
 from squealbox.files.runs import lasting, run, start_of
 from squealbox.parameters import ParameterError, with_cautions
 from squealbox.waiting import Progress
@@ -30,6 +30,7 @@ def simulate(
     out: Path | None = None,
     duration: str | None = None,
     start: str | None = None,
+    amplitude: str | None = None,
     method: str | None = None,
     contact: str | None = None,
     asked: Asked = AS_WRITTEN,
@@ -45,7 +46,9 @@ def simulate(
     duration
         how long the motion is followed: 50ms; left out, 200 periods of the worst mode of steady sliding
     start
-        rest (loads applied suddenly) or sliding
+        rest (loads applied suddenly), sliding, or a mode beside it: "mode 2", or mode for the one that grows fastest
+    amplitude
+        of that mode: 1um; left out, the sliding speed of a contact swings by a hundredth
     method
         usual (the Taylor series where the equation has one), or one that squealbox list names
     contact
@@ -53,7 +56,7 @@ def simulate(
     """
     found = read(file, asked)
     options = {"start": start, "method": method, "contact": contact}
-    settings = _settings(found.simulate or Simulate(), duration, options)
+    settings = _settings(found.simulate or Simulate(), duration, amplitude, options)
     found = in_motion(dataclasses.replace(found, simulate=settings), contact=settings.contact)
     settings = lasting(found.design, found.simulate or settings)
     system = found.design.system()
@@ -73,10 +76,16 @@ def simulate(
         raise ComputationFailed(motion.outcome)
 
 
-def _settings(given: Simulate, duration: str | None, options: dict[str, str | None]) -> Simulate:
+def _settings(
+    given: Simulate, duration: str | None, amplitude: str | None, options: dict[str, str | None]
+) -> Simulate:  # fmt: skip
     changed: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
     if duration is not None:
         changed["duration"] = time_of("--duration", duration)
+    if "start" in changed:
+        changed |= {"mode": None, **start_keys(changed["start"])}
+    if amplitude is not None:
+        changed["amplitude"] = number(amplitude, "m", f"--amplitude {amplitude}")
     try:
         return given.replace(changed)
     except ParameterError as error:

@@ -22,7 +22,7 @@ from squealbox.result import Array, Result, quantity
 from squealbox.stability import complex_modes
 from squealbox.stability.family import steady_sliding
 from squealbox.stability.state_matrix import spectrum
-from squealbox.studies.uncertainty.scatter import Scatter
+from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
 from squealbox.system import Equilibrium, Linearised, as_system
 
 AIMS = ("decay", "margin", "probability")
@@ -79,7 +79,7 @@ def best_absorber(
     on: str,
     mass: float,
     aim: str = "decay",
-    scatter: Scatter | None = None,
+    scatter: Scattered | None = None,
     *,
     parameter: str = "friction.static",
     bounds: tuple[float, float] | None = None,
@@ -113,6 +113,7 @@ def best_absorber(
         raise ParameterError("best_absorber", "aim", aim, known_names(str(aim), list(AIMS)))
     if aim == "probability" and scatter is None:
         raise ParameterError("best_absorber", "scatter", scatter, "the scatter the probability is of")
+    scatter = None if scatter is None else as_scatter(scatter)
     modes = complex_modes(brake)
     if not modes.outcome.ok:
         raise ParameterError("best_absorber", "brake", str(modes.outcome), f"steady sliding: {modes.outcome.message}")

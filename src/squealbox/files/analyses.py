@@ -16,8 +16,9 @@ from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_number, wrong
 from squealbox.files.sheets import read_sheet
-from squealbox.files.varied import quantity_of
+from squealbox.files.varied import VARY, axes_of, quantity_of
 from squealbox.parameters import DataSheet, Parameter, ParameterError, choice, known_names, parameter
+from squealbox.start import in_words
 from squealbox.transient.legs import SCHEMES
 from squealbox.transient.methods import TABLEAUX, TAYLOR
 from squealbox.transient.simulate import TIME_STEPPING
@@ -38,7 +39,15 @@ class Simulate(DataSheet):
         "s", 0.0, low_open=True, default=None, optional=True,
         meaning="how long the motion is followed; left out, 200 periods of the worst mode",
     )  # fmt: skip
-    start: str = choice("rest", "sliding", default="rest", meaning="where it starts: at zero, or in steady sliding")
+    start: str = choice(
+        "rest", "sliding", "mode", default="rest",
+        meaning="where it starts: at zero, in steady sliding, or beside it in a mode; mode 2 says in which",
+    )  # fmt: skip
+    mode: int | None = parameter("-", 1, default=None, optional=True, meaning="left out, the mode that grows fastest")
+    amplitude: float | None = parameter(
+        "m", 0.0, low_open=True, default=None, optional=True,
+        meaning="of the mode; left out, the sliding speed of a contact swings by a hundredth",
+    )  # fmt: skip
     q: Vector = parameter("m", default=None, optional=True, meaning="displacement added at the start; left out, none")
     qd: Vector = parameter("m/s", default=None, optional=True, meaning="velocity at the start; left out, zero")
     method: str = choice(
@@ -53,6 +62,22 @@ class Simulate(DataSheet):
     width: float = parameter("m/s", 0.0, low_open=True, default=1e-3, meaning="speed over which sgn is smoothed")
     begin: float = parameter("s", default=0.0, meaning="instant at which the schedules begin")
     points: int = parameter("-", 2, 1_000_000, default=5001, meaning="number of instants kept")
+
+    @property
+    def begins(self) -> Any:
+        """Where it starts, as `simulate` takes it; without what q and qd add."""
+        number = None if self.mode is None else int(self.mode)
+        return {"mode": number, "amplitude": self.amplitude} if self.start == "mode" else self.start
+
+
+def start_keys(start: Any) -> Any:
+    """``"mode 2"`` and ``{ mode = 2, amplitude = "1 um" }`` as the keys start, mode and amplitude of [simulate]."""
+    if isinstance(start, Mapping):
+        return {"start": "mode", **start}
+    asked = in_words(start)
+    if asked is None:
+        return {"start": start}
+    return {"start": "mode"} if asked["mode"] is None else {"start": "mode", "mode": asked["mode"]}
 
 
 class Varied(DataSheet):
@@ -86,7 +111,7 @@ def read_modes(document: Document, table: Mapping[str, Any], key: Key, design: D
 
 def read_simulate(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Simulate | None:
     """The section [simulate]; the start must have as many numbers as the design has degrees of freedom."""
-    section = read_sheet(document, Simulate, table, key)
+    section = read_sheet(document, Simulate, {**table, **start_keys(table.get("start", "rest"))}, key)
     if section is None or design is None:
         return section
     size = design.system().size
@@ -98,16 +123,24 @@ def read_simulate(document: Document, table: Mapping[str, Any], key: Key, design
 
 
 def read_onset(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Varied | None:
-    """The section [onset] or [branch]: ``parameter = "friction.static"`` and ``range = [0, 1]``."""
+    """The section [onset] or [branch]: ``vary = { "friction.static" = [0, 1] }``, or a parameter and its range."""
+    if VARY in table:
+        only(document, table, key, (VARY, "points"))
+        axes = axes_of(document, table, key, design, plain="range", count=1)
+        return next((read_axis(document, *axis, design) for axis in axes), None)
     return read_axis(document, table, key, design)
 
 
 def read_map(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Map | None:
-    """The section [map]: ``x`` and ``y``, each a table of parameter, range and points."""
+    """The section [map]: two parameters that `vary`, or tables ``x`` and ``y`` of parameter, range and points."""
+    if VARY in table:
+        only(document, table, key, (VARY, "points"))
+        plane = [
+            read_axis(document, *axis, design) for axis in axes_of(document, table, key, design, plain="range", count=2)
+        ]
+        return None if not plane or plane[0] is None or plane[1] is None else Map(plane[0], plane[1])
     axes: dict[str, Varied | None] = {}
-    for name in table:
-        if name not in ("x", "y"):
-            document.problem((*key, name), f"unknown key, {known_names(name[:60], ['x', 'y'])}")
+    only(document, table, key, ("x", "y"))
     for name in ("x", "y"):
         value = table.get(name)
         if not isinstance(value, Mapping):
@@ -119,6 +152,13 @@ def read_map(document: Document, table: Mapping[str, Any], key: Key, design: Des
             axes[name] = read_axis(document, value, (*key, name), design)
     x, y = axes.get("x"), axes.get("y")
     return None if x is None or y is None else Map(x, y)
+
+
+def only(document: Document, table: Mapping[str, Any], key: Key, known: tuple[str, ...]) -> None:
+    """A problem of the document for each key that is none of those known."""
+    for name in table:
+        if name not in known:
+            document.problem((*key, name), f"unknown key, {known_names(name[:60], list(known))}")
 
 
 def read_axis(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Varied | None:

@@ -9,7 +9,7 @@ from squealbox.files.analyses import read_ends
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
-from squealbox.files.varied import quantity_of, scalar_parameters
+from squealbox.files.varied import flattened, quantity_of
 from squealbox.parameters import Parameter, ParameterError, known_names
 from squealbox.studies import Quantity
 
@@ -115,20 +115,3 @@ def known(document: Document, name: Any, key: Key, design: Design | None) -> Par
     except ParameterError as error:
         document.problem(key, f"unknown parameter {name[:60]!r}, {error.expectation}")
         return None
-
-
-def flattened(table: Mapping[str, Any], key: Key, design: Design | None) -> list[tuple[str, Any, Key]]:
-    """(dotted name, value, key) of a table in which ``a.b = ...`` without quotes made a table of tables."""
-    names = set() if design is None else set(scalar_parameters(design))
-    found: list[tuple[str, Any, Key]] = []
-
-    def walk(part: Mapping[str, Any], prefix: str, place: Key) -> None:
-        for name, value in part.items():
-            further = f"{prefix}{name}."
-            if isinstance(value, Mapping) and any(each.startswith(further) for each in names):
-                walk(value, further, (*place, name))
-            else:
-                found.append((prefix + name, value, (*place, name)))
-
-    walk(table, "", key)
-    return found

@@ -22,10 +22,11 @@ from squealbox.calibration import QUANTITIES, Measured
 from squealbox.calibration.measured import UNITS
 from squealbox.designs import Design
 from squealbox.files.analyses import read_ends
-from squealbox.files.asked import flattened, known
+from squealbox.files.asked import known
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
+from squealbox.files.varied import flattened
 from squealbox.parameters import Parameter, ParameterError, known_names
 from squealbox.signals.events import LEAST_LEVEL
 

@@ -25,12 +25,12 @@ from squealbox.fe.reduced_files import load_reduced
 from squealbox.fe.surface import with_surface
 from squealbox.files.analyses import Simulate, Varied, read_ends
 from squealbox.files.arrays import ArrayFileError, Vector, path_beside
-from squealbox.files.asked import flattened, known
+from squealbox.files.asked import known
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, shown, wrong
 from squealbox.files.sheets import read_law, read_sheet
-from squealbox.files.varied import quantity_of
+from squealbox.files.varied import flattened, quantity_of
 from squealbox.parameters import DataSheet, ParameterError, choice, known_names, parameter
 from squealbox.system import InvalidSystem
 

@@ -5,22 +5,19 @@ from typing import Any
 import numpy as np
 
 from squealbox.files.analyses import Simulate
-from squealbox.system import InvalidSystem, System, as_system, equilibrium
+from squealbox.start import Start
+from squealbox.system import System, as_system
 from squealbox.transient import Trajectory, simulate
 
 
-def start_of(system: System, settings: Simulate) -> tuple[Any, Any]:
-    """Displacement and velocity at the start: rest or steady sliding, and what the section adds to it.
+def start_of(design_or_system: Any, settings: Simulate) -> tuple[Any, Any]:
+    """Displacement and velocity at the start: what the section names, and what it adds to that.
 
     Raises `InvalidSystem` where steady sliding is asked for and does not exist.
     """
-    q = qd = np.zeros(system.size)
-    if settings.start == "sliding":
-        state = equilibrium(system, settings.begin)
-        if not state.exists:
-            raise InvalidSystem(f"there is no steady sliding to start from: {state.outcome.message}")
-        q = state.q
-    return q + (0.0 if settings.q is None else settings.q), qd + (0.0 if settings.qd is None else settings.qd)
+    system = as_system(design_or_system)
+    begin = Start.of("simulate", settings.begins, system, settings.begin, modes_of=design_or_system)
+    return tuple(x if more is None else x + more for x, more in ((begin.q, settings.q), (begin.qd, settings.qd)))
 
 
 PERIODS = 200.0  # of the worst mode, followed where nobody says how long

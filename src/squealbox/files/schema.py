@@ -18,10 +18,12 @@ from squealbox.files.reduced import REDUCED, Reduce
 from squealbox.files.sheets import LAW_NAMES, OWN, SCHEDULE_NAMES, field_type, is_required
 from squealbox.files.study import OTHERS, Refine, Study
 from squealbox.files.uncertain_schema import optimise_schema, scatter_schema
+from squealbox.files.varied import VARY
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import DataSheet, Parameter
 
 Schema = dict[str, Any]
+VARIES: Schema = {"type": "object", "minProperties": 1, "description": "parameters, and what each may be"}
 QUANTITY = r"^ *[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)? *[^0-9]?.*$|^none$"
 
 
@@ -37,20 +39,24 @@ def json_schema() -> Schema:
     }
     sections = {
         "modes": _sheet(Modes),
-        "simulate": _sheet(Simulate),
+        "simulate": _sheet(Simulate, more={"start": _start()}),
         "reduce": _sheet(Reduce, more={"varying": {"type": "object", "description": "parameters and their ranges"}}),
-        "onset": _ref("axis"),
-        "branch": _ref("axis"),
-        "map": {
-            "type": "object",
-            "description": "[map]: stability over two parameters",
-            "properties": {"x": _ref("axis"), "y": _ref("axis")},
-            "required": ["x", "y"],
-            "additionalProperties": False,
-        },
+        "onset": _or_vary(_axis(), "parameter", "range"),
+        "branch": _or_vary(_axis(), "parameter", "range"),
+        "map": _or_vary(
+            {
+                "type": "object",
+                "description": "[map]: stability over two parameters",
+                "properties": {"x": _ref("axis"), "y": _ref("axis")},
+                "required": ["x", "y"],
+                "additionalProperties": False,
+            },
+            "x",
+            "y",
+        ),
         STUDY: _study(),
-        "scatter": scatter_schema(_sheet),
-        "optimise": optimise_schema(_sheet),
+        "scatter": _or_vary(scatter_schema(_sheet), "parameters"),
+        "optimise": _or_vary(optimise_schema(_sheet), "variables"),
         **countermeasures.schemas(_field),
         **measurement_schemas(),
     }
@@ -193,11 +199,30 @@ def _axis() -> Schema:
     }
 
 
+def _or_vary(section: Schema, *instead: str) -> Schema:
+    """A section, or the same with one key `vary` instead of some."""
+    properties = {name: value for name, value in section["properties"].items() if name not in instead}
+    required = [name for name in section["required"] if name not in instead]
+    varied = {**section, "properties": {**properties, VARY: VARIES}, "required": [*required, VARY]}
+    return {"anyOf": [section, varied]}
+
+
+def _start() -> Schema:
+    """A word, one of them with the number of a mode, or a table of mode and amplitude."""
+    keys = {name: _field(Simulate, name) for name in ("mode", "amplitude")}
+    table = {"type": "object", "properties": keys, "required": ["mode"], "additionalProperties": False}
+    words = _field(Simulate, "start")
+    return {
+        "description": words["description"],
+        "anyOf": [words, {"type": "string", "pattern": "^mode [0-9]+$"}, table],
+    }
+
+
 def _study() -> Schema:
     """[study]; its axes come in several forms, which the reader checks."""
     words = {"type": "array", "items": {"type": "string"}, "minItems": 1}
     axes = {"type": "array", "items": {"type": "object"}, "minItems": 1, "description": "the axes of the space"}
-    return _sheet(Study, more=dict(zip(OTHERS, (axes, words, words, _sheet(Refine)), strict=True)))
+    return _sheet(Study, more=dict(zip(OTHERS, (axes, VARIES, words, words, _sheet(Refine)), strict=True)))
 
 
 def _one_key(name: str, value: Schema) -> Schema:

@@ -26,12 +26,13 @@ from squealbox.files.numbers import shown, wrong
 from squealbox.files.reading import SECTIONS, DesignFile, design_of, read_file, section_of
 from squealbox.files.sheets import read_sheet
 from squealbox.files.study_axis import read_axes
+from squealbox.files.varied import VARY, axes_of
 from squealbox.parameters import DataSheet, ParameterError, choice, known_names, parameter
 from squealbox.studies import Refined, Space
 from squealbox.studies.refinement import FINEST
 
 ANALYSES = ("modes", "onset", "simulate", "ensemble", "cycle")
-OTHERS = ("axis", "keep", "observe", "refine")
+OTHERS = ("axis", "vary", "keep", "observe", "refine")
 
 
 class Study(DataSheet):
@@ -99,7 +100,11 @@ def study_of(document: Document, asked: Any, brake: DesignFile | None) -> StudyF
     observe = _words(document, table, "observe", ("amplitude", "frequency"))
     space = None
     if asked is not None:
-        space = read_axes(document, table.get("axis"), brake.design if brake else None, int(study.seed) if study else 0)
+        axes = table.get("axis")
+        if VARY in table:
+            own = axes_of(document, table, ("study",), brake.design if brake else None, plain="values")
+            axes = [*(axis for axis, _ in own), *(axes or ())]
+        space = read_axes(document, axes, brake.design if brake else None, int(study.seed) if study else 0)
     if "refine" in table:
         space = _refined(document, table["refine"], space)
     if study is not None and brake is not None and study.analysis == "onset" and brake.onset is None:

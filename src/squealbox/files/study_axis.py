@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.files.analyses import read_ends
+from squealbox.files.analyses import only, read_ends
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
@@ -50,7 +50,7 @@ def _axis(document: Document, table: Mapping[str, Any], key: Key, design: Design
     if "sample" in table:
         return _sample(document, table, key, design, seed)
     if "together" in table:
-        _only(document, table, key, ("together",))
+        only(document, table, key, ("together",))
         given = table["together"]
         if not isinstance(given, list) or not given or not all(isinstance(each, Mapping) for each in given):
             wrong(document, (*key, "together"), given, "a list of tables, each with a parameter and its values")
@@ -77,10 +77,10 @@ def _values(document: Document, table: Mapping[str, Any], key: Key, design: Desi
     if about is None:
         return None
     if "values" in table:
-        _only(document, table, key, ("parameter", "values"))
+        only(document, table, key, ("parameter", "values"))
         values = _list(document, table["values"], about, (*key, "values"))
     else:
-        _only(document, table, key, ("parameter", "range", "points", "spacing"))
+        only(document, table, key, ("parameter", "range", "points", "spacing"))
         values = _range(document, table, about, key)
     return None if values is None else (name, values)
 
@@ -126,7 +126,7 @@ def _ends(document: Document, table: Mapping[str, Any], about: Parameter, key: K
 
 def _sample(document: Document, table: Mapping[str, Any], key: Key, design: Design | None, seed: int) -> Space | None:
     """A sample of ranges, or of distributions with their correlation."""
-    _only(document, table, key, ("sample", "points", "of", "correlation"))
+    only(document, table, key, ("sample", "points", "of", "correlation"))
     method = read_choice(document, table["sample"], {name: name for name in SAMPLINGS}, (*key, "sample"))
     count, given = table.get("points"), table.get("of")
     if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= MOST:
@@ -163,7 +163,7 @@ def _scattered(document: Document, table: Mapping[str, Any], key: Key, design: D
         document.problem(key, f"{name} is a word, which has no distribution: give it an axis with values")
         return None
     if "distribution" not in table:
-        _only(document, table, key, ("parameter", "range", "spacing"))
+        only(document, table, key, ("parameter", "range", "spacing"))
         ends = _ends(document, table, about, key)
         spacing = read_choice(document, table.get("spacing", "linear"), SPACINGS, (*key, "spacing"))
         if ends is None or spacing is WRONG:
@@ -207,9 +207,3 @@ def _parameter(
         document.problem((*key, "parameter"), f"unknown parameter {name[:60]!r}, {known_names(name[:60], list(known))}")
         return name, None
     return name, known[name]
-
-
-def _only(document: Document, table: Mapping[str, Any], key: Key, known: tuple[str, ...]) -> None:
-    for name in table:
-        if name not in known:
-            document.problem((*key, name), f"unknown key, {known_names(name[:60], list(known))}")

@@ -17,12 +17,13 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.files.analyses import read_ends
-from squealbox.files.asked import flattened, known, read_quantity
+from squealbox.files.asked import known, read_quantity
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
 from squealbox.files.sheets import read_sheet
 from squealbox.files.study_axis import read_correlation
+from squealbox.files.varied import VARY, flattened
 from squealbox.parameters import DataSheet, Parameter, ParameterError, choice, known_names, parameter
 from squealbox.studies import DISTRIBUTIONS, SAMPLINGS, Constraint, Distribution, Goal, Quantity, Scatter
 from squealbox.studies.optimisation.goals import Over
@@ -74,6 +75,7 @@ class Optimise:
 
 def read_scatter(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Scattered | None:
     """The section [scatter]."""
+    table = _by_vary(table, "parameters")
     own = {name: table[name] for name in table if name not in ("parameters", "correlation", "study")}
     asked, rest = read_quantity(document, own, key, design)
     sampled = read_sheet(document, Sampled, rest, key, beside=("quantity", "parameters", "correlation", "study"))
@@ -86,7 +88,7 @@ def read_scatter(document: Document, table: Mapping[str, Any], key: Key, design:
 
 def read_optimise(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Optimise | None:
     """The section [optimise]."""
-    before = len(document.problems)
+    before, table = len(document.problems), _by_vary(table, "variables")
     rest = {name: table[name] for name in table if name not in ("variables", "goals", "constraints")}
     effort = read_sheet(document, Effort, rest, key, beside=("variables", "goals", "constraints"))
     variables = dict(_variables(document, table, key, design))
@@ -97,6 +99,11 @@ def read_optimise(document: Document, table: Mapping[str, Any], key: Key, design
     if len(document.problems) > before or effort is None:
         return None
     return Optimise(variables, tuple(g for g in goals if g), tuple(c for c in kept if c), effort)
+
+
+def _by_vary(table: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """The section with what it varies under the name it had before `vary`."""
+    return {name if key == VARY and name not in table else key: value for key, value in table.items()}
 
 
 def read_distribution(document: Document, value: Any, about: Parameter, key: Key) -> Distribution | None:

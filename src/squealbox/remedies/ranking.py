@@ -18,7 +18,7 @@ from squealbox.remedies.candidates import Candidate, candidates_for, more_fricti
 from squealbox.remedies.production import ASSUMED, LOT, lot_size, usual_scatter
 from squealbox.remedies.structural import ON_THE_BASIS, structural_candidates
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.studies.uncertainty.scatter import Scatter
+from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
 from squealbox.system import InvalidSystem, equilibrium
 from squealbox.transient import simulate
 
@@ -129,7 +129,7 @@ class Remedies(Result):
 @public(scatter=None, brake=with_parameters)
 def silence(
     brake: Design,
-    scatter: Scatter | None = None,
+    scatter: Scattered | None = None,
     candidates: Sequence[Candidate] | None = None,
     margin: float = 0.1,
     *,
@@ -142,7 +142,8 @@ def silence(
     Parameters
     ----------
     brake : any design with a friction law
-    scatter : how its parameters scatter in production; None takes `usual_scatter`, and the summary says so
+    scatter : how its parameters scatter in production, {name: distribution} or a `Scatter`; None takes `usual_scatter`,
+        and the summary says so
     candidates : None takes `candidates_for`: each parameter, absorbers, dampers, masses, springs, shims, asymmetry,
         dither, velocity feedback, active force control, combinations of two. Of a reduced brake less friction,
         components stiffer, softer, heavier, lighter or more damped, and masses on nodes, by the modes of its band
@@ -165,9 +166,9 @@ def silence(
         candidates = structural_candidates(brake) if candidates is None else candidates
         push, said = 0.0, [ON_THE_BASIS]
     assumed = scatter is None
-    scatter = usual_scatter(brake) if scatter is None else scatter
+    scatter = usual_scatter(brake) if scatter is None else as_scatter(scatter)
     if not isinstance(scatter, Scatter):
-        raise ParameterError("silence", "scatter", scatter, "a Scatter of the brake's parameters")
+        raise ParameterError("silence", "scatter", scatter, "{name: distribution} or a Scatter of the brake")
     fewer = samples is None and lot_size(brake) < LOT
     samples = lot_size(brake) if samples is None else samples
     said += [ASSUMED] * assumed + [FEWER.format(samples, 50.0 * Z / np.sqrt(samples))] * fewer

@@ -51,11 +51,17 @@ def _margin(found: Examination) -> Iterator[str]:
     yield sentences.plain(said)
 
 
+BEGINS = {
+    "rest": "rest, with the loads applied suddenly", "sliding": "steady sliding",
+    "mode": "steady sliding with a vibration in a mode",
+}  # fmt: skip
+
+
 def _motion(found: Examination) -> Iterator[str]:
     if not found.verdicts or found.settings is None:
         return
     one = found.verdicts[found.liveliest]
-    begins = "rest, with the loads applied suddenly" if found.settings.start == "rest" else "steady sliding"
+    begins = BEGINS[found.settings.start]
     name, length = found.system.names[found.liveliest], quantity(found.settings.duration, "s")
     yield f"From {begins}, followed for {length}, {name}: {one.text}"
 

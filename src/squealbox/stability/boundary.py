@@ -7,7 +7,7 @@ over; the curve is picked up again on a small circle about it. Every crossed edg
 one, so no component is lost. At the end all points are polished onto zero growth.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,10 +15,11 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
+from squealbox.family import Bounds
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.cells import Crossing, LevelsAtPoints, crossings
-from squealbox.stability.family import Family, Steady
+from squealbox.stability.family import Steady, SteadyFamily
 from squealbox.stability.plane_curves import between, onto_side, passed
 from squealbox.stability.scan import coalescence, is_neutral, on_divergence
 from squealbox.stability.sides import lying_on_a_side
@@ -77,9 +78,7 @@ class Boundary(Result):
 
 
 @public()
-def stability_boundary(
-    design: Any, bounds: dict[str, tuple[float, float]], *, cells: int = 32, time: float = 0.0
-) -> Boundary:
+def stability_boundary(design: Any, bounds: Mapping[str, Bounds], *, cells: int = 32, time: float = 0.0) -> Boundary:
     """Curves on which stability changes, over two parameters.
 
     Parameters
@@ -90,7 +89,7 @@ def stability_boundary(
     time : instant of schedules [s]
 
     Returns a `Boundary`. The outcome is "no_boundary" when the whole rectangle is stable or unstable. Raises
-    `ValueError` unless `bounds` names two parameters with low < high.
+    `ParameterError` unless `bounds` names two parameters with low < high.
     """
     if isinstance(design, ReducedBrake):
         raise InvalidSystem(
@@ -113,12 +112,10 @@ def stability_boundary(
 class _Rectangle:
     """Two parameters scaled to the unit square, and the functions on it."""
 
-    def __init__(self, design: Any, bounds: dict[str, tuple[float, float]], time: float) -> None:
-        if len(bounds) != 2:
-            raise ValueError(f"bounds names {list(bounds)}: expected two parameters")
-        self.family = Family(design, list(bounds), time)
-        self.low = np.array([float(low) for low, _ in bounds.values()])
-        self.width = np.array([float(high) for _, high in bounds.values()]) - self.low
+    def __init__(self, design: Any, bounds: Mapping[str, Bounds], time: float) -> None:
+        self.family = SteadyFamily.within("stability_boundary", design, bounds, count=2, time=time)
+        self.low = np.array([low for low, _ in self.family.spans])
+        self.width = np.array([high for _, high in self.family.spans]) - self.low
         middle = self.family.at(*(self.low + 0.5 * self.width)[:, None])
         self.neutral = bool(is_neutral(middle)[0])
         self.rigid = int(np.asarray(middle.equilibrium.floating).flat[0])

@@ -13,7 +13,7 @@ import numpy as np
 
 from squealbox.result import Outcome
 from squealbox.stability.boundary import Boundary
-from squealbox.stability.family import Family
+from squealbox.stability.family import SteadyFamily
 from squealbox.stability.in_band import largest_in_band
 from squealbox.stability.maps import CHUNK, StabilityMap
 from squealbox.stability.spectra import Engine, largest_growth
@@ -54,7 +54,7 @@ def map_boundary(
         raise ValueError(f"the map has the axes {list(found.axes)}: expected two, with two or more values each")
     if made is None:
         raise ValueError("the map was computed for a function, which it does not keep: give it as `design`")
-    family = Family(made, list(found.axes), found.inputs["time"])
+    family = SteadyFamily(made, found.axes, time=found.inputs["time"])
     lines = _lines(found)
     nodes = np.concatenate(lines or [np.zeros((0, 2))])
     points, growth, omega = _exact(family, list(found.axes.values()), nodes, close, engine)
@@ -90,7 +90,7 @@ def _lines(found: StabilityMap) -> list[Any]:
     return [np.asarray(line) for line in lines]
 
 
-def _exact(family: Family, axes: list[Any], nodes: Any, close: float, engine: Engine) -> tuple[Any, Any, Any]:
+def _exact(family: SteadyFamily, axes: list[Any], nodes: Any, close: float, engine: Engine) -> tuple[Any, Any, Any]:
     """The points on the boundary for crossings given in indices, with growth rate and angular frequency there."""
     from scipy.optimize import elementwise
 
@@ -122,7 +122,7 @@ def _exact(family: Family, axes: list[Any], nodes: Any, close: float, engine: En
     return points, growth, omega
 
 
-def _growth(family: Family, place: Any, engine: Engine) -> tuple[Any, Any, Any]:
+def _growth(family: SteadyFamily, place: Any, engine: Engine) -> tuple[Any, Any, Any]:
     """Largest growth rate, angular frequency and growing modes at points (2, k); NaN where a point is unknown."""
     known = np.all(np.isfinite(place), axis=0)
     if family.band is not None:

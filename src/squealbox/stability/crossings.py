@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.stability.family import Family
+from squealbox.family import Bounds, Varied
+from squealbox.stability.family import SteadyFamily
 from squealbox.stability.scan import first_function
 from squealbox.stability.spectra import largest_growth
 
@@ -13,33 +14,30 @@ BLOCK = 1 << 14  # systems computed together
 
 
 def first_crossings(
-    design: Any, parameter: str, bounds: tuple[float, float], *, points: int = 65, time: float = 0.0
+    design: Any, parameter: Varied, bounds: Bounds | None = None, *, points: int = 65, time: float = 0.0
 ) -> Any:
     """The lowest value of `parameter` between `bounds` at which each system loses its stability.
 
     Parameters
     ----------
     design : a design with ``replace``; its other parameters may be arrays of shape (n,)
-    parameter : dotted name, such as "friction.static"
-    bounds : (low, high) in the parameter's own unit
+    parameter, bounds : {name: (low, high)} in the parameter's own unit; or the name and the bounds one after the other
     points : values looked at, equally spaced, before the crossing is solved for
     time : instant of schedules [s]
 
     Returns the values, shape (n,) (or () for one system), good to 1e-12 of the range: ``inf`` where sliding is stable
     at every value looked at, ``-inf`` where it is unstable at `low` already, NaN where nothing is known below the first
     unstable value. An unstable window narrower than (high - low)/(points - 1) may be missed; `critical_value` looks for
-    such windows, one system at a time. Bad bounds are a `ValueError`.
+    such windows, one system at a time. Bad bounds are a `ParameterError`.
 
     >>> from squealbox.designs import ModeCoupling
     >>> first_crossings(ModeCoupling(k12=[1.0, 0.5]), "friction.static", (0.0, 3.0)).round(9).tolist()
     [1.0, 0.5]
     """
-    low, high = (float(end) for end in bounds)
-    if not (np.isfinite(low) and np.isfinite(high) and low < high) or points < 3:
-        raise ValueError(
-            f"bounds = {bounds}, points = {points}: expected low < high, both finite, and 3 points or more"
-        )
-    family = Family(design, [parameter], time)
+    family = SteadyFamily.within("first_crossings", design, parameter, bounds, time=time)
+    if points < 3:
+        raise ValueError(f"points = {points}: expected at least 3")
+    (low, high), *_ = family.spans
     shape = _shape(family, low)
     rows = shape[0] if shape else 1
     growth = _growth(family, rows, np.linspace(low, high, 3))
@@ -62,14 +60,14 @@ def first_crossings(
     return found if shape else found[0]
 
 
-def _shape(family: Family, low: float) -> tuple[int, ...]:
+def _shape(family: SteadyFamily, low: float) -> tuple[int, ...]:
     shape: tuple[int, ...] = family.design.replace({family.parameters[0]: low}).system().shape
     if len(shape) > 1:
         raise ValueError(f"the design has leading axes {shape}: expected one axis at most")
     return shape
 
 
-def _growth(family: Family, rows: int, sample: Any) -> Callable[[Any], Any]:
+def _growth(family: SteadyFamily, rows: int, sample: Any) -> Callable[[Any], Any]:
     """The function that turns positive where stability is lost: of values (..., rows), one for each system.
 
     It is the largest growth rate by the quickest road, unless modes without damping call for another function.

@@ -4,14 +4,16 @@ At an exceptional point eigenvalues leave each other like a square root; the squ
 and its real and imaginary part vanish together. A damped brake meets that in isolated points of two parameters.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.family import Bounds, Family, Varied
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.stability.family import Family
+from squealbox.stability.family import SteadyFamily
 from squealbox.stability.onset import critical_value
 from squealbox.stability.state_matrix import spectrum
 
@@ -37,7 +39,7 @@ class ExceptionalPoints(Result):
 
 @public()
 def exceptional_points(
-    design: Any, bounds: dict[str, tuple[float, float]], *, points: int = 41, time: float = 0.0
+    design: Any, bounds: Mapping[str, Bounds], *, points: int = 41, time: float = 0.0
 ) -> ExceptionalPoints:
     """Points of two parameters where two modes merge: least distances on a grid, refined by Newton's method.
 
@@ -51,11 +53,9 @@ def exceptional_points(
     The outcome is "none_found" when nothing converged inside the rectangle. Where modes merge along a whole curve, as
     without damping, points of that curve are returned.
     """
-    if len(bounds) != 2:
-        raise ValueError(f"bounds names {list(bounds)}: expected two parameters")
-    family = Family(design, list(bounds), time)
-    low = np.array([float(low) for low, _ in bounds.values()])
-    width = np.array([float(high) for _, high in bounds.values()]) - low
+    family = SteadyFamily.within("exceptional_points", design, bounds, count=2, time=time)
+    low = np.array([low for low, _ in family.spans])
+    width = np.array([high for _, high in family.spans]) - low
     x, y = np.meshgrid(np.linspace(0.0, 1.0, points), np.linspace(0.0, 1.0, points), indexing="ij")
     values = spectrum(family.at(low[0] + width[0] * x, low[1] + width[1] * y))
     squares, pairs = _squared_gaps(values)
@@ -76,7 +76,7 @@ def exceptional_points(
         gap=np.array([root[2] for root in found], dtype=float),
         parameters=family.parameters,
         inputs=family.inputs,
-        settings={"bounds": {name: list(span) for name, span in bounds.items()}, "points": points},
+        settings={"bounds": dict(zip(family.parameters, map(list, family.spans), strict=True)), "points": points},
         outcome=outcome,
     )
 
@@ -96,7 +96,7 @@ def _local_minima(size: Any) -> Any:
     return least
 
 
-def _newton(family: Family, low: Any, width: Any, point: Any, pair: Any) -> tuple[Any, complex, float] | None:
+def _newton(family: SteadyFamily, low: Any, width: Any, point: Any, pair: Any) -> tuple[Any, complex, float] | None:
     """Newton's method on (lambda_i - lambda_j)^2 = 0 in two real unknowns."""
     step = 1e-5
     shifts = step * np.array([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
@@ -152,8 +152,8 @@ def damping_split(
     design: Any,
     dampers: tuple[str, str],
     total: float,
-    parameter: str,
-    bounds: tuple[float, float],
+    parameter: Varied,
+    bounds: Bounds | None = None,
     *,
     splits: int = 21,
 ) -> DampingSplit:
@@ -172,16 +172,18 @@ def damping_split(
     """
     from scipy.optimize import minimize_scalar
 
+    family = Family.within("damping_split", design, parameter, bounds)
+
     def critical(share: float) -> float:
         damped = design.replace({dampers[0]: share * total, dampers[1]: (1.0 - share) * total})
-        return float(critical_value(damped, parameter, bounds, points=101).value)
+        return float(critical_value(damped, family.name, family.spans[0], points=101).value)
 
     shares = np.linspace(0.02, 0.98, splits)
     values = np.array([critical(float(share)) for share in shares])
     if not np.any(np.isfinite(values)):
         nothing: dict[str, Any] = {"share": shares, "critical": values, "best_share": np.nan, "best": np.nan}
         outcome = Outcome("no_onset", "no split has an onset in the range")
-        return DampingSplit(**nothing, undamped=np.nan, parameter=parameter, dampers=dampers, outcome=outcome)
+        return DampingSplit(**nothing, undamped=np.nan, parameter=family.name, dampers=dampers, outcome=outcome)
     i = int(np.nanargmax(values))
     ends = (float(shares[max(i - 1, 0)]), float(shares[min(i + 1, splits - 1)]))
     fine = minimize_scalar(lambda share: -critical(share), bounds=ends, method="bounded", options={"xatol": 1e-7})
@@ -192,9 +194,9 @@ def damping_split(
         critical=values,
         best_share=float(fine.x) if better else float(shares[i]),
         best=-float(fine.fun) if better else float(values[i]),
-        undamped=float(critical_value(bare, parameter, bounds, points=101).value),
-        parameter=parameter,
+        undamped=float(critical_value(bare, family.name, family.spans[0], points=101).value),
+        parameter=family.name,
         dampers=dampers,
         inputs={"system": design},
-        settings={"total": total, "bounds": list(bounds), "splits": splits},
+        settings={"total": total, "bounds": list(family.spans[0]), "splits": splits},
     )

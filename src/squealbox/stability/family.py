@@ -1,11 +1,12 @@
 """A design with some parameters left free: values in, linearised matrices out, in one batched call."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from squealbox.family import Family
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.parameters import ParameterError
 from squealbox.system import Equilibrium, InvalidSystem, Linearised, System, as_system, linearise
@@ -71,33 +72,19 @@ def _elastic(system: System, about: Linearised) -> Any:
     return 0.5 * (stiffness + np.swapaxes(stiffness, -1, -2))
 
 
-class Family:
-    """Systems over one or more parameters.
+class SteadyFamily(Family):
+    """A family linearised about steady sliding; `time` [s] is the instant of schedules."""
 
-    Parameters
-    ----------
-    design : a design or a system, whose ``replace({name: array})`` makes a batch; or a callable of one float for each
-        parameter that returns a design or a system, called point by point
-    parameters : dotted names, such as "friction.static"; for a callable, what results call its arguments
-    time : instant of schedules [s]
-    """
-
-    def __init__(self, design: Any, parameters: Sequence[str], time: float = 0.0) -> None:
-        self.design, self.parameters, self.time = design, tuple(parameters), time
-        self.recipe: Callable[..., Any] | None = None
-        if callable(design) and not hasattr(design, "replace"):
-            self.recipe = design
+    def __init__(
+        self, design: Any, parameters: Iterable[str], spans: Iterable[Any] = (), time: float = 0.0
+    ) -> None:  # fmt: skip
+        super().__init__(design, parameters, spans)
+        self.time = time
 
     @property
     def band(self) -> tuple[float, float] | None:
         """The band [Hz] of a reduced brake: above it, it has modes that are none of the full one. None of any other."""
         return self.design.band if isinstance(self.design, ReducedBrake) else None
-
-    def one(self, *values: float) -> Any:
-        """The design at one value of each parameter."""
-        if self.recipe is not None:
-            return self.recipe(*values)
-        return self.design.replace(dict(zip(self.parameters, values, strict=True)))
 
     @property
     def inputs(self) -> dict[str, Any]:
@@ -109,9 +96,8 @@ class Family:
         arrays = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in values))
         shape = arrays[0].shape
         if self.recipe is None and self.band is None:
-            named = dict(zip(self.parameters, arrays, strict=True))
             try:
-                steady = steady_sliding(self.design.replace(named), self.time)
+                steady = steady_sliding(self.one(*arrays), self.time)
             except (InvalidSystem, ParameterError):
                 if as_system(self.design, linear=True).is_sparse:
                     as_system(self.design)  # of no large brake there is a batch: it says so

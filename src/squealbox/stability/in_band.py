@@ -14,13 +14,13 @@ from squealbox.fe.band_spectrum import condensed
 from squealbox.fe.pencil import vibrating
 from squealbox.fe.small import Small
 from squealbox.stability.eigenvalues import complex_modes
-from squealbox.stability.family import Family
+from squealbox.stability.family import SteadyFamily
 
 POINTS = 81  # values of a scan; narrow windows are looked for between them as ever
 IDLE = 1e-9  # share of |lambda| up to which a growth rate is round-off
 
 
-def eigenvalues_along(family: Family, *values: Any) -> Iterator[Any]:
+def eigenvalues_along(family: SteadyFamily, *values: Any) -> Iterator[Any]:
     """The eigenvalues with Im > 0 in the band at each of the values (k,), NaN where there is no steady sliding."""
     for point in zip(*(np.ravel(value) for value in values), strict=True):
         yield eigenvalues_in_band(family.one(*(float(x) for x in point)), family.time)
@@ -35,14 +35,14 @@ def eigenvalues_in_band(design: Any, time: float) -> Any:
     return modes.eigenvalues[: len(modes.eigenvalues) // 2] if modes.exists else np.array([complex(np.nan)])
 
 
-def growth_in_band(family: Family, values: Any) -> Any:
+def growth_in_band(family: SteadyFamily, values: Any) -> Any:
     """Growth rates less round-off [1/s] (values, modes), the largest first; NaN where there is no mode more."""
     rows = [-np.sort(-(found.real - IDLE * np.abs(found))) for found in eigenvalues_along(family, values)]
     most = max((len(row) for row in rows), default=0)
     return np.stack([np.pad(row, (0, most - len(row)), constant_values=np.nan) for row in rows])
 
 
-def largest_in_band(family: Family, *values: Any) -> tuple[Any, Any, Any]:
+def largest_in_band(family: SteadyFamily, *values: Any) -> tuple[Any, Any, Any]:
     """Largest growth rate [1/s], angular frequency of its mode [rad/s] and growing modes, (k,); as `largest_growth`."""
     growth, omega, growing = np.array([worst_in_band(found) for found in eigenvalues_along(family, *values)]).T
     return growth, omega, growing.astype(np.int64)

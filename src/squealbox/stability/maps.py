@@ -15,7 +15,7 @@ from squealbox.labelled import Labelled, Labels
 from squealbox.parameters import DataSheet
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.eigenvalues import MARGINAL
-from squealbox.stability.family import Family, Steady, entry, steady_sliding
+from squealbox.stability.family import Steady, SteadyFamily, entry, steady_sliding
 from squealbox.stability.in_band import largest_in_band
 from squealbox.stability.mechanism import NAMES, STEPS, contributions, mechanism_codes
 from squealbox.stability.spectra import Engine, largest_growth
@@ -104,16 +104,10 @@ def stability_map(
 
     Of a reduced brake the modes in its band are looked at, one point at a time: some 0.1 s for each at 250 coordinates.
 
-    Raises `ParameterError` for a name or value the design refuses, `ValueError` for an empty axis.
+    Raises `ParameterError` for a name or value the design refuses and for an empty axis.
     """
-    names = list(axes)
-    values = [np.atleast_1d(np.asarray(axes[name], dtype=float)) for name in names]
-    for name, array in zip(names, values, strict=True):
-        if array.ndim != 1 or array.size == 0:
-            raise ValueError(f"axes[{name!r}] has shape {array.shape}: expected one or more values")
-    if not names:
-        raise ValueError("axes is empty: expected at least one parameter")
-    family = Family(design, names, time)
+    family = SteadyFamily.along("stability_map", design, axes, time=time)
+    names, values = family.parameters, family.spans
     shape = tuple(array.size for array in values)
     count = int(np.prod(shape))
     columns = {name: np.empty(count) for name in ("growth_rate", "frequency", "circulation", "slope")}
@@ -136,7 +130,7 @@ def stability_map(
     return StabilityMap(**arrays, axes=named, inputs=family.inputs, settings=settings, outcome=outcome)
 
 
-def _in_band(family: Family, values: list[Any], mechanism: bool, steps: int) -> dict[str, Any]:
+def _in_band(family: SteadyFamily, values: list[Any], mechanism: bool, steps: int) -> dict[str, Any]:
     """The columns of a reduced brake, from the modes of its band, point by point."""
     growth, omega, growing = largest_in_band(family, *values)
     circulation, slope = np.zeros(growth.shape), np.zeros(growth.shape)

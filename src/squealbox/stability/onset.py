@@ -7,11 +7,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.family import Bounds, Varied
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.crossing_in_band import crossings_between
 from squealbox.stability.deflation import vibrating
 from squealbox.stability.eigenvalues import OneEigenvalue, modes_of
-from squealbox.stability.family import Family, entry
+from squealbox.stability.family import SteadyFamily, entry
 from squealbox.stability.in_band import POINTS as POINTS_IN_BAND
 from squealbox.stability.mechanism import Mechanism, mechanism_at
 from squealbox.stability.polishing import Polished, polished
@@ -133,7 +134,7 @@ class CriticalValues(Result):
 
 @public()
 def critical_value(
-    design: Any, parameter: str, bounds: tuple[float, float], *, points: int | None = None, time: float = 0.0
+    design: Any, parameter: Varied, bounds: Bounds | None = None, *, points: int | None = None, time: float = 0.0
 ) -> CriticalValue:
     """The first value from below, between `bounds`, at which steady sliding changes its stability.
 
@@ -141,8 +142,8 @@ def critical_value(
     ----------
     design : a design whose ``replace({parameter: values})`` makes a batch, or a function of one value that returns a
         design or a system
-    parameter : dotted name, such as "friction.static"; for a function, what the result calls it
-    bounds : (low, high) in the parameter's own unit
+    parameter, bounds : {name: (low, high)} in the parameter's own unit, such as {"friction.static": (0, 1)}; or the
+        name and the bounds one after the other. Of a function the name is what the result calls its argument
     points : number of values scanned before narrow windows are looked for; None takes 401, of a reduced brake 81
     time : instant of schedules [s]
 
@@ -154,19 +155,24 @@ def critical_value(
     changes with the parameter. Without a change the outcome is "no_onset", with the growth rates
     at both ends as evidence; "hidden_onset" when it lies in a stretch without steady sliding;
     "no_equilibrium" when steady sliding exists nowhere in the range. Bad bounds are a
-    `ValueError`.
+    `ParameterError`.
+
+    >>> from squealbox import DrumBrake, critical_value
+    >>> round(float(critical_value(DrumBrake(), {"friction.static": (0.0, 1.0)}).value), 5)
+    0.33269
     """
-    every = _crossings(Family(design, [parameter], time), bounds, points, first=True)
+    family = SteadyFamily.within("critical_value", design, parameter, bounds, time=time)
+    every = _crossings(family, points, first=True)
     if not every.outcome.ok:
         nothing: dict[str, Any] = {"value": np.nan, "eigenvalue": complex(np.nan), "shape": np.array([])}
         about: dict[str, Any] = {"inputs": every.inputs, "settings": every.settings, "outcome": every.outcome}
-        return CriticalValue(**nothing, **about, parameter=parameter)
+        return CriticalValue(**nothing, **about, parameter=family.name)
     return next(iter(every))
 
 
 @public()
 def critical_values(
-    design: Any, parameter: str, bounds: tuple[float, float], *, points: int | None = None, time: float = 0.0
+    design: Any, parameter: Varied, bounds: Bounds | None = None, *, points: int | None = None, time: float = 0.0
 ) -> CriticalValues:
     """Every value between `bounds` [SI] at which any mode crosses zero growth; arguments as for :func:`critical_value`.
 
@@ -174,12 +180,14 @@ def critical_values(
 
     For a system without damping only changes of the stability of the whole are seen: its modes merge, none crosses.
     """
-    return _crossings(Family(design, [parameter], time), bounds, points, first=False)
+    return _crossings(SteadyFamily.within("critical_values", design, parameter, bounds, time=time), points, first=False)
 
 
-def _crossings(family: Family, bounds: tuple[float, float], points: int | None, *, first: bool) -> CriticalValues:
+def _crossings(family: SteadyFamily, points: int | None, *, first: bool) -> CriticalValues:
     points = (POINTS if family.band is None else POINTS_IN_BAND) if points is None else points
-    low, high = _checked(bounds, points)
+    if points < 3:
+        raise ValueError(f"points = {points}: expected at least 3")
+    low, high = family.spans[0]
     found = scan(family, low, high, points)
     rows, hidden = [], [(i, j) for i, j, k in found.jumps() if k == 0 or not first]
     band = family.band
@@ -321,14 +329,7 @@ def _exact(found: Scan, value: float, beside: float, eigenvalue: complex, k: int
     return Polished(value, eigenvalue, noise / slope + root_finder if slope > 0.0 else high - low)
 
 
-def _checked(bounds: tuple[float, float], points: int) -> tuple[float, float]:
-    low, high = (float(b) for b in bounds)
-    if points < 3:
-        raise ValueError(f"points = {points}: expected at least 3")
-    return low, high
-
-
-def _no_onset(family: Family, found: Scan, low: float, high: float) -> Outcome:
+def _no_onset(family: SteadyFamily, found: Scan, low: float, high: float) -> Outcome:
     ends = family.at(np.array([low, high]))
     known = np.isfinite(found.functions)
     if not np.any(known):

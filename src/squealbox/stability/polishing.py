@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.parameters import ParameterError
-from squealbox.stability.family import Family
+from squealbox.stability.family import SteadyFamily
 
 ROUND_OFF = 16.0 * np.finfo(float).eps  # of an entry of K_eff and C_eff: sums over a few contacts and steady sliding
 STEPS = 4  # of Newton's method: the root is known to ten digits
@@ -33,7 +33,7 @@ class Polished:
     uncertainty: float
 
 
-def polished(family: Family, value: float, eigenvalue: complex, low: float, high: float) -> Polished:
+def polished(family: SteadyFamily, value: float, eigenvalue: complex, low: float, high: float) -> Polished:
     """The crossing at `value` with `eigenvalue`, refined between `low` and `high`."""
     unknown = Polished(value, eigenvalue, np.inf)
     width = high - low
@@ -63,12 +63,12 @@ def polished(family: Family, value: float, eigenvalue: complex, low: float, high
 Matrices = tuple[Any, Any, Any]
 
 
-def _sides(family: Family, p: float, step: float) -> list[tuple[float, Matrices | None]]:
+def _sides(family: SteadyFamily, p: float, step: float) -> list[tuple[float, Matrices | None]]:
     """M, C_eff and K_eff at p and a step to both sides; None where there is no steady sliding."""
     return _at(family, [p - step, p, p + step])
 
 
-def _at(family: Family, places: list[float]) -> list[tuple[float, Matrices | None]]:
+def _at(family: SteadyFamily, places: list[float]) -> list[tuple[float, Matrices | None]]:
     """In one batch, unless one of them is beyond what the parameter may be."""
     try:
         about = family.at(np.array(places))

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.stability.family import Family
+from squealbox.stability.family import SteadyFamily
 from squealbox.stability.in_band import growth_in_band
 from squealbox.stability.state_matrix import spectrum
 from squealbox.system import Linearised
@@ -31,7 +31,7 @@ NEAR, NEAR_IN_BAND = 2.0, 0.5  # times the swing of a bend from which zero may l
 class Scan:
     """Values of the parameter and, for each, the functions whose signs are followed (points, functions)."""
 
-    family: Family
+    family: SteadyFamily
     values: Any
     functions: Any
     neutral: bool = False
@@ -124,7 +124,7 @@ class Scan:
         return low, high
 
 
-def scan(family: Family, low: float, high: float, points: int, refinements: int = 3) -> Scan:
+def scan(family: SteadyFamily, low: float, high: float, points: int, refinements: int = 3) -> Scan:
     """The functions on `points` values from low to high, and on more of them wherever two crossings may hide."""
     values = np.linspace(low, high, points)
     found = _first(family, values) if family.band is None else Scan(family, values, growth_in_band(family, values))
@@ -137,7 +137,7 @@ def scan(family: Family, low: float, high: float, points: int, refinements: int 
     return found
 
 
-def _first(family: Family, values: Any) -> Scan:
+def _first(family: SteadyFamily, values: Any) -> Scan:
     about = family.at(values)
     eigenvalues = spectrum(about)
     known = np.asarray(about.equilibrium.exists) & np.any(np.isfinite(eigenvalues), axis=-1)

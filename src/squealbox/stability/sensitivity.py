@@ -23,7 +23,7 @@ from squealbox.arguments import public
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import NEAR_DEFECTIVE, Mode, complex_modes, modes_of
-from squealbox.stability.family import Family, steady_sliding
+from squealbox.stability.family import SteadyFamily, steady_sliding
 
 CENTRAL = np.arange(-3.0, 4.0)
 REPEATED = 1e-9  # distance to the next eigenvalue, as a share of |lambda|, below which the two are one
@@ -132,7 +132,7 @@ def matrix_derivatives(design: Any, names: Sequence[str], time: float = 0.0) -> 
     Returns {"M": (first, second), "C": ..., "K": ...}.
     """
     lines = _Lines(design, names)
-    steady = Family(design, names, time).at(*lines.points.T)
+    steady = SteadyFamily(design, names, time=time).at(*lines.points.T)
     if not np.all(steady.equilibrium.exists):
         raise ValueError(f"no steady sliding beside the design: {steady.equilibrium.outcome.message}")
     return {name: lines.derivatives(getattr(steady, name)) for name in "MCK"}

@@ -14,12 +14,13 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.family import Varied
 from squealbox.fe.band_spectrum import band_pairs
 from squealbox.fe.pencil import MOST_DAMPED, vibrating
 from squealbox.labelled import Labelled, Labels
 from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import MARGINAL, ComplexModes, modes_of
-from squealbox.stability.family import Family, Steady
+from squealbox.stability.family import Steady, SteadyFamily
 
 CLEAR = 0.8  # criterion from which a pairing counts as clear
 HALVINGS = 12
@@ -102,24 +103,25 @@ class TrackedModes(Result):
         )
 
 
-def track(design: Any, parameter: str, values: Any, *, time: float = 0.0) -> Iterator[TrackedPoint]:
+def track(design: Any, parameter: Varied, values: Any = None, *, time: float = 0.0) -> Iterator[TrackedPoint]:
     """Walk along the values of a parameter with the modes always in the order of the first value.
 
     Parameters
     ----------
     design : a design, or a function of one value that returns a design or a system
-    parameter : dotted name
-    values : increasing or decreasing values; where the pairing between two is unclear, values between are tried too
+    parameter, values : {name: values}, increasing or decreasing, such as {"friction.static": np.linspace(0, 1, 50)}; or
+        the name and the values one after the other. Where the pairing between two is unclear, values between are tried
     time : [s] instant at which schedules are taken
 
     Values without steady sliding are passed over with NaN. Of a reduced brake the modes in its band are followed: one
     that leaves the band is NaN from there on and takes up its own place again where it comes back, one that comes into
-    the band for the first time stands behind the others. Raises `ValueError` for fewer than one value.
+    the band for the first time stands behind the others. Raises `ParameterError` for fewer than one value.
     """
-    array = np.atleast_1d(np.asarray(values, dtype=float))
-    if array.ndim != 1 or array.size == 0:
-        raise ValueError(f"values has shape {array.shape}: expected one or more values")
-    family = Family(design, [parameter], time)
+    yield from _tracked(SteadyFamily.along("track", design, parameter, values, count=1, time=time))
+
+
+def _tracked(family: SteadyFamily) -> Iterator[TrackedPoint]:
+    array = family.spans[0]
     if family.band is not None:
         yield from _track_in_band(family, family.band, array)
         return
@@ -144,7 +146,7 @@ def track(design: Any, parameter: str, values: Any, *, time: float = 0.0) -> Ite
         yield last.point(criterion, clear)
 
 
-def _track_in_band(family: Family, band: Band, values: Any) -> Iterator[TrackedPoint]:
+def _track_in_band(family: SteadyFamily, band: Band, values: Any) -> Iterator[TrackedPoint]:
     last: _Place | None = None
     for value in values:
         here = _place_in_band(family, band, float(value))
@@ -161,7 +163,7 @@ def _track_in_band(family: Family, band: Band, values: Any) -> Iterator[TrackedP
         yield _both(last, criterion, clear)
 
 
-def _place_in_band(family: Family, band: Band, value: float) -> "_Place | None":
+def _place_in_band(family: SteadyFamily, band: Band, value: float) -> "_Place | None":
     """The modes with Im > 0 in the band at one value; None where there is no steady sliding."""
     design = family.one(value)
     parts = design.parts()
@@ -181,17 +183,17 @@ def _place_in_band(family: Family, band: Band, value: float) -> "_Place | None":
 
 
 @public()
-def tracked_modes(design: Any, parameter: str, values: Any, *, time: float = 0.0) -> TrackedModes:
+def tracked_modes(design: Any, parameter: Varied, values: Any = None, *, time: float = 0.0) -> TrackedModes:
     """The whole of :func:`track` as one result, a labelled dataset by ``to_dataset()``.
 
     `time` [s]: instant at which schedules are taken.
     """
-    points = list(track(design, parameter, values, time=time))
+    family = SteadyFamily.along("tracked_modes", design, parameter, values, count=1, time=time)
+    points = list(_tracked(family))
     columns = {name: np.array([getattr(p, name) for p in points]) for name in ("value", "clear")}
     columns |= {name: _stacked([getattr(p, name) for p in points]) for name in ("eigenvalues", "right", "criterion")}
-    inputs = Family(design, [parameter], time).inputs
     arrays: dict[str, Any] = columns
-    return TrackedModes(**arrays, parameter=parameter, inputs=inputs)
+    return TrackedModes(**arrays, parameter=family.name, inputs=family.inputs)
 
 
 def _stacked(arrays: list[Any]) -> Any:
@@ -260,7 +262,7 @@ def _both(place: _Place, criterion: Any, clear: bool) -> TrackedPoint:
 
 
 def _followed(
-    family: Family, last: _Place, here: _Place, halvings: int, known: tuple[Any, Any] | None = None
+    family: SteadyFamily, last: _Place, here: _Place, halvings: int, known: tuple[Any, Any] | None = None
 ) -> tuple[_Place, Any, bool]:
     """`here` in the order of `last`, with the criterion of each pairing; unclear steps are halved."""
     edges = tuple(_outside(place.eigenvalues, family.band, EDGE) for place in (last, here))

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.family import is_recipe, varied
 from squealbox.parameters import known_names
 from squealbox.result import COMPLETED, Column, Result
 from squealbox.studies.block import LONGEST, Block, stacked
@@ -48,7 +49,7 @@ class Task:
     @property
     def batched(self) -> bool:
         """True when whole blocks can be asked for at once."""
-        return bool(getattr(plain_function(self.analysis), "batched", False)) and hasattr(self.design, "replace")
+        return bool(getattr(plain_function(self.analysis), "batched", False)) and not is_recipe(self.design)
 
     @property
     def wants_rng(self) -> bool:
@@ -57,9 +58,7 @@ class Task:
 
     def design_at(self, values: Mapping[str, Any]) -> Any:
         """The design with these values of its parameters."""
-        if hasattr(self.design, "replace"):
-            return self.design.replace(values)
-        return self.design(*values.values())
+        return varied(self.design, values)
 
 
 def plain_function(analysis: Any) -> Any:

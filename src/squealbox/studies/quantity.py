@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from squealbox.family import varied
 from squealbox.parameters import DataSheet, Parameter, ParameterError
 
 MAKERS = "squealbox.quantities"  # its functions make quantities
@@ -94,22 +95,13 @@ def evaluate(design: Any, quantity: Quantity, points: Mapping[str, Any], *, stri
     count = next(iter(arrays.values())).size
     inside = _inside(design, arrays)
     if strict and not np.any(inside):
-        made(design, {name: float(values[0]) for name, values in arrays.items()})  # says why
+        varied(design, {name: float(values[0]) for name, values in arrays.items()})  # says why
     found = np.full(count, np.nan)
     places = np.nonzero(inside)[0]
     for start in range(0, places.size, BLOCK):
         block = places[start : start + BLOCK]
         found[block] = _block(design, quantity, {name: values[block] for name, values in arrays.items()})
     return found
-
-
-def made(design: Any, values: Mapping[str, Any]) -> Any:
-    """The design with these values; the values themselves where there is no design."""
-    if design is None:
-        return dict(values)
-    if hasattr(design, "replace"):
-        return design.replace(values)
-    return design(*values.values())
 
 
 def input_of(design: Any) -> Any:
@@ -121,8 +113,8 @@ def _block(design: Any, quantity: Quantity, arrays: Mapping[str, Any]) -> Any:
     count = next(iter(arrays.values())).size
     if not quantity.batched:
         rows = ({name: float(values[i]) for name, values in arrays.items()} for i in range(count))
-        return np.array([float(quantity(made(design, row))) for row in rows])
-    values = np.asarray(quantity(made(design, arrays)), dtype=float)
+        return np.array([float(quantity(varied(design, row))) for row in rows])
+    values = np.asarray(quantity(varied(design, arrays)), dtype=float)
     if values.shape != (count,):
         raise ValueError(
             f"{quantity.name} of {count} designs at once has shape {values.shape}: expected ({count},); "

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from squealbox.family import values_of
 from squealbox.parameters import ParameterError
 from squealbox.studies.uncertainty.scatter import Sampling, unit_points
 
@@ -193,15 +194,6 @@ def _range(name: str, given: Sequence[Any]) -> tuple[float, float, bool]:
 
 
 def _checked(name: str, values: Any) -> Any:
-    array = np.array(np.atleast_1d(values))
-    expected = "one or more finite numbers, or words"
-    if array.ndim != 1 or array.size == 0 or array.dtype.kind not in "iufU":
-        raise ParameterError("space", name, values, expected)
-    if array.dtype.kind == "U":
-        array.flags.writeable = False
-        return array
-    array = array.astype(float)
-    if not np.all(np.isfinite(array)):
-        raise ParameterError("space", name, values, expected)
+    array = values_of("space", name, values, words=True)
     array.flags.writeable = False
     return array

@@ -10,6 +10,7 @@ import numpy as np
 
 from squealbox.arguments import designs, public
 from squealbox.cautions import of_many_runs
+from squealbox.family import Family, values_of
 from squealbox.labelled import Labelled, Labels
 from squealbox.parameters import DataSheet, ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Column, Outcome, Result, batched, quantity
@@ -174,8 +175,8 @@ def simulate_ensemble(
         "dormand-prince-8" or a `Method`; None takes "taylor" wherever the equation has a series
     observe : names out of `OBSERVERS`, or an `Observer` of your own; no trajectory is stored
     contact : "exact", "raw", "smooth" = "arctan", or "tanh", as in `simulate`
-    start : "rest", "sliding", or (q, qd) whose arrays end with n and broadcast with the parameters; without parameters
-        their leading axes are those of the ensemble
+    start : as in `simulate`, the same for all; or (q, qd) whose arrays end with n and broadcast with the parameters;
+        without parameters their leading axes are those of the ensemble
     times : instants at which q and qd are sampled [s], or a whole number of equal ones; they do not influence the steps
     rtol, atol, width, start_time : as in `simulate`
     threads : how many; None takes one for each core
@@ -326,7 +327,8 @@ def _space(
         raise ParameterError(
             "simulate_ensemble", "parameters", list(parameters), "one design or system: of several each is run as it is"
         )
-    arrays = [np.asarray(value, dtype=float) for value in parameters.values()]
+    Family(design, parameters)  # says what it does not have
+    arrays = [values_of("simulate_ensemble", *each, axes=True) for each in parameters.items()]
     if grid:
         arrays = list(np.meshgrid(*arrays, indexing="ij"))
     try:

@@ -62,7 +62,7 @@ class OneByOne(Work):
 
     def _start(self, shape: tuple[int, ...], i: int) -> Any:
         """The start of one member: as given, or its own of arrays with leading axes."""
-        if self.start is None or isinstance(self.start, str):
+        if not isinstance(self.start, (tuple, list)):
             return self.start
         try:
             parts = [np.asarray(part, dtype=float) for part in self.start]

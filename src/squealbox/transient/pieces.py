@@ -20,7 +20,8 @@ from squealbox.loops.held import aliased
 from squealbox.loops.rows import size_and_rate
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Polynomial, Schedule
-from squealbox.system import InvalidSystem, System, equilibrium
+from squealbox.start import Start
+from squealbox.system import System
 from squealbox.transient.legs import SCHEMES, Leg, Progress, by_series, leg, told, ways_of
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR
@@ -37,7 +38,6 @@ from squealbox.transient.sensed import (
     points_of,
 )
 from squealbox.transient.trajectory import Trajectory
-from squealbox.transient.widened import parted
 from squealbox.transient.widened import start_of as widened_start
 
 MOST_PIECES = 200_000
@@ -60,34 +60,14 @@ class Pieces:
     work: Any
 
 
-def start_of(driven: Driven, start: Any, time: float = 0.0) -> tuple[Any, Any]:
-    """q and q' of all rows: "rest", "sliding" with ideal loops, or (q, q') or (q, q', z) of the brake or all rows."""
-    system = in_time(driven.system)
-    start, z = parted("simulate", start, system)
-    steady = isinstance(start, str) and start == "sliding"
-    return widened_start(system, *_start_of(driven, start, time), z, steady, time)
-
-
-def _start_of(driven: Driven, start: Any, time: float) -> tuple[Any, Any]:
-    system, n = driven.system, driven.b.shape[1]
+def start_of(driven: Driven, start: Any, time: float = 0.0, modes_of: Any = None) -> tuple[Any, Any]:
+    """q and q' of all rows, from any start of the brake or (q, q') of all rows; sliding is that with ideal loops."""
+    system = driven.system
     if isinstance(start, str) and start == "sliding":
-        held = system.replace(K=system.K - driven.columns.T @ driven.P)
-        state = equilibrium(held, time)
-        if not state.exists:
-            raise InvalidSystem(f"there is no steady sliding to start from: {state.outcome.message}")
-        return state.q, np.zeros(n)
-    if start is None or (isinstance(start, str) and start == "rest"):
-        return np.zeros(n), np.zeros(n)
+        system = system.replace(K=system.K - driven.columns.T @ driven.P)
     own = sum(not name.startswith("loop state") for name in system.names)
-    try:
-        q, qd = (np.asarray(part, dtype=float).ravel() for part in start)
-        parts = [np.concatenate([part, np.zeros(n - own)]) if part.size == own else part.reshape(n) for part in (q, qd)]
-    except (TypeError, ValueError) as error:
-        expected = f'(q, qd) with {own} values each, "rest" or "sliding"'
-        raise ParameterError("simulate", "start", start, expected) from error
-    if not np.all(np.isfinite(parts)):
-        raise ParameterError("simulate", "start", start, "finite displacements and velocities")
-    return parts[0], parts[1]
+    begin = Start.of("simulate", start, system, time, modes_of=modes_of, rows=own)
+    return widened_start(in_time(driven.system), begin, time)
 
 
 def late_loops(system: System) -> Driven | None:
@@ -96,13 +76,19 @@ def late_loops(system: System) -> Driven | None:
 
 
 def motion_of(
-    driven: Driven, start: Any, begin: float, duration: float, times: Any, how: How, progress: Progress | None
+    driven: Driven,
+    start: tuple[Any, Any],
+    begin: float,
+    duration: float,
+    times: Any,
+    how: How,
+    progress: Progress | None,
 ) -> Trajectory:
     """The motion in pieces, each a march of its own."""
     if how[0] in ("raw", "time-stepping"):
         expected = "exact or smoothed contact: loops that are sampled or late are run in pieces"
         raise ParameterError("simulate", "contact", how[0], expected)
-    motion = in_pieces(driven, start_of(driven, start, begin), begin, duration, times, how, progress).motion
+    motion = in_pieces(driven, start, begin, duration, times, how, progress).motion
     return replace(motion, caution="; ".join([*filter(None, [motion.caution]), *aliased(driven.system, driven.loops)]))
 
 

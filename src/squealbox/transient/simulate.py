@@ -6,7 +6,8 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.parameters import ParameterError, known_names
-from squealbox.system import InvalidSystem, System, as_system, equilibrium, no_rigid_contact
+from squealbox.start import Start
+from squealbox.system import System, as_system, no_rigid_contact
 from squealbox.transient import moreau, pieces
 from squealbox.transient._motion import EXACT
 from squealbox.transient.choosing import chosen_method, usual_method
@@ -16,7 +17,7 @@ from squealbox.transient.legs import SCHEMES, Progress, Scalar, leg, told, ways_
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.trajectory import Trajectory
-from squealbox.transient.widened import base_of, parted, start_of
+from squealbox.transient.widened import base_of, start_of
 
 TIME_STEPPING = "time-stepping"
 
@@ -43,9 +44,11 @@ def simulate(
     ----------
     design_or_system : a design, or a `System` without leading axes
     duration : [s], > 0
-    start : (q, qd), shapes (n,) and (n,) [m], [m/s]; "rest" (the default: q = qd = 0, loads applied suddenly) or
-        "sliding" (steady sliding without vibration). Laws with memory begin with their bristles straight, or bent as in
-        steady sliding; (q, qd, z) gives their deflections [m], one for each such contact
+    start : "rest" (the default: q = qd = 0, loads applied suddenly), "sliding" (steady sliding without vibration),
+        "mode" or "mode 2" (with a small vibration in the mode that grows fastest, or in the second), or
+        {"mode": 2, "amplitude": 1e-6} [m]; a `Mode`; (q, qd), shapes (n,) and (n,) [m], [m/s]; a `Trajectory`, from its
+        end; a `Cycle`. Laws with memory begin with their bristles straight, or bent as in steady sliding; (q, qd, z)
+        gives their deflections [m], one for each such contact
     times : instants of output [s] within the run, shape (k,), increasing; a whole number k for k equidistant instants;
         None for every step taken, a long one in parts of at most a sixth of the shortest period. They do not influence
         the steps.
@@ -80,16 +83,16 @@ def simulate(
     if late is not None:
         asked = instants_of("simulate", times, start_time, duration)
         how = contact, width, method, (rtol, atol)
+        start = pieces.start_of(late, start, start_time, design_or_system)
         return pieces.motion_of(late, start, start_time, duration, asked, how, progress)
     system = system_of(design_or_system, plane=plane)
     ways = ways_of(system, contact, width, method, (rtol, atol))
     requested = instants_of("simulate", times, start_time, duration)
     if contact != "exact":
         no_rigid_contact(system, f"contact={contact!r}")
-    start, z = parted("simulate", start, system)
-    q, qd = _start(base_of(system), start, start_time)
-    _check_gaps(base_of(system), q)
-    q, qd = start_of(system, q, qd, z, isinstance(start, str) and start == "sliding", start_time)
+    begin = Start.of("simulate", start, base_of(system), start_time, modes_of=design_or_system)
+    _check_gaps(base_of(system), begin.q)
+    q, qd = start_of(system, begin, start_time)
     if plane:
         return moreau.time_stepping(system, duration, q, qd, start_time, requested, step)
     found = leg(system, ways, q, qd, start_time, duration, requested, progress)
@@ -114,26 +117,6 @@ def exact_call(system: System) -> tuple[Any, tuple[Any, ...]]:
 
         return Single(system, method, rest, rest, 0.0, 1.0, np.array([0.0, 1.0])).call()
     return Scalar(system, method, EXACT, 1e-3, rest, rest, 0.0, np.array([0.0, 1.0])).call(1.0, 1.0)
-
-
-def _start(system: System, start: Any, time: float) -> tuple[Any, Any]:
-    n = system.size
-    if start is None or (isinstance(start, str) and start == "rest"):
-        return np.zeros(n), np.zeros(n)
-    if isinstance(start, str) and start == "sliding":
-        state = equilibrium(system, time)
-        if not state.exists:
-            raise InvalidSystem(f"there is no steady sliding to start from: {state.outcome.message}")
-        return state.q, np.zeros(n)
-    try:
-        q, qd = (np.array(x, dtype=float).reshape(n) for x in start)
-    except (TypeError, ValueError) as error:
-        raise ParameterError(
-            "simulate", "start", start, f'(q, qd) with {n} values each, "rest" or "sliding"'
-        ) from error
-    if not (np.all(np.isfinite(q)) and np.all(np.isfinite(qd))):
-        raise ParameterError("simulate", "start", start, "finite displacements and velocities")
-    return q, qd
 
 
 def _check_gaps(system: System, q: Any) -> None:

@@ -92,6 +92,11 @@ class Trajectory(Result):
         return system
 
     @property
+    def end(self) -> tuple[Any, Any]:
+        """(q, qd) at the last instant, from which another motion can go on."""
+        return self.q[-1], self.qd[-1]
+
+    @property
     def slip_direction(self) -> Any:
         """Angle [rad] of the relative velocity (V - t.q', -a.q') of each contact, shape (k, contacts).
 

@@ -5,7 +5,7 @@
                              events senses and cuts: u = sat(w'); d holds b and G
     a full singular M        q = T p, p in coordinates in which M and C leave no row in between
 
-Results show the rows in front, which are the system's own. Depends on: loops, rows, smooth_laws, system.
+Results show the rows in front, which are the system's own. Depends on: loops, rows, smooth_laws, start, system.
 """
 
 from typing import Any
@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.loops.rows import delayed, force_per_state, numbered, padded_contacts, padded_load
-from squealbox.parameters import ParameterError
 from squealbox.schedules import Schedule, value_at
+from squealbox.start import Start
 from squealbox.system import Contact, InvalidSystem, System
 from squealbox.transient.rows import row_kinds, solved_for
 from squealbox.transient.smooth_laws import Saturation
@@ -69,25 +69,14 @@ def laid_open(system: System) -> System:
     return system.replace(seen=system.size, base=told, embedding=np.eye(system.size))
 
 
-def parted(function: str, start: Any, system: System) -> tuple[Any, Any]:
-    """A start (q, q', z) as (q, q') and z, the deflections [m] of the contacts with memory; others as given."""
-    if isinstance(start, str) or not isinstance(start, (tuple, list)) or len(start) != 3:
-        return start, None
-    count = sum(row >= 0 for row in getattr(system, "memories", ()))
-    z = np.asarray(start[2], dtype=float)
-    if count == 0 or z.shape[-1:] != (count,) or not np.all(np.isfinite(z)):
-        expected = f"(q, qd, z) with {count} deflections, one for each contact with memory" if count else "(q, qd)"
-        raise ParameterError(function, "start", start, expected)
-    return start[:2], z
-
-
-def start_of(system: System, q: Any, qd: Any, z: Any, steady: bool, time: float) -> tuple[Any, Any]:
-    """q and q' (..., rows) of a start of the base; `steady` bends the bristles as steady sliding does, else z or 0."""
+def start_of(system: System, start: Start, time: float) -> tuple[Any, Any]:
+    """q and q' (..., rows) of a start of the base; in steady sliding bristles are bent, else as z says or straight."""
     if not isinstance(system, Widened):
-        return q, qd
-    q, qd = (np.einsum("ij,...j->...i", system.embedding, np.asarray(x, dtype=float)) for x in (q, qd))
+        return start.q, start.qd
+    q, qd = (np.einsum("ij,...j->...i", system.embedding, x) for x in (start.q, start.qd))
+    z = start.z
     for contact, row in zip(system.contacts, system.memories or (-1,) * len(system.contacts), strict=True):
-        if steady and row >= 0:
+        if start.sliding and row >= 0:
             deflection = contact.law.steady_deflection(value_at(contact.V, time))
             q = np.array(np.broadcast_to(q, (*np.broadcast_shapes(q.shape[:-1], np.shape(deflection)), q.shape[-1])))
             q[..., row] = deflection

@@ -14,7 +14,7 @@ from squealbox.files.analyses import Varied
 from squealbox.files.document import DesignFileError
 from squealbox.files.reading import SECTIONS, STUDY, DesignFile, read_text
 from squealbox.files.units import UnitError, in_si, split, unit
-from squealbox.files.varied import scalar_parameters
+from squealbox.files.varied import VARY, scalar_parameters
 from squealbox.files.writing import design_text
 from squealbox.workbench.panels import Options
 
@@ -29,7 +29,7 @@ def settings_of(found: DesignFile) -> dict[str, dict[str, Any]]:
         made.setdefault(panel, {})[option] = axis.name
         made.setdefault("page", {"ranges": {}})["ranges"].setdefault(axis.name, [axis.low, axis.high])
     if found.simulate is not None:
-        made["motion"] = {"start": found.simulate.start}
+        made["motion"] = {"start": "push" if found.simulate.start == "mode" else found.simulate.start}
     return made
 
 
@@ -131,6 +131,10 @@ def _axes(found: DesignFile) -> Iterator[tuple[str, str, Varied]]:
             yield panel, "parameter", axis
 
 
+def _told(axis: Varied) -> dict[str, Any]:
+    return {"parameter": axis.name, "range": [axis.low, axis.high], "points": int(axis.points)}
+
+
 def _ask(found: Any, said: DesignFile, design: Design, settings: Mapping[str, Any]) -> None:
     """Put what was chosen on the page into the sections that ask for something else."""
     chosen = {name: each for name, each in settings.items() if isinstance(each, Mapping)}
@@ -141,10 +145,16 @@ def _ask(found: Any, said: DesignFile, design: Design, settings: Mapping[str, An
         if not isinstance(name, str) or name not in scalar_parameters(design):
             continue
         ends = ranges.get(name, own if name == axis.name else list(Options({}).span("span", design, name)))
-        table = found["map"][option] if panel == "map" else found["onset" if panel == "locus" else panel]
-        if name != axis.name:
+        section = found["onset" if panel == "locus" else panel]
+        renamed, moved = name != axis.name, ends != own and ends != before.get(name, own)
+        if VARY in section and (renamed or moved):  # each axis in words of its own, of which one is changed
+            section.pop(VARY)
+            told = {each: _told(one) for part, each, one in _axes(said) if part == panel}
+            section.update(told if panel == "map" else told["parameter"])
+        table = section[option] if panel == "map" else section
+        if renamed:
             table["parameter"] = name
-        if name != axis.name or (ends != own and ends != before.get(name, own)):
+        if renamed or moved:
             table["range"] = ends
     start = chosen.get("motion", {}).get("start")
     if said.simulate is not None and start in STARTS and start != said.simulate.start:

@@ -37,6 +37,7 @@ from squealbox.limit_cycles.attractors.settling import (
 from squealbox.limit_cycles.cycles.pinned import at_rest_together
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
+from squealbox.start import Start
 from squealbox.system import System, as_system
 
 MOST_LINES = 12  # of a summary, the largest shares
@@ -124,7 +125,7 @@ def basin(
         sliding speed and w1 the slowest frequency [rad/s]; a number multiplies that
     starts : number of starts, a Sobol sequence with `seed`; with `plane`, about that many on a square grid
     plane : two states, by place in (q, q') or by name, as in ("x", "x'"); the others stay at `through`
-    through : (q, qd) in the middle of the box or plane, such as a state on a cycle; None takes steady sliding
+    through : the middle of the box or plane, as the start of `simulate`, such as a cycle; None takes steady sliding
     duration : [s] of the first stretch; None takes 60 periods of the slowest mode. What has not settled, or lingers
         where shooting finds no stable cycle, runs on for some 63 times that and more
     refine : confirm each attractor by shooting
@@ -147,7 +148,7 @@ def basin(
     names = state_names(system)
     half = _spread(spread, scales, n)
     rest = np.concatenate([scales.rest[0], np.zeros(n)])
-    centre = rest if through is None else _state(through, n)
+    centre = rest if through is None else Start.of("basin", through, system, name="through").state
     points = np.zeros((0, 2 * n))
     places = None if plane is None else [place(names, each) for each in plane]
     if places is not None and (len(places) != 2 or places[0] == places[1]):
@@ -243,16 +244,6 @@ def _spread(spread: Any, scales: Scales, n: int) -> Any:
     if half.shape != (2 * n,) or not np.all(np.isfinite(half)) or np.any(half < 0.0):
         raise ParameterError("basin", "spread", spread, f"{2 * n} half widths of at least 0, or one number")
     return half
-
-
-def _state(given: Any, n: int) -> Any:
-    try:
-        q, qd = (np.asarray(part, dtype=float) for part in given)
-    except (TypeError, ValueError) as error:
-        raise ParameterError("basin", "through", given, f"(q, qd), each of shape ({n},)") from error
-    if q.shape != (n,) or qd.shape != (n,) or not np.all(np.isfinite(np.concatenate([q, qd]))):
-        raise ParameterError("basin", "through", given, f"(q, qd), each of shape ({n},) and finite")
-    return np.concatenate([q, qd])
 
 
 def _outcome(label: Any, found: Sequence[Attractor]) -> Outcome:

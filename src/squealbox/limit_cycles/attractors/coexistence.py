@@ -9,13 +9,14 @@ vibration ends. Both edges are found on two roads:
                 the lower one (`cycle_ends`)
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.family import Bounds, Family
 from squealbox.limit_cycles.attractors.attractor import linked
 from squealbox.limit_cycles.attractors.basins import unit_starts
 from squealbox.limit_cycles.attractors.settling import FAILED, LOOSE, REPEATS, RESTS, TIGHT, Batch, Scales, settle
@@ -86,7 +87,7 @@ def _edges(name: str, low: float, high: float) -> str:
 @public()
 def coexistence(
     design: Any,
-    bounds: dict[str, tuple[float, float]],
+    bounds: Mapping[str, Bounds],
     *,
     columns: int = 24,
     rows: int = 12,
@@ -118,15 +119,16 @@ def coexistence(
     >>> coexistence(drum, area, columns=4, rows=2, starts=2).outcome.ok
     True
     """
-    if len(bounds) != 2 or not all(low < high for low, high in bounds.values()) or not hasattr(design, "replace"):
-        raise ParameterError("coexistence", "bounds", bounds, "a design and two parameters, each with low < high")
-    names = tuple(bounds)
-    x, y = (np.linspace(*ends, count) for ends, count in zip(bounds.values(), (columns, rows), strict=True))
+    family = Family.within("coexistence", design, bounds, count=2)
+    if family.recipe is not None:
+        raise ParameterError("coexistence", "design", design, "a design, whose parameters have names")
+    names, ends = family.parameters, family.spans[0]
+    x, y = (np.linspace(low, high, k) for (low, high), k in zip(family.spans, (columns, rows), strict=True))
     grid = _far(design, names, x, y, starts, spread, seed, threads)
-    onset = np.array([_onset(design, names, bounds[names[0]], value) for value in y])
+    onset = np.array([_onset(design, names, ends, value) for value in y])
     onset = np.where(np.all(grid["stable"], axis=0), np.inf, onset)
     top = np.minimum(np.where(np.isfinite(onset) | grid["stable"][0], onset, x[0]), x[-1])
-    followed = _followed(design, names, bounds[names[0]], top, y, starts, spread, seed, threads)
+    followed = _followed(design, names, ends, top, y, starts, spread, seed, threads)
     return Coexistence(
         inputs={"system": design}, settings={"spread": spread, "seed": seed}, outcome=Outcome(COMPLETED), x=x, y=y,
         onset=onset, parameters=names, starts=starts, hopf=hopf_curve(design, bounds), **grid, **followed,
@@ -155,7 +157,7 @@ def cycle_ends(design: Any, region: Coexistence, rows: Sequence[int] | None = No
         above = edge + ABOVE * reach
         ends = settle(Batch.over(own, {x: np.array([above])}), region.state[i][None, :half],
                       region.state[i][None, half:])  # fmt: skip
-        walk = branch(own, x, (edge - 0.5 * ABOVE * reach, 1.01 * above), (ends.q[0], ends.qd[0]), value=above,
+        walk = branch(own, {x: (edge - 0.5 * ABOVE * reach, 1.01 * above)}, (ends.q[0], ends.qd[0]), value=above,
                       method="shooting", direction=-1.0, points=80)  # fmt: skip
         turns = [j for j, name in enumerate(walk.special_kind) if name in TURNS]
         kind[i] = str(walk.special_kind[turns[0]]) if turns else str(walk.outcome)
@@ -189,7 +191,7 @@ def _far(design: Any, names: Any, x: Any, y: Any, starts: int, spread: float, se
 
 
 def _onset(design: Any, names: Any, ends: tuple[float, float], value: float) -> float:
-    found = critical_value(design.replace({names[1]: float(value)}), names[0], ends)
+    found = critical_value(design.replace({names[1]: float(value)}), {names[0]: ends})
     return float(found.value) if found.outcome.ok else float("nan")
 
 

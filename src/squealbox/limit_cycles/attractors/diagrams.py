@@ -15,6 +15,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.cautions import along, told_place
+from squealbox.family import Family, Varied
 from squealbox.limit_cycles.attractors.sections import Section, passages
 from squealbox.limit_cycles.attractors.settling import (
     FAILED,
@@ -33,6 +34,7 @@ from squealbox.matrices import runs_of_true
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import complex_modes
+from squealbox.start import Start
 from squealbox.studies.quantity import unit_of
 
 SWEEPS = ("up", "down", "rest")
@@ -102,8 +104,8 @@ class BifurcationDiagram(Result):
 @public()
 def bifurcation_diagram(
     design: Any,
-    parameter: str,
-    values: Any,
+    parameter: Varied,
+    values: Any = None,
     *,
     sweeps: Sequence[str] = SWEEPS,
     starts: int = 0,
@@ -119,13 +121,13 @@ def bifurcation_diagram(
     Parameters
     ----------
     design : a design, or a function of one value that returns a design or system
-    parameter : dotted name, such as "friction.static"
-    values : (k,) in rising order
+    parameter, values : {name: values (k,)} in rising order, such as {"friction.static": np.linspace(0.1, 0.5, 41)}; or
+        the name and the values one after the other
     sweeps : some of "up", "down" (the state goes on from value to value) and "rest" (each from q = q' = 0)
     starts : number of states drawn about steady sliding, with `seed`, from which every value starts as well
     section : a :class:`Section`; None keeps the last eight maxima of each degree of freedom only
     returns : about how many passages of the section are kept, in the time of as many returns
-    start : (q, qd) in which the sweeps up and down begin; None takes q = q' = 0
+    start : in which the sweeps up and down begin, as for `simulate`, counted at the first value
     duration : [s] of the first stretch at each value; None takes 60 periods of the slowest mode. What has not settled
         runs on, up to 15 times that
     threads : as in :func:`basin`
@@ -140,8 +142,9 @@ def bifurcation_diagram(
     >>> bifurcation_diagram(drum, "friction.static", [0.1, 0.15], sweeps=("rest",)).kind
     array([[1, 1]])
     """
-    values = np.asarray(values, dtype=float)
-    if values.ndim != 1 or values.size < 1 or not np.all(np.diff(values) > 0.0):
+    family = Family.along("bifurcation_diagram", design, parameter, values, count=1)
+    parameter, values = family.name, family.spans[0]
+    if not np.all(np.diff(values) > 0.0):
         raise ParameterError("bifurcation_diagram", "values", values, "a list of rising values")
     for name in sweeps:
         if name not in SWEEPS:
@@ -155,9 +158,7 @@ def bifurcation_diagram(
     if section is not None:
         section.column(batch.system), section.plane(batch.system, scales.rest)
     n = scales.rest.shape[-1]
-    begin = np.zeros(2 * n) if start is None else np.concatenate([np.asarray(x, dtype=float) for x in start])
-    if begin.shape != (2 * n,) or not np.all(np.isfinite(begin)):
-        raise ParameterError("bifurcation_diagram", "start", start, f"(q, qd), each of shape ({n},) and finite")
+    begin = Start.of("bifurcation_diagram", start, batch.one).state
     ways = [name for name in sweeps if name != "rest"]
     found = dict(zip(ways, _swept(batch, ways, begin, scales, duration, threads), strict=True))
     names = [*sweeps, *(f"start {i + 1}" for i in range(starts))]
@@ -170,7 +171,7 @@ def bifurcation_diagram(
     read = [np.zeros((len(values), 0)) if section is None else _read(batch, each, section, int(returns), threads)
             for each in ends]  # fmt: skip
     return BifurcationDiagram(
-        inputs={"system": design} if hasattr(design, "replace") else {},
+        inputs={} if family.recipe else {"system": design},
         settings={"sweeps": list(sweeps), "starts": int(starts), "seed": seed, "returns": int(returns)},
         outcome=_outcome(kind), value=values, kind=kind, sliding=scales.rest, parameter=parameter,
         maxima=np.where(rests, scales.rest[None, :, :, None], np.array([each.maxima for each in ends])),

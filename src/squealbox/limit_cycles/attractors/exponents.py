@@ -37,7 +37,7 @@ def lyapunov_exponents(
     ----------
     design_or_system : with constant loads and speeds; a harmonic drive is one more degree of freedom without damping,
         coupled one way, which adds two exponents 0
-    start : (q, qd), on the attractor: leave transients behind first
+    start : on the attractor, as for `simulate`: leave transients behind first
     span : [s] between two orthonormalisations, such as a period; spans : how many
     aligned : spans run before, uncounted, in which the directions find their order
     history : return the estimates after each span, shape (spans, 2n), which tell whether they have converged

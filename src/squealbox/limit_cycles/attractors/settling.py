@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.family import is_recipe
 from squealbox.limit_cycles.cycles.field import check_autonomous, remembers_nothing
 from squealbox.parameters import ParameterError
 from squealbox.schedules import value_at
@@ -63,7 +64,7 @@ class Batch:
     def over(cls, design: Any, parameters: Mapping[str, Any] | None = None) -> "Batch":
         """A design with arrays for its dotted names, a function of one value with {name: values}, or a system."""
         given = {name: np.asarray(value, dtype=float) for name, value in (parameters or {}).items()}
-        if callable(design) and not hasattr(design, "replace"):
+        if is_recipe(design):
             if len(given) != 1:
                 raise ParameterError("limit_cycles", "parameters", list(given), "one, for a function of one value")
             batch = cls([as_system(design(float(value))) for value in next(iter(given.values()))], {})

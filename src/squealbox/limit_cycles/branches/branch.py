@@ -16,9 +16,10 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.cautions import along, told_place
 from squealbox.continuation import PathPoint, StepControl, follow
+from squealbox.family import Bounds, Family, Varied
 from squealbox.limit_cycles.branches.doubling import doubled
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
-from squealbox.limit_cycles.branches.hopf import HopfPoint, family
+from squealbox.limit_cycles.branches.hopf import HopfPoint
 from squealbox.limit_cycles.branches.phases import begun, heading
 from squealbox.limit_cycles.branches.shooting_path import ShootingPath
 from squealbox.limit_cycles.branches.special_points import STRAIGHT, BranchPoint
@@ -97,8 +98,8 @@ class Branch(Result):
 @public()
 def branch(
     design: Any,
-    parameter: str,
-    bounds: tuple[float, float],
+    parameter: Varied,
+    bounds: Bounds | None = None,
     start: Any = None,
     *,
     value: float | None = None,
@@ -116,7 +117,7 @@ def branch(
     Parameters
     ----------
     design : a design, or a function of one value that returns a design or system
-    parameter, bounds : dotted name and the range walked
+    parameter, bounds : {name: (low, high)}, the range walked; or the name and the bounds one after the other
     start : a `HopfPoint` (the branch born there; with method "shooting" on past the first contact at rest), a
         period doubling out of `Branch.points` (the branch of doubled
         period, with method "shooting"), or what :func:`shooting` takes, at `value` of the parameter
@@ -137,14 +138,15 @@ def branch(
     >>> from squealbox import DrumBrake, LinearSlope
     >>> from squealbox.limit_cycles import hopf_point
     >>> brake = DrumBrake(friction=LinearSlope(0.3, -0.05))
-    >>> onset = hopf_point(brake, "friction.static", (0.1, 0.6))
-    >>> str(branch(brake, "friction.static", (0.1, 0.6), onset, points=150).outcome)
+    >>> onset = hopf_point(brake, {"friction.static": (0.1, 0.6)})
+    >>> str(branch(brake, {"friction.static": (0.1, 0.6)}, onset, points=150).outcome)
     'grazing'
     """
     if method not in (*METHODS, "auto"):
         raise ParameterError("branch", "method", method, known_names(str(method), [*METHODS, "auto"]))
+    family = Family.within("branch", design, parameter, bounds)
+    make, parameter, bounds = family.system, family.name, family.spans[0]
     span = float(bounds[1] - bounds[0])
-    make = family(design, parameter)
     middle = 0.5 * (bounds[0] + bounds[1]) if value is None else value
     if not bounds[0] <= middle <= bounds[1]:
         raise ParameterError("branch", "value", value, f"a value within the bounds, {bounds[0]:g} to {bounds[1]:g}")

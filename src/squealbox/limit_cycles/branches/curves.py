@@ -9,7 +9,7 @@ It is followed in both directions by pseudo-arclength. Source: Govaerts 2000, Nu
 Dynamical Equilibria, Ch. 4.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
+from squealbox.family import Bounds, Family
 from squealbox.limit_cycles.branches.hopf import (
     HopfPoint,
     critical_pair,
@@ -28,9 +29,7 @@ from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.starting import steady_state
 from squealbox.parameters import DataSheet, ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.system import System, as_system
-
-Bounds = dict[str, tuple[float, float]]
+from squealbox.system import System
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,18 +53,10 @@ class PointCurve(Result):
         return f"{self.kind} curve, {len(self.x)} points: {', '.join(spans)}; ended: {self.outcome.message}"
 
 
-def two_parameters(design: Any, bounds: Bounds) -> tuple[Callable[[float, float], System], tuple[str, str]]:
-    """A function of two values that returns a system, and the two names."""
-    names = tuple(bounds)
-    if len(names) != 2 or not all(low < high for low, high in bounds.values()):
-        raise ParameterError("limit_cycles", "bounds", bounds, "two parameters, each with low < high")
-    if callable(design) and not hasattr(design, "replace"):
-        return lambda a, b: as_system(design(a, b)), names
-    return lambda a, b: as_system(design.replace({names[0]: a, names[1]: b})), names
-
-
 @public()
-def hopf_curve(design: Any, bounds: Bounds, *, value: float | None = None, points: int = 100) -> PointCurve:
+def hopf_curve(
+    design: Any, bounds: Mapping[str, Bounds], *, value: float | None = None, points: int = 100
+) -> PointCurve:
     """Hopf points over two parameters, through the first one found in the first parameter.
 
     Parameters
@@ -83,14 +74,15 @@ def hopf_curve(design: Any, bounds: Bounds, *, value: float | None = None, point
     >>> hopf_curve(brake, {"friction.static": (0.1, 0.6), "load": (500.0, 2000.0)}).outcome.ok
     True
     """
-    make, names = two_parameters(design, bounds)
-    (low, high), (bottom, top) = bounds.values()
+    family = Family.within("hopf_curve", design, bounds, count=2)
+    make, names, spans = family.system, family.parameters, family.spans
+    (low, high), (bottom, top) = spans
     middle = 0.5 * (bottom + top) if value is None else float(value)
-    born = hopf_point(lambda a: make(a, middle), names[0], (low, high))
+    born = hopf_point(lambda a: make(a, middle), {names[0]: (low, high)})
     if not born.outcome.ok:
         return curve_of(design, [], lambda *_: (0.0, 0.0), names, "hopf", born.outcome)
     extended = _Hopf(make, born, (high - low, top - bottom))
-    walks = both_ways(extended.residual, extended.start, middle, bounds, extended.scale(), points, extended.jacobian)
+    walks = both_ways(extended.residual, extended.start, middle, spans, extended.scale(), points, extended.jacobian)
     return curve_of(design, walks, extended.describe, names, "hopf", ending(walks))
 
 
@@ -150,11 +142,10 @@ class _Hopf:
 
 
 def both_ways(
-    residual: Any, x: Any, b: float, bounds: Bounds, scale: Any, points: int, jacobian: Any = None
+    residual: Any, x: Any, b: float, spans: Sequence[Bounds], scale: Any, points: int, jacobian: Any = None
 ) -> list[Any]:
     """Points (x, b, residual) from one end of the curve to the other, and how the two walks ended."""
-    _, (bottom, top) = bounds.values()
-    low, high = next(iter(bounds.values()))
+    (low, high), (bottom, top) = spans
     walks = []
     for way in (-1.0, 1.0):
         control = StepControl(
@@ -183,7 +174,7 @@ def ending(walks: list[Any]) -> Outcome:
 
 
 def curve_of(
-    design: Any, walks: list[Any], describe: Any, names: tuple[str, str], kind: str, outcome: Outcome
+    design: Any, walks: list[Any], describe: Any, names: tuple[str, ...], kind: str, outcome: Outcome
 ) -> PointCurve:
     """The result of the walks; a design is kept, since it knows the units of its parameters."""
     line = [at for i, (kept, _) in enumerate(walks) for at in (kept[:0:-1] if i == 0 and len(walks) > 1 else kept)]

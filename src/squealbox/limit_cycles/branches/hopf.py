@@ -15,13 +15,13 @@ For sliding contacts F = s mu(s v) N with dN = n.u, dv = -t.u', so
     C(x, y, z) = sum M^-1 d [s mu'' (dN_x dv_y dv_z + ...) + mu''' N dv_x dv_y dv_z]
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.family import Bounds, Family, Varied
 from squealbox.friction import Table
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.starting import steady_state
@@ -93,22 +93,15 @@ class HopfPoint(OneEigenvalue, Result):
         return f"{said}; {self.caution}" if self.caution else said
 
 
-def family(design: Any, parameter: str) -> Callable[[float], Any]:
-    """A function of one value that returns a system, from a design and a dotted name or from a function."""
-    if callable(design) and not hasattr(design, "replace"):
-        return lambda value: as_system(design(value))
-    return lambda value: as_system(design.replace({parameter: value}))
-
-
 @public()
-def hopf_point(design: Any, parameter: str, bounds: tuple[float, float]) -> HopfPoint:
+def hopf_point(design: Any, parameter: Varied, bounds: Bounds | None = None) -> HopfPoint:
     """The first Hopf point between `bounds` and the kind of cycle born there.
 
     Parameters
     ----------
     design : a design, or a function of one value that returns a design or system
-    parameter : dotted name such as "friction.static"
-    bounds : (low, high)
+    parameter, bounds : {name: (low, high)}, such as {"friction.static": (0.1, 0.6)}; or the name and the bounds one
+        after the other
 
     Outcome "no_hopf" where stability does not change by a complex pair, else that of `critical_value`. Accuracy: value
     as `critical_value`; l1 to about 1e-7, limited by the law's second and third derivative, taken from a polynomial
@@ -118,7 +111,8 @@ def hopf_point(design: Any, parameter: str, bounds: tuple[float, float]) -> Hopf
     >>> hopf_point(DrumBrake(friction=LinearSlope(0.3, -0.05)), "friction.static", (0.1, 0.6)).kind
     'supercritical'
     """
-    make = family(design, parameter)
+    family = Family.within("hopf_point", design, parameter, bounds)
+    make, parameter, bounds = family.system, family.name, family.spans[0]
     Field(make(bounds[0]))  # says at once where the system is none that this room can treat
     found = critical_value(design, parameter, bounds)
     outcome = found.outcome

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.family import Bounds, Family, Varied
 from squealbox.limit_cycles.branches.branch import Branch, branch
-from squealbox.limit_cycles.branches.hopf import family
 from squealbox.limit_cycles.branches.joined import joined
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.limit_cycles.cycles.field import Autonomous
@@ -111,8 +111,8 @@ def _alike(cycle: Any, period: Any, lowest: Any, highest: Any) -> bool:
 @public()
 def isolated_branches(
     design: Any,
-    parameter: str,
-    bounds: tuple[float, float],
+    parameter: Varied,
+    bounds: Bounds | None = None,
     *,
     values: Any = 3,
     starts: Any = 12,
@@ -139,15 +139,15 @@ def isolated_branches(
     >>> len(isolated_branches(drum, "friction.static", (0.1, 0.32), values=[0.3], starts=8, points=5))
     1
     """
-    make, found = family(design, parameter), list(known)
-    low, high = bounds
+    family, found = Family.within("isolated_branches", design, parameter, bounds), list(known)
+    low, high = family.spans[0]
     at = low + (high - low) * (np.arange(values) + 0.5) / values if np.ndim(values) == 0 else np.asarray(values, float)
     for value in at:
-        for cycle in settled_cycles(make(float(value)), starts, settle=settle, seed=seed):
+        for cycle in settled_cycles(family.system(float(value)), starts, settle=settle, seed=seed):
             if any(passes(one, cycle, float(value)) for one in found):
                 continue
             start = {"start": cycle, "value": float(value), "method": "shooting", **walk}
-            ways = [branch(design, parameter, bounds, direction=way, **start) for way in (-1.0, 1.0)]
+            ways = [branch(design, {family.name: (low, high)}, direction=way, **start) for way in (-1.0, 1.0)]
             one = joined(*ways)
             if not any(lies_on(one, other) for other in found):
                 found.append(one)

@@ -10,11 +10,13 @@ Source: Govaerts 2000, Numerical Methods for Bifurcations of Dynamical Equilibri
 """
 
 import copy
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.branches.curves import Bounds, PointCurve, both_ways, curve_of, ending, two_parameters
+from squealbox.family import Bounds, Family
+from squealbox.limit_cycles.branches.curves import PointCurve, both_ways, curve_of, ending
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
 from squealbox.limit_cycles.branches.phases import begun
 from squealbox.limit_cycles.branches.shooting_path import ShootingPath
@@ -26,7 +28,9 @@ PARAMETER_STEP = 1e-6  # of the range: differences of the path's residual
 TEST_STEP = 1e-5  # in scaled variables: differences of a test function
 
 
-def point_curve(design: Any, bounds: Bounds, point: BranchPoint, value: float, *, points: int = 60) -> PointCurve:
+def point_curve(
+    design: Any, bounds: Mapping[str, Bounds], point: BranchPoint, value: float, *, points: int = 60
+) -> PointCurve:
     """Special points of cycles over two parameters: folds, grazing, period doubling or Neimark-Sacker.
 
     Parameters
@@ -55,19 +59,19 @@ def point_curve(design: Any, bounds: Bounds, point: BranchPoint, value: float, *
     """
     if point.kind not in (*TESTS, "fold") or point.kind == "sticking":
         raise ParameterError("point_curve", "point", point.kind, "a fold, grazing, period doubling or Neimark-Sacker")
-    make, names = two_parameters(design, bounds)
-    extended = _Special(make, point, bounds, float(value))
+    family = Family.within("point_curve", design, bounds, count=2)
+    extended = _Special(family.system, point, family.spans, float(value))
     walks = both_ways(
-        extended.residual, extended.start, float(value), bounds, extended.scale, points, extended.jacobian
+        extended.residual, extended.start, float(value), family.spans, extended.scale, points, extended.jacobian
     )
-    return curve_of(design, walks, extended.describe, names, point.kind, ending(walks))
+    return curve_of(design, walks, extended.describe, family.parameters, point.kind, ending(walks))
 
 
 class _Special:
     """Residual of a path and the test function of one kind of point, over the second parameter."""
 
-    def __init__(self, make: Any, point: BranchPoint, bounds: Bounds, value: float) -> None:
-        (low, high), (bottom, top) = bounds.values()
+    def __init__(self, make: Any, point: BranchPoint, spans: Sequence[Bounds], value: float) -> None:
+        (low, high), (bottom, top) = spans
         self.make, self.kind, self.span, settings = make, point.kind, high - low, point.settings
         self.span_b = top - bottom
         p, period = float(point.value), float(point.period)

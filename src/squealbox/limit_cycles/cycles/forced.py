@@ -37,6 +37,7 @@ from squealbox.limit_cycles.cycles.variation import (
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.schedules import Constant, Schedule, Sinusoid, value_at
+from squealbox.start import Start
 from squealbox.system import System, as_system, equilibrium
 from squealbox.transient import Method, Trajectory, simulate
 
@@ -151,7 +152,7 @@ def forced_cycle(
     Parameters
     ----------
     design_or_system : with `Sinusoid` schedules of commensurate frequencies, such as `Dithered(brake, direct=True)`
-    start : (q, qd) near the motion; None takes steady sliding at the first instant
+    start : near the motion, as for `simulate`; None takes steady sliding at the first instant
     rounds : periods of the forcing after which it repeats; 2 beyond a doubling
     rtol : of the integration
     tolerance : largest scaled residual accepted as converged [-]
@@ -340,8 +341,7 @@ def _frozen(system: System, time: float) -> System:
 
 def _start(system: System, start: Any) -> Any:
     if start is not None:
-        q, qd = start
-        return np.concatenate([np.asarray(q, dtype=float), np.asarray(qd, dtype=float)])
+        return Start.of("forced_cycle", start, system).state
     steady = equilibrium(_frozen(system, 0.0)) if not any(isinstance(c.V, Schedule) for c in system.contacts) else None
     q = steady.q if steady is not None and bool(steady.exists) else np.zeros(system.size)
     return np.concatenate([q, np.zeros(system.size)])

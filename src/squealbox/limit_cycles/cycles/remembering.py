@@ -13,6 +13,7 @@ from squealbox.limit_cycles.cycles.cycle import ordered
 from squealbox.limit_cycles.cycles.field import Autonomous, Field, check_autonomous
 from squealbox.matrices import Equilibrium
 from squealbox.stability import complex_modes
+from squealbox.start import Start
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
 from squealbox.transient import Trajectory, simulate
 from squealbox.transient.latest import Latest
@@ -50,7 +51,7 @@ class Remembering(Autonomous):
         return equilibrium(self.asked)
 
     def state(self, q: Any, qd: Any, memory: Any = None) -> Any:
-        q, qd = start_of(self._wide, q, qd, None, False, 0.0)
+        q, qd = start_of(self._wide, Start(q, qd), 0.0)
         if memory is not None and len(memory):
             q = np.concatenate([q[: len(q) - len(memory)], memory])
         return np.concatenate([q, qd])

@@ -53,10 +53,10 @@ def shooting(
     Parameters
     ----------
     design_or_system : a design or a `System`, with constant loads and speeds
-    start : None (the most unstable mode, and rest where that leads to an unstable cycle), a `Mode`, (q, qd) or a
-        `Trajectory`, from which a run of `settle` seconds leads to the cycle (past a period doubling to the stable one
-        of two or four turns, where Newton's method finds it; else to the unstable one); (q, qd, period) or a `Cycle`,
-        taken as they are (this is how an unstable cycle is found)
+    start : None (the most unstable mode, and rest where that leads to an unstable cycle), or any start of `simulate`,
+        from which a run of `settle` seconds leads to the cycle (past a period doubling to the stable one of two or four
+        turns, where Newton's method finds it; else to the unstable one); (q, qd, period) or a `Cycle`, taken as they
+        are (this is how an unstable cycle is found)
     contact, width : "exact", or "smooth" = "arctan", "tanh" with `width` [m/s]
     shots : 1 for single shooting, more where the cycle is strongly unstable
     settle : [s] of the run before; None takes 300 periods of the slowest mode

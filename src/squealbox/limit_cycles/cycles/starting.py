@@ -7,10 +7,9 @@ import numpy as np
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.limit_cycles.cycles.field import Autonomous
 from squealbox.limit_cycles.cycles.variation import PERIOD_STEPS, fly
-from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Outcome
-from squealbox.schedules import value_at
 from squealbox.stability import Mode, complex_modes
+from squealbox.start import Start
 from squealbox.system import equilibrium
 from squealbox.transient import Trajectory, simulate
 
@@ -23,20 +22,20 @@ LINGERS = 5.0  # periods of the slowest mode, after which rows of a delay hold w
 STIFF = "one period of the slowest mode takes too many steps: damping, or what is held, is far faster than it"
 DYING = 0.05  # share of the sliding speed; a swing below it that falls goes on falling where sliding is stable
 FALLS = 0.98  # by which a swing falls at least over two thirds of a run that dies down
+VISIBLE = 0.5  # share of the sliding speed by which it swings in a mode to begin with
 STILL = 1e-5  # share of the sliding speed; a run that swings less has settled on steady sliding
 
 
 def first_guess(field: Autonomous, start: Any, settle: float | None) -> tuple[Any, float, Outcome]:
     """State x (2n,), period [s] and outcome, from `start`.
 
-    start : None (the most unstable mode, or rest), a `Mode`, (q, qd), a `Trajectory` whose end is taken, (q, qd,
-        period) or a `Cycle`, which are taken as they are.
+    start : None (the most unstable mode, or rest), or any `Start`; (q, qd, period) and a `Cycle` are taken as they are
     settle : [s] of the run before a return is looked for; None takes 300 periods of the slowest mode
     """
     if isinstance(start, Cycle):
         return field.state(start.q[0], start.qd[0], start.memory), float(start.period), Outcome(COMPLETED)
     if isinstance(start, (tuple, list)) and len(start) == 3:
-        return _under_way(field, field.state(*(_vector(field, x) for x in start[:2])), float(start[2]))
+        return _under_way(field, state_of(field, start[:2]), float(start[2]))
     x = state_of(field, start)
     slowest = _slowest_period(field)
     duration = PERIODS * slowest if settle is None else settle
@@ -153,43 +152,14 @@ def _fast_slip(run: Trajectory) -> int:
 
 
 def state_of(field: Autonomous, start: Any) -> Any:
-    """The state (q, qd) in one row, (2n,), that a start means: the end of a run, (q, qd), or None near a mode."""
-    if isinstance(start, Trajectory):
-        return field.state(start.q[-1], start.qd[-1])
+    """The state (q, qd) in one row, (2n,), that a `Start` means; None is near the mode that grows fastest, or rest."""
     if start is None:
         modes = complex_modes(field.asked)
         start = modes.most_unstable if np.any(modes.exists & np.isfinite(modes.eigenvalues[..., 0])) else "rest"
         if isinstance(start, Mode) and start.growth_rate <= 0.0:
             start = "rest"
-    if isinstance(start, Mode):
-        n = field.asked.size
-        start = [x[:n] for x in start.start(visible_amplitude(field, start))[:2]]
-    if isinstance(start, str):
-        if start == "rest":
-            return field.state(*np.zeros((2, field.system.size)))
-        raise ParameterError("", "start", start, '"rest", a mode, (q, qd), a trajectory or a cycle')
-    try:
-        q, qd = start
-    except (TypeError, ValueError) as error:
-        expected = '"rest", a mode, (q, qd), (q, qd, period), a trajectory or a cycle'
-        raise ParameterError("", "start", start, expected) from error
-    return field.state(_vector(field, q), _vector(field, qd))
-
-
-def _vector(field: Autonomous, value: Any) -> Any:
-    array = np.asarray(value, dtype=float)
-    if array.shape != (field.system.size,) or not np.all(np.isfinite(array)):
-        raise ParameterError("", "start", value, f"{field.system.size} finite numbers")
-    return array
-
-
-def visible_amplitude(field: Autonomous, mode: Mode, share: float = 0.5) -> float:
-    """Amplitude [m] of a mode at which some contact's speed swings by `share` of its sliding speed."""
-    along = np.array([c.t for c in field.asked.contacts]).reshape(-1, field.asked.size)
-    swing = np.abs(along @ (mode.eigenvalue * mode.shape[: field.asked.size]))
-    speed = np.abs([float(value_at(c.V, 0.0)) for c in field.asked.contacts])
-    ratios = speed[swing > 0.0] / swing[swing > 0.0]
-    return share * float(np.min(ratios)) if ratios.size and np.min(ratios) > 0.0 else 1e-6
+    begin = Start.of("", start, field.system, modes_of=field.asked, share=VISIBLE)
+    return field.state(begin.q, begin.qd, begin.z)
 
 
 def _slowest_period(field: Autonomous) -> float:

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.family import Family, Varied
 from squealbox.friction import Cubic, FrictionLaw, Stribeck
-from squealbox.limit_cycles.branches.hopf import family
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.limit_cycles.cycles.harmonic_balance import harmonic_balance
 from squealbox.parameters import ParameterError
@@ -85,14 +85,13 @@ def averaged_swings(law: FrictionLaw, sliding_speed: float, normal_force: float,
 
 
 @public()
-def averaged_curve(design: Any, parameter: str, values: Any) -> tuple[Any, Any]:
+def averaged_curve(design: Any, parameter: Varied, values: Any = None) -> tuple[Any, Any]:
     """(values, amplitudes [m]) of the averaged cycles over a parameter, for a figure; empty unless it is one block.
 
     Parameters
     ----------
     design : a design, or a function of one value that returns a design or system
-    parameter : dotted name
-    values : of the parameter, shape (k,)
+    parameter, values : {name: values (k,)}; or the name and the values one after the other
 
     One degree of freedom with one contact whose normal force does not depend on the displacement is a block on a belt.
     Accuracy: that of :func:`averaged_swings`; cycles that stick are not among them. Source: as this module.
@@ -104,9 +103,9 @@ def averaged_curve(design: Any, parameter: str, values: Any) -> tuple[Any, Any]:
     >>> averaged_curve(block, "speed", [0.48])[1].round(9).tolist()
     [0.237018518]
     """
-    make, points = family(design, parameter), []
-    for value in np.asarray(values, dtype=float):
-        system = make(float(value))
+    family, points = Family.along("averaged_curve", design, parameter, values, count=1), []
+    for value in family.spans[0]:
+        system = family.system(float(value))
         if system.size != 1 or len(system.contacts) != 1 or np.any(system.contacts[0].n) or system.contacts[0].rigid:
             break
         (belt,) = system.contacts

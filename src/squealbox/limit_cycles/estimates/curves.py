@@ -13,9 +13,9 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
+from squealbox.family import Bounds, Family, Varied
 from squealbox.limit_cycles.branches.branch import Branch
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
-from squealbox.limit_cycles.branches.hopf import family
 from squealbox.limit_cycles.cycles.harmonic_balance import Grid, harmonic_balance
 from squealbox.limit_cycles.estimates.averaging import averaged_curve
 
@@ -57,7 +57,7 @@ class EstimateCurve:
 
 @public()
 def estimate_curves(
-    design: Any, parameter: str, bounds: tuple[float, float], branches: Sequence[Branch] = ()
+    design: Any, parameter: Varied, bounds: Bounds | None = None, branches: Sequence[Branch] = ()
 ) -> tuple[EstimateCurve, ...]:
     """The describing function through each branch, and averaging where the system is a block on a belt.
 
@@ -76,25 +76,24 @@ def estimate_curves(
     >>> [curve.label for curve in estimate_curves(drum, "friction.static", (0.4, 0.5), [walk])]
     ['describing function (one harmonic)']
     """
-    found: list[EstimateCurve] = []
+    family = Family.within("estimate_curves", design, parameter, bounds)
+    (low, high), found = family.spans[0], list[EstimateCurve]()
     for one in branches:
-        curve = _through(design, parameter, bounds, one, found)
+        curve = _through(family, one, found)
         if curve is not None:
             found.append(curve)
-    values, sizes = averaged_curve(design, parameter, np.linspace(*bounds, 201))
+    values, sizes = averaged_curve(design, {family.name: np.linspace(low, high, 201)})
     if len(values):
         validity = "holds for damping and friction small against the spring"
         found.append(EstimateCurve(AVERAGED, values, sizes[:, None], validity))
     return tuple(EstimateCurve(c.label, c.value, c.amplitude, c.validity, *_off(c, branches)) for c in found)
 
 
-def _through(
-    design: Any, parameter: str, bounds: tuple[float, float], one: Branch, known: list[EstimateCurve]
-) -> EstimateCurve | None:
+def _through(family: Family, one: Branch, known: list[EstimateCurve]) -> EstimateCurve | None:
     """The describing function through a branch; None where it is not found, or is one of the known curves."""
     if len(one.value) == 0:
         return None
-    make = family(design, parameter)
+    make, bounds = family.system, family.spans[0]
     order = np.argsort(~one.stable, kind="stable")  # stable cycles first
     for i in order[np.linspace(0, len(order) - 1, TRIED + 2).astype(int)[1:-1]]:
         value, start, n = float(one.value[i]), one.start[i], one.amplitude.shape[1]

@@ -19,7 +19,7 @@ from squealbox.studies.optimisation.goals import Candidates, Constraint, Goal
 from squealbox.studies.optimisation.search import FEASIBLE, best_of_one, pareto_front
 from squealbox.studies.quantity import input_of, unit_of
 from squealbox.studies.uncertainty.intervals import checked_box
-from squealbox.studies.uncertainty.scatter import Scatter
+from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
 
 METHODS = ("global", "local")
 NEAR = 1e-4  # share of the range, or of the size of a constraint's limit, within which it is said to bind
@@ -106,7 +106,7 @@ def optimise(
     goals: Goal | Sequence[Goal],
     constraints: Sequence[Constraint] = (),
     *,
-    scatter: Scatter | None = None,
+    scatter: Scattered | None = None,
     samples: int = 256,
     method: Literal["global", "local"] = "global",
     population: int = 60,
@@ -141,6 +141,7 @@ def optimise(
     wanted: list[Any] = list(goals) if isinstance(goals, (list, tuple)) else [goals]
     kept = list(constraints)
     names, box = checked_box(variables, "optimise")
+    scatter = None if scatter is None else as_scatter(scatter)
     _check(wanted, kept, scatter, method)
     candidates = Candidates(design, names, scatter, int(samples), seed)
     before = _before(design, names)

@@ -23,7 +23,7 @@ from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import Quantity, as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.distributions import Lognormal, Normal
-from squealbox.studies.uncertainty.scatter import Scatter
+from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
 from squealbox.studies.uncertainty.sobol import finite_outcome
 
 FOLDS = 10
@@ -138,7 +138,7 @@ class Surrogate(Result):
 @public(design=None)
 def polynomial_chaos(
     design: Any,
-    scatter: Scatter,
+    scatter: Scattered,
     quantity: Any,
     *,
     samples: int = 256,
@@ -158,6 +158,7 @@ def polynomial_chaos(
     Accuracy: Q2, and `caution`. An unknown or infinite value gives the outcome "unknown_values", a quantity that does
     not vary "no_variance".
     """
+    scatter = as_scatter(scatter)
     asked = as_quantity(quantity)
     for name, value, least in (("samples", samples, 10), ("folds", folds, 2)):
         if isinstance(value, bool) or int(value) != value or value < least:

@@ -23,7 +23,7 @@ from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, input_of, unit_of
 from squealbox.studies.uncertainty.importance import wide_sample
 from squealbox.studies.uncertainty.limit_state import LimitState, seeded
-from squealbox.studies.uncertainty.scatter import Scatter
+from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
 
 ALONG = 61  # points on the line through the design point
 CLOSE = 1e-4  # |g| at the design point, as a share of its change over one standard deviation
@@ -90,7 +90,7 @@ class DesignPoint(Result):
 @public(design=None)
 def form(
     design: Any,
-    scatter: Scatter,
+    scatter: Scattered,
     quantity: Any,
     *,
     samples: int = 4000,
@@ -117,6 +117,7 @@ def form(
     >>> round(float(found.beta), 6)  # 6/sqrt(2)
     4.242641
     """
+    scatter = as_scatter(scatter)
     asked = as_quantity(quantity)
     if samples < 2 or not 0.0 < level < 1.0:
         raise ParameterError("form", "samples, level", (samples, level), "at least 2 samples and a level in (0, 1)")

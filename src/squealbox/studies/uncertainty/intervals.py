@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.family import bounds_of
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
@@ -119,11 +120,7 @@ def checked_box(box: Any, owner: str) -> tuple[list[str], Any]:
     """Names and ends of a box, shape (d, 2). Raises `ParameterError` when it is none."""
     if not isinstance(box, Mapping) or not box:
         raise ParameterError(owner, "box", box, "names with (low, high) each, at least one")
-    for name, ends in box.items():
-        ok = np.shape(ends) == (2,) and bool(np.all(np.isfinite(ends))) and ends[0] < ends[1]
-        if not ok:
-            raise ParameterError(owner, str(name), ends, "two finite numbers, the lower first")
-    return [str(name) for name in box], np.array([tuple(map(float, ends)) for ends in box.values()])
+    return [str(name) for name in box], np.array([bounds_of(owner, str(name), ends) for name, ends in box.items()])
 
 
 def _extremes(values_at: Callable[[Any], Any], ends: Any, seed: int) -> list[tuple[float, Any]]:

@@ -16,7 +16,7 @@ from squealbox.extras import extra
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
-from squealbox.studies.uncertainty.scatter import Scatter
+from squealbox.studies.uncertainty.scatter import Scattered, as_scatter
 from squealbox.studies.uncertainty.sobol import finite_outcome, need_independent
 
 COVERED = 0.99  # central share of each distribution that the trajectories span
@@ -59,7 +59,7 @@ class MorrisEffects(Result):
 
 @public(design=None)
 def morris_effects(
-    design: Any, scatter: Scatter, quantity: Any, *, trajectories: int = 50, seed: int = 0, level: float = 0.95
+    design: Any, scatter: Scattered, quantity: Any, *, trajectories: int = 50, seed: int = 0, level: float = 0.95
 ) -> MorrisEffects:
     """Elementary effects of the independent parameters of `scatter` on `quantity`.
 
@@ -82,6 +82,7 @@ def morris_effects(
         from SALib.analyze import morris as analysis
         from SALib.sample import morris as sampling
 
+    scatter = as_scatter(scatter)
     asked = as_quantity(quantity)
     need_independent(scatter, "morris_effects")
     if isinstance(trajectories, bool) or int(trajectories) != trajectories or trajectories < 2:

@@ -10,7 +10,7 @@ from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.replicates import binomial_interval, student_interval
-from squealbox.studies.uncertainty.scatter import Sampling, Scatter, unit_points
+from squealbox.studies.uncertainty.scatter import Sampling, Scattered, as_scatter, unit_points
 
 ENOUGH = 5  # squealing and quiet points that every replicate must hold before their spread is trusted
 
@@ -71,7 +71,7 @@ class SquealProbability(Result):
 @public(design=None)
 def squeal_probability(
     design: Any,
-    scatter: Scatter,
+    scatter: Scattered,
     quantity: Any,
     *,
     samples: int = 4096,
@@ -85,7 +85,7 @@ def squeal_probability(
     Parameters
     ----------
     design : has ``replace``; or a function of the scattered values; or None, see `squealbox.studies.evaluate`
-    scatter : distributions and correlation
+    scatter : {name: distribution}, such as {"friction.static": Normal(0.4, 0.02)}, or a `Scatter` with correlations
     quantity : a `Quantity`, or a function of a design that is positive where the brake squeals
     samples : points in all
     method : "random": Clopper and Pearson's exact interval. "latin_hypercube", "sobol": `samples` are split over
@@ -102,6 +102,7 @@ def squeal_probability(
     >>> round(float(found.probability), 2)
     0.5
     """
+    scatter = as_scatter(scatter)
     asked = as_quantity(quantity)
     _check(samples, level, replicates)
     groups = 1 if method == "random" else int(replicates)

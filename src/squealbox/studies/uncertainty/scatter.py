@@ -131,6 +131,14 @@ class Scatter(DataSheet):
         return self.from_uniform(unit_points(count, len(self.distributions), method, np.random.default_rng(seed)))
 
 
+Scattered = Scatter | Mapping[str, Any]  # with its correlations, or name to distribution
+
+
+def as_scatter(given: Scattered) -> Scatter:
+    """``{"friction.static": Normal(0.4, 0.02)}`` as the independent scatter it stands for; a `Scatter` as it is."""
+    return Scatter(given) if isinstance(given, Mapping) else given
+
+
 def unit_points(count: int, dimensions: int, method: Sampling, rng: Any) -> Any:
     """`count` points of the open unit cube, shape (count, dimensions); `rng` is a NumPy generator."""
     from scipy.stats import qmc

@@ -18,7 +18,7 @@ from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.replicates import ratio_interval
-from squealbox.studies.uncertainty.scatter import Scatter, unit_points
+from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter, unit_points
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -65,7 +65,7 @@ class SobolIndices(Result):
 @public(design=None)
 def sobol_indices(
     design: Any,
-    scatter: Scatter,
+    scatter: Scattered,
     quantity: Any,
     *,
     samples: int = 4096,
@@ -93,6 +93,7 @@ def sobol_indices(
     >>> np.round(found.first, 2).tolist()
     [0.9, 0.1]
     """
+    scatter = as_scatter(scatter)
     asked = as_quantity(quantity)
     need_independent(scatter, "sobol_indices")
     if not 0.0 < level < 1.0:

@@ -19,7 +19,7 @@ from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, input_of
 from squealbox.studies.uncertainty.form import lognormal_interval
 from squealbox.studies.uncertainty.limit_state import LimitState, seeded
-from squealbox.studies.uncertainty.scatter import Scatter
+from squealbox.studies.uncertainty.scatter import Scattered, as_scatter
 
 SHARE = 0.1  # conditional probability of a level
 
@@ -64,7 +64,7 @@ class SubsetProbability(Result):
 @public(design=None)
 def subset_simulation(
     design: Any,
-    scatter: Scatter,
+    scatter: Scattered,
     quantity: Any,
     *,
     samples: int = 2000,
@@ -93,6 +93,7 @@ def subset_simulation(
     >>> bool(found.low < 1.1e-5 < found.high)
     True
     """
+    scatter = as_scatter(scatter)
     asked = as_quantity(quantity)
     for name, value, least in (("samples", samples, 100), ("runs", runs, 1)):
         if isinstance(value, bool) or int(value) != value or value < least:

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.cautions import least_coefficient
-from squealbox.parameters import ParameterError
-from squealbox.system import InvalidSystem, System, as_system, equilibrium
+from squealbox.start import Start
+from squealbox.system import System, as_system
 from squealbox.transient import packing
 from squealbox.transient._march import COMPLETED, NOT_CONFIRMED
 from squealbox.transient.choosing import pays
@@ -21,7 +21,7 @@ from squealbox.transient.lanes.table import Jobs, tabulate
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.observers import Observer
-from squealbox.transient.widened import RunApart, base_of, parted, start_of
+from squealbox.transient.widened import RunApart, base_of, start_of
 
 BLOCK = 65_536  # trajectories whose parameters lie in memory together
 GROUPS = 2  # groups of lanes that a thread advances in turn: one hides the latency of the other
@@ -59,23 +59,22 @@ class Work:
         size = BLOCK if names else max(total, 1)
         for first in range(0, total, size):
             part = slice(first, min(first + size, total))
-            if names:
-                system = in_time(as_system(design.replace(dict(zip(names, (a[part] for a in flat), strict=True)))))
-            else:
-                system = stacked(design) if isinstance(design, (list, tuple)) else in_time(as_system(design))
-            self._block(system, shape, part, total)
+            several = isinstance(design, (list, tuple))
+            made = None if several else as_system(
+                design.replace(dict(zip(names, (a[part] for a in flat), strict=True))) if names else design
+            )  # fmt: skip
+            self._block(stacked(design) if made is None else in_time(made), made, shape, part, total)
             if self.interrupted:
                 break
 
-    def _block(self, system: System, shape: tuple[int, ...], part: slice, total: int) -> None:
+    def _block(self, system: System, made: Any, shape: tuple[int, ...], part: slice, total: int) -> None:
         count = part.stop - part.start
         self.system = self.system or base_of(system)
         if not pays(system, self.method.tableau, total):
             raise RunApart("a kernel of so many freedoms and contacts takes longer to compile than they run apart")
-        batch = system.shape if system.shape != () else (count,)
-        given, z = parted("simulate_ensemble", self.start, system)
-        start = _starts(base_of(system), given, self.begin, shape, part, batch)
-        start = start_of(system, *start, z, isinstance(self.start, str) and self.start == "sliding", self.begin)
+        members, base = (shape, part), base_of(system)
+        begin = Start.of("simulate_ensemble", self.start, base, self.begin, modes_of=made, members=members)
+        start = start_of(system, begin, self.begin)
         watches = tuple(each.watch() for each in self.observers)
         begins = [self.begin + (1.0 - each.last) * self.duration for each in self.observers]
         coefficients = [x for each, t in zip(self.observers, begins, strict=True) for x in (t, *each.settings)]
@@ -204,27 +203,3 @@ def on_a_line(count: int) -> Any:
     """Zeros that begin with a line of the cache, as the packed loads and stores of `vectors` expect."""
     room = np.zeros(count + 8)
     return room[-room.ctypes.data // 8 % 8 :][:count]
-
-
-def _starts(
-    system: System, start: Any, begin: float, shape: tuple[int, ...], part: slice, batch: tuple[int, ...]
-) -> tuple[Any, Any]:
-    """q and qd at the start, each ending with n, for the block."""
-    n = system.size
-    if start is None or (isinstance(start, str) and start == "rest"):
-        return np.zeros(n), np.zeros(n)
-    if isinstance(start, str) and start == "sliding":
-        state = equilibrium(system, begin)
-        if not np.all(state.exists):
-            raise InvalidSystem(f"there is no steady sliding to start from: {state.outcome.message}")
-        return state.q, np.zeros(n)
-    try:
-        q, qd = (np.asarray(x, dtype=float) for x in start)
-        if not (q.ndim == qd.ndim == 1 and q.shape == qd.shape == (n,)):
-            q, qd = (np.broadcast_to(x, (*shape, n)).reshape(-1, n)[part].reshape(*batch, n) for x in (q, qd))
-    except (TypeError, ValueError) as error:
-        expected = f'"rest", "sliding" or (q, qd) of shape (..., {n})'
-        raise ParameterError("simulate_ensemble", "start", start, expected) from error
-    if not (np.all(np.isfinite(q)) and np.all(np.isfinite(qd))):
-        raise ParameterError("simulate_ensemble", "start", start, "finite displacements and velocities")
-    return q, qd
