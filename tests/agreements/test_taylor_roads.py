@@ -245,3 +245,26 @@ def test_the_audit_of_a_damped_motion_is_as_exact_as_the_motion():
     for rtol in (1e-6, 1e-8, 1e-10, 1e-12):
         motion = simulate(damped, 300.0, ([1.0], [0.0]), method="taylor", rtol=rtol)
         assert motion.energy.relative_residual < 30.0 * rtol
+
+
+def test_a_smoothed_measured_law_has_a_series():
+    """A law of points under tanh, which is compared with its series at speeds inside the step."""
+    design, ways = drum(reading="consistent").replace({"friction": MEASURED}), {"contact": "tanh", "width": 0.02}
+    one = simulate(design, 0.01, times=21, **ways)
+    close = simulate(design, 0.01, times=21, method=Method("dormand-prince-8", rtol=1e-13), **ways)
+    assert one.settings["tableau"] == "taylor"
+    assert distance(one.q, close.q) < 1e-8
+
+
+def test_a_contact_that_lifts_off_under_a_smoothed_sign():
+    """A block that hops on a belt: where it is open it is pulled by nothing, and what that is worth is counted."""
+    spring = Contact([2.0, 0.0], [0.3, 1.0], [0.0, 1.0], 0.5, 0.6, Coulomb(0.3), unilateral=True, normal=[-2.0, 0.0])
+    block = System(np.eye(2), 0.02 * np.eye(2), [[4.0, 0.5], [0.5, 3.0]], [0.1, 0.0], (spring,))
+    ways = {"contact": "tanh", "width": 0.05, "times": 101}
+    one = simulate(block, 20.0, ([0.8, 0.0], [0.0, 0.0]), **ways)
+    close = simulate(block, 20.0, ([0.8, 0.0], [0.0, 0.0]), method=Method("dormand-prince-8", rtol=1e-12), **ways)
+    assert one.settings["tableau"] == "taylor"
+    assert 0.05 < np.mean(one.mode == 2) < 0.95
+    assert np.array_equal(one.mode, close.mode)
+    assert distance(one.q, close.q) < 1e-7
+    assert np.max(np.abs(one.energy.residual)) < 1e-7

@@ -14,7 +14,7 @@ PROJECT_TABLE = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project
 # Rooms, or single files, that may use an extra, and which one.
 EXTRAS = {
     "signals": "recordings", "studies": "studies", "workbench": "workbench", "fe": "fe", "factorisation.py": "fe",
-    "control": "control", "report": "report", "signals/quality.py": "sound",
+    "control": "control", "signals/quality.py": "sound",
 }  # fmt: skip
 
 
@@ -52,4 +52,4 @@ def test_the_pages_are_built_with_what_their_cells_run():
 
 
 def test_an_undeclared_import_is_seen():
-    assert third_party("import numpy\nimport os\ndef f():\n    from plotly.io import show\n") == {"numpy", "plotly"}
+    assert third_party("import numpy\nimport os\ndef f():\n    from bokeh.io import show\n") == {"numpy", "bokeh"}

@@ -2,9 +2,9 @@
 
 import base64
 import io
+import json
 import re
 import shutil
-import sys
 import tempfile
 import wave
 
@@ -15,10 +15,11 @@ from browsers import driven
 from squealbox import Coulomb, DiscBrake, DrumBrake, LinearSlope, Ramp, complex_modes, reduce, simulate
 from squealbox.cli import BAD_INPUT, DONE, main
 from squealbox.files import write_design
+from squealbox.plots.figure_data import unpacked
 from squealbox.report import Examination, ReportError, design_page, examine, report, words
 from squealbox.report.blocks import Chart, Drawing, Page, Section
 from squealbox.report.moving import vibrating
-from squealbox.report.page import packed_library, render, write_page
+from squealbox.report.page import render, write_page
 from squealbox.report.solid import vibrating_solid
 from squealbox.signals import dominant_frequency, sound_level
 from squealbox.studies import sweep
@@ -89,7 +90,7 @@ def test_it_opens_without_network_request_or_error(untouched, written):
     assert untouched.page.evaluate("document.documentElement.dataset.charts") == "drawn"
     assert untouched.errors == []
     assert [url for url in untouched.requests if not url.startswith("data:")] == [written.as_uri()]
-    assert written.stat().st_size < 5e6
+    assert written.stat().st_size < 2e6
 
 
 def test_an_error_and_a_request_are_seen(browser, tmp_path):
@@ -115,20 +116,61 @@ def test_its_policy_runs_no_other_script_and_connects_nowhere(opened):
     assert "default-src 'none'" in opened.page.get_attribute("meta[http-equiv]", "content")
 
 
-def test_the_charts_show_the_numbers(opened):
-    drawn = opened.page.evaluate(
-        "[...document.querySelectorAll('figure.chart .live')].map((place) => place.data.map((line) => "
-        "({type: line.type, name: line.name, size: (line.x ?? []).length})))"
+def numbers(written):
+    """What each chart of a page is drawn from: its figures with their arrays in place, by name."""
+    charts = []
+    for text in re.findall(r'<script type="application/json">(.*?)</script>', written.read_text()):
+        given = json.loads(text)
+        arrays = {name: np.frombuffer(base64.b64decode(packed), "<f4") for name, (_, packed) in given["arrays"].items()}
+        charts.append({each["name"]: unpacked(given, arrays, each["name"]) for each in given["figures"]})
+    return charts
+
+
+def test_the_charts_show_the_numbers(opened, written):
+    modes, plane, motion = numbers(written)
+    curves = [each for each in modes["growth"]["layers"] if each["kind"] == "line"]
+    assert [each["column"] for each in curves] == ["mode 1", "mode 2"]
+    assert len(curves[0]["x"]) > 200
+    k = int(np.argmin(np.abs(curves[0]["x"] - 0.6)))
+    there = complex_modes(SQUEALING.replace({"friction.static": float(curves[0]["x"][k])}))
+    assert sorted(each["y"][k] for each in curves) == pytest.approx(np.sort(there.growth_rate[:2]), rel=1e-4)
+    (stretch,) = [each for each in modes["growth"]["layers"] if each["kind"] == "band"]
+    assert stretch["from"] == pytest.approx(0.33269, abs=5e-6)
+    assert [modes["growth"][way]["unit"] for way in ("x", "y")] == ["", "1/s"]
+    assert (plane["map"]["heat"]["rows"], plane["map"]["heat"]["columns"]) == (21, 21)
+    assert plane["map"]["layers"][-1]["x"] == pytest.approx([0.45])
+    assert [each["name"] for name in ("motion", "spectrum") for each in motion[name]["layers"]] == ["x", "y", "x", "y"]
+    drawn = opened.page.locator(".chart").evaluate_all(
+        "all => all.map((chart) => [chart.dataset.figure, chart.querySelectorAll('.layer').length])"
     )
-    modes, plane, motion = drawn
-    assert {line["name"] for line in modes} == {"mode 1", "mode 2"}
-    assert all(line["size"] > 200 for line in modes)
-    assert plane[0]["type"] == "heatmap"
-    assert {line["name"] for line in plane[1:]} == {"boundary of stability", "this design"}
-    assert [line["name"] for line in motion] == ["x", "x", "y", "y"]
-    here = opened.page.evaluate("document.querySelectorAll('figure.chart .live')[1].data.at(-1).x[0]")
-    assert here == pytest.approx(0.45)
-    assert opened.page.locator(".live .main-svg").count() >= 3
+    assert dict(drawn) == {"frequency": 6, "growth": 5, "map": 2, "motion": 4, "spectrum": 4}  # with legends
+
+
+def test_a_chart_is_read_out_zoomed_into_and_dark_by_night(untouched):
+    page = untouched.page
+    page.locator(".chart canvas:not([hidden])").scroll_into_view_if_needed()
+    box = page.locator(".chart canvas:not([hidden])").bounding_box()
+    page.mouse.move(box["x"] + 0.8 * box["width"], box["y"] + 0.5 * box["height"])
+    said = page.locator("[data-figure=map] .reading").text_content()
+    found = re.fullmatch(r"([\d.]+), ([\d.]+) (k?)N: ([\d.]+) 1/s, ([\d.]+) Hz", said)
+    friction, load = float(found[1]), float(found[2]) * (1e3 if found[3] else 1.0)
+    worst = complex_modes(SQUEALING.replace({"friction.static": friction, "load": load})).most_unstable
+    assert float(found[4]) == pytest.approx(worst.growth_rate, rel=0.05)  # of the nearest cell of 21 x 21
+    assert float(found[5]) == pytest.approx(worst.frequency, rel=0.02)
+    ticks = (
+        "() => ['frequency', 'growth'].map((name) => document.querySelector(`[data-figure=${name}] .axis`).textContent)"
+    )
+    before = page.evaluate(ticks)
+    page.locator("[data-figure=growth] svg").press("+")
+    near = page.evaluate(ticks)
+    assert near[0] == near[1] != before[0], "both over one axis"
+    page.locator("[data-figure=growth] svg").press("0")
+    assert page.evaluate(ticks) == before
+    page.emulate_media(color_scheme="dark")
+    ink = "getComputedStyle(document.querySelector('.chart .axis-label')).fill"
+    assert min(map(int, re.findall(r"\d+", page.evaluate(ink)))) > 200
+    page.emulate_media(color_scheme="light")
+    assert max(map(int, re.findall(r"\d+", page.evaluate(ink)))) < 60
 
 
 def test_it_says_what_an_engineer_asks(opened):
@@ -167,11 +209,11 @@ def test_it_prints_its_figures_and_opens_what_is_folded(opened):
     assert pdf.startswith(b"%PDF")
     assert 6 <= len(re.findall(rb"/Type\s*/Page\b", pdf)) <= 20
     opened.page.emulate_media(media="print")
-    assert not opened.page.locator("figure.chart .live").first.is_visible()
-    assert opened.page.locator("figure.chart img").first.is_visible()
+    assert not opened.page.locator("figure.plotted .live").first.is_visible()
+    assert opened.page.locator("figure.plotted img").first.is_visible()
     assert opened.page.locator("text=how the paper's friction is read").last.is_visible()
     opened.page.emulate_media(media="screen")
-    assert opened.page.locator("figure.chart .live").first.is_visible()
+    assert opened.page.locator("figure.plotted .live").first.is_visible()
 
 
 def test_no_picture_is_missing_and_no_text_leaves_the_page(opened):
@@ -305,18 +347,22 @@ def test_a_bad_source_is_one_sentence(source, sentence, tmp_path, capsys):
     assert not (tmp_path / "out.html").exists()
 
 
-def test_without_plotly_the_figures_stand_still_and_it_says_so(monkeypatch):
-    chart = Chart(Drawing(b"\x89PNG", "a caption"), {"data": [], "layout": {}})
-    page = Page("a page", "a lead", (Section("one", (chart,)),))
-    assert "<script>" in render(page)
-    for name in ("plotly", "plotly.offline"):
-        monkeypatch.setitem(sys.modules, name, None)
-    packed_library.cache_clear()
-    text = render(page)
-    packed_library.cache_clear()
-    assert "pip install &#39;squealbox[report]&#39;" in text.replace("'", "&#39;")
-    assert "<script" not in text
-    assert "data:image/png" in text
+def test_where_figures_cannot_be_drawn_the_pictures_stay_and_it_says_so(browser, written):
+    reading = browser.new_page()
+    reading.add_init_script("CSS.supports = () => false")
+    reading.goto(written.as_uri())
+    reading.wait_for_selector("html[data-charts=still]")
+    assert "stand still here" in reading.inner_text("#still")
+    assert not reading.locator("figure.plotted .live").first.is_visible()
+    assert reading.locator("figure.plotted img").first.is_visible()
+    reading.close()
+
+
+def test_a_page_without_figures_has_no_script_and_a_chart_is_made_of_figures_as_data():
+    still = Page("a page", "a lead", (Section("one", (Drawing(b"\x89PNG", "a caption"),)),))
+    assert "<script" not in render(still)
+    with pytest.raises(ReportError, match="FigureData"):
+        Chart(Drawing(b"\x89PNG", "a caption"), {"data": [], "layout": {}})
 
 
 def test_a_bad_target_or_thing_is_refused(tmp_path):

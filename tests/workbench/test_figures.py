@@ -1,15 +1,28 @@
 """Every figure of the page: zoom, ends of axes, units, read-out, what was measured, and the files made of it."""
 
+import csv
 import json
 
 import numpy as np
 import pytest
 
 from squealbox import DrumBrake, LinearSlope
-from squealbox.workbench.figures import Axis, Bars, Figure, across, heat, line, packed, span, unpacked
+from squealbox.plots.figure_data import (
+    Bars,
+    FigureAxis,
+    FigureData,
+    across,
+    heat,
+    hull,
+    line,
+    packed,
+    path,
+    span,
+    unpacked,
+)
+from squealbox.plots.paper import KINDS, NoFigure
+from squealbox.plots.paper import drawn as pdf
 from squealbox.workbench.panels import OptionError, Options, Work, function_of
-from squealbox.workbench.paper import KINDS, NoFigure
-from squealbox.workbench.paper import drawn as pdf
 
 PLAIN = {
     "size": [300, 200], "x": {"label": "time [s]", "domain": [0, 1]}, "y": {"label": "x [mm]", "domain": [-1, 1]},
@@ -30,8 +43,8 @@ def asked(name, **options):
 
 def test_an_array_that_stands_in_several_figures_travels_once():
     x, y = np.linspace(0.0, 1.0, 9), np.linspace(0.0, 2.0, 9)
-    axes = Axis("time", "s", (0.0, 1.0)), Axis("x", "m", span(y))
-    figures, arrays = packed([Figure("a", *axes, [line(x, y)]), Figure("b", *axes, [line(x, -y), across(0.0)])])
+    axes = FigureAxis("time", "s", (0.0, 1.0)), FigureAxis("x", "m", span(y))
+    figures, arrays = packed([FigureData("a", *axes, [line(x, y)]), FigureData("b", *axes, [line(x, -y), across(0.0)])])
     assert len(arrays) == 3
     assert unpacked({"figures": figures}, arrays, "b")["layers"][0]["y"] == pytest.approx(-y)
     assert packed([Bars("c", "N", [{"name": "one", "parts": [("b0", 1.0)], "sum": 1.0}])])[1] == {}
@@ -50,7 +63,7 @@ def test_an_axis_is_read_in_the_unit_that_was_chosen():
 def test_the_other_design_of_a_comparison_is_checked_like_its_own():
     kept = {"brake": "drum_brake", "values": {"friction.static": 0.3}}
     both = asked("compare", a=kept)
-    heads, rows = both.data["table"].heads, {row[0]: row for row in both.data["table"].rows}
+    heads, rows = both.data["table"]["heads"], {row[0]: row for row in both.data["table"]["rows"]}
     assert list(heads) == ["", "A (kept)", "B (this page)"]
     assert rows["friction.static"][1:] == ["0.3", "0.45"]
     assert rows["its growth rate"][2][1] == "worse"
@@ -62,24 +75,36 @@ def test_the_other_design_of_a_comparison_is_checked_like_its_own():
 
 
 def test_a_figure_becomes_a_pdf():
-    begins = {"pdf": b"%PDF", "svg": b"<?xml", "png": b"\x89PNG"}
+    begins = {"pdf": b"%PDF", "svg": b"<?xml", "png": b"\x89PNG", "csv": b'"$a: time', "tsv": b'"$a: time [s]"\t'}
     assert set(begins) == set(KINDS)
     for kind, head in begins.items():
         assert pdf(json.dumps(PLAIN).encode(), kind).startswith(head)
     for name in ("locus", "energy", "friction"):
-        answer = asked(name)
-        figures, arrays = packed(answer.figures)
-        for figure in figures:
-            drawn = figure if "bars" in figure else unpacked({"figures": figures}, arrays, figure["name"])
-            for axis in ("x", "y"):
-                drawn = {**drawn, **({axis: {**drawn[axis], "label": "x"}} if "bars" not in figure else {})}
-            text = json.dumps({**drawn, "size": [300, 200]}, default=lambda value: np.nan_to_num(value).tolist())
-            assert pdf(text.encode()).startswith(b"%PDF")
+        for figure in asked(name).figures:
+            assert pdf(figure).startswith(b"%PDF")
     values = np.linspace(-1.0, 3.0, 12).reshape(3, 4)
     for scale in ("diverging", "sequential", "decades", "mechanism"):
         picture = {**heat(values.ravel().tolist(), scale, "growth", "1/s", names=["a", "b"]), "rows": 3, "columns": 4}
         with_picture = {**PLAIN, "heat": {**picture, "span": [[0, 1], [-1, 1]]}}
         assert pdf(json.dumps(with_picture).encode()).startswith(b"%PDF")
+
+
+def test_the_numbers_of_a_figure_become_a_table():
+    axes = FigureAxis("time", "s", (0.0, 2.0)), FigureAxis("load", "kN", (5.0, 6.0))
+    ring = np.array([[0.0, 5.0], [2.0, 6.0]])
+    layers = [hull([0.0, 1.0], [5.0, np.nan], [5.5, 6.0]), path([ring, ring], "boundary"), across(5.5)]
+    seen = heat(np.arange(6.0).reshape(2, 3), "sequential", "growth rate", "1/s")
+    head, *rows = csv.reader(pdf(FigureData("a", *axes, layers, heat=seen), "csv").decode().splitlines())
+    assert head == [
+        "time [s]", "load [kN]", "growth rate [1/s]", "time [s]", "least load [kN]", "largest load [kN]",
+        "boundary: time [s]", "boundary: load [kN]",
+    ]  # fmt: skip
+    assert rows[0] == ["0", "5", "0", "0", "5", "5.5", "0", "5"]
+    assert rows[1] == ["1", "5", "1", "1", "", "6", "2", "6"]
+    assert rows[2] == ["2", "5", "2", "", "", "", "", ""], "curves are parted by an empty line"
+    assert rows[5] == ["2", "6", "5", "", "", "", "", ""]
+    bars = Bars("c", "growth [1/s]", [{"name": 'a "b"', "parts": [("b0", 1.0)], "sum": 1.0}])
+    assert pdf(bars, "tsv") == b'"name"\t"growth [1/s]"\n"a ""b"""\t1\n'
 
 
 @pytest.mark.parametrize(
@@ -96,6 +121,15 @@ def test_what_is_no_figure_is_one_sentence(wrong):
     with pytest.raises(NoFigure) as said:
         pdf(wrong)
     assert "\n" not in str(said.value)
+
+
+@pytest.mark.parametrize("wrong", [b"", b"[]", b"{}", b"[" * 100_000, b'{"bars": 3}', b'{"bars": [{}], "label": ""}'])
+def test_nor_is_there_a_table_of_it(wrong):
+    with pytest.raises(NoFigure):
+        pdf(wrong, "csv")
+    huge = {"values": [1], "rows": 10**9, "columns": 9, "span": [[0, 1], [0, 1]], "name": "a"}
+    with pytest.raises(NoFigure):
+        pdf(json.dumps({**PLAIN, "heat": huge}).encode(), "csv")
 
 
 def axis(page, panel, figure, way="x"):

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import psutil
 from websockets.asyncio.client import connect
 
-from squealbox.workbench.figures import unpacked
+from squealbox.plots.figure_data import unpacked
 from squealbox.workbench.frames import unframed
 from workbench.conftest import Server
 

@@ -66,7 +66,7 @@ def test_the_event_is_the_one_that_was_rendered(kept):
     (event,) = found["events"]
     assert event["frequency"] == pytest.approx(HERTZ, abs=1.0)
     assert event["growth_rate"] == pytest.approx(GROWTH, abs=3.0 * event["growth_error"])
-    said = {row[0]: row for row in found["table"].rows}
+    said = {row[0]: row for row in found["table"]["rows"]}
     worst = complex_modes(TRUTH).most_unstable
     assert float(said["frequency Hz"][1]) == pytest.approx(worst.frequency, rel=1e-4)
     assert "no calibration" in found["words"]

@@ -43,7 +43,7 @@ def _overview() -> Iterator[str]:
     )
     methods = {name: make().title for name, make in TABLEAUX.items()}
     usual = {"usual": f"{TAYLOR} where the equation has a series, else dormand-prince-8"}
-    methods = usual | methods | {TAYLOR: "the motion's own series, for exact contact"}
+    methods = usual | methods | {TAYLOR: "the motion's own series, for all but plain sgn"}
     yield from _section("methods (method = ...)", methods)
     schemes = {
         "exact": "stick, slip and lift-off by events", "raw": "plain sgn(v)",

@@ -287,7 +287,9 @@ def _flatten(value: Any, flat: list[Any]) -> None:
         if value.dtype.names is None:
             flat.extend(value.shape)
     elif isinstance(value, np.void):
-        flat.append(value.__array_interface__["data"][0])
+        whole: Any = value.base  # its own interface would list all fields, which takes longer than a short run
+        alone = isinstance(whole, np.ndarray) and whole.nbytes == value.nbytes
+        flat.append(whole.ctypes.data if alone else value.__array_interface__["data"][0])
     elif isinstance(value, tuple):
         for each in value:
             _flatten(each, flat)

@@ -9,7 +9,7 @@ from squealbox.plots.style import LOOK, drawn, laid_out, looked
 DOTS = 150  # an inch, sharp on most screens
 
 
-class Drawing(Figure):
+class NotebookFigure(Figure):
     """A matplotlib figure that notebooks show without pyplot, which would keep every figure open.
 
     Its files are written in the look it was made in, by `savefig` too: text stays text in SVG and PDF.

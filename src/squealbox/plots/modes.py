@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 
 MOST_NAMED = 4  # modes named in the legend where there are more than looks
+NONE = 1e-7  # growth rates up to this [1/s], or this share of themselves, are round-off
 OF_INTEREST = 3.0  # times the largest growth: as far down the growth rates of many modes are drawn
 OTHERS: dict[str, Any] = {"color": "#aaaaaa", "linewidth": 0.6, "linestyle": "-", "zorder": 1}
 
@@ -108,11 +109,17 @@ def followed(eigenvalues: Any) -> Any:
 
 
 def unstable_stretches(values: Any, growth: Any) -> list[tuple[float, float]]:
-    """Stretches of `values` where `growth` > 0; their ends by straight lines between the points."""
-    crossing = [
-        float(values[i] - growth[i] * (values[i + 1] - values[i]) / (growth[i + 1] - growth[i]))
-        for i in range(len(values) - 1)
-        if (growth[i] > 0.0) != (growth[i + 1] > 0.0)
-    ]
-    ends = [float(values[0])] * bool(growth[0] > 0.0) + crossing + [float(values[-1])] * bool(growth[-1] > 0.0)
-    return list(zip(ends[::2], ends[1::2], strict=True))
+    """Stretches of `values` (k,) where the `growth` (k,) [1/s] is positive, beyond round-off.
+
+    They end on straight lines between the points, or half way to a point where nothing is known.
+    """
+    grows = growth > NONE * np.maximum(1.0, np.abs(growth))
+    edges = []
+    for i in np.nonzero(np.diff(np.r_[False, grows, False].astype(int)))[0]:
+        if i in (0, len(values)):
+            edges.append(float(values[min(i, len(values) - 1)]))
+            continue
+        a, b = growth[i - 1], growth[i]
+        share = np.clip(a / (a - b), 0.0, 1.0) if np.isfinite(a - b) and a != b else 0.5
+        edges.append(float(values[i - 1] + share * (values[i] - values[i - 1])))
+    return list(zip(edges[::2], edges[1::2], strict=True))

@@ -180,7 +180,7 @@ def panels(
     Returns the figure and its axes: one, or an array. Hand each to a function of this room as ``axes=``. In a `Look`
     of another width the height follows, and a row of panels that would get too narrow becomes a column.
     """
-    from squealbox.plots.figure import Drawing
+    from squealbox.plots.figure import NotebookFigure
 
     look = LOOK.get()
     usual = width or (COLUMN if columns == 1 else WIDTH)
@@ -194,7 +194,7 @@ def panels(
     elif look.width is not None and look.height is None:
         size = (look.width, size[1] * min(max(look.width / usual, 0.8), 1.5))
     with styled():
-        figure = Drawing(figsize=size, layout="constrained")
+        figure = NotebookFigure(figsize=size, layout="constrained")
         axes = figure.subplots(rows, columns, **keywords)
         asked = min(shape) > 1 or keywords.get("squeeze") is False
     return figure, np.reshape(axes, shape) if asked else axes

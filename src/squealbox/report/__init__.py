@@ -1,4 +1,4 @@
-"""Results as one self-contained HTML page. Depends on: plots and the results it draws; jinja2, plotly when writing.
+"""Results as one self-contained HTML page. Depends on: plots and the results it draws; jinja2 when writing.
 
     report("brake.toml", "brake.html")          a design examined from every side
     report(result, "result.html")               any result, or a file that holds one

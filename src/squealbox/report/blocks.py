@@ -3,10 +3,12 @@
 import base64
 import mimetypes
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from squealbox.plots.figure_data import FigureData
 
 HALF_A_PAGE = 3.6  # inches
 FEW_ROWS = 12
@@ -114,14 +116,18 @@ class Drawing:
 
 @dataclass(frozen=True)
 class Chart:
-    """A picture that can be pointed at and zoomed into: a drawing, and the same as a Plotly figure (data, layout).
+    """A picture that can be pointed at and zoomed into: a drawing, and the same as figures of `plots.figure_data`.
 
     The drawing is what is printed, and what is seen where scripts do not run.
     """
 
     drawing: Drawing
-    figure: Mapping[str, Any]
+    figures: Sequence[FigureData]
     kind = "chart"
+
+    def __post_init__(self) -> None:
+        if not all(isinstance(figure, FigureData) for figure in self.figures):
+            raise ReportError("a chart: expected figures as data, made with plots.figure_data.FigureData")
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ import numpy as np
 
 from squealbox import plots
 from squealbox.matrices import liveliest
-from squealbox.report import charts, words
+from squealbox.plots.as_data import motion_and_spectrum
+from squealbox.report import words
 from squealbox.report.blocks import Chart, Points, Sound, Text
 from squealbox.report.examination import Examination
 from squealbox.report.pictures import picture, wav, why_not
@@ -30,7 +31,7 @@ def transient(found: Examination) -> Iterator[Any]:
             lines = spectrum(motion, dof=i, begin=float(motion.t[-1] - 0.5 * (motion.t[-1] - motion.t[0])))
             spectra[name] = (lines.frequency, lines.amplitude)
         pitch = float(np.nan_to_num(found.verdicts[found.liveliest].frequency)) or 1.0
-        moving = charts.motion_and_spectrum(
+        moving = motion_and_spectrum(
             motion.t, dict(zip(names, motion.q[:, kept].T, strict=True)), spectra, 4.5 * pitch, unit
         )
         figure = plots.motion_overview(motion, dof=found.liveliest)

@@ -1,28 +1,27 @@
 """A page of blocks as one HTML file that needs nothing else: no network, no folder beside it.
 
-Charts come to life by plotly.js, which lies packed in the same file and is unpacked by the browser, brakes in 3-D by
-the workbench's own script. The page's policy allows exactly these scripts and what starts them, by their hashes, and no
-connection to anywhere.
+Figures and brakes in 3-D come to life by the workbench's own scripts, which lie in the same file. The page's policy
+allows exactly these and what starts them, by their hash, and no connection to anywhere.
 """
 
 import base64
-import gzip
 import hashlib
 import json
 import os
 import re
 from collections.abc import Iterator
-from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from squealbox.plots.figure_data import packed
 from squealbox.report.blocks import Chart, Page, Section, Solid
 
 TEMPLATE = "page.html.j2"
-DRAWS = ("elements.js", "theme.js", "mesh.js")  # of the workbench
+STATIC = files("squealbox") / "workbench" / "static"
+DRAWS = ("elements.js", "theme.js", "numbers.js", "colours.js", "chart.js", "figures.js", "zoom.js", "mesh.js")
 MODULE = re.compile(r"^(import .*;\n|export )", re.MULTILINE)
 MICRO = re.compile(r"(\d |\[)u(?=[msNJ]\b)")
 
@@ -39,40 +38,36 @@ def render(page: Page) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    figures = [plain_json(chart.figure) for chart in every(Chart, page.sections)]
-    solids = [packed_solid(solid) for solid in every(Solid, page.sections)]
-    library = packed_library() if figures else None
-    start = environment.get_template("charts.js").render() if library else ""
-    turn = turning(environment.get_template("solid.js").render()) if solids else ""
-    digests = [_digest(start), library[1]] if library else []
-    digests += [_digest(turn)] if turn else []
+    moving = [packed_block(block) for block in every((Chart, Solid), page.sections)]
+    script = live(environment.get_template("live.js").render()) if moving else ""
     return environment.get_template(TEMPLATE).render(
         page=page,
-        figures=figures,
-        solids=solids,
-        start=start,
-        turn=turn,
-        library=library[0] if library else "",
-        allowed=" ".join(f"'sha256-{digest}'" for digest in digests),
+        moving=moving,
+        script=script,
+        style=(STATIC / "chart.css").read_text(encoding="utf-8") if moving else "",
+        digest=base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii"),
     )
 
 
-def turning(start: str) -> str:
-    """What draws a brake in 3-D in the workbench, and what starts it here, as one script."""
-    static = files("squealbox") / "workbench" / "static"
-    parts = [(static / name).read_text(encoding="utf-8") for name in DRAWS]
+def live(start: str) -> str:
+    """What draws figures and a brake in 3-D in the workbench, and what starts it here, as one script."""
+    parts = [(STATIC / name).read_text(encoding="utf-8") for name in DRAWS]
     return "(() => {\n" + MODULE.sub("", "".join(parts)) + start + "})();"
 
 
-def packed_solid(solid: Solid) -> str:
-    """A brake in 3-D as JSON, its arrays as the base64 of typed arrays; safe inside a script element."""
-    arrays = {}
-    for name, values in solid.arrays.items():
+def packed_block(block: Chart | Solid) -> str:
+    """What a block is drawn from as JSON, its arrays as the base64 of typed arrays; safe inside a script element."""
+    if isinstance(block, Chart):
+        figures, arrays = packed(block.figures)
+        about: dict[str, Any] = {"figures": figures}
+    else:
+        about, arrays = {"data": block.data, "normal": block.normal}, dict(block.arrays)
+    for name, values in arrays.items():
         whole = np.issubdtype(np.asarray(values).dtype, np.integer)
-        packed = np.asarray(values, dtype="<u2" if whole else "<f4")
         kind = "Uint16Array" if whole else "Float32Array"
-        arrays[name] = [kind, base64.b64encode(packed.tobytes()).decode("ascii")]
-    return plain_json({"data": solid.data, "arrays": arrays, "normal": solid.normal})
+        content = np.ascontiguousarray(values, dtype="<u2" if whole else "<f4").tobytes()
+        arrays[name] = [kind, base64.b64encode(content).decode("ascii")]
+    return plain_json({**about, "arrays": arrays})
 
 
 def _micro(value: Any) -> Any:
@@ -89,8 +84,8 @@ def write_page(page: Page, path: str | os.PathLike[str]) -> Path:
     return path
 
 
-def every(kind: type[Any], blocks: tuple[Any, ...]) -> Iterator[Any]:
-    """Every block of a kind among nested ones, in the order of the page."""
+def every(kind: type[Any] | tuple[type[Any], ...], blocks: tuple[Any, ...]) -> Iterator[Any]:
+    """Every block of these kinds among nested ones, in the order of the page."""
     for block in blocks:
         if isinstance(block, Section):
             yield from every(kind, block.blocks)
@@ -98,12 +93,12 @@ def every(kind: type[Any], blocks: tuple[Any, ...]) -> Iterator[Any]:
             yield block
 
 
-def plain_json(figure: Any) -> str:
-    """A figure of dictionaries, lists, texts and arrays as JSON; what is not finite becomes null, a gap in a line.
+def plain_json(data: Any) -> str:
+    """Dictionaries, lists, texts and arrays as JSON; what is not finite becomes null.
 
     Six digits, more than any screen shows; safe inside a script element.
     """
-    return json.dumps(_plain(figure), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+    return json.dumps(_plain(data), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
 def _plain(value: Any) -> Any:
@@ -116,21 +111,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, float):
         return float(f"{value:.6g}") if np.isfinite(value) else None
     return value
-
-
-@cache
-def packed_library() -> tuple[str, str] | None:
-    """The script of plotly.js, compressed, as base64; and the SHA-256 of the script; None where it is not installed."""
-    try:
-        from plotly.offline import get_plotlyjs
-    except ModuleNotFoundError as error:
-        if str(error.name).partition(".")[0] != "plotly":
-            raise
-        return None
-    script = get_plotlyjs()
-    packed = gzip.compress(script.encode("utf-8"), compresslevel=9, mtime=0)
-    return base64.b64encode(packed).decode("ascii"), _digest(script)
-
-
-def _digest(script: str) -> str:
-    return base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii")

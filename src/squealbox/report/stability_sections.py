@@ -1,20 +1,23 @@
 """The sections of a page about stability: modes, onset, ranking, energy, and the map over two parameters."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from squealbox import plots
 from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.plots.as_data import map_over_two, modes_over_parameter
 from squealbox.plots.cards import has_drawing
-from squealbox.report import charts, tables, words
+from squealbox.plots.figure_data import FigureAxis, upright
+from squealbox.plots.modes import unstable_stretches, upper_branches
+from squealbox.report import tables, words
 from squealbox.report.blocks import Chart, Section, Text
 from squealbox.report.examination import Examination
 from squealbox.report.moving import vibrating
 from squealbox.report.pictures import picture, why_not
 from squealbox.report.solid import vibrating_solid
-from squealbox.words import quantity_label
 
 
 def stability(found: Examination) -> Iterator[Any]:
@@ -55,9 +58,12 @@ def _coalescence(found: Examination) -> Chart:
     here = factor * found.present
     for panel in figure.axes:
         panel.axvline(here, color="#000000", linewidth=0.7, linestyle=":")
-    caption = f"Frequencies and growth rates over {varied.name}; hatched: unstable; dotted: this design."
-    moving = charts.modes_over_parameter(factor * inputs, spectra, varied.name, unit, here)
-    return Chart(picture(figure, caption), moving)
+    caption = f"Frequencies and growth rates over {varied.name}; hatched or shaded: unstable; broken line: this design."
+    axis = FigureAxis(varied.name, unit, (factor * inputs[0], factor * inputs[-1]), varied.name, 1.0 / factor)
+    worst = np.fmax.reduce(np.real(spectra.eigenvalues), axis=-1)
+    unstable = unstable_stretches(factor * inputs, worst)
+    moving = modes_over_parameter(axis, factor * inputs, upper_branches(spectra), unstable)[:2]
+    return Chart(picture(figure, caption), [replace(each, layers=[*each.layers, upright(here)]) for each in moving])
 
 
 def cures(found: Examination) -> Iterator[Any]:
@@ -83,11 +89,14 @@ def map_of_two(found: Examination) -> Iterator[Any]:
         look = {"x_name": names[0], "x_unit": units[0], "y_name": names[1], "y_unit": units[1]}
         figure = plots.stability_map(x, y, grid.growth_rate.T, curves=curves, **look)
         figure.axes[0].plot(*here, "x", color="#000000", markersize=7, markeredgewidth=2.0)
-        labels = [quantity_label(name, unit) for name, unit in zip(names, units, strict=True)]
+        axes = [
+            FigureAxis(name, unit, (float(values[0]), float(values[-1])), name, 1.0 / factor)
+            for name, unit, values, factor in zip(names, units, (x, y), factors, strict=True)
+        ]
         caption = (
-            f"Growth rate over {names[0]} and {names[1]}, its boundary exact on the grid; the cross is this design."
+            f"Growth rate over {names[0]} and {names[1]}, its boundary exact on the grid; the mark is this design."
         )
-        moving = charts.map_over_two(x, y, grid.growth_rate.T, grid.frequency.T, labels, curves, (here[0], here[1]))
-        yield Chart(picture(figure, caption), moving)
+        moving = map_over_two(axes[0], axes[1], grid.growth_rate.T, grid.frequency.T, curves, (here[0], here[1]))
+        yield Chart(picture(figure, caption), [moving])
         yield Text(f"{grid.summary()}.".replace("\n", "; "))
     yield from why_not(found, "map")

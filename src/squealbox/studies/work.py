@@ -63,7 +63,7 @@ class Target(Protocol):
         """Say what happened."""
 
 
-class Points(Protocol):
+class Counted(Protocol):
     """Points that can be counted: a `Space`, or one that grows."""
 
     def __len__(self) -> int: ...
@@ -92,7 +92,7 @@ class WorkInPieces:
     """
 
     def __init__(
-        self, task: Task, points: Points, target: Target, *, chunk: int | None = None, progress: Progress | None = None
+        self, task: Task, points: Counted, target: Target, *, chunk: int | None = None, progress: Progress | None = None
     ) -> None:
         self.task, self.points, self.target = task, points, target
         self.slots, self.seconds = 1, BLOCK_SECONDS

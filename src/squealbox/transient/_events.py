@@ -62,75 +62,75 @@ def event_values(p, t, y, mode, s, phi):
                 phi[m + c] = s.normal[c]
 
 
-def quiet(p, c, h, mode, s, stage, last):
+def quiet(p, s, c, h, last):
     """True when contact c slips and its speed's Hermite cubic stays well away from zero over the step."""
-    if mode[c] == STICK or mode[c] == OPEN or s.fresh[c] or p.unilateral[c] or p.varying:
+    if s.mode[c] == STICK or s.mode[c] == OPEN or s.fresh[c] or p.unilateral[c] or p.varying:
         return False
     before = s.phi0[c]
     after = s.phi1[c]
-    b1 = before + mode[c] * slip_acceleration(p, c, stage[0], s) * h / 3.0
-    b2 = after - mode[c] * slip_acceleration(p, c, stage[last], s) * h / 3.0
+    b1 = before + s.mode[c] * slip_acceleration(p, c, s.stage[0], s) * h / 3.0
+    b2 = after - s.mode[c] * slip_acceleration(p, c, s.stage[last], s) * h / 3.0
     margin = 0.2 * (abs(after - before) + abs(b1 - before) + abs(b2 - after))
     return before > margin and after > margin and b1 > margin and b2 > margin
 
 
-def is_linear(p, j, mode):
+def is_linear(p, s, j):
     """Whether event function j is a linear function of the state alone, and so a polynomial on the dense output."""
     c = j if j < p.contacts else j - p.contacts
     if p.varying:
         return False
     if j < p.contacts:
-        return mode[c] != STICK
+        return s.mode[c] != STICK
     return not p.rigid[c]
 
 
-def is_watched(p, j, mode, s):
+def is_watched(p, s, j):
     """Whether event function j can have a root in this step at all."""
     c = j if j < p.contacts else j - p.contacts
     if j >= p.contacts:  # a sprung contact that sticks is released before its normal force can turn
-        lifts = mode[c] != OPEN and (mode[c] != STICK or p.rigid[c] != 0 or p.static[c] <= RISES)
+        lifts = s.mode[c] != OPEN and (s.mode[c] != STICK or p.rigid[c] != 0 or p.static[c] <= RISES)
         return s.noisy[c] != 0 and p.unilateral[c] != 0 and lifts
-    return s.noisy[c] != 0 and (mode[c] == OPEN or p.static[c] > 0.0)
+    return s.noisy[c] != 0 and (s.mode[c] == OPEN or p.static[c] > 0.0)
 
 
-def first_event(p, r, t, h, y, y_new, mode, s, stage):
+def first_event(p, r, s, t, h):
     """(theta, j): the first root of an event function in the step, or NO_EVENT; j < contacts or contacts + c.
 
     s.phi0 holds the event functions at the start. theta = 0 means that a mode does not hold even there.
     """
     m = p.contacts
-    event_values(p, t + h, y_new, mode, s, s.phi1)
+    event_values(p, t + h, s.state_new, s.mode, s, s.phi1)
     for c in range(m):
         if not s.fresh[c] and not s.phi0[c] > 0.0:
             return 0.0, c
     noisy, interpolated = False, False
     for c in range(m):
-        s.noisy[c] = not quiet(p, c, h, mode, s, stage, r.stages)
+        s.noisy[c] = not quiet(p, s, c, h, r.stages)
         noisy = noisy or s.noisy[c] != 0
     if not noisy:
         return NO_EVENT, -1
-    s.count[EVALUATIONS] += dense_stages(p, r, t, h, y, mode, s, stage)
+    s.count[EVALUATIONS] += dense_stages(p, r, s, t, h)
     for j in range(2 * m):
-        interpolated = interpolated or (is_watched(p, j, mode, s) and not is_linear(p, j, mode))
+        interpolated = interpolated or (is_watched(p, s, j) and not is_linear(p, s, j))
     if interpolated:
         for i in range(1, 4):
-            interpolate(r, 0.25 * i, h, y, stage, s.y_dense)
-            event_values(p, t + 0.25 * i * h, s.y_dense, mode, s, s.phi)
+            interpolate(r, s, 0.25 * i, h)
+            event_values(p, t + 0.25 * i * h, s.y_dense, s.mode, s, s.phi)
             for j in range(2 * m):
                 s.nodes[i, j] = s.phi[j]
     theta, which = NO_EVENT, -1
     for j in range(2 * m):
-        if is_watched(p, j, mode, s):
+        if is_watched(p, s, j):
             s.nodes[0, j] = s.phi0[j]
             s.nodes[4, j] = s.phi1[j]
-            found = first_root(p, r, t, h, y, mode, s, stage, j)
+            found = first_root(p, r, s, t, h, j)
             if found < theta:
                 theta = found
                 which = j
     return theta, which
 
 
-def event_polynomial(p, r, h, mode, s, stage, j):
+def event_polynomial(p, r, s, h, j):
     """Coefficients in theta of the linear event function j on the dense output, into s.poly."""
     n = p.mk.shape[0]
     c = j if j < p.contacts else j - p.contacts
@@ -141,13 +141,13 @@ def event_polynomial(p, r, h, mode, s, stage, j):
         rate = 0.0
         if j >= p.contacts:
             for k in range(n):
-                rate += p.n[c, k] * stage[i, k]
-        elif mode[c] == OPEN:
+                rate += p.n[c, k] * s.stage[i, k]
+        elif s.mode[c] == OPEN:
             for k in range(n):
-                rate -= p.n[c, k] * stage[i, k]
+                rate -= p.n[c, k] * s.stage[i, k]
         else:
             for k in range(n):
-                rate -= mode[c] * p.t[c, k] * stage[i, n + k]
+                rate -= s.mode[c] * p.t[c, k] * s.stage[i, n + k]
         for k in range(r.degree):
             s.poly[k + 1] += h * rate * r.p[i, k]
 
@@ -160,16 +160,16 @@ def polynomial(r, s, theta, power):
     return total
 
 
-def value_inside(p, r, t, h, y, mode, s, stage, theta, j, power):
+def value_inside(p, r, s, t, h, theta, j, power):
     """Event function j on the dense output, over theta^power; a linear one has its coefficients in s.poly."""
-    if is_linear(p, j, mode):
+    if is_linear(p, s, j):
         return polynomial(r, s, theta, power)
-    interpolate(r, theta, h, y, stage, s.y_dense)
-    event_values(p, t + theta * h, s.y_dense, mode, s, s.phi)
+    interpolate(r, s, theta, h)
+    event_values(p, t + theta * h, s.y_dense, s.mode, s, s.phi)
     return s.phi[j] / theta**power
 
 
-def start_power(p, h, mode, s, stage, c):
+def start_power(p, s, h, c):
     """(power, first value) of a contact that has just begun to slip, whose speed is zero at the start of the step.
 
     Its speed over theta tends to its acceleration times h there. After a release without a drop of friction that is
@@ -177,42 +177,42 @@ def start_power(p, h, mode, s, stage, c):
     that of the cubic through the others. The gap of a rigid contact that has just opened is treated likewise; where its
     normal force has come down to zero, its acceleration is zero too, and the gap begins with theta^3.
     """
-    rate, noise = start_rate(p, mode, s, stage, c)
+    rate, noise = start_rate(p, s, c)
     if abs(rate) > noise:
         return 1, h * rate
-    if mode[c] == OPEN:
-        rate = opening(p, stage, c)
+    if s.mode[c] == OPEN:
+        rate = opening(p, s.stage, c)
         if abs(rate) > s.leave[c]:
             return 2, 0.5 * h * h * rate
-    power = 3 if mode[c] == OPEN else 2
+    power = 3 if s.mode[c] == OPEN else 2
     value = 0.0
     for i in range(1, 5):
         value += (0.0, 4.0, -6.0, 4.0, -1.0)[i] * s.nodes[i, c] * (4.0 / i) ** power
     return power, value
 
 
-def start_rate(p, mode, s, stage, c):
+def start_rate(p, s, c):
     """(rate, round-off of its terms) of the event function of a contact that starts at zero."""
     n = p.mk.shape[0]
     rate = 0.0
     size = 0.0
-    if mode[c] == OPEN:
+    if s.mode[c] == OPEN:
         for i in range(n):
-            rate -= p.w[c, i] * stage[0, i]
-            size += abs(p.w[c, i] * stage[0, i])
+            rate -= p.w[c, i] * s.stage[0, i]
+            size += abs(p.w[c, i] * s.stage[0, i])
         # where nothing else moves along it, what is left of its rate has no size of its own
         return rate, 1e-8 * size + 1e-4 * p.window * s.leave[c]
-    return mode[c] * slip_acceleration(p, c, stage[0], s), s.leave[c]
+    return s.mode[c] * slip_acceleration(p, c, s.stage[0], s), s.leave[c]
 
 
-def lowest_power(p, r, mode, s, stage, c):
+def lowest_power(p, r, s, c):
     """The first coefficient of s.poly that is not round-off, up to the third: a lift-off begins with theta^3."""
-    if p.rigid[c] or mode[c] != OPEN:
-        rate, noise = start_rate(p, mode, s, stage, c)
+    if p.rigid[c] or s.mode[c] != OPEN:
+        rate, noise = start_rate(p, s, c)
         if abs(rate) > noise:
             return 1
-        if mode[c] == OPEN:
-            return 2 if abs(opening(p, stage, c)) > s.leave[c] else 3
+        if s.mode[c] == OPEN:
+            return 2 if abs(opening(p, s.stage, c)) > s.leave[c] else 3
     size = 0.0
     for k in range(r.degree + 1):
         size = max(size, abs(s.poly[k]))
@@ -222,13 +222,13 @@ def lowest_power(p, r, mode, s, stage, c):
     return 3
 
 
-def first_root(p, r, t, h, y, mode, s, stage, j):
+def first_root(p, r, s, t, h, j):
     """First theta at which event function j turns negative, by Bernstein exclusion and halving; NO_EVENT when none."""
     power = 0
     fresh = j < p.contacts and s.fresh[j] != 0
-    if is_linear(p, j, mode):
-        event_polynomial(p, r, h, mode, s, stage, j)
-        power = lowest_power(p, r, mode, s, stage, j) if fresh else 0
+    if is_linear(p, s, j):
+        event_polynomial(p, r, s, h, j)
+        power = lowest_power(p, r, s, j) if fresh else 0
         for i in range(5):
             s.nodes[i, j] = polynomial(r, s, 0.25 * i, power)
         if fresh and not s.nodes[0, j] > 0.0:
@@ -236,7 +236,7 @@ def first_root(p, r, t, h, y, mode, s, stage, j):
     elif fresh:
         if p.varying:
             evaluate_signals(p, t, s)
-        power, s.nodes[0, j] = start_power(p, h, mode, s, stage, j)
+        power, s.nodes[0, j] = start_power(p, s, h, j)
         for i in range(1, 5):
             s.nodes[i, j] /= (0.25 * i) ** power
         if not s.nodes[0, j] > 0.0:
@@ -258,15 +258,14 @@ def first_root(p, r, t, h, y, mode, s, stage, j):
         changes, lowest = bernstein(r, stack[top])
         if lowest > 0.0:
             continue
-        left = stack[top, 2]
         right = stack[top, 6]
-        if changes == 1 and left > 0.0 and not right > 0.0:
-            return bracketed_root(p, r, t, h, y, mode, s, stage, j, power, a, b, left, right)
+        if changes == 1 and stack[top, 2] > 0.0 and not right > 0.0:
+            return bracketed_root(p, r, s, t, h, j, power, top)
         if b - a < 1e-10 or top + 2 >= stack.shape[0]:
             if not right > 0.0:
                 return b
             continue
-        split(p, r, t, h, y, mode, s, stage, j, power, top)
+        split(p, r, s, t, h, j, power, top)
         top += 2
     return NO_EVENT
 
@@ -285,7 +284,7 @@ def bernstein(r, row):
     return changes, lowest
 
 
-def split(p, r, t, h, y, mode, s, stage, j, power, top):
+def split(p, r, s, t, h, j, power, top):
     """Replace the interval on the stack by its right and left halves, the left one on top."""
     stack = s.stack
     a = stack[top, 0]
@@ -294,10 +293,10 @@ def split(p, r, t, h, y, mode, s, stage, j, power, top):
     f0, f1, f2, f3, f4 = stack[top, 2], stack[top, 3], stack[top, 4], stack[top, 5], stack[top, 6]
     width = b - a
     new = (
-        value_inside(p, r, t, h, y, mode, s, stage, a + 0.125 * width, j, power),
-        value_inside(p, r, t, h, y, mode, s, stage, a + 0.375 * width, j, power),
-        value_inside(p, r, t, h, y, mode, s, stage, a + 0.625 * width, j, power),
-        value_inside(p, r, t, h, y, mode, s, stage, a + 0.875 * width, j, power),
+        value_inside(p, r, s, t, h, a + 0.125 * width, j, power),
+        value_inside(p, r, s, t, h, a + 0.375 * width, j, power),
+        value_inside(p, r, s, t, h, a + 0.625 * width, j, power),
+        value_inside(p, r, s, t, h, a + 0.875 * width, j, power),
     )
     right = (middle, b, f2, new[2], f3, new[3], f4)
     left = (a, middle, f0, new[0], f1, new[1], f2)
@@ -306,8 +305,9 @@ def split(p, r, t, h, y, mode, s, stage, j, power, top):
         stack[top + 1, k] = left[k]
 
 
-def bracketed_root(p, r, t, h, y, mode, s, stage, j, power, a, b, fa, fb):
-    """Root in [a, b] with fa > 0 >= fb by the Illinois rule, to 1e-8 of the step: a real step refines it."""
+def bracketed_root(p, r, s, t, h, j, power, top):
+    """Root in an interval on the stack, positive at its start only, by the Illinois rule to 1e-8: a step refines it."""
+    a, b, fa, fb = s.stack[top, 0], s.stack[top, 1], s.stack[top, 2], s.stack[top, 6]
     side = 0
     x = b
     for _ in range(80):
@@ -316,7 +316,7 @@ def bracketed_root(p, r, t, h, y, mode, s, stage, j, power, a, b, fa, fb):
         x = (a * fb - b * fa) / (fb - fa)
         if not a < x < b:
             x = 0.5 * (a + b)
-        fx = value_inside(p, r, t, h, y, mode, s, stage, x, j, power)
+        fx = value_inside(p, r, s, t, h, x, j, power)
         if fx > 0.0:
             a = x
             fa = fx
@@ -332,39 +332,42 @@ def bracketed_root(p, r, t, h, y, mode, s, stage, j, power, a, b, fa, fb):
     return x
 
 
-def step_onto(p, r, t, h, theta, j, y, y_new, mode, s, stage):
+def step_onto(p, r, s, t, h, theta, j):
     """Step from y exactly to the event near theta h: Newton on the length of a real step. Returns that length.
 
     The dense output proposes the instant and the slope; what is accepted is a step of the method itself, so the event
     inherits the method's order. What is left once the correction is below SHIFT of the step is a move along y', whose
     error is of the order of the square of that.
     """
-    theta, slope = proposal(p, r, t, h, theta, j, y, mode, s, stage)
+    theta, slope = proposal(p, r, s, t, h, theta, j)
     x = theta * h
-    f = value_after(p, r, t, x, y, y_new, mode, s, stage, j)
+    f = value_after(p, r, s, t, x, j)
     for _ in range(8):
         if f == 0.0 or slope == 0.0:
             break
         new = x - f / slope
         if abs(new - x) <= SHIFT * h and new > 0.0:
-            for k in range(y_new.shape[0]):
-                y_new[k] += (new - x) * stage[r.stages, k]
+            for k in range(s.state_new.shape[0]):
+                s.state_new[k] += (new - x) * s.stage[r.stages, k]
             return new
         if not (0.0 < new <= 1.01 * h) or abs(new - theta * h) > 0.05 * h or abs(new - x) <= 2e-16 * (abs(t) + x):
             break
-        f_new = value_after(p, r, t, new, y, y_new, mode, s, stage, j)
+        f_new = value_after(p, r, s, t, new, j)
         if not abs(f_new) < 0.5 * abs(f):
-            return keep_better(p, r, t, x, f, new, f_new, y, y_new, mode, s, stage, j)
+            if abs(f_new) <= abs(f):  # the shorter residual: at round-off neither improves
+                return new
+            value_after(p, r, s, t, x, j)
+            return x
         slope = (f_new - f) / (new - x)
         x = new
         f = f_new
     return x
 
 
-def proposal(p, r, t, h, theta, j, y, mode, s, stage):
+def proposal(p, r, s, t, h, theta, j):
     """(theta, slope): the root near theta on the dense output and the rate of the event function there."""
-    if is_linear(p, j, mode):
-        event_polynomial(p, r, h, mode, s, stage, j)
+    if is_linear(p, s, j):
+        event_polynomial(p, r, s, h, j)
         slope = 0.0
         for _ in range(3):
             slope = 0.0
@@ -378,22 +381,14 @@ def proposal(p, r, t, h, theta, j, y, mode, s, stage):
             theta = better
         return theta, slope / h
     before = max(theta - 1e-4, 0.5 * theta)
-    f1 = value_inside(p, r, t, h, y, mode, s, stage, theta, j, 0)
-    f0 = value_inside(p, r, t, h, y, mode, s, stage, before, j, 0)
+    f1 = value_inside(p, r, s, t, h, theta, j, 0)
+    f0 = value_inside(p, r, s, t, h, before, j, 0)
     return theta, (f1 - f0) / ((theta - before) * h)
 
 
-def keep_better(p, r, t, x, f, new, f_new, y, y_new, mode, s, stage, j):
-    """End the iteration on the shorter residual; at round-off neither improves."""
-    if abs(f_new) <= abs(f):
-        return new
-    value_after(p, r, t, x, y, y_new, mode, s, stage, j)
-    return x
-
-
-def value_after(p, r, t, h, y, y_new, mode, s, stage, j):
+def value_after(p, r, s, t, h, j):
     """Event function j at the end of a real step of length h."""
-    evaluations, _ = take_step(p, r, t, h, y, mode, s, stage, y_new)
+    evaluations, _ = take_step(p, r, s, t, h)
     s.count[EVALUATIONS] += evaluations
-    event_values(p, t + h, y_new, mode, s, s.phi1)
+    event_values(p, t + h, s.state_new, s.mode, s, s.phi1)
     return s.phi1[j]

@@ -50,7 +50,7 @@ TENSION, PAINLEVE, MISSED, NOT_CONFIRMED = 8, 9, 10, 11
 SAMPLED = 16  # every so many steps one is looked at in twice as many places
 
 
-def begin(p, r, s, times, rows, limit):
+def begin(p, r, s, o):
     """Modes, first derivative, first step and first output row; returns RUNNING or how it failed."""
     t0 = s.clock[TIME]
     next_piece(p, s, t0)
@@ -65,55 +65,55 @@ def begin(p, r, s, times, rows, limit):
     if WITH_EVENTS:
         event_values(p, t0, s.state, s.mode, s, s.phi0)
     if s.clock[STEP] == 0.0:
-        s.clock[STEP] = first_step(p, r, t0, s.state, s.mode, s, s.stage, limit)
+        s.clock[STEP] = first_step(p, r, s, t0, o.largest)
     s.count[EVALUATIONS] += 2
     keep_range(p, s, t0)
-    if p.every_step or times[0] <= t0:
+    if p.every_step or o.times[0] <= t0:
         derivative(p, t0, s.state, s.mode, s, s.dy)
-        write_row(p, s, rows, t0, s.state)
+        write_row(p, s, o.rows, t0, s.state)
         s.count[NEXT] += 1
     return RUNNING
 
 
-def march(p, r, s, times, rows, events, t_end, largest, least, step_limit, budget):
-    """Advance until t_end, until `budget` steps are done or the output is full (RUNNING), or until it cannot go on."""
+def march(p, r, s, o):
+    """Advance until o.end, until o.budget steps are done or the output is full (RUNNING), or until it cannot go on."""
     if s.count[EVALUATIONS] == 0:
-        code = begin(p, r, s, times, rows, largest)
+        code = begin(p, r, s, o)
         if code != RUNNING:
             return code
-    for _ in range(budget):
+    for _ in range(o.budget):
         t = s.clock[TIME]
-        if t >= t_end:
+        if t >= o.end:
             return COMPLETED
         if t >= s.clock[PIECE]:
             next_piece(p, s, t)
             restart(p, s, t)
-        if output_full(p, s, rows, events):
+        if output_full(p, s, o):
             return RUNNING
-        if s.count[ACCEPTED] + s.count[REJECTED] >= step_limit:
+        if s.count[ACCEPTED] + s.count[REJECTED] >= o.most:
             return CHATTERING if chatters(p, s) else STEP_LIMIT
-        end = min(t_end, s.clock[PIECE])
-        h = min(s.clock[STEP], largest)
+        end = min(o.end, s.clock[PIECE])
+        h = min(s.clock[STEP], o.largest)
         last = t + h >= end - 1e-12 * h
         h = end - t if last else h
-        evaluations, solved = take_step(p, r, t, h, s.state, s.mode, s, s.stage, s.state_new)
+        evaluations, solved = take_step(p, r, s, t, h)
         s.count[EVALUATIONS] += evaluations
-        error = error_norm(p, r, h, s.state, s.state_new, s.stage) if solved else np.inf
+        error = error_norm(p, r, s, h) if solved else np.inf
         if not error <= 1.0:
-            code = reject(p, r, s, h, error, least)
+            code = reject(p, r, s, h, error, o.least)
             if code != RUNNING:
                 return code
             continue
-        code = accept(p, r, s, times, rows, events, t, h, end if last else t + h, error, last)
+        code = accept(p, r, s, o, t, h, end if last else t + h, error, last)
         if code != RUNNING:
             return code
     return RUNNING
 
 
-def output_full(p, s, rows, events):
+def output_full(p, s, o):
     """True when one more step might not find room for its row or its events."""
-    full = p.every_step and s.count[ROWS] >= rows.shape[0]
-    return full or s.count[EVENTS] + p.contacts > events.shape[0]
+    full = p.every_step and s.count[ROWS] >= o.rows.shape[0]
+    return full or s.count[EVENTS] + p.contacts > o.events.shape[0]
 
 
 def reject(p, r, s, h, error, least):
@@ -135,11 +135,11 @@ def chatters(p, s):
     return s.count[FLIPS] > 50 or (s.count[REVERSALS] > 50 and s.clock[STEP] < p.window)
 
 
-def accept(p, r, s, times, rows, events, t, h, t_new, error, last):
+def accept(p, r, s, o, t, h, t_new, error, last):
     """Take the step, or the part of it up to the first event; control the next step; write output."""
     next_step = h * step_factor(r, s, error)
     if WITH_EVENTS:
-        theta, which = first_event(p, r, t, h, s.state, s.state_new, s.mode, s, s.stage)
+        theta, which = first_event(p, r, s, t, h)
         soon = 0.0 < theta < SOON and which < p.contacts and s.fresh[which] != 0 and theta * h > 1e-6 * p.window
         if theta < 0.0 or soon:
             s.count[REJECTED] += 1
@@ -147,18 +147,18 @@ def accept(p, r, s, times, rows, events, t, h, t_new, error, last):
             return RUNNING
         if theta <= 1.0:
             if theta > 0.0:
-                h = step_onto(p, r, t, h, theta, which, s.state, s.state_new, s.mode, s, s.stage)
+                h = step_onto(p, r, s, t, h, theta, which)
                 t_new = t + h
-                finish_step(p, r, s, times, rows, t, h, t_new)
+                finish_step(p, r, s, o, t, h, t_new)
             else:
                 t_new = t
             s.clock[STEP] = max(next_step, s.clock[STEP]) if not last else s.clock[STEP]
-            return change_modes(p, s, events, t_new, which, theta > 0.0)
+            return change_modes(p, s, o.events, t_new, which, theta > 0.0)
         if s.count[ACCEPTED] % SAMPLED == 0 and h > p.window and not modes_held(p, r, t, h, s):
             return MISSED
     else:
         count_flips(p, s)
-    finish_step(p, r, s, times, rows, t, h, t_new)
+    finish_step(p, r, s, o, t, h, t_new)
     s.clock[STEP] = next_step if not last else max(next_step, s.clock[STEP])
     if WITH_EVENTS:
         for c in range(p.contacts):
@@ -178,11 +178,11 @@ def accept(p, r, s, times, rows, events, t, h, t_new, error, last):
 
 def modes_held(p, r, t, h, s):
     """Whether the modes held at eighths of a step in which no event was found: a look at half the search interval."""
-    s.count[EVALUATIONS] += dense_stages(p, r, t, h, s.state, s.mode, s, s.stage)
+    s.count[EVALUATIONS] += dense_stages(p, r, s, t, h)
     held = True
     for i in range(4):
         at = 0.25 * i + 0.125
-        interpolate(r, at, h, s.state, s.stage, s.y_dense)
+        interpolate(r, s, at, h)
         event_values(p, t + at * h, s.y_dense, s.mode, s, s.phi)
         for j in range(2 * p.contacts):
             size = max(abs(s.phi0[j]), abs(s.phi1[j]))
@@ -200,15 +200,15 @@ def step_factor(r, s, error):
     return min(max(factor, 0.2), growth)
 
 
-def finish_step(p, r, s, times, rows, t, h, t_new):
+def finish_step(p, r, s, o, t, h, t_new):
     """Write the output due in the step, then make its end the present state."""
-    if not p.every_step and s.count[NEXT] < times.shape[0] and times[s.count[NEXT]] <= t_new:
-        s.count[EVALUATIONS] += dense_stages(p, r, t, h, s.state, s.mode, s, s.stage)
-        while s.count[NEXT] < times.shape[0] and times[s.count[NEXT]] <= t_new:
-            at = times[s.count[NEXT]]
-            interpolate(r, min((at - t) / h, 1.0), h, s.state, s.stage, s.y_dense)
+    if not p.every_step and s.count[NEXT] < o.times.shape[0] and o.times[s.count[NEXT]] <= t_new:
+        s.count[EVALUATIONS] += dense_stages(p, r, s, t, h)
+        while s.count[NEXT] < o.times.shape[0] and o.times[s.count[NEXT]] <= t_new:
+            at = o.times[s.count[NEXT]]
+            interpolate(r, s, min((at - t) / h, 1.0), h)
             derivative(p, at, s.y_dense, s.mode, s, s.dy)
-            write_row(p, s, rows, at, s.y_dense)
+            write_row(p, s, o.rows, at, s.y_dense)
             s.count[NEXT] += 1
     for k in range(s.state.shape[0]):
         s.state[k] = s.state_new[k]
@@ -219,7 +219,7 @@ def finish_step(p, r, s, times, rows, t, h, t_new):
     if p.every_step:
         if WITH_EVENTS:
             derivative(p, t_new, s.state, s.mode, s, s.dy)
-        write_row(p, s, rows, t_new, s.state)
+        write_row(p, s, o.rows, t_new, s.state)
 
 
 def keep_range(p, s, t):

@@ -17,7 +17,7 @@ USUAL = Latest()
 LARGE = 160  # products of an acceleration up to which a generated step is written out at once
 SERIES = 4  # stages that take as long to compile as a series
 LONGEST = 6_000  # products in all stages, which compile in half a minute
-EACH = 0.5  # runs by the general march in the time that one more product takes to compile
+EACH = 0.5  # runs by the scalar march in the time that one more product takes to compile
 
 
 def check_series(system: System, contact: str) -> None:
@@ -55,7 +55,7 @@ def products(system: System) -> int:
 
 
 def pays(system: System, method: str, count: int) -> bool:
-    """Whether to compile a step written out for so many runs takes less time than the general march of each."""
+    """Whether to compile a step written out for so many runs takes less time than the scalar march of each."""
     written = products(system) * (SERIES if method == TAYLOR else tableau(method).stages)
     return is_small(system) or (written <= LONGEST and count > EACH * written)
 

@@ -3,7 +3,7 @@
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -54,6 +54,21 @@ MESSAGES = {
     ),
     _march.STEP_LIMIT: ("step_limit", "the largest number of steps was reached"),
 }
+
+
+class MarchOrders(NamedTuple):
+    """What the scalar march is told: instants, where rows and events go, the end, the largest and the least step,
+    how many may be tried in all, and how many until the next look at the keyboard.
+    """
+
+    times: Any
+    rows: Any
+    events: Any
+    end: float
+    largest: float
+    least: float
+    most: int
+    budget: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,13 +172,13 @@ class Scalar:
 
     def to(self, end: float, span: float, progress: Progress | None = None) -> Outcome:
         """March from the start to `end`, `span` seconds later."""
-        march, arguments = self.call(end, span)
+        march, (p, r, s, orders) = self.call(end, span)
         code, budget, began = _march.RUNNING, BUDGET[0], clock.monotonic()
         try:
             while code == _march.RUNNING:
                 self._make_room()
                 before = clock.monotonic()
-                code = march(*arguments[:4], self.rows, self.events, *arguments[6:10], budget)
+                code = march(p, r, s, orders._replace(rows=self.rows, events=self.events, budget=budget))
                 now = clock.monotonic()
                 wanted = int(budget * LOOK / max(now - before, 1e-4))
                 budget = min(max(wanted, BUDGET[0]), BUDGET[1])
@@ -186,8 +201,8 @@ class Scalar:
         swing = float(packing.schedule_frequency(self.system))
         seen = self.period / 6.0 if events else np.pi / (3.0 * swing) if swing > 0.0 else np.inf
         largest = min(self.method.largest_step or np.inf, span, seen)
-        records = (self.problem, self.rule, self.scratch, self.times, self.rows, self.events)
-        return march, (*records, end, largest, 1e-14 * self.period, self.method.most_steps, BUDGET[0])
+        limits = end, largest, 1e-14 * self.period, self.method.most_steps, BUDGET[0]
+        return march, (self.problem, self.rule, self.scratch, MarchOrders(self.times, self.rows, self.events, *limits))
 
     def _counts(self) -> tuple[tuple[str, int], ...]:
         """What the kernel without events is compiled for; the one with events compiles longer and stays general."""

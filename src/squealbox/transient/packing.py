@@ -16,7 +16,7 @@ from squealbox.transient.methods import Method, Tableau, tableau
 from squealbox.transient.own_laws import law_kinds
 from squealbox.transient.rows import (
     WITH_MASS,
-    Rows,
+    EquationRows,
     audited,
     audited_matrix,
     commanding_load,
@@ -289,7 +289,7 @@ def _room(count: int, least: int = 2) -> int:
     return max(least, 1 << (int(count) - 1).bit_length())
 
 
-def _signals(system: System, rows: Rows) -> dict[str, Any]:
+def _signals(system: System, rows: EquationRows) -> dict[str, Any]:
     """The varying quantities V, N0, M^-1 f and f, each a sum of weighted schedules: term k belongs to signal i for
     signal_start[i] <= k < signal_start[i + 1].
     """
@@ -319,14 +319,16 @@ def _signals(system: System, rows: Rows) -> dict[str, Any]:
     }
 
 
-def through_the_load(system: System, rows: Rows, c: int, load: list[tuple[Any, Schedule]]) -> list[tuple[Any, Any]]:
+def through_the_load(
+    system: System, rows: EquationRows, c: int, load: list[tuple[Any, Schedule]]
+) -> list[tuple[Any, Any]]:
     """What the load adds to the normal force of contact c through rows with neither mass nor damping."""
     row = sensed_load(system, rows, c)
     return [] if row is None else [(np.sum(row * weight, axis=-1), part) for weight, part in load]
 
 
 def commanded_by_the_load(
-    system: System, rows: Rows, c: int, load: list[tuple[Any, Schedule]]
+    system: System, rows: EquationRows, c: int, load: list[tuple[Any, Schedule]]
 ) -> list[tuple[Any, Any]]:
     """What the load adds to the speed of a smooth contact that senses a row of first order."""
     row = commanding_load(system, rows, c)

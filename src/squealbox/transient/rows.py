@@ -23,7 +23,7 @@ WITH_MASS, FIRST_ORDER, ALGEBRAIC = 2, 1, 0  # how often a row's displacement is
 
 
 @dataclass(frozen=True)
-class Rows:
+class EquationRows:
     """The equation of a system solved for x.
 
     kinds (n,) of the rows; inverse, S^-1 (..., n, n); stiffness and damping, S^-1 K and S^-1 C without the columns that
@@ -59,14 +59,14 @@ def row_kinds(system: System) -> tuple[int, ...]:
     return tuple(WITH_MASS if m else FIRST_ORDER if c else ALGEBRAIC for m, c in zip(heavy, damped, strict=True))
 
 
-def rows_of(system: System) -> Rows:
+def rows_of(system: System) -> EquationRows:
     """The rows of a system; `InvalidSystem` in one sentence where they determine no motion."""
     kinds = row_kinds(system)
     inverse = solved_for(system, kinds)
     stiffness, damping = inverse @ system.K, inverse @ system.C
     sensed, along = (tuple(getattr(contact, name) for contact in system.contacts) for name in ("n", "t"))
     if all(kind == WITH_MASS for kind in kinds):
-        return Rows(kinds, inverse, stiffness, damping, sensed, along, tuple(0.0 * t for t in along))
+        return EquationRows(kinds, inverse, stiffness, damping, sensed, along, tuple(0.0 * t for t in along))
     first, algebraic = ([i for i, kind in enumerate(kinds) if kind == which] for which in (FIRST_ORDER, ALGEBRAIC))
     stiffness, damping = np.array(stiffness), np.array(damping)
     stiffness[..., :, algebraic] = 0.0
@@ -79,7 +79,7 @@ def rows_of(system: System) -> Rows:
         slides.append(t - rates - np.einsum("...i,...ij->...j", rates, damping))
         commands.append(-np.einsum("...i,...ij->...j", rates, stiffness))
     reached = tuple(_through(n, stiffness, algebraic) for n in sensed)
-    return Rows(kinds, inverse, stiffness, damping, reached, tuple(slides), tuple(commands))
+    return EquationRows(kinds, inverse, stiffness, damping, reached, tuple(slides), tuple(commands))
 
 
 def solved_for(system: System, kinds: tuple[int, ...]) -> Any:
@@ -169,7 +169,7 @@ def _through(n: Any, stiffness: Any, algebraic: list[int]) -> Any:
     return direct - np.einsum("...i,...ij->...j", n[..., algebraic], stiffness[..., algebraic, :])
 
 
-def sensed_load(system: System, rows: Rows, c: int) -> Any:
+def sensed_load(system: System, rows: EquationRows, c: int) -> Any:
     """What the load adds to the normal force of contact c through algebraic rows: a vector (..., n), or None."""
     algebraic = rows.of(ALGEBRAIC)
     sensed = system.contacts[c].n
@@ -178,7 +178,7 @@ def sensed_load(system: System, rows: Rows, c: int) -> Any:
     return np.einsum("...i,...ij->...j", sensed[..., algebraic], rows.inverse[..., algebraic, :])
 
 
-def commanding_load(system: System, rows: Rows, c: int) -> Any:
+def commanding_load(system: System, rows: EquationRows, c: int) -> Any:
     """What the load does to the speed of a contact that senses rows of first order: a vector (..., n), or None."""
     first = rows.of(FIRST_ORDER)
     along = system.contacts[c].t
@@ -208,7 +208,7 @@ def audited_matrix(system: System, matrix: Any) -> Any:
     return np.swapaxes(audited(system, np.swapaxes(audited(system, matrix), -1, -2)), -1, -2)
 
 
-def consistent(system: System, rows: Rows, q: Any, load: Any) -> Any:
+def consistent(system: System, rows: EquationRows, q: Any, load: Any) -> Any:
     """The start q (..., n) with the algebraic rows where the others and the load [N] put them."""
     algebraic = rows.of(ALGEBRAIC)
     if not algebraic:
@@ -220,7 +220,7 @@ def consistent(system: System, rows: Rows, q: Any, load: Any) -> Any:
     return out
 
 
-def fastest_rate(system: System, rows: Rows) -> Any:
+def fastest_rate(system: System, rows: EquationRows) -> Any:
     """Largest |eigenvalue| [1/s] of the equation without friction, (...): what a step must resolve.
 
     Contacts with memory hold with the stiffness of their bristles under the normal force of the system at rest.

@@ -49,7 +49,7 @@ def simulate(
     times : instants of output [s] within the run, shape (k,), increasing; a whole number k for k equidistant instants;
         None for every step taken, a long one in parts of at most a sixth of the shortest period. They do not influence
         the steps.
-    method : "taylor" (the motion's own series, for exact contact), the name of a tableau, or a `Method` with
+    method : "taylor" (the motion's own series, for all but plain sgn), the name of a tableau, or a `Method` with
         tolerances; None takes "taylor" wherever the equation has a series, else "dormand-prince-8", also where the
         series ends at an instant: `caution` and `settings` then say so
     contact : "exact" (stick, slip and lift-off by events), "raw" (plain sgn), "smooth" = "arctan"

@@ -1,7 +1,6 @@
 """The server: the page and its scripts over HTTP, questions and answers over one WebSocket a page."""
 
 import asyncio
-import importlib.util
 import os
 import sys
 import threading
@@ -62,7 +61,6 @@ class Workbench:
         routes = [
             Route("/", self.page),
             Route("/favicon.ico", _file(STATIC / "favicon.svg", "image/svg+xml")),
-            Route("/vendor/d3.js", _file(chart_library(), "text/javascript")),
             Route("/recording", self._for_its_pages(self.record), methods=["POST"]),
             Route("/beside/{group}/{name}", self._for_its_pages(self.stand), methods=["POST"]),
             Route("/paper/{kind}", self._for_its_pages(self.paper), methods=["POST"]),
@@ -132,7 +130,7 @@ class Workbench:
 
     async def paper(self, request: Request) -> Response:
         """A figure of the page as a file for paper."""
-        from squealbox.workbench.paper import KINDS, LARGEST, drawn
+        from squealbox.plots.paper import KINDS, LARGEST, drawn
 
         kind = request.path_params["kind"]
         if kind not in KINDS:
@@ -215,16 +213,6 @@ class Workbench:
                 self.first.wait(PATIENCE)
             with suppress(OptionError):  # it has nothing to say of this brake, as the surface of finite elements
                 function_of(name)(DrumBrake(), Options({}), Work())
-
-
-def chart_library() -> Path:
-    """D3, which draws the charts, from the installed package `mpld3` that ships it; that package is not imported."""
-    found = importlib.util.find_spec("mpld3")
-    folder = Path(found.origin).parent if found is not None and found.origin else Path()
-    path = folder / "js" / "d3.v5.min.js"
-    if not path.is_file():
-        raise FileNotFoundError(2, "the chart library is missing, install 'squealbox[workbench]'", str(path))
-    return path
 
 
 def _file(path: Path, kind: str) -> Any:

@@ -1,7 +1,7 @@
 """The equation of motion of a lane engine as text, whatever kind of step is taken along it.
 
 It is that of `_motion.derivative`, unrolled: every entry of a matrix that is not zero in the whole ensemble becomes one
-term. Rows of one double for each lane hold the parameters and the state of a group; `Rows` gives each its place.
+term. Rows of one double for each lane hold the parameters and the state of a group; `Places` tells where each is.
 
 While contacts stick, t . q'' = V' gives their forces F = G_ss^-1 (V' - t . a), a the accelerations without them; the
 rows H hold G_ss^-1, zero for the others, and change only at events.

@@ -10,6 +10,7 @@ from squealbox.transient import packing
 from squealbox.transient._march import COMPLETED
 from squealbox.transient.lanes.batch import stacked
 from squealbox.transient.lanes.kernel import lane_kernel
+from squealbox.transient.lanes.orders import Orders
 from squealbox.transient.lanes.shape import layout, parameter_rows
 from squealbox.transient.lanes.table import tabulate
 from squealbox.transient.lanes.work import EVERY, GROUPS, HEAD, on_a_line
@@ -52,10 +53,10 @@ class Flows:
         out = np.full((count, HEAD + 2 * n + 2 * self.shape.m), np.nan)
         groups, live = on_a_line(GROUPS * self.size), np.zeros(GROUPS, dtype=np.int64)
         groups[self.alive] = -1.0
-        none, counter = np.zeros((1, 1)), np.zeros(1, dtype=np.int64)
-        self.kernel(
-            groups, live, np.ascontiguousarray(table), self.varies, self.fixed, np.zeros(0), np.zeros((1, 1, 1)),
-            counter, count, out, self.record.copy(), self.rule, self.scratch, np.zeros(1, dtype=np.int64), EVERY,
-            none, none, counter,
+        orders = Orders(
+            np.ascontiguousarray(table), self.varies, self.fixed, np.zeros(0), np.zeros((1, 1, 1)),
+            np.zeros(1, dtype=np.int64), count, out, self.record.copy(), self.rule, self.scratch,
+            np.zeros(1, dtype=np.int64), EVERY,
         )  # fmt: skip
+        self.kernel(groups, live, orders)
         return Ends(out[:, HEAD : HEAD + 2 * n], out[:, 0] == COMPLETED, out[:, 4])

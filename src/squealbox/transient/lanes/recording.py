@@ -14,10 +14,10 @@ from squealbox.transient._motion import OPEN
 ROWS_WRITTEN, EVENTS_WRITTEN = 0, 1  # of `count`
 
 
-def room_left(times, rows, events, count):
+def room_left(o):
     """Whether one more step is sure to find room for its rows and its events."""
-    found = times.shape[0] > 0 or count[ROWS_WRITTEN] + SHARES <= rows.shape[0]
-    return found and count[EVENTS_WRITTEN] + CONTACTS <= events.shape[0]
+    found = o.times.shape[0] > 0 or o.count[ROWS_WRITTEN] + SHARES <= o.rows.shape[0]
+    return found and o.count[EVENTS_WRITTEN] + CONTACTS <= o.events.shape[0]
 
 
 def sense(p, c, normal, speed):
@@ -25,8 +25,9 @@ def sense(p, c, normal, speed):
     return OPEN if p.unilateral[c] != 0 and normal <= 0.0 else np.sign(speed)
 
 
-def first_row(A, b, lane, times, rows, count, p, s):
+def first_row(A, b, lane, o):
     """The start, if it was asked for."""
+    times, rows, count, p, s = o.times, o.rows, o.count, o.p, o.s
     t = A[b + ROW_T * WIDTH + lane]
     for c in range(CONTACTS):
         A[b + (ROW_FASTEST + c) * WIDTH + lane] = abs(s.speed[c])
@@ -62,8 +63,9 @@ def state(A, b, lane, row):
         row[1 + DOFS + i] = A[b + (ROW_V + i) * WIDTH + lane]
 
 
-def write_rows(A, b, lane, times, rows, count, p):
+def write_rows(A, b, lane, o):
     """The rows due in the step just taken: at most a sixth of the shortest period apart, or as asked for."""
+    times, rows, count, p = o.times, o.rows, o.count, o.p
     t0 = A[b + ROW_T_OLD * WIDTH + lane]
     t1 = A[b + ROW_T * WIDTH + lane]
     if times.shape[0] == 0:
@@ -137,9 +139,9 @@ def modes_held(A, b, p):
     return held
 
 
-def log_event(A, b, lane, c, mode, events, count):
+def log_event(A, b, lane, c, mode, o):
     """Contact c has taken another mode."""
-    events[count[EVENTS_WRITTEN], 0] = A[b + ROW_T * WIDTH + lane]
-    events[count[EVENTS_WRITTEN], 1] = c
-    events[count[EVENTS_WRITTEN], 2] = mode
-    count[EVENTS_WRITTEN] += 1
+    o.events[o.count[EVENTS_WRITTEN], 0] = A[b + ROW_T * WIDTH + lane]
+    o.events[o.count[EVENTS_WRITTEN], 1] = c
+    o.events[o.count[EVENTS_WRITTEN], 2] = mode
+    o.count[EVENTS_WRITTEN] += 1

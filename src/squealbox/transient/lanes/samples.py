@@ -14,15 +14,16 @@ def on_end(A, b, lane, row):
         row[DOFS + i] = A[b + (ROW_V + i) * WIDTH + lane]
 
 
-def on_step(A, b, lane, at, row, p, r, s):
+def on_step(A, b, lane, at, row, o):
     """By a step of the method itself from the beginning of the lane's step, in the modes it had."""
+    p, r, s = o.p, o.r, o.s
     room = p.mk.shape[0]
     t0 = A[b + ROW_T_OLD * WIDTH + lane]
     for i in range(DOFS):
         s.state[i] = A[b + (ROW_Q_OLD + i) * WIDTH + lane]
         s.state[room + i] = A[b + (ROW_Q_OLD + DOFS + i) * WIDTH + lane]
     derivative(p, t0, s.state, s.mode, s, s.stage[0])
-    take_step(p, r, t0, max(at - t0, 0.0), s.state, s.mode, s, s.stage, s.state_new)
+    take_step(p, r, s, t0, max(at - t0, 0.0))
     for i in range(DOFS):
         row[i] = s.state_new[i]
         row[DOFS + i] = s.state_new[room + i]

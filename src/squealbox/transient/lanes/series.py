@@ -33,7 +33,7 @@ class Series(Wider):
         return self.known[k]
 
     def __add__(self, other: Any) -> "Series":
-        if isinstance(other, Scaled):
+        if isinstance(other, Multiple):
             return Series(lambda k: plus_product(self[k], other.base[k], other.factor), clock=steady(self, other))
         return Series(lambda k: plus(self[k], at(other, k)), clock=steady(self, other))
 
@@ -53,7 +53,7 @@ class Series(Wider):
             return where(other, self, 0.0)
         if isinstance(other, Series):
             return Series(lambda k: convolution(self, other, k), clock=steady(self, other))
-        return Scaled(self, other)
+        return Multiple(self, other)
 
     __rmul__ = __mul__
 
@@ -87,7 +87,7 @@ class Series(Wider):
     __hash__ = None  # type: ignore[assignment]
 
 
-class Scaled(Series):
+class Multiple(Series):
     """A series times a factor, which is multiplied and added at once where it is part of a sum."""
 
     __slots__ = ("base", "factor")
@@ -97,14 +97,14 @@ class Scaled(Series):
         self.base, self.factor = base, factor
 
     def __add__(self, other: Any) -> Series:
-        if isinstance(other, Scaled):
+        if isinstance(other, Multiple):
             return super().__add__(other)
         return Series(lambda k: plus_product(at(other, k), self.base[k], self.factor), clock=steady(self, other))
 
     __radd__ = __add__
 
     def __neg__(self) -> Series:
-        return Scaled(self.base, -self.factor)
+        return Multiple(self.base, -self.factor)
 
 
 @contextmanager

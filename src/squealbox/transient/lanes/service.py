@@ -42,57 +42,41 @@ OVERFLOW = 1e200  # a state that large has a series beyond all numbers
 DONE, LOST, OVER, EVENT, LANDED, DUE = 1, 2, 4, 8, 16, 32
 
 
-def run(A, live, table, varies, fixed, times, samples, counter, total, out, p, r, s, stop, every, rows, events, count):
-    """Advance all groups until no job is left, or until stop[0] is set; `live` counts the busy lanes of each group."""
+def run(A, live, o):
+    """Advance all groups until no job of the orders is left, or until o.stop[0] is set; `live` counts the busy lanes of
+    each group.
+    """
     groups = live.shape[0]
     size = A.shape[0] // groups
     if A[ROW_ALIVE * WIDTH] < 0.0:  # fresh arrays
         for g in range(groups):
             for lane in range(WIDTH):
                 A[g * size + ROW_ALIVE * WIDTH + lane] = 0.0
-                live[g] += refill(A, g * size, lane, table, varies, fixed, times, counter, total, out, p, s)
+                live[g] += refill(A, g * size, lane, o)
         if RECORDED and live[0] > 0:
-            first_row(A, 0, 0, times, rows, count, p, s)
+            first_row(A, 0, 0, o)
     while True:
         busy = 0
-        for _ in range(every):
+        for _ in range(o.every):
             busy = 0
             for g in range(groups):
                 if live[g] > 0:
-                    if RECORDED and not room_left(times, rows, events, count):
+                    if RECORDED and not room_left(o):
                         return False
                     busy += 1
                     flags = step(A, g * size)
-                    if RECORDED and EXACT_CONTACT and not modes_held(A, 0, p):
-                        finish(A, 0, 0, MISSED, out)
+                    if RECORDED and EXACT_CONTACT and not modes_held(A, 0, o.p):
+                        finish(A, 0, 0, MISSED, o.out)
                         return True
                     if flags != 0:
-                        live[g] -= serve(
-                            A,
-                            g * size,
-                            flags,
-                            table,
-                            varies,
-                            fixed,
-                            times,
-                            samples,
-                            counter,
-                            total,
-                            out,
-                            p,
-                            r,
-                            s,
-                            rows,
-                            events,
-                            count,
-                        )
+                        live[g] -= serve(A, g * size, flags, o)
             if busy == 0:
                 return True
-        if RECORDED or stop[0] != 0:
+        if RECORDED or o.stop[0] != 0:
             return False
 
 
-def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out, p, r, s, rows, events, count):
+def serve(A, b, flags, o):
     """Look after every flagged lane; returns how many of them found no further job."""
     idle = 0
     for lane in range(WIDTH):
@@ -100,25 +84,25 @@ def serve(A, b, flags, table, varies, fixed, times, samples, counter, total, out
             continue
         code = int(A[b + ROW_CODE * WIDTH + lane])
         if SAMPLES and code & DUE:
-            write_samples(A, b, lane, times, samples, p, r, s)
+            write_samples(A, b, lane, o)
         if RECORDED and code & DUE:
-            write_rows(A, b, lane, times, rows, count, p)
+            write_rows(A, b, lane, o)
         ended = RUNNING
         if code & LOST:
             ended = UNDERFLOW if is_finite(A, b, lane) else NOT_FINITE
         elif code & OVER and not code & DONE:
             ended = STEP_LIMIT
         elif EXACT_CONTACT and code & LANDED:
-            ended = change_modes(A, b, lane, int(A[b + ROW_TARGET * WIDTH + lane]), p, s, events, count)
+            ended = change_modes(A, b, lane, int(A[b + ROW_TARGET * WIDTH + lane]), o)
         elif TRIES and code & EVENT:
             which = locate(A, b, lane)
             if which >= 0:
-                ended = change_modes(A, b, lane, which, p, s, events, count)
+                ended = change_modes(A, b, lane, which, o)
         elif code & DONE:
-            ended = next_piece(A, b, lane, fixed[0], p, s, events, count)
+            ended = next_piece(A, b, lane, o)
         if ended != RUNNING:
-            finish(A, b, lane, ended, out)
-            idle += 1 - refill(A, b, lane, table, varies, fixed, times, counter, total, out, p, s)
+            finish(A, b, lane, ended, o.out)
+            idle += 1 - refill(A, b, lane, o)
     return idle
 
 
@@ -131,44 +115,44 @@ def is_finite(A, b, lane):
     return total < (OVERFLOW if SERIES else np.inf)
 
 
-def refill(A, b, lane, table, varies, fixed, times, counter, total, out, p, s):
+def refill(A, b, lane, o):
     """Begin the next job in a lane; returns 0 when there is none. A job whose start has no modes ends at once."""
     while True:
-        job = take(counter)
-        if job >= total:
+        job = take(o.counter)
+        if job >= o.total:
             A[b + ROW_ALIVE * WIDTH + lane] = 0.0
             return 0
         for row in range(GIVEN):
-            A[b + row * WIDTH + lane] = table[job, varies[row]] if varies[row] >= 0 else fixed[3 + row]
+            A[b + row * WIDTH + lane] = o.table[job, o.varies[row]] if o.varies[row] >= 0 else o.fixed[3 + row]
         for row in range(GIVEN, ALL_ROWS):
             A[b + row * WIDTH + lane] = 0.0
-        begin(A, b, lane, job, fixed, times, p, s)
-        ended = start(A, b, lane, p, s)
+        begin(A, b, lane, job, o)
+        ended = start(A, b, lane, o.p, o.s)
         if ended == RUNNING:
             A[b + ROW_ALIVE * WIDTH + lane] = 1.0
             return 1
-        finish(A, b, lane, ended, out)
+        finish(A, b, lane, ended, o.out)
 
 
-def begin(A, b, lane, job, fixed, times, p, s):
+def begin(A, b, lane, job, o):
     """Clock, counters, start and the observers' memory; fixed holds the end, the start and the cap, then the rows."""
     A[b + ROW_JOB * WIDTH + lane] = job
-    A[b + ROW_T * WIDTH + lane] = fixed[1]
-    A[b + ROW_MOST * WIDTH + lane] = fixed[2]
+    A[b + ROW_T * WIDTH + lane] = o.fixed[1]
+    A[b + ROW_MOST * WIDTH + lane] = o.fixed[2]
     A[b + ROW_H * WIDTH + lane] = A[b + ROW_FIRST * WIDTH + lane]
-    A[b + ROW_T_END * WIDTH + lane] = piece_end(A, b, lane, fixed[0])
+    A[b + ROW_T_END * WIDTH + lane] = piece_end(A, b, lane, o.fixed[0])
     for k in range(DOFS):
         A[b + (ROW_Q + k) * WIDTH + lane] = A[b + (ROW_START + k) * WIDTH + lane]
         A[b + (ROW_V + k) * WIDTH + lane] = A[b + (ROW_START + DOFS + k) * WIDTH + lane]
     for c in range(CONTACTS):
         A[b + (ROW_LOWEST + c) * WIDTH + lane] = np.inf
         A[b + (ROW_FASTEST + c) * WIDTH + lane] = 0.0
-    set_observers(A, b, lane, fixed)
+    set_observers(A, b, lane, o.fixed)
     if SAMPLES:
-        A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = times[0]
+        A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = o.times[0]
     if EXACT_CONTACT:
         A[b + ROW_TARGET * WIDTH + lane] = -1.0
-        A[b + ROW_WINDOW_START * WIDTH + lane] = fixed[1]
+        A[b + ROW_WINDOW_START * WIDTH + lane] = o.fixed[1]
 
 
 def piece_end(A, b, lane, end):
@@ -193,12 +177,13 @@ def start(A, b, lane, p, s):
     return RUNNING
 
 
-def next_piece(A, b, lane, end, p, s, events, count):
+def next_piece(A, b, lane, o):
     """Go on behind a kink of a schedule, where a force that jumps may let a contact go; COMPLETED at the end."""
     t = A[b + ROW_T * WIDTH + lane]
-    if t >= end:
+    if t >= o.fixed[0]:
         return COMPLETED
-    A[b + ROW_T_END * WIDTH + lane] = piece_end(A, b, lane, end)
+    p, s = o.p, o.s
+    A[b + ROW_T_END * WIDTH + lane] = piece_end(A, b, lane, o.fixed[0])
     gather(A, b, lane, p, s)
     load_state(A, b, lane, p, s)
     for c in range(CONTACTS):
@@ -214,7 +199,7 @@ def next_piece(A, b, lane, end, p, s, events, count):
             if rests or (s.mode[c] == STICK and s.phi[c] < 0.0):
                 A[b + ROW_RESUME * WIDTH + lane] = A[b + ROW_H * WIDTH + lane]
                 A[b + (ROW_FORCE + c) * WIDTH + lane] = s.force[c]
-                return change_modes(A, b, lane, c, p, s, events, count)
+                return change_modes(A, b, lane, c, o)
     return RUNNING
 
 
@@ -274,9 +259,9 @@ def hold_matrix(A, b, lane, p, s):
             A[b + (ROW_HOLD + s.stuck[a] * CONTACTS + s.stuck[e]) * WIDTH + lane] = s.right[a]
 
 
-def change_modes(A, b, lane, j, p, s, events, count):
+def change_modes(A, b, lane, j, o):
     """An event of function j at the present state: new modes, and the bound on events in a window of time."""
-    t = A[b + ROW_T * WIDTH + lane]
+    p, s, t = o.p, o.s, A[b + ROW_T * WIDTH + lane]
     done = False
     if SIMPLE:
         before = A[b + (ROW_SLIPS + j) * WIDTH + lane]
@@ -284,7 +269,7 @@ def change_modes(A, b, lane, j, p, s, events, count):
         if done and A[b + (ROW_SLIPS + j) * WIDTH + lane] != before:
             A[b + ROW_EVENTS * WIDTH + lane] += 1.0
             if RECORDED:
-                log_event(A, b, lane, j, A[b + (ROW_SLIPS + j) * WIDTH + lane], events, count)
+                log_event(A, b, lane, j, A[b + (ROW_SLIPS + j) * WIDTH + lane], o)
     if not done:
         gather(A, b, lane, p, s)
         load_state(A, b, lane, p, s)
@@ -293,7 +278,7 @@ def change_modes(A, b, lane, j, p, s, events, count):
             if s.mode[c] != s.old[c]:
                 A[b + ROW_EVENTS * WIDTH + lane] += 1.0
                 if RECORDED:
-                    log_event(A, b, lane, c, s.mode[c], events, count)
+                    log_event(A, b, lane, c, s.mode[c], o)
         if not solved:
             return TENSION if pulled(p, s) else INCONSISTENT
         opened = j >= CONTACTS or s.old[j] == OPEN or s.mode[j] == OPEN
@@ -336,22 +321,22 @@ def finish(A, b, lane, ended, out):
         out[job, 5 + 2 * DOFS + MEMORY + CONTACTS + c] = A[b + (ROW_FASTEST + c) * WIDTH + lane]
 
 
-def write_samples(A, b, lane, times, samples, p, r, s):
+def write_samples(A, b, lane, o):
     """State at the instants that lie in the step just taken."""
     job = int(A[b + ROW_JOB * WIDTH + lane])
     if STEPPED:
-        gather(A, b, lane, p, s)
-        load_state(A, b, lane, p, s)
+        gather(A, b, lane, o.p, o.s)
+        load_state(A, b, lane, o.p, o.s)
     k = int(A[b + ROW_SAMPLE * WIDTH + lane])
-    while k < times.shape[0] and times[k] <= A[b + ROW_T * WIDTH + lane]:
-        if times[k] == A[b + ROW_T * WIDTH + lane]:
-            on_end(A, b, lane, samples[job, k])
+    while k < o.times.shape[0] and o.times[k] <= A[b + ROW_T * WIDTH + lane]:
+        if o.times[k] == A[b + ROW_T * WIDTH + lane]:
+            on_end(A, b, lane, o.samples[job, k])
         elif SERIES:
-            on_series(A, b, lane, times[k], samples[job, k])
+            on_series(A, b, lane, o.times[k], o.samples[job, k])
         elif STEPPED:
-            on_step(A, b, lane, times[k], samples[job, k], p, r, s)
+            on_step(A, b, lane, o.times[k], o.samples[job, k], o)
         else:
-            on_quintic(A, b, lane, times[k], samples[job, k])
+            on_quintic(A, b, lane, o.times[k], o.samples[job, k])
         k += 1
     A[b + ROW_SAMPLE * WIDTH + lane] = k
-    A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = times[k] if k < times.shape[0] else np.inf
+    A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = o.times[k] if k < o.times.shape[0] else np.inf

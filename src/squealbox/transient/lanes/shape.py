@@ -142,7 +142,7 @@ class Shape:
 
 
 @dataclass
-class Rows:
+class Places:
     """Places of the rows of a group, by name; parameters first, as the table of jobs holds them."""
 
     places: dict[str, int] = field(default_factory=dict)
@@ -187,9 +187,9 @@ def audit(n: int) -> list[str]:
     return [f"{name}{i}_{j}" for name in ("c", "ka") for i in range(n) for j in range(n)] + [f"F{i}" for i in range(n)]
 
 
-def layout(shape: Shape) -> Rows:
+def layout(shape: Shape) -> Places:
     """All rows of a group."""
-    n, m, rows = shape.n, shape.m, Rows()
+    n, m, rows = shape.n, shape.m, Places()
     rows.add(*parameter_rows(shape))
     rows.add("job", "alive", "t", "h", "t_end", "tries", "taken", "cautious", "code", "most")
     rows.add(*(f"q{i}" for i in range(n)), *(f"v{i}" for i in range(n)), *(f"a{i}" for i in range(n)))

@@ -12,7 +12,8 @@ from squealbox.system import System
 from squealbox.transient import packing
 from squealbox.transient._motion import EXACT
 from squealbox.transient.lanes.kernel import lane_kernel
-from squealbox.transient.lanes.shape import Rows, layout, parameter_rows
+from squealbox.transient.lanes.orders import Orders
+from squealbox.transient.lanes.shape import Places, layout, parameter_rows
 from squealbox.transient.lanes.table import Jobs, limits, tabulate
 from squealbox.transient.latest import Latest
 from squealbox.transient.methods import TAYLOR, Method
@@ -29,7 +30,7 @@ class Prepared:
     """What runs of one system by one method share."""
 
     jobs: Jobs
-    rows: Rows
+    rows: Places
     names: dict[str, int]
     record: Any
     kernel: Any
@@ -95,10 +96,11 @@ class Single:
         self.events = np.empty((EVENTS + m, 3))
         self.count = np.zeros(2, dtype=np.int64)
         self.out = np.full((1, 5 + 2 * n + 2 * m), RUNNING)
-        self.shared = (
-            np.zeros(1, dtype=np.int64), made.jobs.table, made.jobs.varies, self.fixed, self.times, np.zeros((1, 1, 1)),
-            np.zeros(1, dtype=np.int64), 1, self.out, self.record, packing.rule("dormand-prince-8").base, self.scratch,
-            np.zeros(1, dtype=np.int64),
+        self.live = np.zeros(1, dtype=np.int64)
+        self.orders = Orders(
+            made.jobs.table, made.jobs.varies, self.fixed, self.times, np.zeros((1, 1, 1)), np.zeros(1, dtype=np.int64),
+            1, self.out, self.record, packing.rule("dormand-prince-8").base, self.scratch, np.zeros(1, dtype=np.int64),
+            FIRST, self.rows, self.events, self.count,
         )  # fmt: skip
 
     def at(self, name: str) -> float:
@@ -118,7 +120,8 @@ class Single:
 
     def call(self, budget: int = FIRST) -> tuple[Any, tuple[Any, ...]]:
         """The kernel of this run, and what it is called with."""
-        return self.made.kernel, (self.lanes, *self.shared, budget, self.rows, self.events, self.count)
+        orders = self.orders._replace(every=budget, rows=self.rows, events=self.events)
+        return self.made.kernel, (self.lanes, self.live, orders)
 
     def to(self, end: float, progress: Any = None) -> tuple[int | None, str]:
         """Run to the end; returns how the kernel says it ended, None and why where it was stopped."""

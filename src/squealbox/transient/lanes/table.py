@@ -15,7 +15,7 @@ from squealbox.transient.latest import Latest
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.one_motion import lever, shared_motions
 from squealbox.transient.own_laws import law_kinds, own_texts
-from squealbox.transient.rows import Rows, audited, audited_matrix, consistent, fastest_rate, memories, rows_of
+from squealbox.transient.rows import EquationRows, audited, audited_matrix, consistent, fastest_rate, memories, rows_of
 from squealbox.transient.smooth_laws import smooth_kinds
 from squealbox.transient.widened import RunApart
 
@@ -116,13 +116,13 @@ def tabulate(
 EQUATIONS = Latest(8)  # of systems that are run several times
 
 
-def _prepared(system: System, recorded: bool) -> tuple[Rows, Any, System]:
+def _prepared(system: System, recorded: bool) -> tuple[EquationRows, Any, System]:
     """What depends on the system alone."""
     rows = rows_of(system)
     return rows, _equation(system, rows, recorded), first_of(system)
 
 
-def _equation(system: System, rows: Rows, recorded: bool = False) -> tuple[dict[str, Any], Any, list[Any]]:
+def _equation(system: System, rows: EquationRows, recorded: bool = False) -> tuple[dict[str, Any], Any, list[Any]]:
     """Numbers of the equation by name, kinds of the signals (none when all are constant), and their kinks."""
     n, contacts = system.size, system.contacts
     inverse = rows.inverse

@@ -12,9 +12,9 @@ from squealbox.transient.lanes.vectors import Given, Lanes, where
 FAR = 1e300  # where there is no further knot
 
 
-def law_of_points(x: Series, p: Given) -> Series:
-    """`friction.table` on a series of the speed."""
-    count, here = p[1], x[0]
+def law_of_points(x: Any, p: Given) -> Any:
+    """`friction.table` on a series of the speed, or on speeds."""
+    count, here = p[1], at(x, 0)
     first, last = p[2], p[1 + count]
     low, high, rest = _ends(here, p, 2, count)
     (y0, y1), (left, right) = ((rest(p, 2 + k * count), rest(p, 3 + k * count)) for k in (1, 2))
@@ -23,9 +23,10 @@ def law_of_points(x: Series, p: Given) -> Series:
     width, rise = high - low, y1 - y0
     left, right, rise = inside * left * width, inside * right * width, inside * rise
     s = (x - low) * (1.0 / width)
-    # chosen is x >= the knot below, so that difference holds while it is not positive; zero speed is an event, no knot
-    DECISIONS.get().append(where(below | ((first <= 0.0) & (low <= first)), -FAR, where(above, last, low)) - x)
-    DECISIONS.get().append(where(above, FAR, where(below, first, high)) - x)
+    if isinstance(x, Series):
+        # chosen is x >= the knot below: that difference holds while it is not positive; zero speed is an event, no knot
+        DECISIONS.get().append(where(below | ((first <= 0.0) & (low <= first)), -FAR, where(above, last, low)) - x)
+        DECISIONS.get().append(where(above, FAR, where(below, first, high)) - x)
     steeper = s * (left + right - 2.0 * rise) + (3.0 * rise - 2.0 * left - right)
     return s * (s * steeper + left) + where(above, y1, y0)
 

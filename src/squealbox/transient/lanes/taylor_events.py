@@ -21,7 +21,7 @@ BEYOND = 1e-9  # by this angle a step goes beyond a kink of a law, so that the n
 
 
 @dataclass
-class Part:
+class Watched:
     """A function in a part of the step: the Bernstein coefficients of its cubic, what that may err by, and what is said
     of its roots.
     """
@@ -71,9 +71,9 @@ def _looked_at(
     return if_any(doubtful, lambda: _ended(watched, len(functions), parts, part, tiny, clear, order), clear)
 
 
-def _parts(watched: list[Any], events: int, part: Lanes, moving: Truth, tiny: Truth, order: int) -> list[list[Part]]:
+def _parts(watched: list[Any], events: int, part: Lanes, moving: Truth, tiny: Truth, order: int) -> list[list[Watched]]:
     """For each part of the step, each function; a kink that is never left, as of what rests, is none."""
-    out: list[list[Part]] = [[] for _ in range(PARTS)]
+    out: list[list[Watched]] = [[] for _ in range(PARTS)]
     for number, function in enumerate(watched):
         if not isinstance(function, Series):
             continue  # a constant, which has no root
@@ -92,7 +92,7 @@ def _parts(watched: list[Any], events: int, part: Lanes, moving: Truth, tiny: Tr
 
 
 def _ended(
-    watched: list[Any], events: int, parts: list[list[Part]], part: Lanes, tiny: Truth, clear: Found, order: int
+    watched: list[Any], events: int, parts: list[list[Watched]], part: Lanes, tiny: Truth, clear: Found, order: int
 ) -> tuple[Lanes, ...]:
     """Where the step ends in the lanes in doubt."""
     low, doubt, functions = _first(parts, part)
@@ -109,9 +109,9 @@ def _ended(
     return Found(end, 1.0 * (lone & ~kink), first.number, 1.0 * ~doubt, pick(doubt & ~lone, closer, clear.next_limit))
 
 
-def _chosen(truth: Truth, yes: Part, no: Part) -> Part:
+def _chosen(truth: Truth, yes: Watched, no: Watched) -> Watched:
     """One of two in each lane."""
-    return Part(
+    return Watched(
         pick(truth, yes.number, no.number),
         (*(pick(truth, a, b) for a, b in zip(yes.cubic, no.cubic, strict=True)),),
         pick(truth, yes.room, no.room),
@@ -122,7 +122,7 @@ def _chosen(truth: Truth, yes: Part, no: Part) -> Part:
     )
 
 
-def _first(parts: list[list[Part]], part: Lanes) -> tuple[Lanes, Truth, list[Part]]:
+def _first(parts: list[list[Watched]], part: Lanes) -> tuple[Lanes, Truth, list[Watched]]:
     """(where the first part that is in doubt begins, whether any is, all functions there)."""
     low, doubt, there = 0.0 * part, part != part, parts[-1]
     for i, row in reversed(list(enumerate(parts))):
@@ -134,7 +134,7 @@ def _first(parts: list[list[Part]], part: Lanes) -> tuple[Lanes, Truth, list[Par
     return low, doubt, there
 
 
-def _earliest(functions: list[Part], part: Lanes) -> tuple[Part, Lanes]:
+def _earliest(functions: list[Watched], part: Lanes) -> tuple[Watched, Lanes]:
     """The doubtful function whose cubic is first at zero, and the share of the part at which it is."""
     first, least = functions[0], 2.0 + 0.0 * part
     for each in functions:
@@ -143,7 +143,7 @@ def _earliest(functions: list[Part], part: Lanes) -> tuple[Part, Lanes]:
     return first, least
 
 
-def _share(of: Part) -> Any:
+def _share(of: Watched) -> Any:
     """The share of its part at which the cubic of a function that crosses is zero."""
     f0, left, right, f1 = of.cubic
     c1, c2, c3 = 3.0 * (left - f0), 3.0 * (f0 - 2.0 * left + right), f1 - 3.0 * right + 3.0 * left - f0
@@ -156,7 +156,7 @@ def _share(of: Part) -> Any:
     return share
 
 
-def _clear_before(of: Part, share: Lanes) -> Truth:
+def _clear_before(of: Watched, share: Lanes) -> Truth:
     """Whether the function surely has no root up to a share of the part, by the coefficients of that piece of it."""
     f0, left, right, f1 = of.cubic
     a, b, c = f0 + share * (left - f0), left + share * (right - left), right + share * (f1 - right)
@@ -165,7 +165,7 @@ def _clear_before(of: Part, share: Lanes) -> Truth:
     return (minimum(minimum(f0, a), minimum(d, there)) > of.room) | (of.leaves & (d > 0.0) & (there > 0.0))
 
 
-def _surely(number: float, f0: Any, g0: Any, f1: Any, g1: Any, part: Any, tiny: Any, slack: Any) -> Part:
+def _surely(number: float, f0: Any, g0: Any, f1: Any, g1: Any, part: Any, tiny: Any, slack: Any) -> Watched:
     """Whether the function has no root in the part; just one; and starts as a root itself. Slopes are per part.
 
     The cubic errs by h^4 f x^2 (1 - x)^2 / 24, and f is at most the square of the highest frequency times f'':
@@ -181,7 +181,7 @@ def _surely(number: float, f0: Any, g0: Any, f1: Any, g1: Any, part: Any, tiny: 
     if slack is not None:
         leaves = _leaves(f0, left, right, f1, slack)
         sure, crosses = sure | (leaves & (right > 0.0) & (f1 > 0.0)), crosses | (leaves & (f1 <= 0.0))
-    return Part(number, (f0, left, right, f1), room, ~sure, crosses, leaves)
+    return Watched(number, (f0, left, right, f1), room, ~sure, crosses, leaves)
 
 
 def _leaves(f0: Any, left: Any, right: Any, f1: Any, slack: Any) -> Truth:
@@ -190,7 +190,7 @@ def _leaves(f0: Any, left: Any, right: Any, f1: Any, slack: Any) -> Truth:
     return (abs(f0) <= slack) & ((left > small) | ((left > -small) & (right > small)))
 
 
-def _root(watched: list[Any], first: Part, share: Lanes, low: Lanes, part: Lanes, order: int) -> tuple[Any, Truth]:
+def _root(watched: list[Any], first: Watched, share: Lanes, low: Lanes, part: Lanes, order: int) -> tuple[Any, Truth]:
     """The root of the first function, from where its cubic is zero, and whether Newton's rule has settled on it."""
     chosen = Series(lambda k: _select(watched, first.number, k))
     high = low + part

@@ -221,12 +221,13 @@ class TaylorStep(EquationText):
 
     def compared(self, c: int, row: int, found: dict[str, list[str]]) -> tuple[str, str]:
         """Force, and rate of the memory, by the series and by the law itself at `away`, one less the other."""
-        p, k = self.given(f"law{c}_", self.shape.laws[c][1], False, 1), self.tag
+        law, count = self.shape.laws[c]
+        p, k = self.given(f"law{c}_", count, is_table(LAWS, law), 1), self.tag
         normal = f"value({found['normal'][c]}, away, {ORDER})"
         if not self.shape.exact and not self.shape.is_smooth(c):
             return f"value(f{c}_{k}, away, {ORDER - 1}) - {self.smoothed(c, 'slide', normal, p)}", ""
         if not self.shape.is_smooth(c):
-            mu = f"lane_mu_{self.shape.laws[c][0]}(maximum({self.row(f's{c}')} * slide, 0.0 * t_), {p})"
+            mu = f"lane_mu_{law}(maximum({self.row(f's{c}')} * slide, 0.0 * t_), {p})"
             return f"(value(mu{c}_{k}, away, {ORDER}) - {mu}) * {normal}", ""
         kind, z, rate = self.shape.smooth[c] - 1, "0.0", "0.0"
         if row >= 0:
@@ -333,7 +334,8 @@ class TaylorStep(EquationText):
             " + ".join(f"{x} * ({row})" for i, x in enumerate(v) if (row := " + ".join(self.product(f"c{i}", v))))
         )
         lifted = [(" + ".join(self.product(f"w{c}", v)), c) for c in range(m) if shape.unilateral[c]]
-        off = [(self.openness(c, found["normal"][c]), found["normal"][c], row) for row, c in lifted if row]
+        here = [f"at({normal}, 0)" for normal in found["normal"]]  # the choice was made when the step began
+        off = [(self.openness(c, here[c]), found["normal"][c], row) for row, c in lifted if row]
         rates.append(" + ".join(f"{share} * {normal} * ({row})" for share, normal, row in off))
         for k, rate in enumerate(rates):
             self.put(f"works{k} = integral({rate}) * unit" if rate else f"works{k} = 0.0")

@@ -15,6 +15,7 @@ from squealbox.transient import packing
 from squealbox.transient._march import COMPLETED, NOT_CONFIRMED
 from squealbox.transient.choosing import pays
 from squealbox.transient.lanes.batch import stacked
+from squealbox.transient.lanes.orders import Orders
 from squealbox.transient.lanes.shape import layout, parameter_rows
 from squealbox.transient.lanes.table import Jobs, tabulate
 from squealbox.transient.limited import in_time
@@ -130,10 +131,11 @@ class Work:
             groups[rows.places["alive"] * lanes] = -1.0
             n = jobs.shape.n
             scratch = packing.scratch(record, np.zeros(n), np.zeros(n), self.begin, 0.0)
-            kernel(
-                groups, live, jobs.table, jobs.varies, jobs.fixed, self.times, samples, counter, count, out,
-                record.copy(), rule, scratch, stop, EVERY, np.zeros((1, 1)), np.zeros((1, 1)), counter,
+            orders = Orders(
+                jobs.table, jobs.varies, jobs.fixed, self.times, samples, counter, count, out,
+                record.copy(), rule, scratch, stop, EVERY,
             )  # fmt: skip
+            kernel(groups, live, orders)
 
         def work() -> None:
             try:

@@ -25,10 +25,10 @@ from squealbox.limit_cycles import (
 from squealbox.limit_cycles.branches.stretches import NEUTRAL
 from squealbox.parameters import ParameterError
 from squealbox.plots.facts import unit_at
+from squealbox.plots.figure_data import FigureAxis, FigureData, Layer, band, line, points, span
 from squealbox.stability import complex_modes, critical_values
 from squealbox.system import System
 from squealbox.words import number, scaled
-from squealbox.workbench.figures import Axis, Figure, Layer, band, line, points, span
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import FREEDOM, FRICTION, Panel, Place, over
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
@@ -148,7 +148,7 @@ def _walks(
 
 def _drawn(
     design: Design,
-    axis: Axis,
+    axis: FigureAxis,
     span_: tuple[float, float],
     dof: int,
     born: HopfPoint,
@@ -179,8 +179,8 @@ def _drawn(
         "marks": {"together": json.dumps(together), "walks": len(walks)},
         "words": " ".join(_words(axis, born, together, ended, specials, centre)),
     }  # fmt: skip
-    upward = Axis(f"amplitude of {names[dof]}", unit, (-0.03 * top, top))
-    return Answer(data, figures=[Figure("branch", axis, upward, layers)])
+    upward = FigureAxis(f"amplitude of {names[dof]}", unit, (-0.03 * top, top))
+    return Answer(data, figures=[FigureData("branch", axis, upward, layers)])
 
 
 def _curves(walk: Branch, size: Any, factor: float) -> list[Layer]:
@@ -195,14 +195,16 @@ def _curves(walk: Branch, size: Any, factor: float) -> list[Layer]:
     return drawn
 
 
-def _specials(walk: Branch, size: Any, span_: tuple[float, float], axis: Axis) -> list[tuple[str, float, float]]:
+def _specials(walk: Branch, size: Any, span_: tuple[float, float], axis: FigureAxis) -> list[tuple[str, float, float]]:
     if np.ptp(walk.value) <= UPRIGHT * (span_[1] - span_[0]):
         return []  # it stands at one value: each of its points looks special, by round-off
     rows = zip(walk.special_kind, walk.special_value, walk.special_point, strict=True)
     return [(str(kind).replace("_", " "), float(x) / axis.factor, float(size[int(at)])) for kind, x, at in rows]
 
 
-def _words(axis: Axis, born: HopfPoint, together: Any, ended: list[str], specials: Any, centre: bool) -> Iterator[str]:
+def _words(
+    axis: FigureAxis, born: HopfPoint, together: Any, ended: list[str], specials: Any, centre: bool
+) -> Iterator[str]:
     unit = f" {axis.unit}" if axis.unit else ""
     if born.outcome.ok:
         yield f"Sliding loses its stability at {axis.value(float(born.value))}, {born.kind}."

@@ -9,10 +9,9 @@ from squealbox.files.varied import scalar_parameters
 from squealbox.parameters import ParameterError
 from squealbox.signals import SignalError
 from squealbox.words import number
-from squealbox.workbench.figures import Table
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import FRICTION, Panel, over, words
-from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, try_value
+from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, table, try_value
 from squealbox.workbench.panels.recording import heard
 
 PANEL = Panel(
@@ -41,19 +40,19 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     except (SignalError, ParameterError) as error:
         raise OptionError(str(error)) from error
     rows: list[dict[str, Any]] = []
-    table: list[list[str]] = []
+    lines: list[list[str]] = []
     for i, name in enumerate(found.names):
         axis = options.axis(design, name, bounds[name])
         value, low, high = (finite(getattr(found, each)[i]) for each in ("values", "low", "high"))
         rows.append({"name": name, "values": value, "low": low, "high": high})
         before = axis.value(try_value(design, name))
-        table.append([name, before, axis.value(value), f"{axis.value(low)} to {axis.value(high)}"])
+        lines.append([name, before, axis.value(value), f"{axis.value(low)} to {axis.value(high)}"])
     fits = list(zip(found.settings["measured"], found.predicted, found.residuals, strict=True))
     said = [f"{text}: the fit says {number(value, 5)}, {number(away, 2)} sd apart." for text, value, away in fits]
     failed = [] if found.outcome.ok else [f"{found.outcome.message}."]
     words = " ".join([*failed, *found.cannot_tell, *said])
     data = {"outcome": str(found.outcome), "rows": rows, "fits": [[text, finite(away)] for text, _, away in fits]}
-    return Answer({**data, "table": Table(HEADS, table), "words": words, "marks": {"outcome": data["outcome"]}})
+    return Answer({**data, "table": table(HEADS, lines), "words": words, "marks": {"outcome": data["outcome"]}})
 
 
 def _bounds(design: Design, name: str, share: float, about: Any) -> tuple[float, float]:

@@ -7,14 +7,14 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.files.varied import scalar_parameters
 from squealbox.plots.cards import parameter_rows
+from squealbox.plots.figure_data import FigureAxis, FigureData, across, line, span
 from squealbox.plots.modes import followed
 from squealbox.stability import complex_modes, mechanism
 from squealbox.words import number, quantity, scaled
-from squealbox.workbench.figures import NONE, Axis, Figure, Table, across, line, span
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import FRICTION, Panel, Place, over
 from squealbox.workbench.panels.modes import crossings_of, modes_of
-from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work, try_value
+from squealbox.workbench.panels.panel import NONE, Answer, OptionError, Options, Work, table, try_value
 
 PANEL = Panel(
     "Compare two designs", questions=("silences",), columns=2, choices=(over("over", "parameter", FRICTION),),
@@ -49,17 +49,17 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     return Answer(data, figures=_figures(axis, sides))
 
 
-def _figures(axis: Axis, sides: list[tuple[str, str, Side]]) -> list[Figure]:
+def _figures(axis: FigureAxis, sides: list[tuple[str, str, Side]]) -> list[FigureData]:
     x = sides[0][2]["grid"] / axis.factor
     factor, hertz = scaled("Hz", *(side["frequencies"] for *_, side in sides))
     modes = [line(x, row / factor, look, name) for name, look, side in sides for row in side["frequencies"].T]
     rates = [line(x, side["largest"], look, name) for name, look, side in sides]
     high = span(*(each["y"] for each in modes), room=0.2)
-    upward = Axis("frequency", hertz, high, factor=factor, quantity="frequency")
-    rate = Axis("growth rate", "1/s", span(*(each["y"] for each in rates), room=0.2), quantity="growth rate")
+    upward = FigureAxis("frequency", hertz, high, factor=factor, quantity="frequency")
+    rate = FigureAxis("growth rate", "1/s", span(*(each["y"] for each in rates), room=0.2), quantity="growth rate")
     return [
-        Figure("frequency", axis, upward, modes),
-        Figure("growth", axis, rate, [across(0.0), *rates], "top left"),
+        FigureData("frequency", axis, upward, modes),
+        FigureData("growth", axis, rate, [across(0.0), *rates], "top left"),
     ]
 
 
@@ -79,7 +79,7 @@ def _side(design: Design, parameter: str, ends: tuple[float, float]) -> Side:
     }
 
 
-def _table(a: Side | None, b: Side, axis: Axis) -> Table:
+def _table(a: Side | None, b: Side, axis: FigureAxis) -> dict[str, Any]:
     """Rows of both sides; without A those of B. The growth rate says whether B is better or worse."""
     sides = [b] if a is None else [a, b]
     known = a is not None and a["growth"] is not None and b["growth"] is not None
@@ -99,7 +99,7 @@ def _table(a: Side | None, b: Side, axis: Axis) -> Table:
         for name in dict.fromkeys([*a["parameters"], *b["parameters"]]):
             texts = [each["parameters"].get(name, NONE) for each in sides]
             rows += [[name, *texts]] if texts[0] != texts[1] else []
-    return Table(["", "A (kept)", "B (this page)"] if a is not None else ["", "B (this page)"], rows)
+    return table(["", "A (kept)", "B (this page)"] if a is not None else ["", "B (this page)"], rows)
 
 
 def _state(design: Design) -> dict[str, Any]:

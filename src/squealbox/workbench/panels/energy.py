@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.plots.figure_data import Bars
 from squealbox.stability import mode_energy
 from squealbox.words import number, quantity
-from squealbox.workbench.figures import Bars
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import Panel, Place, shared
 from squealbox.workbench.panels.modes import modes_of, seen

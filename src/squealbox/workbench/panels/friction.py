@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.plots.figure_data import FigureAxis, FigureData, line, points, span, upright
 from squealbox.system import linearise
 from squealbox.words import number, quantity
-from squealbox.workbench.figures import Axis, Figure, Table, line, points, span, upright
 from squealbox.workbench.panels.declared import Panel, Place
-from squealbox.workbench.panels.panel import Answer, Options, Work
+from squealbox.workbench.panels.panel import Answer, Options, Work, table
 
 PANEL = Panel(
     "Friction curve", questions=("why",), figures=(Place("friction", "", 300),), table="Contacts in steady sliding",
@@ -35,7 +35,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     sliding = [(abs(float(speed)), float(m), float(each.law.slope_at(speed))) for each, speed, m in at
                if np.isfinite(speed)]  # fmt: skip
     static = [float(law.static_limit) for law in laws]
-    upward = Axis("friction coefficient", "-", span(*mu, static, zero=True))
+    upward = FigureAxis("friction coefficient", "-", span(*mu, static, zero=True))
     names = [type(law).__name__ for law in laws]
     kind = "name" if len(names) > 1 else "column"
     layers = [
@@ -54,8 +54,8 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
                  "s/m: it takes damping away.")  # fmt: skip
     told = zip(system.contact_names, state.normal_force, state.sliding_speed, state.friction, strict=True)
     rows = [(name, quantity(force, "N"), quantity(speed, "m/s"), number(m)) for name, force, speed, m in told]
-    contacts = Table(("contact", "N", "slides at", "mu"), rows)
-    figure = Figure("friction", Axis("sliding speed |v|", "m/s", (0.0, top)), upward, layers)
+    contacts = table(("contact", "N", "slides at", "mu"), rows)
+    figure = FigureData("friction", FigureAxis("sliding speed |v|", "m/s", (0.0, top)), upward, layers)
     return Answer({"outcome": str(steady.equilibrium.outcome), "words": words, "table": contacts}, figures=[figure])
 
 

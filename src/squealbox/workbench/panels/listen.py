@@ -6,12 +6,12 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.matrices import liveliest
+from squealbox.plots.figure_data import FigureAxis, FigureData, heat, line, text
 from squealbox.signals import SignalError, audible, dominant_frequency, rendered, spectrogram, squeal_events
 from squealbox.signals.radiation import AREA, AUDIBLE
 from squealbox.signals.wav import SAMPLING
 from squealbox.transient import Trajectory
 from squealbox.words import number, quantity, scaled
-from squealbox.workbench.figures import Axis, Figure, heat, line, text
 from squealbox.workbench.panels.declared import FREEDOM, Panel, Place, words
 from squealbox.workbench.panels.following import followed, moving
 from squealbox.workbench.panels.loudness import loudest, loudness
@@ -135,7 +135,7 @@ def _stop(design: Design, seconds: float, options: Options, work: Work) -> Answe
     return Answer(data, {"wave": wave, **_frames(motion, pitch or 1.0 / PIECE)}, [figure])
 
 
-def _picture(picture: Any, time: Any, top: float, data: dict[str, Any]) -> Figure:
+def _picture(picture: Any, time: Any, top: float, data: dict[str, Any]) -> FigureData:
     """The spectrogram of a stop, the speed as a line from its first value to none, and the squeal events by name."""
     span, height = (float(time[0]), float(time[-1])), top / 1e3
     falls = [height * (1.0 - each / data["seconds"]) for each in span]
@@ -145,9 +145,9 @@ def _picture(picture: Any, time: Any, top: float, data: dict[str, Any]) -> Figur
         layers.append(
             text((max(begin, span[0]) + end) / 2.0, hertz / 1e3, f"{quantity(hertz, 'Hz', 3)}, {level:.0f} dB(A)")
         )
-    upward = Axis("frequency", "kHz", (0.0, height), factor=1e3, quantity="frequency")
+    upward = FigureAxis("frequency", "kHz", (0.0, height), factor=1e3, quantity="frequency")
     seen = heat(picture, "decades", "sound pressure", "Pa", smooth=True)
-    return Figure("sound", Axis("time", "s", span), upward, layers, "bottom left", seen)
+    return FigureData("sound", FigureAxis("time", "s", span), upward, layers, "bottom left", seen)
 
 
 def _events(pressure: Any, times: Any) -> list[list[float]]:

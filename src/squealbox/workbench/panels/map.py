@@ -7,9 +7,9 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.plots.figure_data import FigureData, heat, path
 from squealbox.stability import StabilityMap, map_boundary, stability_map
 from squealbox.words import number
-from squealbox.workbench.figures import Figure, heat, path
 from squealbox.workbench.panels.declared import FRICTION, LOADS, Panel, Place, over, words
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
 
@@ -62,7 +62,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     }
     rings = [np.column_stack([edge.x[edge.curve == i] / axes[0].factor, edge.y[edge.curve == i] / axes[1].factor])
              for i in np.unique(edge.curve)]  # fmt: skip
-    figure = Figure("map", axes[0], axes[1], [path(rings, "boundary")], heat=_picture(found, show))
+    figure = FigureData("map", axes[0], axes[1], [path(rings, "boundary")], heat=_picture(found, show))
     return Answer(data, figures=[figure])
 
 

@@ -7,10 +7,10 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.files.runs import usual_duration
 from squealbox.plots.facts import unit_at
+from squealbox.plots.figure_data import FigureAxis, FigureData, across, heat, hull, line, span, text
 from squealbox.signals import SignalError, peaks, spectrogram, spectrum
 from squealbox.transient import Trajectory, Verdict, verdict
 from squealbox.words import number, scaled
-from squealbox.workbench.figures import Axis, Figure, across, heat, hull, line, span, text
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import FREEDOM, Panel, Place, words
 from squealbox.workbench.panels.following import followed, moving
@@ -80,10 +80,10 @@ def _signals(motion: Trajectory, dof: int, judged: Verdict, data: dict[str, Any]
     }  # fmt: skip
     low, high, at = (each / unit for each, unit in zip(_hull(t, x), (metre, metre, second), strict=True))
     end, orbit = float(t[-1] / second), (x[late:] / metre, v[late:] / speed)
-    moves = Axis(name, size, span(low, high))
+    moves = FigureAxis(name, size, span(low, high))
     figures = [
-        Figure("time", Axis("time", clock, (0.0, end)), moves, [hull(at, low, high)]),
-        Figure("phase", Axis(name, size, span(orbit[0])), Axis(f"d{name}/dt", rate, span(orbit[1])),
+        FigureData("time", FigureAxis("time", clock, (0.0, end)), moves, [hull(at, low, high)]),
+        FigureData("phase", FigureAxis(name, size, span(orbit[0])), FigureAxis(f"d{name}/dt", rate, span(orbit[1])),
                [line(*orbit, "s1 thin")]),
     ]  # fmt: skip
     try:
@@ -96,16 +96,16 @@ def _signals(motion: Trajectory, dof: int, judged: Verdict, data: dict[str, Any]
     data["marks"] |= {"frequency": found[0][0] if found else ""}
     factor, hertz = scaled("Hz", top)
     f, sizes = lines.frequency[shown] / factor, lines.amplitude[shown] / metre
-    over = Axis("frequency", hertz, (0.0, float(f[-1])), factor=factor, quantity="frequency")
-    upward = Axis("amplitude", size, (0.0, 1.18 * float(np.max(sizes)) or 1.0))
+    over = FigureAxis("frequency", hertz, (0.0, float(f[-1])), factor=factor, quantity="frequency")
+    upward = FigureAxis("amplitude", size, (0.0, 1.18 * float(np.max(sizes)) or 1.0))
     named = [text(at / factor, a, number(at / factor)) for at, a in found[:3]]
-    figures.append(Figure("spectrum", over, upward, [line(f, sizes), across(0.0), *named]))
+    figures.append(FigureData("spectrum", over, upward, [line(f, sizes), across(0.0), *named]))
     stretch = (float(grid.time[0] / second), float(grid.time[-1] / second))
-    upward = Axis(
+    upward = FigureAxis(
         "frequency", hertz, (0.0, float(grid.frequency[seen][-1] / factor)), factor=factor, quantity="frequency"
     )
     picture = heat(grid.amplitude[seen] / metre, "decades", "amplitude", size, smooth=True)
-    figures.append(Figure("spectrogram", Axis("time", clock, stretch), upward, [], heat=picture))
+    figures.append(FigureData("spectrogram", FigureAxis("time", clock, stretch), upward, [], heat=picture))
     return Answer(data, arrays, figures)
 
 

@@ -11,12 +11,13 @@ from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
 from squealbox.files.varied import scalar_parameters
 from squealbox.parameters import ParameterError
+from squealbox.plots.figure_data import Bars, FigureAxis, FigureData, packed
 from squealbox.words import read_in
-from squealbox.workbench.figures import Axis, Bars, Figure, Table, packed
 from squealbox.workbench.sheet import slider, usual_value
 from squealbox.workbench.state import StateError, UnknownBase, design_of
 
 LONGEST_UNIT = 12  # characters
+NONE = "\u2013"  # in a table, where nothing is known
 
 
 class OptionError(ValueError):
@@ -41,20 +42,24 @@ class Answer:
 
     `data` goes into the header (plain JSON), `arrays` follow as float32. Scale numbers to the unit they are read in
     before (float32 has seven digits). What stands in `data["marks"]` becomes attributes of the panel's element, a
-    `Table` in `data["table"]` its table.
+    `table` in `data["table"]` its table.
     """
 
     data: Mapping[str, Any]
     arrays: Mapping[str, Any] = field(default_factory=dict)
-    figures: Sequence[Figure | Bars] = ()
+    figures: Sequence[FigureData | Bars] = ()
 
     def sent(self) -> tuple[dict[str, Any], dict[str, Any]]:
         """Header and arrays of the answer's frame."""
-        plain = {name: value.data() if isinstance(value, Table) else value for name, value in self.data.items()}
         if not self.figures:
-            return plain, dict(self.arrays)
+            return dict(self.data), dict(self.arrays)
         figures, arrays = packed(self.figures)
-        return {**plain, "figures": figures}, {**arrays, **self.arrays}
+        return {**self.data, "figures": figures}, {**arrays, **self.arrays}
+
+
+def table(heads: Sequence[str], rows: Sequence[Sequence[Any]]) -> dict[str, Any]:
+    """A table of an answer: heads, and rows whose first cell names them; a cell is a text or (text, look)."""
+    return {"heads": list(heads), "rows": [list(row) for row in rows]}
 
 
 class Work:
@@ -160,7 +165,7 @@ class Options:
             raise OptionError(f"{name}: expected a lower and a higher value in {about.range}")
         return low, high
 
-    def axis(self, design: Design, parameter: str, ends: tuple[float, float]) -> Axis:
+    def axis(self, design: Design, parameter: str, ends: tuple[float, float]) -> FigureAxis:
         """An axis over a parameter, its ends given in SI, in the unit that was chosen for it or the usual one."""
         read, chosen = axis_of(design, parameter), self.given.get("units")
         unit, factor = read["unit"], read["factor"]
@@ -168,7 +173,7 @@ class Options:
         if isinstance(given, list) and len(given) == 2 and _is_number(given[1]) and given[1] > 0.0:
             unit, factor = str(given[0])[:LONGEST_UNIT], float(given[1])
         low, high = (end / factor for end in ends)
-        return Axis(parameter, unit, (low, high), parameter, factor)
+        return FigureAxis(parameter, unit, (low, high), parameter, factor)
 
 
 def axis_of(design: Design, parameter: str) -> dict[str, Any]:

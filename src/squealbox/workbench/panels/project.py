@@ -10,11 +10,10 @@ from squealbox.files.document import DesignFileError
 from squealbox.files.reading import read_text
 from squealbox.stability import mechanism
 from squealbox.words import number, quantity
-from squealbox.workbench.figures import NONE
 from squealbox.workbench.folder import LARGEST_TEXT, Project, ProjectError, standing
 from squealbox.workbench.panels.declared import Panel
 from squealbox.workbench.panels.modes import crossings_of, modes_of
-from squealbox.workbench.panels.panel import Answer, Elsewhere, Options, Work
+from squealbox.workbench.panels.panel import NONE, Answer, Elsewhere, Options, Work
 from squealbox.workbench.session import LARGE, PER_CUBE
 
 PANEL = Panel("Project", questions=("project",), columns=2, slow=True, light=True)

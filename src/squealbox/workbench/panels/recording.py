@@ -8,15 +8,15 @@ from squealbox import read_recording, squeal_events
 from squealbox.calibration import compare
 from squealbox.designs import Design
 from squealbox.plots.facts import shown
+from squealbox.plots.figure_data import FigureAxis, FigureData, heat, line
 from squealbox.signals import SignalError, spectrogram
 from squealbox.signals.events import SquealEvents
 from squealbox.signals.recordings import Recording
 from squealbox.stability import complex_modes
 from squealbox.words import number
-from squealbox.workbench.figures import NONE, Axis, Figure, Table, heat, line
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import Panel, Place
-from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
+from squealbox.workbench.panels.panel import NONE, Answer, OptionError, Options, Work, table
 from squealbox.workbench.recorded import path_of
 
 PANEL = Panel(
@@ -46,7 +46,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         found = compare(modes, events, event=chosen)
         rows = zip(found.names, found.simulated, found.measured, found.error, found.away, strict=True)
         compared = [_compared(*row) for row in rows if row[0] != "level"]
-        data |= {"event": chosen, "table": Table(("that event", "model", "measured", "apart"), compared)}
+        data |= {"event": chosen, "table": table(("that event", "model", "measured", "apart"), compared)}
     work.progress(0.7, "spectrogram")
     picture, stretch, top = _grid(recording, events)
     lines = [
@@ -54,9 +54,9 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
              "s1" if i == data.get("event") else "s5", column=f"event {i + 1}")
         for i in range(min(events.count, MOST_EVENTS))
     ]  # fmt: skip
-    upward = Axis("frequency", "kHz", (0.0, top / 1e3), factor=1e3)
+    upward = FigureAxis("frequency", "kHz", (0.0, top / 1e3), factor=1e3)
     seen = heat(picture, "decades", "amplitude", "", smooth=True)
-    return Answer(data, figures=[Figure("recording", Axis("time", "s", stretch), upward, lines, heat=seen)])
+    return Answer(data, figures=[FigureData("recording", FigureAxis("time", "s", stretch), upward, lines, heat=seen)])
 
 
 def _grid(recording: Recording, events: SquealEvents) -> tuple[Any, tuple[float, float], float]:

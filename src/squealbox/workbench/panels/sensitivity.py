@@ -8,12 +8,12 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.files.varied import scalar_parameters
 from squealbox.parameters import ParameterError
+from squealbox.plots.figure_data import Bars
 from squealbox.plots.moving import moving_strokes
 from squealbox.plots.strokes import written_places
 from squealbox.remedies.production import usual_scatter
 from squealbox.stability import critical_values, sensitivity
 from squealbox.system import InvalidSystem
-from squealbox.workbench.figures import Bars
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import Panel, Place, words
 from squealbox.workbench.panels.modes import modes_of

@@ -4,8 +4,8 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.parameters import ParameterError
+from squealbox.plots.figure_data import FigureAxis, FigureData, Layer, across, line, points, text, upright
 from squealbox.remedies.target import ASSUMED, Lot, lot_of
-from squealbox.workbench.figures import Axis, Figure, Layer, across, line, points, text, upright
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import Panel, Place, number
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
@@ -46,8 +46,8 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     ]
     if np.isfinite(least):
         layers += _named("reached", least, share, "begin")
-    over = Axis("friction", "-", (low, high))
-    return Answer(data, figures=[Figure("lot", over, Axis("stable", "%", (0.0, 105.0)), layers)])
+    over = FigureAxis("friction", "-", (low, high))
+    return Answer(data, figures=[FigureData("lot", over, FigureAxis("stable", "%", (0.0, 105.0)), layers)])
 
 
 def _named(words: str, x: float, share: float, look: str = "here") -> list[Layer]:

@@ -1,23 +1,24 @@
 // Bars to the left and right of zero, one row each, with their numbers: for few named things.
 
-import { sized } from "./chart.js";
+import { axis, scale, sized, ticks } from "./chart.js";
+import { element, fill, make, set } from "./elements.js";
 import { shown } from "./numbers.js";
 
-const d3 = window.d3;
 const ROW = 24;
 
 export class Bars {
   constructor(place, name) {
     this.name = name;
     this.margin = { top: 6, right: 62, bottom: 36, left: 128 };
-    this.figure = d3.select(place).append("figure").attr("class", "chart").attr("data-figure", name);
-    this.frame = this.figure.append("div").attr("class", "frame");
+    const put = (tag, about) => this.svg.appendChild(element(tag, about));
     this.canvas = { hidden: true };
-    this.svg = this.frame.append("svg").attr("role", "img").attr("aria-label", name);
-    this.axis = this.svg.append("g").attr("class", "axis");
-    this.rows = this.svg.append("g");
-    this.label = this.svg.append("text").attr("class", "axis-label").attr("text-anchor", "middle");
-    this.legend = this.svg.append("g").attr("class", "legend");
+    this.svg = element("svg", { role: "img", "aria-label": name });
+    this.frame = make("div", { class: "frame" }, this.svg);
+    place.append((this.figure = make("figure", { class: "chart", data: { figure: name } }, this.frame)));
+    this.axis = put("g", { class: "axis" });
+    this.rows = put("g");
+    this.label = put("text", { class: "axis-label", "text-anchor": "middle" });
+    this.legend = put("g", { class: "legend" });
     sized(this, () => this.draw(this.spec));
     this.draw({ label: "being computed", bars: [3, 2, 1].map((size) => ({ name: "…", parts: [["like", size]], sum: NaN })) });
   }
@@ -31,40 +32,21 @@ export class Bars {
     const legend = spec.legend?.length > 1 ? 18 : 0;
     const height = top + legend + ROW * Math.max(spec.bars.length, 1) + bottom;
     this.inner = { width: width - left - right, height: height - top - bottom };
-    this.svg.attr("width", width).attr("height", height).attr("viewBox", `0 0 ${width} ${height}`);
-    this.frame.style("height", `${height}px`);
+    set(this.svg, { width, height, viewBox: `0 0 ${width} ${height}` });
+    this.frame.style.height = `${height}px`;
     const ends = spec.bars.flatMap((bar) => stacked(bar).flatMap((part) => [part.from, part.to]));
-    const x = d3.scaleLinear().domain([Math.min(0, ...ends), Math.max(0, ...ends) || 1]).range([left, left + this.inner.width]);
-    this.axis.attr("transform", `translate(0,${height - bottom})`).call(d3.axisBottom(x).ticks(Math.max(2, this.inner.width / 50)).tickFormat((v) => shown(v, 4)).tickSizeOuter(0));
-    const groups = this.rows.selectAll("g.bar").data(spec.bars);
-    groups.exit().remove();
-    const fresh = groups.enter().append("g").attr("class", "bar");
-    fresh.append("text").attr("class", "name").attr("text-anchor", "end");
-    fresh.append("text").attr("class", "value");
-    const all = fresh.merge(groups).attr("transform", (bar, i) => `translate(0,${top + legend + ROW * i})`).attr("data-name", (bar) => bar.name).attr("data-value", (bar) => bar.sum);
-    all.select("text.name").attr("x", left - 8).attr("y", 16).text((bar) => bar.name);
-    all.select("text.value").attr("x", width - right + 6).attr("y", 16).text((bar) => shown(bar.sum, 3));
-    const parts = all.selectAll("rect").data(stacked);
-    parts.exit().remove();
-    parts.enter().insert("rect", "text").merge(parts).attr("class", (part) => part.cls).attr("y", 4).attr("height", ROW - 9)
-      .attr("x", (part) => x(Math.min(part.from, part.to))).attr("width", (part) => Math.abs(x(part.to) - x(part.from)));
-    this.label.attr("x", left + this.inner.width / 2).attr("y", height - 5).text(spec.label);
-    this.#named(legend ? spec.legend : [], left);
-  }
-
-  #named(names, left) {
-    const entries = this.legend.selectAll("g").data(names);
-    entries.exit().remove();
-    const fresh = entries.enter().append("g");
-    fresh.append("rect").attr("width", 12).attr("height", 12).attr("y", 2);
-    fresh.append("text").attr("x", 17).attr("y", 13);
-    const all = fresh.merge(entries).attr("transform", (entry, i) => `translate(${left - 60 + 110 * i},2)`);
-    all.select("rect").attr("class", (entry) => entry[0]);
-    all.select("text").text((entry) => entry[1]);
-  }
-
-  columns() {
-    return [["name", this.spec.bars.map((bar) => bar.name)], [this.spec.label, this.spec.bars.map((bar) => bar.sum)]];
+    const x = scale([Math.min(0, ...ends), Math.max(0, ...ends) || 1], [left, left + this.inner.width]);
+    set(this.axis, { transform: `translate(0,${height - bottom})` });
+    axis(this.axis, x, ticks(x.ends, Math.max(2, this.inner.width / 50)), 4);
+    const words = (cls, at, said, about) => ["text", { class: cls, x: at, y: 16, ...about }, said];
+    const part = ({ cls, from, to }) => ["rect", { class: cls, y: 4, height: ROW - 9, x: x(Math.min(from, to)), width: Math.abs(x(to) - x(from)) }];
+    const row = (bar, i) => ["g", { class: "bar", transform: `translate(0,${top + legend + ROW * i})`, "data-name": bar.name, "data-value": bar.sum },
+      [...stacked(bar).map(part), words("name", left - 8, bar.name, { "text-anchor": "end" }), words("value", width - right + 6, shown(bar.sum, 3))]];
+    fill(this.rows, spec.bars.map(row));
+    set(this.label, { x: left + this.inner.width / 2, y: height - 5 });
+    this.label.textContent = spec.label;
+    const entry = ([cls, name], i) => ["g", { transform: `translate(${left - 60 + 110 * i},2)` }, [["rect", { class: cls, width: 12, height: 12, y: 2 }], ["text", { x: 17, y: 13 }, name]]];
+    fill(this.legend, legend ? spec.legend.map(entry) : []);
   }
 }
 

@@ -1,18 +1,16 @@
-// One chart: axes, lines, areas, points and marks in SVG, drawn with D3; a picture of values on a canvas beneath.
+// One chart: axes, lines, areas, points and marks in SVG; a picture of values on a canvas beneath.
 //
 //   const chart = new Chart(place, { height: 220, title: "frequency" });
-//   chart.draw({ x: { label, domain }, y: { label, domain }, layers: [line(x, y, { name })] });
+//   chart.draw({ x: { label, domain }, y: { label, domain }, layers: [{ kind: "line", x, y, cls: "s0", name }] }); // kinds: DRAW below
 
-import { shown } from "./numbers.js";
+import { element, fill, make, set, spot } from "./elements.js";
+import { raised, shown } from "./numbers.js";
 import { shade } from "./theme.js";
 
-const d3 = window.d3;
 const MARGIN = { top: 8, right: 14, bottom: 42, left: 58 };
 const WAVE = Array.from({ length: 60 }, (_, i) => [i / 59, 0.5 + 0.4 * Math.sin(i / 3) * Math.exp(-i / 60)]);
-const LETTER = 7; // px a digit of the axes is wide
-
-// What a panel's own script draws; the server's figures come with layers of these and other kinds (DRAW below).
-export const line = (x, y, about = {}) => ({ kind: "line", x, y, cls: "s0", ...about });
+const MIDDLE = { class: "axis-label", "text-anchor": "middle" };
+const LETTER = 7.7; // px a digit of the axes is wide
 
 const LIKE = {
   wave: [WAVE],
@@ -25,38 +23,39 @@ export class Chart {
     this.margin = { ...MARGIN, ...margin };
     Object.assign(this, { height, like: LIKE[like] ?? LIKE.wave, awaited: awaited || "being computed" });
     this.name = name;
-    this.figure = d3.select(place).append("figure").attr("class", "chart").attr("data-figure", name);
-    if (title) this.figure.append("figcaption").text(title);
-    this.frame = this.figure.append("div").attr("class", "frame fills").style("height", `${height}px`);
-    this.canvas = this.frame.append("canvas").node();
-    this.svg = this.frame.append("svg").attr("role", "img").attr("tabindex", 0).attr("aria-label", `${title || name}; plus and minus zoom, 0 shows all`).attr("height", height);
-    this.key = this.figure.append("p").attr("class", "key").attr("hidden", "");
-    this.clip = `clip-${Math.random().toString(36).slice(2)}`;
-    this.clipped = this.svg.append("clipPath").attr("id", this.clip).append("rect");
-    this.back = this.svg.append("g").attr("clip-path", `url(#${this.clip})`);
-    this.grid = this.svg.append("g").attr("class", "grid");
-    this.xAxis = this.svg.append("g").attr("class", "axis");
-    this.yAxis = this.svg.append("g").attr("class", "axis");
-    this.front = this.svg.append("g").attr("clip-path", `url(#${this.clip})`);
-    this.xLabel = this.svg.append("text").attr("class", "axis-label").attr("text-anchor", "middle");
-    this.yLabel = this.svg.append("text").attr("class", "axis-label").attr("text-anchor", "middle");
-    this.legend = this.svg.append("g").attr("class", "legend");
-    this.reader = this.svg.append("g").attr("class", "reader").attr("display", "none");
-    this.reader.append("circle").attr("r", 3.5);
-    this.reader.append("text").attr("class", "reading");
-    this.svg.on("mousemove", () => this.#read(d3.mouse(this.svg.node()))).on("mouseleave", () => this.#silent());
+    this.canvas = make("canvas");
+    this.svg = element("svg", { role: "img", tabindex: 0, "aria-label": `${title || name}; plus and minus zoom, 0 shows all`, height });
+    this.frame = make("div", { class: "frame fills" }, this.canvas, this.svg);
+    this.frame.style.height = `${height}px`;
+    this.key = make("p", { class: "key", hidden: true });
+    this.figure = make("figure", { class: "chart", data: { figure: name } }, title ? make("figcaption", {}, title) : null, this.frame, this.key);
+    place.append(this.figure);
+    const clip = `clip-${Math.random().toString(36).slice(2)}`;
+    const put = (tag, about, ...children) => this.svg.appendChild(element(tag, about, ...children));
+    this.clipped = element("rect");
+    put("clipPath", { id: clip }, this.clipped);
+    this.back = put("g", { "clip-path": `url(#${clip})` });
+    this.grid = put("g", { class: "grid" });
+    this.axes = [put("g", { class: "axis" }), put("g", { class: "axis" })];
+    this.front = put("g", { "clip-path": `url(#${clip})` });
+    this.labels = [put("text", MIDDLE), put("text", MIDDLE)];
+    this.legend = put("g", { class: "legend" });
+    this.reading = element("text", { class: "reading" });
+    this.reader = put("g", { class: "reader", hidden: "" }, element("circle", { r: 3.5 }), this.reading);
+    this.here = put("g", { "clip-path": `url(#${clip})` });
+    this.svg.addEventListener("mousemove", (event) => this.#read(spot(this.svg, event)));
+    this.svg.addEventListener("mouseleave", () => this.#silent());
     sized(this, () => (this.spec ? this.draw(this.spec) : this.#sketch()));
   }
 
   /** What will stand here, until the first answer: a curve of its kind and a word of what is awaited. */
   #sketch() {
     const { width, height } = this.size;
-    this.svg.attr("width", width).attr("height", height).attr("viewBox", `0 0 ${width} ${height}`);
-    this.sketched ??= this.svg.append("g").attr("class", "sketch");
-    this.sketched.selectAll("*").remove();
+    set(this.svg, { width, height, viewBox: `0 0 ${width} ${height}` });
+    this.sketched ??= this.svg.appendChild(element("g", { class: "sketch" }));
     const place = ([x, y]) => `${(width * (0.08 + 0.86 * x)).toFixed(1)},${(height * (0.86 - 0.72 * y)).toFixed(1)}`;
-    for (const curve of [[[0, 1], [0, 0], [1, 0]], ...this.like]) this.sketched.append("path").attr("d", `M${curve.map(place).join("L")}`);
-    this.sketched.append("text").attr("x", width / 2).attr("y", height * 0.97).text(this.awaited);
+    const curves = [[[0, 1], [0, 0], [1, 0]], ...this.like].map((curve) => ["path", { d: `M${curve.map(place).join("L")}` }]);
+    fill(this.sketched, [...curves, ["text", { x: width / 2, y: height * 0.97 }, this.awaited]]);
   }
 
   draw(given) {
@@ -64,70 +63,59 @@ export class Chart {
     if (!this.size.width) return; // out of sight: drawn when it is seen
     this.sketched?.remove();
     this.height = this.size.height;
-    this.svg.attr("height", this.height);
     const { top, right, bottom } = this.margin;
     const left = (this.margin.left = this.#room(spec.y));
     const width = Math.max(this.size.width, 130);
-    const inner = { width: width - left - right, height: this.height - top - bottom };
-    this.inner = inner;
-    this.svg.attr("width", width).attr("viewBox", `0 0 ${width} ${this.height}`);
-    this.clipped.attr("x", left).attr("y", top).attr("width", inner.width).attr("height", inner.height);
+    const inner = (this.inner = { width: width - left - right, height: this.height - top - bottom });
+    set(this.svg, { width, height: this.height, viewBox: `0 0 ${width} ${this.height}` });
+    set(this.clipped, { x: left, y: top, width: inner.width, height: inner.height });
     const zoomed = this.zoom?.of === spec.x.label + spec.y.label ? this.zoom : {};
-    this.x = scale(spec.x, [left, left + inner.width], zoomed.x);
-    this.y = scale(spec.y, [top + inner.height, top], zoomed.y);
+    this.x = scale(zoomed.x ?? spec.x.domain, [left, left + inner.width]);
+    this.y = scale(zoomed.y ?? spec.y.domain, [top + inner.height, top]);
     this.#axes(spec);
-    const behind = spec.layers.filter((layer) => layer.kind === "band");
-    const before = spec.layers.filter((layer) => layer.kind !== "band");
-    this.#layers(this.back, behind);
-    this.#layers(this.front, before);
+    this.#layers(this.back, spec.layers.filter((layer) => layer.kind === "band"));
+    this.#layers(this.front, spec.layers.filter((layer) => layer.kind !== "band"));
     this.#named(spec.layers.filter((layer) => layer.name && layer.kind !== "band"), spec.legend);
     this.#heat(spec.heat);
     this.#keys(spec.heat);
     if (this.marked) this.#mark(...this.marked);
-    this.svg.attr("data-drawn", (this.count = (this.count ?? 0) + 1));
+    set(this.svg, { "data-drawn": (this.count = (this.count ?? 0) + 1) });
   }
 
   /** Room for the label and the longest number of the upright axis. */
   #room(axis) {
-    const numbers = scale(axis, [0, 1]).ticks(5).map((value) => shown(value, 5).length);
-    return 30 + LETTER * Math.max(2, ...numbers);
+    const numbers = ticks(scale(axis.domain, [0, 1]).ends, 5).map((value) => shown(value, 5).length);
+    return 32 + LETTER * Math.max(2, ...numbers);
   }
 
-  #axes(spec) {
+  #axes({ x, y, heat }) {
     const { top, bottom, left } = this.margin;
-    const ticks = (axis, size) => axis.ticks(Math.max(2, Math.round(size / 70))).tickFormat((v) => shown(v, 5)).tickSizeOuter(0);
-    this.xAxis.attr("transform", `translate(0,${this.height - bottom})`).call(ticks(d3.axisBottom(this.x), this.inner.width));
-    this.yAxis.attr("transform", `translate(${left},0)`).call(ticks(d3.axisLeft(this.y), 1.6 * this.inner.height));
-    const places = spec.heat ? [] : this.y.ticks(Math.max(2, Math.round((1.6 * this.inner.height) / 70)));
-    const lines = this.grid.selectAll("line").data(places);
-    lines.exit().remove();
-    lines.enter().append("line").merge(lines).attr("x1", left).attr("x2", left + this.inner.width).attr("y1", this.y).attr("y2", this.y);
-    this.xLabel.attr("x", left + this.inner.width / 2).attr("y", this.height - 6).text(spec.x.label);
-    this.yLabel.attr("transform", `translate(14,${top + this.inner.height / 2}) rotate(-90)`).text(spec.y.label);
+    const [across, up] = [[this.x, this.inner.width], [this.y, 1.6 * this.inner.height]].map(([{ ends }, size]) => ticks(ends, Math.max(2, Math.round(size / 70))));
+    set(this.axes[0], { transform: `translate(0,${this.height - bottom})` });
+    set(this.axes[1], { transform: `translate(${left},0)` });
+    axis(this.axes[0], this.x, across, 5);
+    axis(this.axes[1], this.y, up, 5, true);
+    const lines = heat ? [] : up.map((value) => ["line", { x1: left, x2: left + this.inner.width, y1: this.y(value), y2: this.y(value) }]);
+    fill(this.grid, lines);
+    set(this.labels[0], { x: left + this.inner.width / 2, y: this.height - 6 });
+    const [long, room] = [6.4 * y.label.length, this.height - 4]; // px; a long label is moved and pressed into the height
+    const middle = Math.max(top + this.inner.height / 2, Math.min(long, room) / 2 + 2);
+    set(this.labels[1], { transform: `translate(14,${middle}) rotate(-90)`, textLength: long > room ? room : NaN, lengthAdjust: "spacingAndGlyphs" });
+    [x, y].forEach(({ label }, i) => (this.labels[i].textContent = label));
   }
 
   #layers(group, layers) {
-    const nodes = group.selectAll("g.layer").data(layers);
-    nodes.exit().remove();
-    const all = nodes.enter().append("g").merge(nodes);
-    all.attr("class", (layer) => `layer ${layer.cls}`).each((layer, i, drawn) => DRAW[layer.kind](d3.select(drawn[i]), layer, this));
+    fill(group, layers.map((layer) => ["g", { class: `layer ${layer.cls}` }, DRAW[layer.kind](layer, this)]));
   }
 
   #named(layers, place = "top right") {
     const [vertical, horizontal] = place.split(" ");
-    const seen = new Set();
-    const names = layers.filter((layer) => !seen.has(layer.name) && seen.add(layer.name));
-    const entries = this.legend.selectAll("g").data(names);
-    entries.exit().remove();
-    const fresh = entries.enter().append("g");
-    fresh.append("line").attr("x1", 0).attr("x2", 22).attr("y1", -4).attr("y2", -4);
-    fresh.append("text").attr("x", 27);
-    const all = fresh.merge(entries);
+    const names = layers.filter(({ name }, i) => layers.findIndex((each) => each.name === name) === i);
     const { left, top } = this.margin;
     const x = horizontal === "left" ? left + 8 : left + this.inner.width - 108;
     const first = vertical === "top" ? top + 16 : top + this.inner.height - 8 - 16 * (names.length - 1);
-    all.attr("class", (layer) => `layer ${layer.cls}`).attr("transform", (layer, i) => `translate(${x},${first + 16 * i})`);
-    all.select("text").text((layer) => layer.name);
+    const entry = ({ name, cls }, i) => ["g", { class: `layer ${cls}`, transform: `translate(${x},${first + 16 * i})` }, [["line", { x1: 0, x2: 22, y1: -4, y2: -4 }], ["text", { x: 27 }, name]]];
+    fill(this.legend, names.map(entry));
   }
 
   #heat(heat) {
@@ -157,16 +145,16 @@ export class Chart {
 
   /** What the colours of a picture mean, below it. */
   #keys(heat) {
-    this.key.attr("hidden", heat ? null : "");
+    this.key.hidden = !heat;
     const key = heat && JSON.stringify([heat.keys(), heat.words]);
     if (!heat || key === this.told) return;
     this.told = key;
-    this.key.text("");
-    for (const [css, words] of heat.keys()) {
-      this.key.append("i").attr("class", "swatch").style("background-color", css);
-      this.key.append("span").text(words);
-    }
-    this.key.append("span").text(` ${heat.words ?? ""}`);
+    const swatches = heat.keys().flatMap(([css, words]) => {
+      const swatch = make("i", { class: "swatch" });
+      swatch.style.backgroundColor = css;
+      return [swatch, make("span", {}, words)];
+    });
+    this.key.replaceChildren(...swatches, ` ${heat.words ?? ""}`);
   }
 
   /** The number nearest to the pointer: of a line or point, else of an area or the picture below. */
@@ -178,15 +166,17 @@ export class Chart {
         for (let i = 0; i < values.length; i++) {
           const [dx, dy] = [this.x(layer.x[i]) - x, this.y(values[i]) - y];
           const far = dx * dx + (layer.kind === "hull" ? 0 : dy * dy);
-          if (far < (best?.far ?? 900)) best = { far, px: this.x(layer.x[i]), py: this.y(values[i]), words: `${layer.name ? `${layer.name}: ` : ""}${shown(layer.x[i])}, ${layer.kind === "hull" ? `${shown(layer.low[i])} to ${shown(layer.high[i])}` : shown(values[i])}` };
+          if (far < (best?.far ?? 900)) best = { far, px: this.x(layer.x[i]), py: this.y(values[i]), words: `${layer.name || layer.column ? `${layer.name || layer.column}: ` : ""}${read(this.spec.x, layer.x[i])}, ${layer.kind === "hull" ? `${shown(layer.low[i])} to ${read(this.spec.y, layer.high[i])}` : read(this.spec.y, values[i])}` };
         }
       }
     }
     best ??= this.spec?.heat && this.#below(x, y);
     if (!best) return this.#silent();
-    const right = best.px > this.margin.left + 0.6 * this.inner.width;
-    this.reader.attr("display", null).attr("transform", `translate(${best.px},${best.py})`);
-    this.reader.select("text").attr("x", right ? -8 : 8).attr("y", best.py < 30 ? 18 : -8).attr("text-anchor", right ? "end" : "start").text(best.words);
+    this.reader.removeAttribute("hidden");
+    set(this.reader, { transform: `translate(${best.px},${best.py})` });
+    this.reading.textContent = best.words;
+    const length = this.reading.getComputedTextLength();
+    set(this.reading, { x: best.px + 10 + length > this.size.width ? Math.max(-8 - length, 2 - best.px) : 8, y: best.py < 30 ? 18 : -8 });
   }
 
   /** The value of the picture below a place. */
@@ -196,8 +186,9 @@ export class Chart {
     const cell = (value, [low, high], count) => Math.round(((value - low) / (high - low)) * (count - 1));
     const [i, j] = [cell(vx, along.domain, heat.columns), cell(vy, up.domain, heat.rows)];
     if (!(i >= 0 && j >= 0 && i < heat.columns && j < heat.rows)) return null;
-    const value = heat.values[j * heat.columns + i];
-    return { px: x, py: y, words: `${shown(vx)}, ${shown(vy)}: ${heat.names?.[value] ?? `${shown(value, 3)} ${heat.unit}`}` };
+    const [value, also] = [heat.values, heat.beside].map((values) => values?.[j * heat.columns + i]);
+    const words = heat.names?.[value] ?? `${shown(value, 3)} ${heat.unit}`;
+    return { px: x, py: y, words: `${read(along, vx)}, ${read(up, vy)}: ${words}${also > 0 ? `, ${shown(also)} ${heat.besideUnit}` : ""}` };
   }
 
   /** The present design: a line, or a point on a figure over two parameters. */
@@ -209,41 +200,20 @@ export class Chart {
 
   #mark(x, y) {
     const known = [x, y].filter((each) => typeof each === "number");
-    this.here ??= this.svg.append("g").attr("clip-path", `url(#${this.clip})`);
-    const mark = (this.markLayer = known.length < 2 ? { kind: "upright", x, cls: "present" } : { kind: "points", x: [x], y: [y], cls: "here big", r: 6 });
+    const mark = (this.markLayer = known.length < 2 ? { kind: "upright", x, cls: "present" } : { kind: "points", x: [x], y: [y], cls: "here big", r: 6, column: "present design" });
     this.#layers(this.here, [mark].filter(drawable));
-    this.figure.attr("data-at", known.join(","));
+    this.figure.dataset.at = known.join(",");
   }
 
   /** Where the brake that moves is now. */
   mark(x, y) {
     if (!this.x) return;
-    this.cursor ??= this.svg.append("circle").attr("class", "cursor").attr("r", 5);
-    this.cursor.attr("cx", this.x(x)).attr("cy", this.y(y));
+    this.cursor ??= this.svg.appendChild(element("circle", { class: "cursor", r: 5 }));
+    set(this.cursor, { cx: this.x(x), cy: this.y(y) });
   }
 
   #silent() {
-    this.reader.attr("display", "none");
-  }
-
-  /** The numbers drawn, as columns: [[name, values], ...]. */
-  columns() {
-    const columns = [];
-    const { x, y, layers, heat } = this.spec;
-    for (const [i, layer] of layers.entries()) {
-      if (layer.cls === "measured") columns.push(["measured", [layer.x ?? layer.y]]);
-      const name = layer.name || layer.column || `line ${i + 1}`;
-      if (layer.kind === "line" || layer.kind === "points") columns.push([`${name}: ${x.label}`, layer.x], [`${name}: ${y.label}`, layer.y]);
-      if (layer.kind === "path") columns.push([`${name}: ${x.label}`, layer.rings.flatMap((ring) => [...ring.map((at) => at[0]), NaN])], [`${name}: ${y.label}`, layer.rings.flatMap((ring) => [...ring.map((at) => at[1]), NaN])]);
-      if (layer.kind === "hull") columns.push([`${x.label}`, layer.x], [`least ${y.label}`, layer.low], [`largest ${y.label}`, layer.high]);
-    }
-    if (heat) {
-      const at = (axis, count, i) => axis.domain[0] + ((axis.domain[1] - axis.domain[0]) * i) / (count - 1);
-      const xs = [], ys = [];
-      for (let j = 0; j < heat.rows; j++) for (let i = 0; i < heat.columns; i++) xs.push(at(x, heat.columns, i)), ys.push(at(y, heat.rows, j));
-      columns.unshift([x.label, xs], [y.label, ys], [heat.name, heat.values]);
-    }
-    return columns;
+    set(this.reader, { hidden: "" });
   }
 }
 
@@ -254,17 +224,44 @@ export function sized(chart, draw) {
     const grown = width !== chart.size.width || height !== chart.size.height;
     chart.size = { width, height };
     if (grown && width) draw();
-  }).observe(chart.frame.node());
+  }).observe(chart.frame);
 }
+
+/** A number of an axis with its unit. */
+const read = ({ unit }, value) => `${shown(value)} ${unit && unit !== "-" ? raised(unit) : ""}`.trim();
 
 const LARGEST = 1e150; // beyond which differences and squares of an axis are no numbers
 
 /** False for a mark whose place is no number: it would be an attribute no browser reads. */
 const drawable = (layer) => ["x", "y", "from", "to"].every((name) => typeof layer[name] !== "number" || Math.abs(layer[name]) < LARGEST);
 
-function scale(axis, range, zoomed) {
-  const domain = zoomed ?? axis.domain;
-  return d3.scaleLinear().domain(domain.every((end) => Math.abs(end) < LARGEST) ? domain : [0, 1]).range(range);
+/** The place [px] of a number, `invert` the number of a place; `ends` are the numbers at both `sides`. */
+export function scale(domain, sides) {
+  const ends = domain.every((end) => Math.abs(end) < LARGEST) ? domain : [0, 1];
+  const by = (sides[1] - sides[0]) / (ends[1] - ends[0] || 1);
+  return Object.assign((value) => sides[0] + by * ((value ?? NaN) - ends[0]), { ends, sides, invert: (px) => ends[0] + (px - sides[0]) / by });
+}
+
+/** Round numbers between two ends, about that many: 1, 2 or 5 times a power of ten apart. */
+export function ticks(ends, count) {
+  const [low, high] = [Math.min(...ends), Math.max(...ends)];
+  const power = 10 ** Math.floor(Math.log10((high - low) / count));
+  const over = (high - low) / count / power;
+  const step = power * ([[Math.sqrt(50), 10], [Math.sqrt(10), 5], [Math.SQRT2, 2]].find(([least]) => over >= least)?.[1] ?? 1);
+  const [first, last] = [Math.ceil(low / step - 1e-9), Math.floor(high / step + 1e-9)];
+  return last >= first ? Array.from({ length: last - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12))) : [];
+}
+
+/** An axis with its numbers, along the bottom or `upright` along the left. */
+export function axis(group, scaled, places, digits, upright = false) {
+  const [a, b] = scaled.sides.map((side) => side + 0.5); // px whose lines are sharp
+  const tick = upright ? { x2: -6 } : { y2: 6 };
+  const number = upright ? { x: -9, dy: "0.32em", "text-anchor": "end" } : { y: 9, dy: "0.71em", "text-anchor": "middle" };
+  const marks = places.map((value) => {
+    const at = scaled(value) + 0.5;
+    return ["g", { class: "tick", transform: `translate(${upright ? `0,${at}` : `${at},0`})` }, [["line", tick], ["text", number, shown(value, digits)]]];
+  });
+  fill(group, [["path", { d: upright ? `M.5,${a}V${b}` : `M${a},.5H${b}` }], ...marks]);
 }
 
 /** The span of some arrays, a little wider; `with0` keeps zero inside. */
@@ -282,14 +279,10 @@ export function span(arrays, { with0 = false, room = 0.06 } = {}) {
   return [low - extra, high + extra];
 }
 
-function single(group, tag) {
-  const found = group.selectAll(tag).data([0]);
-  group.selectAll(`:scope > :not(${tag})`).remove();
-  return found.enter().append(tag).merge(found);
-}
+const path = (d) => [["path", { d, fill: "none" }]];
 
 const DRAW = {
-  line(group, layer, { x, y }) {
+  line(layer, { x, y }) {
     let d = "";
     let pen = "M";
     for (let i = 0; i < layer.x.length; i++) {
@@ -300,9 +293,9 @@ const DRAW = {
         pen = "L";
       } else pen = "M";
     }
-    single(group, "path").attr("d", d || null).attr("fill", "none");
+    return path(d);
   },
-  hull(group, layer, { x, y }) {
+  hull(layer, { x, y }) {
     const up = [];
     const down = [];
     for (let i = 0; i < layer.x.length; i++) {
@@ -311,31 +304,16 @@ const DRAW = {
       up.push(`${px},${top}`);
       down.push(`${px},${foot}`);
     }
-    single(group, "path").attr("class", "area").attr("d", up.length ? `M${up.join("L")}L${down.reverse().join("L")}Z` : null);
+    return [["path", { class: "area", d: up.length ? `M${up.join("L")}L${down.reverse().join("L")}Z` : "" }]];
   },
-  points(group, layer, { x, y }) {
-    const places = Array.from(layer.x, (value, i) => [x(value), y(layer.y[i])]).filter((p) => p.every(Number.isFinite));
-    group.selectAll(":scope > :not(circle)").remove();
-    const dots = group.selectAll("circle").data(places);
-    dots.exit().remove();
-    dots.enter().append("circle").merge(dots).attr("r", layer.r).attr("cx", (p) => p[0]).attr("cy", (p) => p[1]);
-  },
-  across(group, layer, { y, margin, inner }) {
-    single(group, "line").attr("x1", margin.left).attr("x2", margin.left + inner.width).attr("y1", y(layer.y)).attr("y2", y(layer.y));
-  },
-  upright(group, layer, { x, margin, inner }) {
-    single(group, "line").attr("x1", x(layer.x)).attr("x2", x(layer.x)).attr("y1", margin.top).attr("y2", margin.top + inner.height);
-  },
-  band(group, layer, { x, margin, inner }) {
+  points: (layer, { x, y }) => Array.from(layer.x, (value, i) => ({ cx: x(value), cy: y(layer.y[i]), r: layer.r }))
+    .filter(({ cx, cy }) => Number.isFinite(cx) && Number.isFinite(cy)).map((about) => ["circle", about]),
+  across: (layer, { y, margin, inner }) => [["line", { x1: margin.left, x2: margin.left + inner.width, y1: y(layer.y), y2: y(layer.y) }]],
+  upright: (layer, { x, margin, inner }) => [["line", { x1: x(layer.x), x2: x(layer.x), y1: margin.top, y2: margin.top + inner.height }]],
+  band(layer, { x, margin, inner }) {
     const [a, b] = [x(layer.from), x(layer.to)];
-    single(group, "rect").attr("x", Math.min(a, b)).attr("width", Math.abs(b - a)).attr("y", margin.top).attr("height", inner.height);
+    return [["rect", { x: Math.min(a, b), width: Math.abs(b - a), y: margin.top, height: inner.height }]];
   },
-  text(group, layer, { x, y }) {
-    single(group, "text").attr("x", x(layer.x)).attr("y", y(layer.y)).attr("dx", layer.dx ?? 0).attr("dy", layer.dy ?? -6)
-      .attr("text-anchor", layer.anchor ?? "middle").text(layer.words);
-  },
-  path(group, layer, { x, y }) {
-    const d = layer.rings.map((ring) => "M" + ring.map(([a, b]) => `${x(a).toFixed(1)},${y(b).toFixed(1)}`).join("L")).join("");
-    single(group, "path").attr("d", d || null).attr("fill", "none");
-  },
+  text: (layer, { x, y }) => [["text", { x: x(layer.x), y: y(layer.y), dx: layer.dx ?? 0, dy: layer.dy ?? -6, "text-anchor": layer.anchor ?? "middle" }, layer.words]],
+  path: (layer, { x, y }) => path(layer.rings.map((ring) => "M" + ring.map(([a, b]) => `${x(a).toFixed(1)},${y(b).toFixed(1)}`).join("L")).join("")),
 };

@@ -1,8 +1,8 @@
 // The brake, drawn from the strokes the server makes of its geometry; it turns and grows with the parameters.
 
+import { element, set } from "./elements.js";
 import { View } from "./view.js";
 
-const SVG = "http://www.w3.org/2000/svg";
 const SIZE = { width: 300, height: 240 };
 const HEAD = 8;
 const GREEK = { "\\Omega": "Ω", "\\theta": "θ" };
@@ -115,17 +115,3 @@ function symbols(words) {
 }
 
 const tint = (fill) => (fill === "#ffffff" ? "hollow" : fill === "#e6c9a8" ? "lining" : "filled");
-
-/** Attributes of a node; a number that is none leaves its attribute out. */
-export function set(node, about) {
-  for (const [name, value] of Object.entries(about)) {
-    if (typeof value === "number" && !Number.isFinite(value)) node.removeAttribute(name);
-    else node.setAttribute(name, value);
-  }
-}
-
-export function element(tag, about) {
-  const made = document.createElementNS(SVG, tag);
-  set(made, about);
-  return made;
-}

@@ -13,6 +13,43 @@ export function make(tag, about = {}, ...children) {
   return element;
 }
 
+/** The same of a picture in SVG. */
+export function element(tag, about = {}, ...children) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  set(made, about);
+  made.append(...children);
+  return made;
+}
+
+/** Attributes of a node; a number that is none leaves its attribute out. */
+export function set(node, about) {
+  for (const [name, value] of Object.entries(about)) {
+    if (typeof value === "number" && !Number.isFinite(value)) node.removeAttribute(name);
+    else if (node.getAttribute(name) !== String(value)) node.setAttribute(name, value);
+  }
+}
+
+/** The children of a node: [tag, attributes, text or children] each. What is there is kept: to style new nodes takes the browser longer. */
+export function fill(node, parts) {
+  parts.forEach(([tag, about, inside = []], i) => {
+    const there = node.children[i];
+    const child = there?.tagName === tag ? there : element(tag);
+    if (!there) node.append(child);
+    else if (child !== there) there.replaceWith(child);
+    for (const { name } of [...child.attributes]) if (!(name in about)) child.removeAttribute(name);
+    set(child, about);
+    if (typeof inside !== "string") fill(child, inside);
+    else if (child.textContent !== inside) child.textContent = inside;
+  });
+  while (node.children.length > parts.length) node.lastElementChild.remove();
+}
+
+/** Where on a node the pointer is. */
+export function spot(node, event) {
+  const box = node.getBoundingClientRect();
+  return [event.clientX - box.left, event.clientY - box.top];
+}
+
 export const button = (text, onclick, about = {}) => make("button", { type: "button", onclick, ...about }, text);
 
 /** A select with its label; `choices` are [value, text] pairs. */

@@ -1,22 +1,6 @@
-// Figures as files for paper, drawn by the server from the numbers on the page; the numbers as CSV or in the clipboard.
+// Figures as files, made by the server from the numbers on the page: for paper, as CSV, or as a table for the clipboard.
 
 import { note } from "./elements.js";
-
-/** The numbers of a chart, one column each, with names and units in the first line. */
-export function csvText(chart, between = ",") {
-  const columns = chart.columns();
-  const quoted = (name) => `"${name.replaceAll('"', '""')}"`;
-  const lines = [columns.map(([name]) => quoted(name)).join(between)];
-  const rows = Math.max(0, ...columns.map(([, values]) => values.length));
-  for (let i = 0; i < rows; i++) lines.push(columns.map(([, values]) => cell(values[i])).join(between));
-  return lines.join("\n") + "\n";
-}
-
-/** A number with eight digits, a word in quotes, nothing where nothing is known. */
-function cell(value) {
-  if (typeof value === "string") return `"${value.replaceAll('"', '""')}"`;
-  return Number.isFinite(value) ? Number(value.toPrecision(8)) : "";
-}
 
 /** Hand a file to the user. */
 export function download(content, name, type) {
@@ -31,13 +15,13 @@ export function download(content, name, type) {
   setTimeout(() => URL.revokeObjectURL(address), 10000);
 }
 
-/** The chart as PDF, SVG or PNG. */
-async function onPaper(chart, kind) {
+/** The chart as a file. */
+async function made(chart, kind) {
   const { x, y, layers = [], heat, ...rest } = chart.spec;
-  const axis = (each, scale) => each?.label && { label: each.label, domain: scale.domain() };
+  const axis = (each, scale) => each?.label && { label: each.label, domain: scale.ends };
   const picture = heat && { ...heat, span: [x.domain, y.domain], scale: heat.kind };
   const figure = { ...rest, size: [chart.size.width, chart.size.height], x: axis(x, chart.x), y: axis(y, chart.y), layers: [...layers, chart.markLayer].filter(Boolean), heat: picture };
-  const plain = (key, value) => (value instanceof Float32Array ? Array.from(value, (v) => (Number.isFinite(v) ? Number(v.toPrecision(7)) : null)) : value);
+  const plain = (key, value) => (value instanceof Float32Array ? Array.from(value, (v) => (Number.isFinite(v) ? Number(v.toPrecision(8)) : null)) : value);
   const answer = await fetch(`/paper/${kind}`, { method: "POST", body: JSON.stringify(figure, plain) }).catch(() => null);
   if (answer?.ok) return answer.blob();
   note((await answer?.json().catch(() => null))?.message ?? "Not saved: the server does not answer.");
@@ -48,13 +32,11 @@ export const KINDS = [["PNG", "PNG"], ["SVG", "SVG"], ["PDF", "PDF"], ["CSV", "n
 
 /** Every chart of a panel as files of that kind, or all their numbers to the clipboard. */
 export async function exportCharts(charts, stem, kind) {
+  const ending = kind === "Copy" ? "tsv" : kind.toLowerCase();
   const drawn = charts.filter((chart) => chart.spec);
-  if (kind === "Copy") return copied(drawn.map((chart) => csvText(chart, "\t")).join("\n"));
-  const ending = kind.toLowerCase();
-  for (const chart of drawn) {
-    const content = kind === "CSV" ? csvText(chart) : await onPaper(chart, ending);
-    if (content) download(content, `${stem}-${chart.name}.${ending}`, "text/csv");
-  }
+  const files = await Promise.all(drawn.map((chart) => made(chart, ending)));
+  if (kind === "Copy") return files.every(Boolean) && copied((await Promise.all(files.map((file) => file.text()))).join("\n"));
+  files.forEach((file, i) => file && download(file, `${stem}-${drawn[i].name}.${ending}`));
 }
 
 /** Text into the clipboard. */

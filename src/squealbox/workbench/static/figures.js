@@ -1,4 +1,4 @@
-// Figures as the server describes them (`workbench/figures.py`): layers name arrays of the frame with "@name".
+// Figures as the server describes them (`plots/figure_data.py`): layers name arrays of the frame with "@name".
 
 import { diverging, mechanismColours, sequential } from "./colours.js";
 import { label, raised, shown } from "./numbers.js";
@@ -15,7 +15,7 @@ export function resolved(figure, arrays, measured = {}) {
     const value = measured[axis.quantity] / axis.factor;
     if (value >= axis.domain[0] && value <= axis.domain[1]) layers.push({ kind, [at]: value, cls: "measured", name: "measured" });
   }
-  return { x, y, layers, legend: figure.legend, heat: figure.heat && picture(figure.heat, read(figure.heat.values)) };
+  return { x, y, layers, legend: figure.legend, heat: figure.heat && picture({ ...figure.heat, beside: read(figure.heat.beside) }, read(figure.heat.values)) };
 }
 
 /** The ends of an axis, wider where what is measured lies not far outside. */

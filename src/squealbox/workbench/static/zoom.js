@@ -1,32 +1,31 @@
 // Zoom: drag a box over a figure (with Shift where a drag moves the design), or + and −; twice pressed, or 0, shows all again.
 
-import { element } from "./drawing.js";
+import { element, spot } from "./elements.js";
 
 const LEAST = 6; // px of a box that is meant
 const STEP = 0.7;
 
 /** `narrow(axis, ends)` takes the new ends of an axis over a parameter, null for the usual ones, and returns true: it is then computed anew. */
 export function zoomable(chart, narrow) {
-  const node = chart.svg.node();
+  const node = chart.svg;
   const box = element("rect", { class: "zoom", visibility: "hidden" });
   node.append(box);
-  const at = (event) => [event.clientX - node.getBoundingClientRect().left, event.clientY - node.getBoundingClientRect().top];
   const corners = ([a, b], [c, d]) => [Math.min(a, c), Math.min(b, d), Math.abs(c - a), Math.abs(d - b)];
   let from = null;
   node.addEventListener("pointerdown", (event) => {
     if (!chart.spec || event.button || event.pointerType === "touch" || (node.classList.contains("pickable") && !event.shiftKey)) return;
-    from = at(event);
+    from = spot(node, event);
     node.setPointerCapture(event.pointerId);
     event.stopImmediatePropagation();
   }, true);
   node.addEventListener("pointermove", (event) => {
     if (!from) return;
-    const [x, y, width, height] = corners(from, at(event));
+    const [x, y, width, height] = corners(from, spot(node, event));
     for (const [name, value] of Object.entries({ x, y, width, height, visibility: "visible" })) box.setAttribute(name, value);
   });
   node.addEventListener("pointerup", (event) => {
     if (!from) return;
-    const [x, y, width, height] = corners(from, at(event));
+    const [x, y, width, height] = corners(from, spot(node, event));
     from = null;
     box.setAttribute("visibility", "hidden");
     if (width > LEAST || height > LEAST) show(width > LEAST && [chart.x.invert(x), chart.x.invert(x + width)], height > LEAST && [chart.y.invert(y + height), chart.y.invert(y)]);
@@ -36,13 +35,15 @@ export function zoomable(chart, narrow) {
     const by = { "+": STEP, "=": STEP, "-": 1 / STEP }[event.key];
     if (!chart.spec || (!by && event.key !== "0")) return;
     event.preventDefault();
-    show(...[chart.x, chart.y].map((scale) => by && nearer(scale.domain(), by)));
+    show(...[chart.x, chart.y].map((scale) => by && nearer(scale.ends, by)));
   });
 
   function show(x, y) {
     const ends = { x, y };
     for (const way of ["x", "y"]) if (ends[way] !== false && narrow(chart.spec[way], ends[way])) ends[way] = null;
-    chart.zoom = { x: ends.x || null, y: ends.y || null, of: chart.spec.x.label + chart.spec.y.label };
+    const of = chart.spec.x.label + chart.spec.y.label;
+    const [was, now] = [chart.zoom?.of === of ? chart.zoom : {}, (way) => (ends[way] === false ? was[way] : ends[way]) || null];
+    chart.zoom = { x: now("x"), y: now("y"), of };
     chart.draw(chart.spec);
   }
 }

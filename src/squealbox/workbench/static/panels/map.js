@@ -1,23 +1,25 @@
 // The stability map: a click, a drag or the arrow keys move the design.
 
+import { set, spot } from "../elements.js";
+
 export default {
   setup(panel) {
     const [chart] = panel.charts;
-    chart.svg.attr("aria-label", "Stability map: click or use the arrow keys to move the design; plus and minus zoom, 0 shows all").classed("pickable", true);
+    set(chart.svg, { class: "pickable", "aria-label": "Stability map: click or use the arrow keys to move the design; plus and minus zoom, 0 shows all" });
     pickable(panel, chart);
   },
 };
 
 function pickable(panel, chart) {
   const place = (event) => {
-    const box = chart.svg.node().getBoundingClientRect();
+    const [left, top] = spot(chart.svg, event);
     const inside = (value, [a, b]) => Math.min(Math.max(value, Math.min(a, b)), Math.max(a, b));
     const { x, y } = chart.spec;
-    const px = inside(chart.x.invert(event.clientX - box.left), chart.x.domain());
-    const py = inside(chart.y.invert(event.clientY - box.top), chart.y.domain());
+    const px = inside(chart.x.invert(left), chart.x.ends);
+    const py = inside(chart.y.invert(top), chart.y.ends);
     return { [x.parameter]: rounded(px, x.domain) * x.factor, [y.parameter]: rounded(py, y.domain) * y.factor };
   };
-  const node = chart.svg.node();
+  const node = chart.svg;
   let dragging = false;
   node.addEventListener("pointerdown", (event) => {
     if (!chart.spec || event.button) return;

@@ -1,7 +1,7 @@
 // The brake in slow motion: a mode with its phases, or the last periods of the motion with stick, slip, lift-off, forces.
 
-import { arrow, drawn, element, set } from "../drawing.js";
-import { choose, make } from "../elements.js";
+import { arrow, drawn } from "../drawing.js";
+import { choose, element, make, set } from "../elements.js";
 import { Mesh } from "../mesh.js";
 import { shown, withUnit } from "../numbers.js";
 

@@ -1,7 +1,7 @@
 // Which parameter to change: bars, the same as discs where the drawing names the parameter, and how far each must go.
 
-import { drawn, element } from "../drawing.js";
-import { button, make } from "../elements.js";
+import { drawn } from "../drawing.js";
+import { button, element, make } from "../elements.js";
 import { shown, typographic } from "../numbers.js";
 
 export default {

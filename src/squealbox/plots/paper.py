@@ -1,18 +1,23 @@
-"""A figure of the page as PDF, SVG or PNG: the numbers and axes the page shows, drawn with Matplotlib for paper.
+"""A figure given as data as PDF, SVG or PNG, drawn with Matplotlib for paper, or its numbers as a table.
 
 What comes from a page is not trusted: sizes are bounded, and what is no figure is a `NoFigure` with one sentence.
 """
 
 import json
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
 
+from squealbox.plots.figure_data import Bars, FigureData, whole
+
 LARGEST = 4_000_000  # bytes of a figure
 DOTS, PNG_DOTS = 96.0, 300.0  # px of the page, and of a PNG, to an inch
-KINDS = {"pdf": "application/pdf", "svg": "image/svg+xml", "png": "image/png"}
+KINDS = {"pdf": "application/pdf", "svg": "image/svg+xml", "png": "image/png", "csv": "text/csv"}
+KINDS["tsv"] = "text/tab-separated-values"
+BETWEEN = {"csv": ",", "tsv": "\t"}
 SERIES = ("#0072b2", "#d55e00", "#009e73", "#b45a8d", "#3a96cf", "#b87f00", "#14181d")
 DASHES = ("-", (0, (7, 2)), (0, (2, 2)), (0, (9, 3, 2, 3)), (0, (4, 2)), (0, (12, 3)), (0, (3, 3)))
 MECHANISMS = ("#deebf7", "#d55e00", "#009e73", "#783c96", "#e69f00")
@@ -27,18 +32,73 @@ class NoFigure(ValueError):
     """What was sent is no figure; the message is one sentence."""
 
 
-def drawn(text: bytes, kind: str = "pdf") -> bytes:
-    """The file, one of KINDS, of a figure given as JSON: as `figures.packed` has it, with the arrays in place."""
+def drawn(figure: bytes | FigureData | Bars, kind: str = "pdf") -> bytes:
+    """The file, one of KINDS, of a figure, or of what `figure_data.whole` makes of it as JSON.
+
+    >>> from squealbox.plots.figure_data import FigureAxis, line
+    >>> axes = FigureAxis("time", "s", (0.0, 1.0)), FigureAxis("x", "mm", (0.0, 2.0))
+    >>> print(drawn(FigureData("motion", *axes, [line([0.0, 1.0], [0.5, 2.0], name="pad")]), "csv").decode())
+    "pad: time [s]","pad: x [mm]"
+    0,0.5
+    1,2
+    <BLANKLINE>
+    """
     try:
-        spec = json.loads(text)
+        spec = json.loads(figure) if isinstance(figure, bytes) else whole(figure)
         if not isinstance(spec, dict):
             raise NoFigure("expected a figure")
+        if kind in BETWEEN:
+            return _table(spec, BETWEEN[kind]).encode()
         with _ONE:
             return _drawn(spec, kind)
     except NoFigure:
         raise
     except (ValueError, TypeError, LookupError, AttributeError, RecursionError, ArithmeticError) as error:
         raise NoFigure(f"this is no figure that can be drawn: {type(error).__name__}") from error
+
+
+def _table(spec: dict[str, Any], between: str) -> str:
+    """The numbers drawn, a column each, with names and units in the first line."""
+    found = list(_columns(spec))
+    rows = [[name for name, _ in found], *zip_longest(*(values for _, values in found))]
+    return "".join(between.join(map(_cell, row)) + "\n" for row in rows)
+
+
+def _cell(value: Any) -> str:
+    """A number with eight digits, a word in quotes, nothing where nothing is known."""
+    if isinstance(value, str):
+        return '"' + value.replace('"', '""') + '"'
+    return f"{value:.8g}" if value is not None and np.isfinite(value) else ""
+
+
+def _columns(spec: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Each column with its name: of a picture, then of each layer."""
+    if "bars" in spec:
+        heads = (("name", "name"), (str(spec["label"]), "sum"))
+        yield from ((head, [bar[key] for bar in spec["bars"]]) for head, key in heads)
+        return
+    x, y = (str(spec[way]["label"]) for way in ("x", "y"))
+    if spec.get("heat"):
+        values, ends = _grid(spec["heat"]), spec["heat"]["span"]
+        along, up = np.meshgrid(*(np.linspace(a, b, n) for (a, b), n in zip(ends, values.shape[::-1], strict=True)))
+        yield from ((x, along.ravel()), (y, up.ravel()), (str(spec["heat"]["name"]), values.ravel()))
+    for i, layer in enumerate(spec["layers"], 1):
+        name, kind = layer.get("name") or layer.get("column") or f"line {i}", layer["kind"]
+        if layer.get("cls") == "measured":
+            yield "measured", [layer.get("x", layer.get("y"))]
+        if kind in ("line", "points"):
+            yield from ((f"{name}: {label}", _numbers(layer[way])) for way, label in (("x", x), ("y", y)))
+        if kind == "path":
+            rings = [each for ring in layer["rings"] for each in (*ring, (np.nan, np.nan))]
+            yield from ((f"{name}: {label}", [at[way] for at in rings]) for way, label in enumerate((x, y)))
+        if kind == "hull":
+            named = ((x, "x"), (f"least {y}", "low"), (f"largest {y}", "high"))
+            yield from ((label, _numbers(layer[way])) for label, way in named)
+
+
+def _grid(heat: dict[str, Any]) -> Any:
+    """The values of a picture (rows from below, columns)."""
+    return _numbers(np.ravel(heat["values"])).reshape(int(heat["rows"]), int(heat["columns"]))
 
 
 def _drawn(spec: dict[str, Any], kind: str) -> bytes:
@@ -91,8 +151,8 @@ def _look(layer: dict[str, Any]) -> dict[str, Any]:
         thin = "thin" in look
         return {
             "color": SERIES[0 if thin else i],
-            "linestyle": "-" if thin else DASHES[i],
-            "linewidth": 0.6 if thin else 1.4,
+            "linestyle": "-" if thin or "unbroken" in look else DASHES[i],
+            "linewidth": 0.6 if thin else 0.9 if "unbroken" in look else 1.4,
         }
     width = {"boundary": 1.4, "tangent": 1.8}.get(look, 0.8)
     colour = {"tangent": SERIES[1], "axis-line": "#535c66", "measured": "#b3261e"}.get(look, "#14181d")
@@ -146,7 +206,7 @@ def _picture(panel: Any, heat: dict[str, Any]) -> None:
     """The picture with its colours told: the scales of the page's `colours.js`."""
     from matplotlib.colors import LinearSegmentedColormap, ListedColormap, LogNorm, Normalize, PowerNorm, TwoSlopeNorm
 
-    values = _numbers(heat["values"]).reshape(int(heat["rows"]), int(heat["columns"]))
+    values = _grid(heat)
     (left, right), (bottom, top) = heat["span"]
     across, up = (right - left) / (values.shape[1] - 1), (top - bottom) / (values.shape[0] - 1)
     extent = (left - across / 2, right + across / 2, bottom - up / 2, top + up / 2)

@@ -1,7 +1,29 @@
-// Every brake in 3-D in place of its printed picture: it vibrates, and is turned by hand.
+// What moves in place of its printed picture: figures that are read out and zoomed into, brakes in 3-D that vibrate and turn.
 const period = 2400; // ms
 const HOW = "Drag it or use the arrow keys to turn it; click it and use the wheel to come nearer; Z looks along the axis.";
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
+
+/** What a figure is drawn from, its arrays unpacked. */
+function given(figure) {
+  const { arrays: packed, ...rest } = JSON.parse(figure.querySelector("script").textContent);
+  const unpacked = ([kind, text]) => new globalThis[kind](Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer);
+  figure.classList.add("moves");
+  return { ...rest, arrays: Object.fromEntries(Object.entries(packed).map(([name, each]) => [name, unpacked(each)])) };
+}
+
+/** The figures of one chart, which are zoomed together along an axis they share. */
+function drawCharts(place) {
+  const { figures, arrays } = given(place);
+  const charts = figures.map(({ name }) => new Chart(place.querySelector(".live"), { name, height: figures.length > 1 ? 300 : 420 }));
+  const draw = () => charts.forEach((chart, i) => chart.draw(resolved(figures[i], arrays)));
+  const along = (axis, x) => charts.filter(({ spec }) => spec.x.label === axis.label).forEach((chart) => {
+    chart.zoom = { ...chart.zoom, x, of: axis.label + chart.spec.y.label };
+    chart.draw(chart.spec);
+  });
+  draw();
+  for (const chart of charts) zoomable(chart, (axis, ends) => axis === chart.spec.x && along(axis, ends));
+  night.addEventListener("change", draw);
+}
 
 /** The outline of the brake at rest, over its picture. */
 function rest({ canvas, view, size }, { places, outline }) {
@@ -20,10 +42,7 @@ function rest({ canvas, view, size }, { places, outline }) {
 }
 
 for (const figure of document.querySelectorAll("figure.solid")) {
-  const { data, arrays: packed, normal } = JSON.parse(figure.querySelector("script").textContent);
-  const unpacked = ([kind, text]) => new globalThis[kind](Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer);
-  const arrays = Object.fromEntries(Object.entries(packed).map(([name, each]) => [name, unpacked(each)]));
-  figure.classList.add("moves");
+  const { data, arrays, normal } = given(figure);
   let [phase, held, seen] = [0, calm.matches, false];
   const mesh = new Mesh(figure.querySelector(".live"), { arrays, data }, () => draw());
   Object.assign(mesh, { re: arrays.re, im: arrays.im, shares: arrays.shares, normal });
@@ -35,7 +54,7 @@ for (const figure of document.querySelectorAll("figure.solid")) {
   say(held);
   const keys = () => figure.querySelector(".keys").replaceChildren(play, " ", ...mesh.keys(), make("small", {}, HOW));
   keys();
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (draw(), keys()));
+  night.addEventListener("change", () => (draw(), keys()));
   new IntersectionObserver(([now]) => (seen = now.isIntersecting)).observe(figure);
   const step = (now) => {
     requestAnimationFrame(step);
@@ -44,4 +63,14 @@ for (const figure of document.querySelectorAll("figure.solid")) {
     draw();
   };
   requestAnimationFrame(step);
+}
+
+try {
+  if (!CSS.supports("color", "light-dark(#000, #fff)")) throw new Error("this browser is older than they are");
+  document.querySelectorAll("figure.plotted").forEach(drawCharts);
+  document.documentElement.dataset.charts = "drawn";
+} catch (error) {
+  document.querySelectorAll("figure.plotted").forEach((figure) => figure.classList.remove("moves"));
+  document.documentElement.dataset.charts = "still";
+  document.getElementById("still").textContent = `The figures stand still here: ${error}.`;
 }

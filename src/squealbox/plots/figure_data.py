@@ -1,31 +1,31 @@
-"""Figures and tables as data: axes with units, layers, words. The page draws, reads out, zooms and saves them.
+"""Figures as data: axes with units, layers, words, the same for the workbench, a report and Python.
 
-A panel hands back `Figure`s whose layers hold arrays; `packed` names each array once, so that one that stands in
-several figures travels once. `static/figures.js` is the other end, `paper` draws the same data with Matplotlib.
+The layers of a `FigureData` hold arrays; `packed` names each once, so that one that stands in several figures travels
+once. A browser draws, reads out, zooms and saves them with `workbench/static/figures.js`; `paper` draws the same data
+with Matplotlib.
 
->>> axis = Axis("time", "s", (0.0, 1.0))
->>> figure = Figure("time", axis, Axis("x", "mm", (0.0, 1.0)), [line(np.zeros(9), np.ones(9), name="x")])
+>>> axis = FigureAxis("time", "s", (0.0, 1.0))
+>>> figure = FigureData("time", axis, FigureAxis("x", "mm", (0.0, 1.0)), [line(np.zeros(9), np.ones(9), name="x")])
 >>> packed([figure])[0][0]["layers"][0]["x"]
 '@a0'
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from squealbox.words import number
-from squealbox.workbench.frames import finite
+from squealbox.words import number, quantity_label
 
 Layer = dict[str, Any]
 FEW = 3  # numbers up to which an array travels in the header
+SIZE = (600.0, 400.0)  # px of the page a figure has, where no page says
 NAMED = 4  # curves up to which a legend helps
-NONE = "\u2013"  # in a table, where nothing is known
 
 
 @dataclass(frozen=True)
-class Axis:
+class FigureAxis:
     """An axis: what it shows, the unit it is read in, its ends in that unit, and where it is over a parameter, which.
 
     `factor` is one of the unit in SI; `quantity` names what may be measured too ("frequency", "growth rate").
@@ -50,12 +50,12 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Figure:
+class FigureData:
     """A figure: axes, layers from behind to the front, where the legend stands, and a picture of values beneath."""
 
     name: str
-    x: Axis
-    y: Axis
+    x: FigureAxis
+    y: FigureAxis
     layers: Sequence[Layer]
     legend: str = "top right"
     heat: Mapping[str, Any] | None = None
@@ -69,18 +69,6 @@ class Bars:
     label: str
     bars: Sequence[Mapping[str, Any]]
     legend: Sequence[tuple[str, str]] = ()
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table: heads, and rows whose first cell names them; a cell is a text or (text, look)."""
-
-    heads: Sequence[str]
-    rows: Sequence[Sequence[Any]] = field(default_factory=list)
-
-    def data(self) -> dict[str, Any]:
-        """For the page."""
-        return {"heads": list(self.heads), "rows": [list(row) for row in self.rows]}
 
 
 def line(x: Any, y: Any, look: str = "s0", name: str = "", column: str = "") -> Layer:
@@ -124,7 +112,11 @@ def path(rings: Sequence[Any], column: str = "") -> Layer:
 
 
 def heat(values: Any, scale: str, name: str, unit: str, **about: Any) -> dict[str, Any]:
-    """A picture (rows from below, columns): `scale` is ``diverging``, ``sequential``, ``decades`` or ``mechanism``."""
+    """A picture (rows from below, columns): `scale` is ``diverging``, ``sequential``, ``decades`` or ``mechanism``.
+
+    Of `about`, ``words`` says what colours mean, ``names`` are those of codes, ``smooth`` blurs, and ``beside`` are
+    numbers in ``besideUnit`` that are read out with the values.
+    """
     return {"values": values, "scale": scale, "name": name, "unit": unit, **about}
 
 
@@ -151,7 +143,7 @@ def span(*arrays: Any, zero: bool = False, room: float = 0.06) -> tuple[float, f
     return low - more, high + more
 
 
-def packed(figures: Iterable[Figure | Bars]) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+def packed(figures: Iterable[FigureData | Bars]) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     """The figures as plain data, in which ``"@name"`` stands for an array, and the arrays by name."""
     arrays: dict[str, Any] = {}
     known: dict[int, tuple[str, Any]] = {}
@@ -161,7 +153,7 @@ def packed(figures: Iterable[Figure | Bars]) -> tuple[list[dict[str, Any]], dict
             return value
         array = np.asarray(value, dtype=float)
         if array.ndim == 1 and array.size <= FEW:
-            return [finite(each) for each in array]
+            return array.tolist()
         if id(value) not in known:
             known[id(value)] = (f"a{len(arrays)}", value)  # kept, so that no other takes its place in memory
             arrays[known[id(value)][0]] = array
@@ -177,10 +169,24 @@ def unpacked(data: Mapping[str, Any], arrays: Mapping[str, Any], name: str) -> d
     def read(value: Any) -> Any:
         return arrays[value[1:]] if isinstance(value, str) and value.startswith("@") else value
 
-    return {**figure, "layers": [{key: read(value) for key, value in layer.items()} for layer in figure["layers"]]}
+    heat = {key: read(value) for key, value in (figure.get("heat") or {}).items()}
+    layers = [{key: read(value) for key, value in layer.items()} for layer in figure["layers"]]
+    return {**figure, "layers": layers, "heat": heat}
 
 
-def _figure(figure: Figure | Bars, take: Any) -> dict[str, Any]:
+def whole(figure: FigureData | Bars) -> dict[str, Any]:
+    """A figure with its arrays and labels in place, as a page sends one to be drawn for paper."""
+    (plain,), arrays = packed([figure])
+    if isinstance(figure, Bars):
+        return {**plain, "size": SIZE}
+    found, ends = unpacked({"figures": [plain]}, arrays, figure.name), (figure.x.domain, figure.y.domain)
+    axes = {way: {**found[way], "label": quantity_label(found[way]["name"], found[way]["unit"])} for way in ("x", "y")}
+    if heat := found["heat"]:
+        heat |= {"span": ends, "name": quantity_label(heat["name"], heat["unit"])}
+    return {**found, **axes, "size": SIZE}
+
+
+def _figure(figure: FigureData | Bars, take: Any) -> dict[str, Any]:
     if isinstance(figure, Bars):
         bars = [{**bar, "parts": [list(part) for part in bar["parts"]]} for bar in figure.bars]
         return {
@@ -192,7 +198,8 @@ def _figure(figure: Figure | Bars, take: Any) -> dict[str, Any]:
     about: dict[str, Any] = {"name": figure.name, "x": figure.x.data(), "y": figure.y.data(), "legend": figure.legend}
     if figure.heat is not None:
         rows, columns = np.shape(figure.heat["values"])
-        about["heat"] = {**figure.heat, "values": take(figure.heat["values"]), "rows": rows, "columns": columns}
+        taken = {name: take(value) if name in ("values", "beside") else value for name, value in figure.heat.items()}
+        about["heat"] = {**taken, "rows": rows, "columns": columns}
     wrapped = ("x", "y", "low", "high")
     about["layers"] = [
         {key: take(value) if key in wrapped else value for key, value in layer.items()} for layer in figure.layers
