@@ -7,6 +7,7 @@ A file of this folder that holds a law makes it one of `LAWS`.
 """
 
 from squealbox.bristles import Dahl, ElastoPlastic, LuGre
+from squealbox.friction import curves
 from squealbox.friction.averaged import Averaged, averaged
 from squealbox.friction.curves import Coulomb, Cubic, Hyperbolic, LinearSlope, Stribeck, Table
 from squealbox.law import NEVER_STICKS, FrictionLaw
@@ -16,6 +17,7 @@ from squealbox.registers import kinds_in
 _FIRST = (Coulomb, LinearSlope, Stribeck, Hyperbolic, Cubic, Table, LuGre, Dahl, ElastoPlastic)
 LAWS: tuple[type[FrictionLaw], ...] = kinds_in(__name__, FrictionLaw, _FIRST, having="formula")
 globals().update({law.__name__: law for law in LAWS})
+globals().update({name: formula for name, formula in vars(curves).items() if name[0].islower() and callable(formula)})
 
 __all__ = ["LAWS", "NEVER_STICKS", "Averaged", "FrictionLaw", "averaged"]
 __all__ += [law.__name__ for law in LAWS]
