@@ -62,7 +62,7 @@ def compare_contact(
 
     Parameters
     ----------
-    design_or_system, duration [s], start : as for `simulate`
+    design_or_system, duration, start : as for `simulate`; duration in [s]
     schemes : which schemes; "exact" is always run and comes first
     dof : the degree of freedom whose period and amplitude are reported
     samples : equidistant instants at which the runs are compared

@@ -178,7 +178,7 @@ def simulate_ensemble(
     start : as in `simulate`, the same for all; or (q, qd) whose arrays end with n and broadcast with the parameters;
         without parameters their leading axes are those of the ensemble
     times : instants at which q and qd are sampled [s], or a whole number of equal ones; they do not influence the steps
-    rtol, atol, width, start_time : as in `simulate`
+    rtol, atol, width, start_time : as in `simulate`; [-], [m/s], [m/s] and [s]
     threads : how many; None takes one for each core
     progress : called with (trajectories done, in all, seconds) about five times a second; what it raises ends the
         computation and reaches the caller

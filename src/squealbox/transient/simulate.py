@@ -57,7 +57,7 @@ def simulate(
         series ends at an instant: `caution` and `settings` then say so
     contact : "exact" (stick, slip and lift-off by events), "raw" (plain sgn), "smooth" = "arctan"
         ((2/pi) arctan(v/width)), "tanh" (tanh(v/width)) or "time-stepping" (Moreau: many contacts, sliding in a plane)
-    rtol, atol : override those of `method`
+    rtol, atol : override those of `method`, [-] and [m/s]
     width : [m/s] of the smoothed sgn
     step : [s] of time stepping; None takes 1/400 of the shortest period. The other schemes choose their steps.
     start_time : [s], where the schedules begin

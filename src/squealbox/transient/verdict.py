@@ -77,15 +77,15 @@ def verdict(
     motion, t : a trajectory, or an array (k,) with its times [s]; steps need not be equal
     dof : index or name of the degree of freedom; None takes the one that moves most, and the sentence names it
     begin, end : the stretch that is judged [s]
-    part : share of the stretch called its last part. A quarter leaves three to see where the motion came from
-    steady : relative change of the amplitude over the last part that still counts as constant. 2 % is as good as the
-        two digits a paper prints
+    part : share of the stretch called its last part [-]. A quarter leaves three to see where the motion came from
+    steady : relative change of the amplitude over the last part that still counts as constant [-]. 2 % is as good as
+        the two digits a paper prints
     band : settled is an amplitude that stays within this share of its last value (of its largest, for a motion that
-        decays). 5 % is the usual settling band
-    gone : share of the largest amplitude below which nothing is left. An integrator at its usual tolerance of 1e-3
+        decays) [-]. 5 % is the usual settling band
+    gone : share of the largest amplitude below which nothing is left [-]. An integrator at its usual tolerance of 1e-3
         leaves that much
-    least_periods : fewer periods than this in the last part decide nothing; amplitude and frequency are then those of
-        the last two periods, or without a frequency where the record holds none
+    least_periods : fewer periods [-] than this in the last part decide nothing; amplitude and frequency are then those
+        of the last two periods, or without a frequency where the record holds none
 
     Returns
     -------

@@ -104,7 +104,7 @@ def coexistence(
     bounds : dotted name to (low, high) for two parameters; the region is looked for along the first, in which more is
         less stable
     columns, rows : of the grid
-    starts : far from sliding at each point, a Sobol sequence with `seed` in a box of `spread` times V/w1 and V
+    starts : far from sliding at each point, a Sobol sequence with `seed` in a box of `spread` [-] times V/w1 and V
     threads : as in :func:`basin`
 
     Outcome "completed". What is guaranteed: at each point that counts a vibration was run, and each lower edge is the

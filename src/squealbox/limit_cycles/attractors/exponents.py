@@ -40,6 +40,7 @@ def lyapunov_exponents(
     start : on the attractor, as for `simulate`: leave transients behind first
     span : [s] between two orthonormalisations, such as a period; spans : how many
     aligned : spans run before, uncounted, in which the directions find their order
+    rtol : relative tolerance of the integration [-]
     history : return the estimates after each span, shape (spans, 2n), which tell whether they have converged
 
     -inf where sticking forgets a direction. Accuracy: statistical, about 1/(spans span) for regular motions, slower,

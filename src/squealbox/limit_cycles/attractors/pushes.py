@@ -89,7 +89,7 @@ def dangerous_push(
         definite
     energies : (least, largest) [J] looked at; None takes the kinetic energy of the largest mass at 0.01 and 3 V
     directions : looked along first; rounds : of differential evolution; drawn : starts of the last check
-    duration, seed, threads : as in :func:`basin`
+    duration, seed, threads : as in :func:`basin`; duration in [s]
 
     Outcome "completed", "no_danger" (nothing looked at vibrates) or "no_sliding". Accuracy: 0.1 % in energy along the
     direction found; over directions as the module says. Source: as this module.
@@ -135,7 +135,13 @@ def push_along(
     design_or_system: Any, direction: Any, bounds: tuple[float, float], *, duration: float | None = None,
     threads: int | None = None,
 ) -> float:  # fmt: skip
-    """The first multiple of `direction` (2n,) between `bounds` that ends in a vibration; NaN if none does.
+    """The first multiple of `direction` between `bounds` that ends in a vibration; NaN if none does.
+
+    Parameters
+    ----------
+    design_or_system, duration, threads : as in :func:`dangerous_push`; duration in [s]
+    direction : the push that is multiplied, displacements and velocities, shape (2n,) [m, m/s]
+    bounds : least and largest multiple looked at [-]
 
     Seen from below on 16 lengths, then refined between the two it lies between, to 1e-4 of their distance. A part of a
     folded basin narrower than that is missed.

@@ -21,7 +21,7 @@ BISECTIONS = 50
 
 
 def maxima(motion: Trajectory, dof: int = 0) -> tuple[Any, Any]:
-    """Instants [s] and displacements [m] of the maxima of one degree of freedom: its Poincare section.
+    """Instants [s] and displacements [m], each (k,), of the maxima of one degree of freedom: its Poincare section.
 
     Found on the Hermite cubic of each interval of output, with an error of order 4 in it.
 
@@ -44,7 +44,8 @@ def poincare_section(motion: Trajectory, normal: Any, offset: float = 0.0, *, di
     ----------
     motion : with enough instants of output: error of order 4 in their distance in q, of order 3 in q'; of order 2
         where an event lies between two of them
-    normal : (2n,), weights of displacements and velocities; offset : where the plane lies, in the unit of the product
+    normal : (2n,), weights of displacements and velocities
+    offset : where the plane lies, in the unit of the product
     direction : +1 only where the product rises through offset, -1 only where it falls, 0 both
 
     Raises `ParameterError` for a normal of another length, or zero. Source: as this module.

@@ -117,18 +117,20 @@ def branch(
     Parameters
     ----------
     design : a design, or a function of one value that returns a design or system
-    parameter, bounds : {name: (low, high)}, the range walked; or the name and the bounds one after the other
+    parameter, bounds : {name: (low, high)}, the range walked, in the parameter's own unit; or the name and the bounds
+        one after the other
     start : a `HopfPoint` (the branch born there; with method "shooting" on past the first contact at rest), a
         period doubling out of `Branch.points` (the branch of doubled
         period, with method "shooting"), or what :func:`shooting` takes, at `value` of the parameter
-    value : where to start from; None takes the middle of the bounds
+    value : where to start from, in the parameter's own unit; None takes the middle of the bounds
     method : "harmonic_balance" (smooth or smoothed cycles, fast), "shooting" (exact stick and slip), or "auto":
         shooting where the cycle at the start sticks or reverses and contact is exact, else harmonic balance
-    contact, width, harmonics : for harmonic balance
-    direction : +1 walks to larger values at first, -1 to smaller; from a cycle in the middle the other way is a walk of
-        its own, which the summary says
-    points : most points; largest_step : longest step, in shares of the range and of the size of the motion
-    rtol : for shooting
+    contact, width, harmonics : for harmonic balance; width in [m/s]
+    direction : +1 walks to larger values at first, -1 to smaller [-]; from a cycle in the middle the other way is a
+        walk of its own, which the summary says
+    points : most points
+    largest_step : longest step [-], in shares of the range and of the size of the motion
+    rtol : relative tolerance of the integration [-], for shooting
 
     Outcome "completed" at a bound or where the cycle shrinks to steady sliding, "most_points", "grazing" (harmonic
     balance with exact contact at the first contact that reverses), "jump" (shooting: no cycle lies beside the last),

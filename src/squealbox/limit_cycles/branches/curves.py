@@ -63,7 +63,7 @@ def hopf_curve(
     ----------
     design : a design, or a function of two values that returns a design or system
     bounds : name to (low, high) for two parameters
-    value : of the second parameter, at which the start is looked for; None takes the middle
+    value : of the second parameter, in its own unit, at which the start is looked for; None takes the middle
     points : most points in each direction
 
     Outcome "completed" where both ends reach a bound or the curve closes, else why it ended, or that of `hopf_point`

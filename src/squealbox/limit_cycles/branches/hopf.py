@@ -100,8 +100,8 @@ def hopf_point(design: Any, parameter: Varied, bounds: Bounds | None = None) -> 
     Parameters
     ----------
     design : a design, or a function of one value that returns a design or system
-    parameter, bounds : {name: (low, high)}, such as {"friction.static": (0.1, 0.6)}; or the name and the bounds one
-        after the other
+    parameter, bounds : {name: (low, high)} in the parameter's own unit, such as {"friction.static": (0.1, 0.6)}; or the
+        name and the bounds one after the other
 
     Outcome "no_hopf" where stability does not change by a complex pair, else that of `critical_value`. Accuracy: value
     as `critical_value`; l1 to about 1e-7, limited by the law's second and third derivative, taken from a polynomial

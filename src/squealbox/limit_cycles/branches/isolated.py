@@ -125,9 +125,9 @@ def isolated_branches(
 
     Parameters
     ----------
-    design, parameter, bounds : as for :func:`branch`
+    design, parameter, bounds : as for :func:`branch`, in the parameter's own unit
     values : how many values of the parameter runs are made at, evenly inside the bounds, or the values themselves
-    starts, settle, seed : as for :func:`settled_cycles`
+    starts, settle, seed : as for :func:`settled_cycles`; settle in [s]
     known : branches whose cycles are not followed again
     walk : options of :func:`branch`, such as points and largest_step
 

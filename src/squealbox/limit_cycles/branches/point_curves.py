@@ -38,7 +38,7 @@ def point_curve(
     design : a design, or a function of two values that returns a design or system
     bounds : name to (low, high) for two parameters; the first is the one `point` was found in
     point : from `Branch.points`, followed by its own method
-    value : of the second parameter, at which `point` was found
+    value : of the second parameter, in its own unit, at which `point` was found
     points : most points in each direction
 
     Returns

@@ -30,8 +30,9 @@ def onsets(design: Any, parameter: str, bounds: Stretch) -> list[float]:
 def stretches(one: Branch, births: Sequence[float] = (), margin: float = 0.0) -> list[tuple[float, float, bool]]:
     """(lowest, highest value, stable) of each stretch of a branch, in the order walked.
 
-    Each reaches the special point that divides it from the next; the first and the last reach the onset among `births`
-    at which their cycles are born. Stable are multipliers within the unit circle by more than the margin.
+    Each reaches the special point that divides it from the next; the first and the last reach the onset among `births`,
+    in the parameter's own unit, at which their cycles are born. Stable are multipliers within the unit circle by more
+    than `margin` [-].
     """
     attracts = np.all(np.abs(one.multipliers[:, 1:]) < 1.0 - margin, axis=1)
     found = []
@@ -44,7 +45,7 @@ def stretches(one: Branch, births: Sequence[float] = (), margin: float = 0.0) ->
 
 
 def stable_sliding(design: Any, parameter: str, bounds: Stretch) -> list[Stretch]:
-    """Stretches of a parameter on which steady sliding exists and is stable."""
+    """Stretches of a parameter, within `bounds` in its own unit, on which steady sliding exists and is stable."""
     edges = np.unique([*np.linspace(*bounds, GRID), *onsets(design, parameter, bounds)])
     stable = np.asarray(complex_modes(design.replace({parameter: 0.5 * (edges[1:] + edges[:-1])})).stable)
     return [(float(edges[i]), float(edges[j + 1])) for i, j in runs_of_true(stable)]

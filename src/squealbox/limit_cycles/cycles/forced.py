@@ -154,7 +154,7 @@ def forced_cycle(
     design_or_system : with `Sinusoid` schedules of commensurate frequencies, such as `Dithered(brake, direct=True)`
     start : near the motion, as for `simulate`; None takes steady sliding at the first instant
     rounds : periods of the forcing after which it repeats; 2 beyond a doubling
-    rtol : of the integration
+    rtol : relative tolerance of the integration [-]
     tolerance : largest scaled residual accepted as converged [-]
 
     Returns
@@ -213,9 +213,16 @@ def forced_path(
 ) -> Iterator[tuple[float, ForcedCycle]]:  # fmt: skip
     """Forced motions along a parameter such as amplitude or frequency, by arclength: through folds.
 
-    `family(value)` is the brake. Walks from `begin` within `bounds`, first upwards, or downwards with `direction` -1;
-    `first` and `largest` are step lengths, a length of 1 from bound to bound or the motion it begins with. Yields
-    (value, motion); unstable motions between two folds are among them. A walk that no step leads on, short of
+    Parameters
+    ----------
+    family : `family(value)` is the brake
+    bounds, begin : (low, high) of the value and the one to begin with, in its own unit
+    start : near the first motion, as for `forced_cycle`
+    direction : +1 walks upwards first, -1 downwards [-]
+    first, largest : step lengths [-], a length of 1 from bound to bound or the motion it begins with
+    rtol : relative tolerance of the integration [-]
+
+    Yields (value, motion); unstable motions between two folds are among them. A walk that no step leads on, short of
     a bound and of `most_points`, ends with its last motion again, whose outcome says why.
 
     >>> from squealbox import Contact, Coulomb, Sinusoid, System

@@ -60,7 +60,7 @@ def harmonic_balance(
         one does); "smooth" = "arctan" or "tanh" with `width` [m/s] for all other cycles
     harmonics : H; None doubles from 8 until the change by the last doubling is below `tolerance`
     samples : N, a power of two; None takes the first one of at least 8 H + 8
-    tolerance : of the estimate, relative to the size of the motion
+    tolerance : of the estimate, relative to the size of the motion [-]
     settle : [s] of the run before
 
     Returns

@@ -60,7 +60,7 @@ def shooting(
     contact, width : "exact", or "smooth" = "arctan", "tanh" with `width` [m/s]
     shots : 1 for single shooting, more where the cycle is strongly unstable
     settle : [s] of the run before; None takes 300 periods of the slowest mode
-    rtol : of the integration
+    rtol : relative tolerance of the integration [-]
     tolerance : largest scaled residual accepted as converged [-]
     samples : instants kept of one period, to which the events are added
 

@@ -53,7 +53,7 @@ def averaged_excess(law: FrictionLaw, swing: Any, sliding_speed: Any, normal_for
 
 
 def averaged_swings(law: FrictionLaw, sliding_speed: float, normal_force: float, damping: float) -> Any:
-    """Velocity amplitudes u [m/s] of all cycles without sticking, 0 < u < V, rising; divide by omega for m.
+    """Velocity amplitudes u [m/s], shape (cycles,), of all that never stick, 0 < u < V, rising; divide by omega for m.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def averaged_curve(design: Any, parameter: Varied, values: Any = None) -> tuple[
 def averaged_limit(law: FrictionLaw, normal_force: float, damping: float) -> float:
     """Speed V [m/s] up to which a block on a belt can stick and slip; NaN where never, inf where always.
 
-    There u = V, the cycle just touches sticking:
+    There u = V, the cycle just touches sticking, with `normal_force` N [N] and `damping` c [N s/m] of the block:
 
         c V = (N/pi) integral_0^2pi mu(V - V cos theta) cos theta dtheta
             = 2 N (static - kinetic) exp(-V/s) I1(V/s)                         exponential law

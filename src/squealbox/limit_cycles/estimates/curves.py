@@ -63,7 +63,7 @@ def estimate_curves(
 
     Parameters
     ----------
-    design, parameter, bounds : as for :func:`branch`
+    design, parameter, bounds : as for :func:`branch`, in the parameter's own unit
     branches : of the same design and parameter
 
     Accuracy: none is promised; `EstimateCurve.off` says how far each is from the cycles followed. Where the balance is

@@ -30,6 +30,11 @@ def return_gap(
 ) -> float:  # fmt: skip
     """Least sliding speed [m/s] when the slip that begins at release swings back; below 0 it would have stuck again.
 
+    Parameters
+    ----------
+    law : friction law
+    sliding_speed, normal_force, damping, mass, stiffness : V [m/s], N [N], c [N s/m], m [kg], k [N/m] of the block
+
     Beyond v = 0 the law goes on with its tangent, so the gap is a smooth function of the speed through zero.
     """
     from scipy.integrate import solve_ivp
