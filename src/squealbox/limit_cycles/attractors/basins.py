@@ -142,7 +142,7 @@ def basin(
     array(0.)
     """
     system = at_rest_together(as_system(design_or_system))
-    batch = Batch.over(system)
+    batch = Batch.over(system, threads=threads)
     scales = Scales.of(batch, 1)
     n = system.size
     names = state_names(system)
@@ -155,7 +155,7 @@ def basin(
         raise ParameterError("basin", "plane", plane, "two different states")
     if np.all(np.isfinite(rest)):
         points = centre + half * unit_starts(2 * n, starts, seed, places)
-    ends, found, label = _ended(system, batch, points, duration, refine, threads)
+    ends, found, label = _ended(system, batch, points, duration, refine)
     counts = np.array([int(np.sum(label == i)) for i in range(len(found))], dtype=np.int64)
     total = len(label)
     spans = [interval(int(k), total) for k in counts]
@@ -173,14 +173,14 @@ def basin(
 
 
 def _ended(
-    system: System, batch: Batch, points: Any, duration: float | None, refine: bool, threads: int | None
+    system: System, batch: Batch, points: Any, duration: float | None, refine: bool
 ) -> tuple[Settled, list[Attractor], Any]:
     """How all ended, the attractors and the index of each motion's own. The first starts find what the others reach."""
 
     def run(part: Any, known: list[Attractor]) -> Settled:
         q, qd = np.split(part, 2, axis=1)
-        return settle(batch, q, qd, duration=duration, same=LOOSE if refine else TIGHT, threads=threads,
-                      often=refine, known=stable_cycles(known))  # fmt: skip
+        return settle(batch, q, qd, duration=duration, same=LOOSE if refine else TIGHT, often=refine,
+                      known=stable_cycles(known))  # fmt: skip
 
     pilot = PILOT if refine and len(points) > 2 * PILOT else len(points)
     first = np.arange(len(points)) * pilot // max(len(points), 1)
@@ -193,7 +193,7 @@ def _ended(
         found, label = attractors(system, ends, refine, found)
     doubtful = np.flatnonzero(np.isin(label, [i for i, each in enumerate(found) if each.kind in (VIBRATION, UNSTABLE)]))
     if refine and doubtful.size:
-        ends = settle_on(ends, batch, doubtful, threads)
+        ends = settle_on(ends, batch, doubtful)
         found, label = attractors(system, ends, refine, found)
     return ends, found, label
 

@@ -10,7 +10,7 @@ vibration ends. Both edges are found on two roads:
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -122,13 +122,13 @@ def coexistence(
     family = Family.within("coexistence", design, bounds, count=2)
     if family.recipe is not None:
         raise ParameterError("coexistence", "design", design, "a design, whose parameters have names")
-    names, ends = family.parameters, family.spans[0]
+    names, ends, far = family.parameters, family.spans[0], _Far(starts, spread, seed)
     x, y = (np.linspace(low, high, k) for (low, high), k in zip(family.spans, (columns, rows), strict=True))
-    grid = _far(design, names, x, y, starts, spread, seed, threads)
+    grid = _grid(design, names, x, y, far, threads)
     onset = np.array([_onset(design, names, ends, value) for value in y])
     onset = np.where(np.all(grid["stable"], axis=0), np.inf, onset)
     top = np.minimum(np.where(np.isfinite(onset) | grid["stable"][0], onset, x[0]), x[-1])
-    followed = _followed(design, names, ends, top, y, starts, spread, seed, threads)
+    followed = _followed(design, names, ends, top, y, replace(far, starts=4 * starts), threads)
     return Coexistence(
         inputs={"system": design}, settings={"spread": spread, "seed": seed}, outcome=Outcome(COMPLETED), x=x, y=y,
         onset=onset, parameters=names, starts=starts, hopf=hopf_curve(design, bounds), **grid, **followed,
@@ -165,28 +165,34 @@ def cycle_ends(design: Any, region: Coexistence, rows: Sequence[int] | None = No
     return value, kind.astype(str)
 
 
-def _starts(batch: Batch, count: int, starts: int, spread: float, seed: int) -> tuple[Any, Any]:
-    """Far starts (count, starts, n) about the steady sliding of each system."""
-    scales = Scales.of(batch, count)
-    n = scales.rest.shape[-1]
-    cube = spread * unit_starts(2 * n, starts, seed, None)
-    speed = scales.speed[:, None, None]
-    q = scales.rest[:, None] + cube[None, :, :n] * speed / scales.slowest[:, None, None]
-    return q, cube[None, :, n:] * speed
+@dataclass(frozen=True)
+class _Far:
+    """Starts far from sliding, as many about each system, a Sobol sequence in a box of `spread` times V/w1 and V."""
+
+    starts: int
+    spread: float
+    seed: int
+
+    def settled(self, batch: Batch, count: int, rows: Any) -> Any:
+        """How they end about the steady sliding of some of the `count` systems, one system after the other."""
+        scales = Scales.of(batch, count).take(rows)
+        n = scales.rest.shape[-1]
+        cube = self.spread * unit_starts(2 * n, self.starts, self.seed, None)
+        speed = scales.speed[:, None, None]
+        q = scales.rest[:, None] + cube[None, :, :n] * speed / scales.slowest[:, None, None]
+        start = q.reshape(-1, n), (cube[None, :, n:] * speed).reshape(-1, n)
+        return settle(batch.take(np.repeat(rows, self.starts)), *start, stretches=STRETCHES, same=LOOSE)
 
 
-def _far(design: Any, names: Any, x: Any, y: Any, starts: int, spread: float, seed: int, threads: Any) -> Any:
+def _grid(design: Any, names: Any, x: Any, y: Any, far: _Far, threads: int | None) -> Any:
     """Share of far starts that vibrate, and whether sliding is stable, over the grid."""
     plane = dict(zip(names, (v.ravel() for v in np.meshgrid(x, y, indexing="ij")), strict=True))
-    batch, count = Batch.over(design, plane), len(x) * len(y)
-    q, qd = _starts(batch, count, starts, spread, seed)
-    each = batch.take(np.repeat(np.arange(count), starts))
-    n = q.shape[-1]
-    ends = settle(each, q.reshape(-1, n), qd.reshape(-1, n), stretches=STRETCHES, same=LOOSE, threads=threads)
-    kind = ends.kind.reshape(len(x), len(y), starts)
+    count, shape = len(x) * len(y), (len(x), len(y), far.starts)
+    ends = far.settled(Batch.over(design, plane, threads), count, np.arange(count))
+    kind = ends.kind.reshape(shape)
     ran = np.sum(kind != FAILED, axis=-1)
     share = np.sum((kind != FAILED) & (kind != RESTS), axis=-1) / np.where(ran > 0, ran, np.nan)
-    growth = ends.scales.growth.reshape(len(x), len(y), starts)[..., 0]
+    growth = ends.scales.growth.reshape(shape)[..., 0]
     return {"vibrates": share, "stable": growth < 0.0}
 
 
@@ -195,21 +201,14 @@ def _onset(design: Any, names: Any, ends: tuple[float, float], value: float) -> 
     return float(found.value) if found.outcome.ok else float("nan")
 
 
-def _followed(
-    design: Any, names: Any, ends: tuple[float, float], top: Any, y: Any, starts: int, spread: float, seed: int,
-    threads: Any,
-) -> Any:  # fmt: skip
+def _followed(design: Any, names: Any, ends: Bounds, top: Any, y: Any, far: _Far, threads: int | None) -> Any:
     """Vibrations of each row just below its onset, followed down in the first parameter until they end."""
     low, high = ends
     step = (high - low) / STEPS
     rows = np.flatnonzero(top > low + step)  # elsewhere sliding is not stable
     begin = np.maximum(top - 0.5 * step, low)
-    batch = Batch.over(design, {names[0]: begin, names[1]: y})
-    q, qd = _starts(batch, len(y), 4 * starts, spread, seed)
-    n = q.shape[-1]
-    row = np.repeat(rows, 4 * starts)
-    found = settle(batch.take(row), q[rows].reshape(-1, n), qd[rows].reshape(-1, n), stretches=STRETCHES, same=LOOSE,
-                   threads=threads)  # fmt: skip
+    found = far.settled(Batch.over(design, {names[0]: begin, names[1]: y}, threads), len(y), rows)
+    row, n = np.repeat(rows, far.starts), found.q.shape[-1]
     chosen = _different(found, row, len(y))
     at, row = begin[row[chosen]], row[chosen]
     state, amplitude = np.hstack([found.q[chosen], found.qd[chosen]]), 0.5 * (found.high - found.low)[chosen]
@@ -217,8 +216,8 @@ def _followed(
     while chosen.size and np.any(live := (size > step / 2.0**HALVINGS * 1.5) & (at > low)):
         which = np.flatnonzero(live)
         trial = np.maximum(at[which] - size[which], low)
-        part = Batch.over(design, {names[0]: trial, names[1]: y[row[which]]})
-        now = settle(part, state[which, :n], state[which, n:], stretches=STRETCHES, same=TIGHT, threads=threads)
+        part = Batch.over(design, {names[0]: trial, names[1]: y[row[which]]}, threads)
+        now = settle(part, state[which, :n], state[which, n:], stretches=STRETCHES, same=TIGHT)
         lives = now.kind == REPEATS
         kept, lost = which[lives], which[~lives]
         at[kept], state[kept] = trial[lives], np.hstack([now.q, now.qd])[lives]

@@ -153,22 +153,22 @@ def bifurcation_diagram(
         raise ParameterError("bifurcation_diagram", "starts", starts, "a whole number, at least 1 without sweeps")
     if int(returns) != returns or returns < 1:
         raise ParameterError("bifurcation_diagram", "returns", returns, "a whole number of at least 1")
-    batch = Batch.over(design, {parameter: values})
+    batch = Batch.over(design, {parameter: values}, threads)
     scales = Scales.of(batch, len(values))
     if section is not None:
         section.column(batch.system), section.plane(batch.system, scales.rest)
     n = scales.rest.shape[-1]
     begin = Start.of("bifurcation_diagram", start, batch.one).state
     ways = [name for name in sweeps if name != "rest"]
-    found = dict(zip(ways, _swept(batch, ways, begin, scales, duration, threads), strict=True))
+    found = dict(zip(ways, _swept(batch, ways, begin, scales, duration), strict=True))
     names = [*sweeps, *(f"start {i + 1}" for i in range(starts))]
     anew = {"rest": np.zeros((len(values), 2 * n))} if "rest" in sweeps else {}
     anew |= dict(zip(names[len(sweeps) :], _drawn(batch, scales, int(starts), seed), strict=True))
-    found |= _anew(batch, anew, duration, threads)
+    found |= _anew(batch, anew, duration)
     ends = [found[name] for name in names]
     kind = np.array([each.kind for each in ends])
     rests = kind[..., None, None] == RESTS
-    read = [np.zeros((len(values), 0)) if section is None else _read(batch, each, section, int(returns), threads)
+    read = [np.zeros((len(values), 0)) if section is None else _read(batch, each, section, int(returns))
             for each in ends]  # fmt: skip
     return BifurcationDiagram(
         inputs={} if family.recipe else {"system": design},
@@ -181,11 +181,11 @@ def bifurcation_diagram(
         crossings=np.array(read),
         dofs=tuple(batch.system.names), read="" if section is None else section.read,
         section="" if section is None else str(section),
-        caution=_caution(batch, ends, parameter, values, threads, unit_of(design, parameter)),
+        caution=_caution(batch, ends, parameter, values, unit_of(design, parameter)),
     )  # fmt: skip
 
 
-def _caution(batch: Batch, ends: list[Settled], parameter: str, values: Any, threads: Any, unit: str) -> str:
+def _caution(batch: Batch, ends: list[Settled], parameter: str, values: Any, unit: str) -> str:
     """Where the motions leave the range of their model: the largest of each sweep, over some of its periods."""
     largest: dict[int, Settled] = {}
     for each in ends:
@@ -197,7 +197,7 @@ def _caution(batch: Batch, ends: list[Settled], parameter: str, values: Any, thr
     for i, each in largest.items():
         part, at = batch.take([i]), np.array([i])
         times = _instants(each.take(at), part.system, SEEN)
-        _, q, qd = part.sampled(each.q[at], each.qd[at], times, threads)
+        _, q, qd = part.sampled(each.q[at], each.qd[at], times)
         for one in along(part.one, q[0], qd[0]):
             said[f"at {told_place(parameter, values[i], unit)} {one}"] = None
     return "; ".join(said)
@@ -214,7 +214,7 @@ def _drawn(batch: Batch, scales: Scales, starts: int, seed: int) -> list[Any]:
     return [sliding + each for each in beside]
 
 
-def _anew(batch: Batch, anew: dict[str, Any], duration: float | None, threads: Any) -> dict[str, Settled]:
+def _anew(batch: Batch, anew: dict[str, Any], duration: float | None) -> dict[str, Settled]:
     """What each value settles to from the states (k, 2n) of each name: one ensemble."""
     if not anew:
         return {}
@@ -222,12 +222,11 @@ def _anew(batch: Batch, anew: dict[str, Any], duration: float | None, threads: A
     count, size = states.shape[1:]
     all_ = batch.take(np.tile(np.arange(count), len(anew)))
     flat = states.reshape(-1, size)
-    ends = settle(all_, flat[:, : size // 2], flat[:, size // 2 :], duration=duration, stretches=STRETCHES, same=LOOSE,
-                  threads=threads)  # fmt: skip
+    ends = settle(all_, flat[:, : size // 2], flat[:, size // 2 :], duration=duration, stretches=STRETCHES, same=LOOSE)
     return {name: ends.take(np.arange(i * count, (i + 1) * count)) for i, name in enumerate(anew)}
 
 
-def _read(batch: Batch, ends: Settled, section: Section, returns: int, threads: Any) -> Any:
+def _read(batch: Batch, ends: Settled, section: Section, returns: int) -> Any:
     """What the section reads of each motion, run on from its end, (k, returns), oldest first; at rest, its place."""
     system, scales, n = batch.system, ends.scales, ends.q.shape[1]
     normal, offset = section.plane(system, np.nan_to_num(scales.rest))
@@ -240,7 +239,7 @@ def _read(batch: Batch, ends: Settled, section: Section, returns: int, threads: 
         return found
     times = _instants(ends.take(moving), batch.take(moving).system, returns)
     for part in np.array_split(moving, max(1, len(moving) * len(times) // AT_ONCE)):
-        t, q, qd = batch.take(part).sampled(ends.q[part], ends.qd[part], times, threads)
+        t, q, qd = batch.take(part).sampled(ends.q[part], ends.qd[part], times)
         which, _, states = passages(t, q, qd, normal[part], offset[part], section.direction)
         for k, i in enumerate(part):
             values = states[which == k, column][-returns:]
@@ -258,7 +257,7 @@ def _instants(ends: Settled, system: Any, returns: int) -> Any:
     return np.linspace(0.0, span, 1 + int(np.ceil(FINE * span / min(fast, slow))))
 
 
-def _swept(batch: Batch, ways: list[str], begin: Any, scales: Scales, duration: float | None, threads: Any) -> Any:
+def _swept(batch: Batch, ways: list[str], begin: Any, scales: Scales, duration: float | None) -> Any:
     """The sweeps in the given ways, side by side, each as what it settles to at every value in rising order."""
     count, n = scales.rest.shape
     state = np.tile(begin, (len(ways), 1))
@@ -267,7 +266,7 @@ def _swept(batch: Batch, ways: list[str], begin: Any, scales: Scales, duration: 
     for at in orders.T:
         nudge = NUDGE * scales.speed[at][:, None]
         ends = settle(batch.take(at), state[:, :n], state[:, n:] + nudge, duration=duration, stretches=STRETCHES,
-                      same=LOOSE, threads=threads)  # fmt: skip
+                      same=LOOSE)  # fmt: skip
         steps.append(ends)
         state = np.concatenate([ends.q, ends.qd], axis=-1)
         lost = ~np.all(np.isfinite(state), axis=-1)

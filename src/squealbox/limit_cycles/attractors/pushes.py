@@ -160,7 +160,7 @@ class _Search:
     """Runs pushes u of one system from steady sliding, and counts them."""
 
     def __init__(self, system: System, duration: float | None, threads: int | None) -> None:
-        self.system, self.batch, self.duration, self.threads = system, Batch.over(system), duration, threads
+        self.system, self.batch, self.duration = system, Batch.over(system, threads=threads), duration
         scales = Scales.of(self.batch, 1)
         self.rest, self.speed, self.size, self.runs = scales.rest[0], float(scales.speed[0]), 2 * system.size, 0
         try:
@@ -188,7 +188,7 @@ class _Search:
         n, states = self.system.size, self.state(u)
         self.runs += len(u)
         return settle(self.batch, self.rest + states[:, :n], states[:, n:], duration=self.duration,
-                      stretches=STRETCHES, threads=self.threads)  # fmt: skip
+                      stretches=STRETCHES)  # fmt: skip
 
     def vibrates(self, u: Any) -> Any:
         """True where a push does not come to rest."""

@@ -15,7 +15,7 @@ and what does none of these is run on, for stretches of twice the length with wi
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -55,21 +55,22 @@ def extent(last: float) -> Observer:
 
 @dataclass(frozen=True, eq=False)
 class Batch:
-    """One brake at one or many values of its parameters (k,), or a sequence of systems of the same structure."""
+    """One brake at one or many values of its parameters (k,), or a list of systems of the same structure; threads."""
 
     design: Any
     parameters: Mapping[str, Any]
+    threads: int | None = None
 
     @classmethod
-    def over(cls, design: Any, parameters: Mapping[str, Any] | None = None) -> "Batch":
+    def over(cls, design: Any, parameters: Mapping[str, Any] | None = None, threads: int | None = None) -> "Batch":
         """A design with arrays for its dotted names, a function of one value with {name: values}, or a system."""
         given = {name: np.asarray(value, dtype=float) for name, value in (parameters or {}).items()}
         if is_recipe(design):
             if len(given) != 1:
                 raise ParameterError("limit_cycles", "parameters", list(given), "one, for a function of one value")
-            batch = cls([as_system(design(float(value))) for value in next(iter(given.values()))], {})
+            batch = cls([as_system(design(float(value))) for value in next(iter(given.values()))], {}, threads)
         else:
-            batch = cls(design if given else as_system(design), given)
+            batch = cls(design if given else as_system(design), given, threads)
         one = batch.design[0] if isinstance(batch.design, list) else first_of(batch.system)
         remembers_nothing(one)
         check_autonomous(one)
@@ -85,29 +86,29 @@ class Batch:
     def take(self, which: Any) -> "Batch":
         """Some of it."""
         if isinstance(self.design, list):
-            return Batch([self.design[i] for i in which], {})
-        return Batch(self.design, {name: value[which] for name, value in self.parameters.items()})
+            return replace(self, design=[self.design[i] for i in which])
+        return replace(self, parameters={name: value[which] for name, value in self.parameters.items()})
 
     @property
     def held(self) -> "Batch":
         """The same with its systems made, for many runs of them."""
-        return Batch(self.system, {})
+        return replace(self, design=self.system, parameters={})
 
     @property
     def one(self) -> System:
         """Its first system, without leading axes."""
         return first_of(self.system)
 
-    def sampled(self, q: Any, qd: Any, times: Any, threads: int | None = None) -> tuple[Any, Any, Any]:
+    def sampled(self, q: Any, qd: Any, times: Any) -> tuple[Any, Any, Any]:
         """(t, q, qd) of the motions from (q, qd), each (k, n), at the given instants, (k, instants, n)."""
         run = simulate_ensemble(self.design, self.parameters or None, float(times[-1]), METHOD, (), start=(q, qd),
-                                times=times, threads=threads)  # fmt: skip
+                                times=times, threads=self.threads)  # fmt: skip
         return run.sample_time, run.sample_q, run.sample_qd
 
-    def run(self, q: Any, qd: Any, duration: float, observe: Sequence[Observer], threads: int | None = None) -> Any:
+    def run(self, q: Any, qd: Any, duration: float, observe: Sequence[Observer]) -> Any:
         """The ensemble from (q, qd), each (k, n)."""
         return simulate_ensemble(self.design, self.parameters or None, duration, METHOD, observe, start=(q, qd),
-                                 threads=threads)  # fmt: skip
+                                 threads=self.threads)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,7 +197,7 @@ class Settled:
 
 def settle(
     batch: Batch, q: Any, qd: Any, *, duration: float | None = None, stretches: int = STRETCHES,
-    same: float = TIGHT, threads: int | None = None, often: bool = False, known: Sequence[Known] = (),
+    same: float = TIGHT, often: bool = False, known: Sequence[Known] = (),
 ) -> Settled:  # fmt: skip
     """Run all from (q, qd), each (k, n), until they rest or repeat to `same`, for at most 2^stretches - 1 durations.
 
@@ -226,7 +227,7 @@ def settle(
             seen[0, 0, todo], seen[0, 1, todo] = np.min(pair[:, 0], axis=0), np.max(pair[:, 1], axis=0)
         if todo.size != taken:
             taken, part = todo.size, batch.take(todo).held
-        run = part.run(q[todo], qd[todo], width, OBSERVERS, threads)
+        run = part.run(q[todo], qd[todo], width, OBSERVERS)
         seen[1, :, todo] = seen[0, :, todo]
         seen[0, :, todo] = np.moveaxis(run["extent"], -1, 1)
         if window == WINDOWS - 1 or (often and (stretch or window >= UNSEEN)):
@@ -253,10 +254,10 @@ def together(ends: Sequence[Settled]) -> Settled:
                    scales=Scales(*scales))  # fmt: skip
 
 
-def settle_on(ends: Settled, batch: Batch, which: Any, threads: int | None = None) -> Settled:
+def settle_on(ends: Settled, batch: Batch, which: Any) -> Settled:
     """The same with some of the motions run on, from where they ended, until they are surely settled."""
     longer = settle(batch.take(which), ends.q[which], ends.qd[which], duration=float(np.max(ends.time[which])),
-                    stretches=STRETCHES - 1, threads=threads)  # fmt: skip
+                    stretches=STRETCHES - 1)  # fmt: skip
     merged = {each.name: np.array(getattr(ends, each.name)) for each in fields(ends) if each.name != "scales"}
     for name, values in merged.items():
         values[which] = getattr(longer, name) + (values[which] if name == "time" else 0)
