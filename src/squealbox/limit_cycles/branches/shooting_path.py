@@ -171,5 +171,4 @@ class ShootingPath:
         flown = derived(field, start, float(x[-1]))
         error = float(np.max(np.abs(self.residual(x, p))))
         settings = {"contact": "exact", "width": 0.0, "shots": 1, "rtol": 1e-13}
-        return cycle_through(field, start, float(x[-1]), flown.phi, Outcome(COMPLETED), settings, 2049, error,
-                             [flown])  # fmt: skip
+        return cycle_through(field, start, float(x[-1]), [flown], Outcome(COMPLETED), settings, 2049, error)

@@ -21,7 +21,7 @@ from squealbox.limit_cycles.cycles.cycle import Cycle, extremes
 from squealbox.limit_cycles.cycles.field import Autonomous
 from squealbox.limit_cycles.cycles.remembering import field_of
 from squealbox.limit_cycles.cycles.rounds import rounds
-from squealbox.limit_cycles.cycles.shots import Newton, nodes_along
+from squealbox.limit_cycles.cycles.shots import Newton, monodromy, nodes_along
 from squealbox.limit_cycles.cycles.starting import first_guess
 from squealbox.limit_cycles.cycles.variation import Flight, fly
 from squealbox.parameters import ParameterError, known_names
@@ -89,16 +89,14 @@ def shooting(
     def reached(start: Any) -> Cycle:
         x, period, found = first_guess(field, start, settle)
         if not found.ok:
-            return cycle_through(field, x, period, np.full((x.size, x.size), np.nan), found, settings, samples, np.nan)
+            return cycle_through(field, x, period, [], found, settings, samples)
         first: Any = None
         for turns in (1,) if known else TURNS:
             turned = turns * (period if first is None else float(first.period))
             newton, outcome = _solved(field, x, turned, int(shots), rtol, tolerance, most_steps)
             error = newton.history[-1] if newton.history else np.inf
-            cycle = cycle_through(
-                field, newton.nodes[0], newton.period, newton.monodromy, outcome, settings, samples, error,
-                newton.flights,
-            )  # fmt: skip
+            orbit = field, newton.nodes[0], newton.period, newton.flights
+            cycle = cycle_through(*orbit, outcome, settings, samples, error)
             first = cycle if first is None else first
             if not cycle.outcome.ok or not _flips(cycle):
                 break
@@ -135,23 +133,23 @@ def _flips(cycle: Cycle) -> bool:
 
 
 def cycle_through(
-    field: Autonomous, x: Any, period: float, monodromy: Any, outcome: Outcome, settings: dict[str, Any], samples: int,
-    error: float, flights: list[Flight] | None = None,
+    field: Autonomous, x: Any, period: float, flights: list[Flight], outcome: Outcome, settings: dict[str, Any],
+    samples: int, error: float = np.nan,
 ) -> Cycle:  # fmt: skip
-    """The cycle through x, sampled at equal instants and at its events."""
+    """The cycle through x, sampled at equal instants and at its events; its multipliers are those of its flights."""
     rough = fly(field, x, period, settings["rtol"])
     instants = np.unique(np.r_[np.linspace(0.0, period, samples), rough.event_time])
     run = fly(field, x, period, settings["rtol"], np.minimum(instants, period))
     n = field.system.size
     q, qd = run.q[:, :n], run.qd[:, :n]
     low, high = extremes(run.t, q, qd)
-    multipliers = field.multipliers(monodromy)
+    multipliers = field.multipliers(monodromy(flights) if flights else np.full((x.size, x.size), np.nan))
     return Cycle(
         inputs={"system": field.system}, settings=settings, outcome=outcome, period=np.asarray(period), t=run.t,
         q=q, qd=qd, memory=run.q[0, n:], sliding_velocity=run.sliding_velocity, mode=run.mode, multipliers=multipliers,
         lowest=low, highest=high, event_time=run.event_time, event_contact=run.event_contact,
         event_mode=run.event_mode, error=float(error),
-        caution="; ".join([*filter(None, [_caution(flights or []), _late(field.delay_error(run))]),
+        caution="; ".join([*filter(None, [_caution(flights), _late(field.delay_error(run))]),
                            *out_of_range(field.system, run.normal_force, run.sliding_velocity),
                            *turned(field.system, q)]),
     )  # fmt: skip

@@ -3,6 +3,7 @@
 In states scaled to velocities.
 """
 
+import functools
 from dataclasses import dataclass
 from typing import Any
 
@@ -41,7 +42,6 @@ class Newton:
         self.history: list[float] = []
         self.flights: list[Flight] = []
         self.flown, self.derived = 0, 0
-        self.monodromy = np.full((nodes.shape[1],) * 2, np.nan)
 
     def solve(self, tolerance: float, most: int) -> Outcome:
         """Iterate until the residual is below `tolerance` and no longer falls."""
@@ -60,7 +60,6 @@ class Newton:
             now = now if following is None else following
         self.nodes, self.period, self.size = now.nodes, now.period, now.size
         self.flights = self._derivatives(now, last=True)
-        self.monodromy = _product([f.phi for f in self.flights])
         if now.norm > tolerance or not np.isfinite(now.norm):
             message = f"Newton's method stopped at a scaled residual of {now.norm:.3g}: {ADVICE}"
             return Outcome("no_convergence", message, history=self.history, advice=ADVICE)
@@ -135,11 +134,9 @@ class Newton:
         return Outcome("steady_sliding", "the shots met on steady sliding, not on a cycle", history=self.history)
 
 
-def _product(matrices: Any) -> Any:
-    total = matrices[0]
-    for matrix in matrices[1:]:
-        total = matrix @ total
-    return total
+def monodromy(flights: list[Flight]) -> Any:
+    """The derivative of the flow over one flight after the other, (2n, 2n)."""
+    return functools.reduce(lambda total, flight: flight.phi @ total, flights[1:], flights[0].phi)
 
 
 def nodes_along(field: Autonomous, x: Any, period: float, shots: int, rtol: float) -> Any:
