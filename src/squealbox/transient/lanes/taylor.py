@@ -64,7 +64,7 @@ def ready(order: int, *series: Any) -> None:
 def ends_near_zero(speed: Any, width: Lanes) -> None:
     """End a step where a speed has come so near to zero that tanh(v/width) begins to turn.
 
-    tanh leaves 1 by 2 exp(-2 v/width), at 19 widths below the round-off of a series from farther out; a step from nearer
+    tanh leaves 1 by 2 exp(-2 v/width), at 19 widths below the round-off of a series from farther out; one from nearer
     sees what it meets while the speed falls to no less than 0.7 of what it was.
     """
     if not isinstance(speed, Series):
