@@ -63,7 +63,7 @@ def critical_value(
 ) -> Quantity:
     """The value of a parameter at which squeal begins; below `limit` [SI] the brake squeals.
 
-    `parameter` and `bounds` [SI]: {name: (low, high)}, or the name and the bounds one after the other.
+    parameter and `bounds` [SI] : {name: (low, high)}, or the name and the bounds one after the other.
     `limit` is the value the brake runs at. Infinite where sliding is stable all over the bounds, minus infinite where
     it is unstable at the lower one.
     """
@@ -78,7 +78,7 @@ def critical_value(
 def margin(parameter: Varied, bounds: Bounds | None = None, *, unit: str = "", points: int = 65) -> Quantity:
     """How far a parameter is below the value at which squeal begins, in its own unit; below 0 the brake squeals.
 
-    `parameter` and `bounds` [SI]: {name: (low, high)}, or the name and the bounds one after the other.
+    parameter and `bounds` [SI] : {name: (low, high)}, or the name and the bounds one after the other.
     It is smooth where the growth rate has its kink. Infinite where stability does not change within the bounds.
 
     >>> from squealbox.designs import ModeCoupling

@@ -30,7 +30,7 @@ DIRECTIONS = 100  # that a step may try; more, and a factorisation is the quicke
 DEPENDENT = 1e-8  # share of the largest square length below which a remembered direction is no new one
 
 
-class Start(NamedTuple):
+class Nearby(NamedTuple):
     """Steady sliding q (n,) of a similar brake and the factor of a similar stiffness, to begin a search with.
 
     base is None where that stiffness is singular.
@@ -52,7 +52,7 @@ class SlidingState(NamedTuple):
 
 
 def sliding_state(
-    stiffness: Any, load: Any, contacts: Contacts, time: float, start: Start | None = None
+    stiffness: Any, load: Any, contacts: Contacts, time: float, start: Nearby | None = None
 ) -> SlidingState:
     """Steady sliding at `time` [s], looked for from that of a similar brake where it is known.
 
@@ -98,12 +98,12 @@ def _search(steps: "_Steps", q: Any, load: Any, time: float, most: int) -> Slidi
     return SlidingState(q, _pressing(normal, closed), speed, mu, False, False)
 
 
-def at_rest(stiffness: Any) -> Start:
+def at_rest(stiffness: Any) -> Nearby:
     """No displacement, and the factor of the stiffness with every contact closed."""
     try:
-        return Start(np.zeros(stiffness.shape[0]), factor(stiffness))
+        return Nearby(np.zeros(stiffness.shape[0]), factor(stiffness))
     except SingularMatrix:
-        return Start(np.zeros(stiffness.shape[0]), None)
+        return Nearby(np.zeros(stiffness.shape[0]), None)
 
 
 def _pressing(normal: Any, closed: Any) -> Any:

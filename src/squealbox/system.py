@@ -233,7 +233,7 @@ def _checked_contact(contact: Any, i: int, size: int) -> Contact:
     return contact
 
 
-def equilibrium(system: Any, time: float = 0.0, start: sparse_sliding.Start | None = None) -> Equilibrium:
+def equilibrium(system: Any, time: float = 0.0, start: sparse_sliding.Nearby | None = None) -> Equilibrium:
     """Steady sliding q0 at the load, speeds and normal forces of `time` [s].
 
     Newton on r(q) = K q - f - sum mu sgn(V) d N(q) [- normal min(N, 0) for unilateral contacts]. Without unilateral
@@ -274,7 +274,7 @@ def equilibrium(system: Any, time: float = 0.0, start: sparse_sliding.Start | No
     return Equilibrium(q, normal, speed, mu, exists, outcome, np.where(exists, floating, 0))
 
 
-def linearise(system: Any, time: float = 0.0, start: sparse_sliding.Start | None = None) -> Linearised:
+def linearise(system: Any, time: float = 0.0, start: sparse_sliding.Nearby | None = None) -> Linearised:
     """K_eff and C_eff about steady sliding at `time` [s]; an open contact only takes its stiffness out."""
     system = system if isinstance(system, System) else as_system(system, linear=True)
     if any(loop.sampling is not None for loop in system.loops):
@@ -340,7 +340,7 @@ def contact_state(system: System, time: Any, q: Any, qd: Any) -> tuple[Any, Any,
     return tuple(np.stack(x, axis=-1) if x else empty for x in (normals, speeds, forces))  # type: ignore[return-value]
 
 
-def _sparse_equilibrium(system: System, time: float, start: sparse_sliding.Start | None) -> Equilibrium:
+def _sparse_equilibrium(system: System, time: float, start: sparse_sliding.Nearby | None) -> Equilibrium:
     found = sparse_sliding.sliding_state(system.K, value_at(system.load, time), system.contacts, time, start)
     sliding, singular, settled = np.all(found.speed != 0.0), np.array(found.singular), np.array(found.settled)
     exists = settled & ~singular & sliding

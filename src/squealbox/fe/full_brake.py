@@ -11,7 +11,7 @@ from squealbox.factorisation import Factor
 from squealbox.fe.growing_basis import ROWS, GrowingBasis
 from squealbox.fe.pencil import SlidingPencil, pencil_of
 from squealbox.fe.projection import Projected, modes_on, with_shapes
-from squealbox.sparse_sliding import Start
+from squealbox.sparse_sliding import Nearby
 from squealbox.system import InvalidSystem, System, as_system
 
 
@@ -49,7 +49,7 @@ class FullBrake:
 
     def pencil(self, values: Mapping[str, Any]) -> SlidingPencil:
         """The full matrices about steady sliding at other parameters."""
-        return pencil_of(self.system(values), self.time, start=Start(self.steady, self.base))
+        return pencil_of(self.system(values), self.time, start=Nearby(self.steady, self.base))
 
     def checked(self, values: Mapping[str, Any], band: tuple[float, float]) -> Projected:
         """Modes on the basis, with the error against the full brake."""

@@ -9,7 +9,7 @@ from scipy import sparse
 
 from squealbox.loops import near_sliding
 from squealbox.memory_rows import no_memory
-from squealbox.sparse_sliding import Start, damping_across, damping_along, stiffness_of
+from squealbox.sparse_sliding import Nearby, damping_across, damping_along, stiffness_of
 from squealbox.system import Equilibrium, InvalidSystem, System, equilibrium
 
 MOST_DAMPED = 0.1  # damping ratio above which a pair is no candidate for squeal and is not shown
@@ -125,7 +125,7 @@ class SlidingPencil(Pencil):
 
 
 def pencil_of(
-    system: System, time: float = 0.0, state: Equilibrium | None = None, start: Start | None = None
+    system: System, time: float = 0.0, state: Equilibrium | None = None, start: Nearby | None = None
 ) -> SlidingPencil:
     """The matrices of a sparse system about steady sliding at `time` [s], or about a `state` that is known.
 

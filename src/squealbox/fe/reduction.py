@@ -27,7 +27,7 @@ from squealbox.fe.real_modes import real_modes
 from squealbox.fe.reduced_brake import FIELDS, ChangeAlong, ReducedBrake, Reduction, chebyshev_points, lagrange
 from squealbox.fe.reduced_sliding import steady_small
 from squealbox.fe.small import Small
-from squealbox.sparse_sliding import Start, at_rest
+from squealbox.sparse_sliding import Nearby, at_rest
 from squealbox.system import InvalidSystem, System, as_system
 
 Basis = Literal["enriched", "craig-bampton", "pod"]
@@ -214,7 +214,7 @@ def _pencils_at(full: FullBrake, reference: SlidingPencil, points: list[dict[str
         if there.K is system.K and not isinstance(law, tuple):
             near = steady_small(full.projected_arrays(there, known), law, np.asarray(there.contacts.unilateral))
         q = full.steady if near is None else full.steady + basis @ near[1].q
-        found.append(pencil_of(there, full.time, start=Start(q, full.base)))
+        found.append(pencil_of(there, full.time, start=Nearby(q, full.base)))
     return found
 
 

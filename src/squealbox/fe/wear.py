@@ -28,7 +28,7 @@ from squealbox.contacts import Contacts
 from squealbox.factorisation import factor
 from squealbox.friction import Coulomb
 from squealbox.parameters import ParameterError, parameter
-from squealbox.sparse_sliding import SlidingState, Start, sliding_state
+from squealbox.sparse_sliding import Nearby, SlidingState, sliding_state
 from squealbox.system import InvalidSystem
 
 STEPS = 8  # of one running in, each longer than the one before
@@ -95,10 +95,10 @@ def run_in(brake: Pressed, mean: float, following: Any = None, steps: int = STEP
         for _ in range(TRIES):
             soft = 1.0 / (1.0 + GAMMA * brake.contact * a * brake.radius)
             base = factor(_softer(brake, soft), True, order=order) if base is None else base
-            first = _sliding(brake, soft, depth, Start(q, base))
+            first = _sliding(brake, soft, depth, Nearby(q, base))
             worn = a * brake.radius / brake.area * (1.0 - GAMMA) * first.normal
             near = first.q + brake.moving @ np.max(worn[:, None] * within, axis=0)  # what pressed presses still
-            found = _sliding(brake, soft, depth + worn, Start(near, base))
+            found = _sliding(brake, soft, depth + worn, Nearby(near, base))
             worn = worn + a * brake.radius / brake.area * GAMMA * found.normal
             pressure, q, order = found.normal / brake.area, found.q, base.order
             share = float(weight @ worn) / step
@@ -126,7 +126,7 @@ def _softer(brake: Pressed, soft: Any) -> Any:
     return sparse.csr_array(brake.stiffness - brake.normal.T @ less)
 
 
-def _sliding(brake: Pressed, soft: Any, depth: Any, start: Start | None) -> SlidingState:
+def _sliding(brake: Pressed, soft: Any, depth: Any, start: Nearby | None) -> SlidingState:
     """Steady sliding with contacts that are softer by `soft` (k,), after `depth` (k,) has been worn off."""
     spring = soft * brake.contact * brake.area
     contacts = Contacts(

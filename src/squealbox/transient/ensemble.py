@@ -18,7 +18,7 @@ from squealbox.system import as_system
 from squealbox.transient import _march
 from squealbox.transient.choosing import chosen_method, usual_method
 from squealbox.transient.instants import instants_of
-from squealbox.transient.lanes.work import HEAD, Progress, Work
+from squealbox.transient.lanes.work import HEAD, Blocks, Progress
 from squealbox.transient.legs import MESSAGES, SCHEMES
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.observers import as_observers
@@ -215,7 +215,7 @@ def simulate_ensemble(
         chosen, SCHEMES[contact], width, start, duration, start_time, as_observers(observe), instants,
         _threads(threads), progress,
     )  # fmt: skip
-    job, together = Work(*work), True
+    job, together = Blocks(*work), True
     try:
         job.run(design_or_system, names, arrays, shape)
     except RunApart:
@@ -237,7 +237,7 @@ def simulate_ensemble(
 
 
 def _result(
-    work: Work, parameters: dict[str, Any], shape: tuple[int, ...], inputs: dict[str, Any], settings: dict[str, Any]
+    work: Blocks, parameters: dict[str, Any], shape: tuple[int, ...], inputs: dict[str, Any], settings: dict[str, Any]
 ) -> Ensemble:
     """The blocks as one result."""
     assert work.system is not None
@@ -342,7 +342,7 @@ def _space(
 
 
 def _shape_of_starts(start: Any) -> tuple[int, ...]:
-    """Leading axes of (q, qd); none for words, and for what `Work` will refuse."""
+    """Leading axes of (q, qd); none for words, and for what `Blocks` will refuse."""
     if start is None or isinstance(start, str):
         return ()
     try:

@@ -17,7 +17,7 @@ from squealbox.loops.held import highest_rate
 from squealbox.members import member
 from squealbox.parameters import ParameterError
 from squealbox.system import System, as_system
-from squealbox.transient.lanes.work import Work
+from squealbox.transient.lanes.work import Blocks
 from squealbox.transient.methods import Method
 from squealbox.transient.observers import Observer
 from squealbox.transient.trajectory import Trajectory
@@ -28,8 +28,8 @@ LEAST = 32  # parts of a run
 Run = Callable[..., Trajectory]
 
 
-class OneByOne(Work):
-    """Members one after another, and the rows of results they leave, as `Work` makes them.
+class OneByOne(Blocks):
+    """Members one after another, and the rows of results they leave, as `Blocks` makes them.
 
     `simulate` is the function of that name with the contact scheme of the ensemble, `usual` the method a system takes,
     `codes` how a run may end.

@@ -37,7 +37,7 @@ from squealbox.transient.lanes.series import (
 )
 from squealbox.transient.lanes.series import derivative as slope_series
 from squealbox.transient.lanes.tables import law_of_points, line_of_points, slope_of_points
-from squealbox.transient.lanes.taylor import grow, reach, ready, surely_slips
+from squealbox.transient.lanes.taylor import ends_near_zero, grow, reach, ready, surely_slips
 from squealbox.transient.lanes.taylor_events import step_end
 """
 FEW = 12  # coefficients that are copied one by one

@@ -16,8 +16,8 @@ def law_of_points(x: Any, p: Given) -> Any:
     """`friction.table` on a series of the speed, or on speeds."""
     count, here = p[1], at(x, 0)
     first, last = p[2], p[1 + count]
-    low, high, rest = _ends(here, p, 2, count)
-    (y0, y1), (left, right) = ((rest(p, 2 + k * count), rest(p, 3 + k * count)) for k in (1, 2))
+    low, high, at_ends = _ends(here, p, 2, count)
+    (y0, y1), (left, right) = (at_ends(2 + k * count) for k in (1, 2))
     below, above = here < first, here >= last
     inside = where(below | above, 0.0, 1.0)
     width, rise = high - low, y1 - y0
@@ -33,8 +33,8 @@ def law_of_points(x: Any, p: Given) -> Any:
 
 def line_of_points(t: Series, p: Given) -> Series:
     """`schedules.table` on the series of time."""
-    start, low, value = _line(t, p)
-    return (t - low) * start + value
+    slope, low, value = _line(t, p)
+    return (t - low) * slope + value
 
 
 def slope_of_points(t: Series, p: Given) -> Lanes:
@@ -45,17 +45,17 @@ def slope_of_points(t: Series, p: Given) -> Lanes:
 def _line(t: Series, p: Given) -> tuple[Lanes, Any, Any]:
     """Slope of the line on which a step begins, where that begins, and its value there."""
     count, here = p[0], plus(at(t, 0), times(at(t, 1), AHEAD))
-    low, high, rest = _ends(here, p, 1, count)
-    y0, y1 = rest(p, 1 + count), rest(p, 2 + count)
+    low, high, at_ends = _ends(here, p, 1, count)
+    y0, y1 = at_ends(1 + count)
     outside = (here < p[1]) | (here >= p[count])
     return where(outside, 0.0, (y1 - y0) / (high - low)), low, where(here >= p[count], y1, y0)
 
 
 def _ends(here: Lanes, p: Given, first: int, count: int) -> tuple[Lanes, Lanes, Any]:
-    """Both ends of the interval, the first or last where there is none, and what finds a coefficient for it."""
+    """Both ends of the interval, the first or last where there is none, and what gives the coefficients at both."""
     found = p.last_below(here, first, count - 1)
 
-    def rest(p: Given, place: int) -> Lanes:
-        return p.of(found, place)
+    def at_ends(place: int) -> tuple[Lanes, Lanes]:
+        return p.of(found, place), p.of(found, place + 1)
 
-    return rest(p, first), rest(p, first + 1), rest
+    return *at_ends(first), at_ends

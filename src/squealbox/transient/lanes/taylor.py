@@ -2,11 +2,13 @@
 
 from typing import Any
 
-from squealbox.transient.lanes.series import at, plus_product, times
+from squealbox.transient.lanes.series import DECISIONS, Series, at, plus_product, times, where
 from squealbox.transient.lanes.vectors import Lanes, Truth, minimum, rough_power
+from squealbox.transient.lanes.vectors import where as pick
 
 FINITE = 1e300
 SHARE = 0.1  # of the tolerance that each of the last two terms may take
+FAR, HIDDEN, SEEN, FALL = 27.0, 19.0, 6.0, 0.7  # speeds over the width of a tanh, and the share to which one may fall
 
 
 def grow(
@@ -57,3 +59,16 @@ def ready(order: int, *series: Any) -> None:
     """Let all coefficients be computed here: inside a branch they would be lost to what follows it."""
     for each in series:
         at(each, order)
+
+
+def ends_near_zero(speed: Any, width: Lanes) -> None:
+    """End a step where a speed has come so near to zero that tanh(v/width) begins to turn.
+
+    tanh leaves 1 by 2 exp(-2 v/width), at 19 widths below the round-off of a series from farther out; one from nearer
+    sees what it meets while the speed falls to no less than 0.7 of what it was.
+    """
+    if not isinstance(speed, Series):
+        return
+    size, sense = abs(speed[0]), pick(speed[0] < 0.0, -1.0, 1.0)
+    least = pick(size > FAR * width, HIDDEN * width, FALL * size)
+    DECISIONS.get().append(where(size > SEEN * width, speed * sense - least, 1.0))

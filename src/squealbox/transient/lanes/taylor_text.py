@@ -132,6 +132,7 @@ class TaylorStep(EquationText):
         kind, count = self.shape.laws[c]
         force, p = f"f{c}_{k}", self.given(f"law{c}_", count, is_table(LAWS, kind), 1)
         if not self.shape.exact:
+            self.put(f"ends_near_zero({speed}, {self.row('width')})" if self.shape.scheme == TANH else "pass")
             self.put(f"{force} = {self.smoothed(c, speed, normal, p)}")
             return force
         s = self.row(f"s{c}")

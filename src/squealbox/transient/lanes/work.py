@@ -32,7 +32,7 @@ HEAD = 5  # numbers of a row of results before its state: how it ended, time, ac
 Progress = Callable[[int, int, float], None]
 
 
-class Work:
+class Blocks:
     """The blocks of one ensemble, their threads and what they leave."""
 
     def __init__(
