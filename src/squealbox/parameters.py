@@ -128,7 +128,7 @@ class DataSheet:
         for path, value in {**(changes or {}), **keywords}.items():
             for full in self._paths(path):
                 name, _, rest = full.partition(".")
-                self._check_known(path, path.partition(".")[0], name, value)
+                self._check_known(path, str(path).partition(".")[0], name, value)
                 if rest:
                     nested.setdefault(name, {})[rest] = value
                 else:
@@ -151,7 +151,7 @@ class DataSheet:
     def value_of(self, path: str) -> Any:
         """The value behind a dotted name; an alias gives the value of its first field."""
         name, _, rest = self._paths(path)[0].partition(".")
-        self._check_known(path, path.partition(".")[0], name, UNSAID)
+        self._check_known(path, str(path).partition(".")[0], name, UNSAID)
         value = getattr(self, name)
         if rest and members(value):
             key, _, rest = rest.partition(".")
@@ -181,7 +181,7 @@ class DataSheet:
 
     def _paths(self, path: str) -> tuple[str, ...]:
         """The fields that a dotted name stands for: its own, or those of an alias or of what all members share."""
-        head, dot, rest = path.partition(".")
+        head, dot, rest = str(path).partition(".")
         if head in self.shared:
             several, field = self.shared[head]
             return tuple(f"{several}.{i + 1}.{field}{dot}{rest}" for i in range(len(getattr(self, several)))) or (path,)

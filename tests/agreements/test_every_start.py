@@ -136,6 +136,8 @@ def test_what_is_no_start_is_one_sentence():
             state(start)
         assert says in str(caught.value)
         assert "\n" not in str(caught.value)
+    with pytest.raises(ParameterError, match=r"expected \(q, qd\)"):  # three arrays hold no period
+        shooting(BRAKE, ([1e-6, 0.0], [0.0, 0.0], [0.0, 0.0]))
     with pytest.raises(InvalidSystem, match="there is no steady sliding to start from"):
         simulate(BRAKE.replace({"sliding_speed": 0.0}), 1e-3, "mode")
 

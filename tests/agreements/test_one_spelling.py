@@ -25,7 +25,7 @@ from squealbox import (
     sweep,
     tracked_modes,
 )
-from squealbox.files.analyses import Axis
+from squealbox.files.analyses import Varied
 from squealbox.files.document import DesignFileError
 from squealbox.files.reading import read_text
 from squealbox.files.study import read_study
@@ -206,6 +206,8 @@ def test_a_name_the_design_does_not_have_is_one_sentence(name):
     given = {"friction.statik" if each == MU else each: value for each, value in case.given.items()}
     with pytest.raises(ParameterError, match="did you mean 'static'"):
         case.call(BRAKE, given)
+    with pytest.raises(ParameterError, match="DrumBrake.1|nothing beside"):  # a number is no name
+        case.call(BRAKE, {1 if each == MU else each: value for each, value in case.given.items()})
 
 
 @pytest.mark.parametrize("name", ["critical_value", "branch", "tracked_modes", "bifurcation_diagram"])
@@ -218,7 +220,7 @@ def test_one_parameter_is_not_two_and_not_said_twice(name):
 
 
 def test_an_axis_has_ends_and_values():
-    axis = Axis(MU, 0.1, 0.6, points=3)
+    axis = Varied(MU, 0.1, 0.6, points=3)
     assert critical_value(BRAKE, {MU: axis}).value == critical_value(BRAKE, {MU: ENDS}).value
     assert np.array_equal(tracked_modes(BRAKE, {MU: axis}).value, [0.1, 0.35, 0.6])
 

@@ -268,3 +268,25 @@ def test_a_contact_that_lifts_off_under_a_smoothed_sign():
     assert np.array_equal(one.mode, close.mode)
     assert distance(one.q, close.q) < 1e-7
     assert np.max(np.abs(one.energy.residual)) < 1e-7
+
+
+@pytest.mark.parametrize("speed", [1.5, 1.7])
+def test_a_law_of_two_points_is_left_and_entered_again(speed):
+    """At rest the speed lies on the last point or beyond it: reversals lead back between both."""
+    design = drum(reading="consistent").replace({"friction": Table([0.0, 1.5], [0.45, 0.1]), "sliding_speed": speed})
+    one, close = (simulate(design, 0.01, times=21, method=m) for m in (None, Method("dormand-prince-8", rtol=1e-12)))
+    assert one.settings["tableau"] == "taylor"
+    assert len(one.event_time) == len(close.event_time)
+    assert distance(one.q, close.q) < 1e-8
+    many = simulate_ensemble(design, {"theta1": [0.6, design.theta1]}, 0.01, None, ())
+    assert distance(many.q[1], close.q[-1]) < 1e-8
+
+
+def test_sliding_that_stays_on_a_measured_point():
+    """Round-off alone moves the speed across the point: two million steps if each such crossing ended one."""
+    design = drum(reading="consistent").replace({"friction": MEASURED, "sliding_speed": 1.5})
+    one = simulate(design, 0.02, start="sliding")
+    assert one.settings["tableau"] == "taylor"
+    assert one.outcome == "completed"
+    assert one.steps < 2000
+    assert distance(one.q[-1], one.q[0]) < 1e-9

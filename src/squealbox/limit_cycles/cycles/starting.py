@@ -34,7 +34,7 @@ def first_guess(field: Autonomous, start: Any, settle: float | None) -> tuple[An
     """
     if isinstance(start, Cycle):
         return field.state(start.q[0], start.qd[0], start.memory), float(start.period), Outcome(COMPLETED)
-    if isinstance(start, (tuple, list)) and len(start) == 3:
+    if isinstance(start, (tuple, list)) and len(start) == 3 and np.ndim(start[2]) == 0:  # else deflections
         return _under_way(field, state_of(field, start[:2]), float(start[2]))
     x = state_of(field, start)
     slowest = _slowest_period(field)

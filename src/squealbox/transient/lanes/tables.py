@@ -10,6 +10,7 @@ from squealbox.transient.lanes.series import AHEAD, DECISIONS, Series, at, plus,
 from squealbox.transient.lanes.vectors import Given, Lanes, where
 
 FAR = 1e300  # where there is no further knot
+BEYOND, BEFORE = 1.0 + 1e-15, 1.0 - 1e-15  # a knot is left by some units of the last place: a brake may slide on one
 
 
 def law_of_points(x: Any, p: Given) -> Any:
@@ -25,8 +26,9 @@ def law_of_points(x: Any, p: Given) -> Any:
     s = (x - low) * (1.0 / width)
     if isinstance(x, Series):
         # chosen is x >= the knot below: that difference holds while it is not positive; zero speed is an event, no knot
-        DECISIONS.get().append(where(below | ((first <= 0.0) & (low <= first)), -FAR, where(above, last, low)) - x)
-        DECISIONS.get().append(where(above, FAR, where(below, first, high)) - x)
+        unwatched = below | ((first <= 0.0) & (low <= first))
+        DECISIONS.get().append(BEFORE * where(above, last, where(unwatched, -FAR, low)) - x)
+        DECISIONS.get().append(BEYOND * where(above, FAR, where(below, first, high)) - x)
     steeper = s * (left + right - 2.0 * rise) + (3.0 * rise - 2.0 * left - right)
     return s * (s * steeper + left) + where(above, y1, y0)
 
