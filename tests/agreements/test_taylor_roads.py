@@ -290,3 +290,11 @@ def test_sliding_that_stays_on_a_measured_point():
     assert one.outcome == "completed"
     assert one.steps < 2000
     assert distance(one.q[-1], one.q[0]) < 1e-9
+
+
+def test_sliding_stays_on_a_kink_of_a_law():
+    """The floor begins just at the sliding speed: round-off is no passage of it, where 2,000,000 steps were taken."""
+    brake = DrumBrake(theta1=1.92, theta2=0.17, friction=LinearSlope(0.45, -0.5, floor=0.35), sliding_speed=0.2)
+    assert simulate(brake, 0.01, start="sliding").steps < 500
+    one, close = (simulate(brake, 0.01, times=21, method=m) for m in (None, Method("dormand-prince-8", rtol=1e-12)))
+    assert distance(one.q, close.q) < 1e-8

@@ -14,6 +14,7 @@ from typing import Any
 from squealbox.transient.lanes import vectors
 from squealbox.transient.lanes.vectors import Lanes, Truth, Wider, fused
 
+LEFT = 1e-15  # of the sizes of what is compared, by which a choice is left
 AHEAD = 1e-9  # by which a choice looks ahead in time, in units of the series: an instant may lie on a kink
 DECISIONS: ContextVar[list[Any]] = ContextVar("differences whose sign chose a branch")
 
@@ -70,16 +71,16 @@ class Series(Wider):
         return where(self < 0.0, -self, self)
 
     def __gt__(self, other: Any) -> Truth:
-        return positive(self - other)
+        return above(self, other)
 
     def __lt__(self, other: Any) -> Truth:
-        return positive(other - self)
+        return above(other, self)
 
     def __ge__(self, other: Any) -> Truth:
-        return ~positive(other - self)
+        return ~above(other, self)
 
     def __le__(self, other: Any) -> Truth:
-        return ~positive(self - other)
+        return ~above(self, other)
 
     def __eq__(self, other: Any) -> Any:
         return NotImplemented
@@ -117,12 +118,18 @@ def deciding() -> Iterator[list[Any]]:
         DECISIONS.reset(token)
 
 
-def positive(difference: Series) -> Truth:
-    """Whether it begins above zero; one of time alone is looked at a little later, for pieces begin on a kink."""
+def above(a: Any, b: Any) -> Truth:
+    """Whether a begins above b; where time alone tells, it is looked at a little later, for pieces begin on a kink.
+
+    The choice is left by some units of the last place only: a brake may slide on a kink.
+    """
+    difference = a - b
     if difference.clock:
         return plus(difference[0], times(difference[1], AHEAD)) > 0.0
-    DECISIONS.get().append(difference)
-    return difference[0] > 0.0
+    here = difference[0] > 0.0
+    size: Any = plus(*(None if at(x, 0) is None else abs(at(x, 0)) for x in (a, b)))
+    DECISIONS.get().append(difference if size is None else difference + where(here, LEFT * size, -LEFT * size))
+    return here
 
 
 def time_series(start: Lanes, unit: Lanes) -> Series:
