@@ -13,6 +13,7 @@ from squealbox import (
     Controlled,
     Coulomb,
     DrumBrake,
+    Method,
     System,
     closed_loop,
     complex_modes,
@@ -275,3 +276,16 @@ def test_open_contact_has_no_force() -> None:
 def test_what_does_not_know_memory_says_so(ask: Any, error: type[Exception]) -> None:
     with pytest.raises(error, match=r"memory|1, 2 or 3|at most static"):
         ask(block(LAWS[0]))
+
+
+BENT = (0.45, 0.3, 0.4, 1e5, 0.1)
+
+
+@pytest.mark.parametrize("law", [LuGre(*BENT), ElastoPlastic(*BENT, breakaway=0.5)])
+def test_two_contacts_with_memory_from_rest(law: Any) -> None:
+    """Each is compared with its own series: the drum's two stopped as `step_limit` after a millionth of a second."""
+    brake, tight = DrumBrake(friction=law, sliding_speed=0.5), Method("dormand-prince-8", rtol=1e-12)
+    one, close = (simulate(brake, 0.004, times=41, method=method) for method in ("taylor", tight))
+    assert one.outcome == "completed"
+    assert one.steps < 2000
+    assert np.max(np.abs(one.q - close.q)) < 1e-8 * np.max(np.abs(close.q))

@@ -198,10 +198,11 @@ class TaylorStep(EquationText):
                 self.put(f"slide = value({found['speed'][c]}, away, {ORDER})")
                 force, creep = self.compared(c, row, found)
                 self.put(f"amiss{c}_{j} = abs({force})")
+                self.put(f"drift{c}_{j} = abs({creep})" if creep else "pass")
                 for i, parts in moving.items():
                     push = self.entry(f"md{c}_{i}")
                     parts += [f"abs({push}) * amiss{c}_{j}"] if push else []
-                    parts += [f"abs({creep})"] if i == row else []
+                    parts += [f"drift{c}_{j}"] if i == row else []
         faults = [
             f"((unit * end * {'unit * ' * (i in self.shape.of(WITH_MASS))}({' + '.join(parts)})) > {AMISS!r} * size{i})"
             for i, parts in moving.items()
