@@ -172,7 +172,9 @@ def _of_members(
     parts: list[Any], widths: tuple[int, ...], batch: tuple[int, ...], shape: tuple[int, ...], part: slice
 ) -> list[Any]:
     """Each of the states (..., width) for a part of an ensemble; those without leading axes serve all."""
-    if all(x.shape == (width,) for x, width in zip(parts, widths, strict=False)):
+    if any(x.shape[-1:] != (width,) for x, width in zip(parts, widths, strict=False)):
+        raise ValueError("states of another length")
+    if all(x.ndim == 1 for x in parts):
         return parts
     own = batch or (part.stop - part.start,)
     found = []

@@ -14,6 +14,8 @@ from squealbox import (
     simulate,
     simulate_ensemble,
 )
+from squealbox.cli.running import UsageError
+from squealbox.cli.transient import _settings
 from squealbox.files.analyses import Simulate
 from squealbox.files.reading import read_text
 from squealbox.files.runs import start_of
@@ -138,6 +140,11 @@ def test_what_is_no_start_is_one_sentence():
         assert "\n" not in str(caught.value)
     with pytest.raises(ParameterError, match=r"expected \(q, qd\)"):  # three arrays hold no period
         shooting(BRAKE, ([1e-6, 0.0], [0.0, 0.0], [0.0, 0.0]))
+    for start in ([1e-6, 0.0], ([1.0], [0.0])):  # no number stands for two freedoms, in an ensemble either
+        with pytest.raises(ParameterError, match=r"of shape \(\.\.\., 2\)"):
+            simulate_ensemble(BRAKE, {"friction.static": [0.2, 0.3]}, 1e-4, start=start)
+    with pytest.raises(UsageError, match='beside a start in a mode, such as --start "mode 1"'):
+        _settings(Simulate(), None, "1um", {"start": "rest"})
     with pytest.raises(InvalidSystem, match="there is no steady sliding to start from"):
         simulate(BRAKE.replace({"sliding_speed": 0.0}), 1e-3, "mode")
 

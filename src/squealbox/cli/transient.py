@@ -85,6 +85,8 @@ def _settings(
     if "start" in changed:
         changed |= {"mode": None, **start_keys(changed["start"])}
     if amplitude is not None:
+        if changed.get("start", given.start) != "mode":
+            raise UsageError(f'--amplitude {amplitude}: expected beside a start in a mode, such as --start "mode 1"')
         changed["amplitude"] = number(amplitude, "m", f"--amplitude {amplitude}")
     try:
         return given.replace(changed)
