@@ -43,7 +43,7 @@ def test_the_table_says_what_was_assumed_and_nothing_where_it_was_given():
     assert "after push [um]" not in table.heads()
     own = Scatter(usual_scatter(brake).distributions)
     assert "Assumed" not in silence(brake, own, candidates=[], push=0.0).summary()
-    with pytest.raises(ParameterError, match="a Scatter"):
+    with pytest.raises(ParameterError, match="friction.static = 0.1: expected a distribution"):
         silence(brake, {"friction.static": 0.1})
 
 
