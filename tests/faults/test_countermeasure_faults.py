@@ -66,7 +66,7 @@ BAD = {
     "dither of no contact": (lambda: Dithered(DRUM, 0.1, along="drum").system(), "Dithered.along = 'drum'"),
     "an unknown aim": (lambda: best_absorber(DRUM, "y", 0.1, "peace"), "one of decay, margin, probability"),
     "a probability of nothing": (lambda: best_absorber(DRUM, "y", 0.1, "probability"), "the scatter"),
-    "silence without scatter": (lambda: silence(DRUM, 3.0), "silence.scatter = 3: expected {name: distribution} or a Scatter"),
+    "silence without scatter": (lambda: silence(DRUM, 3.0), "silence.scatter = 3: expected {name:"),
 }
 
 
