@@ -158,9 +158,8 @@ def public(**kinds: Kind | None) -> Callable[[Callable[P, R]], Callable[P, R]]:
         owner = function.__name__
         place = names.index("progress") if "progress" in names else None
         placed = [name for name in names if given[name].kind is inspect.Parameter.POSITIONAL_OR_KEYWORD]
-        pair = (
-            placed.index("parameter") if "parameter" in placed[:-2] else len(names)
-        )  # something stands behind its bounds
+        # a dictionary leaves out the bounds or values behind it, where more can be given by place
+        pair = placed.index("parameter") if "parameter" in placed[:-2] else len(names)
         must = [name for name in names if given[name].default is inspect.Parameter.empty]
 
         @functools.wraps(function)

@@ -17,7 +17,8 @@ from squealbox.registers import kinds_in
 _FIRST = (Coulomb, LinearSlope, Stribeck, Hyperbolic, Cubic, Table, LuGre, Dahl, ElastoPlastic)
 LAWS: tuple[type[FrictionLaw], ...] = kinds_in(__name__, FrictionLaw, _FIRST, having="formula")
 globals().update({law.__name__: law for law in LAWS})
-globals().update({name: formula for name, formula in vars(curves).items() if name[0].islower() and callable(formula)})
+_formulas = (each for law in LAWS for each in (law.formula, law.slope_formula))
+globals().update({each.__name__: each for each in _formulas if each.__module__ == curves.__name__})
 
 __all__ = ["LAWS", "NEVER_STICKS", "Averaged", "FrictionLaw", "averaged"]
 __all__ += [law.__name__ for law in LAWS]

@@ -37,6 +37,7 @@ from squealbox.transient._motion import (
     is_open,
     list_sticking,
     normal_force,
+    row_mode,
     sliding_velocity,
 )
 from squealbox.transient._rigid import paradox
@@ -248,17 +249,8 @@ def write_row(p, s, rows, t, y):
         row[first + c] = s.normal[c]
         row[first + p.contacts + c] = s.speed[c]
         row[first + 2 * p.contacts + c] = s.force[c]
-        row[first + 3 * p.contacts + c] = row_mode(p, s, c)
+        row[first + 3 * p.contacts + c] = row_mode(p, c, s.mode, s.normal[c], s.speed[c])
     s.count[ROWS] += 1
-
-
-def row_mode(p, s, c):
-    """The mode as output: that of the exact scheme, else the sign of the sliding velocity."""
-    if WITH_EVENTS:
-        return s.mode[c]
-    if is_open(p, c, s.mode, s.normal[c]):
-        return OPEN
-    return int(np.sign(s.speed[c]))
 
 
 def change_modes(p, s, events, t, which, moved):

@@ -125,6 +125,15 @@ def is_open(p, c, mode, normal):
     return mode[c] == OPEN if WITH_EVENTS else p.unilateral[c] != 0 and normal <= 0.0
 
 
+def row_mode(p, c, mode, normal, speed):
+    """The mode as output: that of the exact scheme, else open or the sign of the sliding velocity."""
+    if WITH_EVENTS:
+        return mode[c]
+    if is_open(p, c, mode, normal):
+        return OPEN
+    return int(np.sign(speed))
+
+
 def list_sticking(p, mode, s):
     """The contacts that stick, into s.stuck; returns how many."""
     sticking = 0

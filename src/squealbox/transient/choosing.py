@@ -20,11 +20,15 @@ LONGEST = 6_000  # products in all stages, which compile in half a minute
 EACH = 0.5  # runs by the scalar march in the time that one more product takes to compile
 
 
-def check_series(system: System, contact: str) -> None:
-    """A method that was named and cannot serve is refused."""
-    if contact == "raw":
+def check_scheme(owner: str, method: Method, contact: str) -> None:
+    """A series is not asked to jump."""
+    if method.tableau == TAYLOR and contact == "raw":
         expected = "exact, or a smoothed sgn: a Taylor series does not see a jump of sgn"
-        raise ParameterError("simulate", "contact", contact, expected)
+        raise ParameterError(owner, "contact", contact, expected)
+
+
+def check_series(system: System) -> None:
+    """A series that was named and cannot serve is refused."""
     if why := no_series(system):
         raise InvalidSystem(f"{why}: take another method than {TAYLOR}")
 

@@ -16,11 +16,11 @@ from squealbox.parameters import DataSheet, ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Column, Outcome, Result, batched, quantity
 from squealbox.system import as_system
 from squealbox.transient import _march
-from squealbox.transient.choosing import chosen_method, usual_method
+from squealbox.transient.choosing import check_scheme, chosen_method, usual_method
 from squealbox.transient.instants import instants_of
 from squealbox.transient.lanes.work import HEAD, Blocks, Progress
 from squealbox.transient.legs import MESSAGES, SCHEMES
-from squealbox.transient.methods import TAYLOR, Method
+from squealbox.transient.methods import Method
 from squealbox.transient.observers import as_observers
 from squealbox.transient.one_by_one import OneByOne
 from squealbox.transient.simulate import simulate
@@ -208,9 +208,7 @@ def simulate_ensemble(
     names, arrays, shape = _space(design_or_system, parameters, grid, start)
     named = method or _usual(design_or_system, names, arrays, contact, int(np.prod(shape, dtype=int)))
     chosen = chosen_method(named, rtol, atol)
-    if chosen.tableau == TAYLOR and contact == "raw":
-        expected = "exact, or a smoothed sgn: a Taylor series does not see a jump of sgn"
-        raise ParameterError("simulate_ensemble", "contact", contact, expected)
+    check_scheme("simulate_ensemble", chosen, contact)
     work = (
         chosen, SCHEMES[contact], width, start, duration, start_time, as_observers(observe), instants,
         _threads(threads), progress,

@@ -12,7 +12,7 @@ from squealbox.result import COMPLETED, Outcome
 from squealbox.system import System
 from squealbox.transient import _march, _motion, packing
 from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
-from squealbox.transient.choosing import check_series, chosen_method, usual_method
+from squealbox.transient.choosing import check_scheme, check_series, chosen_method, usual_method
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.one_motion import undetermined
 from squealbox.transient.own_laws import own_texts
@@ -109,8 +109,9 @@ class Leg:
 def ways_of(system: System, contact: str, width: float, method: Any, given: tuple[float | None, Any]) -> Ways:
     """The ways of a march: its usual method, or that which was named and can serve, with the tolerances given."""
     chosen = chosen_method(method or usual_method(system, contact), *given)
+    check_scheme("simulate", chosen, contact)
     if chosen.tableau == TAYLOR and method is not None:
-        check_series(system, contact)
+        check_series(system)
     return Ways(chosen, method is not None, contact, width, given)
 
 

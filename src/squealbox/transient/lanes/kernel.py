@@ -139,9 +139,6 @@ def _gather(shape: Shape, places: dict[str, int]) -> str:
         if name in places:
             lines.append(f"    {target} = A[b + {places[name] * shape.lanes} + lane]")
 
-    def many(target: str, first: str, count: int) -> None:
-        lines.extend(_numbers(target, places[first] if count else 0, count, shape.lanes))
-
     n, m = shape.n, shape.m
     for name in ("mk", "mc"):
         for i in range(n):
@@ -154,7 +151,7 @@ def _gather(shape: Shape, places: dict[str, int]) -> str:
     for c in range(m):
         for e in range(m):
             put(f"p.g[{c}, {e}]", f"g{c}_{e}")
-        many(f"p.law_coefficients[{c}, {{}}]", f"law{c}_0", shape.laws[c][1])
+        lines += _numbers(f"p.law_coefficients[{c}, {{}}]", f"law{c}_", shape.laws[c][1], shape, places)
         if shape.along(c):
             put(f"p.static[{c}]", f"law{c}_0")
         else:
@@ -216,17 +213,17 @@ def _signals(shape: Shape, places: dict[str, int]) -> list[str]:
         for k, (_, count) in enumerate(terms):
             at = f"p.signal_start[{index}] + {k}"
             lines.append(f"    p.term_weight[{at}] = A[b + {places[f'weight{index}_{k}'] * shape.lanes} + lane]")
-            first = places[f"given{index}_{k}_0"] if count else 0
-            lines += _numbers(f"p.term_coefficients[{at}, {{}}]", first, count, shape.lanes)
+            lines += _numbers(f"p.term_coefficients[{at}, {{}}]", f"given{index}_{k}_", count, shape, places)
     return lines
 
 
-def _numbers(target: str, first: int, count: int, lanes: int) -> list[str]:
-    """Text that copies `count` rows; in a loop where they are many, as those of a table."""
+def _numbers(target: str, name: str, count: int, shape: Shape, places: dict[str, int]) -> list[str]:
+    """Text that copies the rows name0, name1, ...; in a loop where they are many, as those of a table."""
     if count > FEW:
-        copied = f"{target.format('i')} = A[b + ({first} + i) * {lanes} + lane]"
+        copied = f"{target.format('i')} = A[b + ({places[f'{name}0']} + i) * {shape.lanes} + lane]"
         return [f"    for i in range({count}):", f"        {copied}"]
-    return [f"    {target.format(i)} = A[b + {(first + i) * lanes} + lane]" for i in range(count)]
+    rows = [places[f"{name}{i}"] * shape.lanes for i in range(count)]
+    return [f"    {target.format(i)} = A[b + {row} + lane]" for i, row in enumerate(rows)]
 
 
 def _observers(shape: Shape, places: dict[str, int]) -> str:

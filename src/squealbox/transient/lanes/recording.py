@@ -9,7 +9,7 @@ A step leaves the series of all that is followed, so a row costs no further eval
 import numpy as np
 
 from squealbox.transient._march import SAMPLED
-from squealbox.transient._motion import OPEN
+from squealbox.transient._motion import OPEN, is_open, row_mode
 
 ROWS_WRITTEN, EVENTS_WRITTEN = 0, 1  # of `count`
 
@@ -20,18 +20,13 @@ def room_left(o):
     return found and o.count[EVENTS_WRITTEN] + CONTACTS <= o.events.shape[0]
 
 
-def sense(p, c, normal, speed):
-    """The mode of a contact without events: open, or the sign of its sliding speed."""
-    return OPEN if p.unilateral[c] != 0 and normal <= 0.0 else np.sign(speed)
-
-
 def first_row(A, b, lane, o):
     """The start, if it was asked for."""
     times, rows, count, p, s = o.times, o.rows, o.count, o.p, o.s
     t = A[b + ROW_T * WIDTH + lane]
     for c in range(CONTACTS):
         A[b + (ROW_FASTEST + c) * WIDTH + lane] = abs(s.speed[c])
-        if not EXACT_CONTACT or s.mode[c] != OPEN:
+        if not is_open(p, c, s.mode, s.normal[c]):
             A[b + (ROW_LOWEST + c) * WIDTH + lane] = s.normal[c]
     if times.shape[0] == 0:
         A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = -np.inf
@@ -46,7 +41,7 @@ def first_row(A, b, lane, o):
             row[first + c] = s.normal[c]
             row[first + CONTACTS + c] = s.speed[c]
             row[first + 2 * CONTACTS + c] = s.force[c]
-            row[first + 3 * CONTACTS + c] = s.mode[c] if EXACT_CONTACT else sense(p, c, s.normal[c], s.speed[c])
+            row[first + 3 * CONTACTS + c] = row_mode(p, c, s.mode, s.normal[c], s.speed[c])
         count[ROWS_WRITTEN] += 1
         if times.shape[0] == 0:
             return
@@ -65,7 +60,7 @@ def state(A, b, lane, row):
 
 def write_rows(A, b, lane, o):
     """The rows due in the step just taken: at most a sixth of the shortest period apart, or as asked for."""
-    times, rows, count, p = o.times, o.rows, o.count, o.p
+    times, rows, count = o.times, o.rows, o.count
     t0 = A[b + ROW_T_OLD * WIDTH + lane]
     t1 = A[b + ROW_T * WIDTH + lane]
     if times.shape[0] == 0:
@@ -74,13 +69,13 @@ def write_rows(A, b, lane, o):
         parts = min(max(int(np.ceil(span / part - 1e-6)), 1), SHARES)
         for k in range(1, parts + 1):
             share = k / parts
-            write_row(A, b, lane, t1 if k == parts else t0 + share * span, share * span, rows[count[ROWS_WRITTEN]], p)
+            write_row(A, b, lane, t1 if k == parts else t0 + share * span, share * span, rows[count[ROWS_WRITTEN]], o)
             count[ROWS_WRITTEN] += 1
         state(A, b, lane, rows[count[ROWS_WRITTEN] - 1])
         return
     k = count[ROWS_WRITTEN]
     while k < times.shape[0] and times[k] <= t1:
-        write_row(A, b, lane, times[k], max(times[k] - t0, 0.0), rows[k], p)
+        write_row(A, b, lane, times[k], max(times[k] - t0, 0.0), rows[k], o)
         if times[k] == t1:
             state(A, b, lane, rows[k])
         k += 1
@@ -88,7 +83,7 @@ def write_rows(A, b, lane, o):
     A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = times[k] if k < times.shape[0] else np.inf
 
 
-def write_row(A, b, lane, t, since, row, p):
+def write_row(A, b, lane, t, since, row, o):
     """One row from the series of the step: time, state, works, then N, v, force and mode of each contact."""
     unit = A[b + ROW_WINDOW * WIDTH + lane] * UNIT_OF_WINDOW
     A[b + ROW_SINCE] = since / unit
@@ -104,11 +99,11 @@ def write_row(A, b, lane, t, since, row, p):
     row[5 + 2 * DOFS + CONTACTS] = 0.0
     first = 6 + 2 * DOFS + CONTACTS
     for c in range(CONTACTS):
-        if not EXACT_CONTACT:
-            row[first + 3 * CONTACTS + c] = sense(p, c, row[first + c], row[first + CONTACTS + c])
-        else:
+        if EXACT_CONTACT:
             mode = A[b + (ROW_SLIPS + c) * WIDTH + lane]
             row[first + 3 * CONTACTS + c] = OPEN if A[b + (ROW_OPENED + c) * WIDTH + lane] > 0.0 else mode
+        else:
+            row[first + 3 * CONTACTS + c] = row_mode(o.p, c, o.s.mode, row[first + c], row[first + CONTACTS + c])
 
 
 def modes_held(A, b, p):

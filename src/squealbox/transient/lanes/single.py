@@ -47,13 +47,18 @@ def prepared(system: System, scheme: int) -> Prepared:
 
 
 def _prepared(system: System, scheme: int) -> Prepared:
-    rest, method = np.zeros(system.size), Method(TAYLOR)
-    jobs = tabulate(system, method, scheme, 1e-3, (rest, rest), LONG, 0.0, (), (), False, recorded=True)
+    jobs = _table(system, scheme)
     names = {name: 3 + row for row, name in enumerate(parameter_rows(jobs.shape))}
-    packed = packing.pack(system, method, scheme, 1e-3, False)
+    packed = packing.pack(system, Method(TAYLOR), scheme, 1e-3, False)
     record = np.zeros(1, dtype=packed.dtype)
     record[0] = packed
     return Prepared(jobs, layout(jobs.shape), names, record, lane_kernel(jobs.shape))
+
+
+def _table(system: System, scheme: int) -> Jobs:
+    """The numbers of a run that depend on the system alone."""
+    rest = np.zeros(system.size)
+    return tabulate(system, Method(TAYLOR), scheme, 1e-3, (rest, rest), LONG, 0.0, (), (), False, recorded=True)
 
 
 def numbers(system: System, made: Prepared, method: Method, width: float, duration: float, begin: float) -> Any:
@@ -189,9 +194,7 @@ class Pushed:
         return {name: record[name].copy() for name in record.dtype.names if record.dtype[name].base.kind == "f"}
 
     def _numbers_by_name(self, system: System) -> dict[str, float]:
-        """The numbers of a run that depend on the system alone."""
-        start, method = (np.zeros(system.size),) * 2, Method(TAYLOR)
-        jobs = tabulate(system, method, self.scheme, 1e-3, start, LONG, 0.0, (), (), False, recorded=True)
+        jobs = _table(system, self.scheme)
         return dict(zip(parameter_rows(jobs.shape), jobs.fixed[3:].tolist(), strict=True))
 
     def ready(self, given: Any, q: Any, qd: Any, begin: float, end: float, times: Any) -> Single:

@@ -6,11 +6,10 @@ pieces already, so its choice looks a little ahead.
 
 from typing import Any
 
-from squealbox.transient.lanes.series import AHEAD, DECISIONS, Series, at, plus, times
+from squealbox.transient.lanes.series import AHEAD, Series, above, at, plus, times
 from squealbox.transient.lanes.vectors import Given, Lanes, where
 
 FAR = 1e300  # where there is no further knot
-BEYOND, BEFORE = 1.0 + 1e-15, 1.0 - 1e-15  # a knot is left by some units of the last place: a brake may slide on one
 
 
 def law_of_points(x: Any, p: Given) -> Any:
@@ -19,18 +18,17 @@ def law_of_points(x: Any, p: Given) -> Any:
     first, last = p[2], p[1 + count]
     low, high, at_ends = _ends(here, p, 2, count)
     (y0, y1), (left, right) = (at_ends(2 + k * count) for k in (1, 2))
-    below, above = here < first, here >= last
-    inside = where(below | above, 0.0, 1.0)
+    below, beyond = here < first, here >= last
+    inside = where(below | beyond, 0.0, 1.0)
     width, rise = high - low, y1 - y0
     left, right, rise = inside * left * width, inside * right * width, inside * rise
     s = (x - low) * (1.0 / width)
-    if isinstance(x, Series):
-        # chosen is x >= the knot below: that difference holds while it is not positive; zero speed is an event, no knot
+    if isinstance(x, Series):  # watched are the knots on both sides; zero speed is an event, no knot
         unwatched = below | ((first <= 0.0) & (low <= first))
-        DECISIONS.get().append(BEFORE * where(above, last, where(unwatched, -FAR, low)) - x)
-        DECISIONS.get().append(BEYOND * where(above, FAR, where(below, first, high)) - x)
+        above(where(beyond, last, where(unwatched, -FAR, low)), x)
+        above(where(beyond, FAR, where(below, first, high)), x)
     steeper = s * (left + right - 2.0 * rise) + (3.0 * rise - 2.0 * left - right)
-    return s * (s * steeper + left) + where(above, y1, y0)
+    return s * (s * steeper + left) + where(beyond, y1, y0)
 
 
 def line_of_points(t: Series, p: Given) -> Series:

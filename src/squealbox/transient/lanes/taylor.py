@@ -2,9 +2,8 @@
 
 from typing import Any
 
-from squealbox.transient.lanes.series import DECISIONS, Series, at, plus_product, times, where
-from squealbox.transient.lanes.vectors import Lanes, Truth, minimum, rough_power
-from squealbox.transient.lanes.vectors import where as pick
+from squealbox.transient.lanes.series import Series, above, at, plus_product, times
+from squealbox.transient.lanes.vectors import Lanes, Truth, minimum, rough_power, where
 
 FINITE = 1e300
 SHARE = 0.1  # of the tolerance that each of the last two terms may take
@@ -69,6 +68,6 @@ def ends_near_zero(speed: Any, width: Lanes) -> None:
     """
     if not isinstance(speed, Series):
         return
-    size, sense = abs(speed[0]), pick(speed[0] < 0.0, -1.0, 1.0)
-    least = pick(size > FAR * width, HIDDEN * width, FALL * size)
-    DECISIONS.get().append(where(size > SEEN * width, speed * sense - least, 1.0))
+    size, sense = abs(speed[0]), where(speed[0] < 0.0, -1.0, 1.0)
+    least = where(size > FAR * width, HIDDEN * width, FALL * size)
+    above(speed * sense, where(size > SEEN * width, least, -FINITE))

@@ -132,7 +132,8 @@ class TaylorStep(EquationText):
         kind, count = self.shape.laws[c]
         force, p = f"f{c}_{k}", self.given(f"law{c}_", count, is_table(LAWS, kind), 1)
         if not self.shape.exact:
-            self.put(f"ends_near_zero({speed}, {self.row('width')})" if self.shape.scheme == TANH else "pass")
+            if self.shape.scheme == TANH:
+                self.put(f"ends_near_zero({speed}, {self.row('width')})")
             self.put(f"{force} = {self.smoothed(c, speed, normal, p)}")
             return force
         s = self.row(f"s{c}")
@@ -198,7 +199,8 @@ class TaylorStep(EquationText):
                 self.put(f"slide = value({found['speed'][c]}, away, {ORDER})")
                 force, creep = self.compared(c, row, found)
                 self.put(f"amiss{c}_{j} = abs({force})")
-                self.put(f"drift{c}_{j} = abs({creep})" if creep else "pass")
+                if creep:
+                    self.put(f"drift{c}_{j} = abs({creep})")
                 for i, parts in moving.items():
                     push = self.entry(f"md{c}_{i}")
                     parts += [f"abs({push}) * amiss{c}_{j}"] if push else []
@@ -226,9 +228,9 @@ class TaylorStep(EquationText):
         law, count = self.shape.laws[c]
         p, k = self.given(f"law{c}_", count, is_table(LAWS, law), 1), self.tag
         normal = f"value({found['normal'][c]}, away, {ORDER})"
-        if not self.shape.exact and not self.shape.is_smooth(c):
-            return f"value(f{c}_{k}, away, {ORDER - 1}) - {self.smoothed(c, 'slide', normal, p)}", ""
         if not self.shape.is_smooth(c):
+            if not self.shape.exact:
+                return f"value(f{c}_{k}, away, {ORDER - 1}) - {self.smoothed(c, 'slide', normal, p)}", ""
             mu = f"lane_mu_{law}(maximum({self.row(f's{c}')} * slide, 0.0 * t_), {p})"
             return f"(value(mu{c}_{k}, away, {ORDER}) - {mu}) * {normal}", ""
         kind, z, rate = self.shape.smooth[c] - 1, "0.0", "0.0"
