@@ -6,6 +6,7 @@ may be stands here once. Who waits for the function is told so. Depends on: para
 
 import functools
 import inspect
+import math
 import os
 from collections.abc import Callable, Mapping
 from typing import Any, ParamSpec, TypeVar
@@ -24,8 +25,7 @@ def real(about: Parameter) -> Kind:
     """A finite number in a range."""
 
     def expected(value: Any) -> str:
-        good = is_real(value) and about.accepts(np.asarray(value, dtype=float))
-        return "" if good else about.expected
+        return "" if is_real(value) and about.contains(float(value)) else about.expected
 
     return expected
 
@@ -44,7 +44,7 @@ def is_real(value: Any) -> bool:
     """True for a single finite number, of Python or NumPy, that is no truth value."""
     number = isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
     alone = isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind in "iuf"
-    return (number or alone) and bool(np.isfinite(value))
+    return (number or alone) and math.isfinite(value)
 
 
 def interval(value: Any) -> str:

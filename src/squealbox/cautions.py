@@ -11,7 +11,7 @@ from squealbox.friction import Table
 from squealbox.schedules import value_at
 from squealbox.system import Contact, System
 
-SPEEDS = 65  # at which a law is looked at between rest and the fastest sliding
+SPEEDS = np.linspace(0.0, 1.0, 65)  # of the fastest sliding, at which a law is looked at
 SMALL = 0.25  # rad: beyond it sin differs from its angle by more than 1 %, and the equation knows only the angle
 PULL = 1e-9  # of the largest normal force: less is round-off
 
@@ -102,7 +102,7 @@ def out_of_range(system: System, normal_force: Any, sliding_velocity: Any) -> tu
         if any(np.ndim(x) for x in contact.law.coefficients()):  # a family of laws, each at its own speed
             looked = np.abs(np.asarray(sliding_velocity, dtype=float)[..., i])
         else:
-            looked = np.linspace(0.0, fastest, SPEEDS) if v.size > 1 else v
+            looked = fastest * SPEEDS if v.size > 1 else v
         said += _leaves(name, contact, looked, fastest)
     return tuple(said)
 
@@ -113,7 +113,7 @@ def of_a_run(system: System, lowest: Any, fastest: Any) -> tuple[str, ...]:
     for name, contact, least, most in zip(system.contact_names, system.contacts, lowest, fastest, strict=True):
         if np.isfinite(least):
             said += _pulls(name, contact, float(least), _round_off(contact))
-        said += _leaves(name, contact, np.linspace(0.0, float(most), SPEEDS), float(most))
+        said += _leaves(name, contact, float(most) * SPEEDS, float(most))
     return tuple(said)
 
 
@@ -145,7 +145,7 @@ def _in(name: str, which: Any, count: int) -> str:
 
 def _round_off(contact: Contact) -> float:
     """A normal force [N] below which nothing is said."""
-    return 1e-12 * float(np.max(np.abs(value_at(contact.N0, 0.0))) + np.max(np.abs(contact.n), initial=0.0))
+    return 1e-12 * float(np.max(np.abs(value_at(contact.N0, 0.0))) + np.abs(contact.n).max(initial=0.0))
 
 
 def _known(law: Table) -> float:
@@ -159,7 +159,7 @@ def _pulls(name: str, contact: Contact, least: float, round_off: float) -> list[
 def _leaves(name: str, contact: Contact, looked: Any, fastest: float) -> list[str]:
     """What is to be said of the law of a contact at the speeds `looked` at, up to the fastest [m/s]."""
     said, mu = [], np.asarray(contact.law.mu(looked), dtype=float)
-    least = float(np.nanmin(mu))
+    least = float(np.fmin.reduce(mu, axis=None))
     if least < 0.0:
         at = float(np.broadcast_to(looked, mu.shape).flat[int(np.nanargmin(mu))])
         said.append(DRIVES.format(name=name, speed=at, mu=least))

@@ -40,9 +40,12 @@ class Parameter:
 
     def accepts(self, value: np.ndarray) -> bool:
         """True when every entry of `value` is finite and inside the range."""
+        return bool(np.all(np.isfinite(value) & self.contains(value)))
+
+    def contains(self, value: Any) -> Any:
+        """Where a number, or each of an array, is inside the range."""
         above = value > self.low if self.low_open else value >= self.low
-        below = value < self.high if self.high_open else value <= self.high
-        return bool(np.all(np.isfinite(value) & above & below))
+        return above & (value < self.high if self.high_open else value <= self.high)
 
 
 UNSAID = object()

@@ -283,18 +283,27 @@ def _flatten(value: Any, flat: list[Any]) -> None:
     if isinstance(value, np.ndarray):
         if not value.flags.c_contiguous:
             raise TypeError("an array that does not lie row by row")
-        flat.append((value if value.dtype.names is None else value.view(np.uint8)).ctypes.data)
+        flat.append(_address(value))
         if value.dtype.names is None:
             flat.extend(value.shape)
     elif isinstance(value, np.void):
         whole: Any = value.base  # its own interface would list all fields, which takes longer than a short run
         alone = isinstance(whole, np.ndarray) and whole.nbytes == value.nbytes
-        flat.append(whole.ctypes.data if alone else value.__array_interface__["data"][0])
+        flat.append(_address(whole) if alone else value.__array_interface__["data"][0])
     elif isinstance(value, tuple):
         for each in value:
             _flatten(each, flat)
     else:
         flat.append(value)
+
+
+def _address(array: Any) -> int:
+    """Where an array lies; by its buffer, which is several times quicker to ask than NumPy's interface."""
+    plain = array if array.dtype.names is None else array.reshape(1).view(np.uint8)
+    if plain.size and plain.flags.writeable:
+        return ctypes.addressof(ctypes.c_char.from_buffer(plain))
+    address: int = plain.ctypes.data
+    return address
 
 
 def kept(path: Path, build: Callable[[], tuple[Any, bytes]]) -> tuple[Any, bytes]:

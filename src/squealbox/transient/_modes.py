@@ -70,6 +70,9 @@ def apply_event(p, t, y, mode, s, j):
         force_releases(p, y, mode, s, c)
     else:
         s.at_zero[c] = 1
+        if p.g[c, c] > 0.0:  # beside its reversal, where the step landed, it would at once reverse again
+            for i in range(p.mk.shape[0]):
+                y[p.mk.shape[0] + i] += p.md[c, i] * s.speed[c] / p.g[c, c]
     return settle(p, t, y, mode, s)
 
 

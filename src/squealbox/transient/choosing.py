@@ -52,6 +52,11 @@ def is_small(system: System) -> bool:
     return products(system) <= LARGE
 
 
+def has_step(system: System) -> bool:
+    """Whether a single run of a Runge-Kutta method goes by a generated step: rigid contacts and large systems march."""
+    return is_small(system) and system.size > 0 and not any(contact.rigid for contact in system.contacts)
+
+
 def products(system: System) -> int:
     """How many products an acceleration takes."""
     n, m = system.size, len(system.contacts)

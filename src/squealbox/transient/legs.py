@@ -3,6 +3,7 @@
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from squealbox.result import COMPLETED, Outcome
 from squealbox.system import System
 from squealbox.transient import _march, _motion, packing
 from squealbox.transient._motion import ARCTAN, EXACT, OPEN, RAW, TANH
-from squealbox.transient.choosing import check_scheme, check_series, chosen_method, usual_method
+from squealbox.transient.choosing import check_scheme, check_series, chosen_method, has_step, usual_method
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.one_motion import undetermined
 from squealbox.transient.own_laws import own_texts
@@ -120,21 +121,24 @@ def leg(
     progress: Progress | None = None,
 ) -> Leg:  # fmt: skip
     """March from a start of all rows; a usual series that ends at an instant gives way to another method."""
-    method, instead = ways.method, ""
-    if method.tableau == TAYLOR:
-        from squealbox.transient.lanes.single import Single
+    from squealbox.transient.lanes.single import Single
 
-        run = Single(system, method, q, qd, begin, duration, times, SCHEMES[ways.contact], ways.width)
-        found = by_series(run, begin + duration, progress)
-        if found.outcome != "step_underflow" or ways.named:
-            return found
-        method = chosen_method(OTHER, *ways.given)  # a law without a series at zero speed, such as one with sqrt(v)
-        instead = f"taylor, which ended as step_underflow at {found.outcome.evidence['time']:.6g} s"
-    march = Scalar(system, method, SCHEMES[ways.contact], ways.width, q, qd, begin, times)
-    return replace(march.leg(march.to(begin + duration, duration, progress)), instead_of=instead)
+    scheme, end = SCHEMES[ways.contact], begin + duration
+
+    def marched(method: Method) -> Leg:
+        if method.tableau == TAYLOR or has_step(system):
+            return by_step(Single(system, method, q, qd, begin, duration, times, scheme, ways.width), end, progress)
+        march = Scalar(system, method, scheme, ways.width, q, qd, begin, times)
+        return march.leg(march.to(end, duration, progress))
+
+    found = marched(ways.method)
+    if found.outcome != "step_underflow" or ways.named or ways.method.tableau != TAYLOR:
+        return found  # else a law without a series at zero speed, such as one with sqrt(v)
+    instead = f"taylor, which ended as step_underflow at {found.outcome.evidence['time']:.6g} s"
+    return replace(marched(chosen_method(OTHER, *ways.given)), instead_of=instead)
 
 
-def by_series(run: Any, end: float, progress: Progress | None = None) -> Leg:
+def by_step(run: Any, end: float, progress: Progress | None = None) -> Leg:
     """The march of a generated step that is ready to go."""
     n, m = run.system.size, len(run.system.contacts)
     code, why = run.to(end, progress)
@@ -150,7 +154,7 @@ def by_series(run: Any, end: float, progress: Progress | None = None) -> Leg:
     lowest, fastest = (np.array([run.at(f"{name}{c}") for c in range(m)]) for name in ("lowest", "fastest"))
     taken, tried = int(reached[1]), int(reached[2])
     rows, events = run.columns()
-    steps = taken, tried - taken, tried
+    steps = taken, tried - taken, tried * run.evaluations
     return Leg(rows, events, outcome, lowest, fastest, steps, run.method, run.atol, int(run.at("reversals")))
 
 
@@ -259,10 +263,11 @@ def told(system: System, ways: Ways, start: tuple[Any, Any], begin: float, durat
         said.insert(0, f"run by {of.method.tableau} from the start, instead of {of.instead_of}")
     n, m, base, rows, events = system.size, len(system.contacts), base_of(system), of.rows, of.events
     widths = [1, n, n, m, 1, 1, 1, 1, 1, m, m, m, m]
-    columns = np.split(rows, np.cumsum(widths)[:-1], axis=1)
+    ends = list(accumulate(widths))
+    columns = (rows[:, end - width : end] for width, end in zip(widths, ends, strict=True))
     t, q, qd, friction, load, circulation, dissipated, opening, impact, normal, speed, force, mode = columns
-    smooth = np.array(smooth_kinds(system.contacts)) > 0  # no events tell their sense
-    mode = np.where(smooth & (mode != OPEN), np.sign(speed), mode)
+    if any(smooth := smooth_kinds(system.contacts)):  # no events tell their sense
+        mode = np.where((np.array(smooth) > 0) & (mode != OPEN), np.sign(speed), mode)
     motion = Trajectory(
         inputs={"system": base},
         settings=settings,

@@ -22,7 +22,7 @@ from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Polynomial, Schedule
 from squealbox.start import Start
 from squealbox.system import System
-from squealbox.transient.legs import SCHEMES, Leg, Progress, by_series, leg, told, ways_of
+from squealbox.transient.legs import SCHEMES, Leg, Progress, by_step, leg, told, ways_of
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR
 from squealbox.transient.sensed import (
@@ -264,7 +264,7 @@ class _Walk:
 
     def _march(self, numbers: Any, now: float, until: float, instants: Any) -> Leg:
         if self.pushed is not None:
-            found = by_series(self.pushed.ready(numbers, self.q, self.qd, now, until, instants), until)
+            found = by_step(self.pushed.ready(numbers, self.q, self.qd, now, until, instants), until)
             if found.outcome != "step_underflow" or self.ways.named:
                 return replace(found, rows=found.rows.copy())  # without the room around them
         return leg(self._under(numbers), self.ways, self.q, self.qd, now, until - now, instants)

@@ -32,6 +32,7 @@ def change_alone(A, b, lane, j):
     before = mode * sliding
     needed = before + slip_rate(A, b, lane, j) / g
     if abs(needed) > limit * (1.0 + 1e-12):
+        stop(A, b, lane, j, contact_speed(A, b, lane, j) / g)  # beside its reversal it would at once reverse again
         slip_on(A, b, lane, j, 1.0 if needed > 0.0 else -1.0, before, sliding)
         return True
     push(A, b, lane, j, needed - before)

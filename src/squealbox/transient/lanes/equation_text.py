@@ -122,6 +122,14 @@ class EquationText:
         margins = self.hold(k, out, forces, normals, time) if shape.exact else []
         return {"a": out, "speed": speeds, "normal": normals, "force": forces, "margin": margins}
 
+    def within(self, time: str) -> str:
+        """An instant of a step; of its end what is just before, so that a kink there is seen from the left."""
+        if not self.shape.varying or time == "t_":
+            return time
+        self.tag += 1
+        self.put(f"at{self.tag} = minimum({time}, inside_)")
+        return f"at{self.tag}"
+
     def speed(self, c: int, q: list[str], v: list[str], time: str) -> list[str]:
         """Terms of the sliding velocity V - t . q' - s . q of a contact."""
         return self.signal(c, f"V{c}", time) + minus(self.product(f"t{c}", v)) + minus(self.product(f"s{c}", q))

@@ -14,7 +14,7 @@ from squealbox.transient.lanes.orders import Orders
 from squealbox.transient.lanes.shape import layout, parameter_rows
 from squealbox.transient.lanes.table import tabulate
 from squealbox.transient.lanes.work import EVERY, GROUPS, HEAD, on_a_line
-from squealbox.transient.methods import TAYLOR, Method
+from squealbox.transient.methods import Method
 
 
 class Ends(NamedTuple):
@@ -42,7 +42,7 @@ class Flows:
         self.alive = layout(jobs.shape).places["alive"] * jobs.shape.lanes
         self.record = packing.pack(jobs.template, method, scheme, width, False)
         self.scratch = packing.scratch(self.record, np.zeros(n), np.zeros(n), 0.0, 0.0)
-        self.rule = packing.rule("dormand-prince-8" if method.tableau == TAYLOR else method.tableau)
+        self.rule = packing.rule(method.tableau)
         self.kernel = lane_kernel(jobs.shape)
 
     def to(self, duration: float, starts: Any, of: Any = 0) -> Ends:

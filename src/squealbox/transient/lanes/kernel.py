@@ -7,20 +7,23 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from squealbox.schedules import SCHEDULES, Constant
 from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta, _sharing
-from squealbox.transient.lanes import alone, crossing, recording, roots, samples, service
+from squealbox.transient.lanes import alone, crossing, recording, roots, samples, service, stages_again
 from squealbox.transient.lanes.formulas import formulas
 from squealbox.transient.lanes.shape import PARTS, Shape, layout, parameter_rows
 from squealbox.transient.lanes.step_text import Step
 from squealbox.transient.lanes.taylor_text import TaylorStep
+from squealbox.transient.methods import tableau
 
 HEAD = """
 from collections import namedtuple
 
+from squealbox.transient.lanes.rough import rough_exp, rough_log
 from squealbox.transient.lanes.tracing import apart, take, traced, traced_as_written, wide
 from squealbox.transient.lanes.vectors import (
-    Given, arctan, at_once, bits, cos, exp, forget, if_flagged, lane_tanh, load, log, maximum, minimum, rough_power,
-    sin, sqrt, store, store_known, where, with_sign,
+    Given, arctan, at_once, bits, cos, exp, forget, if_flagged, lane_tanh, load, log, maximum, minimum, sin, sqrt,
+    store, store_known, where, with_sign,
 )
 # written by modules whose texts have the digest {digest}: a change of theirs makes another file
 {more}
@@ -41,8 +44,9 @@ from squealbox.transient.lanes.taylor import ends_near_zero, grow, reach, ready,
 from squealbox.transient.lanes.taylor_events import step_end
 """
 FEW = 12  # coefficients that are copied one by one
-# the first two of every kernel
-WRITERS = ("vectors.py", "tracing.py", "series.py", "tables.py", "taylor.py", "taylor_events.py")
+FROM_THE_MARCH = ("pulled", "modes_held", "write_row")
+OF_EVERY_KERNEL = ("vectors.py", "tracing.py", "rough.py")
+WRITERS = (*OF_EVERY_KERNEL, "series.py", "tables.py", "taylor.py", "taylor_events.py")
 PLACES = {
     "ROW_JOB": "job", "ROW_ALIVE": "alive", "ROW_T": "t", "ROW_H": "h", "ROW_T_END": "t_end", "ROW_TRIES": "tries",
     "ROW_TAKEN": "taken", "ROW_CAUTIOUS": "cautious", "ROW_CODE": "code", "ROW_MOST": "most", "ROW_Q": "q0",
@@ -58,7 +62,9 @@ PLACES = {
     "ROW_EARLY_RATE": "early_rate0", "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0", "ROW_TERM": "term0_0",
     "ROW_SPAN": "span", "ROW_FASTEST": "fastest0", "ROW_SINCE": "since", "ROW_VALUE": "value0",
     "ROW_SLOPE": "slope_value0",
-    "ROW_NOISE": "noise0", "ROW_LOWEST": "lowest0",
+    "ROW_NOISE": "noise0", "ROW_LOWEST": "lowest0", "ROW_REVERSALS": "reversals", "ROW_FLIPS": "flips",
+    "ROW_EASED": "eased", "ROW_V_OLD": "v_old0", "ROW_WAS": "was0", "ROW_DONE": "done0",
+    "ROW_NORMAL_END": "normal_end0", "ROW_SPEED_END": "speed_end0", "ROW_FRICTION_END": "friction_end0",
 }  # fmt: skip
 
 
@@ -76,35 +82,39 @@ def _text(shape: Shape) -> str:
         return source(shape)
     watched = [each._replace(update=name) for each, name in zip(shape.observers, asked, strict=True)]
     told = {each.name: getattr(shape, each.name) for each in fields(shape)}
-    return _engine.kept_text(
-        repr({**told, "present": sorted(shape.present), "observers": watched}), lambda: source(shape)
-    )
+    told |= {"present": sorted(shape.present), "observers": watched}
+    if not shape.taylor:
+        rule = tableau(shape.tableau)
+        told["rule"] = [each if each is None else each.tobytes() for each in (rule.a, rule.b, rule.c, rule.e, rule.e3)]
+    return _engine.kept_text(repr(told), lambda: source(shape))
 
 
 def source(shape: Shape) -> str:
     """The text of the generated file."""
     rows, step = layout(shape), TaylorStep(shape) if shape.taylor else Step(shape)
     fixed: dict[str, float] = {"WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples}
-    fixed |= {"RECORDED": shape.recorded, "SHARES": PARTS, "FOLLOWED": len(shape.followed), "BREADTH": shape.breadth}
+    fixed |= {"RECORDED": shape.recorded, "SHARES": PARTS if shape.taylor else 1, "FOLLOWED": len(shape.followed)}
+    fixed |= {"BREADTH": shape.breadth, "STAGED": shape.staged}
     fixed |= {"SERIES": shape.taylor, "TRIES": shape.exact and not shape.taylor}
     fixed |= {"SIMPLE": shape.simple, "STEPPED": shape.stepped, "p.rigid[]": 0, "p.rigid_count": 0}
     fixed |= {} if shape.varying else {"p.varying": 0}
     fixed |= {} if shape.kinds else {"p.light": 0}
     fixed |= {} if shape.smooth else {"p.smooth[]": 0}
     smooth = {kind - 1 for kind in shape.smooth if kind > 0}
-    laws, schedules = {kind for kind, _ in shape.laws}, {kind for terms in shape.signals for kind, _ in terms}
+    laws = {kind for kind, _ in shape.laws}
+    schedules = {kind for terms in shape.signals for kind, _ in terms} | {SCHEDULES.index(Constant)}
     parts = [
         *_engine.head(inline=False, own=shape.own, laws=laws, schedules=schedules, smooth=smooth),
         HEAD.format(
             lanes=shape.lanes,
-            digest=digest(WRITERS[: None if shape.taylor else 2]),
+            digest=digest(WRITERS if shape.taylor else OF_EVERY_KERNEL),
             more=SERIES if shape.taylor else "",
         ),
         *formulas(shape),
         step.text(),
     ]
     fixed |= {name: rows.places.get(row, 0) for name, row in PLACES.items()} | {"WIDTH": shape.lanes} | step.constants()
-    if shape.recorded:
+    if shape.recorded and shape.taylor:
         fixed["ROW_TERM"] = rows.places[f"term0_{shape.followed[0]}"]
     first = rows.places["o0_0_0"] if shape.observers else 0
     fixed |= {
@@ -116,10 +126,11 @@ def source(shape: Shape) -> str:
     parts += _one_contact(shape, rows.places) if shape.simple else []
     for module in (_motion, *((_rigid, _sharing, _impacts, _modes, _events) if shape.exact else ())):
         parts += _engine.definitions(module, fixed)
-    kept = ("COMPLETED", "TENSION", "SAMPLED", "@inner\ndef pulled(")
+    kept = ("COMPLETED", "TENSION", "SAMPLED", *(f"@inner\ndef {name}(" for name in FROM_THE_MARCH))
     parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith(kept)]
     needed = {roots: fixed["TRIES"], crossing: fixed["TRIES"], alone: shape.simple}
-    needed |= {samples: shape.samples, recording: shape.recorded, _runge_kutta: shape.stepped}
+    needed |= {_runge_kutta: shape.stepped or shape.staged, samples: shape.samples, recording: shape.recorded}
+    needed |= {stages_again: shape.staged}
     for module in (*(each for each, used in needed.items() if used), service):
         parts += _engine.definitions(module, fixed, entries=("run",))
     return "\n\n".join(parts) + "\n"

@@ -1,6 +1,7 @@
 """A lane's motion as rows of output: where steps end, or at given instants; and its events. Compiled by `kernel`.
 
-A step leaves the series of all that is followed, so a row costs no further evaluation of the equation.
+A Taylor step leaves the series of all that is followed, so a row costs no further evaluation of the equation; what lies
+within a Runge-Kutta step is told by `stages_again`.
 """
 
 # ruff: noqa: F821  (the places of the rows and the counts are generated)
@@ -10,6 +11,7 @@ import numpy as np
 
 from squealbox.transient._march import SAMPLED
 from squealbox.transient._motion import OPEN, is_open, row_mode
+from squealbox.transient.lanes.stages_again import write_end, write_within
 
 ROWS_WRITTEN, EVENTS_WRITTEN = 0, 1  # of `count`
 
@@ -63,27 +65,37 @@ def write_rows(A, b, lane, o):
     times, rows, count = o.times, o.rows, o.count
     t0 = A[b + ROW_T_OLD * WIDTH + lane]
     t1 = A[b + ROW_T * WIDTH + lane]
-    if times.shape[0] == 0:
+    if STAGED and times.shape[0] == 0:
+        write_end(A, b, lane, rows[count[ROWS_WRITTEN]], o)
+        count[ROWS_WRITTEN] += 1
+        return
+    if not STAGED and times.shape[0] == 0:
         span = A[b + ROW_SPAN * WIDTH + lane]
         part = A[b + ROW_WINDOW * WIDTH + lane] * (1e3 / 12.0)
         parts = min(max(int(np.ceil(span / part - 1e-6)), 1), SHARES)
         for k in range(1, parts + 1):
             share = k / parts
-            write_row(A, b, lane, t1 if k == parts else t0 + share * span, share * span, rows[count[ROWS_WRITTEN]], o)
+            at = t1 if k == parts else t0 + share * span
+            write_from_series(A, b, lane, at, share * span, rows[count[ROWS_WRITTEN]], o)
             count[ROWS_WRITTEN] += 1
         state(A, b, lane, rows[count[ROWS_WRITTEN] - 1])
         return
     k = count[ROWS_WRITTEN]
+    if STAGED and times[k] < t1:
+        k = write_within(A, b, lane, k, o)
     while k < times.shape[0] and times[k] <= t1:
-        write_row(A, b, lane, times[k], max(times[k] - t0, 0.0), rows[k], o)
-        if times[k] == t1:
-            state(A, b, lane, rows[k])
+        if STAGED:
+            write_end(A, b, lane, rows[k], o)
+        else:
+            write_from_series(A, b, lane, times[k], max(times[k] - t0, 0.0), rows[k], o)
+            if times[k] == t1:
+                state(A, b, lane, rows[k])
         k += 1
     count[ROWS_WRITTEN] = k
     A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = times[k] if k < times.shape[0] else np.inf
 
 
-def write_row(A, b, lane, t, since, row, o):
+def write_from_series(A, b, lane, t, since, row, o):
     """One row from the series of the step: time, state, works, then N, v, force and mode of each contact."""
     unit = A[b + ROW_WINDOW * WIDTH + lane] * UNIT_OF_WINDOW
     A[b + ROW_SINCE] = since / unit
@@ -106,7 +118,7 @@ def write_row(A, b, lane, t, since, row, o):
             row[first + 3 * CONTACTS + c] = row_mode(o.p, c, o.s.mode, row[first + c], row[first + CONTACTS + c])
 
 
-def modes_held(A, b, p):
+def series_held(A, b, p):
     """Whether the modes held throughout the step just taken: every so many steps, a look in twice as many places."""
     span = A[b + ROW_SPAN]
     if int(A[b + ROW_TAKEN]) % SAMPLED != 0 or not span > A[b + ROW_WINDOW]:

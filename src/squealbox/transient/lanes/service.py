@@ -11,6 +11,7 @@ import numpy as np
 
 from squealbox.transient._events import event_values
 from squealbox.transient._march import (
+    CHATTERING,
     COMPLETED,
     INCONSISTENT,
     MISSED,
@@ -35,10 +36,12 @@ from squealbox.transient._motion import (
 from squealbox.transient._sharing import contact_matrix, share_out, solve, weigh_sticking
 from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
-from squealbox.transient.lanes.recording import first_row, log_event, modes_held, room_left, write_rows
+from squealbox.transient.lanes.recording import first_row, log_event, room_left, series_held, write_rows
 from squealbox.transient.lanes.samples import on_end, on_quintic, on_series, on_step
+from squealbox.transient.lanes.stages_again import held_between
 
 OVERFLOW = 1e200  # a state that large has a series beyond all numbers
+TOO_LARGE = 1e30  # one whose error has an eighth power beyond them
 DONE, LOST, OVER, EVENT, LANDED, DUE = 1, 2, 4, 8, 16, 32
 
 
@@ -65,9 +68,11 @@ def run(A, live, o):
                         return False
                     busy += 1
                     flags = step(A, g * size)
-                    if RECORDED and EXACT_CONTACT and not modes_held(A, 0, o.p):
-                        finish(A, 0, 0, MISSED, o.out)
-                        return True
+                    if RECORDED and EXACT_CONTACT:
+                        held = series_held(A, 0, o.p) if SERIES else held_between(A, 0, 0, o)
+                        if not held:
+                            finish(A, 0, 0, MISSED, o.out)
+                            return True
                     if flags != 0:
                         live[g] -= serve(A, g * size, flags, o)
             if busy == 0:
@@ -101,9 +106,22 @@ def serve(A, b, flags, o):
         elif code & DONE:
             ended = next_piece(A, b, lane, o)
         if ended != RUNNING:
+            if STAGED:
+                ended = or_chattering(A, b, lane, ended)
             finish(A, b, lane, ended, o.out)
             idle += 1 - refill(A, b, lane, o)
     return idle
+
+
+def or_chattering(A, b, lane, ended):
+    """The end of a job that ran out of steps, or why it did: sliding that reversed at most steps of late, or that has
+    often reversed while the steps have become tiny.
+    """
+    tiny = A[b + ROW_H * WIDTH + lane] < A[b + ROW_WINDOW * WIDTH + lane]
+    chatters = A[b + ROW_FLIPS * WIDTH + lane] > 50.0 or (A[b + ROW_REVERSALS * WIDTH + lane] > 50.0 and tiny)
+    if chatters and (ended - UNDERFLOW) * (ended - STEP_LIMIT) == 0:
+        return CHATTERING
+    return ended
 
 
 def is_finite(A, b, lane):
@@ -112,7 +130,7 @@ def is_finite(A, b, lane):
     for i in range(DOFS):
         total += abs(A[b + (ROW_Q + i) * WIDTH + lane]) + abs(A[b + (ROW_V + i) * WIDTH + lane])
         total += abs(A[b + (ROW_ACCELERATION + i) * WIDTH + lane])
-    return total < (OVERFLOW if SERIES else np.inf)
+    return total < (OVERFLOW if SERIES else TOO_LARGE)
 
 
 def refill(A, b, lane, o):
@@ -227,6 +245,10 @@ def refresh(A, b, lane, t, p, s):
             A[b + (ROW_Q + i) * WIDTH + lane] = s.state[i]
         A[b + (ROW_V + i) * WIDTH + lane] = s.state[room + i]
         A[b + (ROW_ACCELERATION + i) * WIDTH + lane] = s.dy[room + i]
+    for c in range(CONTACTS * STAGED):
+        A[b + (ROW_NORMAL_END + c) * WIDTH + lane] = s.normal[c]
+        A[b + (ROW_SPEED_END + c) * WIDTH + lane] = s.speed[c]
+        A[b + (ROW_FRICTION_END + c) * WIDTH + lane] = s.force[c]
     if EXACT_CONTACT:
         hold_matrix(A, b, lane, p, s)
         event_values(p, t, s.state, s.mode, s, s.phi)
@@ -290,6 +312,8 @@ def change_modes(A, b, lane, j, o):
     A[b + ROW_H * WIDTH + lane] = A[b + ROW_RESUME * WIDTH + lane]
     A[b + ROW_TARGET * WIDTH + lane] = -1.0
     A[b + ROW_TRUST * WIDTH + lane] = 0.0
+    if not SERIES:
+        A[b + ROW_EASED * WIDTH + lane] = 0.0
     A[b + ROW_WINDOW_EVENTS * WIDTH + lane] += 1.0
     if t - A[b + ROW_WINDOW_START * WIDTH + lane] > A[b + ROW_WINDOW * WIDTH + lane]:
         A[b + ROW_WINDOW_START * WIDTH + lane] = t

@@ -56,6 +56,11 @@ class Shape:
         return self.tableau == TAYLOR
 
     @property
+    def staged(self) -> bool:
+        """Whether a recorded motion goes by the stages of a Runge-Kutta method."""
+        return self.recorded and not self.taylor
+
+    @property
     def exact(self) -> bool:
         """Whether events are located."""
         return self.scheme == EXACT and self.m > 0
@@ -194,6 +199,8 @@ def layout(shape: Shape) -> Places:
     rows.add("job", "alive", "t", "h", "t_end", "tries", "taken", "cautious", "code", "most")
     rows.add(*(f"q{i}" for i in range(n)), *(f"v{i}" for i in range(n)), *(f"a{i}" for i in range(n)))
     rows.add(*(f"lowest{c}" for c in range(m)), *(f"fastest{c}" for c in range(m)))
+    if not shape.taylor:
+        rows.add("eased")
     if shape.exact:
         rows.add("target", "tolerance", "trust", "resume", "events", "window_start", "window_events", "turns")
         rows.add("low", "low_phi", "high", "high_phi", "high_rate", "close", "pace")
@@ -213,10 +220,14 @@ def layout(shape: Shape) -> Places:
             rows.add(*(f"{x}_old{i}" for x in "qva" for i in range(n)))
     if shape.recorded:
         rows.add("next", "sample", "t_old", "span", "reversals", *(f"done{k}" for k in range(m + 4)))
+    if shape.recorded and shape.taylor:
         rows.add(
             "since", *(f"value{j}" for j in range(shape.breadth)), *(f"slope_value{j}" for j in range(shape.breadth))
         )
         rows.add(*(f"term{k}_{name}" for k in range(ORDER + 2) for name in shape.followed_padded))
+    if shape.staged:
+        rows.add("flips", *(f"{x}_old{i}" for x in "qv" for i in range(n)), *(f"was{k}" for k in range(m + 4)))
+        rows.add(*(f"{name}_end{c}" for name in ("normal", "speed", "friction") for c in range(m)))
     if any(observer.of == "contact" for observer in shape.observers):
         rows.add(*(f"work{c}" for c in range(m)))
     for k, observer in enumerate(shape.observers):

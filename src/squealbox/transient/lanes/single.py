@@ -16,13 +16,13 @@ from squealbox.transient.lanes.orders import Orders
 from squealbox.transient.lanes.shape import Places, layout, parameter_rows
 from squealbox.transient.lanes.table import Jobs, limits, tabulate
 from squealbox.transient.latest import Latest
-from squealbox.transient.methods import TAYLOR, Method
+from squealbox.transient.methods import TAYLOR, Method, tableau
 
 RUNNING = -1.0  # in the row of results of a run that has not ended
 FIRST = 2_000  # trials between the first two looks at the keyboard
 MOST = 200_000
 LOOK = 0.02  # s that should pass between two
-ROWS, EVENTS = 4_096, 1_024  # room for rows of output and for events at first
+ROWS, EVENTS = 32_768, 1_024  # room for rows of output, touched only as they are written, and for events at first
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,7 @@ class Prepared:
     rows: Places
     names: dict[str, int]
     record: Any
+    scratch: Any
     kernel: Any
 
 
@@ -40,25 +41,27 @@ KEPT, NUMBERS = Latest(), Latest()
 LONG = 1e9  # s that no run takes: nothing of what runs share depends on their length
 
 
-def prepared(system: System, scheme: int) -> Prepared:
+def prepared(system: System, scheme: int, name: str) -> Prepared:
     """The table of one job, the places of its rows, its record and its kernel."""
-    found: Prepared = KEPT.of(system, scheme, lambda: _prepared(system, scheme))
+    found: Prepared = KEPT.of(system, (scheme, name), lambda: _prepared(system, scheme, name))
     return found
 
 
-def _prepared(system: System, scheme: int) -> Prepared:
-    jobs = _table(system, scheme)
-    names = {name: 3 + row for row, name in enumerate(parameter_rows(jobs.shape))}
-    packed = packing.pack(system, Method(TAYLOR), scheme, 1e-3, False)
+def _prepared(system: System, scheme: int, name: str) -> Prepared:
+    jobs = _table(system, scheme, name)
+    names = {row: 3 + i for i, row in enumerate(parameter_rows(jobs.shape))}
+    packed = packing.pack(system, Method(name), scheme, 1e-3, False)
     record = np.zeros(1, dtype=packed.dtype)
     record[0] = packed
-    return Prepared(jobs, layout(jobs.shape), names, record, lane_kernel(jobs.shape))
-
-
-def _table(system: System, scheme: int) -> Jobs:
-    """The numbers of a run that depend on the system alone."""
     rest = np.zeros(system.size)
-    return tabulate(system, Method(TAYLOR), scheme, 1e-3, (rest, rest), LONG, 0.0, (), (), False, recorded=True)
+    scratch = packing.scratch(record[0], rest, rest, 0.0, 0.0).base
+    return Prepared(jobs, layout(jobs.shape), names, record, scratch, lane_kernel(jobs.shape))
+
+
+def _table(system: System, scheme: int, name: str) -> Jobs:
+    """The numbers of a run that depend on the system and the kind of step alone."""
+    rest = np.zeros(system.size)
+    return tabulate(system, Method(name), scheme, 1e-3, (rest, rest), LONG, 0.0, (), (), False, recorded=True)
 
 
 def numbers(system: System, made: Prepared, method: Method, width: float, duration: float, begin: float) -> Any:
@@ -71,6 +74,11 @@ def numbers(system: System, made: Prepared, method: Method, width: float, durati
     return fixed
 
 
+def _copy(record: Any) -> Any:
+    """Of a record: byte by byte, not field by field."""
+    return record.view(np.uint8).copy().view(record.dtype)
+
+
 class Single:
     """One run, resumed until it ends."""
 
@@ -79,13 +87,14 @@ class Single:
         scheme: int = EXACT, width: float = 1e-3,
     ) -> None:  # fmt: skip
         self.system, self.method = system, method
-        made = self.made = prepared(system, scheme)
+        made = self.made = prepared(system, scheme, method.tableau)
         atol = None if method.atol is None else np.asarray(method.atol, dtype=float).tobytes()
-        how = method.rtol, atol, method.first_step, method.largest_step, method.most_steps, width, duration, begin
-        fixed = NUMBERS.of(system, (scheme, *how), lambda: numbers(system, made, method, width, duration, begin))
+        how = scheme, method.tableau, method.rtol, atol, method.first_step, method.largest_step, method.most_steps
+        fixed = NUMBERS.of(
+            system, (*how, width, duration, begin), lambda: numbers(system, made, method, width, duration, begin)
+        )
         self.fixed = fixed.copy()
-        self.record = made.record.copy()
-        self.scratch = packing.scratch(made.record[0], q, qd, begin, 0.0).base
+        self.record, self.scratch = _copy(made.record), _copy(made.scratch)
         self.restart(q, qd, begin, begin + duration, times)
 
     def restart(self, q: Any, qd: Any, begin: float, end: float, times: Any) -> None:
@@ -104,13 +113,18 @@ class Single:
         self.live = np.zeros(1, dtype=np.int64)
         self.orders = Orders(
             made.jobs.table, made.jobs.varies, self.fixed, self.times, np.zeros((1, 1, 1)), np.zeros(1, dtype=np.int64),
-            1, self.out, self.record, packing.rule("dormand-prince-8").base, self.scratch, np.zeros(1, dtype=np.int64),
+            1, self.out, self.record, packing.rule(self.method.tableau).base, self.scratch, np.zeros(1, dtype=np.int64),
             FIRST, self.rows, self.events, self.count,
         )  # fmt: skip
 
     def at(self, name: str) -> float:
         """The number in a row of the state."""
         return float(self.lanes[self.made.rows.places[name]])
+
+    @property
+    def evaluations(self) -> int:
+        """Of the equation in a trial."""
+        return 1 if self.method.tableau == TAYLOR else tableau(self.method.tableau).stages
 
     @property
     def atol(self) -> Any:
@@ -194,7 +208,7 @@ class Pushed:
         return {name: record[name].copy() for name in record.dtype.names if record.dtype[name].base.kind == "f"}
 
     def _numbers_by_name(self, system: System) -> dict[str, float]:
-        jobs = _table(system, self.scheme)
+        jobs = _table(system, self.scheme, self.run.method.tableau)
         return dict(zip(parameter_rows(jobs.shape), jobs.fixed[3:].tolist(), strict=True))
 
     def ready(self, given: Any, q: Any, qd: Any, begin: float, end: float, times: Any) -> Single:

@@ -9,20 +9,22 @@ from typing import Any
 from squealbox.friction import LAWS
 from squealbox.transient._motion import RAW
 from squealbox.transient.lanes.equation_text import CALLED, minus
-from squealbox.transient.lanes.event_text import EventText, probes, slope_weights
+from squealbox.transient.lanes.event_text import probes, slope_weights
 from squealbox.transient.lanes.formulas import in_memory
+from squealbox.transient.lanes.recorded_text import RecordedText
 from squealbox.transient.lanes.shape import Shape
 from squealbox.transient.methods import tableau
 from squealbox.transient.rows import ALGEBRAIC, FIRST_ORDER, WITH_MASS
 
+LEAST_SQUARE = 1e-8  # of an error that the next step is told
 
-class Step(EventText):
+
+class Step(RecordedText):
     """Writes the text of the step."""
 
     def __init__(self, shape: Shape) -> None:
         super().__init__(shape)
         self.scales: dict[float, str] = {}
-        self.starting: dict[str, list[str]] | None = None
         self.rule = tableau(shape.tableau)
         self.probes = probes(self.rule)
         places = [0.0, *self.rule.c[self.probes], 1.0]
@@ -102,6 +104,8 @@ class Step(EventText):
         self.control()
         self.put("t1 = where(last, t_end_, t_ + hh" + (" + shift)" if shape.exact else ")"))
         self.observe(contact, (q, v, a), (q1, v1, a1))
+        if shape.recorded:
+            self.record(contact, (q, v))
         self.advance((q, v, a), (q1, v1, a1))
         head, tail = ["@traced", "def trial(A, b):"], ["    return flags", CALLED]
         return "\n".join([*head, *self.lines, *tail])
@@ -182,13 +186,22 @@ class Step(EventText):
         return out
 
     def control(self) -> None:
-        """`h_new`: an integral controller within [0.1, growth], without growth after a rejected step."""
-        power = -0.5 / (self.rule.error_order + 1.0)
-        self.put(f"factor = {self.rule.safety!r} * rough_power(square, {power!r})")
+        """`h_new`: a proportional-integral controller (Gustafsson 1991) within [0.1, growth].
+
+        After a rejected step it is an integral one, and without growth. `eased` is what the error before allows.
+        """
+        power, safety, easing = 0.5 / (self.rule.error_order + 1.0), self.rule.safety, self.rule.easing
+        self.put("size = rough_log(square)")
+        eased = f" + {self.row('eased')}" if easing else ""
+        self.put(f"factor = {safety!r} * rough_exp({(0.75 * easing - 1.0) * power!r} * size{eased})")
         self.put("factor = where(square < 1e300, factor, 0.1)")
         self.put(f"factor = minimum(maximum(factor, 0.1), {float(self.rule.growth)!r})")
         self.put(f"factor = where({self.row('cautious')} > 0.5, minimum(factor, 1.0), factor)")
-        self.put("factor = where(fine, factor, minimum(factor, 0.9))")
+        again = f"minimum(maximum({safety!r} * rough_exp({-power!r} * size), 0.1), 0.9)"
+        self.put(f"factor = where(fine, factor, where(square < 1e300, {again}, 0.1))")
+        if easing:
+            eased = f"{easing * power!r} * rough_log(maximum(square, {LEAST_SQUARE!r}))"
+            self.keep("eased", f"where(fine, {eased}, 0.0)")
         self.put(f"h_new = minimum(hh * factor, {self.row('largest')})")
         self.put("h_new = where(fine & last, maximum(h_new, h_), h_new)")
 
@@ -198,6 +211,11 @@ class Step(EventText):
         if shape.samples:
             self.keep("t_old", "t_")
             for x, values in zip("qva", old, strict=True):
+                for i in range(n):
+                    self.keep(f"{x}_old{i}", values[i])
+        if shape.recorded:
+            self.keep("t_old", "t_")
+            for x, values in zip("qv", old, strict=False):
                 for i in range(n):
                     self.keep(f"{x}_old{i}", values[i])
         for x, before, after in zip("qva", old, new, strict=True):
@@ -235,7 +253,7 @@ class Step(EventText):
             any_of += " | event"
         else:
             self.keep("h", "h_new")
-        if shape.samples:
+        if shape.samples or shape.recorded:
             self.put(f"due = accepted & (t_now >= {self.row('next')})")
             code += " + 32.0 * due"
             any_of += " | due"
@@ -285,6 +303,7 @@ class Step(EventText):
 
     def sliding(self, c: int, state: Any, time: str) -> tuple[str, str]:
         """Sliding velocity and normal force of a contact."""
+        time = self.within(time)
         speed = self.speed(c, state[0], state[1], time)
         normal = self.signal(self.shape.m + c, f"N0{c}", time) + self.product(f"n{c}", state[0])
         return tuple(" + ".join(x).replace("+ -", "- ") or "0.0 * t_" for x in (speed, normal))  # type: ignore[return-value]
@@ -308,7 +327,5 @@ class Step(EventText):
         self.keep(f"work{c}", f"where(accepted, worked{c}, work{c}_)")
 
     def starting_force(self, c: int, old: Any) -> str:
-        """The friction force at the start of the step, computed once more: no row keeps it."""
-        if self.starting is None:
-            self.starting = self.accelerations(old[0], old[1], "t_")
-        return self.starting["force"][c]
+        """The friction force at the start of the step."""
+        return self.begun(old)["force"][c]

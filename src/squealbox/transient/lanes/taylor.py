@@ -2,8 +2,9 @@
 
 from typing import Any
 
+from squealbox.transient.lanes.rough import rough_exp, rough_log
 from squealbox.transient.lanes.series import Series, above, at, plus_product, times
-from squealbox.transient.lanes.vectors import Lanes, Truth, minimum, rough_power, where
+from squealbox.transient.lanes.vectors import Lanes, Truth, minimum, where
 
 FINITE = 1e300
 SHARE = 0.1  # of the tolerance that each of the last two terms may take
@@ -39,7 +40,7 @@ def reach(v: tuple[Any, ...], sizes: tuple[Any, ...], unit: Lanes, order: int) -
             term = times(at(velocity, k), unit / size)
             total = plus_product(total, term, term)
         total = 0.0 * unit if total is None else total * (1.0 / (SHARE * SHARE * len(v)))
-        reaches.append(rough_power(total + 1e-300, -0.5 / k))
+        reaches.append(rough_exp(-0.5 / k * rough_log(total + 1e-300)))
         fine = total < FINITE if fine is None else fine & (total < FINITE)
     assert fine is not None
     return minimum(*reaches), fine

@@ -340,14 +340,6 @@ def sqrt(x: Any) -> Any:
     return Lanes(_call("llvm.sqrt", x.vector))
 
 
-def rough_power(x: Lanes, exponent: float) -> Lanes:
-    """x**exponent to a few per cent for x > 0, by the exponent and mantissa as a logarithm: for step factors."""
-    builder, one = BUILDER.get(), float(1023 << 52)
-    whole = builder.sitofp(builder.bitcast(x.vector, wide_type()), packed_type())
-    scaled = builder.fmul(builder.fsub(whole, number(one)), number(exponent))
-    return Lanes(builder.bitcast(builder.fptosi(builder.fadd(scaled, number(one)), wide_type()), packed_type()))
-
-
 EXP_TERMS = tuple(1.0 / math.factorial(k) for k in range(14))
 
 

@@ -19,7 +19,7 @@ from squealbox.transient.lanes.orders import Orders
 from squealbox.transient.lanes.shape import layout, parameter_rows
 from squealbox.transient.lanes.table import Jobs, tabulate
 from squealbox.transient.limited import in_time
-from squealbox.transient.methods import TAYLOR, Method
+from squealbox.transient.methods import Method
 from squealbox.transient.observers import Observer
 from squealbox.transient.widened import RunApart, base_of, start_of
 
@@ -117,7 +117,7 @@ class Blocks:
 
         kernel = lane_kernel(jobs.shape)
         record = packing.pack(jobs.template, self.method, self.scheme, self.width, False)
-        rule = packing.rule("dormand-prince-8" if self.method.tableau == TAYLOR else self.method.tableau)
+        rule = packing.rule(self.method.tableau)
         counter, stop = np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64)
         rows = layout(jobs.shape)
         lanes = jobs.shape.lanes
