@@ -1,6 +1,7 @@
 """A branch by harmonic balance, as continuation sees it: coefficients of the series and omega over the parameter."""
 
-from collections.abc import Callable
+import copy
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,12 @@ class HarmonicPath:
         turned, self.column = self.balance(p).turned(self.grid.padded(coefficients))
         self.size, self.omega = size, omega
         return np.append(np.delete(turned.ravel(), self.column), omega)
+
+    def again(self, make: Callable[[float], System]) -> "HarmonicPath":
+        """The path over the parameter of a family beside this one."""
+        other = copy.copy(self)
+        other.make, other.balances = make, {}
+        return other
 
     @property
     def scale(self) -> Any:
@@ -76,6 +83,10 @@ class HarmonicPath:
         step = 1e-6 * self.span
         by_p = (self.residual(x, p + step) - self.residual(x, p - step)) / (2.0 * step)
         return by_x, by_p
+
+    def confirmed(self, values: Sequence[float]) -> bool:
+        """Each value has its own equation."""
+        return True
 
     def describe(self, x: Any, p: float) -> dict[str, Any]:
         """Period, extremes, multipliers and least sliding speed of the cycle at a point."""

@@ -9,7 +9,6 @@ function is the g of the bordered system (with r and l the null vectors at the s
 Source: Govaerts 2000, Numerical Methods for Bifurcations of Dynamical Equilibria, Sec. 3.2.
 """
 
-import copy
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -91,12 +90,7 @@ class _Special:
 
     def at(self, b: float) -> Any:
         """The path at a value of the second parameter."""
-        path = copy.copy(self.path)
-        path.make = lambda a: self.make(a, float(b))
-        for name in ("balances", "fields", "runs", "flights"):
-            if hasattr(path, name):
-                setattr(path, name, {})
-        return path
+        return self.path.again(lambda a: self.make(a, float(b)))
 
     def residual(self, x: Any, b: float) -> Any:
         """(residual of the path, test function); NaN outside the range of a parameter."""

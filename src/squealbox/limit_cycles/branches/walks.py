@@ -33,6 +33,7 @@ class Walk:
     seen: list[dict[str, Any]] = field(default_factory=list)
     corners: dict[int, Corner] = field(default_factory=dict)
     outcome: Outcome = field(default_factory=Outcome)
+    largest: float = 0.0  # swing so far
 
     def add(self, point: PathPoint, path: Any) -> None:
         """One more point."""
@@ -48,10 +49,11 @@ class Walk:
         """True when the last step passed through amplitude zero: what was a largest displacement is a least one."""
         if len(self.visited) < 2 or self.paths[-2] is not self.paths[-1]:
             return False
-        sizes = [np.max(about["highest"] - about["lowest"]) for about in self.seen]
-        dof = int(np.argmax(self.seen[-1]["highest"] - self.seen[-1]["lowest"]))
+        swings = [about["highest"] - about["lowest"] for about in self.seen[-2:]]
+        self.largest = max(self.largest, *(float(np.max(each)) for each in swings))
+        dof = int(np.argmax(swings[-1]))
         sides = [2.0 * about["begin"][dof] > about["highest"][dof] + about["lowest"][dof] for about in self.seen[-2:]]
-        return bool(max(sizes[-2:]) < SMALL * max(sizes) and sides[0] != sides[1])
+        return bool(np.max(swings) < SMALL * self.largest and sides[0] != sides[1])
 
     def born(self) -> Outcome:
         """The end at steady sliding: the square of the amplitude is linear in the parameter. Drops the last point."""
