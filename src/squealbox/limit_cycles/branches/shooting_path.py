@@ -45,7 +45,7 @@ class ShootingPath:
         self.make, self.rtol, self.span, self.bounds, self.at_once = make, rtol, span, bounds, at_once
         self.motions: Motions | None = None
         self.kept: dict[str, dict[Any, Any]] = {}
-        self.column, self.scale = 0, np.ones(1)
+        self.column, self.scale, self.weight = 0, np.ones(1), np.ones(1)
 
     def begin(self, x: Any, period: float, p: float, dof: int, amplitude: float) -> Any:
         """Unknowns of a start x at which the velocity of `dof` is zero."""
@@ -53,6 +53,9 @@ class ShootingPath:
         self.column = field.size + dof
         sizes = np.append(amplitude * 2.0 * np.pi / period / field.scale, period)
         self.scale = np.delete(sizes, self.column)
+        swings = sizes[:-1].copy()
+        swings[self.column] = swings[dof] * field.frequency
+        self.weight = 1.0 / swings
         if self.motions is None and usual_method(field.held_fast, "exact") == TAYLOR and is_small(field.held_fast):
             method = replace(method_of(field, x, self.rtol), tableau=TAYLOR)
             self.motions = Motions(
@@ -75,7 +78,7 @@ class ShootingPath:
         other.kept, other.make = {}, make or self.make
         if make is not None and self.motions is not None:
             other.motions = copy.copy(self.motions)
-            other.motions.line, other.motions.moving = None, other._moving
+            other.motions.line, other.motions.known, other.motions.moving = None, [], other._moving
         return other
 
     def _once(self, what: str, key: Any, made: Callable[[], Any]) -> Any:
@@ -94,7 +97,7 @@ class ShootingPath:
 
     def start(self, x: Any) -> Any:
         """State (2n,) at which a point's period begins."""
-        return np.insert(x[:-1], self.column, 0.0)
+        return np.concatenate([x[: self.column], [0.0], x[self.column : -1]])
 
     def run(self, x: Any, p: float) -> Moved:
         """The motion of a point over its period."""
@@ -105,15 +108,12 @@ class ShootingPath:
         """By the step that is ready for the family; by `simulate` where that cannot serve."""
         if self.motions is not None:
             try:
-                run = self.motions.run(self.start(x), float(x[-1]), self._numbers(p), times)
+                run = self.motions.run(self.start(x), float(x[-1]), p, times)
             except RunApart:
                 return fly(self.field(p), self.start(x), float(x[-1]), self.rtol, times)
             if run.outcome != "step_underflow":
                 return run
         return fly(self.field(p), self.start(x), float(x[-1]), self.rtol, times)
-
-    def _numbers(self, p: float) -> Any:
-        return self._once("numbers", p, lambda: self.motions and self.motions.numbers(p))
 
     def fly(self, x: Any, p: float) -> tuple[Any, Flight]:
         """Start (2n,) and flight of a point."""
@@ -134,12 +134,12 @@ class ShootingPath:
         """From many motions of the step that is ready; None where it cannot serve."""
         if self.motions is None or not isinstance(motion, Motion) or not motion.outcome.ok:
             return None
-        numbers, size, n = self._numbers(p), size_of(self.first, np.hstack([motion.q, motion.qd])), start.size
+        size, n = size_of(self.first, np.hstack([motion.q, motion.qd])), start.size
         try:
-            phi, mismatch = self.motions.derivative(start, period, p, numbers, self.first.scale, size)
+            phi, mismatch = self.motions.derivative(start, period, p, self.first.scale, size)
         except RunApart:
             return None
-        scale, rate = self.first.scale, self.motions.rate(numbers, motion)
+        scale, rate = self.first.scale, self.motions.rate(motion, p)
         grown = float(np.max(np.abs(phi[:, :n] * scale[:, None] / scale)))
         return Flight(
             np.concatenate([motion.q[-1], motion.qd[-1]]),
@@ -180,13 +180,7 @@ class ShootingPath:
             return nothing
         if not run.outcome.ok:
             return nothing
-        return (np.concatenate([run.q[-1], run.qd[-1]]) - self.start(x)) * self._weight()
-
-    def _weight(self) -> Any:
-        sizes = np.insert(self.scale[:-1], self.column, np.nan)
-        n = len(sizes) // 2
-        sizes[self.column] = self.scale[self.column - n] * self.first.frequency
-        return 1.0 / sizes
+        return (np.concatenate([run.q[-1], run.qd[-1]]) - self.start(x)) * self.weight
 
     def beside(self, p: float) -> tuple[Any, Any, float]:
         """The equation on both sides of a parameter value, or on the one side its range allows, and their distance."""
@@ -205,9 +199,8 @@ class ShootingPath:
         size = flown.x.size
         if flown.by_p is None:  # the motion ended early
             return np.full((size, size), np.nan), np.full(size, np.nan)
-        by_state = np.delete(flown.phi - np.eye(size), self.column, axis=1)
-        weight = self._weight()
-        return np.column_stack([by_state, flown.rate]) * weight[:, None], flown.by_p * weight
+        by_state = (flown.phi - np.eye(size))[:, np.arange(size) != self.column]
+        return np.column_stack([by_state, flown.rate]) * self.weight[:, None], flown.by_p * self.weight
 
     def describe(self, x: Any, p: float) -> dict[str, Any]:
         """Period, extremes, multipliers, least sliding speed and longest sticking of the cycle at a point."""
@@ -243,7 +236,7 @@ class ShootingPath:
     def sliding(self, x: Any, p: float) -> tuple[float, float]:
         """Least sliding speed in the sense of V [m/s] at many instants of the motion, and longest sticking [s]."""
         motion = self.run(x, p)
-        V = self.motions.speeds(self._numbers(p)) if isinstance(motion, Motion) and self.motions else self.field(p).V
+        V = self.motions.speeds(p) if isinstance(motion, Motion) and self.motions else self.field(p).V
         slip = self._looked_at(x, p)[2] * np.sign(V)
         sticking = np.sum((motion.mode[1:] == 0) * np.diff(motion.t)[:, None], axis=0)
         return float(np.min(slip, initial=np.inf)), float(np.max(sticking, initial=0.0))

@@ -28,7 +28,9 @@ from squealbox.transient.widened import RunApart
 
 TRIED = (0.0, 0.138, 0.618, 1.0)  # shares of the bounds at which numbers that are sums are met
 ROUND_OFF = 1e-13  # of a number
-STEP = 1e-5  # of the bounds: of the slope of numbers that are no sums
+NEAR = 1e-7  # of the span, within which numbers are sums
+KEPT = 8
+STEP = 1e-5  # of the span: of the slope of numbers that are no sums
 INSTANT = 1e-5  # over the highest frequency: of the differences that give a rate where rows have no mass
 FINE = 1e-13  # relative tolerance of the motions whose differences are taken
 
@@ -52,6 +54,7 @@ class Motions:
         self.single = Single(system, method, rest, rest, 0.0, duration, None)
         self.shape, self.size = self.single.made.jobs.shape, n
         self.place = {name: row for row, name in enumerate(parameter_rows(self.shape))}
+        self.known: list[tuple[float, Any, Any]] = []
         self.line = None if bounds is None else self._line(*bounds)
         tried = [moving(p)] if self.line is None or bounds is None else [moving(each) for each in _tried(*bounds)]
         self.flows = Flows(tried, Method(method.tableau, FINE, FINE / method.rtol * np.asarray(method.atol)), EXACT,
@@ -84,25 +87,30 @@ class Motions:
             raise RunApart("the system has another structure here")
         return rows_of_all(jobs)
 
-    def numbers(self, p: float) -> Any:
-        """The numbers at a parameter value."""
-        found = self._of_systems([p])[0] if self.line is None else _on(self.line, p)
+    def numbers(self, p: float) -> tuple[Any, Any]:
+        """The numbers at a parameter value, and their slope."""
+        if self.line is not None:
+            return _on(self.line, p), self.line[1]
+        for at, found, slope in self.known:
+            if abs(p - at) <= NEAR * self.span:  # half the curvature times 1e-14 of the span squared: round-off
+                return found + (p - at) * slope, slope
+        found, slope = self._beside(p)
         if np.any(found[self.left_out]):
             raise RunApart("the system has another structure here")
-        return found
+        self.known = [(p, found, slope), *self.known[: KEPT - 1]]
+        return found, slope
 
-    def slope(self, p: float) -> Any:
-        """Their derivative; by differences to both sides, or to the one the range of the parameter allows."""
-        if self.line is not None:
-            return self.line[1]
-        step = STEP * self.span
-        for low, high in ((p - step, p + step), (p, p + step), (p - step, p)):
+    def _beside(self, p: float) -> tuple[Any, Any]:
+        """Numbers and slope from systems to both sides, or to the one the range of the parameter allows."""
+        for ways in ((-1.0, 0.0, 1.0), (0.0, 0.0, 1.0), (-1.0, 0.0, 0.0)):
+            values = [p + STEP * self.span * way for way in ways]
             try:
-                ends = self._of_systems([low, high])
-            except ParameterError:
-                continue
-            return _difference(ends[1], ends[0]) / (high - low)
-        raise RunApart("the parameter has no range here")
+                before, here, after = self._of_systems(values)
+            except ParameterError as error:
+                refused = error
+            else:
+                return here, _difference(after, before) / (values[2] - values[0])
+        raise refused
 
     def confirmed(self, values: Sequence[float]) -> bool:
         """Whether numbers taken for sums are those of the systems at these values of the parameter."""
@@ -116,10 +124,10 @@ class Motions:
         except (ParameterError, RunApart):
             return False
 
-    def run(self, x: Any, duration: float, numbers: Any, times: Any = None) -> Motion:
-        """The motion from x (2n,): its steps, or at instants."""
+    def run(self, x: Any, duration: float, p: float, times: Any = None) -> Motion:
+        """The motion from x (2n,) at a parameter value: its steps, or at instants."""
         n, m = self.size, self.shape.m
-        self.single.fixed[3:] = numbers
+        self.single.fixed[3:] = self.numbers(p)[0]
         self.single.restart(x[:n], x[n:], 0.0, duration, times)
         leg = by_series(self.single, duration)
         rows, events, first = leg.rows, leg.events, 6 + 2 * n + m
@@ -128,8 +136,9 @@ class Motions:
                       events[:, 0], events[:, 1].astype(int), events[:, 2].astype(int), leg.steps[0],
                       leg.outcome)  # fmt: skip
 
-    def rate(self, numbers: Any, motion: Motion) -> Any:
+    def rate(self, motion: Motion, p: float) -> Any:
         """x' at the end of a motion, (2n,)."""
+        numbers = self.numbers(p)[0]
         n, m, x = self.size, self.shape.m, np.concatenate([motion.q[-1], motion.qd[-1]])
         if self.shape.kinds:
             h = INSTANT / self._number(numbers, "highest")
@@ -142,8 +151,9 @@ class Motions:
         a = load - mk @ x[:n] - mc @ x[n:] + motion.friction_force[-1] @ md + opened @ mw
         return np.concatenate([x[n:], a])
 
-    def speeds(self, numbers: Any) -> Any:
+    def speeds(self, p: float) -> Any:
         """V of each contact [m/s]."""
+        numbers = self.numbers(p)[0]
         return np.array([self._number(numbers, f"V{c}") for c in range(self.shape.m)])
 
     def _matrix(self, numbers: Any, name: str, rows: int, columns: int) -> Any:
@@ -157,12 +167,12 @@ class Motions:
         self.flows.numbers = numbers[:, self.seen]
         return self.flows.to(duration, starts, of)
 
-    def derivative(self, x: Any, duration: float, p: float, numbers: Any, scale: Any, size: float) -> tuple[Any, float]:
+    def derivative(self, x: Any, duration: float, p: float, scale: Any, size: float) -> tuple[Any, float]:
         """The derivative of the end by the start and by the parameter, (2n, 2n + 1), as `extrapolated` has it.
 
         scale (2n,), size : what makes velocities of a state [1/s or 1], and the largest in the motion [m/s]
         """
-        slope = self.slope(p)
+        numbers, slope = self.numbers(p)
 
         def flow(beside: Any) -> Ends:
             along = beside[:, -1:]
