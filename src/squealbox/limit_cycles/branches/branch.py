@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from squealbox import cautions
 from squealbox.arguments import public
-from squealbox.cautions import along, told_place
-from squealbox.continuation import PathPoint, StepControl, follow
+from squealbox.continuation import PathPoint, StepControl, along
 from squealbox.family import Bounds, Family, Varied
 from squealbox.limit_cycles.branches.doubling import doubled
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
@@ -181,8 +181,7 @@ def branch(
     control = StepControl(first=min(1e-2, largest_step), largest=largest_step, most_points=points, tolerance=1e-9)
     ends_at_grazing = method == "harmonic_balance" and contact == "exact"
     for _ in range(2):  # once more where numbers were taken for sums of the parameter and are none
-        walk = follow(path.residual, unknowns, p, jacobian=path.jacobian, control=control, direction=direction,
-                      bounds=bounds, x_scale=path.scale, p_scale=span, tangent=tangent)  # fmt: skip
+        walk = along(path, unknowns, p, control=control, direction=direction, bounds=bounds, tangent=tangent)
         done = walked(path, walk, control, bounds, ends_at_grazing)
         if path.confirmed([at.p for at in done.visited]):
             break
@@ -204,8 +203,8 @@ def _caution(path: Any, visited: list[PathPoint], found: Branch, unit: str) -> s
     said: dict[str, str] = {}  # the contact or freedom, and what is said of the largest cycle first
     for i in sorted(places, key=lambda i: -float(np.max(ranks[i]))):
         cycle = path.cycle(visited[i].x, visited[i].p)
-        place = told_place(found.parameter, visited[i].p, unit)
-        for each in along(cycle.system, cycle.q, cycle.qd):
+        place = cautions.told_place(found.parameter, visited[i].p, unit)
+        for each in cautions.along(cycle.system, cycle.q, cycle.qd):
             said.setdefault(each.split(":")[0] + each[-20:], f"at {place} {each}")
     return "; ".join(said.values())
 
@@ -246,9 +245,7 @@ def _harmonic_start(
     found = harmonic_balance(make(value), start, contact=contact, width=width, harmonics=harmonics)
     if not found.outcome.ok:
         return path, None, value, found.outcome
-    series = path.grid.series(_resampled(found, path.grid))
-    return path, path.begin(series, 2.0 * np.pi / float(found.period), value, float(np.max(found.amplitude))), value, \
-        found.outcome  # fmt: skip
+    return path, path.through(found, value), value, found.outcome
 
 
 def _risen(family: Family, hopf: HopfPoint, bounds: Bounds, harmonics: int, rtol: float) -> tuple[Any, ...]:
@@ -258,8 +255,7 @@ def _risen(family: Family, hopf: HopfPoint, bounds: Bounds, harmonics: int, rtol
     if not outcome.ok:
         return path, None, p, None, outcome
     control = StepControl(largest=0.1, most_points=RISE, tolerance=1e-9)
-    walk = follow(path.residual, x, p, jacobian=path.jacobian, control=control, bounds=bounds, x_scale=path.scale,
-                  p_scale=span, tangent=path.rise(x))  # fmt: skip
+    walk = along(path, x, p, control=control, bounds=bounds, tangent=path.rise(x))
     points = [point for point in walk if path.least_slip(point.x, point.p) > 0.0][-2:]
     if len(points) < 2:
         return (
@@ -273,12 +269,6 @@ def _risen(family: Family, hopf: HopfPoint, bounds: Bounds, harmonics: int, rtol
     exact, p = _shooting_path(family, rtol), points[1].p
     x = begun(exact, cycles[1], p)
     return exact, x, p, heading(exact, x, p, cycles[::-1], points[0].p), outcome
-
-
-def _resampled(cycle: Cycle, grid: Grid) -> Any:
-    """Displacements at the instants of the grid; the samples of harmonic balance are equidistant."""
-    fine = Grid(grid.harmonics, len(cycle.t) - 1)
-    return grid.values @ fine.series(cycle.q[:-1])
 
 
 def _visible_size(hopf: HopfPoint) -> float:

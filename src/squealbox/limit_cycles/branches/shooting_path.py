@@ -32,11 +32,13 @@ LOOKS = 64  # in a period, for the least sliding speed
 
 
 class ShootingPath:
-    """Residual of shooting over (state without one velocity, period) and the parameter, from a largest displacement.
+    """Residual of shooting over (state without one velocity, period) and the parameter: a `CyclePath`.
 
     bounds : of the parameter, within which the numbers of the systems may turn out to be sums of it
     at_once : whether `make` makes a batch of an array of values
     """
+
+    has_corners = True
 
     def __init__(
         self, make: Callable[[Any], System], rtol: float, span: float, bounds: tuple[float, float] | None = None,
@@ -204,12 +206,9 @@ class ShootingPath:
 
     def describe(self, x: Any, p: float) -> dict[str, Any]:
         """Period, extremes, multipliers, least sliding speed and longest sticking of the cycle at a point."""
-        n, (low, high, _) = self.first.system.size, self._looked_at(x, p)
-        least_slip, sticking = self.sliding(x, p)
-        start = self.start(x)
-        return {"period": float(x[-1]), "lowest": low, "highest": high,
-                "multipliers": self.multipliers(x, p),
-                "least_slip": least_slip, "sticking": sticking,
+        n, (low, high, _), start = self.first.system.size, self._looked_at(x, p), self.start(x)
+        return {"period": float(x[-1]), "lowest": low, "highest": high, "multipliers": self.multipliers(x, p),
+                "least_slip": self.least_slip(x, p), "sticking": self.sticking(x, p),
                 "begin": np.concatenate([start[:n], start[self.first.size :][:n]])}  # fmt: skip
 
     def _looked_at(self, x: Any, p: float) -> tuple[Any, Any, Any]:
@@ -233,17 +232,16 @@ class ShootingPath:
         known = self._alone or not isinstance(self.first, Field)
         return (self.first if known else self.field(p)).multipliers(self.fly(x, p)[1].phi)
 
-    def sliding(self, x: Any, p: float) -> tuple[float, float]:
-        """Least sliding speed in the sense of V [m/s] at many instants of the motion, and longest sticking [s]."""
-        motion = self.run(x, p)
-        V = self.motions.speeds(p) if isinstance(motion, Motion) and self.motions else self.field(p).V
-        slip = self._looked_at(x, p)[2] * np.sign(V)
-        sticking = np.sum((motion.mode[1:] == 0) * np.diff(motion.t)[:, None], axis=0)
-        return float(np.min(slip, initial=np.inf)), float(np.max(sticking, initial=0.0))
-
     def least_slip(self, x: Any, p: float) -> float:
-        """Least sliding speed in the sense of V [m/s] at the instants of the motion."""
-        return self.sliding(x, p)[0]
+        """Least sliding speed in the sense of V [m/s] at many instants of the motion."""
+        known = isinstance(self.run(x, p), Motion) and self.motions is not None
+        V = self.motions.speeds(p) if known and self.motions else self.field(p).V
+        return float(np.min(self._looked_at(x, p)[2] * np.sign(V), initial=np.inf))
+
+    def sticking(self, x: Any, p: float) -> float:
+        """Longest sticking of a contact [s]."""
+        motion = self.run(x, p)
+        return float(np.max((motion.mode[1:] == 0).T @ np.diff(motion.t), initial=0.0))
 
     def cycle(self, x: Any, p: float) -> Cycle:
         """The cycle at a point, its multipliers computed anew to 1e-12; error is the scaled residual there."""
