@@ -16,7 +16,7 @@ from squealbox.limit_cycles.cycles.field import Autonomous, Field
 from squealbox.limit_cycles.cycles.motions import Motions
 from squealbox.limit_cycles.cycles.remembering import field_of
 from squealbox.limit_cycles.cycles.shooting import cycle_through
-from squealbox.limit_cycles.cycles.variation import Flight, Motion, Moved, fly, method_of, quick_flight
+from squealbox.limit_cycles.cycles.variation import Flight, MotionRows, Moved, fly, method_of, quick_flight
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import System
@@ -134,7 +134,7 @@ class ShootingPath:
 
     def _by_differences(self, start: Any, period: float, p: float, motion: Any) -> Flight | None:
         """From many motions of the step that is ready; None where it cannot serve."""
-        if self.motions is None or not isinstance(motion, Motion) or not motion.outcome.ok:
+        if self.motions is None or not isinstance(motion, MotionRows) or not motion.outcome.ok:
             return None
         size, n = size_of(self.first, np.hstack([motion.q, motion.qd])), start.size
         try:
@@ -234,7 +234,7 @@ class ShootingPath:
 
     def least_slip(self, x: Any, p: float) -> float:
         """Least sliding speed in the sense of V [m/s] at many instants of the motion."""
-        known = isinstance(self.run(x, p), Motion) and self.motions is not None
+        known = isinstance(self.run(x, p), MotionRows) and self.motions is not None
         V = self.motions.speeds(p) if known and self.motions else self.field(p).V
         return float(np.min(self._looked_at(x, p)[2] * np.sign(V), initial=np.inf))
 

@@ -75,7 +75,7 @@ class Event:
 
     of : what that is, such as "multipliers"; "along" is the parameter's part of the unit tangent
     jumps : the test function has a sign only, so its place is found by halving
-    meant : whether a zero is one of this kind
+    meant : whether a zero is one of this kind, where that is not sure
     told : whether a change of sign is reported also where its place could not be solved for
     """
 
@@ -83,7 +83,7 @@ class Event:
     of: str
     test: Callable[[Any], float]
     jumps: bool = False
-    meant: Callable[[Any], bool] = lambda value: True
+    meant: Callable[[Any], bool] | None = None
     told: bool = True
 
 
@@ -155,7 +155,11 @@ def located(path: CyclePath, a: PathPoint, b: PathPoint, event: Event) -> tuple[
         (x, p), beside, told = chord.at(s), chord.at(max(s - width, 0.0)), chord.told(event, s)
     except (OffPathError, ValueError):  # ValueError: the corrected ends do not bracket a zero
         return None
-    return (x, p, event.test(told), max(abs(p - beside[1]), 1e-15 * abs(p))) if event.meant(told) else None
+    return (
+        (x, p, event.test(told), max(abs(p - beside[1]), 1e-15 * abs(p)))
+        if event.meant is None or event.meant(told)
+        else None
+    )
 
 
 def _halved(value: Callable[[float], float]) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.limit_cycles.cycles.differences import extrapolated
-from squealbox.limit_cycles.cycles.variation import Motion
+from squealbox.limit_cycles.cycles.variation import MotionRows
 from squealbox.parameters import ParameterError
 from squealbox.system import System
 from squealbox.transient import Method
@@ -124,7 +124,7 @@ class Motions:
         except (ParameterError, RunApart):
             return False
 
-    def run(self, x: Any, duration: float, p: float, times: Any = None) -> Motion:
+    def run(self, x: Any, duration: float, p: float, times: Any = None) -> MotionRows:
         """The motion from x (2n,) at a parameter value: its steps, or at instants."""
         n, m = self.size, self.shape.m
         self.single.fixed[3:] = self.numbers(p)[0]
@@ -132,11 +132,11 @@ class Motions:
         leg = by_series(self.single, duration)
         rows, events, first = leg.rows, leg.events, 6 + 2 * n + m
         normal, speed, force, mode = (rows[:, first + k * m : first + (k + 1) * m] for k in range(4))
-        return Motion(rows[:, 0], rows[:, 1 : 1 + n], rows[:, 1 + n : 1 + 2 * n], normal, speed, force, mode,
+        return MotionRows(rows[:, 0], rows[:, 1 : 1 + n], rows[:, 1 + n : 1 + 2 * n], normal, speed, force, mode,
                       events[:, 0], events[:, 1].astype(int), events[:, 2].astype(int), leg.steps[0],
                       leg.outcome)  # fmt: skip
 
-    def rate(self, motion: Motion, p: float) -> Any:
+    def rate(self, motion: MotionRows, p: float) -> Any:
         """x' at the end of a motion, (2n,)."""
         numbers = self.numbers(p)[0]
         n, m, x = self.size, self.shape.m, np.concatenate([motion.q[-1], motion.qd[-1]])

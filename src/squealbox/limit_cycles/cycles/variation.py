@@ -21,7 +21,7 @@ PARTS = 4  # of each step of a motion, which is as long as an order of 8 lets it
 PERIOD_STEPS = 100_000  # a stick-slip period takes some hundred: where one takes more, no cycle is in reach
 
 
-class Motion(NamedTuple):
+class MotionRows(NamedTuple):
     """Rows of one motion, named as those of a `Trajectory`."""
 
     t: Any
@@ -38,7 +38,7 @@ class Motion(NamedTuple):
     outcome: Outcome
 
 
-Moved = Trajectory | Motion
+Moved = Trajectory | MotionRows
 
 
 @dataclass(frozen=True, eq=False)
