@@ -10,7 +10,7 @@ Source: Keller 1977, "Numerical solution of bifurcation and nonlinear eigenvalue
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -31,7 +31,7 @@ class StepControl:
 
     first, smallest, largest : step lengths
     tolerance : Newton stops when the scaled correction falls below it
-    residual_tolerance : and, when finite, when the residual's largest entry is also below it
+    residual_tolerance : a root at which the residual's largest entry is above it is refused
     newton_steps : most Newton steps before a step is refused
     wanted_steps : Newton steps at which the step length is kept
     largest_turn : [rad] a step over which the tangent turns by more is refused
@@ -70,12 +70,98 @@ class PathPoint:
     sign: float = field(default=1.0, repr=False)
 
 
+class Path(Protocol):
+    """What is followed: the root x (n,) of a residual over the parameter p, each with its typical size."""
+
+    scale: Any
+    span: float
+
+    def residual(self, x: Any, p: float) -> Any:
+        """Zero on the path, shape (n,)."""
+
+    def jacobian(self, x: Any, p: float) -> tuple[Any, Any]:
+        """Its derivatives by x (n, n) and by p (n,)."""
+
+
+class Corrected(NamedTuple):
+    """What Newton's method came to: y or None, corrections, derivatives taken, largest |residual|, derivative kept."""
+
+    y: Any
+    iterations: int
+    fresh: int
+    residual: float
+    kept: Any = None
+
+
+class Equation:
+    """residual(x, p) = 0 in scaled variables y = (x, p)/scale, (n + 1,); without `jacobian` by central differences."""
+
+    def __init__(self, residual: Residual, jacobian: Jacobian | None, scale: Any) -> None:
+        self.residual, self.jacobian, self.scale = residual, jacobian, scale
+
+    @classmethod
+    def of(cls, path: Path) -> "Equation":
+        """That of a path."""
+        return cls(path.residual, path.jacobian, np.append(path.scale, path.span))
+
+    def y(self, x: Any, p: float) -> Any:
+        """A point in scaled variables."""
+        return np.append(x, p) / self.scale
+
+    def point(self, y: Any) -> tuple[Any, float]:
+        """(x, p)."""
+        x = y * self.scale
+        return x[:-1], float(x[-1])
+
+    def value(self, y: Any) -> Any:
+        """The residual, (n,)."""
+        return np.atleast_1d(np.asarray(self.residual(*self.point(y)), dtype=float))
+
+    def derivative(self, y: Any) -> Any:
+        """d residual / d y, (n, n + 1); NaN where the residual is."""
+        if self.jacobian is not None:
+            by_x, by_p = self.jacobian(*self.point(y))
+            return np.column_stack([np.atleast_2d(by_x), np.atleast_1d(by_p)]) * self.scale
+        step = np.cbrt(np.finfo(float).eps) * np.maximum(1.0, np.abs(y))
+        columns = []
+        for i in range(y.size):
+            shift = np.zeros(y.size)
+            shift[i] = step[i]
+            columns.append((self.value(y + shift) - self.value(y - shift)) / (2.0 * step[i]))
+        return np.column_stack(columns)
+
+    def corrected(
+        self, guess: Any, normal: Any, most: int, tolerance: float, reach: float = np.inf, kept: Any = None
+    ) -> Corrected:
+        """Newton's method on the plane through `guess` with that normal, to a correction within the tolerance.
+
+        A derivative is kept as long as corrections shrink well by it. One that leads farther than `reach` from the
+        guess ends the search: values there mean nothing and may be costly.
+        """
+        y, size, matrix, last, fresh = guess.copy(), np.inf, kept, np.inf, 0
+        for iteration in range(1, most + 1):
+            value = self.value(y)
+            size = float(np.max(np.abs(value)))
+            if not np.isfinite(size):
+                return Corrected(None, iteration, fresh, size)
+            if matrix is None or KEEP < last < np.inf:
+                matrix, fresh = np.vstack([self.derivative(y), normal]), fresh + 1
+            change = _solved(matrix, np.append(value, normal @ (y - guess)))
+            y, before, last = y - change, last, float(np.max(np.abs(change)))
+            if not np.linalg.norm(y - guess) <= reach:  # also where the derivative is NaN
+                return Corrected(None, iteration, fresh, size)
+            if last > SLOW * before:
+                matrix = None
+            if last <= tolerance:
+                return Corrected(y, iteration, fresh, size, matrix)
+        return Corrected(None, most, fresh, size)
+
+
 class Follower:
     """The path through (x, p), as an iterator over :class:`PathPoint`; see :func:`follow`."""
 
     def __init__(self, residual: Residual, x: Any, p: float, **options: Any) -> None:
-        self.residual = residual
-        self.jacobian: Jacobian | None = options.pop("jacobian", None)
+        jacobian: Jacobian | None = options.pop("jacobian", None)
         self.control: StepControl = options.pop("control", StepControl())
         self.direction: float = options.pop("direction", 1.0)
         self.bounds: tuple[float, float] = options.pop("bounds", (-np.inf, np.inf))
@@ -84,9 +170,10 @@ class Follower:
         x = np.atleast_1d(np.asarray(x, dtype=float))
         x_scale = np.broadcast_to(np.asarray(options.pop("x_scale", 1.0), dtype=float), x.shape)
         self.scale = np.append(x_scale, options.pop("p_scale", 1.0))
+        self.equation = Equation(residual, jacobian, self.scale)
         if options:
             raise TypeError(f"follow() has no option {sorted(options)}")
-        self.start = np.append(x, float(p)) / self.scale
+        self.start = self.equation.y(x, float(p))
         self.outcome = Outcome("not_finished", "the walk has not been ended")
 
     def __iter__(self) -> Iterator[PathPoint]:
@@ -132,7 +219,7 @@ class Follower:
     def _advance(self, point: PathPoint, step: float) -> tuple[PathPoint, float] | None:
         """The next point and the step to try after it, or None when the step length fell below the smallest."""
         control = self.control
-        y = np.append(point.x, point.p) / self.scale
+        y = self.equation.y(point.x, point.p)
         while step >= control.smallest:
             guess = y + step * point.tangent
             found, iterations, size = self._correct(guess, point.tangent, control.newton_steps, FAR * step)
@@ -159,7 +246,7 @@ class Follower:
         if previous.p == bound:
             return
         share = (bound - previous.p) / (beyond.p - previous.p)
-        ends = [np.append(point.x, point.p) / self.scale for point in (previous, beyond)]
+        ends = [self.equation.y(point.x, point.p) for point in (previous, beyond)]
         guess = ends[0] + share * (ends[1] - ends[0])
         guess[-1] = bound / self.scale[-1]
         fixed_p = np.append(np.zeros(guess.size - 1), 1.0)
@@ -173,73 +260,37 @@ class Follower:
         yield self._point(y, tangent, previous.arclength + step, step, iterations, size, sign=sign)
 
     def _correct(self, guess: Any, normal: Any, most: int, reach: float = np.inf) -> tuple[Any, int, float]:
-        """Newton on the plane through `guess` with that normal: the root or None, steps, largest |residual|.
+        """The root on the plane through `guess` or None, steps, largest |residual|.
 
-        Corrections with a kept derivative are cheap, so they count as steps only up to those that are wanted. One that
-        leads farther than `reach` from the guess ends the search: values there mean nothing and may be costly.
+        Corrections with a kept derivative are cheap, so they count as steps only up to those that are wanted.
         """
-        y, size, matrix, last, fresh = guess.copy(), np.inf, None, np.inf, 0
-        for iteration in range(1, most + 1):
-            value = self._value(y)
-            size = float(np.max(np.abs(value)))
-            if not np.isfinite(size):
-                return None, iteration, size
-            if matrix is None or last > KEEP:
-                matrix, fresh = np.vstack([self._derivative(y), normal]), fresh + 1
-            try:
-                change = np.linalg.solve(matrix, np.append(value, normal @ (y - guess)))
-            except np.linalg.LinAlgError:
-                return None, iteration, size
-            y, before, last = y - change, last, float(np.max(np.abs(change)))
-            if not np.linalg.norm(y - guess) <= reach:
-                return None, iteration, size
-            if last > SLOW * before:  # the derivative kept is not good enough
-                matrix = None
-            if last <= self.control.tolerance:
-                size = float(np.max(np.abs(self._value(y))))
-                if size <= self.control.residual_tolerance:
-                    return y, min(iteration, max(fresh + 1, self.control.wanted_steps)), size
-        return None, most, size
+        found = self.equation.corrected(guess, normal, most, self.control.tolerance, reach)
+        if found.y is None:
+            return None, found.iterations, found.residual
+        size = float(np.max(np.abs(self.equation.value(found.y))))
+        steps = min(found.iterations, max(found.fresh + 1, self.control.wanted_steps))
+        return (found.y if size <= self.control.residual_tolerance else None), steps, size
 
     def _tangent(self, y: Any, along: Any) -> tuple[Any, float]:
         """Unit null vector of the derivative on the side of `along` (or NaN), and the bordered determinant's sign."""
-        derivative = self._derivative(y)
+        derivative = self.equation.derivative(y)
         if not np.all(np.isfinite(derivative)):
             return np.full(y.size, np.nan), 0.0
-        tangent = _null_vector(derivative, along)
+        tangent = null_vector(derivative, along)
         return tangent, float(np.linalg.slogdet(np.vstack([derivative, tangent]))[0])
 
     def _sign(self, y: Any, tangent: Any) -> float:
-        return float(np.linalg.slogdet(np.vstack([self._derivative(y), tangent]))[0])
-
-    def _value(self, y: Any) -> Any:
-        x = y * self.scale
-        return np.atleast_1d(np.asarray(self.residual(x[:-1], float(x[-1])), dtype=float))
-
-    def _derivative(self, y: Any) -> Any:
-        """d residual / d y, shape (n, n + 1): the caller's Jacobian, or central differences."""
-        if self.jacobian is not None:
-            x = y * self.scale
-            by_x, by_p = self.jacobian(x[:-1], float(x[-1]))
-            return np.column_stack([np.atleast_2d(by_x), np.atleast_1d(by_p)]) * self.scale
-        step = np.cbrt(np.finfo(float).eps) * np.maximum(1.0, np.abs(y))
-        columns = []
-        for i in range(y.size):
-            shift = np.zeros(y.size)
-            shift[i] = step[i]
-            columns.append((self._value(y + shift) - self._value(y - shift)) / (2.0 * step[i]))
-        return np.column_stack(columns)
+        return float(np.linalg.slogdet(np.vstack([self.equation.derivative(y), tangent]))[0])
 
     def _point(self, y: Any, tangent: Any, *numbers: Any, **marks: Any) -> PathPoint:
-        x = y * self.scale
-        return PathPoint(x[:-1], float(x[-1]), tangent, *numbers, **marks)
+        return PathPoint(*self.equation.point(y), tangent, *numbers, **marks)
 
     def _distance(self, a: PathPoint, b: PathPoint) -> float:
-        return float(np.linalg.norm((np.append(b.x, b.p) - np.append(a.x, a.p)) / self.scale))
+        return float(np.linalg.norm(self.equation.y(b.x, b.p) - self.equation.y(a.x, a.p)))
 
     def _returned(self, origin: PathPoint, previous: PathPoint, point: PathPoint) -> bool:
         """True when the start lies between the last two points, on the same strand and in the same direction."""
-        start, a, b = ((np.append(q.x, q.p)) / self.scale for q in (origin, previous, point))
+        start, a, b = (self.equation.y(q.x, q.p) for q in (origin, previous, point))
         span = b - a
         along = (start - a) @ span / (span @ span)
         off = np.linalg.norm(start - a - along * span)
@@ -247,7 +298,17 @@ class Follower:
         return bool(0.0 < along <= 1.0 and off < 0.3 * np.linalg.norm(span) and same_way)
 
 
-def _null_vector(matrix: Any, along: Any) -> Any:
+def _solved(matrix: Any, right: Any) -> Any:
+    """The correction; the shortest of several, and NaN for a derivative that is."""
+    if not np.all(np.isfinite(matrix)):
+        return np.full(len(right), np.nan)
+    try:
+        return np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        return np.linalg.lstsq(matrix, right, rcond=None)[0]
+
+
+def null_vector(matrix: Any, along: Any) -> Any:
     """Unit vector t with matrix t = 0, shape (n, n + 1), on the side of `along`, where it is not normal to that."""
     try:
         tangent = np.linalg.solve(np.vstack([matrix, along]), np.append(np.zeros(len(matrix)), 1.0))
@@ -285,3 +346,8 @@ def follow(residual: Residual, x: Any, p: float, **options: Any) -> Follower:
     {'closed': True}
     """
     return Follower(residual, x, p, **options)
+
+
+def along(path: Path, x: Any, p: float, **options: Any) -> Follower:
+    """The walk along a path, with the other options of :func:`follow`."""
+    return follow(path.residual, x, p, jacobian=path.jacobian, x_scale=path.scale, p_scale=path.span, **options)

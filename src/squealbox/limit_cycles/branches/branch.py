@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from squealbox import cautions
 from squealbox.arguments import public
-from squealbox.cautions import along, told_place
-from squealbox.continuation import PathPoint, StepControl, follow
+from squealbox.continuation import PathPoint, StepControl, along
 from squealbox.family import Bounds, Family, Varied
 from squealbox.limit_cycles.branches.doubling import doubled
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
@@ -167,9 +167,9 @@ def branch(
     settings["one_way"] = float(direction) if inside else 0.0
     tangent = None
     if method == "shooting" and isinstance(start, HopfPoint):
-        path, unknowns, p, tangent, outcome = _risen(make, start, bounds, harmonics, rtol)
+        path, unknowns, p, tangent, outcome = _risen(family, start, bounds, harmonics, rtol)
     elif method == "shooting":
-        path, unknowns, p, outcome = _shooting_start(make, start, middle, rtol, span)
+        path, unknowns, p, outcome = _shooting_start(family, start, middle, rtol)
     else:
         path, unknowns, p, outcome = _harmonic_start(make, start, middle, CONTACTS[contact], width, harmonics, span)
     if not outcome.ok:
@@ -179,10 +179,12 @@ def branch(
     if isinstance(start, BranchPoint) and start.kind == "period_doubling":
         unknowns, tangent = doubled(path, unknowns, p)
     control = StepControl(first=min(1e-2, largest_step), largest=largest_step, most_points=points, tolerance=1e-9)
-    walk = follow(path.residual, unknowns, p, jacobian=path.jacobian, control=control, direction=direction,
-                  bounds=bounds, x_scale=path.scale, p_scale=span, tangent=tangent)  # fmt: skip
     ends_at_grazing = method == "harmonic_balance" and contact == "exact"
-    done = walked(path, walk, control, bounds, ends_at_grazing)
+    for _ in range(2):  # once more where numbers were taken for sums of the parameter and are none
+        walk = along(path, unknowns, p, control=control, direction=direction, bounds=bounds, tangent=tangent)
+        done = walked(path, walk, control, bounds, ends_at_grazing)
+        if path.confirmed([at.p for at in done.visited]):
+            break
     specials = special_points(done, parameter)
     if ends_at_grazing and done.outcome == "grazing" and len(done.visited) > 1:
         done.drop_last()
@@ -201,8 +203,8 @@ def _caution(path: Any, visited: list[PathPoint], found: Branch, unit: str) -> s
     said: dict[str, str] = {}  # the contact or freedom, and what is said of the largest cycle first
     for i in sorted(places, key=lambda i: -float(np.max(ranks[i]))):
         cycle = path.cycle(visited[i].x, visited[i].p)
-        place = told_place(found.parameter, visited[i].p, unit)
-        for each in along(cycle.system, cycle.q, cycle.qd):
+        place = cautions.told_place(found.parameter, visited[i].p, unit)
+        for each in cautions.along(cycle.system, cycle.q, cycle.qd):
             said.setdefault(each.split(":")[0] + each[-20:], f"at {place} {each}")
     return "; ".join(said.values())
 
@@ -243,20 +245,17 @@ def _harmonic_start(
     found = harmonic_balance(make(value), start, contact=contact, width=width, harmonics=harmonics)
     if not found.outcome.ok:
         return path, None, value, found.outcome
-    series = path.grid.series(_resampled(found, path.grid))
-    return path, path.begin(series, 2.0 * np.pi / float(found.period), value, float(np.max(found.amplitude))), value, \
-        found.outcome  # fmt: skip
+    return path, path.through(found, value), value, found.outcome
 
 
-def _risen(make: Any, hopf: HopfPoint, bounds: tuple[float, float], harmonics: int, rtol: float) -> tuple[Any, ...]:
+def _risen(family: Family, hopf: HopfPoint, bounds: Bounds, harmonics: int, rtol: float) -> tuple[Any, ...]:
     """(path, unknowns, p, tangent, outcome) by shooting, a few points by harmonic balance up from a Hopf point."""
     span = bounds[1] - bounds[0]
-    path, x, p, outcome = _harmonic_start(make, hopf, float(hopf.value), "exact", 1e-3, harmonics, span)
+    path, x, p, outcome = _harmonic_start(family.system, hopf, float(hopf.value), "exact", 1e-3, harmonics, span)
     if not outcome.ok:
         return path, None, p, None, outcome
     control = StepControl(largest=0.1, most_points=RISE, tolerance=1e-9)
-    walk = follow(path.residual, x, p, jacobian=path.jacobian, control=control, bounds=bounds, x_scale=path.scale,
-                  p_scale=span, tangent=path.rise(x))  # fmt: skip
+    walk = along(path, x, p, control=control, bounds=bounds, tangent=path.rise(x))
     points = [point for point in walk if path.least_slip(point.x, point.p) > 0.0][-2:]
     if len(points) < 2:
         return (
@@ -267,15 +266,9 @@ def _risen(make: Any, hopf: HopfPoint, bounds: tuple[float, float], harmonics: i
             Outcome("no_start", f"no slipping cycles were reached from the Hopf point: {walk.outcome}"),
         )
     cycles = tuple(path.cycle(point.x, point.p) for point in points)
-    exact, p = ShootingPath(make, rtol, span), points[1].p
+    exact, p = _shooting_path(family, rtol), points[1].p
     x = begun(exact, cycles[1], p)
     return exact, x, p, heading(exact, x, p, cycles[::-1], points[0].p), outcome
-
-
-def _resampled(cycle: Cycle, grid: Grid) -> Any:
-    """Displacements at the instants of the grid; the samples of harmonic balance are equidistant."""
-    fine = Grid(grid.harmonics, len(cycle.t) - 1)
-    return grid.values @ fine.series(cycle.q[:-1])
 
 
 def _visible_size(hopf: HopfPoint) -> float:
@@ -294,9 +287,14 @@ def _small_series(hopf: HopfPoint, size: float) -> Any:
     return np.array([hopf.steady[:half], shape.real, -shape.imag])
 
 
-def _shooting_start(make: Any, start: Any, value: float, rtol: float, span: float) -> Any:
-    path = ShootingPath(make, rtol, span)
-    found = start if isinstance(start, Cycle) else shooting(make(value), start)
+def _shooting_path(family: Family, rtol: float) -> ShootingPath:
+    low, high = family.spans[0]
+    return ShootingPath(family.system, rtol, high - low, (low, high), at_once=family.recipe is None)
+
+
+def _shooting_start(family: Family, start: Any, value: float, rtol: float) -> Any:
+    path = _shooting_path(family, rtol)
+    found = start if isinstance(start, Cycle) else shooting(family.system(value), start)
     if not found.outcome.ok:
         return path, None, value, found.outcome
     return path, begun(path, found, value), value, found.outcome

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.continuation import Follower, PathPoint
+from squealbox.continuation import Equation, Follower, PathPoint, null_vector
 from squealbox.limit_cycles.branches.shooting_path import ShootingPath
 from squealbox.result import Outcome
 
@@ -55,28 +55,26 @@ def kind_of(before: Any, after: Any) -> str:
 
 def beyond(path: ShootingPath, walk: Follower, last: PathPoint) -> Corner | Outcome:
     """How a branch goes on after its last point, or why it does not."""
-    scale = walk.scale
-    y, before = np.append(last.x, last.p) / scale, path.sequence(last.x, last.p)
-    inside = _derivative(path, y, scale)
+    equation = walk.equation
+    y, before = equation.y(last.x, last.p), path.sequence(last.x, last.p)
+    inside = _derivative(equation, y)
     seen = None
     for way in _ways(y, last.tangent):
         for distance in PROBES:
             probe = y + distance * way
-            x = probe * scale
-            after = path.sequence(x[:-1], float(x[-1]))
+            after = path.sequence(*equation.point(probe))
             if after is None or after == before:
                 continue
-            seen = seen or (after, first_other(path, last, x))
-            value = path.residual(x[:-1], float(x[-1]))
-            outside = _derivative(path, probe, scale)
+            seen = seen or (after, first_other(path, last, *equation.point(probe)))
+            value, outside = equation.value(probe), _derivative(equation, probe)
             if not np.all(np.isfinite(outside)):
                 continue
             size = distance * max(float(np.max(np.abs(outside))), float(np.max(np.abs(inside))))
             if np.max(np.abs(value)) > RESIDUAL * size:
                 break  # it jumps
-            found = _start_of(path, walk, y, last.tangent, inside, outside, distance, before)
+            found = _start_of(path, equation, y, last.tangent, inside, outside, distance, before)
             if found is not None:
-                return _corner(path, walk, last, found)
+                return _corner(path, equation, last, found)
     if seen is None:
         return walk.outcome
     after, other = seen
@@ -87,12 +85,12 @@ def beyond(path: ShootingPath, walk: Follower, last: PathPoint) -> Corner | Outc
     return Outcome("jump", message, p=last.p, events_before=str(before), events_after=str(after), **other)
 
 
-def first_other(path: ShootingPath, last: PathPoint, x: Any) -> dict[str, Any]:
-    """The first event of a period that is another at scaled-back unknowns x than at the last point, and N there [N].
+def first_other(path: ShootingPath, last: PathPoint, x: Any, p: float) -> dict[str, Any]:
+    """The first event of a period that is another at x and p than at the last point, and N there [N].
 
     Empty where one list of events begins like the other and only ends sooner.
     """
-    runs = path.run(last.x, last.p), path.run(x[:-1], float(x[-1]))
+    runs = path.run(last.x, last.p), path.run(x, p)
     events = [list(zip(run.event_contact.tolist(), run.event_mode.tolist(), strict=True)) for run in runs]
     i = next((i for i, (one, other) in enumerate(zip(*events, strict=False)) if one != other), None)
     if i is None:
@@ -111,56 +109,38 @@ def _ways(y: Any, tangent: Any) -> Iterator[Any]:
     yield from (tangent, along, -along)
 
 
-def _derivative(path: ShootingPath, y: Any, scale: Any) -> Any:
-    x = y * scale
-    if not np.all(np.isfinite(path.residual(x[:-1], float(x[-1])))):
-        return np.full((1, 1), np.nan)
-    return np.column_stack(path.jacobian(x[:-1], float(x[-1]))) * scale
+def _derivative(equation: Equation, y: Any) -> Any:
+    return equation.derivative(y) if np.all(np.isfinite(equation.value(y))) else np.full((1, 1), np.nan)
 
 
 def _start_of(
-    path: ShootingPath, walk: Follower, y: Any, tangent: Any, inside: Any, outside: Any, distance: float, before: Any
-) -> tuple[Any, Any] | None:
+    path: ShootingPath, equation: Equation, y: Any, tangent: Any, inside: Any, outside: Any, distance: float,
+    before: Any,
+) -> tuple[Any, Any] | None:  # fmt: skip
     """(point, tangent) on the branch beyond the corner, with another order of events than before it."""
     normal = np.linalg.svd(outside - inside)[2][0]
     normal = normal if normal @ tangent > 0.0 else -normal
     forward = np.linalg.svd(outside)[2][-1]
     forward = forward if forward @ normal > 0.0 else -forward
     for length in (3.0 * distance, 30.0 * distance):
-        found = corrected(path, y + length * forward, forward, walk.scale)
+        found = equation.corrected(y + length * forward, forward, NEWTON_STEPS, CLOSE).y
         if found is None:
             continue
-        x = found * walk.scale
-        new = path.sequence(x[:-1], float(x[-1])) not in (None, before)
+        new = path.sequence(*equation.point(found)) not in (None, before)
         if new and 0.2 * length < np.linalg.norm(found - y) < 5.0 * length:
-            here = np.linalg.svd(_derivative(path, found, walk.scale))[2][-1]
-            return found, here if here @ forward > 0.0 else -here
+            return found, null_vector(equation.derivative(found), forward)
     return None
 
 
-def corrected(path: ShootingPath, guess: Any, normal: Any, scale: Any) -> Any:
-    """The point of the path on the plane through a guess, all in scaled variables; None where none is reached."""
-    y = guess.copy()
-    for _ in range(NEWTON_STEPS):
-        x = y * scale
-        value, matrix = path.residual(x[:-1], float(x[-1])), _derivative(path, y, scale)
-        if not np.all(np.isfinite(matrix)):
-            return None
-        change = np.linalg.lstsq(np.vstack([matrix, normal]), np.append(value, normal @ (y - guess)), rcond=None)[0]
-        y = y - change
-        if np.max(np.abs(change)) < CLOSE:
-            return y
-    return None
-
-
-def _corner(path: ShootingPath, walk: Follower, last: PathPoint, found: tuple[Any, Any]) -> Corner:
+def _corner(path: ShootingPath, equation: Equation, last: PathPoint, found: tuple[Any, Any]) -> Corner:
     """The corner itself: where the tangents of both sides come nearest to each other."""
     beyond_it, tangent = found
-    y = np.append(last.x, last.p) / walk.scale
+    y = equation.y(last.x, last.p)
     ways = np.column_stack([last.tangent, tangent])
     ahead, back = np.linalg.lstsq(ways, beyond_it - y, rcond=None)[0]
     ends = y[-1] + ahead * last.tangent[-1], beyond_it[-1] - back * tangent[-1]
-    x = beyond_it * walk.scale
-    kind = kind_of(path.sequence(last.x, last.p), path.sequence(x[:-1], float(x[-1])))
+    kind = kind_of(path.sequence(last.x, last.p), path.sequence(*equation.point(beyond_it)))
     uncertainty = abs(ends[0] - ends[1]) + abs(ends[0] - y[-1])
-    return Corner(last, beyond_it, tangent, kind, 0.5 * sum(ends) * walk.scale[-1], uncertainty * walk.scale[-1])
+    return Corner(
+        last, beyond_it, tangent, kind, 0.5 * sum(ends) * equation.scale[-1], uncertainty * equation.scale[-1]
+    )

@@ -10,28 +10,21 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.limit_cycles.branches.corners import corrected
+from squealbox.continuation import Equation
 from squealbox.limit_cycles.branches.shooting_path import ShootingPath
 from squealbox.limit_cycles.cycles.variation import fly
 
-NEWTON_STEPS, CLOSE = 8, 1e-11
+NEWTON_STEPS, CLOSE = 8, 1e-10
 SHIFTS = (1e-2, 1e-3, 1e-4)  # first distances from the old cycle, in its size, until the new one is met
 APART = 0.5  # of twice the shift: what half a new cycle is from its start at least; the old one, run twice, is back
 
 
-def settled(path: ShootingPath, x: Any, p: float) -> Any:
-    """The unknowns corrected to the path at fixed p, where no multiplier but the trivial one is 1."""
-    for _ in range(NEWTON_STEPS):
-        change = np.linalg.solve(path.jacobian(x, p)[0] * path.scale, path.residual(x, p))
-        x = x - change * path.scale
-        if np.max(np.abs(change)) < CLOSE:
-            break
-    return x
-
-
 def doubled(path: ShootingPath, x: Any, p: float) -> tuple[Any, Any]:
     """Unknowns beside the old cycle with twice its period, and the direction to start along, scaled, with p last."""
-    x = settled(path, x, p)
+    equation = Equation.of(path)
+    fixed_p = np.append(np.zeros(x.size), 1.0)  # no multiplier but the trivial one is 1 there
+    old = equation.corrected(equation.y(x, p), fixed_p, NEWTON_STEPS, CLOSE).y
+    x = x if old is None else equation.point(old)[0]
     start, flown = path.fly(x, p)
     values, vectors = np.linalg.eig(flown.phi)
     e = np.real(vectors[:, int(np.argmin(np.abs(values + 1.0)))])
@@ -39,11 +32,9 @@ def doubled(path: ShootingPath, x: Any, p: float) -> tuple[Any, Any]:
     e = np.delete(e - rate * (e[path.column] / rate[path.column]), path.column) / path.scale[:-1]
     direction = np.append(e, [0.0, 0.0]) / np.linalg.norm(e)
     twice = np.append(x[:-1], 2.0 * x[-1])
-    scale = np.append(path.scale, path.span)
     for shift in SHIFTS:
-        guess = np.append(twice, p) / scale + shift * direction
-        y = corrected(path, guess, direction, scale)
-        if y is not None and half_apart(path, y * scale) > APART * 2.0 * shift:
+        y = equation.corrected(equation.y(twice, p) + shift * direction, direction, NEWTON_STEPS, CLOSE).y
+        if y is not None and half_apart(path, y * equation.scale) > APART * 2.0 * shift:
             break
     return twice + shift * direction[:-1] * path.scale, direction
 

@@ -1,6 +1,7 @@
 """A branch by harmonic balance, as continuation sees it: coefficients of the series and omega over the parameter."""
 
-from collections.abc import Callable
+import copy
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,23 +17,33 @@ KEPT = 8  # equations kept between calls at the same values
 
 
 class HarmonicPath:
-    """Residual of harmonic balance over (coefficients but one, omega) and the parameter."""
+    """Residual of harmonic balance over (coefficients but one, omega) and the parameter: a `CyclePath`."""
+
+    has_corners = False
 
     def __init__(self, make: Callable[[float], System], contact: str, width: float, grid: Grid, span: float) -> None:
         self.make, self.contact, self.width, self.grid, self.span = make, contact, width, grid, span
         self.balances: dict[float, Balance] = {}
-        self.column, self.size, self.omega = 0, 1.0, 1.0
+        self.column, self.size, self.omega, self.scale = 0, 1.0, 1.0, np.ones(1)
 
     def begin(self, coefficients: Any, omega: float, p: float, size: float) -> Any:
         """Unknowns of a start; sets the phase and the scales: `size` [m] and omega."""
         turned, self.column = self.balance(p).turned(self.grid.padded(coefficients))
         self.size, self.omega = size, omega
+        self.scale = np.append(np.full(turned.size - 1, size), omega)
         return np.append(np.delete(turned.ravel(), self.column), omega)
 
-    @property
-    def scale(self) -> Any:
-        """Typical sizes of the unknowns."""
-        return np.append(np.full(len(self.grid.d) * self.dofs - 1, self.size), self.omega)
+    def again(self, make: Callable[[float], System] | None = None) -> "HarmonicPath":
+        """The path over the parameter of a family beside this one."""
+        other = copy.copy(self)
+        other.make, other.balances = make or self.make, {}
+        return other
+
+    def through(self, cycle: Cycle, p: float) -> Any:
+        """Unknowns of a path through a cycle, whose samples are equidistant."""
+        fine = Grid(self.grid.harmonics, len(cycle.t) - 1)
+        series = self.grid.series(self.grid.values @ fine.series(cycle.q[:-1]))
+        return self.begin(series, 2.0 * np.pi / float(cycle.period), p, float(np.max(cycle.amplitude)))
 
     def rise(self, x: Any) -> Any:
         """Direction of growing amplitude at x, for the start beside a Hopf point, in scaled variables with p."""
@@ -41,11 +52,6 @@ class HarmonicPath:
         direction[0] = 0.0
         flat = np.append(np.delete(direction.ravel(), self.column), [0.0, 0.0])
         return flat / np.linalg.norm(flat)
-
-    @property
-    def dofs(self) -> int:
-        """Number of degrees of freedom."""
-        return next(iter(self.balances.values())).field.size
 
     def balance(self, p: float) -> Balance:
         """The equation at a parameter value."""
@@ -77,6 +83,10 @@ class HarmonicPath:
         by_p = (self.residual(x, p + step) - self.residual(x, p - step)) / (2.0 * step)
         return by_x, by_p
 
+    def confirmed(self, values: Sequence[float]) -> bool:
+        """Each value has its own equation."""
+        return True
+
     def describe(self, x: Any, p: float) -> dict[str, Any]:
         """Period, extremes, multipliers and least sliding speed of the cycle at a point."""
         coefficients, omega = self.series(x)
@@ -87,7 +97,7 @@ class HarmonicPath:
         t = np.append(self.grid.tau, 2.0 * np.pi) / omega
         low, high = extremes(t, closed[:, :n], closed[:, n:])
         return {"period": 2.0 * np.pi / omega, "lowest": low, "highest": high, "multipliers": self.multipliers(x, p),
-                "least_slip": self.least_slip(x, p), "sticking": 0.0, "begin": states[0]}  # fmt: skip
+                "least_slip": self.least_slip(x, p), "sticking": self.sticking(x, p), "begin": states[0]}  # fmt: skip
 
     def multipliers(self, x: Any, p: float) -> Any:
         """Floquet multipliers of the cycle at a point."""
@@ -102,6 +112,10 @@ class HarmonicPath:
         settings = {"contact": self.contact, "width": self.width}
         error = balance.tail(coefficients)
         return cycle_of(balance, coefficients, omega, Outcome(COMPLETED), settings, error)
+
+    def sticking(self, x: Any, p: float) -> float:
+        """None: a series does not stick [s]."""
+        return 0.0
 
     def least_slip(self, x: Any, p: float) -> float:
         """Least sliding speed in the sense of V [m/s], by a parabola through the least of many samples."""

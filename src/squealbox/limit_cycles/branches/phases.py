@@ -84,7 +84,7 @@ def taken_up(path: ShootingPath, last: tuple[Any, float], earlier: tuple[Any, fl
     cycle, before = path.cycle(*last), path.cycle(*earlier)
     if np.size(cycle.memory):  # known at one instant alone, not at another turning point
         return None
-    other = ShootingPath(path.make, path.rtol, path.span)
+    other = path.again()
     x, p = begun(other, cycle, last[1]), last[1]
     if touches_event(other, x, p):
         return None

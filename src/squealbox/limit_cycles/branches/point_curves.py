@@ -9,18 +9,18 @@ function is the g of the bordered system (with r and l the null vectors at the s
 Source: Govaerts 2000, Numerical Methods for Bifurcations of Dynamical Equilibria, Sec. 3.2.
 """
 
-import copy
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from squealbox.family import Bounds, Family
 from squealbox.limit_cycles.branches.curves import PointCurve, both_ways, curve_of, ending
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
+from squealbox.limit_cycles.branches.paths import CyclePath
 from squealbox.limit_cycles.branches.phases import begun
 from squealbox.limit_cycles.branches.shooting_path import ShootingPath
-from squealbox.limit_cycles.branches.special_points import TESTS, BranchPoint
+from squealbox.limit_cycles.branches.special_points import EVENTS, BranchPoint
 from squealbox.limit_cycles.cycles.harmonic_balance import Grid
 from squealbox.parameters import ParameterError
 
@@ -57,7 +57,7 @@ def point_curve(
     >>> point_curve(block, {"speed": (0.05, 1.0), "damping": (0.15, 0.25)}, end, 0.2, points=2).kind
     'grazing'
     """
-    if point.kind not in (*TESTS, "fold") or point.kind == "sticking":
+    if point.kind not in EVENTS or EVENTS[point.kind].jumps:
         raise ParameterError("point_curve", "point", point.kind, "a fold, grazing, period doubling or Neimark-Sacker")
     family = Family.within("point_curve", design, bounds, count=2)
     extended = _Special(family.system, point, family.spans, float(value))
@@ -74,29 +74,22 @@ class _Special:
         (low, high), (bottom, top) = spans
         self.make, self.kind, self.span, settings = make, point.kind, high - low, point.settings
         self.span_b = top - bottom
-        p, period = float(point.value), float(point.period)
+        p, first = float(point.value), lambda a: make(a, value)
         if "harmonics" in settings:
             grid = Grid(settings["harmonics"])
-            self.path: Any = HarmonicPath(lambda a: make(a, value), settings["contact"], settings["width"], grid,
-                                          self.span)  # fmt: skip
-            series = grid.values @ Grid(grid.harmonics, len(point.t) - 1).series(point.q[:-1])
-            x = self.path.begin(grid.series(series), 2.0 * np.pi / period, p, float(np.max(point.amplitude)))
+            series = HarmonicPath(first, settings["contact"], settings["width"], grid, self.span)
+            self.path, x = cast(CyclePath, series), series.through(point, p)
         else:
-            self.path = ShootingPath(lambda a: make(a, value), settings["rtol"], self.span)
-            x = begun(self.path, point, p)
+            shots = ShootingPath(first, settings["rtol"], self.span)
+            self.path, x = cast(CyclePath, shots), begun(shots, point, p)
         self.start, self.scale = np.append(x, p), np.append(self.path.scale, self.span)
         self.slip = max(abs(float(point.system.contacts[0].V)), 1e-300) if point.system.contacts else 1.0
         left, _, right = np.linalg.svd(self._square(self.path, self.start))
         self.left, self.right = left[:, -1], right[-1]
 
-    def at(self, b: float) -> Any:
+    def at(self, b: float) -> CyclePath:
         """The path at a value of the second parameter."""
-        path = copy.copy(self.path)
-        path.make = lambda a: self.make(a, float(b))
-        for name in ("balances", "fields", "runs", "flights"):
-            if hasattr(path, name):
-                setattr(path, name, {})
-        return path
+        return self.path.again(lambda a: self.make(a, float(b)))
 
     def residual(self, x: Any, b: float) -> Any:
         """(residual of the path, test function); NaN outside the range of a parameter."""
@@ -105,16 +98,16 @@ class _Special:
         test = self._test(path, x) if np.all(np.isfinite(value)) else np.nan
         return np.append(value, test)
 
-    def _test(self, path: Any, x: Any) -> float:
-        if self.kind == "grazing":
-            return float(path.least_slip(x[:-1], float(x[-1]))) / self.slip
-        if self.kind != "fold":
-            return TESTS[self.kind]({"multipliers": path.multipliers(x[:-1], float(x[-1]))})
+    def _test(self, path: CyclePath, x: Any) -> float:
+        event = EVENTS[self.kind]
+        if event.of != "along":
+            told = event.test(getattr(path, event.of)(x[:-1], float(x[-1])))
+            return told / self.slip if event.of == "least_slip" else told
         square = self._square(path, x)
         bordered = np.block([[square, self.left[:, None]], [self.right[None], np.zeros((1, 1))]])
         return float(np.linalg.solve(bordered, np.append(np.zeros(len(square)), 1.0))[-1])
 
-    def _square(self, path: Any, x: Any) -> Any:
+    def _square(self, path: CyclePath, x: Any) -> Any:
         return path.jacobian(x[:-1], float(x[-1]))[0] * path.scale
 
     def jacobian(self, x: Any, b: float) -> tuple[Any, Any]:

@@ -20,7 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.continuation import KEEP, SLOW, PathPoint
+from squealbox.continuation import Equation, PathPoint, null_vector
+from squealbox.limit_cycles.branches.paths import CyclePath
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.result import quantity
 
@@ -50,15 +51,15 @@ class BranchPoint(Cycle):
         return f"{where}, test function {float(self.test):.1e}, period {float(self.period):.8g} s"
 
 
-def doubling(about: dict[str, Any]) -> float:
+def doubling(multipliers: Any) -> float:
     """prod (mu_i + 1): zero where a multiplier is -1."""
-    return float(np.prod(about["multipliers"][1:] + 1.0).real)
+    return float(np.prod(multipliers[1:] + 1.0).real)
 
 
-def torus(about: dict[str, Any]) -> float:
+def torus(multipliers: Any) -> float:
     """prod over pairs (mu_i mu_j - 1): zero with a complex pair on the unit circle, or a real pair of product 1."""
-    pairs = itertools.combinations(about["multipliers"][1:], 2)
-    return float(np.prod([a * b - 1.0 for a, b in pairs]).real) if len(about["multipliers"]) > 2 else 1.0
+    pairs = itertools.combinations(multipliers[1:], 2)
+    return float(np.prod([a * b - 1.0 for a, b in pairs]).real) if len(multipliers) > 2 else 1.0
 
 
 def is_torus(multipliers: Any) -> bool:
@@ -68,77 +69,72 @@ def is_torus(multipliers: Any) -> bool:
     return bool(abs(a.imag) > 1e-6 * abs(a))
 
 
-TESTS: dict[str, Callable[[dict[str, Any]], float]] = {
-    "period_doubling": doubling,
-    "neimark_sacker": torus,
-    "grazing": lambda about: about["least_slip"] if about["sticking"] == 0.0 else np.nan,
-    "sticking": lambda about: 1.0 if about["sticking"] > 0.0 else -1.0,
+@dataclass(frozen=True)
+class Event:
+    """What is looked for on a path: where a test function of one thing a path tells of a cycle changes its sign.
+
+    of : what that is, such as "multipliers"; "along" is the parameter's part of the unit tangent
+    jumps : the test function has a sign only, so its place is found by halving
+    meant : whether a zero is one of this kind, where that is not sure
+    told : whether a change of sign is reported also where its place could not be solved for
+    """
+
+    kind: str
+    of: str
+    test: Callable[[Any], float]
+    jumps: bool = False
+    meant: Callable[[Any], bool] | None = None
+    told: bool = True
+
+
+EVENTS = {
+    each.kind: each
+    for each in (
+        Event("fold", "along", float),
+        Event("period_doubling", "multipliers", doubling),
+        Event("neimark_sacker", "multipliers", torus, meant=is_torus, told=False),  # else it may be a neutral saddle
+        Event("grazing", "least_slip", float),
+        Event("sticking", "sticking", lambda time: 1.0 if time > 0.0 else -1.0, jumps=True),
+    )
 }
 
 
 class Chord:
     """The stretch of a path between two of its points, as a function of the share s of the chord."""
 
-    def __init__(self, path: Any, a: PathPoint, b: PathPoint) -> None:
-        self.path, self.scale = path, np.append(path.scale, path.span)
-        self.a, self.b = (np.append(point.x, point.p) / self.scale for point in (a, b))
+    def __init__(self, path: CyclePath, a: PathPoint, b: PathPoint) -> None:
+        self.path, self.equation = path, Equation.of(path)
+        self.a, self.b = (self.equation.y(point.x, point.p) for point in (a, b))
         self.normal = (self.b - self.a) / np.linalg.norm(self.b - self.a)
         self.tangents = a.tangent, b.tangent
         self.length = b.arclength - a.arclength
-        self.kept: Any = None  # the derivative of the last trial, which is near enough for the next one beside it
+        self.kept: Any = None
 
-    def derivative(self, y: Any) -> Any:
-        """d residual / dy in scaled variables, shape (n, n + 1)."""
-        x = y * self.scale
-        return np.column_stack(self.path.jacobian(x[:-1], float(x[-1]))) * self.scale
-
-    def at(self, s: float) -> tuple[Any, float] | None:
-        """(x, p) of the path over the share s, or None where Newton's method does not reach it."""
+    def at(self, s: float) -> tuple[Any, float]:
+        """(x, p) of the path over the share s; `OffPathError` where Newton's method does not reach it."""
         h0, h1 = s * (1.0 - s) ** 2 * self.length, -(s**2) * (1.0 - s) * self.length
         ends = (3.0 - 2.0 * s) * s**2
         y = (1.0 - ends) * self.a + ends * self.b + h0 * self.tangents[0] + h1 * self.tangents[1]
         y = y + self.normal * (self.normal @ (self.a + s * (self.b - self.a) - y))
-        matrix, last = self.kept, np.inf
-        for _ in range(NEWTON_STEPS):
-            x = y * self.scale
-            value = self.path.residual(x[:-1], float(x[-1]))
-            if not np.all(np.isfinite(value)):
-                return None
-            if matrix is None or KEEP < last < np.inf:
-                matrix = np.vstack([self.derivative(y), self.normal])
-            if not np.all(np.isfinite(matrix)):
-                return None
-            change = np.linalg.lstsq(matrix, np.append(value, 0.0), rcond=None)[0]
-            y, before, last = y - change, last, float(np.max(np.abs(change)))
-            if last > SLOW * before:
-                matrix = None
-            if last < CLOSE:
-                self.kept = matrix
-                x = y * self.scale
-                return x[:-1], float(x[-1])
-        return None
+        found = self.equation.corrected(y, self.normal, NEWTON_STEPS, CLOSE, kept=self.kept)
+        if found.y is None:
+            raise OffPathError
+        self.kept = found.kept
+        return self.equation.point(found.y)
 
-    def tangent_p(self, x: Any, p: float) -> float:
-        """The parameter's part of the unit tangent, along the chord."""
-        _, _, rows = np.linalg.svd(self.derivative(np.append(x, p) / self.scale))
-        return float(rows[-1][-1] * np.sign(rows[-1] @ self.normal))
-
-    def test(self, kind: str, x: Any, p: float) -> float:
-        """The test function of a kind."""
-        if kind == "fold":
-            return self.tangent_p(x, p)
-        if kind == "grazing":
-            return float(self.path.least_slip(x, p))
-        if kind == "sticking":
-            return 1.0 if self.path.sliding(x, p)[1] > 0.0 else -1.0
-        return TESTS[kind](self.path.describe(x, p))
+    def told(self, event: Event, s: float) -> Any:
+        """What the test function is of."""
+        x, p = self.at(s)
+        if event.of == "along":
+            return null_vector(self.equation.derivative(self.equation.y(x, p)), self.normal)[-1]
+        return getattr(self.path, event.of)(x, p)
 
 
 class OffPathError(ArithmeticError):
     """A trial point could not be corrected to the path."""
 
 
-def located(path: Any, a: PathPoint, b: PathPoint, kind: str) -> tuple[Any, float, float, float] | None:
+def located(path: CyclePath, a: PathPoint, b: PathPoint, event: Event) -> tuple[Any, float, float, float] | None:
     """(x, p, test, uncertainty) of the special point of that kind between two points, or None where it is not found.
 
     Accuracy: s to 1e-11 of the chord, so p to that share of the step, or to the residual of the path. A fold is flat in
@@ -149,25 +145,21 @@ def located(path: Any, a: PathPoint, b: PathPoint, kind: str) -> tuple[Any, floa
     chord = Chord(path, a, b)
 
     def value(s: float) -> float:
-        found = chord.at(s)
-        if found is None:
-            raise OffPathError
-        return chord.test(kind, *found)
+        return event.test(chord.told(event, s))
 
     try:
-        if kind == "sticking":
+        if event.jumps:
             s, width = _halved(value)
         else:
             s, width = float(brentq(value, 0.0, 1.0, xtol=SHARE, rtol=4.0 * np.finfo(float).eps)), SHARE
+        (x, p), beside, told = chord.at(s), chord.at(max(s - width, 0.0)), chord.told(event, s)
     except (OffPathError, ValueError):  # ValueError: the corrected ends do not bracket a zero
         return None
-    at, beside = chord.at(s), chord.at(max(s - width, 0.0))
-    if at is None or beside is None:
-        return None
-    x, p = at
-    if kind == "neimark_sacker" and not is_torus(path.describe(x, p)["multipliers"]):
-        return None
-    return x, p, chord.test(kind, x, p), max(abs(p - beside[1]), 1e-15 * abs(p))
+    return (
+        (x, p, event.test(told), max(abs(p - beside[1]), 1e-15 * abs(p)))
+        if event.meant is None or event.meant(told)
+        else None
+    )
 
 
 def _halved(value: Callable[[float], float]) -> tuple[float, float]:
@@ -180,19 +172,21 @@ def _halved(value: Callable[[float], float]) -> tuple[float, float]:
     return low, high - low
 
 
-def candidates(visited: list[PathPoint], seen: list[dict[str, Any]]) -> list[tuple[str, int]]:
-    """(kind, index of the point before) wherever a test function changes its sign along a walk."""
+def candidates(seen: list[dict[str, Any]]) -> list[tuple[Event, int]]:
+    """(event, index of the point before) wherever a test function changes its sign along a walk."""
     found = []
-    for i, (a, b) in enumerate(itertools.pairwise(visited)):
-        turns = abs(a.tangent[-1]) + abs(b.tangent[-1]) > STRAIGHT
-        if turns and a.tangent[-1] * b.tangent[-1] < 0.0:
-            found.append(("fold", i))
-        found += [(kind, i) for kind, test in TESTS.items() if test(seen[i]) * test(seen[i + 1]) < 0.0]
+    for i, pair in enumerate(itertools.pairwise(seen)):
+        for event in EVENTS.values():
+            before, after = (event.test(about[event.of]) for about in pair)
+            flat = event.kind == "fold" and abs(before) + abs(after) <= STRAIGHT
+            stuck = event.kind == "grazing" and any(about["sticking"] > 0.0 for about in pair)
+            if before * after < 0.0 and not flat and not stuck:
+                found.append((event, i))
     return found
 
 
 def branch_point(
-    path: Any, x: Any, p: float, kind: str, parameter: str, test: float, uncertainty: float
+    path: CyclePath, x: Any, p: float, kind: str, parameter: str, test: float, uncertainty: float
 ) -> BranchPoint:
     """The cycle at a point of a path, with its name and evidence."""
     cycle = path.cycle(x, p)

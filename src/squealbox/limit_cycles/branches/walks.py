@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.continuation import Follower, PathPoint, StepControl, follow
+from squealbox.continuation import Equation, Follower, PathPoint, StepControl, along
 from squealbox.limit_cycles.branches.corners import MOST, Corner, beyond
+from squealbox.limit_cycles.branches.paths import CyclePath
 from squealbox.limit_cycles.branches.phases import taken_up, touches_event
-from squealbox.limit_cycles.branches.shooting_path import ShootingPath
 from squealbox.limit_cycles.branches.special_points import BranchPoint, branch_point, candidates, located
 from squealbox.result import COMPLETED, Outcome
 
@@ -29,16 +29,17 @@ class Walk:
     """Points visited with the path each lies on and what it was seen to be, and the corners by the point before."""
 
     visited: list[PathPoint] = field(default_factory=list)
-    paths: list[Any] = field(default_factory=list)
+    paths: list[CyclePath] = field(default_factory=list)
     seen: list[dict[str, Any]] = field(default_factory=list)
     corners: dict[int, Corner] = field(default_factory=dict)
     outcome: Outcome = field(default_factory=Outcome)
+    largest: float = 0.0  # swing so far
 
-    def add(self, point: PathPoint, path: Any) -> None:
+    def add(self, point: PathPoint, path: CyclePath) -> None:
         """One more point."""
         self.visited.append(point)
         self.paths.append(path)
-        self.seen.append(path.describe(point.x, point.p))
+        self.seen.append(path.describe(point.x, point.p) | {"along": float(point.tangent[-1])})
 
     def drop_last(self) -> None:
         """Leave out the last point."""
@@ -48,10 +49,11 @@ class Walk:
         """True when the last step passed through amplitude zero: what was a largest displacement is a least one."""
         if len(self.visited) < 2 or self.paths[-2] is not self.paths[-1]:
             return False
-        sizes = [np.max(about["highest"] - about["lowest"]) for about in self.seen]
-        dof = int(np.argmax(self.seen[-1]["highest"] - self.seen[-1]["lowest"]))
+        swings = [about["highest"] - about["lowest"] for about in self.seen[-2:]]
+        self.largest = max(self.largest, *(float(np.max(each)) for each in swings))
+        dof = int(np.argmax(swings[-1]))
         sides = [2.0 * about["begin"][dof] > about["highest"][dof] + about["lowest"][dof] for about in self.seen[-2:]]
-        return bool(max(sizes[-2:]) < SMALL * max(sizes) and sides[0] != sides[1])
+        return bool(np.max(swings) < SMALL * self.largest and sides[0] != sides[1])
 
     def born(self) -> Outcome:
         """The end at steady sliding: the square of the amplitude is linear in the parameter. Drops the last point."""
@@ -77,7 +79,9 @@ class Walk:
         return next((at for at, path in pairs if path is self.paths[-1] and last.arclength - at.arclength > BACK), None)
 
 
-def walked(path: Any, walk: Follower, control: StepControl, bounds: tuple[float, float], to_grazing: bool) -> Walk:
+def walked(
+    path: CyclePath, walk: Follower, control: StepControl, bounds: tuple[float, float], to_grazing: bool
+) -> Walk:
     """Walk to the end; with `to_grazing`, to the first cycle on which a contact reverses."""
     done = Walk()
     for _ in range(MOST):
@@ -95,18 +99,17 @@ def walked(path: Any, walk: Follower, control: StepControl, bounds: tuple[float,
             if done.stalls():
                 break
         done.outcome = STALLED if done.stalls() else walk.outcome
-        if done.outcome != "step_underflow" or not isinstance(path, ShootingPath):
+        if done.outcome != "step_underflow" or not path.has_corners:
             return done
         onward = _onward(done, path, walk)
         if onward is None:
             return done
         path, x, p, tangent = onward
-        walk = follow(path.residual, x, p, jacobian=path.jacobian, control=control, bounds=bounds, x_scale=path.scale,
-                      p_scale=path.span, tangent=tangent)  # fmt: skip
+        walk = along(path, x, p, control=control, bounds=bounds, tangent=tangent)
     return done
 
 
-def _onward(done: Walk, path: ShootingPath, walk: Follower) -> tuple[Any, ...] | None:
+def _onward(done: Walk, path: Any, walk: Follower) -> tuple[Any, ...] | None:
     """(path, x, p, tangent) to go on with after steps have become too small; None, with the reason, where it ends."""
     last, earlier = done.visited[-1], done.earlier()
     if touches_event(path, last.x, last.p) and earlier is not None:
@@ -118,34 +121,33 @@ def _onward(done: Walk, path: ShootingPath, walk: Follower) -> tuple[Any, ...] |
         done.outcome = corner
         return None
     done.corners[len(done.visited) - 1] = corner
-    x = corner.y * walk.scale
-    return path, x[:-1], float(x[-1]), corner.tangent
+    return path, *walk.equation.point(corner.y), corner.tangent
 
 
 def special_points(walk: Walk, parameter: str) -> list[Special]:
     """(kind, value, index of the point before, the point or None where it could not be solved for) along the walk."""
     found: list[Special] = []
-    for kind, i in candidates(walk.visited, walk.seen):
+    for event, i in candidates(walk.seen):
         path = walk.paths[i]
         if i in walk.corners or walk.paths[i + 1] is not path:
             continue
-        solved = located(path, walk.visited[i], walk.visited[i + 1], kind)
+        solved = located(path, walk.visited[i], walk.visited[i + 1], event)
         if solved is not None:
             x, p, test, uncertainty = solved
-            found.append((kind, p, i, branch_point(path, x, p, kind, parameter, test, uncertainty)))
-        elif kind != "neimark_sacker":  # there None may mean a neutral saddle, which is no bifurcation
-            found.append((kind, 0.5 * (walk.visited[i].p + walk.visited[i + 1].p), i, None))
+            found.append((event.kind, p, i, branch_point(path, x, p, event.kind, parameter, test, uncertainty)))
+        elif event.told:
+            found.append((event.kind, 0.5 * (walk.visited[i].p + walk.visited[i + 1].p), i, None))
     for i, corner in walk.corners.items():
         if i + 1 < len(walk.visited):
             found += _at_corner(walk.paths[i], i, corner, walk.visited[i + 1], parameter)
     return sorted(found, key=lambda special: special[2])
 
 
-def _at_corner(path: Any, i: int, corner: Corner, after: PathPoint, parameter: str) -> list[Special]:
+def _at_corner(path: CyclePath, i: int, corner: Corner, after: PathPoint, parameter: str) -> list[Special]:
     """A corner by its kind, and as a fold where the parameter turns back there."""
     kinds = [corner.kind]
     if corner.last.tangent[-1] * after.tangent[-1] < 0.0:
         kinds.append("fold")
-    gap = float(np.max(np.abs(np.append(corner.last.x, corner.last.p) / np.append(path.scale, path.span) - corner.y)))
+    gap = float(np.max(np.abs(Equation.of(path).y(corner.last.x, corner.last.p) - corner.y)))
     made = [branch_point(path, corner.last.x, corner.p, kind, parameter, gap, corner.uncertainty) for kind in kinds]
     return [(point.kind, corner.p, i, point) for point in made]

@@ -168,7 +168,7 @@ class Field(Autonomous):
 
     def multipliers(self, monodromy: Any) -> Any:
         """Floquet multipliers of the motion beside a free common one, as `ordered` puts them; NaN where unknown."""
-        inside = self.beside.T @ monodromy @ self.beside
+        inside = monodromy if self.held_fast is self.system else self.beside.T @ monodromy @ self.beside
         if not np.all(np.isfinite(inside)):
             return np.full(len(inside), np.nan)
         return ordered(np.linalg.eigvals(inside))

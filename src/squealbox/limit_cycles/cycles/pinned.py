@@ -49,6 +49,9 @@ def at_rest_together(system: System) -> System:
 def _common(system: System) -> Any:
     """Basis (n, held) of the motions that nothing feels and nothing drives."""
     contacts = system.contacts
+    stiff = np.linalg.svd(system.K, compute_uv=False)
+    if len(stiff) and stiff[-1] > FELT**0.5 * stiff[0]:  # springs feel every motion
+        return np.zeros((system.size, 0))
     felt = [system.K, system.C]
     felt += [np.atleast_2d(getattr(c, name)) for c in contacts for name in ("n", "t", "across")
              if getattr(c, name) is not None]  # fmt: skip

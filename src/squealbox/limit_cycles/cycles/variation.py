@@ -8,7 +8,7 @@ the last halving of the steps still changed of Phi, whichever is more, is kept a
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,26 @@ PARTS = 4  # of each step of a motion, which is as long as an order of 8 lets it
 PERIOD_STEPS = 100_000  # a stick-slip period takes some hundred: where one takes more, no cycle is in reach
 
 
+class MotionRows(NamedTuple):
+    """Rows of one motion, named as those of a `Trajectory`."""
+
+    t: Any
+    q: Any
+    qd: Any
+    normal_force: Any
+    sliding_velocity: Any
+    friction_force: Any
+    mode: Any
+    event_time: Any
+    event_contact: Any
+    event_mode: Any
+    steps: int
+    outcome: Outcome
+
+
+Moved = Trajectory | MotionRows
+
+
 @dataclass(frozen=True, eq=False)
 class Flight:
     """End x (2n,) and its rate; phi (2n, 2n) = dx(T)/dx(0); the motion; mismatch [-]; least |event rate| [-]."""
@@ -28,7 +48,7 @@ class Flight:
     x: Any
     rate: Any
     phi: Any
-    motion: Trajectory
+    motion: Moved
     mismatch: float = 0.0
     transversality: float = 1.0
     together: bool = False
@@ -55,7 +75,7 @@ def method_of(field: Autonomous, x: Any, rtol: float, most: int = PERIOD_STEPS) 
 
 
 def flight(
-    field: Field, x: Any, duration: float, rtol: float = 1e-13, *, motion: Trajectory | None = None
+    field: Field, x: Any, duration: float, rtol: float = 1e-13, *, motion: Moved | None = None
 ) -> Flight:  # fmt: skip
     """The motion from x over `duration` [s] and its derivative by x: to about 1e-12, 1e-9 with a smoothed law's kink.
 
@@ -92,7 +112,7 @@ def flight(
 
 
 def quick_flight(
-    field: Field, x: Any, duration: float, rtol: float = 1e-11, steps: int = 400, motion: Trajectory | None = None,
+    field: Field, x: Any, duration: float, rtol: float = 1e-11, steps: int = 400, motion: Moved | None = None,
     beside: tuple[Field, Field, float] | None = None,
 ) -> Flight:  # fmt: skip
     """As `flight`, with Phi by some 400 Magnus steps in all and no second look: 1e-8 in a third of the time.
@@ -149,7 +169,7 @@ def _with_parameter(
     return full, float(np.max(np.abs(by_p) * field.scale)) / (field.frequency or 1.0) or 1.0
 
 
-def smooth_rows(field: Field, motion: Trajectory) -> list[int]:
+def smooth_rows(field: Field, motion: Moved) -> list[int]:
     """Rows of the motion between which it is smooth: the first, those of the events, the last."""
     changed = np.any(motion.mode[1:] != motion.mode[:-1], axis=1)
     cuts = [int(i) for i in np.flatnonzero(changed) if i > 0] if field.contact == "exact" else []
@@ -170,7 +190,7 @@ def subdivided(t: Any, parts: int) -> Any:
     return np.append(inner.ravel(), t[-1])
 
 
-def between(run: Callable[[Any], Trajectory], edges: list[Any]) -> list[Any]:
+def between(run: Callable[[Any], Moved], edges: list[Any]) -> list[Any]:
     """States (2 k, 2n) at the two Gauss points of each of the k steps between the `edges` of each list.
 
     run : gives the motion at instants

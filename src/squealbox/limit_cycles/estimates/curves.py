@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.continuation import StepControl, follow
+from squealbox.continuation import StepControl, along
 from squealbox.family import Bounds, Family, Varied
 from squealbox.limit_cycles.branches.branch import Branch
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
@@ -125,15 +125,15 @@ def _fastest(system: Any) -> float:
 def _followed(path: HarmonicPath, x: Any, p: float, bounds: tuple[float, float], way: float) -> list[tuple[float, Any]]:
     """(value, amplitudes) along the curve one way, until it leaves the bounds or shrinks to steady sliding."""
     control = StepControl(first=1e-2, largest=0.1, most_points=POINTS, tolerance=1e-8, newton_steps=6)
-    walk = follow(path.residual, x, p, jacobian=path.jacobian, control=control, direction=way, bounds=bounds,
-                  x_scale=path.scale, p_scale=path.span)  # fmt: skip
-    first = path.series(x)[0][1, path.column - 2 * path.dofs]  # its sign changes where the amplitude passes zero
+    walk = along(path, x, p, control=control, direction=way, bounds=bounds)
+    start, _ = path.series(x)
+    column = path.column - 2 * start.shape[1]  # its sign changes where the amplitude passes zero
     points: list[tuple[float, Any]] = []
     for point in walk:
         series, _ = path.series(point.x)
         points.append((point.p, np.hypot(series[1], series[2])))
         largest = max(float(np.max(size)) for _, size in points)
-        turned = first * series[1, path.column - 2 * path.dofs] < 0.0
+        turned = start[1, column] * series[1, column] < 0.0
         if turned or np.max(points[-1][1]) < LEAST * largest:
             return points[:-1] if turned else points
     return points
