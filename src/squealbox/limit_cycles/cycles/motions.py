@@ -21,9 +21,9 @@ from squealbox.transient import Method
 from squealbox.transient._motion import EXACT, OPEN
 from squealbox.transient.lanes.flows import Ends, Flows, rows_of_all
 from squealbox.transient.lanes.shape import entries, parameter_rows
-from squealbox.transient.lanes.single import Single
+from squealbox.transient.lanes.single import Single, difference
 from squealbox.transient.lanes.table import tabulate
-from squealbox.transient.legs import by_series
+from squealbox.transient.legs import by_step
 from squealbox.transient.widened import RunApart
 
 TRIED = (0.0, 0.138, 0.618, 1.0)  # shares of the bounds at which numbers that are sums are met
@@ -69,7 +69,7 @@ class Motions:
             first, *between, last = self._of_systems(_tried(low, high))
         except (ParameterError, RunApart):
             return None
-        line = first, _difference(last, first) / (high - low), np.maximum(np.abs(first), np.abs(last)), low
+        line = first, difference(last, first) / (high - low), np.maximum(np.abs(first), np.abs(last)), low
         met = zip(_tried(low, high)[1:-1], between, strict=True)
         return line if all(_alike(_on(line, p), each, line) for p, each in met) else None
 
@@ -109,7 +109,7 @@ class Motions:
             except ParameterError as error:
                 refused = error
             else:
-                return here, _difference(after, before) / (values[2] - values[0])
+                return here, difference(after, before) / (values[2] - values[0])
         raise refused
 
     def confirmed(self, values: Sequence[float]) -> bool:
@@ -129,7 +129,7 @@ class Motions:
         n, m = self.size, self.shape.m
         self.single.fixed[3:] = self.numbers(p)[0]
         self.single.restart(x[:n], x[n:], 0.0, duration, times)
-        leg = by_series(self.single, duration)
+        leg = by_step(self.single, duration)
         rows, events, first = leg.rows, leg.events, 6 + 2 * n + m
         normal, speed, force, mode = (rows[:, first + k * m : first + (k + 1) * m] for k in range(4))
         return MotionRows(rows[:, 0], rows[:, 1 : 1 + n], rows[:, 1 + n : 1 + 2 * n], normal, speed, force, mode,
@@ -179,12 +179,6 @@ class Motions:
             return self._ends(numbers + along * slope, beside[:, :-1], duration, np.arange(len(beside)))
 
         return extrapolated(flow, np.append(x, 0.0), np.append(scale, size / self.span), size)
-
-
-def _difference(value: Any, before: Any) -> Any:
-    """What is between two; nothing where both are the same infinity."""
-    with np.errstate(invalid="ignore"):
-        return np.where(value == before, 0.0, value - before)
 
 
 def _tried(low: float, high: float) -> list[float]:

@@ -196,11 +196,11 @@ class Pushed:
         for i in range(count):
             pushed = under(np.eye(count)[i])
             for name, value in self._numbers_by_name(pushed).items():
-                self.rises[i, self.run.made.names[name]] = _rise(value, without.get(name, 0.0))
+                self.rises[i, self.run.made.names[name]] = difference(value, without.get(name, 0.0))
             for name, value in self._packed(pushed).items():
                 if not np.array_equal(value, pack[name]):
                     rises = self.fields.setdefault(name, (pack[name], np.zeros((count, *value.shape))))[1]
-                    rises[i] = _rise(value, pack[name])
+                    rises[i] = difference(value, pack[name])
         self.origin = self.run.fixed - some @ self.rises
 
     def _packed(self, system: System) -> dict[str, Any]:
@@ -220,7 +220,7 @@ class Pushed:
         return self.run
 
 
-def _rise(value: Any, before: Any) -> Any:
+def difference(value: Any, before: Any) -> Any:
     """What is between two; nothing where both are the same infinity."""
     with np.errstate(invalid="ignore"):
         return np.where(value == before, 0.0, value - before)

@@ -45,9 +45,10 @@ def step_again(A, b, lane, o):
     """The step just taken once more, with the stages of its dense output; returns its length."""
     p, r, s = o.p, o.r, o.s
     room = p.mk.shape[0]
+    t0 = A[b + ROW_T_OLD * WIDTH + lane]
+    evaluate_signals(p, t0, s)  # the load's own, whose power no lane needs otherwise, and all that `gather` sets
     gather(A, b, lane, p, s)
     load_state(A, b, lane, p, s)
-    t0 = A[b + ROW_T_OLD * WIDTH + lane]
     t1 = A[b + ROW_T * WIDTH + lane]
     s.clock[INSIDE] = np.nextafter(t1, -np.inf)
     for i in range(DOFS):
@@ -55,7 +56,6 @@ def step_again(A, b, lane, o):
         s.state[room + i] = A[b + (ROW_V_OLD + i) * WIDTH + lane]
     for k in range(CONTACTS + 4):
         s.state[2 * room + k] = A[b + (ROW_WAS + k) * WIDTH + lane]
-    evaluate_signals(p, t0, s)  # with the load's own, whose power no lane needs otherwise
     derivative(p, t0, s.state, s.mode, s, s.stage[0])
     take_step(p, r, s, t0, t1 - t0)
     return t1 - t0
