@@ -126,7 +126,7 @@ def leg(
     scheme, end = SCHEMES[ways.contact], begin + duration
 
     def marched(method: Method) -> Leg:
-        if method.tableau == TAYLOR or has_step(system):
+        if method.tableau == TAYLOR or has_step(system, ways.contact):
             return by_step(Single(system, method, q, qd, begin, duration, times, scheme, ways.width), end, progress)
         march = Scalar(system, method, scheme, ways.width, q, qd, begin, times)
         return march.leg(march.to(end, duration, progress))

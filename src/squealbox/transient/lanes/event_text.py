@@ -9,9 +9,6 @@ import numpy as np
 from squealbox.transient._sharing import RISES
 from squealbox.transient.lanes.equation_text import EquationText, minus
 
-CLOSEST = 1e-13  # share of a step: what round-off leaves of it
-RECORDED = 1e-3  # of the usual distance
-
 
 def probes(rule: Any) -> list[int]:
     """Stages inside a step whose states tell most of it: the last, or three of a method with many."""
@@ -86,9 +83,8 @@ class EventText(EquationText):
                 self.put(f"near = minimum({self.row('tolerance')}, 1e-9 * (abs({self.row(f'phi{j}')}) + abs(left{j})))")
                 sure += f" | (landing & (abs(value{j}) <= 4.0 * abs(gap) + near))"
             self.put(f"clear = clear & ({sure})")
-        farthest = 1e-3 * (RECORDED * RECORDED if shape.recorded else 1.0)
         # a contact let go a little too early would stick again at once: the margin of one that sticks is reached closer
-        self.put(f"reach = maximum(minimum({self.reach!r} * rtol_, {farthest!r}), {CLOSEST!r}) * (1.0 - 0.999 * held)")
+        self.put(f"reach = minimum({self.reach!r} * rtol_, 1e-3) * (1.0 - 0.999 * held)")
         self.put("mended = (abs(gap) <= -1.0 * reach * pace) & (t_ + 1.01 * hh < t_end_)")
         self.put(f"close = mended | (abs(gap) <= {self.row('tolerance')})")
         self.put("accepted = clear & (close | ~landing)")
@@ -212,9 +208,8 @@ class EventText(EquationText):
         """How far beside its event a trial may end, in steps and parts of rtol; a tenth of it for a sticking contact.
 
         Taylor's series takes the third derivative, and for a sticking contact the slope of its margin, from the stages.
-        The rows of a recorded motion show the event itself, so its instant has the order of the method.
         """
-        return (1000.0 if len(self.probes) > 1 else 100.0) * (RECORDED if self.shape.recorded else 1.0)
+        return 1000.0 if len(self.probes) > 1 else 100.0
 
     @property
     def velocity(self) -> list[str]:

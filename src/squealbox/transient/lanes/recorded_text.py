@@ -1,59 +1,43 @@
-"""The text by which a Runge-Kutta step of a recorded motion keeps its works, its reversals and its contacts."""
+"""The text by which a Runge-Kutta step of a recorded motion without events keeps its works, reversals and contacts."""
 
 from typing import Any
 
 from squealbox.transient.lanes.event_text import EventText
-from squealbox.transient.lanes.shape import Shape
 
 CALMER = 0.1  # of a reversal that a step without one makes up for
+KEPT = {"normal": "normal", "speed": "speed", "force": "friction"}  # of each contact at the end of a step, in rows
 
 
 class RecordedText(EventText):
     """Writes it for `step_text`."""
 
-    def __init__(self, shape: Shape) -> None:
-        super().__init__(shape)
-        self.starting: dict[str, list[str]] | None = None
-        self.end: dict[str, list[str]] = {}
-
-    def begun(self, old: Any) -> dict[str, list[str]]:
-        """The contacts at the start of the step: as rows keep them, or computed once more after possible events."""
-        if self.starting is None and self.shape.recorded and not self.shape.exact:
-            names = {"normal": "normal", "speed": "speed", "force": "friction"}
-            self.starting = {
-                name: [self.row(f"{row}_end{c}") for c in range(self.shape.m)] for name, row in names.items()
-            }
-        elif self.starting is None:
-            self.starting = self.accelerations(old[0], old[1], "t_")
-        return self.starting
+    def begun(self) -> dict[str, list[str]]:
+        """The contacts at the start of the step, as the rows keep them."""
+        return {name: [self.row(f"{row}_end{c}") for c in range(self.shape.m)] for name, row in KEPT.items()}
 
     def record(self, contact: Any, old: Any) -> None:
         """Works done, by the weights of the method as the state itself; reversals; and the contacts at the end."""
-        m, rule, shape = self.shape.m, self.rule, self.shape
+        m, begun, end = self.shape.m, self.begun(), contact[-1]
         parts: list[list[str]] = [[] for _ in range(m + 4)]
-        for j, weight in enumerate(rule.b):
+        for j, weight in enumerate(self.rule.b):
             if weight != 0.0:
-                here = self.begun(old) if j == 0 else contact[j - 1]
-                for k, power in enumerate(self.powers(j, old, here)):
+                for k, power in enumerate(self.powers(j, old, contact[j - 1] if j else begun)):
                     parts[k] += [f"{float(weight)!r} * ({power})"] if power else []
-        last = self.powers(rule.stages, old, self.end) if shape.exact else [""] * (m + 4)
         for k, terms in enumerate(parts):
             done = self.row(f"done{k}")
             self.keep(f"was{k}", done)
             if terms:
-                beyond = f" + shift * ({last[k]})" if last[k] else ""
-                self.keep(f"done{k}", f"where(accepted, {done} + hh * ({' + '.join(terms)}){beyond}, {done})")
-        if m and not shape.exact:
-            begun = self.begun(old)["speed"]
-            turned = [f"(({x} > 0.0) ^ ({y} > 0.0))" for x, y in zip(begun, self.end["speed"], strict=True)]
+                self.keep(f"done{k}", f"where(accepted, {done} + hh * ({' + '.join(terms)}), {done})")
+        if m:
+            turned = [f"(({x} > 0.0) ^ ({y} > 0.0))" for x, y in zip(begun["speed"], end["speed"], strict=True)]
             self.put(f"turned = accepted & ({' | '.join(turned)})")
             flips = self.row("flips")
             self.keep("reversals", f"{self.row('reversals')} + 1.0 * turned")
             calmer = f"where(accepted, maximum({flips} - {CALMER!r}, 0.0), {flips})"
             self.keep("flips", f"where(turned, {flips} + 1.0, {calmer})")
-        for name, row in (("normal", "normal"), ("speed", "speed"), ("force", "friction")):
-            for c in range(0 if shape.exact else m):
-                self.keep(f"{row}_end{c}", f"where(accepted, {self.end[name][c]}, {self.row(f'{row}_end{c}')})")
+        for name, row in KEPT.items():
+            for c in range(m):
+                self.keep(f"{row}_end{c}", f"where(accepted, {end[name][c]}, {self.row(f'{row}_end{c}')})")
 
     def powers(self, stage: int, old: Any, contact: dict[str, list[str]]) -> list[str]:
         """Powers of each friction, of load, circulation, damping and opening, as `_motion.energy_rates` has them."""

@@ -38,7 +38,6 @@ from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
 from squealbox.transient.lanes.recording import first_row, log_event, room_left, series_held, write_rows
 from squealbox.transient.lanes.samples import on_end, on_quintic, on_series, on_step
-from squealbox.transient.lanes.stages_again import held_between
 
 OVERFLOW = 1e200  # a state that large has a series beyond all numbers
 TOO_LARGE = 1e30  # one whose error has an eighth power beyond them
@@ -68,11 +67,9 @@ def run(A, live, o):
                         return False
                     busy += 1
                     flags = step(A, g * size)
-                    if RECORDED and EXACT_CONTACT:
-                        held = series_held(A, 0, o.p) if SERIES else held_between(A, 0, 0, o)
-                        if not held:
-                            finish(A, 0, 0, MISSED, o.out)
-                            return True
+                    if RECORDED and EXACT_CONTACT and not series_held(A, 0, o.p):
+                        finish(A, 0, 0, MISSED, o.out)
+                        return True
                     if flags != 0:
                         live[g] -= serve(A, g * size, flags, o)
             if busy == 0:

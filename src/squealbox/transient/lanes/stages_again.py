@@ -1,5 +1,5 @@
 """What lies within a Runge-Kutta step of a recorded motion: the step is taken once more with the records of the scalar
-march, whose dense output tells the rows asked for and whether the modes held. Compiled by `kernel`.
+march, whose dense output tells the rows asked for. Compiled by `kernel`; without events.
 """
 
 # ruff: noqa: F821  (the places of the rows, the counts and gather are generated; load_state is of `service`)
@@ -7,38 +7,26 @@ march, whose dense output tells the rows asked for and whether the modes held. C
 
 import numpy as np
 
-from squealbox.transient._events import event_values
-from squealbox.transient._march import SAMPLED, modes_held, write_row
+from squealbox.transient._march import write_row
 from squealbox.transient._motion import INSIDE, ROWS, derivative, evaluate_signals, row_mode
 from squealbox.transient._runge_kutta import dense_stages, interpolate, take_step
 
 
 def write_end(A, b, lane, row, o):
     """The row at the end of the step just taken."""
-    p, s = o.p, o.s
-    t = A[b + ROW_T * WIDTH + lane]
-    row[0] = t
+    row[0] = A[b + ROW_T * WIDTH + lane]
     for i in range(DOFS):
         row[1 + i] = A[b + (ROW_Q + i) * WIDTH + lane]
         row[1 + DOFS + i] = A[b + (ROW_V + i) * WIDTH + lane]
     for k in range(CONTACTS + 4):
         row[1 + 2 * DOFS + k] = A[b + (ROW_DONE + k) * WIDTH + lane]
     row[5 + 2 * DOFS + CONTACTS] = 0.0
-    if EXACT_CONTACT:
-        gather(A, b, lane, p, s)
-        load_state(A, b, lane, p, s)
-        s.clock[INSIDE] = np.nextafter(t, -np.inf)  # a kink at the end is seen from the left
-        derivative(p, t, s.state, s.mode, s, s.dy)
     first = 6 + 2 * DOFS + CONTACTS
     for c in range(CONTACTS):
-        if not EXACT_CONTACT:
-            s.normal[c] = A[b + (ROW_NORMAL_END + c) * WIDTH + lane]
-            s.speed[c] = A[b + (ROW_SPEED_END + c) * WIDTH + lane]
-            s.force[c] = A[b + (ROW_FRICTION_END + c) * WIDTH + lane]
-        row[first + c] = s.normal[c]
-        row[first + CONTACTS + c] = s.speed[c]
-        row[first + 2 * CONTACTS + c] = s.force[c]
-        row[first + 3 * CONTACTS + c] = row_mode(p, c, s.mode, s.normal[c], s.speed[c])
+        row[first + c] = A[b + (ROW_NORMAL_END + c) * WIDTH + lane]
+        row[first + CONTACTS + c] = A[b + (ROW_SPEED_END + c) * WIDTH + lane]
+        row[first + 2 * CONTACTS + c] = A[b + (ROW_FRICTION_END + c) * WIDTH + lane]
+        row[first + 3 * CONTACTS + c] = row_mode(o.p, c, o.s.mode, row[first + c], row[first + CONTACTS + c])
 
 
 def step_again(A, b, lane, o):
@@ -74,17 +62,3 @@ def write_within(A, b, lane, k, o):
         write_row(p, s, o.rows, times[k], s.y_dense)
         k += 1
     return k
-
-
-def held_between(A, b, lane, o):
-    """Whether the modes held throughout the step just taken: every so many steps, a look in twice as many places."""
-    p, r, s = o.p, o.r, o.s
-    t0 = A[b + ROW_T_OLD * WIDTH + lane]
-    if int(A[b + ROW_TAKEN * WIDTH + lane]) % SAMPLED != 0:
-        return True
-    if not A[b + ROW_T * WIDTH + lane] - t0 > A[b + ROW_WINDOW * WIDTH + lane]:
-        return True
-    h = step_again(A, b, lane, o)
-    event_values(p, t0, s.state, s.mode, s, s.phi0)
-    event_values(p, t0 + h, s.state_new, s.mode, s, s.phi1)
-    return modes_held(p, r, t0, h, s)

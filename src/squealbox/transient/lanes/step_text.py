@@ -25,6 +25,7 @@ class Step(RecordedText):
     def __init__(self, shape: Shape) -> None:
         super().__init__(shape)
         self.scales: dict[float, str] = {}
+        self.starting: dict[str, list[str]] | None = None
         self.rule = tableau(shape.tableau)
         self.probes = probes(self.rule)
         places = [0.0, *self.rule.c[self.probes], 1.0]
@@ -327,5 +328,7 @@ class Step(RecordedText):
         self.keep(f"work{c}", f"where(accepted, worked{c}, work{c}_)")
 
     def starting_force(self, c: int, old: Any) -> str:
-        """The friction force at the start of the step."""
-        return self.begun(old)["force"][c]
+        """The friction force at the start of the step, computed once more: no row keeps it."""
+        if self.starting is None:
+            self.starting = self.accelerations(old[0], old[1], "t_")
+        return self.starting["force"][c]
