@@ -5,7 +5,7 @@ import pytest
 
 from squealbox import Contact, Coulomb, Ramp, Sinusoid, System, simulate, simulate_ensemble
 
-COUNT, DURATION = 150, 25.0
+COUNT, DURATION = 50, 25.0
 
 
 def braking(rng):

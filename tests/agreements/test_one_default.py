@@ -19,7 +19,8 @@ def test_a_file_takes_the_usual_method_of_python(tmp_path, contact):
     assert (filed.qd == plain.qd).all()
 
 
-def test_the_command_line_too(tmp_path):
+def test_the_command_line_too(tmp_path, monkeypatch):
+    monkeypatch.setattr("squealbox.plots.save", lambda figure, path: [])
     path, out = tmp_path / "drum.toml", tmp_path / "out"
     path.write_text('brake = "drum_brake"\n')
     for words, expected in (

@@ -83,7 +83,7 @@ def test_there_are_options_of_several_values():
 
 def test_a_negative_quantity_is_the_value_of_its_option(said, brake):
     """--x theta1 -180deg 180deg was refused, --range -90deg 90deg taken."""
-    told = [said("map", brake, "--points", "5", *words, "--y", "friction.static", "0", "1") for words in (
+    told = [said("map", brake, "--points", "5", *words, "--y", "friction.static", "0", "0.2") for words in (
         ["--x", "theta1", "-3.1 rad", "-10deg"], ["--x", "theta1", "-3.1", f"-{10 * 3.141592653589793 / 180}"],
     )]  # fmt: skip
     assert told[0] == told[1]

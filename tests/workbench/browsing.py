@@ -46,9 +46,12 @@ def launched():
 
 
 class Page:
-    """A page of the workbench. Leaving it fails on script errors and on requests to anything but the server itself."""
+    """A page of the workbench. Leaving it fails on script errors and on requests to anything but the server itself.
 
-    def __init__(self, browser, server, *, scheme="light", size=(1280, 800), motion="no-preference"):
+    It keeps still unless `motion` is "no-preference": a moving brake takes half a core from whatever a test waits for.
+    """
+
+    def __init__(self, browser, server, *, scheme="light", size=(1280, 800), motion="reduce"):
         self.server = server
         view = {"width": size[0], "height": size[1]}
         self.context = browser.new_context(viewport=view, color_scheme=scheme, reduced_motion=motion)

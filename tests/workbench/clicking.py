@@ -118,7 +118,7 @@ def main(minutes: float, seed: int) -> None:
     """Click for so many minutes and say what came of it."""
     with tempfile.TemporaryDirectory() as folder, launched() as browser:
         server = Server(Path(folder))
-        page = Page(browser, server)
+        page = Page(browser, server, motion="no-preference")
         page.goto()
         found = clicked(page, server, 60.0 * minutes, seed)
         first, last = found["looks"][min(2, len(found["looks"]) - 1)], found["looks"][-1]

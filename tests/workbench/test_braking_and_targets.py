@@ -90,6 +90,7 @@ def test_the_words_of_a_target_say_its_numbers():
 
 def test_the_picture_keeps_the_clock_of_the_sound(same_page):
     page = same_page
+    page.page.emulate_media(reduced_motion="no-preference")
     page.enter("friction.static", "0.36")
     page.ask("listen")
     page.option("listen", slow="8")
@@ -104,6 +105,7 @@ def test_the_picture_keeps_the_clock_of_the_sound(same_page):
     page.page.click("section[data-panel=listen] .buttons >> text=Stop")
     page.until(f"{AT} === -1")
     assert "flash" not in page.says("moving")
+    page.page.emulate_media(reduced_motion="reduce")
 
 
 def test_a_click_goes_to_the_needed_value_and_discs_carry_numbers(same_page):

@@ -9,7 +9,7 @@ GROWTH = 0.5  # of the elements of the page between two looks at the same design
 
 def test_what_a_random_hand_does_breaks_nothing(browser, tmp_path):
     server = Server(tmp_path)
-    with Page(browser, server) as page:  # leaving it fails on script errors
+    with Page(browser, server, motion="no-preference") as page:  # leaving it fails on script errors
         page.goto()
         found = clicked(page, server, 0.0, seed=7, visits=60)
         assert found["dead"] == []

@@ -46,7 +46,7 @@ DRAG = """([path, values]) => new Promise(done => {
 @pytest.fixture
 def counted(browser, server):
     """A page with the questions it sent and the answers it got, from when everything is drawn."""
-    with Page(browser, server) as page:
+    with Page(browser, server, motion="no-preference") as page:
         sent, received = [], []
         page.page.on("websocket", lambda socket: (
             socket.on("framesent", lambda data: sent.append(json.loads(data))),

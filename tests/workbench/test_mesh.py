@@ -31,7 +31,7 @@ def opened(page):
 
 
 def test_the_surface_moves_and_is_turned_by_keys_wheel_and_hand(disc, browser):
-    with Page(browser, disc) as page:
+    with Page(browser, disc, motion="no-preference") as page:
         opened(page)
         share, before, _ = page.page.evaluate(PICTURE)
         assert 0.05 < share < 0.9
@@ -63,7 +63,7 @@ def test_the_surface_moves_and_is_turned_by_keys_wheel_and_hand(disc, browser):
 
 
 def test_another_mode_sends_no_second_mesh_and_less_motion_stands_still(disc, browser):
-    with Page(browser, disc, motion="reduce") as page:
+    with Page(browser, disc) as page:
         sent = []
         page.page.on("websocket", lambda socket: socket.on("framesent", lambda data: sent.append(str(data))))
         opened(page)

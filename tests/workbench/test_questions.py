@@ -98,6 +98,7 @@ def spots(page):
 
 def test_the_brake_moves_and_stands_still_for_those_who_want_that(shared, browser, server):
     ask(shared, "why")
+    shared.page.emulate_media(reduced_motion="no-preference")
     shared.drawn("moving")
     before = spots(shared)
     shared.page.wait_for_timeout(300)
@@ -111,7 +112,8 @@ def test_the_brake_moves_and_stands_still_for_those_who_want_that(shared, browse
     shared.page.evaluate("import('/static/app.js').then(({ app }) => app.dispatchEvent(new CustomEvent('motion')))")
     assert spots(shared) == still, "news of a motion do not move what is held"
     shared.page.click("section[data-panel=moving] >> text=Move")
-    with Page(browser, server, motion="reduce") as calm:
+    shared.page.emulate_media(reduced_motion="reduce")
+    with Page(browser, server) as calm:
         calm.goto()
         calm.drawn("moving")
         still = spots(calm)
@@ -120,6 +122,7 @@ def test_the_brake_moves_and_stands_still_for_those_who_want_that(shared, browse
 
 
 def test_stick_and_slip_have_their_colours_and_a_dot_goes_along(page):
+    page.page.emulate_media(reduced_motion="no-preference")
     page.page.select_option("#brake", "mass_on_belt")
     page.drawn("motion")
     page.page.wait_for_selector(".contact[data-state=stick]", timeout=30_000)

@@ -170,7 +170,7 @@ def _tuned(start: TunedMass) -> Callable[[Any, Any], Linearised]:
     before = start.spring_and_damper
 
     def tuned(frequency: Any, damping: Any) -> Linearised:
-        spring, damper = start.replace(frequency=frequency, damping=damping).spring_and_damper
+        spring, damper = start.tuned_to(frequency, damping)
         stiffness = about.K + outer(spring - before[0], row, row)
         losses = about.C + outer(damper - before[1], row, row)
         state, shape = about.equilibrium, np.shape(spring)

@@ -57,8 +57,12 @@ class TunedMass(Countermeasure):
     @property
     def spring_and_damper(self) -> tuple[Any, Any]:
         """Stiffness [N/m] and damping [N s/m] between the absorber and the brake."""
-        mass, rate = np.asarray(self.mass), 2.0 * np.pi * np.asarray(self.frequency)
-        return mass * rate**2, 2.0 * self.damping * mass * rate
+        return self.tuned_to(self.frequency, self.damping)
+
+    def tuned_to(self, frequency: Any, damping: Any) -> tuple[Any, Any]:
+        """Those of a frequency [Hz] and a damping ratio (...) of the same mass, unchecked."""
+        mass, rate = np.asarray(self.mass), 2.0 * np.pi * np.asarray(frequency)
+        return mass * rate**2, 2.0 * damping * mass * rate
 
 
 class AddedMass(Countermeasure):

@@ -3,6 +3,7 @@
 [[0, I], [-M^-1 K, -M^-1 C]], with time scaled by a typical angular frequency.
 """
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -92,11 +93,19 @@ def state_matrix(about: Linearised) -> tuple[Any, Any, Any, Outcome]:
 
 def _regular(mass: Any) -> Any:
     """Whether M can be inverted, judged after its rows and columns are brought to one size: kg beside kg m2."""
+    if mass.ndim == 2:
+        return _regular_alone(np.asarray(mass, dtype=float).tobytes(), len(mass))
     with np.errstate(all="ignore"):
         regular = np.asarray(np.linalg.cond(mass, 1) < 1.0 / np.finfo(float).eps)
         if not np.all(regular):
             regular[~regular] = np.linalg.cond(levelled(mass[~regular])[0], 1) < 1.0 / np.finfo(float).eps
     return regular
+
+
+@lru_cache(maxsize=64)
+def _regular_alone(content: bytes, size: int) -> Any:
+    """Of one M, which searches ask about thousands of times."""
+    return _regular(np.frombuffer(content).reshape(1, size, size))[0]
 
 
 def _once(mass: Any) -> Any:
