@@ -8,22 +8,11 @@ from cyclopts import Parameter
 
 from squealbox.cli.answers import keep
 from squealbox.cli.branches import all_branches
-from squealbox.cli.inputs import (
-    Ends,
-    Vary,
-    axis,
-    folder,
-    in_motion,
-    number,
-    read,
-    readable,
-    time_of,
-    varied_by,
-    with_points,
-)
+from squealbox.cli.inputs import AS_FILED, OneVaried, folder, in_motion, number, read, readable, time_of
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
+from squealbox.family import ParameterAxis
 from squealbox.limit_cycles import BifurcationDiagram, Branch, Section, bifurcation_diagram
 from squealbox.limit_cycles.attractors.settling import KINDS
 from squealbox.parameters import known_names
@@ -33,7 +22,6 @@ ABOUT = {"diagram": "what transients settle to over a parameter, with a Poincare
 
 if TYPE_CHECKING:
     from squealbox.designs import Design
-    from squealbox.files.analyses import Varied
 
 Sweep = Literal["up", "down", "rest"]
 Sweeps = Annotated[tuple[Sweep, ...], Parameter(negative="", consume_multiple=True)]
@@ -45,10 +33,7 @@ NAMED = {"maxima": Section.maxima, "minima": Section.minima, "return": Section.r
 def diagram(
     file: Path,
     *,
-    vary: Vary = (),
-    parameter: str | None = None,
-    range: Ends = None,
-    points: int | None = None,
+    varies: OneVaried = AS_FILED,
     sweeps: Sweeps = ("up", "down", "rest"),
     starts: int = 0,
     dof: str | None = None,
@@ -70,14 +55,6 @@ def diagram(
     ----------
     file
         design file; its section [branch] says what is varied, unless the options do
-    vary
-        a parameter and its lowest and highest value: friction.static=0.1:0.6, or theta1=20deg:160deg
-    parameter
-        its dotted name, where --range stands beside it
-    range
-        lowest and highest value, with or without a unit: 0.1 0.6
-    points
-        number of values
     sweeps
         some of up, down and rest
     starts
@@ -99,7 +76,7 @@ def diagram(
         folder for a figure, the tables diagram.csv and section.csv, and diagram.nc
     """
     found = read(file, asked)
-    varied = with_points(axis(found.design, found.branch, *varied_by(vary, parameter, range)), points)
+    varied = varies.of(found.design, found.branch)
     found = in_motion(found, varied)
     length = None if duration is None else time_of("--duration", duration)
     plane = _section(found.design, section, dof)
@@ -144,7 +121,7 @@ def _section(design: "Design", text: str, dof: str | None) -> Section:
     return Section(name, where, number(words[2], unit, f"--section {text[:60]}") if len(words) == 3 else 0.0, way)
 
 
-def _said(result: BifurcationDiagram, design: "Design", varied: "Varied") -> str:
+def _said(result: BifurcationDiagram, design: "Design", varied: ParameterAxis) -> str:
     def shown(value: float) -> str:
         read_, unit = readable(design, varied, value)
         return f"{float(read_):.6g} {unit}".rstrip()
@@ -178,7 +155,12 @@ def _units(result: BifurcationDiagram) -> dict[str, str]:
 
 
 def _files(
-    result: BifurcationDiagram, several: tuple[Branch, ...], design: "Design", varied: "Varied", title: str, out: Path
+    result: BifurcationDiagram,
+    several: tuple[Branch, ...],
+    design: "Design",
+    varied: ParameterAxis,
+    title: str,
+    out: Path,
 ) -> list[Path]:
     """Figure, tables and data."""
     from squealbox import plots

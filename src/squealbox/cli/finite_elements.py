@@ -8,11 +8,11 @@ import numpy as np
 
 from squealbox.cli.inputs import small
 from squealbox.cli.tables import write_csv, written
+from squealbox.family import ParameterAxis
 from squealbox.fe.assembled import AssembledBrake
 from squealbox.fe.meshed import MeshedBrake
 from squealbox.fe.mode_shapes import write_uff, write_vtu
 from squealbox.files import DesignFile
-from squealbox.files.analyses import Varied
 from squealbox.files.reduced import Reduce, Reduced
 from squealbox.files.varied import scalar_parameters
 from squealbox.stability import complex_modes
@@ -74,7 +74,7 @@ def _coalescence(found: DesignFile, band: tuple[float, float], out: Path) -> lis
         return []
     top = float(found.design.value_of(FRICTION))
     given = found.onset
-    varied = given if given is not None and given.name == FRICTION else Varied(FRICTION, 0.0, max(1.5 * top, 0.1))
+    varied = given if given and given.name == FRICTION else ParameterAxis(FRICTION, 0.0, max(1.5 * top, 0.1))
     about = found.reduce or Reduced(Reduce(), {})
     asked = dataclasses.replace(found, reduce=dataclasses.replace(about, how=about.how.replace(band=np.array(band))))
     brake = small(asked, varied).design

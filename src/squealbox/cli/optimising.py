@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import folder, read, small
+from squealbox.cli.inputs import NOTHING_SAID, Said, folder, read, small
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
 from squealbox.files import write_design
-from squealbox.studies import Optimum
+from squealbox.studies import Optimum, SearchSettings
 from squealbox.studies import optimise as optimised
 from squealbox.studies.quantity import unit_of
 from squealbox.waiting import Progress
@@ -22,7 +22,7 @@ ABOUT = {"optimise": "the best design within bounds: before and after, or a Pare
 def optimise(
     file: Path,
     *,
-    seed: int | None = None,
+    how: Said[SearchSettings] = NOTHING_SAID,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
@@ -35,8 +35,6 @@ def optimise(
     ----------
     file
         design file with a section [optimise]
-    seed
-        another seed than that of the file
     out
         folder for the figure, the designs as a table, and the best one as a design file
     """
@@ -48,18 +46,16 @@ def optimise(
     robust = set(over) != {"nominal"}
     if robust and found.scatter is None:
         raise UsageError(f"{file} has goals over scatter but no section [scatter]")
-    if seed is not None and seed < 0:
-        raise UsageError(f"--seed {seed}: expected a whole number of at least 0")
+    effort = how.over(section.effort)
     if out is not None:
         folder(out, "optimum")
     found = small(found)
-    effort = section.effort
     with Progress(f"optimising {', '.join(section.variables)}"):
         result = optimised(
             found.design, section.variables, section.goals, section.constraints,
             scatter=found.scatter.scatter if robust and found.scatter else None, samples=int(effort.samples),
             method=effort.method, population=int(effort.population),  # type: ignore[arg-type]
-            generations=int(effort.generations), seed=int(effort.seed if seed is None else seed),
+            generations=int(effort.generations), seed=int(effort.seed),
         )  # fmt: skip
     show(f"{found.design.title}, {file}", result)
     if out is not None:

@@ -9,13 +9,13 @@ from cyclopts import Parameter
 
 from squealbox import studies
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import folder, read, small
+from squealbox.cli.inputs import NOTHING_SAID, Said, folder, read, small
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import write_csv, written
-from squealbox.files.uncertain import STUDIES, Sampled, Scattered
-from squealbox.parameters import ParameterError
+from squealbox.files.uncertain import STUDIES, Scattered
 from squealbox.result import Result
+from squealbox.studies import SampleSettings
 from squealbox.studies.quantity import unit_of
 from squealbox.waiting import Progress
 
@@ -32,8 +32,7 @@ def scatter(
     file: Path,
     *,
     study: Several = (),
-    samples: int | None = None,
-    seed: int | None = None,
+    how: Said[SampleSettings] = NOTHING_SAID,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
@@ -47,10 +46,6 @@ def scatter(
         design file with a section [scatter]
     study
         what is asked: probability, sobol, morris, form, subset, surrogate, bounds; one or several
-    samples
-        points of the samples, instead of those of the file
-    seed
-        another seed than that of the file
     out
         folder for figures, tables and results
     """
@@ -59,7 +54,7 @@ def scatter(
     if section is None:
         raise UsageError(f"{file} has no section [scatter], which says what scatters and how")
     wanted = _wanted(study or section.studies)
-    sampled = _sampled(section.sampled, samples, seed)
+    sampled = how.over(section.sampled)
     if out is not None:
         folder(out, *wanted)
     found = small(found)
@@ -87,25 +82,17 @@ def _wanted(names: tuple[str, ...]) -> list[str]:
     return list(dict.fromkeys(names))
 
 
-def _sampled(given: Sampled, samples: int | None, seed: int | None) -> Sampled:
-    changes = {name: value for name, value in (("samples", samples), ("seed", seed)) if value is not None}
-    try:
-        return given.replace(changes)
-    except ParameterError as error:
-        raise UsageError(f"--{error.name} {error.value}: {error.expectation}") from error
-
-
-def _probability(design: "Design", section: Scattered, how: Sampled) -> Result:
+def _probability(design: "Design", section: Scattered, how: SampleSettings) -> Result:
     return studies.squeal_probability(
         design, section.scatter, section.quantity, samples=int(how.samples), method=how.sampling,  # type: ignore[arg-type]
         seed=int(how.seed), level=how.level,
     )  # fmt: skip
 
 
-def _by(function: Callable[..., Result], **settings: Any) -> Callable[["Design", Scattered, Sampled], Result]:
+def _by(function: Callable[..., Result], **settings: Any) -> Callable[["Design", Scattered, SampleSettings], Result]:
     """A study that takes no kind of points; a setting that is a function is one of the number of samples."""
 
-    def run(design: "Design", section: Scattered, how: Sampled) -> Result:
+    def run(design: "Design", section: Scattered, how: SampleSettings) -> Result:
         chosen = {name: value(int(how.samples)) if callable(value) else value for name, value in settings.items()}
         if function is not studies.polynomial_chaos:
             chosen["level"] = how.level
@@ -114,11 +101,11 @@ def _by(function: Callable[..., Result], **settings: Any) -> Callable[["Design",
     return run
 
 
-def _bounds(design: "Design", section: Scattered, how: Sampled) -> Result:
+def _bounds(design: "Design", section: Scattered, how: SampleSettings) -> Result:
     return studies.interval_bounds(design, section.scatter.box(), section.quantity, seed=int(how.seed))
 
 
-RUNS: dict[str, Callable[["Design", Scattered, Sampled], Result]] = {
+RUNS: dict[str, Callable[["Design", Scattered, SampleSettings], Result]] = {
     "probability": _probability,
     "sobol": _by(studies.sobol_indices, samples=int),
     "morris": _by(studies.morris_effects, trajectories=50),

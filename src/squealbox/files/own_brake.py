@@ -7,9 +7,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.files.arrays import Matrix, Vector
 from squealbox.friction import Coulomb, FrictionLaw
-from squealbox.parameters import DataSheet, Parameter, ParameterError, parameter
+from squealbox.parameters import DataSheet, Matrix, Parameter, ParameterError, Vector, parameter
 from squealbox.schedules import Schedule, value_at
 from squealbox.system import Contact, System
 

@@ -19,20 +19,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.family import ParameterAxis
 from squealbox.fe.readers.matrix import MatrixFileError
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.fe.reduced_files import load_reduced
 from squealbox.fe.surface import with_surface
-from squealbox.files.analyses import Simulate, Varied, read_ends
-from squealbox.files.arrays import ArrayFileError, Vector, path_beside
+from squealbox.files.analyses import read_ends
+from squealbox.files.arrays import ArrayFileError, path_beside
 from squealbox.files.asked import known
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, shown, wrong
 from squealbox.files.sheets import read_law, read_sheet
 from squealbox.files.varied import flattened, quantity_of
-from squealbox.parameters import DataSheet, ParameterError, choice, known_names, parameter
+from squealbox.parameters import DataSheet, ParameterError, Vector, choice, known_names, parameter
 from squealbox.system import InvalidSystem
+from squealbox.transient import MotionSettings
 
 if TYPE_CHECKING:
     from squealbox.files.reading import DesignFile
@@ -115,7 +117,7 @@ def read_reduced(document: Document, tables: Mapping[str, Any], beside: tuple[st
     return brake if len(document.problems) == before else None
 
 
-def dense(found: "DesignFile", axes: Iterable[Varied] = ()) -> "DesignFile":
+def dense(found: "DesignFile", axes: Iterable[ParameterAxis] = ()) -> "DesignFile":
     """The file with its finite-element brake reduced for `axes` and for what its sections vary.
 
     A brake with dense matrices is returned as it is. Raises `InvalidSystem`, one sentence, without a band.
@@ -170,7 +172,7 @@ def _from_rest(found: "DesignFile") -> "DesignFile":
 
     "rest" is q = 0 of the full brake; what the file adds to the start has a number for each freedom of the full one.
     """
-    small, asked = found.design, found.simulate or Simulate()
+    small, asked = found.design, found.simulate or MotionSettings()
     if not isinstance(small, ReducedBrake):
         return found
     q, qd = (field if field is None or small.full is None else _on_basis(small, field) for field in (asked.q, asked.qd))
@@ -207,7 +209,7 @@ def error_table(brake: ReducedBrake) -> str:
     return "\n".join(rows)
 
 
-def _ranges(found: "DesignFile", axes: Iterable[Varied]) -> dict[str, tuple[float, float]]:
+def _ranges(found: "DesignFile", axes: Iterable[ParameterAxis]) -> dict[str, tuple[float, float]]:
     """Everything that is varied, each over the union of its ranges."""
     spans = [(axis.name, float(axis.low), float(axis.high)) for axis in axes]
     if found.reduce is not None:

@@ -5,9 +5,7 @@ declared unit and range, a schedule where the declaration allows one, a friction
 """
 
 import dataclasses
-import functools
 import re
-import types
 import typing
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeVar
@@ -16,12 +14,12 @@ import numpy as np
 
 from squealbox.files.arrays import ArrayFileError, path_beside, read_array
 from squealbox.files.document import Document, read_bytes
-from squealbox.files.lines import Key
+from squealbox.files.lines import Key, dotted
 from squealbox.files.numbers import LONGEST, WRONG, read_choice, read_number, shown, wrong
 from squealbox.files.own_law import LARGEST as LARGEST_LAW
 from squealbox.files.own_law import OwnLaw, own_law
 from squealbox.friction import LAWS, FrictionLaw
-from squealbox.parameters import DataSheet, Parameter, ParameterError, known_names
+from squealbox.parameters import DataSheet, Parameter, ParameterError, field_type, known_names
 from squealbox.registers import name_of
 from squealbox.schedules import SCHEDULES, Schedule, Sum, as_schedule
 
@@ -50,8 +48,11 @@ def read_sheet(
     multiplied = getattr(sheet, "unit_for", None)
     unit = multiplied(table) if multiplied else unit
     values: dict[str, Any] = {}
-    for given, value in table.items():
-        names = sheet.aliases.get(given, (given,))
+    for given, value in sheet.spelled(table).items():
+        now = sheet.formerly.get(given, given)
+        if now != given:
+            document.cautions.append(f"{dotted((*key, given))} is called {now} now")
+        names = sheet.aliases.get(now, (now,))
         if names[0] not in sheet.field_names():
             known = known_names(given[:LONGEST], [*sheet.field_names(), *sheet.aliases, *beside])
             document.problem((*key, given), f"unknown key, {known}")
@@ -103,22 +104,6 @@ def read_field(document: Document, sheet: type[DataSheet], name: str, value: Any
     if typing.get_origin(declared) in (tuple, Sequence) and issubclass(typing.get_args(declared)[0], DataSheet):
         return _sheets(document, typing.get_args(declared)[0], value, key)
     raise TypeError(f"{sheet.__name__}.{name}: a file cannot hold a {declared}")
-
-
-@functools.cache
-def _hints(sheet: Any) -> dict[str, Any]:
-    """Kept: reading them evaluates text, and every slider's move asks."""
-    return typing.get_type_hints(sheet, include_extras=True)
-
-
-def field_type(sheet: type[DataSheet], name: str) -> Any:
-    """The type a field is annotated with, without a None that stands beside it."""
-    kind: Any = sheet  # hashed as a class, by identity; its instances by value
-    declared = _hints(kind)[name]
-    if isinstance(declared, types.UnionType):
-        parts = [part for part in typing.get_args(declared) if part is not types.NoneType]
-        return parts[0] if len(parts) == 1 else Any
-    return declared
 
 
 def read_parameter(document: Document, value: Any, about: Parameter, key: Key, *, several: bool = False) -> Any:

@@ -13,8 +13,7 @@ from squealbox.designs import Design
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import wrong
-from squealbox.files.sheets import field_type
-from squealbox.parameters import Choice, Parameter, ParameterError, known_names
+from squealbox.parameters import Choice, Parameter, ParameterError, field_type, known_names
 
 VARY = "vary"
 EXAMPLE = "{ 'friction.static' = [0, 1] }"

@@ -19,10 +19,10 @@ from squealbox.files.countermeasures import wrapped_text
 from squealbox.files.document import LARGEST
 from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES
-from squealbox.files.sheets import SCHEDULE_NAMES, field_type, unit_in
+from squealbox.files.sheets import SCHEDULE_NAMES, unit_in
 from squealbox.files.units import in_si
 from squealbox.friction import FrictionLaw
-from squealbox.parameters import Choice, DataSheet, Parameter
+from squealbox.parameters import Choice, DataSheet, Parameter, field_type
 from squealbox.registers import name_of
 from squealbox.schedules import Constant, Schedule, Sum
 

@@ -10,7 +10,7 @@ from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import AoT, Array, InlineTable, Table
 
 from squealbox.designs import Design
-from squealbox.files.analyses import Varied
+from squealbox.family import ParameterAxis
 from squealbox.files.document import DesignFileError
 from squealbox.files.reading import SECTIONS, STUDY, DesignFile, read_text
 from squealbox.files.units import UnitError, in_si, split, unit
@@ -122,7 +122,7 @@ def _si(text: str) -> float:
     return number * unit(name).factor
 
 
-def _axes(found: DesignFile) -> Iterator[tuple[str, str, Varied]]:
+def _axes(found: DesignFile) -> Iterator[tuple[str, str, ParameterAxis]]:
     """(panel, its option, axis) of the sections that name one."""
     if found.map is not None:
         yield from (("map", "x", found.map.x), ("map", "y", found.map.y))
@@ -131,7 +131,7 @@ def _axes(found: DesignFile) -> Iterator[tuple[str, str, Varied]]:
             yield panel, "parameter", axis
 
 
-def _told(axis: Varied) -> dict[str, Any]:
+def _told(axis: ParameterAxis) -> dict[str, Any]:
     return {"parameter": axis.name, "range": [axis.low, axis.high], "points": int(axis.points)}
 
 

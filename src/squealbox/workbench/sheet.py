@@ -9,10 +9,10 @@ import numpy as np
 
 from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
-from squealbox.files.sheets import LAW_NAMES, field_type
+from squealbox.files.sheets import LAW_NAMES
 from squealbox.files.varied import scalar_parameters
 from squealbox.friction import FrictionLaw
-from squealbox.parameters import DataSheet, Parameter
+from squealbox.parameters import DataSheet, Parameter, field_type
 from squealbox.registers import name_of
 from squealbox.schedules import Schedule
 from squealbox.words import read_in
