@@ -110,6 +110,11 @@ def varied(design: Any, values: Mapping[str, Any]) -> Any:
     return design(*values.values()) if is_recipe(design) else design.replace(values)
 
 
+def unit_of(design: Any, path: str) -> str:
+    """The unit of a parameter, for tables and figures; empty when nothing declares it."""
+    return design.unit_of(path) if isinstance(design, DataSheet) else ""
+
+
 def bounds_of(owner: str, name: str, given: Any) -> Bounds:
     """(low, high) of a parameter, or the ends of an axis."""
     if all(hasattr(given, each) for each in ("low", "high", "points")):

@@ -302,11 +302,10 @@ def from_plain(value: Any) -> Any:
 
 def _sheet_class(kind: object) -> type[DataSheet]:
     name = kind if isinstance(kind, str) else ""
-    if name not in _SHEETS:
-        load_kind(name)
-    if name not in _SHEETS:
+    found = _SHEETS.get(name) or load_kind(name)
+    if found not in _SHEETS.values():  # which may have another place today
         raise ParameterError("file", "kind", kind, known_names(name, sorted(_SHEETS)))
-    return _SHEETS[name]
+    return found
 
 
 def _checked(sheet: DataSheet, name: str, about: Parameter) -> Any:

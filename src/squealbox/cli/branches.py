@@ -66,8 +66,7 @@ def branch(
     """
     found = read(file, asked)
     varied = varies.of(found.design, found.branch)
-    if out is not None:
-        folder(out, "branch", "special")
+    folder(out, "branch", "special")
     found = in_motion(found, varied)
     with Progress("looking for the onset") as progress:
         born, several = all_branches(found.design, varied, start, runs, at, progress)

@@ -91,8 +91,7 @@ def compare_(
     """
     found = read(file, asked)
     figures: dict[str, Comparison] = {}
-    if out is not None:
-        folder(out, "mode_table", "modes", "motion", "spectrograms")
+    folder(out, "mode_table", "modes", "motion", "spectrograms")
     try:
         own = complex_modes(found.design)
         if modes is not None:

@@ -1,19 +1,30 @@
 """`squealbox diagram`: a bifurcation diagram by brute force, ensembles over a parameter, with a Poincare section."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from cyclopts import Parameter
 
 from squealbox.cli.answers import keep
 from squealbox.cli.branches import all_branches
-from squealbox.cli.inputs import AS_FILED, OneVaried, folder, in_motion, number, read, readable, time_of
+from squealbox.cli.inputs import (
+    AS_FILED,
+    NOTHING_SAID,
+    OneVaried,
+    Said,
+    folder,
+    in_motion,
+    keywords,
+    number,
+    read,
+    readable,
+)
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import write_csv, written
+from squealbox.cli.tables import kept, write_csv, written
 from squealbox.family import ParameterAxis
-from squealbox.limit_cycles import BifurcationDiagram, Branch, Section, bifurcation_diagram
+from squealbox.limit_cycles import BifurcationDiagram, Branch, DiagramSettings, Section, bifurcation_diagram
 from squealbox.limit_cycles.attractors.settling import KINDS
 from squealbox.parameters import known_names
 from squealbox.waiting import Progress
@@ -23,8 +34,6 @@ ABOUT = {"diagram": "what transients settle to over a parameter, with a Poincare
 if TYPE_CHECKING:
     from squealbox.designs import Design
 
-Sweep = Literal["up", "down", "rest"]
-Sweeps = Annotated[tuple[Sweep, ...], Parameter(negative="", consume_multiple=True)]
 Drawn = Annotated[bool, Parameter(negative="")]
 WAYS = {"rises": 1, "falls": -1, "passes": 0}
 NAMED = {"maxima": Section.maxima, "minima": Section.minima, "return": Section.returns}
@@ -34,14 +43,10 @@ def diagram(
     file: Path,
     *,
     varies: OneVaried = AS_FILED,
-    sweeps: Sweeps = ("up", "down", "rest"),
-    starts: int = 0,
+    how: Said[DiagramSettings] = NOTHING_SAID,
     dof: str | None = None,
     section: str = "maxima",
-    returns: int = 40,
-    duration: str | None = None,
     branches: Drawn = False,
-    seed: int = 0,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
@@ -55,38 +60,23 @@ def diagram(
     ----------
     file
         design file; its section [branch] says what is varied, unless the options do
-    sweeps
-        some of up, down and rest
-    starts
-        number of further starts at every value, drawn about steady sliding
     dof
         degree of freedom that is drawn, or y' for its velocity in a plane of --section; the largest unless said
     section
         maxima or minima of it; return (its velocity where it rises through steady sliding); or a plane: "x' falls 0.1",
         "x rises 2um", "v1 falls 0" with v1, v2 ... the sliding velocities of the contacts
-    returns
-        about how many points of the section are kept of each motion
-    duration
-        of the first stretch at each value, such as 20ms; what has not settled runs on
     branches
         follow the cycles as well (as squealbox branch) and draw them beneath
-    seed
-        of the drawn starts
     out
         folder for a figure, the tables diagram.csv and section.csv, and diagram.nc
     """
     found = read(file, asked)
     varied = varies.of(found.design, found.branch)
-    found = in_motion(found, varied)
-    length = None if duration is None else time_of("--duration", duration)
+    found, settings = in_motion(found, varied), how.over(DiagramSettings())
     plane = _section(found.design, section, dof)
-    if out is not None:
-        folder(out, "diagram", "section")
+    folder(out, "diagram", "section")
     with Progress(f"{varied.points} values") as progress:
-        result = bifurcation_diagram(
-            found.design, varied.name, varied.values, sweeps=sweeps, starts=starts, section=plane, returns=returns,
-            duration=length, seed=seed,
-        )  # fmt: skip
+        result = bifurcation_diagram(found.design, varied.name, varied.values, section=plane, **keywords(settings))
         if np.all(result.kind < 0):
             raise ComputationFailed(result.outcome)
         progress("following the cycles")
@@ -182,5 +172,4 @@ def _files(
     read_unit = units[result.read.rstrip("'")] + ("" if result.read in result.dofs else "/s")
     passed = {"sweep": np.array(result.sweeps)[sweep], name: values[point],
               f"{result.section} [{read_unit}]": result.crossings[held]}  # fmt: skip
-    return [*plots.save(figure, out / "diagram"), write_csv(out / "diagram.csv", rows),
-            write_csv(out / "section.csv", passed), result.save(out / "diagram.nc")]  # fmt: skip
+    return [*kept(result, out / "diagram", rows, figure), write_csv(out / "section.csv", passed)]

@@ -10,7 +10,7 @@ from squealbox.cli.inputs import folder, in_motion, read, time_of
 from squealbox.cli.maps import AS_FILED, Plane, TwoVaried
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import write_csv, written
+from squealbox.cli.tables import kept, written
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.matrices import liveliest
 from squealbox.system import as_system
@@ -47,8 +47,7 @@ def ensemble(
     seconds = usual_duration(found.design) if duration is None else time_of("--duration", duration)
     if not seconds > 0.0:
         raise UsageError(f"--duration {duration}: expected a time above 0 s")
-    if out is not None:
-        folder(out, "ensemble")
+    folder(out, "ensemble")
     found = in_motion(found, across, up)
     start = None
     if isinstance(found.design, ReducedBrake) and found.simulate is not None:
@@ -106,18 +105,8 @@ def _files(many: Ensemble, plane: Plane, title: str, out: Path) -> list[Path]:
     from squealbox import plots
 
     amplitude, frequency, which, unit = _largest(many, plane.design)
-    (x_name, y_name), (x_unit, y_unit) = plane.names, plane.units
     figure = plots.amplitude_map(
-        plane.x,
-        plane.y,
-        amplitude.T,
-        x_name=x_name,
-        x_unit=x_unit,
-        y_name=y_name,
-        y_unit=y_unit,
-        title=title,
-        unit=unit,
-        name=f"amplitude, {which}",
+        plane.x, plane.y, amplitude.T, **plane.labels, title=title, unit=unit, name=f"amplitude, {which}"
     )
     columns = {
         **plane.columns(np.repeat(plane.x, len(plane.y)), np.tile(plane.y, len(plane.x))),
@@ -126,8 +115,4 @@ def _files(many: Ensemble, plane: Plane, title: str, out: Path) -> list[Path]:
         "events": many.events.ravel(),
         "ended": many.ended.ravel(),
     }
-    return [
-        many.save(out / "ensemble.nc"),
-        *plots.save(figure, out / "ensemble"),
-        write_csv(out / "ensemble.csv", columns),
-    ]
+    return kept(many, out / "ensemble", columns, figure)

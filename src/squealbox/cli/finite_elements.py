@@ -12,12 +12,10 @@ from squealbox.family import ParameterAxis
 from squealbox.fe.assembled import AssembledBrake
 from squealbox.fe.meshed import MeshedBrake
 from squealbox.fe.mode_shapes import write_uff, write_vtu
-from squealbox.files import DesignFile
-from squealbox.files.reduced import Reduce, Reduced
-from squealbox.files.varied import scalar_parameters
-from squealbox.stability import complex_modes
+from squealbox.files import DesignFile, Reduce, Reduced
+from squealbox.stability import complex_modes, mesh_doubt
 from squealbox.stability.mode_table import mode_table, table_text
-from squealbox.stability.second_mesh import ONE_MESH, mesh_doubt
+from squealbox.stability.second_mesh import ONE_MESH
 from squealbox.waiting import Progress
 
 FRICTION = "friction.static"
@@ -70,7 +68,7 @@ def _coalescence(found: DesignFile, band: tuple[float, float], out: Path) -> lis
     """Frequencies and growth rates over friction, from 0 to its value or the range of [onset], by a reduced brake."""
     from squealbox import plots
 
-    if FRICTION not in scalar_parameters(found.design):
+    if FRICTION not in found.design.scalars():
         return []
     top = float(found.design.value_of(FRICTION))
     given = found.onset

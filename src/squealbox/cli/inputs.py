@@ -16,10 +16,9 @@ from squealbox.designs import Design
 from squealbox.family import ParameterAxis
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files import DesignFile, read_file
-from squealbox.files.units import UnitError, in_si
-from squealbox.files.varied import quantity_of, words_of
 from squealbox.parameters import DataSheet, Parameter, ParameterError, field_type
 from squealbox.transient.simulate import TIME_STEPPING
+from squealbox.units import UnitError, in_si
 from squealbox.waiting import Progress
 
 Sheet = TypeVar("Sheet", bound=DataSheet)
@@ -38,7 +37,7 @@ def read(file: Path, asked: HowAsked = AS_WRITTEN) -> DesignFile:
 
 def small(found: DesignFile, *axes: ParameterAxis) -> DesignFile:
     """The file with a finite-element brake reduced for `axes` and its sections, and what that promises printed."""
-    from squealbox.files.reduced import dense, promise
+    from squealbox.files import dense, promise
 
     with Progress("reducing the finite-element brake"):
         made = dense(found, axes)
@@ -52,7 +51,7 @@ def in_motion(found: DesignFile, *axes: ParameterAxis, contact: str = "exact") -
 
     All but one leave out friction across the sliding direction, and that is said.
     """
-    from squealbox.files.reduced import ONE_WAY
+    from squealbox.files import ONE_WAY
 
     made = small(found, *axes)
     if contact == TIME_STEPPING:
@@ -138,11 +137,13 @@ def _option(sheet: type[DataSheet], name: str) -> Any:
     declared, about, words = field_type(sheet, name), sheet.parameters().get(name), sheet.choices().get(name)
     if get_origin(declared) is Annotated:
         return None
-    kind = declared if declared in (bool, int) else str
+    several = get_origin(declared) is tuple
+    kind = declared if several or declared in (bool, int) else str
     unit = f" [{about.unit}]" if about and about.unit not in ("", "-") else ""
-    several = f": {', '.join(words.options)}" if words and len(words.options) < 6 else ""
+    options = f": {', '.join(words.options)}" if words and len(words.options) < 6 else ""
     meaning = about.meaning if about else words.meaning if words else sheet.told[name][1]
-    how = cyclopts.Parameter(help=f"{meaning}{unit}{several}", negative="", show_default=False)
+    told = f"{meaning}{unit}{options}"
+    how = cyclopts.Parameter(help=told, negative="", show_default=False, consume_multiple=several)
     return Annotated[kind | None, how]
 
 
@@ -155,6 +156,13 @@ def put_over(section: Filed, said: Mapping[str, Any]) -> Filed:
     except ParameterError as error:
         option = error.name.replace("_", "-")
         raise UsageError(f"--{option} {said.get(error.name, error.value)}: {error.expectation}") from error
+
+
+def keywords(section: DataSheet) -> dict[str, Any]:
+    """The options of a sheet as its function takes them, whole numbers as such."""
+    values = {name: getattr(section, name) for name in section.field_names()}
+    whole = {name for name, value in values.items() if field_type(type(section), name) is int and value is not None}
+    return {name: int(value) if name in whole else value for name, value in values.items()}
 
 
 def spans(vary: Sequence[str], count: int) -> list[tuple[str, tuple[str, str]]]:
@@ -195,7 +203,7 @@ def axis(
 
 def readable(design: Design, varied: ParameterAxis, values: Any) -> tuple[Any, str]:
     """Values of a parameter in the unit people read it in, and that unit: angles in degrees, the rest in SI."""
-    unit = quantity_of(design, varied.name).unit
+    unit = design.scalar(varied.name).unit
     if unit == "rad":
         return np.rad2deg(values), "deg"
     return values, "" if unit == "-" else unit
@@ -206,8 +214,10 @@ def time_of(option: str, text: str) -> float:
     return number(text, "s", f"{option} {text[:60]}")
 
 
-def folder(path: Path, *stems: str) -> Path:
-    """The folder, made when it is not there; files of these names in it are only overwritten with --force."""
+def folder(path: Path | None, *stems: str) -> None:
+    """Make the folder of --out, if any; files of these names in it are only overwritten with --force."""
+    if path is None:
+        return
     try:
         path.mkdir(parents=True, exist_ok=True)
     except FileExistsError as error:
@@ -219,7 +229,6 @@ def folder(path: Path, *stems: str) -> Path:
             f"--out {path}: no folder can be made there ({error.strerror}), expected one to write in"
         ) from error
     free(*(each for stem in stems for part in (".*", "_*") for each in sorted(path.glob(f"{stem}{part}"))))
-    return path
 
 
 def free(*paths: Path) -> None:
@@ -233,7 +242,7 @@ def free(*paths: Path) -> None:
 def _changed(design: Design, name: str, text: str, change: str) -> Design:
     label = f"--set {change[:60]}"
     try:
-        if name in words_of(design):
+        if name in design.words():
             return design.replace({name: text})
         about = _quantity(design, name, label)
         return design.replace({name: number(text, about.unit, label)})
@@ -243,7 +252,7 @@ def _changed(design: Design, name: str, text: str, change: str) -> Design:
 
 def _quantity(design: Design, name: str, label: str) -> Parameter:
     try:
-        return quantity_of(design, name)
+        return design.scalar(name)
     except ParameterError as error:
         raise UsageError(f"{label}: unknown parameter, {error.expectation}") from error
 

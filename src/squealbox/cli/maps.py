@@ -11,7 +11,7 @@ from squealbox.cli.answers import keep
 from squealbox.cli.inputs import Vary, axis, folder, read, readable, small, spans
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import write_csv, written
+from squealbox.cli.tables import kept, write_csv, written
 from squealbox.family import ParameterAxis
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability import Boundary, StabilityMap, map_boundary, stability_boundary, stability_map
@@ -88,8 +88,7 @@ def map_(
     """
     found = read(file, asked)
     across, up = over.of(found)
-    if out is not None:
-        folder(out, "map", "boundary")
+    folder(out, "map", "boundary")
     found = small(found, across, up)
     reduced = isinstance(found.design, ReducedBrake)
     if reduced and over.points is None:
@@ -121,6 +120,12 @@ class Plane:
         (self.x, x_unit), (self.y, y_unit) = (readable(design, each, each.values) for each in self.axes)
         self.units = (x_unit, y_unit)
         self.factors = tuple(float(readable(design, each, 1.0)[0]) for each in self.axes)
+
+    @property
+    def labels(self) -> dict[str, str]:
+        """Names and units of the axes, as figures take them."""
+        (x_name, y_name), (x_unit, y_unit) = self.names, self.units
+        return {"x_name": x_name, "x_unit": x_unit, "y_name": y_name, "y_unit": y_unit}
 
     def place(self, point: Any) -> str:
         """A point in words."""
@@ -175,18 +180,14 @@ def _edge_summary(edge: Boundary, plane: Plane) -> str:
 def _drawn(grid: StabilityMap, edge: Boundary, plane: Plane, show: str, title: str) -> "Figure":
     from squealbox import plots
 
-    (x_name, y_name), (x_unit, y_unit) = plane.names, plane.units
     if show == "mechanism":
         scales = {n: (f, u) for n, f, u in zip(plane.names, plane.factors, plane.units, strict=True)}
         return plots.mechanism_map(grid, boundary=edge, scales=scales, title=title)
-    labels = {"x_name": x_name, "x_unit": x_unit, "y_name": y_name, "y_unit": y_unit}
     curves = [points * plane.factors for points in edge.curves]
-    return plots.stability_map(plane.x, plane.y, grid.growth_rate.T, **labels, curves=curves, title=title)
+    return plots.stability_map(plane.x, plane.y, grid.growth_rate.T, **plane.labels, curves=curves, title=title)
 
 
 def _files(grid: StabilityMap, edge: Boundary, plane: Plane, figure: "Figure", out: Path) -> list[Path]:
-    from squealbox import plots
-
     columns = {
         **plane.columns(np.repeat(plane.x, len(plane.y)), np.tile(plane.y, len(plane.x))),
         "growth rate [1/s]": grid.growth_rate.ravel(),
@@ -200,9 +201,4 @@ def _files(grid: StabilityMap, edge: Boundary, plane: Plane, figure: "Figure", o
         "growth rate [1/s]": edge.growth_rate,
         "frequency [Hz]": edge.frequency,
     }
-    return [
-        grid.save(out / "map.nc"),
-        *plots.save(figure, out / "map"),
-        write_csv(out / "map.csv", columns),
-        write_csv(out / "boundary.csv", along),
-    ]
+    return [*kept(grid, out / "map", columns, figure), write_csv(out / "boundary.csv", along)]

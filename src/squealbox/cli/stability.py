@@ -21,7 +21,7 @@ from squealbox.cli.inputs import (
 )
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import write_csv, written
+from squealbox.cli.tables import kept, written
 from squealbox.family import ParameterAxis
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability import (
@@ -73,8 +73,7 @@ def modes(
     found = read(file, asked)
     settings = how.over(found.modes or ModeSettings())
     time = settings.time
-    if out is not None:
-        folder(out, "modes", "mode_energy", "coalescence")
+    folder(out, "modes", "mode_energy", "coalescence")
     if found.design.system().is_sparse:
         _modes_in_band(found, settings, band, second_mesh, out)
         return
@@ -131,8 +130,7 @@ def onset(
     """
     found = read(file, asked)
     varied = varies.of(found.design, found.onset)
-    if out is not None:
-        folder(out, "onset")
+    folder(out, "onset")
     found = small(found, varied)
     with Progress("looking for the onset"):
         crossings = critical_values(found.design, varied.name, (varied.low, varied.high))
@@ -160,8 +158,7 @@ def _mode_files(spectrum: ComplexModes, found: "DesignFile", time: float, out: P
     """The spectrum as data, table and figure, and the energy of the worst mode where it oscillates."""
     from squealbox import plots
 
-    paths = [spectrum.save(out / "modes.nc"), write_csv(out / "modes.csv", _mode_columns(spectrum))]
-    paths += plots.save(plots.plot(spectrum, title=found.path.name), out / "modes")
+    paths = kept(spectrum, out / "modes", _mode_columns(spectrum), title=found.path.name)
     if spectrum.most_unstable.angular_frequency > 0.0:
         fed = plots.plot(mode_energy(found.design, spectrum.most_unstable, time), title=found.path.name)
         paths += plots.save(fed, out / "mode_energy")
@@ -194,4 +191,4 @@ def _onset_files(found: "DesignFile", varied: ParameterAxis, crossings: Critical
     columns = {f"{varied.name} [{unit or '-'}]": values}
     columns |= {f"frequency {i + 1} [Hz]": spectra.frequency[:, i] for i in range(half)}
     columns |= {f"growth rate {i + 1} [1/s]": spectra.growth_rate[:, i] for i in range(half)}
-    return [crossings.save(out / "onset.nc"), *plots.save(figure, out / "onset"), write_csv(out / "onset.csv", columns)]
+    return kept(crossings, out / "onset", columns, figure)

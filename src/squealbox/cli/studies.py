@@ -14,7 +14,7 @@ from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.study_analyses import UNITS, analysis_of
 from squealbox.cli.tables import write_csv, written
 from squealbox.family import ParameterAxis
-from squealbox.files.study import read_study
+from squealbox.files import read_study
 from squealbox.studies import Space, Store, WorkerSettings, open_sweep, sweep
 from squealbox.studies.store import LOG, RESULT
 from squealbox.waiting import Progress
@@ -69,19 +69,12 @@ def run(
     workers = int(study.workers) if spread and study.workers is not None else None
     with Progress(f"{len(found.space)} points") as progress:
         table = sweep(
-            design,
-            found.space,
-            analysis_of(found),
-            out=out,
-            keep=found.keep,
-            units=UNITS if study.analysis == "simulate" else None,
-            seed=int(study.seed),
-            chunk=None if study.chunk is None else int(study.chunk),
-            workers=workers,
-            scheduler=scheduler,
+            design, found.space, analysis_of(found), out=out, keep=found.keep,
+            units=UNITS if study.analysis == "simulate" else None, seed=int(study.seed),
+            chunk=None if study.chunk is None else int(study.chunk), workers=workers, scheduler=scheduler,
             time_limit=study.time_limit if workers or scheduler else None,
             progress=lambda pace: progress(str(pace), pace.share),
-        )
+        )  # fmt: skip
     if table.outcome == "interrupted":
         raise ComputationFailed(table.outcome)
     answers.show(f"{design.title}, {file}", table)
@@ -131,11 +124,12 @@ def show(directory: Where, *, of: str | None = None, out: Path | None = None) ->
 
         if of is not None and of not in found.answers:
             raise UsageError(f"--of {of[:40]}: expected one of {', '.join(found.answers)}")
+        folder(out, "sweep")
         try:
             figure = plots.sweep_overview(found, answer=of, title=str(directory))
         except ValueError as error:
             raise UsageError(f"no figure: {error}") from error
-        print(written(*plots.save(figure, folder(out, "sweep") / "sweep"), write_csv(out / "sweep.csv", found.table())))
+        print(written(*plots.save(figure, out / "sweep"), write_csv(out / "sweep.csv", found.table())))
 
 
 def export(directory: Where, *, format: Literal["csv", "nc", "mat"] = "csv", to: Path | None = None) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from squealbox.files.study import StudyFile
+    from squealbox.files import StudyFile
     from squealbox.transient import MotionSettings
 
 UNITS = {"amplitude": "m", "frequency": "Hz", "growth_rate": "1/s", "settled_at": "s", "time": "s"}

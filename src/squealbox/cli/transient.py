@@ -16,8 +16,7 @@ from squealbox.waiting import Progress
 ABOUT = {"simulate": "what happens in time: a transient with verdict, figures and data"}
 
 if TYPE_CHECKING:
-    from squealbox.transient.trajectory import Trajectory
-    from squealbox.transient.verdict import Verdict
+    from squealbox.transient import Trajectory, Verdict
 
 SAMPLES_A_PERIOD = 4.0  # fewer points do not hold the motion
 MOST_FIGURES = 4  # degrees of freedom that are drawn: those that move most
@@ -48,8 +47,7 @@ def simulate(
     settings = (found.simulate or settings).lasting(found.design)
     system = found.design.system()
     settings.start_of(system)  # what cannot be started is said before a folder is made
-    if out is not None:
-        folder(out, "verdict", "motion", "energy")
+    folder(out, "verdict", "motion", "energy")
     with Progress("simulating (the first run compiles the engine)"):
         motion = settings.run(system)
     with Progress("judging"):

@@ -10,10 +10,10 @@ from squealbox.designs import Design
 from squealbox.family import ParameterAxis, ParameterPlane
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
-from squealbox.files.numbers import WRONG, read_number, wrong
+from squealbox.files.numbers import WRONG, only, read_number, wrong
 from squealbox.files.sheets import read_sheet
-from squealbox.files.varied import VARY, axes_of, quantity_of
-from squealbox.parameters import Parameter, ParameterError, known_names
+from squealbox.files.varied import VARY, axes_of, flattened, known
+from squealbox.parameters import Parameter
 from squealbox.stability import ModeSettings
 from squealbox.transient import MotionSettings
 
@@ -70,36 +70,17 @@ def read_map(document: Document, table: Mapping[str, Any], key: Key, design: Des
     return None if x is None or y is None else ParameterPlane(x, y)
 
 
-def only(document: Document, table: Mapping[str, Any], key: Key, known: tuple[str, ...]) -> None:
-    """A problem of the document for each key that is none of those known."""
-    for name in table:
-        if name not in known:
-            document.problem((*key, name), f"unknown key, {known_names(name[:60], list(known))}")
-
-
 def read_axis(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> ParameterAxis | None:
     """A parameter of the design and a range in its unit."""
     if "range" not in table:
         document.problem(key, "the key 'range' is missing, expected two values such as [0, 1]")
     given = {name: value for name, value in table.items() if name != "range"}
-    ends = read_ends(document, table.get("range"), _about(document, table, key, design), (*key, "range"))
+    name = table.get("parameter")
+    about = known(document, name, (*key, "parameter"), design) if isinstance(name, str) else None
+    ends = read_ends(document, table.get("range"), about, (*key, "range"))
     low, high = ends or (0.0, 1.0)
     axis = read_sheet(document, ParameterAxis, {**given, "low": low, "high": high}, key)
     return axis if ends else None
-
-
-def _about(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Parameter | None:
-    name = table.get("parameter")
-    if design is None or not isinstance(name, str):
-        return None
-    first = name.partition(".")[0]
-    if first in document.faulty and first in [*design.field_names(), *design.aliases]:
-        return None  # what it names has been reported itself
-    try:
-        return quantity_of(design, name)
-    except ParameterError as error:
-        document.problem((*key, "parameter"), f"unknown parameter {name[:60]!r}, {error.expectation}")
-        return None
 
 
 def read_ends(document: Document, value: Any, about: Parameter | None, key: Key) -> tuple[float, float] | None:
@@ -116,3 +97,12 @@ def read_ends(document: Document, value: Any, about: Parameter | None, key: Key)
         wrong(document, key, value, "the lower value first and the higher one second")
         return None
     return low, high
+
+
+def read_spans(
+    document: Document, table: Mapping[str, Any], key: Key, design: Design | None
+) -> dict[str, tuple[float, float]]:
+    """Two numbers for each parameter of a table."""
+    found = {name: read_ends(document, value, known(document, name, place, design), place)
+             for name, value, place in flattened(table, key, design)}  # fmt: skip
+    return {name: ends for name, ends in found.items() if ends is not None}

@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from squealbox.designs import Design, DrumBrake
-from squealbox.files.mechanism import Body, OwnMechanism, Spring, Touch
-from squealbox.files.own_brake import OwnBrake, OwnContact
+from squealbox.designs import Body, Design, DrumBrake, OwnBrake, OwnContact, OwnMechanism, Spring, Touch
 from squealbox.files.reading import BRAKES, MESHED
 from squealbox.friction import Coulomb, LinearSlope
 from squealbox.transient import usual_duration

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.designs import DESIGNS, Design
+from squealbox.designs import DESIGNS, Design, OwnBrake, OwnMechanism
 from squealbox.family import ParameterAxis, ParameterPlane
 from squealbox.fe.disc_brake import DiscBrake
 from squealbox.fe.meshed import MeshedBrake
@@ -18,9 +18,7 @@ from squealbox.files import analyses, countermeasures
 from squealbox.files.assembled import ASSEMBLED, read_assembled
 from squealbox.files.document import Document, document_of, open_document
 from squealbox.files.measurements import Calibrated, Recorded, read_calibrated, read_recorded
-from squealbox.files.mechanism import OwnMechanism
 from squealbox.files.numbers import WRONG, read_choice, wrong
-from squealbox.files.own_brake import OwnBrake
 from squealbox.files.reduced import REDUCED, Reduced, read_reduce, read_reduced
 from squealbox.files.sheets import read_sheet
 from squealbox.files.uncertain import Optimise, Scattered, read_optimise, read_scatter

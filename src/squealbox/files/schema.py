@@ -12,15 +12,15 @@ from squealbox.files import countermeasures
 from squealbox.files.arrays import TRIANGLES
 from squealbox.files.assembled import ASSEMBLED
 from squealbox.files.measurements import measurement_schemas
-from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES, STUDY
 from squealbox.files.reduced import REDUCED, Reduce
-from squealbox.files.sheets import LAW_NAMES, OWN, SCHEDULE_NAMES, is_required
+from squealbox.files.sheets import OWN, is_required
 from squealbox.files.study import OTHERS
 from squealbox.files.uncertain_schema import optimise_schema, scatter_schema
 from squealbox.files.varied import VARY
-from squealbox.friction import FrictionLaw
+from squealbox.friction import LAW_NAMES, FrictionLaw, OwnLaw
 from squealbox.parameters import DataSheet, Parameter, field_type
+from squealbox.schedules import SCHEDULE_NAMES
 from squealbox.stability import ModeSettings
 from squealbox.studies import RefineSettings, StudySettings
 from squealbox.transient import MotionSettings

@@ -16,18 +16,13 @@ from squealbox.files.arrays import ArrayFileError, path_beside, read_array
 from squealbox.files.document import Document, read_bytes
 from squealbox.files.lines import Key, dotted
 from squealbox.files.numbers import LONGEST, WRONG, read_choice, read_number, shown, wrong
-from squealbox.files.own_law import LARGEST as LARGEST_LAW
-from squealbox.files.own_law import OwnLaw, own_law
-from squealbox.friction import LAWS, FrictionLaw
+from squealbox.friction import LAW_NAMES, FrictionLaw, OwnLaw, own_law
 from squealbox.parameters import DataSheet, Parameter, ParameterError, field_type, known_names
-from squealbox.registers import name_of
-from squealbox.schedules import SCHEDULES, Schedule, Sum, as_schedule
+from squealbox.schedules import SCHEDULE_NAMES, Schedule, Sum, as_schedule
 
 Sheet = TypeVar("Sheet", bound=DataSheet)
 
-LAW_NAMES: dict[str, type[FrictionLaw]] = {name_of(law): law for law in LAWS}
 OWN = "own"  # the law that is a Python file
-SCHEDULE_NAMES: dict[str, type[Schedule]] = {name_of(schedule): schedule for schedule in SCHEDULES}
 
 
 def read_sheet(
@@ -154,7 +149,7 @@ def read_own_law(document: Document, value: Mapping[str, Any], key: Key) -> Any:
     if unknown or numbers is WRONG or static is WRONG:
         return WRONG
     try:
-        text = read_bytes(path_beside(document.path, file), LARGEST_LAW).decode("utf-8")
+        text = read_bytes(path_beside(document.path, file), OwnLaw.LARGEST).decode("utf-8")
         return own_law(text, numbers=numbers if value.get("numbers") else (), static=static)
     except (ArrayFileError, ParameterError) as error:
         document.problem((*key, "file"), str(error))
@@ -201,7 +196,7 @@ def unit_in(sheet: type[DataSheet], about: Parameter, unit: str) -> str:
     what it multiplies. In a schedule it is that of the
     quantity it stands for, and ``/s`` is that per second.
     """
-    from squealbox.studies.uncertainty.distributions import Distribution  # studies are much to load for a brake
+    from squealbox.studies import Distribution
 
     if issubclass(sheet, Distribution) or hasattr(sheet, "unit_for"):
         return about.unit or unit

@@ -16,15 +16,15 @@ from typing import Any, get_args
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.files.analyses import read_ends
-from squealbox.files.asked import known, read_quantity
+from squealbox.files.analyses import read_spans
+from squealbox.files.asked import read_quantity
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
-from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
+from squealbox.files.numbers import WRONG, only, read_choice, read_number, wrong
 from squealbox.files.sheets import read_sheet
 from squealbox.files.study_axis import read_correlation
-from squealbox.files.varied import VARY, flattened
-from squealbox.parameters import Parameter, ParameterError, known_names
+from squealbox.files.varied import VARY, flattened, known
+from squealbox.parameters import Parameter, ParameterError
 from squealbox.studies import (
     DISTRIBUTIONS,
     Constraint,
@@ -81,7 +81,7 @@ def read_optimise(document: Document, table: Mapping[str, Any], key: Key, design
     before, table = len(document.problems), _by_vary(table, "variables")
     rest = {name: table[name] for name in table if name not in ("variables", "goals", "constraints")}
     effort = read_sheet(document, SearchSettings, rest, key, beside=("variables", "goals", "constraints"))
-    variables = dict(_variables(document, table, key, design))
+    variables = _variables(document, table, key, design)
     goals = [_goal(document, item, place, design) for item, place in _tables(document, table, key, "goals")]
     kept = [_constraint(document, item, place, design) for item, place in _tables(document, table, key, "constraints")]
     if "goals" not in table:
@@ -147,17 +147,13 @@ def _scatter(document: Document, table: Mapping[str, Any], key: Key, design: Des
 
 def _variables(
     document: Document, table: Mapping[str, Any], key: Key, design: Design | None
-) -> Iterator[tuple[str, tuple[float, float]]]:
+) -> dict[str, tuple[float, float]]:
     given = table.get("variables")
-    if not isinstance(given, Mapping) or not given:
-        example = "a section [optimise.variables] of names, each with two values such as [0, 1]"
-        document.problem((*key, "variables"), f"expected {example}")
-        return
-    for name, value, place in flattened(given, (*key, "variables"), design):
-        about = known(document, name, place, design)
-        ends = None if about is None else read_ends(document, value, about, place)
-        if ends is not None:
-            yield name, ends
+    if isinstance(given, Mapping) and given:
+        return read_spans(document, given, (*key, "variables"), design)
+    example = "a section [optimise.variables] of names, each with two values such as [0, 1]"
+    document.problem((*key, "variables"), f"expected {example}")
+    return {}
 
 
 def _tables(document: Document, table: Mapping[str, Any], key: Key, name: str) -> Iterator[tuple[Any, Key]]:
@@ -208,6 +204,4 @@ def _over(document: Document, table: dict[str, Any], key: Key) -> tuple[str, flo
 
 
 def _nothing_left(document: Document, table: Mapping[str, Any], key: Key, *more: str) -> None:
-    known = ["parameter", "range", "limit", "duration", "weights", "name", "over", "share", *more]
-    for name in table:
-        document.problem((*key, name), f"unknown key, {known_names(name[:60], known)}")
+    only(document, table, key, ("parameter", "range", "limit", "duration", "weights", "name", "over", "share", *more))

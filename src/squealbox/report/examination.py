@@ -16,12 +16,12 @@ from squealbox.stability import (
     ComplexModes,
     CriticalValue,
     CriticalValues,
+    Mechanism,
     ModeEnergy,
     Sensitivity,
     StabilityMap,
     TrackedModes,
 )
-from squealbox.stability.mechanism import Mechanism
 from squealbox.system import System
 from squealbox.transient import MotionSettings, Trajectory, Verdict
 

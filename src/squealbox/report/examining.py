@@ -13,7 +13,6 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.family import ParameterAxis, ParameterPlane
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.files.varied import quantity_of, scalar_parameters
 from squealbox.limit_cycles import Cycle, hopf_point, shooting
 from squealbox.matrices import liveliest
 from squealbox.parameters import ParameterError
@@ -246,11 +245,11 @@ class _Work:
         """Parameters that hold one number other than zero and can be varied; those inside a schedule cannot."""
         heads = {name for name in self.design.field_names() if isinstance(getattr(self.design, name), Schedule)}
         numbers = [name for name, _, value in self.design.leaves() if isinstance(value, float) and value != 0.0]
-        known = scalar_parameters(self.design)
+        known = self.design.scalars()
         return tuple(name for name in numbers if name in known and name.partition(".")[0] not in heads)
 
     def _usual_axis(self) -> ParameterAxis:
-        known = scalar_parameters(self.design)
+        known = self.design.scalars()
         rubs = "friction.static" in known and self.system.contacts
         name = "friction.static" if rubs else self._strongest([])
         return self._about(name, 0.05, 2.5)
@@ -283,13 +282,13 @@ def _loudness(cycle: Cycle) -> SoundLevel:
 
 def usual_friction(design: Design, shares: tuple[float, float]) -> ParameterAxis | None:
     """The friction at rest over shares of its own value; None of a design that has none, or several."""
-    known = scalar_parameters(design)
+    known = design.scalars()
     return _about(design, "friction.static", *shares) if "friction.static" in known else None
 
 
 def _about(design: Design, name: str, low: float, high: float) -> ParameterAxis:
     """A range about the design's own value in shares of it, inside what the parameter may be."""
-    value, about = float(design.value_of(name)), quantity_of(design, name)
+    value, about = float(design.value_of(name)), design.scalar(name)
     ends = sorted((low * value, high * value))
     ends = [float(np.clip(end, about.low, about.high)) for end in ends]
     if about.low_open and ends[0] == about.low:
