@@ -5,8 +5,10 @@ import difflib
 import functools
 import math
 import textwrap
+import types
+import typing
 from collections.abc import Iterable
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -145,6 +147,25 @@ class Choice:
 def choice(*options: str, default: Any = dataclasses.MISSING, meaning: str = "") -> Any:
     """Declare a field that holds one of the words `options`."""
     return dataclasses.field(default=default, metadata={"choice": Choice(options, meaning)})
+
+
+Vector = Annotated[Any, 1]  # the type of a field that holds an array, which a file may hold beside itself
+Matrix = Annotated[Any, 2]
+
+
+@functools.cache
+def _hints(sheet: Any) -> dict[str, Any]:
+    """Kept: reading them evaluates text, and every slider's move asks."""
+    return typing.get_type_hints(sheet, include_extras=True)
+
+
+def field_type(sheet: type, name: str) -> Any:
+    """The type a field of a data sheet is annotated with, without a None that stands beside it."""
+    declared = _hints(sheet)[name]
+    if isinstance(declared, types.UnionType):
+        parts = [part for part in typing.get_args(declared) if part is not types.NoneType]
+        return parts[0] if len(parts) == 1 else Any
+    return declared
 
 
 def known_names(given: str, names: list[str]) -> str:

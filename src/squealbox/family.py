@@ -10,17 +10,42 @@ parameters, system.
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from squealbox.arguments import interval
-from squealbox.parameters import DataSheet, Missing, ParameterError
+from squealbox.parameters import DataSheet, Missing, ParameterError, parameter
 from squealbox.system import System, as_system
 
 Bounds = tuple[float, float]
 Varied = str | Mapping[str, Any]  # one parameter by name, or {name: bounds or values}
 COUNTED = {1: "one parameter", 2: "two parameters"}
+
+
+class ParameterAxis(DataSheet):
+    """One parameter and the values it takes; `low` and `high` are in the parameter's own SI unit."""
+
+    aliases: ClassVar[Mapping[str, tuple[str, ...]]] = {"parameter": ("name",)}
+
+    name: str
+    low: float = parameter("")
+    high: float = parameter("")
+    points: int = parameter("-", 2, 20_001, default=201, meaning="number of values")
+
+    @property
+    def values(self) -> np.ndarray:
+        """The values, equally spaced, shape (points,)."""
+        return np.linspace(self.low, self.high, int(self.points))
+
+
+@dataclass(frozen=True)
+class ParameterPlane:
+    """Two parameters and the values each takes."""
+
+    x: ParameterAxis
+    y: ParameterAxis
 
 
 class Family:
@@ -83,6 +108,11 @@ def varied(design: Any, values: Mapping[str, Any]) -> Any:
     if design is None:
         return dict(values)
     return design(*values.values()) if is_recipe(design) else design.replace(values)
+
+
+def unit_of(design: Any, path: str) -> str:
+    """The unit of a parameter, for tables and figures; empty when nothing declares it."""
+    return design.unit_of(path) if isinstance(design, DataSheet) else ""
 
 
 def bounds_of(owner: str, name: str, given: Any) -> Bounds:

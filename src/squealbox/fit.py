@@ -13,9 +13,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.friction import LAWS, FrictionLaw
+from squealbox.friction import LAW_NAMES, FrictionLaw
 from squealbox.parameters import ParameterError, known_names
-from squealbox.registers import name_of
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 
 LEAST_POINTS = 5
@@ -23,7 +22,7 @@ MOST_USUAL = 3  # numbers of the usual laws
 CARRIES = 0.9  # leverage of a point from which it carries a coefficient nearly alone
 
 
-FITTED = {name_of(law): law for law in LAWS if law.guess(np.array([0.1, 1.0]), np.array([0.4, 0.3]))}
+FITTED = {name: law for name, law in LAW_NAMES.items() if law.guess(np.array([0.1, 1.0]), np.array([0.4, 0.3]))}
 USUAL = tuple(name for name, law in FITTED.items() if law.creep_formula is None)
 
 

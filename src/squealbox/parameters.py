@@ -18,21 +18,25 @@ import numpy as np
 from squealbox.declarations import (  # what stands here is known by this room's name, too
     UNSAID,
     Choice,
+    Matrix,
     Missing,
     Parameter,
     ParameterError,
+    Vector,
     choice,
     complete,
+    field_type,
     known_names,
     parameter,
     screenful,
     shown,
     with_cautions,
 )  # fmt: skip
+from squealbox.registers import load_kind
 
 __all__ = [
-    "Choice", "DataSheet", "Missing", "Parameter", "ParameterError", "choice", "from_plain", "known_names", "load_kind",
-    "members", "parameter", "screenful", "shown", "to_plain", "with_cautions",
+    "Choice", "DataSheet", "Matrix", "Missing", "Parameter", "ParameterError", "Vector", "choice", "field_type",
+    "from_plain", "known_names", "load_kind", "members", "parameter", "screenful", "shown", "to_plain", "with_cautions",
 ]  # fmt: skip
 DRAWN_BY = "squealbox.plots"  # by name, when asked: a sheet may know that it can be drawn, but not by whom
 MOST_ENTRIES = 16  # of an array that is printed in full
@@ -50,6 +54,8 @@ class DataSheet:
     aliases: ClassVar[Mapping[str, tuple[str, ...]]] = {}
     shared: ClassVar[Mapping[str, tuple[str, str]]] = {}
     """A name for a field of all sheets in another field, such as ``{"sliding_speed": ("contacts", "V")}``."""
+    formerly: ClassVar[Mapping[str, str]] = {}
+    """The field of today behind a name that files of former versions hold."""
     told: ClassVar[Mapping[str, tuple[str, str]]] = {}
     """Unit and meaning of fields that are no declared parameters, for `summary`."""
     counted_from: ClassVar[int] = 1
@@ -211,6 +217,11 @@ class DataSheet:
     def _known(self) -> list[str]:
         return [*self.field_names(), *self.aliases, *self.shared]
 
+    @staticmethod
+    def spelled(given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """What a file or the command line says of the fields, where these have further spellings."""
+        return given
+
     @classmethod
     def kind(cls) -> str:
         """The name a file knows this class by, its place in the package: ``friction.LinearSlope``."""
@@ -289,28 +300,12 @@ def from_plain(value: Any) -> Any:
     return [from_plain(item) for item in value] if isinstance(value, list) else value
 
 
-def load_kind(kind: str) -> None:
-    """Load the module of this package that defines `kind`; a name of no such module is left for the caller to refuse.
-
-    A file names a class by its place in the package, and its module may not have been needed yet. Nothing outside the
-    package is ever loaded.
-    """
-    if re.fullmatch(r"[a-z_]+(\.[a-z0-9_]+)*\.[A-Za-z0-9]+", kind):
-        module = f"squealbox.{kind.rpartition('.')[0]}"
-        try:
-            importlib.import_module(module)
-        except ModuleNotFoundError as error:
-            if not module.startswith(str(error.name)):
-                raise  # a module of the package that lacks one of its own dependencies
-
-
 def _sheet_class(kind: object) -> type[DataSheet]:
     name = kind if isinstance(kind, str) else ""
-    if name not in _SHEETS:
-        load_kind(name)
-    if name not in _SHEETS:
+    found = _SHEETS.get(name) or load_kind(name)
+    if found not in _SHEETS.values():  # which may have another place today
         raise ParameterError("file", "kind", kind, known_names(name, sorted(_SHEETS)))
-    return _SHEETS[name]
+    return found
 
 
 def _checked(sheet: DataSheet, name: str, about: Parameter) -> Any:

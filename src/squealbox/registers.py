@@ -49,3 +49,19 @@ def kinds_in(package: str, base: type[Kind], first: tuple[type[Kind], ...], havi
              if isinstance(kind, type) and kind.__module__ == module.__name__]  # fmt: skip
     more = [kind for kind in found if issubclass(kind, base) and hasattr(kind, having) and kind not in first]
     return (*first, *more)
+
+
+def load_kind(kind: str) -> Any:
+    """What a module of this package calls `kind`, loaded; None for the name of no such thing, for the caller to refuse.
+
+    A file names a class by its place in the package, and its module may not have been needed yet. Nothing outside the
+    package is ever loaded.
+    """
+    if re.fullmatch(r"[a-z_]+(\.[a-z0-9_]+)*\.[A-Za-z0-9]+", kind):
+        module, _, name = f"squealbox.{kind}".rpartition(".")
+        try:
+            return getattr(importlib.import_module(module), name, None)
+        except ModuleNotFoundError as error:
+            if not module.startswith(str(error.name)):
+                raise  # a module of the package that lacks one of its own dependencies
+    return None

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.parameters import DataSheet, ParameterError, parameter
+from squealbox.registers import name_of
 
 Formula = Callable[..., Any]
 MOVES = (
@@ -306,6 +307,7 @@ class Polynomial(Schedule):
 
 
 SCHEDULES: tuple[type[Schedule], ...] = (Constant, Ramp, Sinusoid, Table, Polynomial)
+SCHEDULE_NAMES: dict[str, type[Schedule]] = {name_of(schedule): schedule for schedule in SCHEDULES}
 
 
 def as_schedule(value: Any) -> Schedule:

@@ -14,14 +14,13 @@ from squealbox import (
     simulate,
     simulate_ensemble,
 )
+from squealbox.cli.inputs import put_over
 from squealbox.cli.running import UsageError
-from squealbox.cli.transient import _settings
-from squealbox.files.analyses import Simulate
 from squealbox.files.reading import read_text
-from squealbox.files.runs import start_of
 from squealbox.limit_cycles import basin, bifurcation_diagram
 from squealbox.start import SHARE, Start
 from squealbox.system import InvalidSystem, as_system, equilibrium
+from squealbox.transient import MotionSettings
 
 BRAKE = DrumBrake(friction=LinearSlope(static=0.45, slope=-0.05))
 SYSTEM = as_system(BRAKE)
@@ -122,7 +121,7 @@ def test_attractors_take_the_same_starts():
 )
 def test_files_say_the_same(said, start):
     found = read_text(FILE + said)
-    q, qd = start_of(found.design, found.simulate)
+    q, qd = found.simulate.start_of(found.design)
     assert np.array_equal(np.concatenate([q, qd]), state(start))
 
 
@@ -143,8 +142,8 @@ def test_what_is_no_start_is_one_sentence():
     for start in ([1e-6, 0.0], ([1.0], [0.0])):  # no number stands for two freedoms, in an ensemble either
         with pytest.raises(ParameterError, match=r"of shape \(\.\.\., 2\)"):
             simulate_ensemble(BRAKE, {"friction.static": [0.2, 0.3]}, 1e-4, start=start)
-    with pytest.raises(UsageError, match='beside a start in a mode, such as --start "mode 1"'):
-        _settings(Simulate(), None, "1um", {"start": "rest"})
+    with pytest.raises(UsageError, match='--amplitude 1um: expected a start in a mode beside it, such as "mode 1"'):
+        put_over(MotionSettings(), {"start": "rest", "amplitude": "1um"})
     with pytest.raises(InvalidSystem, match="there is no steady sliding to start from"):
         simulate(BRAKE.replace({"sliding_speed": 0.0}), 1e-3, "mode")
 
@@ -152,4 +151,4 @@ def test_what_is_no_start_is_one_sentence():
 def test_a_section_without_a_start_is_at_rest(tmp_path):
     path = tmp_path / "brake.toml"
     path.write_text(FILE)
-    assert np.array_equal(start_of(read_design(path), Simulate())[0], np.zeros(2))
+    assert np.array_equal(MotionSettings().start_of(read_design(path))[0], np.zeros(2))

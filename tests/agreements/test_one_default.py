@@ -5,15 +5,14 @@ import pytest
 from squealbox import DrumBrake, Result, simulate
 from squealbox.cli import main
 from squealbox.files import read_file
-from squealbox.files.runs import run
 
 
 @pytest.mark.parametrize("contact", ["exact", "smooth"])
 def test_a_file_takes_the_usual_method_of_python(tmp_path, contact):
     path = tmp_path / "drum.toml"
-    path.write_text(f'brake = "drum_brake"\n[simulate]\nduration = "2 ms"\npoints = 11\ncontact = "{contact}"\n')
+    path.write_text(f'brake = "drum_brake"\n[simulate]\nduration = "2 ms"\ntimes = 11\ncontact = "{contact}"\n')
     found = read_file(path)
-    filed, plain = run(found.design.system(), found.simulate), simulate(DrumBrake(), 0.002, times=11, contact=contact)
+    filed, plain = found.simulate.run(found.design.system()), simulate(DrumBrake(), 0.002, times=11, contact=contact)
     assert filed.settings == plain.settings
     assert (filed.q == plain.q).all()
     assert (filed.qd == plain.qd).all()

@@ -25,7 +25,7 @@ from squealbox import (
     sweep,
     tracked_modes,
 )
-from squealbox.files.analyses import Varied
+from squealbox.family import ParameterAxis
 from squealbox.files.document import DesignFileError
 from squealbox.files.reading import read_text
 from squealbox.files.study import read_study
@@ -220,7 +220,7 @@ def test_one_parameter_is_not_two_and_not_said_twice(name):
 
 
 def test_an_axis_has_ends_and_values():
-    axis = Varied(MU, 0.1, 0.6, points=3)
+    axis = ParameterAxis(MU, 0.1, 0.6, points=3)
     assert critical_value(BRAKE, {MU: axis}).value == critical_value(BRAKE, {MU: ENDS}).value
     assert np.array_equal(tracked_modes(BRAKE, {MU: axis}).value, [0.1, 0.35, 0.6])
 

@@ -21,7 +21,7 @@ from squealbox import (
     sweep,
     tracked_modes,
 )
-from squealbox.files.analyses import Varied
+from squealbox.family import ParameterAxis
 from squealbox.report.examining import examine
 from squealbox.stability import critical_values, family, stability_boundary, stability_map
 from squealbox.stability.eigenvalues import modes_of
@@ -119,7 +119,7 @@ def test_what_would_run_for_minutes_says_so_and_the_way_out(meshed):
         silence(small.replace({"full": None}))
     with pytest.raises(InvalidSystem, match="map_boundary"):
         stability_boundary(small, {"friction.static": (0.2, 0.6), "friction.kinetic": (0.2, 0.6)})
-    found = examine(small, onset=Varied("friction.static", 0.2, 0.6))
+    found = examine(small, onset=ParameterAxis("friction.static", 0.2, 0.6))
     assert len(found.crossings) == 2
     assert "[simulate] in the file" in found.missing["transient"]
     assert "squealbox cycle" in found.missing["cycle"]

@@ -14,9 +14,8 @@ from law_examples import LAWS
 from squealbox import Coulomb, DrumBrake, LinearSlope, ParameterError, Ramp, Sinusoid, Stribeck
 from squealbox.files import BRAKES, NotWritable, OwnBrake, OwnContact, own_law, read_design, read_file, write_design
 from squealbox.files.beginnings import mechanism_example
-from squealbox.files.sheets import SCHEDULE_NAMES
 from squealbox.parameters import from_plain, to_plain
-from squealbox.schedules import Constant, Polynomial
+from squealbox.schedules import SCHEDULE_NAMES, Constant, Polynomial
 from squealbox.schedules import Table as TimeTable
 
 SCHEDULES = [

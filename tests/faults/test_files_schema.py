@@ -24,7 +24,7 @@ GOOD = [
     OwnBrake(M=[[1.0]], K=[[1.0]], contacts=(OwnContact(n=[1.0], d=[1.0], friction=LinearSlope(0.3, 0.0)),)),
 ]
 SECTIONS = (
-    '[modes]\ntime = "1 ms"\n[simulate]\nduration = "50 ms"\npoints = 11\nq = [1e-6]\n'
+    '[modes]\ntime = "1 ms"\n[simulate]\nduration = "50 ms"\ntimes = 11\nq = [1e-6]\n'
     '[onset]\nparameter = "friction.static"\nrange = [0, "50 %"]\n'
     "[map.x]\nparameter = 'friction.static'\nrange = [0, 1]\n[map.y]\nparameter = 'm'\nrange = [1, 2]\npoints = 3\n"
 )

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from squealbox.files.units import NAMES, UnitError, in_si, split
+from squealbox.units import NAMES, UnitError, in_si, split
 
 GOOD = [
     ("1 kN", "N", 1000.0),

@@ -11,6 +11,7 @@ from squealbox.cli import COMMANDS, main
 from squealbox.files import BRAKES, read_design, read_file
 from squealbox.files.reading import MESHED
 from squealbox.result import Outcome, Result
+from squealbox.transient import MotionSettings
 
 
 @pytest.fixture
@@ -296,7 +297,7 @@ def test_cycle(said, brake, tmp_path):
 
 def test_simulate_as_the_section_says(said, brake, tmp_path, undrawn):
     text = brake.read_text().partition("[simulate]")[0]
-    how = 'duration = "5 ms"\nstart = "sliding"\nq = ["1 um", 0]\nmethod = "dormand-prince"\npoints = 11\n'
+    how = 'duration = "5 ms"\nstart = "sliding"\nq = ["1 um", 0]\nmethod = "dormand-prince"\ntimes = 11\n'
     brake.write_text(f"{text}[simulate]\n{how}")
     code, _, _ = said("simulate", brake, "--out", tmp_path / "out")
     motion = Result.load(tmp_path / "out" / "motion.nc")
@@ -308,16 +309,14 @@ def test_simulate_as_the_section_says(said, brake, tmp_path, undrawn):
 
 
 def test_a_run_that_cannot_go_on_exits_with_one(said, brake, tmp_path, monkeypatch, undrawn):
-    from squealbox.cli import transient
-
-    follow = transient.run
+    follow = MotionSettings.run
 
     def stopped(*arguments):
         import dataclasses
 
         return dataclasses.replace(follow(*arguments), outcome=Outcome("step_underflow", "no step was small enough"))
 
-    monkeypatch.setattr(transient, "run", stopped)
+    monkeypatch.setattr(MotionSettings, "run", stopped)
     code, out, err = said("simulate", brake, "--out", tmp_path / "out", "--duration", "5 ms")
     assert code == 1
     assert err == "squealbox simulate: step_underflow: no step was small enough\n"
@@ -326,21 +325,21 @@ def test_a_run_that_cannot_go_on_exits_with_one(said, brake, tmp_path, monkeypat
 
 
 def test_an_interrupt_exits_with_130(said, brake, tmp_path, monkeypatch, undrawn):
-    from squealbox.cli import stability, transient
+    from squealbox.cli import stability
 
     def pressed(*arguments, **keywords):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(stability, "complex_modes", pressed)
     assert said("modes", brake) == (130, "", "squealbox modes: stopped\n")
-    follow = transient.run
+    follow = MotionSettings.run
 
     def interrupted(*arguments):
         import dataclasses
 
         return dataclasses.replace(follow(*arguments), outcome=Outcome("interrupted", "stopped by the user"))
 
-    monkeypatch.setattr(transient, "run", interrupted)
+    monkeypatch.setattr(MotionSettings, "run", interrupted)
     assert said("simulate", brake, "--out", tmp_path / "out", "--duration", "5 ms")[0] == 130
 
 

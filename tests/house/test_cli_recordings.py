@@ -7,7 +7,6 @@ from scipy.signal import lfilter
 
 from squealbox import complex_modes, plots, squeal_events
 from squealbox.files import read_design, read_file
-from squealbox.files.runs import run_closely
 from squealbox.signals import read_recording
 
 BRAKE = """brake = "drum_brake"
@@ -78,7 +77,7 @@ def test_compare_leaves_figures_and_both_spectrograms(stop, said):
     assert names == {f"{name}.{kind}" for name in ("modes", "motion", "spectrograms") for kind in ("png", "svg")}
     found = read_file(stop / "brake.toml")
     sound = read_recording(stop / "stop.csv", unit="Pa")
-    motion = run_closely(found.design.system(), found.simulate)
+    motion = found.simulate.run_closely(found.design.system())
     figure = plots.spectrograms_beside(motion, sound, squeal_events(sound))
     levels = [panel.collections[0] for panel in figure.axes[:2]]
     heights = [1e3 * levels[1].get_coordinates()[:, 0, 1], 1e3 * levels[0].get_coordinates()[:, 0, 1]]

@@ -69,7 +69,7 @@ def test_a_whole_session(tmp_path, capsys, monkeypatch):
     [
         ('[onset]\nparameter = "load"\nrange = ["100 N", "20 kN"]\n[study]\nanalysis = "onset"\n', "value"),
         ('[study]\nanalysis = "ensemble"\nduration = "2 ms"\nobserve = ["amplitude"]\n', "amplitude"),
-        ('[simulate]\nduration = "2 ms"\npoints = 501\n[study]\nanalysis = "simulate"\nworkers = 2\n', "amplitude"),
+        ('[simulate]\nduration = "2 ms"\ntimes = 501\n[study]\nanalysis = "simulate"\nworkers = 2\n', "amplitude"),
         ('[study]\nanalysis = "cycle"\n', "period"),
         ('[study]\nkeep = ["stable"]\n', "stable"),
     ],

@@ -4,6 +4,7 @@ import importlib
 import inspect
 import subprocess
 import sys
+import typing
 
 import numpy as np
 import pytest
@@ -22,10 +23,12 @@ def options_of(name, annotation):
     """The options of a command whose annotation has that text in it."""
     command = COMMANDS[name]
     function = getattr(importlib.import_module(f"squealbox.cli.{command.module}"), command.function)
-    for option, about in inspect.signature(function).parameters.items():
-        told = str(about.annotation)
-        if about.kind is about.KEYWORD_ONLY and annotation in told:
-            yield option, told.count("str")
+    several = [about for about in inspect.signature(function).parameters.values() if about.kind is about.KEYWORD_ONLY]
+    told = {each.name: str(each.annotation) for each in several}
+    for each in several:  # what several commands take is a class of options
+        shared = next(iter(typing.get_args(each.annotation)), None)
+        told |= {one.name: str(one.type) for one in getattr(shared, "__dataclass_fields__", {}).values()}
+    yield from ((option, text.count("str")) for option, text in told.items() if annotation in text)
 
 
 @pytest.fixture

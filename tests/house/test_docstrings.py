@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from house.rooms import load, module_names
-from squealbox.files.units import unit
+from squealbox.units import unit
 
 MODULES = module_names()
 

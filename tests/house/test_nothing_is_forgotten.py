@@ -15,8 +15,8 @@ from house.rooms import PROJECT
 from law_examples import LAWS as EXAMPLES_OF_LAWS
 from squealbox.cli import COMMANDS
 from squealbox.designs import DESIGNS, Design
-from squealbox.files.sheets import LAW_NAMES
 from squealbox.fit import FITTED
+from squealbox.friction import LAW_NAMES
 from squealbox.plots import plot
 from squealbox.plots.brakes import drawing_of
 from squealbox.result import Result

@@ -22,7 +22,6 @@ from squealbox import (
 )
 from squealbox.cli import main
 from squealbox.files.beginnings import mechanism_example
-from squealbox.files.varied import scalar_parameters
 
 MASS, K_PAD = np.diag([1.0, 1.0, 2.0]), 3e6
 STIFFNESS = np.array([[3.8e6, 1e6, 0.0], [1e6, 1e6, -0.5e6], [0.0, -0.5e6, 2e6]])
@@ -107,7 +106,7 @@ def test_parts_are_written_read_and_varied_from_the_command_line(tmp_path, capsy
 
 def test_parts_of_a_mechanism_have_names_and_make_maps():
     mechanism = mechanism_example()
-    known = scalar_parameters(mechanism)
+    known = mechanism.scalars()
     assert {"bodies.pad.mass", "springs.1.stiffness", "springs.4.damping", "contacts.1.stiffness"} <= set(known)
     assert known["springs.1.angle"].unit == "rad"
     names = ["bodies.pad.mass", "springs.1.angle", "contacts.1.stiffness"]

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from squealbox import Coulomb, DrumBrake, OwnBrake, OwnContact
-from squealbox.files.analyses import Simulate
 from squealbox.parameters import ParameterError
 from squealbox.report import examine
+from squealbox.transient import MotionSettings
 
 
 def test_an_own_brake_is_examined():
@@ -15,7 +15,7 @@ def test_an_own_brake_is_examined():
         M=np.eye(2), K=[[2.0, 1.0], [1.0, 2.0]], C=0.1 * np.eye(2), friction=Coulomb(0.5), normal_force=10.0,
         contacts=(contact,),
     )  # fmt: skip
-    found = examine(brake, simulate=Simulate(duration=20.0, points=101))
+    found = examine(brake, simulate=MotionSettings(duration=20.0, times=101))
     assert found.modes.outcome.ok
     assert found.motion.outcome.ok
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from squealbox import Coulomb, DiscBrake, complex_modes, mode_energy, plots, reduce
+from squealbox.family import ParameterAxis
 from squealbox.fe.surface import Surface, surface_of
-from squealbox.files.analyses import Varied
 from squealbox.plots.surfaces import REACH, contact_pressure, from_side, mode_on_surface, outline
 from squealbox.report import design_page, examine
 from squealbox.report.blocks import Solid, Table
@@ -26,7 +26,7 @@ def meshed():
 
 @pytest.fixture(scope="module")
 def found(meshed):
-    return examine(meshed[1], onset=Varied("friction.static", 0.2, 0.6))
+    return examine(meshed[1], onset=ParameterAxis("friction.static", 0.2, 0.6))
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,6 @@ from squealbox import DrumBrake, LinearSlope, complex_modes
 from squealbox.countermeasures import AddedDamping, AddedMass, TunedMass
 from squealbox.countermeasures.base import short_name
 from squealbox.files import read_text
-from squealbox.files.varied import scalar_parameters
 from squealbox.workbench.panels import Options, Stopped, Work, function_of
 from squealbox.workbench.sheet import sheet
 from squealbox.workbench.state import design_of
@@ -89,7 +88,7 @@ def test_a_brake_within_countermeasures_keeps_the_names_of_its_fields():
         for field in sheet(design)["fields"]
         if "." not in field["path"] and field["kind"] == "number"
     )
-    assert set(scalar_parameters(DrumBrake())) <= set(scalar_parameters(design))
+    assert set(DrumBrake().scalars()) <= set(design.scalars())
     assert float(design.replace({"friction.static": 0.2}).value_of("friction.static")) == 0.2
     assert short_name(design, "brake.brake.k3") == "k3"
     assert short_name(design, "brake.damping") == "brake.damping"

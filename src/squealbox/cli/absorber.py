@@ -7,7 +7,7 @@ from squealbox.cli.answers import show
 from squealbox.cli.inputs import folder, number, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import UsageError
-from squealbox.cli.tables import written
+from squealbox.cli.tables import kept, written
 from squealbox.countermeasures import best_absorber
 from squealbox.files import write_design
 from squealbox.waiting import Progress
@@ -44,13 +44,10 @@ def absorber(
         raise UsageError(f"{file} has no section [scatter], which --aim probability needs")
     kilograms = number(mass, "kg", f"--mass {mass[:60]}")
     scatter = found.scatter.scatter if found.scatter else None
-    if out is not None:
-        folder(out, "absorber", "with_absorber")
+    folder(out, "absorber", "with_absorber")
     with Progress("tuning the absorber"):
         best = best_absorber(found.design, on, kilograms, aim, scatter)
     show(f"{found.design.title}, {file}", best)
     if out is not None:
-        from squealbox import plots
-
-        paths = [best.save(out / "absorber.nc"), write_design(best.design, out / "with_absorber.toml")]
-        print(written(*paths, *plots.save(plots.plot(best, title=found.path.name), out / "absorber")))
+        paths = kept(best, out / "absorber", title=found.path.name)
+        print(written(*paths, write_design(best.design, out / "with_absorber.toml")))

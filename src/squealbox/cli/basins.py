@@ -11,7 +11,7 @@ from squealbox.cli.inputs import folder, in_motion, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.states import States, box_from
-from squealbox.cli.tables import write_csv, written
+from squealbox.cli.tables import kept, written
 from squealbox.limit_cycles import Basin, basin, dangerous_push
 from squealbox.limit_cycles.attractors.basins import half_widths
 from squealbox.limit_cycles.attractors.sections import state_names
@@ -63,8 +63,7 @@ def basin_(
     if starts < 1 or not (np.isfinite(spread) and spread > 0.0):
         raise UsageError(f"--starts {starts} --spread {spread:g}: expected at least one start and a spread above 0")
     found = in_motion(read(file, asked))
-    if out is not None:
-        folder(out, "basin", "push")
+    folder(out, "basin", "push")
     half: Any = spread
     through = None
     if box:
@@ -85,10 +84,8 @@ def basin_(
         from squealbox import plots
 
         figure = plots.basin_picture(result, push=smallest, title=found.path.name)
-        files = [result.save(out / "basin.nc"), write_csv(out / "basin.csv", _columns(result))]
-        if smallest is not None:
-            files.append(smallest.save(out / "push.nc"))
-        print(written(*files, *plots.save(figure, out / "basin")))
+        push_file = [] if smallest is None else [smallest.save(out / "push.nc")]
+        print(written(*kept(result, out / "basin", _columns(result), figure), *push_file))
 
 
 def _columns(result: Basin) -> dict[str, object]:

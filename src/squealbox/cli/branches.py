@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Ends, Vary, axis, folder, in_motion, read, readable, varied_by, with_points
+from squealbox.cli.inputs import AS_FILED, OneVaried, folder, in_motion, read, readable
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.tables import write_csv, written
+from squealbox.family import ParameterAxis
 from squealbox.limit_cycles import (
     Branch,
     EstimateCurve,
@@ -31,7 +32,6 @@ ABOUT = {"branch": "limit cycles over a range of a parameter: stable, unstable, 
 
 if TYPE_CHECKING:
     from squealbox.designs import Design
-    from squealbox.files.analyses import Varied
 
 Start = Literal["all", "hopf", "runs"]
 
@@ -39,13 +39,10 @@ Start = Literal["all", "hopf", "runs"]
 def branch(
     file: Path,
     *,
-    vary: Vary = (),
-    parameter: str | None = None,
-    range: Ends = None,
+    varies: OneVaried = AS_FILED,
     start: Start = "all",
     runs: int = 8,
     at: int = 3,
-    points: int | None = None,
     estimates: bool = True,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
@@ -56,29 +53,20 @@ def branch(
     ----------
     file
         design file; its section [branch] says what is varied, unless the options do
-    vary
-        a parameter and its lowest and highest value: friction.static=0.1:0.6, or theta1=20deg:160deg
-    parameter
-        its dotted name, where --range stands beside it
-    range
-        lowest and highest value, with or without a unit: 0.1 0.6
     start
         where branches begin: at the Hopf point of steady sliding (hopf), in what long runs settle to (runs), or both
     runs
         number of runs from different states at each value
     at
         number of values, evenly inside the range, at which runs are made
-    points
-        most cycles of one branch each way
     estimates
         quick estimates beside the branches: describing function, and averaging for a block on a belt
     out
         folder for a figure, the tables branch.csv and special.csv, and the data of each branch
     """
     found = read(file, asked)
-    varied = with_points(axis(found.design, found.branch, *varied_by(vary, parameter, range)), points)
-    if out is not None:
-        folder(out, "branch", "special")
+    varied = varies.of(found.design, found.branch)
+    folder(out, "branch", "special")
     found = in_motion(found, varied)
     with Progress("looking for the onset") as progress:
         born, several = all_branches(found.design, varied, start, runs, at, progress)
@@ -105,7 +93,7 @@ def branch(
 
 def all_branches(
     design: "Design",
-    varied: "Varied",
+    varied: ParameterAxis,
     start: Start = "all",
     runs: int = 8,
     at: int = 3,
@@ -126,7 +114,7 @@ def all_branches(
     return born, tuple(x for i, x in enumerate(several) if not any(lies_on(x, later) for later in several[i + 1 :]))
 
 
-def _said(name: str, one: Branch, quiet: list[tuple[float, float]], design: "Design", varied: "Varied") -> str:
+def _said(name: str, one: Branch, quiet: list[tuple[float, float]], design: "Design", varied: ParameterAxis) -> str:
     def shown(value: float) -> str:
         number, unit = readable(design, varied, value)
         return f"{float(number):.7g} {unit}".rstrip()
@@ -146,7 +134,7 @@ def _said(name: str, one: Branch, quiet: list[tuple[float, float]], design: "Des
 
 
 def _coexistence(
-    several: tuple[Branch, ...], quiet: list[tuple[float, float]], design: "Design", varied: "Varied"
+    several: tuple[Branch, ...], quiet: list[tuple[float, float]], design: "Design", varied: ParameterAxis
 ) -> str:
     """Where a stable cycle exists beside stable steady sliding."""
     both = beside_sliding(several, quiet)
@@ -165,7 +153,7 @@ def _files(
     born: HopfPoint,
     curves: tuple[EstimateCurve, ...],
     design: "Design",
-    varied: "Varied",
+    varied: ParameterAxis,
     title: str,
     out: Path,
 ) -> list[Path]:

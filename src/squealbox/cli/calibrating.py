@@ -12,7 +12,6 @@ from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import written
 from squealbox.files import DesignFile, write_design
 from squealbox.files.measurements import Recorded
-from squealbox.files.runs import run_closely
 from squealbox.signals import Recording, SignalError, SquealEvents, read_recording, squeal_events
 from squealbox.signals.events import BAND
 from squealbox.stability import ComplexModes, complex_modes
@@ -92,8 +91,7 @@ def compare_(
     """
     found = read(file, asked)
     figures: dict[str, Comparison] = {}
-    if out is not None:
-        folder(out, "mode_table", "modes", "motion", "spectrograms")
+    folder(out, "mode_table", "modes", "motion", "spectrograms")
     try:
         own = complex_modes(found.design)
         if modes is not None:
@@ -105,7 +103,7 @@ def compare_(
             show("modes", figures["modes"])
             if found.simulate is not None:
                 with Progress("simulating"):
-                    motion = run_closely(found.design.system(), found.simulate)
+                    motion = found.simulate.run_closely(found.design.system())
                 figures["motion"] = compare(motion, events)
                 show("motion", figures["motion"])
     except SignalError as error:

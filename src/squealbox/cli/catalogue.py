@@ -33,8 +33,9 @@ def list_(name: str | None = None) -> None:
 
 def _overview() -> Iterator[str]:
     from squealbox.files import BRAKES
-    from squealbox.files.sheets import SCHEDULE_NAMES
-    from squealbox.transient.methods import TABLEAUX, TAYLOR
+    from squealbox.schedules import SCHEDULE_NAMES
+    from squealbox.transient import TABLEAUX
+    from squealbox.transient.methods import TAYLOR
 
     yield from _section("designs (brake = ...)", {name: sheet.title for name, sheet in BRAKES.items()} | READ_TITLES)
     yield from _section("friction laws (law = ...)", {name: _first_line(sheet) for name, sheet in _laws().items()})
@@ -67,10 +68,9 @@ def _around() -> dict[str, dict[str, type[DataSheet]]]:
 
 def _laws() -> dict[str, type[DataSheet]]:
     """The friction laws a file knows, with the one that is a Python file."""
-    from squealbox.files.own_law import OwnLaw
-    from squealbox.files.sheets import LAW_NAMES, OWN
+    from squealbox.friction import LAW_NAMES, OwnLaw
 
-    return {**LAW_NAMES, OWN: OwnLaw}
+    return {**LAW_NAMES, "own": OwnLaw}
 
 
 def _papers() -> dict[str, str]:
@@ -89,7 +89,8 @@ def _section(title: str, rows: dict[str, str]) -> Iterator[str]:
 
 def _sheet(name: str) -> Iterator[str]:
     from squealbox.files import BRAKES
-    from squealbox.files.sheets import LAW_NAMES, SCHEDULE_NAMES
+    from squealbox.friction import LAW_NAMES
+    from squealbox.schedules import SCHEDULE_NAMES
 
     kinds: tuple[Mapping[str, type[DataSheet]], ...] = (BRAKES, LAW_NAMES, SCHEDULE_NAMES, *_around().values())
     known = [each for sheets in kinds for each in sheets]

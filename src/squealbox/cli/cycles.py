@@ -10,7 +10,7 @@ from squealbox.cli.inputs import folder, in_motion, read, time_of
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.states import States, start_from
-from squealbox.cli.tables import written
+from squealbox.cli.tables import kept, written
 from squealbox.limit_cycles import Cycle, lyapunov_exponents, shooting
 from squealbox.limit_cycles.attractors.exponents import LOST
 from squealbox.stability import complex_modes
@@ -64,8 +64,7 @@ def cycle(
     for name, value in times.items():
         if not value > 0.0:
             raise UsageError(f"--{name} {value:g}: expected a time above 0 s")
-    if out is not None:
-        folder(out, "cycle")
+    folder(out, "cycle")
     guess = begin if period is None or begin is None else (*begin, times["period"])
     result = shooting(found.design, guess, settle=times.get("settle"))
     if not result.outcome.ok:
@@ -77,9 +76,7 @@ def cycle(
     if exponents:
         print(_beside_multipliers(result, exponents))
     if out is not None:
-        from squealbox import plots
-
-        print(written(result.save(out / "cycle.nc"), *plots.save(plots.plot(result), out / "cycle")))
+        print(written(*kept(result, out / "cycle")))
 
 
 def _beside_multipliers(cycle: Cycle, periods: int) -> str:

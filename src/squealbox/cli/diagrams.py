@@ -1,7 +1,7 @@
 """`squealbox diagram`: a bifurcation diagram by brute force, ensembles over a parameter, with a Poincare section."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from cyclopts import Parameter
@@ -9,22 +9,22 @@ from cyclopts import Parameter
 from squealbox.cli.answers import keep
 from squealbox.cli.branches import all_branches
 from squealbox.cli.inputs import (
-    Ends,
-    Vary,
-    axis,
+    AS_FILED,
+    NOTHING_SAID,
+    OneVaried,
+    Said,
     folder,
     in_motion,
+    keywords,
     number,
     read,
     readable,
-    time_of,
-    varied_by,
-    with_points,
 )
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import write_csv, written
-from squealbox.limit_cycles import BifurcationDiagram, Branch, Section, bifurcation_diagram
+from squealbox.cli.tables import kept, write_csv, written
+from squealbox.family import ParameterAxis
+from squealbox.limit_cycles import BifurcationDiagram, Branch, DiagramSettings, Section, bifurcation_diagram
 from squealbox.limit_cycles.attractors.settling import KINDS
 from squealbox.parameters import known_names
 from squealbox.waiting import Progress
@@ -33,10 +33,7 @@ ABOUT = {"diagram": "what transients settle to over a parameter, with a Poincare
 
 if TYPE_CHECKING:
     from squealbox.designs import Design
-    from squealbox.files.analyses import Varied
 
-Sweep = Literal["up", "down", "rest"]
-Sweeps = Annotated[tuple[Sweep, ...], Parameter(negative="", consume_multiple=True)]
 Drawn = Annotated[bool, Parameter(negative="")]
 WAYS = {"rises": 1, "falls": -1, "passes": 0}
 NAMED = {"maxima": Section.maxima, "minima": Section.minima, "return": Section.returns}
@@ -45,18 +42,11 @@ NAMED = {"maxima": Section.maxima, "minima": Section.minima, "return": Section.r
 def diagram(
     file: Path,
     *,
-    vary: Vary = (),
-    parameter: str | None = None,
-    range: Ends = None,
-    points: int | None = None,
-    sweeps: Sweeps = ("up", "down", "rest"),
-    starts: int = 0,
+    varies: OneVaried = AS_FILED,
+    how: Said[DiagramSettings] = NOTHING_SAID,
     dof: str | None = None,
     section: str = "maxima",
-    returns: int = 40,
-    duration: str | None = None,
     branches: Drawn = False,
-    seed: int = 0,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
@@ -70,46 +60,23 @@ def diagram(
     ----------
     file
         design file; its section [branch] says what is varied, unless the options do
-    vary
-        a parameter and its lowest and highest value: friction.static=0.1:0.6, or theta1=20deg:160deg
-    parameter
-        its dotted name, where --range stands beside it
-    range
-        lowest and highest value, with or without a unit: 0.1 0.6
-    points
-        number of values
-    sweeps
-        some of up, down and rest
-    starts
-        number of further starts at every value, drawn about steady sliding
     dof
         degree of freedom that is drawn, or y' for its velocity in a plane of --section; the largest unless said
     section
         maxima or minima of it; return (its velocity where it rises through steady sliding); or a plane: "x' falls 0.1",
         "x rises 2um", "v1 falls 0" with v1, v2 ... the sliding velocities of the contacts
-    returns
-        about how many points of the section are kept of each motion
-    duration
-        of the first stretch at each value, such as 20ms; what has not settled runs on
     branches
         follow the cycles as well (as squealbox branch) and draw them beneath
-    seed
-        of the drawn starts
     out
         folder for a figure, the tables diagram.csv and section.csv, and diagram.nc
     """
     found = read(file, asked)
-    varied = with_points(axis(found.design, found.branch, *varied_by(vary, parameter, range)), points)
-    found = in_motion(found, varied)
-    length = None if duration is None else time_of("--duration", duration)
+    varied = varies.of(found.design, found.branch)
+    found, settings = in_motion(found, varied), how.over(DiagramSettings())
     plane = _section(found.design, section, dof)
-    if out is not None:
-        folder(out, "diagram", "section")
+    folder(out, "diagram", "section")
     with Progress(f"{varied.points} values") as progress:
-        result = bifurcation_diagram(
-            found.design, varied.name, varied.values, sweeps=sweeps, starts=starts, section=plane, returns=returns,
-            duration=length, seed=seed,
-        )  # fmt: skip
+        result = bifurcation_diagram(found.design, varied.name, varied.values, section=plane, **keywords(settings))
         if np.all(result.kind < 0):
             raise ComputationFailed(result.outcome)
         progress("following the cycles")
@@ -144,7 +111,7 @@ def _section(design: "Design", text: str, dof: str | None) -> Section:
     return Section(name, where, number(words[2], unit, f"--section {text[:60]}") if len(words) == 3 else 0.0, way)
 
 
-def _said(result: BifurcationDiagram, design: "Design", varied: "Varied") -> str:
+def _said(result: BifurcationDiagram, design: "Design", varied: ParameterAxis) -> str:
     def shown(value: float) -> str:
         read_, unit = readable(design, varied, value)
         return f"{float(read_):.6g} {unit}".rstrip()
@@ -178,7 +145,12 @@ def _units(result: BifurcationDiagram) -> dict[str, str]:
 
 
 def _files(
-    result: BifurcationDiagram, several: tuple[Branch, ...], design: "Design", varied: "Varied", title: str, out: Path
+    result: BifurcationDiagram,
+    several: tuple[Branch, ...],
+    design: "Design",
+    varied: ParameterAxis,
+    title: str,
+    out: Path,
 ) -> list[Path]:
     """Figure, tables and data."""
     from squealbox import plots
@@ -200,5 +172,4 @@ def _files(
     read_unit = units[result.read.rstrip("'")] + ("" if result.read in result.dofs else "/s")
     passed = {"sweep": np.array(result.sweeps)[sweep], name: values[point],
               f"{result.section} [{read_unit}]": result.crossings[held]}  # fmt: skip
-    return [*plots.save(figure, out / "diagram"), write_csv(out / "diagram.csv", rows),
-            write_csv(out / "section.csv", passed), result.save(out / "diagram.nc")]  # fmt: skip
+    return [*kept(result, out / "diagram", rows, figure), write_csv(out / "section.csv", passed)]

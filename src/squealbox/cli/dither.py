@@ -48,8 +48,7 @@ def dither(
         raise UsageError(
             f"--velocity {' '.join(velocity)} --points {points}: expected 0 < low < high and 2 points or more"
         )
-    if out is not None:
-        folder(out, "dither")
+    folder(out, "dither")
     hertz = number(frequency, "Hz", f"--frequency {frequency[:60]}")
     amplitudes = np.geomspace(low, high, points)
     cures = [Dithered(found.design, float(w), hertz, along) for w in amplitudes]

@@ -6,17 +6,15 @@ from typing import Any
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Vary, folder, in_motion, read, time_of
-from squealbox.cli.maps import Plane, Span, axes_of
+from squealbox.cli.inputs import folder, in_motion, read, time_of
+from squealbox.cli.maps import AS_FILED, Plane, TwoVaried
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import write_csv, written
+from squealbox.cli.tables import kept, written
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.files.analyses import Simulate
-from squealbox.files.runs import start_of, usual_duration
 from squealbox.matrices import liveliest
 from squealbox.system import as_system
-from squealbox.transient import Ensemble, simulate_ensemble
+from squealbox.transient import Ensemble, MotionSettings, simulate_ensemble, usual_duration
 from squealbox.waiting import Progress
 
 ABOUT = {"ensemble": "transients over two parameters: amplitude and frequency of each"}
@@ -25,10 +23,7 @@ ABOUT = {"ensemble": "transients over two parameters: amplitude and frequency of
 def ensemble(
     file: Path,
     *,
-    vary: Vary = (),
-    x: Span = None,
-    y: Span = None,
-    points: int | None = None,
+    over: TwoVaried = AS_FILED,
     duration: str | None = None,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
@@ -42,30 +37,21 @@ def ensemble(
     ----------
     file
         design file; its section [map] says what is varied, unless the options do
-    vary
-        two parameters, each with its lowest and highest value: friction.static=0:1 theta1=20deg:160deg
-    x
-        parameter, lowest and highest value: friction.static 0 1
-    y
-        the same for the other axis: theta1 20deg 160deg
-    points
-        number of values along each axis
     duration
         length of each transient; left out, 200 periods of the worst mode of the brake in the file
     out
         folder for the figure and the numbers
     """
     found = read(file, asked)
-    across, up = axes_of(found, vary, x, y, points)
+    across, up = over.of(found)
     seconds = usual_duration(found.design) if duration is None else time_of("--duration", duration)
     if not seconds > 0.0:
         raise UsageError(f"--duration {duration}: expected a time above 0 s")
-    if out is not None:
-        folder(out, "ensemble")
+    folder(out, "ensemble")
     found = in_motion(found, across, up)
     start = None
     if isinstance(found.design, ReducedBrake) and found.simulate is not None:
-        start = start_of(found.design.system(), Simulate(q=found.simulate.q))  # rest, in its coordinates
+        start = MotionSettings(q=found.simulate.q).start_of(found.design.system())  # rest, in its coordinates
     space = {each.name: each.values for each in (across, up)}
     with Progress(f"{int(across.points)} x {int(up.points)} transients") as progress:
         many = simulate_ensemble(
@@ -119,18 +105,8 @@ def _files(many: Ensemble, plane: Plane, title: str, out: Path) -> list[Path]:
     from squealbox import plots
 
     amplitude, frequency, which, unit = _largest(many, plane.design)
-    (x_name, y_name), (x_unit, y_unit) = plane.names, plane.units
     figure = plots.amplitude_map(
-        plane.x,
-        plane.y,
-        amplitude.T,
-        x_name=x_name,
-        x_unit=x_unit,
-        y_name=y_name,
-        y_unit=y_unit,
-        title=title,
-        unit=unit,
-        name=f"amplitude, {which}",
+        plane.x, plane.y, amplitude.T, **plane.labels, title=title, unit=unit, name=f"amplitude, {which}"
     )
     columns = {
         **plane.columns(np.repeat(plane.x, len(plane.y)), np.tile(plane.y, len(plane.x))),
@@ -139,8 +115,4 @@ def _files(many: Ensemble, plane: Plane, title: str, out: Path) -> list[Path]:
         "events": many.events.ravel(),
         "ended": many.ended.ravel(),
     }
-    return [
-        many.save(out / "ensemble.nc"),
-        *plots.save(figure, out / "ensemble"),
-        write_csv(out / "ensemble.csv", columns),
-    ]
+    return kept(many, out / "ensemble", columns, figure)

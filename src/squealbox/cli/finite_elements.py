@@ -8,16 +8,14 @@ import numpy as np
 
 from squealbox.cli.inputs import small
 from squealbox.cli.tables import write_csv, written
+from squealbox.family import ParameterAxis
 from squealbox.fe.assembled import AssembledBrake
 from squealbox.fe.meshed import MeshedBrake
 from squealbox.fe.mode_shapes import write_uff, write_vtu
-from squealbox.files import DesignFile
-from squealbox.files.analyses import Varied
-from squealbox.files.reduced import Reduce, Reduced
-from squealbox.files.varied import scalar_parameters
-from squealbox.stability import complex_modes
+from squealbox.files import DesignFile, Reduce, Reduced
+from squealbox.stability import complex_modes, mesh_doubt
 from squealbox.stability.mode_table import mode_table, table_text
-from squealbox.stability.second_mesh import ONE_MESH, mesh_doubt
+from squealbox.stability.second_mesh import ONE_MESH
 from squealbox.waiting import Progress
 
 FRICTION = "friction.static"
@@ -70,11 +68,11 @@ def _coalescence(found: DesignFile, band: tuple[float, float], out: Path) -> lis
     """Frequencies and growth rates over friction, from 0 to its value or the range of [onset], by a reduced brake."""
     from squealbox import plots
 
-    if FRICTION not in scalar_parameters(found.design):
+    if FRICTION not in found.design.scalars():
         return []
     top = float(found.design.value_of(FRICTION))
     given = found.onset
-    varied = given if given is not None and given.name == FRICTION else Varied(FRICTION, 0.0, max(1.5 * top, 0.1))
+    varied = given if given and given.name == FRICTION else ParameterAxis(FRICTION, 0.0, max(1.5 * top, 0.1))
     about = found.reduce or Reduced(Reduce(), {})
     asked = dataclasses.replace(found, reduce=dataclasses.replace(about, how=about.how.replace(band=np.array(band))))
     brake = small(asked, varied).design

@@ -5,8 +5,8 @@ from pathlib import Path
 from squealbox.cli.answers import show
 from squealbox.cli.inputs import folder
 from squealbox.cli.running import ComputationFailed
-from squealbox.cli.tables import write_csv, written
-from squealbox.files.measured import read_points
+from squealbox.cli.tables import kept, written
+from squealbox.files import read_points
 from squealbox.fit import fit_friction
 
 ABOUT = {"fit": "measured friction coefficients (CSV) to a friction law, with confidence bands"}
@@ -29,8 +29,7 @@ def fit(file: Path, *, law: tuple[str, ...] = (), level: float = 0.95, out: Path
     out
         folder for the figure, the curves and fit.nc
     """
-    if out is not None:
-        folder(out, "fit")
+    folder(out, "fit")
     found = fit_friction(*read_points(file), law=law or None, level=level)
     if not found.outcome.ok:
         raise ComputationFailed(found.outcome)
@@ -39,10 +38,7 @@ def fit(file: Path, *, law: tuple[str, ...] = (), level: float = 0.95, out: Path
     numbers = ", ".join(f"{name} = {value:.6g}" for name, _, value in best.leaves() if value is not None)
     print(f'in a design file: friction = {{ law = "{found.names[found.best]}", {numbers} }}')
     if out is not None:
-        from squealbox.plots import plot, save
-
-        figures = save(plot(found), out / "fit")
         row = found.best
         columns = {"speed [m/s]": found.curve_speeds, "mu [-]": found.curves[row]}
         columns |= {"low [-]": found.low[row], "high [-]": found.high[row]}
-        print(written(found.save(out / "fit.nc"), write_csv(out / "fit.csv", columns), *figures))
+        print(written(*kept(found, out / "fit", columns)))

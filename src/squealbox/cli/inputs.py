@@ -2,9 +2,9 @@
 
 import dataclasses
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Generic, TypeVar, get_origin
 
 import cyclopts
 import numpy as np
@@ -13,15 +13,16 @@ from squealbox.cli.answers import manner
 from squealbox.cli.options import AS_WRITTEN, HowAsked
 from squealbox.cli.running import UsageError
 from squealbox.designs import Design
+from squealbox.family import ParameterAxis
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files import DesignFile, read_file
-from squealbox.files.analyses import Varied
-from squealbox.files.units import UnitError, in_si
-from squealbox.files.varied import quantity_of, words_of
-from squealbox.parameters import Parameter, ParameterError
+from squealbox.parameters import DataSheet, Parameter, ParameterError, field_type
 from squealbox.transient.simulate import TIME_STEPPING
+from squealbox.units import UnitError, in_si
 from squealbox.waiting import Progress
 
+Sheet = TypeVar("Sheet", bound=DataSheet)
+Filed = TypeVar("Filed", bound=DataSheet)
 Vary = Annotated[tuple[str, ...], cyclopts.Parameter(negative="", consume_multiple=True, show_default=False)]
 Ends = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
 
@@ -34,9 +35,9 @@ def read(file: Path, asked: HowAsked = AS_WRITTEN) -> DesignFile:
     return dataclasses.replace(found, design=changed(found.design, asked.changes))
 
 
-def small(found: DesignFile, *axes: Varied) -> DesignFile:
+def small(found: DesignFile, *axes: ParameterAxis) -> DesignFile:
     """The file with a finite-element brake reduced for `axes` and its sections, and what that promises printed."""
-    from squealbox.files.reduced import dense, promise
+    from squealbox.files import dense, promise
 
     with Progress("reducing the finite-element brake"):
         made = dense(found, axes)
@@ -45,12 +46,12 @@ def small(found: DesignFile, *axes: Varied) -> DesignFile:
     return made
 
 
-def in_motion(found: DesignFile, *axes: Varied, contact: str = "exact") -> DesignFile:
+def in_motion(found: DesignFile, *axes: ParameterAxis, contact: str = "exact") -> DesignFile:
     """As :func:`small`, for motions in time by a contact scheme.
 
     All but one leave out friction across the sliding direction, and that is said.
     """
-    from squealbox.files.reduced import ONE_WAY
+    from squealbox.files import ONE_WAY
 
     made = small(found, *axes)
     if contact == TIME_STEPPING:
@@ -71,18 +72,97 @@ def changed(design: Design, changes: Sequence[str]) -> Design:
     return design
 
 
+RANGE, VARY = "--parameter NAME --range LOW HIGH", "--vary NAME=LOW:HIGH"  # how an axis is asked for
+
+
 @dataclasses.dataclass(frozen=True)
-class Option:
-    """How an axis is named on the command line: the word before its ends, and the whole of it."""
+class HowVaried:
+    """What a command varies, where that is not as the section of its file says.
 
-    word: str
-    usage: str
+    Parameters
+    ----------
+    vary
+        a parameter and its lowest and highest value: friction.static=0.1:0.6, or theta1=20deg:160deg
+    parameter
+        its dotted name, where --range stands beside it
+    range
+        lowest and highest value, with or without a unit: 0 1, or 20deg 160deg
+    points
+        number of values; of a branch, most cycles each way
+    """
+
+    vary: Vary = ()
+    parameter: str | None = None
+    range: Ends = None
+    points: int | None = None
+
+    def of(self, design: Design, given: ParameterAxis | None) -> ParameterAxis:
+        """The axis of the file, or the one the options name."""
+        name, ends = spans(self.vary, 1)[0] if self.vary else (self.parameter, self.range)
+        return axis(design, given, name, ends, VARY if self.vary else RANGE, self.points)
 
 
-RANGE = Option("--range", "--parameter NAME --range LOW HIGH")
+OneVaried = Annotated[HowVaried, cyclopts.Parameter(name="*")]
+AS_FILED = HowVaried()
 
 
-VARY = Option("--vary", "--vary NAME=LOW:HIGH")
+class Said(Generic[Sheet]):
+    """What the command line says of the options of a data sheet, None where nothing.
+
+    ``how: Said[MotionSettings] = NOTHING_SAID`` makes an option of each number, word and switch that the sheet
+    declares, with its meaning as help.
+    """
+
+    def __class_getitem__(cls, sheet: Any) -> Any:
+        fields = [(name, kind, None) for name in sheet.field_names() if (kind := _option(sheet, name)) is not None]
+        made = dataclasses.make_dataclass(f"Said{sheet.__name__}", fields, bases=(cls,), frozen=True)
+        made.__module__ = __name__
+        return Annotated[made, cyclopts.Parameter(name="*")]
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """The options that were given."""
+        return {name: value for name, value in vars(self).items() if value is not None}
+
+    def over(self, section: Filed) -> Filed:
+        """What the file says, or the usual values, with what was given instead."""
+        return put_over(section, self.given)
+
+
+NOTHING_SAID: Any = Said()
+
+
+def _option(sheet: type[DataSheet], name: str) -> Any:
+    """The type of the option for a field, with its help; None for an array, which stands in a file."""
+    declared, about, words = field_type(sheet, name), sheet.parameters().get(name), sheet.choices().get(name)
+    if get_origin(declared) is Annotated:
+        return None
+    several = get_origin(declared) is tuple
+    kind = declared if several or declared in (bool, int) else str
+    unit = f" [{about.unit}]" if about and about.unit not in ("", "-") else ""
+    options = f": {', '.join(words.options)}" if words and len(words.options) < 6 else ""
+    meaning = about.meaning if about else words.meaning if words else sheet.told[name][1]
+    told = f"{meaning}{unit}{options}"
+    how = cyclopts.Parameter(help=told, negative="", show_default=False, consume_multiple=several)
+    return Annotated[kind | None, how]
+
+
+def put_over(section: Filed, said: Mapping[str, Any]) -> Filed:
+    """A section with other values, of which numbers with units are texts."""
+    units = {name: about.unit for name, about in section.parameters().items() if isinstance(said.get(name), str)}
+    numbers = {name: number(said[name], unit, f"--{name} {said[name][:60]}") for name, unit in units.items()}
+    try:
+        return section.replace(section.spelled({**said, **numbers}))
+    except ParameterError as error:
+        option = error.name.replace("_", "-")
+        raise UsageError(f"--{option} {said.get(error.name, error.value)}: {error.expectation}") from error
+
+
+def keywords(section: DataSheet) -> dict[str, Any]:
+    """The options of a sheet as its function takes them, whole numbers as such."""
+    values = {name: getattr(section, name) for name in section.field_names()}
+    whole = {name for name, value in values.items() if field_type(type(section), name) is int and value is not None}
+    return {name: int(value) if name in whole else value for name, value in values.items()}
 
 
 def spans(vary: Sequence[str], count: int) -> list[tuple[str, tuple[str, str]]]:
@@ -99,43 +179,31 @@ def spans(vary: Sequence[str], count: int) -> list[tuple[str, tuple[str, str]]]:
     return found
 
 
-def varied_by(vary: Sequence[str], name: str | None, ends: tuple[str, str] | None) -> tuple[Any, Any, Option]:
-    """What `axis` is asked for by ``--vary``, or by ``--parameter`` and ``--range``."""
-    return (*spans(vary, 1)[0], VARY) if vary else (name, ends, RANGE)
-
-
 def axis(
-    design: Design, given: Varied | None, name: str | None, ends: tuple[str, str] | None, option: Option
-) -> Varied:
-    """The axis of the file, or the one the options name."""
+    design: Design, given: ParameterAxis | None, name: str | None, ends: tuple[str, str] | None, usage: str, points: Any
+) -> ParameterAxis:
+    """The axis of the file, or the one the options name, with so many points where they are given."""
     name = name if name is not None else given.name if given else None
     if name is None:
-        raise UsageError(f"nothing says what is varied: give {option.usage}, or a section in the file")
-    if ends is None:
-        if given is None or given.name != name:
-            raise UsageError(f"nothing says over which range: give {option.usage}")
-        return given
-    label = f"{option.word} {' '.join(ends)[:60]}"
-    about = _quantity(design, name, f"{option.usage.partition(' ')[0]} {name[:60]}")
-    low, high = (number(end, about.unit, label) for end in ends)
-    if not about.accepts(np.array([low, high])):
-        raise UsageError(f"{label}: expected finite numbers in {about.range}")
-    if not low < high:
-        raise UsageError(f"{label}: expected the lower value first")
-    return Varied(name, low, high) if given is None else given.replace(name=name, low=low, high=high)
+        raise UsageError(f"nothing says what is varied: give {usage}, or a section in the file")
+    if ends is not None:
+        words = [word for word in usage.split() if word.startswith("--")]
+        label = f"{words[-1]} {' '.join(ends)[:60]}"
+        about = _quantity(design, name, f"{words[0]} {name[:60]}")
+        low, high = (number(end, about.unit, label) for end in ends)
+        if not about.accepts(np.array([low, high])):
+            raise UsageError(f"{label}: expected finite numbers in {about.range}")
+        if not low < high:
+            raise UsageError(f"{label}: expected the lower value first")
+        given = ParameterAxis(name, low, high) if given is None else given.replace(name=name, low=low, high=high)
+    elif given is None or given.name != name:
+        raise UsageError(f"nothing says over which range: give {usage}")
+    return put_over(given, {} if points is None else {"points": points})
 
 
-def with_points(given: Varied, points: int | None) -> Varied:
-    """The axis with another number of values."""
-    try:
-        return given if points is None else given.replace(points=points)
-    except ParameterError as error:
-        raise UsageError(f"--points {points}: {error.expectation}") from error
-
-
-def readable(design: Design, varied: Varied, values: Any) -> tuple[Any, str]:
+def readable(design: Design, varied: ParameterAxis, values: Any) -> tuple[Any, str]:
     """Values of a parameter in the unit people read it in, and that unit: angles in degrees, the rest in SI."""
-    unit = quantity_of(design, varied.name).unit
+    unit = design.scalar(varied.name).unit
     if unit == "rad":
         return np.rad2deg(values), "deg"
     return values, "" if unit == "-" else unit
@@ -146,8 +214,10 @@ def time_of(option: str, text: str) -> float:
     return number(text, "s", f"{option} {text[:60]}")
 
 
-def folder(path: Path, *stems: str) -> Path:
-    """The folder, made when it is not there; files of these names in it are only overwritten with --force."""
+def folder(path: Path | None, *stems: str) -> None:
+    """Make the folder of --out, if any; files of these names in it are only overwritten with --force."""
+    if path is None:
+        return
     try:
         path.mkdir(parents=True, exist_ok=True)
     except FileExistsError as error:
@@ -159,7 +229,6 @@ def folder(path: Path, *stems: str) -> Path:
             f"--out {path}: no folder can be made there ({error.strerror}), expected one to write in"
         ) from error
     free(*(each for stem in stems for part in (".*", "_*") for each in sorted(path.glob(f"{stem}{part}"))))
-    return path
 
 
 def free(*paths: Path) -> None:
@@ -173,7 +242,7 @@ def free(*paths: Path) -> None:
 def _changed(design: Design, name: str, text: str, change: str) -> Design:
     label = f"--set {change[:60]}"
     try:
-        if name in words_of(design):
+        if name in design.words():
             return design.replace({name: text})
         about = _quantity(design, name, label)
         return design.replace({name: number(text, about.unit, label)})
@@ -183,7 +252,7 @@ def _changed(design: Design, name: str, text: str, change: str) -> Design:
 
 def _quantity(design: Design, name: str, label: str) -> Parameter:
     try:
-        return quantity_of(design, name)
+        return design.scalar(name)
     except ParameterError as error:
         raise UsageError(f"{label}: unknown parameter, {error.expectation}") from error
 

@@ -8,9 +8,8 @@ import numpy as np
 from squealbox.cli.inputs import free, in_motion, read, time_of
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.files.analyses import Simulate
-from squealbox.files.runs import run
 from squealbox.signals import SignalError, column, dominant_frequency, sound, sound_level
+from squealbox.transient import MotionSettings
 from squealbox.waiting import Progress
 
 ABOUT = {"listen": "the motion as sound at its true frequency (WAV), and how loud it may be"}
@@ -49,10 +48,10 @@ def listen(
     seconds = time_of("--duration", duration)
     if not 0.0 < seconds <= 60.0:
         raise UsageError(f"--duration {duration}: expected more than 0 and at most 60 s")
-    found = in_motion(found, contact=(found.simulate or Simulate()).contact)
-    settings = (found.simulate or Simulate()).replace({"duration": seconds})
+    found = in_motion(found, contact=(found.simulate or MotionSettings()).contact)
+    settings = (found.simulate or MotionSettings()).replace({"duration": seconds})
     with Progress("simulating (the first run compiles the engine)"):
-        motion = run(found.design.system(), settings, points=int(seconds * SAMPLES) + 1)
+        motion = settings.run(found.design.system(), int(seconds * SAMPLES) + 1)
     if not motion.outcome.ok:
         raise ComputationFailed(motion.outcome)
     try:

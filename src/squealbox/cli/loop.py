@@ -6,7 +6,7 @@ from squealbox.cli.answers import show
 from squealbox.cli.inputs import folder, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import write_csv, written
+from squealbox.cli.tables import kept, written
 from squealbox.control import closed_loop
 
 ABOUT = {"loop": "poles and margins of a brake with loops: gain, phase, delay, sampling"}
@@ -30,17 +30,15 @@ def loop(
     found = read(file, asked)
     if not found.design.system().loops:
         raise UsageError(f"{file} has no section [[loops]], which says what senses and acts")
-    if out is not None:
-        folder(out, "poles", "root_locus", "nyquist")
+    folder(out, "poles", "root_locus", "nyquist")
     closed = closed_loop(found.design)
     show(f"{found.design.title}, {file}", closed)
     if out is not None:
         from squealbox import plots
 
         columns = {"growth rate [1/s]": closed.poles.real, "frequency [Hz]": closed.frequency}
-        paths = [closed.save(out / "poles.nc"), write_csv(out / "poles.csv", columns)]
         title = found.path.name
-        paths += plots.save(plots.plot(closed, title=title), out / "poles")
+        paths = kept(closed, out / "poles", columns, title=title)
         paths += plots.save(plots.loop_locus(closed, title=title), out / "root_locus")
         paths += plots.save(plots.nyquist_curve(closed, title=title), out / "nyquist")
         print(written(*paths))

@@ -1,6 +1,6 @@
 """`squealbox map`: which part of a plane squeals, why, and where its boundary runs."""
 
-from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -8,10 +8,11 @@ import numpy as np
 from cyclopts import Parameter
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import Option, Vary, axis, folder, read, readable, small, spans, with_points
+from squealbox.cli.inputs import Vary, axis, folder, read, readable, small, spans
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import write_csv, written
+from squealbox.cli.tables import kept, write_csv, written
+from squealbox.family import ParameterAxis
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability import Boundary, StabilityMap, map_boundary, stability_boundary, stability_map
 from squealbox.waiting import Progress
@@ -23,21 +24,53 @@ if TYPE_CHECKING:
 
     from squealbox.designs import Design
     from squealbox.files import DesignFile
-    from squealbox.files.analyses import Varied
 
 COARSE = 11  # points along each axis of a reduced brake's map, unless more are asked for
 CLOSE = 0.02  # share of a cell to which its boundary is located
 Span = Annotated[tuple[str, str, str] | None, Parameter(negative="")]
-ACROSS, UP = Option("--x", "--x NAME LOW HIGH"), Option("--y", "--y NAME LOW HIGH")
+ACROSS, UP = "--x NAME LOW HIGH", "--y NAME LOW HIGH"
+
+
+@dataclass(frozen=True)
+class HowPlane:
+    """What a command varies, where that is not as the section [map] of its file says.
+
+    Parameters
+    ----------
+    vary
+        two parameters, each with its lowest and highest value: friction.static=0:1 theta1=20deg:160deg
+    x
+        parameter, lowest and highest value: friction.static 0 1
+    y
+        the same for the other axis: theta1 20deg 160deg
+    points
+        number of values along each axis
+    """
+
+    vary: Vary = ()
+    x: Span = None
+    y: Span = None
+    points: int | None = None
+
+    def of(self, found: "DesignFile") -> tuple[ParameterAxis, ParameterAxis]:
+        """The two axes of a plane, from the options or the section [map] of the file."""
+        given = found.map
+        x, y = ((name, *ends) for name, ends in spans(self.vary, 2)) if self.vary else (self.x, self.y)
+        across = axis(found.design, given.x if given else None, *_split(x), ACROSS, self.points)
+        up = axis(found.design, given.y if given else None, *_split(y), UP, self.points)
+        if across.name == up.name:
+            raise UsageError(f"x and y are both {up.name}: expected two different parameters")
+        return across, up
+
+
+TwoVaried = Annotated[HowPlane, Parameter(name="*")]
+AS_FILED = HowPlane()
 
 
 def map_(
     file: Path,
     *,
-    vary: Vary = (),
-    x: Span = None,
-    y: Span = None,
-    points: int | None = None,
+    over: TwoVaried = AS_FILED,
     show: Literal["growth", "mechanism"] = "growth",
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
@@ -48,26 +81,17 @@ def map_(
     ----------
     file
         design file; its section [map] says what is varied, unless the options do
-    vary
-        two parameters, each with its lowest and highest value: friction.static=0:1 theta1=20deg:160deg
-    x
-        parameter, lowest and highest value: friction.static 0 1
-    y
-        the same for the other axis: theta1 20deg 160deg
-    points
-        number of values along each axis
     show
         what the figure shades: the growth rate, or the mechanism
     out
         folder for the figure, the grid and the points of the boundary
     """
     found = read(file, asked)
-    across, up = axes_of(found, vary, x, y, points)
-    if out is not None:
-        folder(out, "map", "boundary")
+    across, up = over.of(found)
+    folder(out, "map", "boundary")
     found = small(found, across, up)
     reduced = isinstance(found.design, ReducedBrake)
-    if reduced and points is None:
+    if reduced and over.points is None:
         across, up = (each.replace(points=min(int(each.points), COARSE)) for each in (across, up))
         print(
             f"{int(across.points)} x {int(up.points)} points, each with a spectrum of its own: --points asks for more"
@@ -90,12 +114,18 @@ def map_(
 class Plane:
     """The two axes, in the units one reads them in."""
 
-    def __init__(self, design: "Design", across: "Varied", up: "Varied") -> None:
+    def __init__(self, design: "Design", across: ParameterAxis, up: ParameterAxis) -> None:
         self.design, self.axes = design, (across, up)
         self.names = (across.name, up.name)
         (self.x, x_unit), (self.y, y_unit) = (readable(design, each, each.values) for each in self.axes)
         self.units = (x_unit, y_unit)
         self.factors = tuple(float(readable(design, each, 1.0)[0]) for each in self.axes)
+
+    @property
+    def labels(self) -> dict[str, str]:
+        """Names and units of the axes, as figures take them."""
+        (x_name, y_name), (x_unit, y_unit) = self.names, self.units
+        return {"x_name": x_name, "x_unit": x_unit, "y_name": y_name, "y_unit": y_unit}
 
     def place(self, point: Any) -> str:
         """A point in words."""
@@ -106,20 +136,6 @@ class Plane:
     def columns(self, x: Any, y: Any) -> dict[str, Any]:
         """The first two columns of a table."""
         return {f"{n} [{u or '-'}]": v for n, u, v in zip(self.names, self.units, (x, y), strict=True)}
-
-
-def axes_of(
-    found: "DesignFile", vary: Sequence[str], x: Span, y: Span, points: int | None
-) -> tuple["Varied", "Varied"]:  # fmt: skip
-    """The two axes of a plane, from the options or the section [map] of the file."""
-    given = found.map
-    if vary:
-        x, y = ((name, *ends) for name, ends in spans(vary, 2))
-    across = with_points(axis(found.design, given.x if given else None, *_split(x), ACROSS), points)
-    up = with_points(axis(found.design, given.y if given else None, *_split(y), UP), points)
-    if across.name == up.name:
-        raise UsageError(f"x and y are both {up.name}: expected two different parameters")
-    return across, up
 
 
 def _split(span: tuple[str, str, str] | None) -> tuple[str | None, tuple[str, str] | None]:
@@ -164,18 +180,14 @@ def _edge_summary(edge: Boundary, plane: Plane) -> str:
 def _drawn(grid: StabilityMap, edge: Boundary, plane: Plane, show: str, title: str) -> "Figure":
     from squealbox import plots
 
-    (x_name, y_name), (x_unit, y_unit) = plane.names, plane.units
     if show == "mechanism":
         scales = {n: (f, u) for n, f, u in zip(plane.names, plane.factors, plane.units, strict=True)}
         return plots.mechanism_map(grid, boundary=edge, scales=scales, title=title)
-    labels = {"x_name": x_name, "x_unit": x_unit, "y_name": y_name, "y_unit": y_unit}
     curves = [points * plane.factors for points in edge.curves]
-    return plots.stability_map(plane.x, plane.y, grid.growth_rate.T, **labels, curves=curves, title=title)
+    return plots.stability_map(plane.x, plane.y, grid.growth_rate.T, **plane.labels, curves=curves, title=title)
 
 
 def _files(grid: StabilityMap, edge: Boundary, plane: Plane, figure: "Figure", out: Path) -> list[Path]:
-    from squealbox import plots
-
     columns = {
         **plane.columns(np.repeat(plane.x, len(plane.y)), np.tile(plane.y, len(plane.x))),
         "growth rate [1/s]": grid.growth_rate.ravel(),
@@ -189,9 +201,4 @@ def _files(grid: StabilityMap, edge: Boundary, plane: Plane, figure: "Figure", o
         "growth rate [1/s]": edge.growth_rate,
         "frequency [Hz]": edge.frequency,
     }
-    return [
-        grid.save(out / "map.nc"),
-        *plots.save(figure, out / "map"),
-        write_csv(out / "map.csv", columns),
-        write_csv(out / "boundary.csv", along),
-    ]
+    return [*kept(grid, out / "map", columns, figure), write_csv(out / "boundary.csv", along)]

@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import folder, read, small
+from squealbox.cli.inputs import NOTHING_SAID, Said, folder, keywords, read, small
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import write_csv, written
+from squealbox.cli.tables import kept, write_csv, written
+from squealbox.family import unit_of
 from squealbox.files import write_design
-from squealbox.studies import Optimum
+from squealbox.studies import Optimum, SearchSettings
 from squealbox.studies import optimise as optimised
-from squealbox.studies.quantity import unit_of
 from squealbox.waiting import Progress
 
 ABOUT = {"optimise": "the best design within bounds: before and after, or a Pareto front"}
@@ -22,7 +22,7 @@ ABOUT = {"optimise": "the best design within bounds: before and after, or a Pare
 def optimise(
     file: Path,
     *,
-    seed: int | None = None,
+    how: Said[SearchSettings] = NOTHING_SAID,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
@@ -35,8 +35,6 @@ def optimise(
     ----------
     file
         design file with a section [optimise]
-    seed
-        another seed than that of the file
     out
         folder for the figure, the designs as a table, and the best one as a design file
     """
@@ -48,18 +46,13 @@ def optimise(
     robust = set(over) != {"nominal"}
     if robust and found.scatter is None:
         raise UsageError(f"{file} has goals over scatter but no section [scatter]")
-    if seed is not None and seed < 0:
-        raise UsageError(f"--seed {seed}: expected a whole number of at least 0")
-    if out is not None:
-        folder(out, "optimum")
+    effort = how.over(section.effort)
+    folder(out, "optimum")
     found = small(found)
-    effort = section.effort
     with Progress(f"optimising {', '.join(section.variables)}"):
         result = optimised(
             found.design, section.variables, section.goals, section.constraints,
-            scatter=found.scatter.scatter if robust and found.scatter else None, samples=int(effort.samples),
-            method=effort.method, population=int(effort.population),  # type: ignore[arg-type]
-            generations=int(effort.generations), seed=int(effort.seed if seed is None else seed),
+            scatter=found.scatter.scatter if robust and found.scatter else None, **keywords(effort),
         )  # fmt: skip
     show(f"{found.design.title}, {file}", result)
     if out is not None:
@@ -69,16 +62,12 @@ def optimise(
 
 
 def _files(found: Optimum, title: str, out: Path) -> list[Path]:
-    from squealbox import plots
-
     design = found.inputs["design"]
     columns: dict[str, Any] = {"best": np.arange(len(found.values)) == found.best}
     columns |= {f"{n} [{unit_of(design, n) or '-'}]": found.values[:, i] for i, n in enumerate(found.names)}
     for kind in ("goals", "constraints"):
         for i, about in enumerate(found.settings[kind]):
             columns[f"{about['name']} [{about['unit'] or '-'}]"] = getattr(found, kind)[:, i]
-    paths = [found.save(out / "optimum.nc"), write_csv(out / "optimum.csv", columns)]
     if not found.outcome.ok:
-        return paths
-    write_design(found.design, out / "optimum.toml")
-    return [*paths, out / "optimum.toml", *plots.save(plots.plot(found, title=title), out / "optimum")]
+        return [found.save(out / "optimum.nc"), write_csv(out / "optimum.csv", columns)]
+    return [write_design(found.design, out / "optimum.toml"), *kept(found, out / "optimum", columns, title=title)]

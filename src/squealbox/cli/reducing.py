@@ -11,7 +11,7 @@ from squealbox.cli.running import UsageError
 from squealbox.cli.tables import written
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.fe.reduced_files import save_reduced
-from squealbox.files.reduced import Reduce, Reduced, dense, error_table, promise
+from squealbox.files import Reduce, Reduced, dense, error_table, promise
 from squealbox.waiting import Progress
 
 ABOUT = {"reduce_": "a small brake from a finite-element one, with its error, in a file"}

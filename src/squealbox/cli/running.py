@@ -1,5 +1,6 @@
 """One command from its words to its exit code."""
 
+import dataclasses
 import importlib
 import inspect
 import os
@@ -90,6 +91,8 @@ def _as_typed(value: Any) -> Any:
     """What an option was given, with the sign of negative quantities as it was typed."""
     if isinstance(value, tuple):
         return tuple(_as_typed(each) for each in value)
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return dataclasses.replace(value, **{name: _as_typed(each) for name, each in vars(value).items()})
     return type(value)(str(value).replace(SIGN, "-")) if isinstance(value, (str, Path)) else value
 
 

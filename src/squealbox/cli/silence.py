@@ -5,14 +5,13 @@ from pathlib import Path
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import folder, read, small
+from squealbox.cli.inputs import NOTHING_SAID, Said, folder, keywords, read, small
 from squealbox.cli.options import AS_WRITTEN, Asked
-from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import write_csv, written
+from squealbox.cli.running import ComputationFailed
+from squealbox.cli.tables import kept, written
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.files import NotWritable
-from squealbox.files.writing import cure_text
-from squealbox.remedies import Remedies
+from squealbox.files import NotWritable, cure_text
+from squealbox.remedies import Remedies, SilenceSettings
 from squealbox.remedies import silence as silenced
 from squealbox.waiting import Progress
 
@@ -22,9 +21,7 @@ ABOUT = {"silence": "what would silence this brake: cures ranked, with dose, cos
 def silence(
     file: Path,
     *,
-    margin: float = 0.1,
-    samples: int | None = None,
-    seed: int = 0,
+    how: Said[SilenceSettings] = NOTHING_SAID,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
@@ -38,26 +35,16 @@ def silence(
     ----------
     file
         design file; squealbox init writes a first one
-    margin
-        by which friction may rise without squeal: 0.1 is 10 %
-    samples
-        brakes in the lot; left out, 2048, of large brakes fewer
-    seed
-        of the lot
     out
         folder for the table and a figure
     """
     found = read(file, asked)
-    if (samples is not None and samples < 1) or seed < 0:
-        raise UsageError(f"--samples {samples} --seed {seed}: expected at least 1 and at least 0")
-    if not (np.isfinite(margin) and margin >= 0.0):
-        raise UsageError(f"--margin {margin}: expected a finite number of at least 0")
-    if out is not None:
-        folder(out, "silence")
+    settings = how.over(SilenceSettings())
+    folder(out, "silence")
     brake = small(found).design
     with Progress("looking for what silences it"):
         lot = found.scatter.scatter if found.scatter is not None else None
-        table = silenced(brake, lot, margin=margin, samples=samples, seed=seed)
+        table = silenced(brake, lot, **keywords(settings))
     print(f"{found.design.title}, {file}\n{table.summary(len(table))}")
     reduced = isinstance(brake, ReducedBrake)
     lines = [f"# {line}" if reduced else _in_a_file(table, row) for row, line in enumerate(table.line)]
@@ -66,12 +53,9 @@ def silence(
         print(f"{table.name[0]}: {file.name} {where}\n\n{lines[0]}")
     keep(table)
     if out is not None:
-        from squealbox import plots
-
         columns = {name: np.array(column) for name, *column in zip(table.heads(), *table.rows(), strict=True)}
         columns["python"], columns["toml"] = table.line, np.array(lines)
-        paths = [table.save(out / "silence.nc"), write_csv(out / "silence.csv", columns)]
-        print(written(*paths, *plots.save(plots.plot(table, title=found.path.name), out / "silence")))
+        print(written(*kept(table, out / "silence", columns, title=found.path.name)))
     if not table.outcome.ok:
         raise ComputationFailed(table.outcome)
 

@@ -7,15 +7,28 @@ import numpy as np
 
 from squealbox.cli.answers import keep, show
 from squealbox.cli.finite_elements import print_more
-from squealbox.cli.inputs import Ends, Vary, axis, folder, number, read, readable, small, varied_by
+from squealbox.cli.inputs import (
+    AS_FILED,
+    NOTHING_SAID,
+    Ends,
+    OneVaried,
+    Said,
+    folder,
+    number,
+    read,
+    readable,
+    small,
+)
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import write_csv, written
+from squealbox.cli.tables import kept, written
+from squealbox.family import ParameterAxis
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability import (
     ComplexModes,
     CriticalValue,
     CriticalValues,
+    ModeSettings,
     complex_modes,
     critical_values,
     mechanism,
@@ -33,15 +46,14 @@ SPECTRA = 61  # values at which the modes of a reduced brake are drawn
 if TYPE_CHECKING:
     from squealbox.designs import Design
     from squealbox.files import DesignFile
-    from squealbox.files.analyses import Varied
 
 
 def modes(
     file: Path,
     *,
     asked: Asked = AS_WRITTEN,
+    how: Said[ModeSettings] = NOTHING_SAID,
     band: Ends = None,
-    certify: bool = False,
     second_mesh: str | None = None,
     out: Path | None = None,
 ) -> None:
@@ -53,21 +65,19 @@ def modes(
         design file; squealbox init writes a first one
     band
         of a finite-element brake: lowest and highest frequency, with or without a unit: 500 10kHz
-    certify
-        of a finite-element brake: prove by counting that no growing mode of the band is missing
     second_mesh
         of a brake that meshes itself: element size of the mesh it is compared with; 1.5 times its own by default
     out
         folder for the table, a figure of the eigenvalues and one of what feeds and damps the worst mode
     """
     found = read(file, asked)
-    time = found.modes.time if found.modes else 0.0
-    if out is not None:
-        folder(out, "modes", "mode_energy", "coalescence")
+    settings = how.over(found.modes or ModeSettings())
+    time = settings.time
+    folder(out, "modes", "mode_energy", "coalescence")
     if found.design.system().is_sparse:
-        _modes_in_band(found, time, band, certify, second_mesh, out)
+        _modes_in_band(found, settings, band, second_mesh, out)
         return
-    if band is not None or certify or second_mesh:
+    if band is not None or "certify" in how.given or second_mesh:
         raise UsageError(
             "--band, --certify and --second-mesh: for finite-element brakes; of this one all modes are shown"
         )
@@ -82,34 +92,30 @@ def modes(
 
 
 def _modes_in_band(
-    found: "DesignFile", time: float, band: Ends, certify: bool, second_mesh: str | None, out: Path | None
+    found: "DesignFile", settings: ModeSettings, band: Ends, second_mesh: str | None, out: Path | None
 ) -> None:
     """The modes of a finite-element brake in its band, each with an error bar."""
     mesh = None if second_mesh is None else number(second_mesh, "m", f"--second-mesh {second_mesh}")
-    given = None if found.modes is None else found.modes.band
     if band is not None:
         low, high = (number(text, "Hz", f"--band {text}") for text in band)
-    elif given is not None and np.shape(given) == (2,):
-        low, high = (float(value) for value in given)
+    elif np.shape(settings.band) == (2,):
+        low, high = (float(value) for value in settings.band)
     else:
         raise UsageError('which band? give --band 500 10kHz, or band = ["500 Hz", "10 kHz"] under [modes]')
     if not 0.0 < low < high:
         raise UsageError(f"the band from {low:g} to {high:g} Hz: expected 0 < lowest < highest")
-    sure = certify or (found.modes is not None and found.modes.certify)
     with Progress("looking for the modes"):
-        spectrum = complex_modes(found.design, time, band=(low, high), certify=sure)
+        spectrum = complex_modes(found.design, settings.time, band=(low, high), certify=settings.certify)
     if not spectrum.outcome.ok:
         raise ComputationFailed(spectrum.outcome)
     show(f"{found.design.title}, {found.path}", spectrum)
-    print_more(found, spectrum, (low, high), time, out, mesh)
+    print_more(found, spectrum, (low, high), settings.time, out, mesh)
 
 
 def onset(
     file: Path,
     *,
-    vary: Vary = (),
-    parameter: str | None = None,
-    range: Ends = None,
+    varies: OneVaried = AS_FILED,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
@@ -119,19 +125,12 @@ def onset(
     ----------
     file
         design file; its section [onset] says what is varied, unless the options do
-    vary
-        a parameter and its lowest and highest value: friction.static=0.1:0.6, or theta1=20deg:160deg
-    parameter
-        its dotted name, where --range stands beside it
-    range
-        lowest and highest value, with or without a unit: 0 1, or 20deg 160deg
     out
         folder for a figure of frequencies and growth rates over the range, and its numbers
     """
     found = read(file, asked)
-    varied = axis(found.design, found.onset, *varied_by(vary, parameter, range))
-    if out is not None:
-        folder(out, "onset")
+    varied = varies.of(found.design, found.onset)
+    folder(out, "onset")
     found = small(found, varied)
     with Progress("looking for the onset"):
         crossings = critical_values(found.design, varied.name, (varied.low, varied.high))
@@ -159,15 +158,14 @@ def _mode_files(spectrum: ComplexModes, found: "DesignFile", time: float, out: P
     """The spectrum as data, table and figure, and the energy of the worst mode where it oscillates."""
     from squealbox import plots
 
-    paths = [spectrum.save(out / "modes.nc"), write_csv(out / "modes.csv", _mode_columns(spectrum))]
-    paths += plots.save(plots.plot(spectrum, title=found.path.name), out / "modes")
+    paths = kept(spectrum, out / "modes", _mode_columns(spectrum), title=found.path.name)
     if spectrum.most_unstable.angular_frequency > 0.0:
         fed = plots.plot(mode_energy(found.design, spectrum.most_unstable, time), title=found.path.name)
         paths += plots.save(fed, out / "mode_energy")
     return paths
 
 
-def _crossing(crossing: CriticalValue, design: "Design", varied: "Varied") -> str:
+def _crossing(crossing: CriticalValue, design: "Design", varied: ParameterAxis) -> str:
     value, unit = readable(design, varied, crossing.value)
     side = "above" if crossing.direction == "destabilising" else "below"
     shares = ", ".join(f"{name.replace('_', ' ')} {100.0 * share:.0f} %" for name, share in crossing.shares.items())
@@ -179,7 +177,7 @@ def _crossing(crossing: CriticalValue, design: "Design", varied: "Varied") -> st
     )
 
 
-def _onset_files(found: "DesignFile", varied: "Varied", crossings: CriticalValues, out: Path) -> list[Path]:
+def _onset_files(found: "DesignFile", varied: ParameterAxis, crossings: CriticalValues, out: Path) -> list[Path]:
     """The crossings, and a figure and table of the modes over the range with the crossings among its points."""
     from squealbox import plots
 
@@ -193,4 +191,4 @@ def _onset_files(found: "DesignFile", varied: "Varied", crossings: CriticalValue
     columns = {f"{varied.name} [{unit or '-'}]": values}
     columns |= {f"frequency {i + 1} [Hz]": spectra.frequency[:, i] for i in range(half)}
     columns |= {f"growth rate {i + 1} [1/s]": spectra.growth_rate[:, i] for i in range(half)}
-    return [crossings.save(out / "onset.nc"), *plots.save(figure, out / "onset"), write_csv(out / "onset.csv", columns)]
+    return kept(crossings, out / "onset", columns, figure)

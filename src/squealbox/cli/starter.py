@@ -31,8 +31,7 @@ def init(directory: Path, *, brake: str = "drum_brake") -> None:
     brake
         which design to begin with, "own" for matrices of your own; squealbox list names them
     """
-    from squealbox.files import write_design
-    from squealbox.files.beginnings import asked_of, first_design
+    from squealbox.files import asked_of, first_design, write_design
 
     _check(brake)
     design = first_design(brake)
@@ -89,7 +88,7 @@ def _with_options_of_all(function: Callable[..., object]) -> Callable[..., objec
 
 
 def _check(brake: str) -> None:
-    from squealbox.files.reading import BRAKES, MESHED, READERS
+    from squealbox.files import BRAKES, MESHED, READERS
 
     if brake in MESHED:
         raise UsageError(

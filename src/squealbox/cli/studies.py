@@ -8,14 +8,14 @@ import numpy as np
 from cyclopts import Parameter
 
 from squealbox.cli import answers
-from squealbox.cli.inputs import changed, folder, free, in_motion, small
+from squealbox.cli.inputs import NOTHING_SAID, Said, changed, folder, free, in_motion, small
 from squealbox.cli.options import AllowCode, Changes
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.study_analyses import UNITS, analysis_of
 from squealbox.cli.tables import write_csv, written
-from squealbox.files.analyses import Varied as Span
-from squealbox.files.study import read_study
-from squealbox.studies import Space, Store, open_sweep, sweep
+from squealbox.family import ParameterAxis
+from squealbox.files import read_study
+from squealbox.studies import Space, Store, WorkerSettings, open_sweep, sweep
 from squealbox.studies.store import LOG, RESULT
 from squealbox.waiting import Progress
 
@@ -39,10 +39,8 @@ def run(
     file: Path,
     *,
     out: Path,
-    workers: int | None = None,
+    how: Said[WorkerSettings] = NOTHING_SAID,
     scheduler: str | None = None,
-    time_limit: str | None = None,
-    chunk: int | None = None,
     changes: Changes = (),
     allow_code: AllowCode = False,
 ) -> None:
@@ -54,45 +52,29 @@ def run(
         study file: a brake and a section [study]; examples/study.toml is one to start from
     out
         folder of the study; what was finished there is kept
-    workers
-        number of supervised worker processes on this machine; left out, this process computes
     scheduler
         address of a Dask scheduler whose workers compute: tcp://head:8786
-    time_limit
-        of a block that a worker computes: 60s
-    chunk
-        points in a block; left out, a block takes about a second
     changes
         other values of the brake for this study: --set friction.static=0.4 load="2 kN"
     allow_code
         run the Python file of a friction law that the design file names
     """
     found = read_study(file, allow_code=allow_code)
-    study = found.study
+    study = how.over(found.study)
     brake = dataclasses.replace(found.brake, design=changed(found.brake.design, changes))
     prepared = small if study.analysis in ("modes", "onset") else in_motion
     brake = prepared(brake, *_spans(found.space))
     found, design = dataclasses.replace(found, brake=brake), brake.design
-    if scheduler is None and workers is None and study.workers is not None:
-        workers = int(study.workers)
-    if chunk is None and study.chunk is not None:
-        chunk = int(study.chunk)
-    limit = study.time_limit if time_limit is None else _seconds(time_limit)
+    spread = "workers" in how.given or scheduler is None
+    workers = int(study.workers) if spread and study.workers is not None else None
     with Progress(f"{len(found.space)} points") as progress:
         table = sweep(
-            design,
-            found.space,
-            analysis_of(found),
-            out=out,
-            keep=found.keep,
-            units=UNITS if study.analysis == "simulate" else None,
-            seed=int(study.seed),
-            chunk=chunk,
-            workers=workers,
-            scheduler=scheduler,
-            time_limit=limit if workers or scheduler else None,
+            design, found.space, analysis_of(found), out=out, keep=found.keep,
+            units=UNITS if study.analysis == "simulate" else None, seed=int(study.seed),
+            chunk=None if study.chunk is None else int(study.chunk), workers=workers, scheduler=scheduler,
+            time_limit=study.time_limit if workers or scheduler else None,
             progress=lambda pace: progress(str(pace), pace.share),
-        )
+        )  # fmt: skip
     if table.outcome == "interrupted":
         raise ComputationFailed(table.outcome)
     answers.show(f"{design.title}, {file}", table)
@@ -142,11 +124,12 @@ def show(directory: Where, *, of: str | None = None, out: Path | None = None) ->
 
         if of is not None and of not in found.answers:
             raise UsageError(f"--of {of[:40]}: expected one of {', '.join(found.answers)}")
+        folder(out, "sweep")
         try:
             figure = plots.sweep_overview(found, answer=of, title=str(directory))
         except ValueError as error:
             raise UsageError(f"no figure: {error}") from error
-        print(written(*plots.save(figure, folder(out, "sweep") / "sweep"), write_csv(out / "sweep.csv", found.table())))
+        print(written(*plots.save(figure, out / "sweep"), write_csv(out / "sweep.csv", found.table())))
 
 
 def export(directory: Where, *, format: Literal["csv", "nc", "mat"] = "csv", to: Path | None = None) -> None:
@@ -193,20 +176,11 @@ def _cell(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _seconds(text: str) -> float:
-    from squealbox.cli.inputs import time_of
-
-    seconds = time_of("--time-limit", text)
-    if not seconds > 0.0:
-        raise UsageError(f"--time-limit {text[:40]}: expected a time above 0 s")
-    return seconds
-
-
-def _spans(space: Space) -> list[Span]:
+def _spans(space: Space) -> list[ParameterAxis]:
     """The range of each number that a study varies, which a finite-element brake is reduced for."""
     values = {name: np.unique(np.asarray(given)) for axis in space.axes for name, given in axis.values.items()}
     return [
-        Span(name=name, low=float(each[0]), high=float(each[-1]))
+        ParameterAxis(name=name, low=float(each[0]), high=float(each[-1]))
         for name, each in values.items()
         if each.dtype.kind in "fiu" and len(each) > 1
     ]

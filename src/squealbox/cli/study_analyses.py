@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from squealbox.files.analyses import Simulate
-    from squealbox.files.study import StudyFile
+    from squealbox.files import StudyFile
+    from squealbox.transient import MotionSettings
 
 UNITS = {"amplitude": "m", "frequency": "Hz", "growth_rate": "1/s", "settled_at": "s", "time": "s"}
 
@@ -29,12 +29,11 @@ def analysis_of(found: "StudyFile") -> Callable[..., Any]:
             ends = (varied.low, varied.high)
             return functools.partial(critical_value, parameter=varied.name, bounds=ends, points=int(varied.points))
         case "simulate":
-            from squealbox.files.analyses import Simulate
+            from squealbox.transient import MotionSettings
 
-            return functools.partial(judged_motion, settings=brake.simulate or Simulate())
+            return functools.partial(judged_motion, settings=brake.simulate or MotionSettings())
         case "ensemble":
-            from squealbox.files.runs import usual_duration
-            from squealbox.transient import simulate_ensemble
+            from squealbox.transient import simulate_ensemble, usual_duration
 
             seconds = found.study.duration or usual_duration(brake.design)
             return functools.partial(simulate_ensemble, duration=seconds, observe=found.observe)
@@ -44,13 +43,12 @@ def analysis_of(found: "StudyFile") -> Callable[..., Any]:
             return shooting
 
 
-def judged_motion(design: Any, settings: "Simulate") -> dict[str, Any]:
+def judged_motion(design: Any, settings: "MotionSettings") -> dict[str, Any]:
     """The verdict on a transient, for each degree of freedom."""
-    from squealbox.files.runs import run_closely
     from squealbox.transient import verdict
 
     system = design.system()
-    motion = run_closely(system, settings)
+    motion = settings.run_closely(system)
     each = [verdict(motion, dof=i) for i in range(system.size)]
     names = ("amplitude", "frequency", "growth_rate", "settled_at")
     numbers = {name: np.array([float(getattr(one, name)) for one in each]) for name in names}

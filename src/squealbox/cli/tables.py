@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.result import Result
+
 
 def write_csv(path: Path, columns: Mapping[str, Any]) -> Path:
     """Write columns of equal length to `path`, whole or not at all; the keys are the first line."""
@@ -24,6 +26,15 @@ def write_csv(path: Path, columns: Mapping[str, Any]) -> Path:
     finally:
         Path(temporary).unlink(missing_ok=True)
     return path
+
+
+def kept(result: Result, stem: Path, columns: Any = None, figure: Any = None, **how: Any) -> list[Path]:
+    """A result as files of one name: data, a table of columns, a figure; left out, the one that `how` asks of it."""
+    from squealbox import plots
+
+    drawn = plots.plot(result, **how) if figure is None else figure
+    table = [] if columns is None else [write_csv(stem.with_suffix(".csv"), columns)]
+    return [result.save(stem.with_suffix(".nc")), *table, *plots.save(drawn, stem)]
 
 
 def written(*paths: Path) -> str:

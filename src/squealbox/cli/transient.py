@@ -5,20 +5,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import folder, in_motion, number, read, time_of
+from squealbox.cli.inputs import NOTHING_SAID, Said, folder, in_motion, read
 from squealbox.cli.options import AS_WRITTEN, Asked
-from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.running import ComputationFailed
 from squealbox.cli.tables import write_csv, written
-from squealbox.files.analyses import Simulate, start_keys
-from squealbox.files.runs import lasting, run, start_of
-from squealbox.parameters import ParameterError, with_cautions
+from squealbox.parameters import with_cautions
+from squealbox.transient import MotionSettings
 from squealbox.waiting import Progress
 
 ABOUT = {"simulate": "what happens in time: a transient with verdict, figures and data"}
 
 if TYPE_CHECKING:
-    from squealbox.transient.trajectory import Trajectory
-    from squealbox.transient.verdict import Verdict
+    from squealbox.transient import Trajectory, Verdict
 
 SAMPLES_A_PERIOD = 4.0  # fewer points do not hold the motion
 MOST_FIGURES = 4  # degrees of freedom that are drawn: those that move most
@@ -28,11 +26,7 @@ def simulate(
     file: Path,
     *,
     out: Path | None = None,
-    duration: str | None = None,
-    start: str | None = None,
-    amplitude: str | None = None,
-    method: str | None = None,
-    contact: str | None = None,
+    how: Said[MotionSettings] = NOTHING_SAID,
     asked: Asked = AS_WRITTEN,
 ) -> None:
     """Follow the motion in time and say what becomes of it; with --out, write figures, data and sound.
@@ -43,28 +37,19 @@ def simulate(
         design file; its section [simulate] says how, unless the options do
     out
         folder for the verdict, figures (PNG and SVG), motion.csv, motion.nc, and motion.wav where it can be heard
-    duration
-        how long the motion is followed: 50ms; left out, 200 periods of the worst mode of steady sliding
-    start
-        rest (loads applied suddenly), sliding, or a mode beside it: "mode 2", or mode for the one that grows fastest
-    amplitude
-        of that mode: 1um; left out, the sliding speed of a contact swings by a hundredth
-    method
-        usual (the Taylor series where the equation has one), or one that squealbox list names
-    contact
-        exact (stick, slip and lift-off by events), raw (plain sgn), smooth, tanh or time-stepping
     """
     found = read(file, asked)
-    options = {"start": start, "method": method, "contact": contact}
-    settings = _settings(found.simulate or Simulate(), duration, amplitude, options)
+    given = found.simulate or MotionSettings()
+    if "start" in how.given:
+        given = given.replace(start="rest", mode=None, amplitude=None)
+    settings = how.over(given)
     found = in_motion(dataclasses.replace(found, simulate=settings), contact=settings.contact)
-    settings = lasting(found.design, found.simulate or settings)
+    settings = (found.simulate or settings).lasting(found.design)
     system = found.design.system()
-    start_of(system, settings)  # what cannot be started is said before a folder is made
-    if out is not None:
-        folder(out, "verdict", "motion", "energy")
+    settings.start_of(system)  # what cannot be started is said before a folder is made
+    folder(out, "verdict", "motion", "energy")
     with Progress("simulating (the first run compiles the engine)"):
-        motion = run(system, settings)
+        motion = settings.run(system)
     with Progress("judging"):
         text, judged = _judged(motion)
     paths: list[Path] = []
@@ -74,24 +59,6 @@ def simulate(
     print("\n".join([f"{found.design.title}, {file}", text, *([written(*paths)] if paths else [])]))
     if not motion.outcome.ok:
         raise ComputationFailed(motion.outcome)
-
-
-def _settings(
-    given: Simulate, duration: str | None, amplitude: str | None, options: dict[str, str | None]
-) -> Simulate:  # fmt: skip
-    changed: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
-    if duration is not None:
-        changed["duration"] = time_of("--duration", duration)
-    if "start" in changed:
-        changed |= {"mode": None, **start_keys(changed["start"])}
-    if amplitude is not None:
-        if changed.get("start", given.start) != "mode":
-            raise UsageError(f'--amplitude {amplitude}: expected beside a start in a mode, such as --start "mode 1"')
-        changed["amplitude"] = number(amplitude, "m", f"--amplitude {amplitude}")
-    try:
-        return given.replace(changed)
-    except ParameterError as error:
-        raise UsageError(f"--{error.name} {options.get(error.name) or duration}: {error.expectation}") from error
 
 
 def _judged(motion: "Trajectory") -> tuple[str, list["Verdict"]]:

@@ -9,14 +9,14 @@ from cyclopts import Parameter
 
 from squealbox import studies
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import folder, read, small
+from squealbox.cli.inputs import NOTHING_SAID, Said, folder, read, small
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import write_csv, written
-from squealbox.files.uncertain import STUDIES, Sampled, Scattered
-from squealbox.parameters import ParameterError
+from squealbox.cli.tables import kept, write_csv, written
+from squealbox.family import unit_of
+from squealbox.files import STUDIES, Scattered
 from squealbox.result import Result
-from squealbox.studies.quantity import unit_of
+from squealbox.studies import SampleSettings
 from squealbox.waiting import Progress
 
 ABOUT = {"scatter": "parameters scatter: how probable is squeal, and which matters?"}
@@ -32,8 +32,7 @@ def scatter(
     file: Path,
     *,
     study: Several = (),
-    samples: int | None = None,
-    seed: int | None = None,
+    how: Said[SampleSettings] = NOTHING_SAID,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
@@ -47,10 +46,6 @@ def scatter(
         design file with a section [scatter]
     study
         what is asked: probability, sobol, morris, form, subset, surrogate, bounds; one or several
-    samples
-        points of the samples, instead of those of the file
-    seed
-        another seed than that of the file
     out
         folder for figures, tables and results
     """
@@ -59,16 +54,15 @@ def scatter(
     if section is None:
         raise UsageError(f"{file} has no section [scatter], which says what scatters and how")
     wanted = _wanted(study or section.studies)
-    sampled = _sampled(section.sampled, samples, seed)
-    if out is not None:
-        folder(out, *wanted)
+    sampled = how.over(section.sampled)
+    folder(out, *wanted)
     found = small(found)
     print(f"{found.design.title}, {file}")
     failed = None
     files: list[Path] = []
     for name in wanted:
         with Progress(f"{name}: {section.quantity.name}"):
-            result = RUNS[name](found.design, section, sampled)
+            result = _run(name, found.design, section, sampled)
         keep(result)
         print(f"\n{name}\n{result}")
         failed = failed or (None if result.outcome.ok else result.outcome)
@@ -87,53 +81,28 @@ def _wanted(names: tuple[str, ...]) -> list[str]:
     return list(dict.fromkeys(names))
 
 
-def _sampled(given: Sampled, samples: int | None, seed: int | None) -> Sampled:
-    changes = {name: value for name, value in (("samples", samples), ("seed", seed)) if value is not None}
-    try:
-        return given.replace(changes)
-    except ParameterError as error:
-        raise UsageError(f"--{error.name} {error.value}: {error.expectation}") from error
-
-
-def _probability(design: "Design", section: Scattered, how: Sampled) -> Result:
-    return studies.squeal_probability(
-        design, section.scatter, section.quantity, samples=int(how.samples), method=how.sampling,  # type: ignore[arg-type]
-        seed=int(how.seed), level=how.level,
-    )  # fmt: skip
-
-
-def _by(function: Callable[..., Result], **settings: Any) -> Callable[["Design", Scattered, Sampled], Result]:
-    """A study that takes no kind of points; a setting that is a function is one of the number of samples."""
-
-    def run(design: "Design", section: Scattered, how: Sampled) -> Result:
-        chosen = {name: value(int(how.samples)) if callable(value) else value for name, value in settings.items()}
-        if function is not studies.polynomial_chaos:
-            chosen["level"] = how.level
-        return function(design, section.scatter, section.quantity, seed=int(how.seed), **chosen)
-
-    return run
-
-
-def _bounds(design: "Design", section: Scattered, how: Sampled) -> Result:
-    return studies.interval_bounds(design, section.scatter.box(), section.quantity, seed=int(how.seed))
-
-
-RUNS: dict[str, Callable[["Design", Scattered, Sampled], Result]] = {
-    "probability": _probability,
-    "sobol": _by(studies.sobol_indices, samples=int),
-    "morris": _by(studies.morris_effects, trajectories=50),
-    "form": _by(studies.form, samples=int),
-    "subset": _by(studies.subset_simulation, samples=lambda samples: max(samples // 2, 500)),
-    "surrogate": _by(studies.polynomial_chaos, samples=lambda samples: min(samples, LEARNT)),
-    "bounds": _bounds,
-}
+def _run(name: str, design: "Design", section: Scattered, how: SampleSettings) -> Result:
+    count = int(how.samples)
+    asked: dict[str, tuple[Callable[..., Result], dict[str, Any]]] = {
+        "probability": (studies.squeal_probability, {"samples": count, "method": how.sampling}),
+        "sobol": (studies.sobol_indices, {"samples": count}),
+        "morris": (studies.morris_effects, {"trajectories": 50}),
+        "form": (studies.form, {"samples": count}),
+        "subset": (studies.subset_simulation, {"samples": max(count // 2, 500)}),
+        "surrogate": (studies.polynomial_chaos, {"samples": min(count, LEARNT)}),
+        "bounds": (studies.interval_bounds, {}),
+    }
+    function, more = asked[name]
+    scatter = section.scatter.box() if name == "bounds" else section.scatter
+    more |= {} if name in ("surrogate", "bounds") else {"level": how.level}
+    return function(design, scatter, section.quantity, seed=int(how.seed), **more)
 
 
 def _files(name: str, result: Any, design: "Design", out: Path) -> list[Path]:
-    from squealbox import plots
-
-    paths = [result.save(out / f"{name}.nc"), write_csv(out / f"{name}.csv", _columns(name, result, design))]
-    return paths + (plots.save(plots.plot(result), out / name) if result.outcome.ok else [])
+    columns = _columns(name, result, design)
+    if result.outcome.ok:
+        return kept(result, out / name, columns)
+    return [result.save(out / f"{name}.nc"), write_csv(out / f"{name}.csv", columns)]
 
 
 def _columns(name: str, found: Any, design: "Design") -> dict[str, Any]:

@@ -10,9 +10,9 @@ from typing import Any, Self
 
 import numpy as np
 
-from squealbox.designs.base import Design
+from squealbox.designs import Design
 from squealbox.loops.rows import padded_load
-from squealbox.parameters import Parameter, ParameterError, known_names
+from squealbox.parameters import Choice, Parameter, ParameterError, known_names
 from squealbox.system import Contact, System
 
 
@@ -65,6 +65,12 @@ class Countermeasure(Design):
         """Every declared parameter, those of the brake under their own names as long as these mean the same."""
         for name, about, value in super().leaves():
             yield prefix + short_name(self, name), about, value
+
+    def scalar(self, name: str) -> Parameter:
+        return super().scalar(short_name(self, name))
+
+    def words(self) -> dict[str, Choice]:
+        return {**self.brake.words(), **self.choices()}
 
     def cautions(self) -> tuple[str, ...]:
         """Where what is done to the brake may make it worse, in sentences."""

@@ -5,7 +5,9 @@ from squealbox.designs.damping_paradox import DampingParadox
 from squealbox.designs.drum_brake import DrumBrake, published_matrices
 from squealbox.designs.drum_brake_shoes import DrumBrakeShoes
 from squealbox.designs.mass_on_belt import BlockChain, MassOnBelt
+from squealbox.designs.mechanism import Body, OwnMechanism, Spring, Touch
 from squealbox.designs.mode_coupling import InclinedSprings, ModeCoupling
+from squealbox.designs.own_brake import OwnBrake, OwnContact, Part
 from squealbox.designs.pad_on_disc import PadOnDisc
 from squealbox.designs.sprag_slip import SpragSlip
 from squealbox.designs.wobbling_disc import WobblingDisc
@@ -15,10 +17,14 @@ _FIRST = (  # in the order of the story; a design in a further file of this fold
     DrumBrake, DrumBrakeShoes, MassOnBelt, BlockChain, ModeCoupling, InclinedSprings, DampingParadox, PadOnDisc,
     WobblingDisc, SpragSlip,
 )  # fmt: skip
+_OWN = (OwnBrake, OwnMechanism)  # which a user fills
 DESIGNS: dict[str, type[Design]] = {
-    name_of(kind): kind for kind in kinds_in(__name__, Design, _FIRST, having="title") if kind is not Design
+    name_of(kind): kind for kind in kinds_in(__name__, Design, _FIRST, having="title") if kind not in (Design, *_OWN)
 }
 globals().update({kind.__name__: kind for kind in DESIGNS.values()})
 
-__all__ = ["DESIGNS", "Design", "published_matrices"]
+__all__ = [
+    "DESIGNS", "Body", "Design", "OwnBrake", "OwnContact", "OwnMechanism", "Part", "Spring", "Touch",
+    "published_matrices",
+]  # fmt: skip
 __all__ += [kind.__name__ for kind in DESIGNS.values()]

@@ -1,10 +1,21 @@
 """What every design is: a data sheet that makes a system."""
 
 import importlib
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar, get_origin
+
+import numpy as np
 
 from squealbox.friction import FrictionLaw
-from squealbox.parameters import DRAWN_BY, DataSheet, ParameterError, screenful
+from squealbox.parameters import (
+    DRAWN_BY,
+    Choice,
+    DataSheet,
+    Parameter,
+    ParameterError,
+    field_type,
+    known_names,
+    screenful,
+)
 from squealbox.system import System
 
 
@@ -35,6 +46,35 @@ class Design(DataSheet):
     def system(self) -> System:
         """The equation of motion with these parameters."""
         raise NotImplementedError
+
+    @property
+    def innermost(self) -> "Design":
+        """The brake itself, without what a countermeasure adds."""
+        return self
+
+    def scalars(self) -> dict[str, Parameter]:
+        """The scalar parameters that a study can vary, nested ones with dots, aliases included.
+
+        Those of a brake within countermeasures and loops keep their names.
+        """
+        arrays = {name for name in self.parameters() if get_origin(field_type(type(self), name)) is Annotated}
+        known = {name: about for name, about, value in self.leaves() if np.ndim(value) == 0 and name not in arrays}
+        own = self.innermost.parameters()
+        for alias, names in self.innermost.aliases.items():
+            if all(name in own for name in names):
+                known.setdefault(alias, own[names[0]])
+        return known
+
+    def scalar(self, name: str) -> Parameter:
+        """Unit and range of the scalar parameter `name`; `ParameterError` names those there are."""
+        known = self.scalars()
+        if name not in known:
+            raise ParameterError("design", "parameter", name, known_names(name[:60], list(known)))
+        return known[name]
+
+    def words(self) -> dict[str, Choice]:
+        """The fields that hold one of several words, those of a brake within countermeasures included."""
+        return self.choices()
 
     def draw(self, panel: Any) -> None:
         """Where `plots.brakes` knows no drawing: with `plot`, `text`, `annotate`, `add_patch` of a Matplotlib panel."""

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.designs.base import Design
+from squealbox.designs import Design
 from squealbox.fe.interfaces import CoordinateSystem, Interface, Rotation, contacts_of
 from squealbox.fe.readers.matrix import MatrixFileError
 from squealbox.fe.structure import Structure, read_structure

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from squealbox.contacts import Contact
-from squealbox.designs.base import Design
+from squealbox.designs import Design
 from squealbox.fe.band_spectrum import Pairs, band_pairs
 from squealbox.fe.full_brake import FullBrake
 from squealbox.fe.reduced_sliding import Sums, steady_small, sums_of, untouched, without_friction

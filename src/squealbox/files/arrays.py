@@ -13,7 +13,7 @@ import io
 from collections.abc import Mapping
 from pathlib import Path
 from tokenize import TokenError
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 
@@ -21,11 +21,8 @@ from squealbox.files.document import Document, read_bytes
 from squealbox.files.lines import Key
 from squealbox.files.matrix_text import ArrayFileError, check_size, mirrored, one_sided, read_csv, read_matrix_market
 from squealbox.files.numbers import WRONG, read_number, shown
-from squealbox.files.units import UnitError, in_si
 from squealbox.parameters import Parameter
-
-Vector = Annotated[Any, 1]  # how a data sheet declares a field that a file may hold beside itself
-Matrix = Annotated[Any, 2]
+from squealbox.units import UnitError, in_si
 
 TRIANGLES = ("mirrored", "as_given")
 MATLAB = "; numpy.save('K.npy', scipy.io.loadmat('{}')['K']) makes one of the matrix K (sparse: K.toarray())"

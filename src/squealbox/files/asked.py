@@ -9,8 +9,8 @@ from squealbox.files.analyses import read_ends
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
-from squealbox.files.varied import flattened, quantity_of
-from squealbox.parameters import Parameter, ParameterError, known_names
+from squealbox.files.varied import flattened, known
+from squealbox.parameters import Parameter, known_names
 from squealbox.studies import Quantity
 
 # Each quantity with the keys it needs and those it may have beside them.
@@ -101,17 +101,3 @@ def _sum(document: Document, table: Mapping[str, Any], key: Key, design: Design)
         if not isinstance(text, str):
             wrong(document, (*key, each), text, "a word in quotes")
     return quantities.weighted_sum(weights, **words) if len(weights) else None
-
-
-def known(document: Document, name: Any, key: Key, design: Design | None) -> Parameter | None:
-    """What the design declares of a parameter; None, and noted, for an unknown name."""
-    if not isinstance(name, str):
-        wrong(document, key, name, "the name of a parameter, such as 'friction.static'")
-        return None
-    if design is None or name.partition(".")[0] in document.faulty:
-        return None  # what it names has been reported itself
-    try:
-        return quantity_of(design, name)
-    except ParameterError as error:
-        document.problem(key, f"unknown parameter {name[:60]!r}, {error.expectation}")
-        return None

@@ -2,12 +2,10 @@
 
 import numpy as np
 
-from squealbox.designs import Design, DrumBrake
-from squealbox.files.mechanism import Body, OwnMechanism, Spring, Touch
-from squealbox.files.own_brake import OwnBrake, OwnContact
+from squealbox.designs import Body, Design, DrumBrake, OwnBrake, OwnContact, OwnMechanism, Spring, Touch
 from squealbox.files.reading import BRAKES, MESHED
-from squealbox.files.runs import usual_duration
 from squealbox.friction import Coulomb, LinearSlope
+from squealbox.transient import usual_duration
 
 BEGINNINGS = tuple(name for name in BRAKES if name not in MESHED)  # brakes whose file can be written at once
 STUDIES = """
@@ -28,7 +26,7 @@ y = {{ {second_inline}, points = 101 }}
 [simulate]                      # squealbox simulate {file} --out run
 duration = "{duration}"
 start = "rest"                  # rest (loads applied suddenly) or sliding
-points = 5001                   # number of instants kept
+times = 5001                    # number of instants kept
 
 [study]                         # squealbox run {file} --out study: an analysis at every point of a grid
 analysis = "modes"              # modes, onset, simulate, ensemble or cycle

@@ -52,6 +52,7 @@ class Document:
     problems: list[Problem] = field(default_factory=list)
     faulty: set[str | int] = field(default_factory=set)  # first parts of the keys with problems
     unsaid: int = 0
+    cautions: list[str] = field(default_factory=list)  # what a reader of the results must know of the file
     allow_code: bool = False  # may a friction law be run that is Python code?
     beside: bool = True  # may files be opened that it names? not those of a text from elsewhere
 

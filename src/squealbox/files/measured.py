@@ -10,7 +10,7 @@ import numpy as np
 from squealbox.cells import cells
 from squealbox.files.document import DesignFileError, Problem, read_bytes
 from squealbox.files.numbers import shown
-from squealbox.files.units import UnitError, in_si, split
+from squealbox.units import UnitError, in_si, split
 
 LARGEST = 5_000_000  # bytes
 SPEED = re.compile(r"\bv\b|speed|velocity|geschwindigkeit", re.IGNORECASE)

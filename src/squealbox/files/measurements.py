@@ -21,13 +21,12 @@ from typing import Any
 from squealbox.calibration import QUANTITIES, Measured
 from squealbox.calibration.measured import UNITS
 from squealbox.designs import Design
-from squealbox.files.analyses import read_ends
-from squealbox.files.asked import known
+from squealbox.files.analyses import read_ends, read_spans
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
-from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
-from squealbox.files.varied import flattened
-from squealbox.parameters import Parameter, ParameterError, known_names
+from squealbox.files.numbers import WRONG, only, read_choice, read_number, wrong
+from squealbox.files.varied import flattened, known
+from squealbox.parameters import Parameter, ParameterError
 from squealbox.signals.events import LEAST_LEVEL
 
 LOSSES = ("squares", "robust")
@@ -64,7 +63,7 @@ def read_recorded(document: Document, table: Mapping[str, Any], key: Key, design
     """The section [recording]."""
     before = len(document.problems)
     words = ("file", "unit", "full_scale", "rate", "channel", "band", "least_level")
-    _unknown(document, table, words, key)
+    only(document, table, key, words)
     for name in ("file", "unit"):
         if not isinstance(table.get(name, "x" if name == "unit" else None), str):
             wrong(document, (*key, name), table.get(name), "a word in quotes")
@@ -91,7 +90,7 @@ def read_recorded(document: Document, table: Mapping[str, Any], key: Key, design
 def read_calibrated(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Calibrated | None:
     """The section [calibrate]."""
     before = len(document.problems)
-    _unknown(document, table, ("parameters", "measured", "loss"), key)
+    only(document, table, key, ("parameters", "measured", "loss"))
     parameters = table.get("parameters")
     bounds: dict[str, tuple[float, float]] = {}
     if not isinstance(parameters, Mapping) or not parameters:
@@ -99,11 +98,7 @@ def read_calibrated(document: Document, table: Mapping[str, Any], key: Key, desi
             document, (*key, "parameters"), parameters, "a section with a line such as k3 = ['150 kN/mm', '230 kN/mm']"
         )
     else:
-        for name, ends, place in flattened(parameters, (*key, "parameters"), design):
-            about = known(document, name, place, design)
-            if about is not None:
-                pair = read_ends(document, ends, about, place)
-                bounds[name] = pair or (0.0, 1.0)
+        bounds = read_spans(document, parameters, (*key, "parameters"), design)
     rows = table.get("measured")
     measured = []
     if not isinstance(rows, list) or not rows or not all(isinstance(row, Mapping) for row in rows):
@@ -118,7 +113,7 @@ def read_calibrated(document: Document, table: Mapping[str, Any], key: Key, desi
 
 def _measured(document: Document, row: Mapping[str, Any], key: Key, design: Design | None) -> Measured | None:
     before = len(document.problems)
-    _unknown(document, row, KEYS, key)
+    only(document, row, key, KEYS)
     name = read_choice(document, row.get("quantity"), {each: each for each in QUANTITIES}, (*key, "quantity"))
     if name is WRONG:
         return None
@@ -164,12 +159,6 @@ def _conditions(document: Document, table: Mapping[str, Any], key: Key, design: 
         if about is not None:
             found[name] = read_number(document, value, about, place)
     return {name: value for name, value in found.items() if value is not WRONG}
-
-
-def _unknown(document: Document, table: Mapping[str, Any], words: tuple[str, ...], key: Key) -> None:
-    for name in table:
-        if name not in words:
-            document.problem((*key, name), f"unknown key, {known_names(name[:60], list(words))}")
 
 
 def measurement_schemas() -> dict[str, Any]:

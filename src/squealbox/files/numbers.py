@@ -1,14 +1,14 @@
 """One value of a file: a number with its unit, or one of several words. What is wrong is noted in the document."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
-from squealbox.files.units import UnitError, in_si
 from squealbox.parameters import Parameter, known_names
+from squealbox.units import UnitError, in_si
 
 WRONG: Any = object()  # stands for a value that was wrong and has been reported
 LONGEST = 60  # characters of a value shown in a sentence
@@ -68,3 +68,10 @@ def wrong(document: Document, key: Key, value: Any, expected: str) -> Any:
     """Note that `value` is not what was expected; gives `WRONG`."""
     document.problem(key, f"{shown(value)}: expected {expected}")
     return WRONG
+
+
+def only(document: Document, table: Mapping[str, Any], key: Key, known: Sequence[str]) -> None:
+    """A problem of the document for each key that is none of those known."""
+    for name in table:
+        if name not in known:
+            document.problem((*key, name), f"unknown key, {known_names(name[:60], list(known))}")

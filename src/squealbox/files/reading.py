@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.designs import DESIGNS, Design
+from squealbox.designs import DESIGNS, Design, OwnBrake, OwnMechanism
+from squealbox.family import ParameterAxis, ParameterPlane
 from squealbox.fe.disc_brake import DiscBrake
 from squealbox.fe.meshed import MeshedBrake
 from squealbox.fe.meshed_drum import MeshedDrumBrake
@@ -17,14 +18,14 @@ from squealbox.files import analyses, countermeasures
 from squealbox.files.assembled import ASSEMBLED, read_assembled
 from squealbox.files.document import Document, document_of, open_document
 from squealbox.files.measurements import Calibrated, Recorded, read_calibrated, read_recorded
-from squealbox.files.mechanism import OwnMechanism
 from squealbox.files.numbers import WRONG, read_choice, wrong
-from squealbox.files.own_brake import OwnBrake
 from squealbox.files.reduced import REDUCED, Reduced, read_reduce, read_reduced
 from squealbox.files.sheets import read_sheet
 from squealbox.files.uncertain import Optimise, Scattered, read_optimise, read_scatter
 from squealbox.parameters import ParameterError, known_names
+from squealbox.stability import ModeSettings
 from squealbox.system import InvalidSystem
+from squealbox.transient import MotionSettings
 
 MESHED: dict[str, type[MeshedBrake]] = {"disc_brake": DiscBrake, "meshed_drum_brake": MeshedDrumBrake}
 BRAKES: dict[str, type[Design]] = {**DESIGNS, "own": OwnBrake, "mechanism": OwnMechanism, **MESHED}
@@ -56,11 +57,11 @@ class DesignFile:
 
     path: Path
     design: Design
-    modes: analyses.Modes | None = None
-    onset: analyses.Varied | None = None
-    branch: analyses.Varied | None = None
-    map: analyses.Map | None = None
-    simulate: analyses.Simulate | None = None
+    modes: ModeSettings | None = None
+    onset: ParameterAxis | None = None
+    branch: ParameterAxis | None = None
+    map: ParameterPlane | None = None
+    simulate: MotionSettings | None = None
     scatter: Scattered | None = None
     optimise: Optimise | None = None
     calibrate: Calibrated | None = None
@@ -117,8 +118,8 @@ def _file(document: Document) -> DesignFile:
     if design is None or document.problems:
         raise document.error()
     forgot = tables.get("brake") in ("own", "mechanism") and "contacts" not in tables
-    caution = NOTHING_RUBS.format(tables["brake"]) if forgot else ""
-    found = DesignFile(document.path, design, study=study is not None, caution=caution, **sections)
+    told = [NOTHING_RUBS.format(tables["brake"])] * forgot + document.cautions
+    found = DesignFile(document.path, design, study=study is not None, caution="; ".join(told), **sections)
     if study is not None:
         from squealbox.files.study import study_of  # which reads the brake of a study by this module
 

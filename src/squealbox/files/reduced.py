@@ -19,20 +19,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.family import ParameterAxis
 from squealbox.fe.readers.matrix import MatrixFileError
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.fe.reduced_files import load_reduced
 from squealbox.fe.surface import with_surface
-from squealbox.files.analyses import Simulate, Varied, read_ends
-from squealbox.files.arrays import ArrayFileError, Vector, path_beside
-from squealbox.files.asked import known
+from squealbox.files.analyses import read_spans
+from squealbox.files.arrays import ArrayFileError, path_beside
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
-from squealbox.files.numbers import WRONG, shown, wrong
+from squealbox.files.numbers import WRONG, only, shown, wrong
 from squealbox.files.sheets import read_law, read_sheet
-from squealbox.files.varied import flattened, quantity_of
-from squealbox.parameters import DataSheet, ParameterError, choice, known_names, parameter
+from squealbox.files.varied import flattened
+from squealbox.parameters import DataSheet, ParameterError, Vector, choice, parameter
 from squealbox.system import InvalidSystem
+from squealbox.transient import MotionSettings
 
 if TYPE_CHECKING:
     from squealbox.files.reading import DesignFile
@@ -71,12 +72,7 @@ def read_reduce(document: Document, table: Mapping[str, Any], key: Key, design: 
     if not isinstance(given, Mapping):
         wrong(document, (*key, "varying"), given, 'a table such as { "friction.static" = [0, 0.8] }')
         return None
-    varying = {}
-    for name, value, place in flattened(given, (*key, "varying"), design):
-        about = known(document, name, place, design)
-        ends = read_ends(document, value, about, place)
-        if ends is not None:
-            varying[name] = ends
+    varying = read_spans(document, given, (*key, "varying"), design)
     band = None if how is None else how.band
     if band is not None and not (np.shape(band) == (2,) and 0.0 < band[0] < band[1]):
         wrong(document, (*key, "band"), [float(f) for f in band], 'two values such as ["500 Hz", "10 kHz"]')
@@ -87,9 +83,7 @@ def read_reduce(document: Document, table: Mapping[str, Any], key: Key, design: 
 def read_reduced(document: Document, tables: Mapping[str, Any], beside: tuple[str, ...]) -> Design | None:
     """A brake that `squealbox reduce` wrote; None where something is wrong, which the document then holds."""
     before = len(document.problems)
-    for name in tables:
-        if name not in KEYS:
-            document.problem((name,), f"unknown key, {known_names(name[:60], [*KEYS, *beside])}")
+    only(document, tables, (), [*KEYS, *beside])
     file, values = tables.get("file"), tables.get("values", {})
     if "file" not in tables:
         document.problem((), "the key 'file' is missing, expected the .npz file of squealbox reduce")
@@ -115,7 +109,7 @@ def read_reduced(document: Document, tables: Mapping[str, Any], beside: tuple[st
     return brake if len(document.problems) == before else None
 
 
-def dense(found: "DesignFile", axes: Iterable[Varied] = ()) -> "DesignFile":
+def dense(found: "DesignFile", axes: Iterable[ParameterAxis] = ()) -> "DesignFile":
     """The file with its finite-element brake reduced for `axes` and for what its sections vary.
 
     A brake with dense matrices is returned as it is. Raises `InvalidSystem`, one sentence, without a band.
@@ -170,7 +164,7 @@ def _from_rest(found: "DesignFile") -> "DesignFile":
 
     "rest" is q = 0 of the full brake; what the file adds to the start has a number for each freedom of the full one.
     """
-    small, asked = found.design, found.simulate or Simulate()
+    small, asked = found.design, found.simulate or MotionSettings()
     if not isinstance(small, ReducedBrake):
         return found
     q, qd = (field if field is None or small.full is None else _on_basis(small, field) for field in (asked.q, asked.qd))
@@ -207,7 +201,7 @@ def error_table(brake: ReducedBrake) -> str:
     return "\n".join(rows)
 
 
-def _ranges(found: "DesignFile", axes: Iterable[Varied]) -> dict[str, tuple[float, float]]:
+def _ranges(found: "DesignFile", axes: Iterable[ParameterAxis]) -> dict[str, tuple[float, float]]:
     """Everything that is varied, each over the union of its ranges."""
     spans = [(axis.name, float(axis.low), float(axis.high)) for axis in axes]
     if found.reduce is not None:
@@ -223,7 +217,7 @@ def _ranges(found: "DesignFile", axes: Iterable[Varied]) -> dict[str, tuple[floa
         spans += [(name, float(low), float(high)) for name, (low, high) in found.optimise.variables.items()]
     ranges: dict[str, tuple[float, float]] = {}
     for name, low, high in spans:
-        about = quantity_of(found.design, name)
+        about = found.design.scalar(name)
         low, high = max(low, about.low), min(high, about.high)
         before = ranges.get(name, (low, high))
         ranges[name] = min(before[0], low), max(before[1], high)

@@ -6,21 +6,24 @@ import typing
 from collections.abc import Sequence
 from typing import Any
 
+from squealbox.family import ParameterAxis
 from squealbox.fe.assembled import AssembledBrake
 from squealbox.files import countermeasures
-from squealbox.files.analyses import Modes, Simulate, Varied
 from squealbox.files.arrays import TRIANGLES
 from squealbox.files.assembled import ASSEMBLED
 from squealbox.files.measurements import measurement_schemas
-from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES, STUDY
 from squealbox.files.reduced import REDUCED, Reduce
-from squealbox.files.sheets import LAW_NAMES, OWN, SCHEDULE_NAMES, field_type, is_required
-from squealbox.files.study import OTHERS, Refine, Study
+from squealbox.files.sheets import OWN, is_required
+from squealbox.files.study import OTHERS
 from squealbox.files.uncertain_schema import optimise_schema, scatter_schema
 from squealbox.files.varied import VARY
-from squealbox.friction import FrictionLaw
-from squealbox.parameters import DataSheet, Parameter
+from squealbox.friction import LAW_NAMES, FrictionLaw, OwnLaw
+from squealbox.parameters import DataSheet, Parameter, field_type
+from squealbox.schedules import SCHEDULE_NAMES
+from squealbox.stability import ModeSettings
+from squealbox.studies import RefineSettings, StudySettings
+from squealbox.transient import MotionSettings
 
 Schema = dict[str, Any]
 VARIES: Schema = {"type": "object", "minProperties": 1, "description": "parameters, and what each may be"}
@@ -38,8 +41,8 @@ def json_schema() -> Schema:
         "axis": _axis(),
     }
     sections = {
-        "modes": _sheet(Modes),
-        "simulate": _sheet(Simulate, more={"start": _start()}),
+        "modes": _sheet(ModeSettings),
+        "simulate": _sheet(MotionSettings, more={"start": _start()}),
         "reduce": _sheet(Reduce, more={"varying": {"type": "object", "description": "parameters and their ranges"}}),
         "onset": _or_vary(_axis(), "parameter", "range"),
         "branch": _or_vary(_axis(), "parameter", "range"),
@@ -112,6 +115,8 @@ def _sheet(sheet: type[DataSheet], *, first: Schema | None = None, more: Schema 
     for alias, names in sheet.aliases.items():
         properties[alias] = {**properties[names[0]], "description": f"sets {' and '.join(names)} together"}
         required = [name for name in required if name not in names]
+    for old, name in sheet.formerly.items():
+        properties[old] = {**properties[name], "deprecated": True}
     schema: Schema = {
         "type": "object",
         "description": (sheet.__doc__ or "").strip().partition("\n")[0],
@@ -192,7 +197,7 @@ def _axis() -> Schema:
         "properties": {
             "parameter": {"type": "string", "description": "dotted name, such as friction.static"},
             "range": {"type": "array", "items": end, "minItems": 2, "maxItems": 2, "description": "low and high"},
-            "points": _number(Varied.parameters()["points"], whole=True),
+            "points": _number(ParameterAxis.parameters()["points"], whole=True),
         },
         "required": ["parameter", "range"],
         "additionalProperties": False,
@@ -209,9 +214,9 @@ def _or_vary(section: Schema, *instead: str) -> Schema:
 
 def _start() -> Schema:
     """A word, one of them with the number of a mode, or a table of mode and amplitude."""
-    keys = {name: _field(Simulate, name) for name in ("mode", "amplitude")}
+    keys = {name: _field(MotionSettings, name) for name in ("mode", "amplitude")}
     table = {"type": "object", "properties": keys, "required": ["mode"], "additionalProperties": False}
-    words = _field(Simulate, "start")
+    words = _field(MotionSettings, "start")
     return {
         "description": words["description"],
         "anyOf": [words, {"type": "string", "pattern": "^mode [0-9]+$"}, table],
@@ -222,7 +227,9 @@ def _study() -> Schema:
     """[study]; its axes come in several forms, which the reader checks."""
     words = {"type": "array", "items": {"type": "string"}, "minItems": 1}
     axes = {"type": "array", "items": {"type": "object"}, "minItems": 1, "description": "the axes of the space"}
-    return _sheet(Study, more=dict(zip(OTHERS, (axes, VARIES, words, words, _sheet(Refine)), strict=True)))
+    return _sheet(
+        StudySettings, more=dict(zip(OTHERS, (axes, VARIES, words, words, _sheet(RefineSettings)), strict=True))
+    )
 
 
 def _one_key(name: str, value: Schema) -> Schema:

@@ -5,9 +5,7 @@ declared unit and range, a schedule where the declaration allows one, a friction
 """
 
 import dataclasses
-import functools
 import re
-import types
 import typing
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeVar
@@ -16,20 +14,15 @@ import numpy as np
 
 from squealbox.files.arrays import ArrayFileError, path_beside, read_array
 from squealbox.files.document import Document, read_bytes
-from squealbox.files.lines import Key
+from squealbox.files.lines import Key, dotted
 from squealbox.files.numbers import LONGEST, WRONG, read_choice, read_number, shown, wrong
-from squealbox.files.own_law import LARGEST as LARGEST_LAW
-from squealbox.files.own_law import OwnLaw, own_law
-from squealbox.friction import LAWS, FrictionLaw
-from squealbox.parameters import DataSheet, Parameter, ParameterError, known_names
-from squealbox.registers import name_of
-from squealbox.schedules import SCHEDULES, Schedule, Sum, as_schedule
+from squealbox.friction import LAW_NAMES, FrictionLaw, OwnLaw, own_law
+from squealbox.parameters import DataSheet, Parameter, ParameterError, field_type, known_names
+from squealbox.schedules import SCHEDULE_NAMES, Schedule, Sum, as_schedule
 
 Sheet = TypeVar("Sheet", bound=DataSheet)
 
-LAW_NAMES: dict[str, type[FrictionLaw]] = {name_of(law): law for law in LAWS}
 OWN = "own"  # the law that is a Python file
-SCHEDULE_NAMES: dict[str, type[Schedule]] = {name_of(schedule): schedule for schedule in SCHEDULES}
 
 
 def read_sheet(
@@ -50,8 +43,11 @@ def read_sheet(
     multiplied = getattr(sheet, "unit_for", None)
     unit = multiplied(table) if multiplied else unit
     values: dict[str, Any] = {}
-    for given, value in table.items():
-        names = sheet.aliases.get(given, (given,))
+    for given, value in sheet.spelled(table).items():
+        now = sheet.formerly.get(given, given)
+        if now != given:
+            document.cautions.append(f"{dotted((*key, given))} is called {now} now")
+        names = sheet.aliases.get(now, (now,))
         if names[0] not in sheet.field_names():
             known = known_names(given[:LONGEST], [*sheet.field_names(), *sheet.aliases, *beside])
             document.problem((*key, given), f"unknown key, {known}")
@@ -105,22 +101,6 @@ def read_field(document: Document, sheet: type[DataSheet], name: str, value: Any
     raise TypeError(f"{sheet.__name__}.{name}: a file cannot hold a {declared}")
 
 
-@functools.cache
-def _hints(sheet: Any) -> dict[str, Any]:
-    """Kept: reading them evaluates text, and every slider's move asks."""
-    return typing.get_type_hints(sheet, include_extras=True)
-
-
-def field_type(sheet: type[DataSheet], name: str) -> Any:
-    """The type a field is annotated with, without a None that stands beside it."""
-    kind: Any = sheet  # hashed as a class, by identity; its instances by value
-    declared = _hints(kind)[name]
-    if isinstance(declared, types.UnionType):
-        parts = [part for part in typing.get_args(declared) if part is not types.NoneType]
-        return parts[0] if len(parts) == 1 else Any
-    return declared
-
-
 def read_parameter(document: Document, value: Any, about: Parameter, key: Key, *, several: bool = False) -> Any:
     """A number in the unit and range of `about`, a schedule or (`several`) a list of numbers where that is allowed."""
     if value == "none" and about.optional:
@@ -169,7 +149,7 @@ def read_own_law(document: Document, value: Mapping[str, Any], key: Key) -> Any:
     if unknown or numbers is WRONG or static is WRONG:
         return WRONG
     try:
-        text = read_bytes(path_beside(document.path, file), LARGEST_LAW).decode("utf-8")
+        text = read_bytes(path_beside(document.path, file), OwnLaw.LARGEST).decode("utf-8")
         return own_law(text, numbers=numbers if value.get("numbers") else (), static=static)
     except (ArrayFileError, ParameterError) as error:
         document.problem((*key, "file"), str(error))
@@ -216,7 +196,7 @@ def unit_in(sheet: type[DataSheet], about: Parameter, unit: str) -> str:
     what it multiplies. In a schedule it is that of the
     quantity it stands for, and ``/s`` is that per second.
     """
-    from squealbox.studies.uncertainty.distributions import Distribution  # studies are much to load for a brake
+    from squealbox.studies import Distribution
 
     if issubclass(sheet, Distribution) or hasattr(sheet, "unit_for"):
         return about.unit or unit

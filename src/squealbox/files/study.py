@@ -27,36 +27,10 @@ from squealbox.files.reading import SECTIONS, DesignFile, design_of, read_file, 
 from squealbox.files.sheets import read_sheet
 from squealbox.files.study_axis import read_axes
 from squealbox.files.varied import VARY, axes_of
-from squealbox.parameters import DataSheet, ParameterError, choice, known_names, parameter
-from squealbox.studies import Refined, Space
-from squealbox.studies.refinement import FINEST
+from squealbox.parameters import ParameterError, known_names
+from squealbox.studies import Refined, RefineSettings, Space, StudySettings
 
-ANALYSES = ("modes", "onset", "simulate", "ensemble", "cycle")
 OTHERS = ("axis", "vary", "keep", "observe", "refine")
-
-
-class Study(DataSheet):
-    """[study]: an analysis over a space of parameters."""
-
-    analysis: str = choice(*ANALYSES, default="modes", meaning="what is asked at every point")
-    seed: int = parameter("-", 0, 2**53, default=0, meaning="of samples and random numbers")
-    workers: int | None = parameter("-", 1, 4096, default=None, optional=True, meaning="processes on this machine")
-    chunk: int | None = parameter("-", 1, 2**40, default=None, optional=True, meaning="points in a block")
-    time_limit: float | None = parameter(
-        "s", 0.0, low_open=True, default=None, optional=True, meaning="of a block that a worker computes"
-    )
-    duration: float | None = parameter(
-        "s", 0.0, low_open=True, default=None, optional=True,
-        meaning="of each transient of an ensemble; left out, 200 periods of the worst mode of the file's brake",
-    )  # fmt: skip
-
-
-class Refine(DataSheet):
-    """[study.refine]: the grid grows finer where an answer crosses a level."""
-
-    of: str
-    level: float = parameter("-", default=0.0, meaning="that is crossed, in the SI unit of the answer")
-    rounds: int = parameter("-", 1, FINEST, default=4, meaning="of refinement; each halves the cells")
 
 
 @dataclass(frozen=True)
@@ -65,7 +39,7 @@ class StudyFile:
 
     path: Path
     brake: DesignFile
-    study: Study
+    study: StudySettings
     space: Space
     keep: tuple[str, ...] = ()
     observe: tuple[str, ...] = ("amplitude", "frequency")
@@ -95,7 +69,7 @@ def study_of(document: Document, asked: Any, brake: DesignFile | None) -> StudyF
     if asked is not None and not isinstance(asked, Mapping):
         wrong(document, ("study",), asked, "a section [study]")
     rest = {name: value for name, value in table.items() if name not in OTHERS}
-    study = read_sheet(document, Study, rest, ("study",), beside=OTHERS)
+    study = read_sheet(document, StudySettings, rest, ("study",), beside=OTHERS)
     keep = _words(document, table, "keep", ())
     observe = _words(document, table, "observe", ("amplitude", "frequency"))
     space = None
@@ -118,7 +92,7 @@ def _refined(document: Document, table: Any, space: Space | None) -> Space | Non
     key = ("study", "refine")
     if not isinstance(table, Mapping):
         return wrong(document, key, table, "a section [study.refine] with the key of")
-    read = read_sheet(document, Refine, table, key)
+    read = read_sheet(document, RefineSettings, table, key)
     if read is None or space is None:
         return None
     try:
@@ -136,7 +110,7 @@ def _brake(document: Document, tables: dict[str, Any]) -> DesignFile | None:
     sections = {name: tables.pop(name) for name in list(tables) if name in SECTIONS}
     design = _other_file(document, tables) if "design" in tables else design_of(document, tables, beside=("design",))
     read = {name: section_of(document, name, table, design) for name, table in sections.items()}
-    return None if design is None else DesignFile(document.path, design, **read)
+    return None if design is None else DesignFile(document.path, design, caution="; ".join(document.cautions), **read)
 
 
 def _other_file(document: Document, tables: dict[str, Any]) -> Design | None:

@@ -6,15 +6,25 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.files.analyses import only, read_ends
+from squealbox.files.analyses import read_ends
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
-from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
+from squealbox.files.numbers import WRONG, only, read_choice, read_number, wrong
 from squealbox.files.sheets import read_sheet
-from squealbox.files.varied import scalar_parameters, words_of
 from squealbox.parameters import Choice, Parameter, ParameterError, known_names
-from squealbox.studies import DISTRIBUTIONS, SAMPLINGS, Scatter, Space, grid, latin_hypercube, sampled, zipped
-from squealbox.studies.space import POINT, Axis, sobol_sequence
+from squealbox.studies import (
+    DISTRIBUTIONS,
+    SAMPLINGS,
+    Axis,
+    Scatter,
+    Space,
+    grid,
+    latin_hypercube,
+    sampled,
+    sobol_sequence,
+    zipped,
+)
+from squealbox.studies.space import POINT
 
 EXAMPLE = "parameter = 'friction.static', range = [0.2, 0.5], points = 61"
 MOST = 10**8
@@ -202,7 +212,7 @@ def _parameter(
         return "", None
     if design is None:
         return name, None
-    known: dict[str, Parameter | Choice] = {**scalar_parameters(design), **words_of(design)}
+    known: dict[str, Parameter | Choice] = {**design.scalars(), **design.words()}
     if name not in known:
         document.problem((*key, "parameter"), f"unknown parameter {name[:60]!r}, {known_names(name[:60], list(known))}")
         return name, None

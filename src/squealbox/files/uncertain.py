@@ -16,41 +16,31 @@ from typing import Any, get_args
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.files.analyses import read_ends
-from squealbox.files.asked import known, read_quantity
+from squealbox.files.analyses import read_spans
+from squealbox.files.asked import read_quantity
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
-from squealbox.files.numbers import WRONG, read_choice, read_number, wrong
+from squealbox.files.numbers import WRONG, only, read_choice, read_number, wrong
 from squealbox.files.sheets import read_sheet
 from squealbox.files.study_axis import read_correlation
-from squealbox.files.varied import VARY, flattened
-from squealbox.parameters import DataSheet, Parameter, ParameterError, choice, known_names, parameter
-from squealbox.studies import DISTRIBUTIONS, SAMPLINGS, Constraint, Distribution, Goal, Quantity, Scatter
+from squealbox.files.varied import VARY, flattened, known
+from squealbox.parameters import Parameter, ParameterError
+from squealbox.studies import (
+    DISTRIBUTIONS,
+    Constraint,
+    Distribution,
+    Goal,
+    Quantity,
+    SampleSettings,
+    Scatter,
+    SearchSettings,
+)
 from squealbox.studies.optimisation.goals import Over
 
 STUDIES = ("probability", "sobol", "morris", "form", "subset", "surrogate", "bounds")
 SENSES = ("minimise", "maximise")
 OVERS: tuple[str, ...] = get_args(Over)
 EXAMPLE = "a table such as { distribution = 'normal', mean = 0.35, sd = 0.03 }"
-
-
-class Sampled(DataSheet):
-    """[scatter]: how the scatter is sampled."""
-
-    samples: int = parameter("-", 16, 100_000_000, default=4096, meaning="points of the samples")
-    sampling: str = choice(*SAMPLINGS, default="sobol", meaning="kind of points")
-    seed: int = parameter("-", 0, 2**31 - 1, default=0, meaning="the same seed gives the same points")
-    level: float = parameter("-", 0.5, 0.9999, default=0.95, meaning="confidence level of intervals")
-
-
-class Effort(DataSheet):
-    """[optimise]: how hard is searched."""
-
-    method: str = choice("global", "local", default="global", meaning="whole box, or from the design of the file")
-    population: int = parameter("-", 8, 10_000, default=60, meaning="candidates of a generation")
-    generations: int = parameter("-", 1, 100_000, default=200, meaning="most generations")
-    samples: int = parameter("-", 16, 1_000_000, default=256, meaning="points of the scatter for each candidate")
-    seed: int = parameter("-", 0, 2**31 - 1, default=0, meaning="the same seed gives the same designs")
 
 
 @dataclass(frozen=True)
@@ -60,7 +50,7 @@ class Scattered:
     scatter: Scatter
     quantity: Quantity
     studies: tuple[str, ...]
-    sampled: Sampled
+    sampled: SampleSettings
 
 
 @dataclass(frozen=True)
@@ -70,7 +60,7 @@ class Optimise:
     variables: dict[str, tuple[float, float]]
     goals: tuple[Goal, ...]
     constraints: tuple[Constraint, ...]
-    effort: Effort
+    effort: SearchSettings
 
 
 def read_scatter(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Scattered | None:
@@ -78,7 +68,7 @@ def read_scatter(document: Document, table: Mapping[str, Any], key: Key, design:
     table = _by_vary(table, "parameters")
     own = {name: table[name] for name in table if name not in ("parameters", "correlation", "study")}
     asked, rest = read_quantity(document, own, key, design)
-    sampled = read_sheet(document, Sampled, rest, key, beside=("quantity", "parameters", "correlation", "study"))
+    sampled = read_sheet(document, SampleSettings, rest, key, beside=("quantity", "parameters", "correlation", "study"))
     studies = _studies(document, table.get("study", ["probability", "sobol"]), (*key, "study"))
     scatter = _scatter(document, table, key, design)
     if asked is None or sampled is None or studies is None or scatter is None:
@@ -90,8 +80,8 @@ def read_optimise(document: Document, table: Mapping[str, Any], key: Key, design
     """The section [optimise]."""
     before, table = len(document.problems), _by_vary(table, "variables")
     rest = {name: table[name] for name in table if name not in ("variables", "goals", "constraints")}
-    effort = read_sheet(document, Effort, rest, key, beside=("variables", "goals", "constraints"))
-    variables = dict(_variables(document, table, key, design))
+    effort = read_sheet(document, SearchSettings, rest, key, beside=("variables", "goals", "constraints"))
+    variables = _variables(document, table, key, design)
     goals = [_goal(document, item, place, design) for item, place in _tables(document, table, key, "goals")]
     kept = [_constraint(document, item, place, design) for item, place in _tables(document, table, key, "constraints")]
     if "goals" not in table:
@@ -157,17 +147,13 @@ def _scatter(document: Document, table: Mapping[str, Any], key: Key, design: Des
 
 def _variables(
     document: Document, table: Mapping[str, Any], key: Key, design: Design | None
-) -> Iterator[tuple[str, tuple[float, float]]]:
+) -> dict[str, tuple[float, float]]:
     given = table.get("variables")
-    if not isinstance(given, Mapping) or not given:
-        example = "a section [optimise.variables] of names, each with two values such as [0, 1]"
-        document.problem((*key, "variables"), f"expected {example}")
-        return
-    for name, value, place in flattened(given, (*key, "variables"), design):
-        about = known(document, name, place, design)
-        ends = None if about is None else read_ends(document, value, about, place)
-        if ends is not None:
-            yield name, ends
+    if isinstance(given, Mapping) and given:
+        return read_spans(document, given, (*key, "variables"), design)
+    example = "a section [optimise.variables] of names, each with two values such as [0, 1]"
+    document.problem((*key, "variables"), f"expected {example}")
+    return {}
 
 
 def _tables(document: Document, table: Mapping[str, Any], key: Key, name: str) -> Iterator[tuple[Any, Key]]:
@@ -218,6 +204,4 @@ def _over(document: Document, table: dict[str, Any], key: Key) -> tuple[str, flo
 
 
 def _nothing_left(document: Document, table: Mapping[str, Any], key: Key, *more: str) -> None:
-    known = ["parameter", "range", "limit", "duration", "weights", "name", "over", "share", *more]
-    for name in table:
-        document.problem((*key, name), f"unknown key, {known_names(name[:60], known)}")
+    only(document, table, key, ("parameter", "range", "limit", "duration", "weights", "name", "over", "share", *more))

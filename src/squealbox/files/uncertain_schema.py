@@ -4,9 +4,9 @@ from collections.abc import Callable
 from typing import Any
 
 from squealbox.files.asked import KEYS
-from squealbox.files.uncertain import OVERS, SENSES, STUDIES, Effort, Sampled
+from squealbox.files.uncertain import OVERS, SENSES, STUDIES
 from squealbox.parameters import DataSheet
-from squealbox.studies import DISTRIBUTIONS
+from squealbox.studies import DISTRIBUTIONS, SampleSettings, SearchSettings
 
 Schema = dict[str, Any]
 NUMBER: Schema = {"type": ["number", "string"]}
@@ -31,7 +31,7 @@ def scatter_schema(sheet: Callable[[type[DataSheet]], Schema]) -> Schema:
         },
         "study": {"anyOf": [study, {"type": "array", "items": study}], "description": "what is asked"},
     }
-    properties = {**_asked("quantity"), **sheet(Sampled)["properties"], **own}
+    properties = {**_asked("quantity"), **sheet(SampleSettings)["properties"], **own}
     return {
         **_closed(properties, "quantity", "parameters"),
         "description": "[scatter]: which parameters scatter, and of which number",
@@ -49,7 +49,7 @@ def optimise_schema(sheet: Callable[[type[DataSheet]], Schema]) -> Schema:
         "constraints": {"type": "array", "items": _closed({**_asked("quantity"), **over, **limits}, "quantity")},
     }
     return {
-        **_closed({**sheet(Effort)["properties"], **own}, "variables", "goals"),
+        **_closed({**sheet(SearchSettings)["properties"], **own}, "variables", "goals"),
         "description": "[optimise]: what may be changed and what is wanted",
     }
 

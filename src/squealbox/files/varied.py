@@ -1,53 +1,19 @@
-"""What of a design can be varied, and the key `vary` of a section: ``{ "friction.static" = [0, 1] }``.
+"""What a section varies, its key `vary`: ``{ "friction.static" = [0, 1] }``.
 
 Bounds or values are a list, an axis is a table of range and points; each stands for the table a section had before.
 """
 
 from collections.abc import Mapping
-from typing import Annotated, Any, get_origin
+from typing import Any
 
-import numpy as np
-
-from squealbox.countermeasures.base import Countermeasure, short_name
 from squealbox.designs import Design
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import wrong
-from squealbox.files.sheets import field_type
-from squealbox.parameters import Choice, Parameter, ParameterError, known_names
+from squealbox.parameters import Parameter, ParameterError
 
 VARY = "vary"
 EXAMPLE = "{ 'friction.static' = [0, 1] }"
-
-
-def quantity_of(design: Design, name: str) -> Parameter:
-    """Unit and range of the scalar parameter `name` of `design`; `ParameterError` names those there are."""
-    known, short = scalar_parameters(design), short_name(design, name)
-    if short not in known:
-        raise ParameterError("design", "parameter", name, known_names(name[:60], list(known)))
-    return known[short]
-
-
-def scalar_parameters(design: Design) -> dict[str, Parameter]:
-    """The parameters of a design that a study can vary, nested ones with dots, aliases included.
-
-    Those of a brake within countermeasures and loops keep their names.
-    """
-    arrays = {name for name in design.parameters() if get_origin(field_type(type(design), name)) is Annotated}
-    leaves = ((name, about) for name, about, value in design.leaves() if np.ndim(value) == 0)
-    known = {name: about for name, about in leaves if name not in arrays}
-    brake = design.innermost if isinstance(design, Countermeasure) else design
-    own = brake.parameters()
-    for alias, names in brake.aliases.items():
-        if all(name in own for name in names):
-            known.setdefault(alias, own[names[0]])
-    return known
-
-
-def words_of(design: Design) -> dict[str, Choice]:
-    """The fields of a design that hold one of several words, those of a brake within countermeasures included."""
-    held = words_of(design.brake) if isinstance(design, Countermeasure) else {}
-    return {**held, **design.choices()}
 
 
 def axes_of(
@@ -69,7 +35,7 @@ def axes_of(
 
 def flattened(table: Mapping[str, Any], key: Key, design: Design | None) -> list[tuple[str, Any, Key]]:
     """(dotted name, value, key) of a table in which ``a.b = ...`` without quotes made a table of tables."""
-    names = set() if design is None else set(scalar_parameters(design))
+    names = set() if design is None else set(design.scalars())
     found: list[tuple[str, Any, Key]] = []
 
     def walk(part: Mapping[str, Any], prefix: str, place: Key) -> None:
@@ -82,3 +48,20 @@ def flattened(table: Mapping[str, Any], key: Key, design: Design | None) -> list
 
     walk(table, "", key)
     return found
+
+
+def known(document: Document, name: Any, key: Key, design: Design | None) -> Parameter | None:
+    """What the design declares of a parameter; None, and noted, for an unknown name."""
+    if not isinstance(name, str):
+        wrong(document, key, name, "the name of a parameter, such as 'friction.static'")
+        return None
+    if design is None:
+        return None
+    first, parts = name.partition(".")[0], (design, design.innermost)
+    if first in document.faulty and any(first in (*each.field_names(), *each.aliases) for each in parts):
+        return None  # what it names has been reported itself
+    try:
+        return design.scalar(name)
+    except ParameterError as error:
+        document.problem(key, f"unknown parameter {name[:60]!r}, {error.expectation}")
+        return None

@@ -17,14 +17,13 @@ from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
 from squealbox.files.countermeasures import wrapped_text
 from squealbox.files.document import LARGEST
-from squealbox.files.own_law import OwnLaw
 from squealbox.files.reading import BRAKES
-from squealbox.files.sheets import SCHEDULE_NAMES, field_type, unit_in
-from squealbox.files.units import in_si
-from squealbox.friction import FrictionLaw
-from squealbox.parameters import Choice, DataSheet, Parameter
+from squealbox.files.sheets import unit_in
+from squealbox.friction import FrictionLaw, OwnLaw
+from squealbox.parameters import Choice, DataSheet, Parameter, field_type
 from squealbox.registers import name_of
-from squealbox.schedules import Constant, Schedule, Sum
+from squealbox.schedules import SCHEDULE_NAMES, Constant, Schedule, Sum
+from squealbox.units import in_si
 
 # Units people prefer to the SI unit of the data sheet; one is used where it is shorter and reads back to the same bits.
 FRIENDLY = {

@@ -10,15 +10,20 @@ from squealbox.bristles import Dahl, ElastoPlastic, LuGre
 from squealbox.friction import curves
 from squealbox.friction.averaged import Averaged, averaged
 from squealbox.friction.curves import Coulomb, Cubic, Hyperbolic, LinearSlope, Stribeck, Table
+from squealbox.friction.own import OwnLaw, allow, law_from_file, own_law
 from squealbox.law import NEVER_STICKS, FrictionLaw
-from squealbox.registers import kinds_in
+from squealbox.registers import kinds_in, name_of
 
 # Their places are numbers in compiled code: what is found in further files stands behind these.
 _FIRST = (Coulomb, LinearSlope, Stribeck, Hyperbolic, Cubic, Table, LuGre, Dahl, ElastoPlastic)
 LAWS: tuple[type[FrictionLaw], ...] = kinds_in(__name__, FrictionLaw, _FIRST, having="formula")
+LAW_NAMES: dict[str, type[FrictionLaw]] = {name_of(law): law for law in LAWS}  # as files and pages write them
 globals().update({law.__name__: law for law in LAWS})
 _formulas = (each for law in LAWS for each in (law.formula, law.slope_formula))
 globals().update({each.__name__: each for each in _formulas if each.__module__ == curves.__name__})
 
-__all__ = ["LAWS", "NEVER_STICKS", "Averaged", "FrictionLaw", "averaged"]
+__all__ = [
+    "LAWS", "LAW_NAMES", "NEVER_STICKS", "Averaged", "FrictionLaw", "OwnLaw", "allow", "averaged", "law_from_file",
+    "own_law",
+]  # fmt: skip
 __all__ += [law.__name__ for law in LAWS]

@@ -10,6 +10,7 @@ from squealbox.limit_cycles.attractors.diagrams import BifurcationDiagram, bifur
 from squealbox.limit_cycles.attractors.exponents import lyapunov_exponents
 from squealbox.limit_cycles.attractors.pushes import DangerousPush, dangerous_push, push_along
 from squealbox.limit_cycles.attractors.sections import Section, maxima, poincare_section
+from squealbox.limit_cycles.attractors.settings import DiagramSettings
 from squealbox.limit_cycles.branches.branch import Branch, branch
 from squealbox.limit_cycles.branches.curves import PointCurve, hopf_curve
 from squealbox.limit_cycles.branches.hopf import HopfPoint, hopf_point
@@ -40,6 +41,7 @@ __all__ = [
     "Coexistence",
     "Cycle",
     "DangerousPush",
+    "DiagramSettings",
     "EstimateCurve",
     "ForcedCycle",
     "HopfPoint",

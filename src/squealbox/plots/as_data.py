@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.plots.figure_data import (
+from squealbox.figure_data import (
     FigureAxis,
     FigureData,
     across,

@@ -7,7 +7,7 @@ import numpy as np
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.facts import unit_at
 from squealbox.plots.style import drawing, figure_of, line, panels
-from squealbox.transient.comparison import ContactComparison
+from squealbox.transient import ContactComparison
 from squealbox.words import quantity_label, scaled
 
 if TYPE_CHECKING:

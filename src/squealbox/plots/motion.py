@@ -10,9 +10,9 @@ from squealbox.plots.facts import read_of, unit_at
 from squealbox.plots.spectra import spectrum
 from squealbox.plots.style import drawing, figure_of, line, note, panels, uncertain
 from squealbox.signals import LEAST, SignalError, column, equal_steps, values
+from squealbox.transient import Trajectory, Verdict
 from squealbox.transient.envelope import smooth_curve
-from squealbox.transient.trajectory import Trajectory
-from squealbox.transient.verdict import Verdict, verdict
+from squealbox.transient.verdict import verdict
 from squealbox.words import number, quantity_label, scaled
 
 if TYPE_CHECKING:

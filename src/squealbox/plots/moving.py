@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.countermeasures import Countermeasure
 from squealbox.designs import (
     BlockChain,
     DampingParadox,
@@ -41,7 +40,7 @@ def moving_strokes(design: Design) -> dict[str, Any]:
     >>> moving_strokes(MassOnBelt())["moves"].shape[0]
     1
     """
-    brake = design.innermost if isinstance(design, Countermeasure) else design
+    brake = design.innermost
     drawn, system = brake_strokes(brake), design.system()
     size = system.size
     kind = next((kind for kind in PARTS if isinstance(brake, kind)), None)

@@ -7,7 +7,7 @@ import numpy as np
 
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, LINES, WIDTH, drawing, figure_of, line
-from squealbox.studies.optimisation.optimum import Optimum
+from squealbox.studies import Optimum
 from squealbox.words import number, quantity_label
 
 if TYPE_CHECKING:

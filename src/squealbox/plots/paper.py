@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.plots.figure_data import Bars, FigureData, whole
+from squealbox.figure_data import Bars, FigureData, whole
 
 LARGEST = 4_000_000  # bytes of a figure
 DOTS, PNG_DOTS = 96.0, 300.0  # px of the page, and of a PNG, to an inch
@@ -35,7 +35,7 @@ class NoFigure(ValueError):
 def drawn(figure: bytes | FigureData | Bars, kind: str = "pdf") -> bytes:
     """The file, one of KINDS, of a figure, or of what `figure_data.whole` makes of it as JSON.
 
-    >>> from squealbox.plots.figure_data import FigureAxis, line
+    >>> from squealbox.figure_data import FigureAxis, line
     >>> axes = FigureAxis("time", "s", (0.0, 1.0)), FigureAxis("x", "mm", (0.0, 2.0))
     >>> print(drawn(FigureData("motion", *axes, [line([0.0, 1.0], [0.5, 2.0], name="pad")]), "csv").decode())
     "pad: time [s]","pad: x [mm]"

@@ -7,9 +7,7 @@ import numpy as np
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, WIDTH, drawing, figure_of, line
 from squealbox.plots.uncertainty import QUIET, SQUEAL
-from squealbox.studies.uncertainty.chaos import Surrogate
-from squealbox.studies.uncertainty.form import DesignPoint
-from squealbox.studies.uncertainty.subset import SubsetProbability
+from squealbox.studies import DesignPoint, SubsetProbability, Surrogate
 from squealbox.words import number, quantity_label
 
 if TYPE_CHECKING:

@@ -5,13 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.family import unit_of
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, LINES, WIDTH, drawing, figure_of, line, power_of_ten
-from squealbox.studies.quantity import unit_of
-from squealbox.studies.uncertainty.intervals import IntervalBounds
-from squealbox.studies.uncertainty.morris import MorrisEffects
-from squealbox.studies.uncertainty.probability import SquealProbability
-from squealbox.studies.uncertainty.sobol import SobolIndices
+from squealbox.studies import IntervalBounds, MorrisEffects, SobolIndices, SquealProbability
 from squealbox.words import number, quantity_label
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from squealbox.countermeasures import (
     TunedMass,
     best_absorber,
 )
-from squealbox.designs.base import Design
+from squealbox.designs import Design
 from squealbox.friction import FrictionLaw
 from squealbox.loops import PID, ActiveForce
 from squealbox.parameters import ParameterError

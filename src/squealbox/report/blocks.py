@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from squealbox.plots.figure_data import FigureData
+from squealbox.figure_data import FigureData
 
 HALF_A_PAGE = 3.6  # inches
 FEW_ROWS = 12
@@ -116,7 +116,7 @@ class Drawing:
 
 @dataclass(frozen=True)
 class Chart:
-    """A picture that can be pointed at and zoomed into: a drawing, and the same as figures of `plots.figure_data`.
+    """A picture that can be pointed at and zoomed into: a drawing, and the same as figures of `figure_data`.
 
     The drawing is what is printed, and what is seen where scripts do not run.
     """
@@ -127,7 +127,7 @@ class Chart:
 
     def __post_init__(self) -> None:
         if not all(isinstance(figure, FigureData) for figure in self.figures):
-            raise ReportError("a chart: expected figures as data, made with plots.figure_data.FigureData")
+            raise ReportError("a chart: expected figures as data, made with figure_data.FigureData")
 
 
 @dataclass(frozen=True)

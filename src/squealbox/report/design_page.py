@@ -8,8 +8,7 @@ import numpy as np
 
 from squealbox import plots
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.files import NotWritable
-from squealbox.files.writing import design_text
+from squealbox.files import NotWritable, design_text
 from squealbox.plots.cards import has_drawing
 from squealbox.report import motion_sections, stability_sections, tables, words
 from squealbox.report.blocks import Code, Page, Points, Section, Text, Tiles

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 from squealbox.designs import Design
-from squealbox.files.analyses import Map, Simulate, Varied
+from squealbox.family import ParameterAxis, ParameterPlane
 from squealbox.limit_cycles import Cycle, HopfPoint
 from squealbox.matrices import liveliest
 from squealbox.remedies import Remedies
@@ -16,14 +16,14 @@ from squealbox.stability import (
     ComplexModes,
     CriticalValue,
     CriticalValues,
+    Mechanism,
     ModeEnergy,
     Sensitivity,
     StabilityMap,
     TrackedModes,
 )
-from squealbox.stability.mechanism import Mechanism
 from squealbox.system import System
-from squealbox.transient import Trajectory, Verdict
+from squealbox.transient import MotionSettings, Trajectory, Verdict
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,15 +42,15 @@ class Examination:
     band: BandModes | None = None
     mode_table: dict[str, Any] | None = None
     why: Mechanism | None = None
-    varied: Varied | None = None
+    varied: ParameterAxis | None = None
     crossings: CriticalValues | None = None
     spectra: ComplexModes | TrackedModes | None = None
     ranking: Sensitivity | None = None
     energy: ModeEnergy | None = None
-    plane: Map | None = None
+    plane: ParameterPlane | None = None
     map: StabilityMap | None = None
     boundary: Boundary | None = None
-    settings: Simulate | None = None
+    settings: MotionSettings | None = None
     motion: Trajectory | None = None
     verdicts: tuple[Verdict, ...] = ()
     heard: Trajectory | None = None

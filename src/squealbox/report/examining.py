@@ -11,10 +11,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.family import ParameterAxis, ParameterPlane
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.files.analyses import Map, Simulate, Varied
-from squealbox.files.runs import LARGE, lasting, run, run_closely, usual_duration
-from squealbox.files.varied import quantity_of, scalar_parameters
 from squealbox.limit_cycles import Cycle, hopf_point, shooting
 from squealbox.matrices import liveliest
 from squealbox.parameters import ParameterError
@@ -37,7 +35,7 @@ from squealbox.stability import (
 )
 from squealbox.stability.mode_table import mode_table
 from squealbox.system import InvalidSystem
-from squealbox.transient import verdict
+from squealbox.transient import LARGE, MotionSettings, usual_duration, verdict
 from squealbox.transient.simulate import TIME_STEPPING
 
 Progress = Callable[[str], None]
@@ -58,9 +56,9 @@ PUSHES = (1.0, 3.0)  # velocities at the contacts, over the sliding speed, from 
 def examine(
     design: Design,
     *,
-    onset: Varied | None = None,
-    plane: Map | None = None,
-    simulate: Simulate | None = None,
+    onset: ParameterAxis | None = None,
+    plane: ParameterPlane | None = None,
+    simulate: MotionSettings | None = None,
     time: float = 0.0,
     progress: Progress = lambda text: None,
 ) -> Examination:
@@ -115,7 +113,7 @@ class _Work:
         except (InvalidSystem, SignalError, ValueError) as error:
             self.missing[name] = " ".join(str(error).split())
 
-    def stability(self, onset: Varied | None) -> None:
+    def stability(self, onset: ParameterAxis | None) -> None:
         if not self.modes.exists:
             self.missing["stability"] = f"there is no steady sliding: {self.modes.outcome.message}"
             return
@@ -143,7 +141,7 @@ class _Work:
                 self.found["spectra"] = complex_modes(self.design.replace({varied.name: values}), self.time)
             self.found["varied"] = drawn
 
-    def margins(self, plane: Map | None) -> None:
+    def margins(self, plane: ParameterPlane | None) -> None:
         """The map over two parameters with its boundary."""
         if "spectra" not in self.found:
             return
@@ -157,15 +155,15 @@ class _Work:
             # ends for every design; tracing corners may not
             self.found["boundary"] = map_boundary(self.found["map"], close=close)
 
-    def transient(self, simulate: Simulate | None) -> None:
+    def transient(self, simulate: MotionSettings | None) -> None:
         with self.part("transient", "transient (the first run compiles the engine)"):
             if simulate is None:
                 self._not_too_large("a motion", "[simulate] in the file asks for one, and for how long")
-            self.found["settings"] = settings = lasting(
-                self.design, simulate or Simulate(duration=usual_duration(self.design, self.time))
-            )
+            self.found["settings"] = settings = (
+                simulate or MotionSettings(duration=usual_duration(self.design, self.time))
+            ).lasting(self.design)
             moving = self.system if settings.contact == TIME_STEPPING else self.moving
-            self.found["motion"] = motion = run_closely(moving, settings)
+            self.found["motion"] = motion = settings.run_closely(moving)
             if not motion.outcome.ok:
                 self.missing["sound"] = f"the transient ended early: {motion.outcome.message}"
                 return
@@ -182,7 +180,7 @@ class _Work:
             hear = "squealbox listen makes sound of a recording"
             self._not_too_large("two seconds of motion to be heard", hear, self.long)
             longer = settings.replace({"duration": max(HEARD, settings.duration or 0.0)})
-            self.found["heard"] = run(moving, longer, points=int((longer.duration or HEARD) * SAMPLING) + 1)
+            self.found["heard"] = longer.run(moving, int((longer.duration or HEARD) * SAMPLING) + 1)
 
     def cycle(self) -> None:
         """A limit cycle: from the usual start, the end of the transient, and pushes about steady sliding."""
@@ -247,22 +245,22 @@ class _Work:
         """Parameters that hold one number other than zero and can be varied; those inside a schedule cannot."""
         heads = {name for name in self.design.field_names() if isinstance(getattr(self.design, name), Schedule)}
         numbers = [name for name, _, value in self.design.leaves() if isinstance(value, float) and value != 0.0]
-        known = scalar_parameters(self.design)
+        known = self.design.scalars()
         return tuple(name for name in numbers if name in known and name.partition(".")[0] not in heads)
 
-    def _usual_axis(self) -> Varied:
-        known = scalar_parameters(self.design)
+    def _usual_axis(self) -> ParameterAxis:
+        known = self.design.scalars()
         rubs = "friction.static" in known and self.system.contacts
         name = "friction.static" if rubs else self._strongest([])
         return self._about(name, 0.05, 2.5)
 
-    def _usual_plane(self) -> Map:
-        varied: Varied = self.found["varied"]
+    def _usual_plane(self) -> ParameterPlane:
+        varied: ParameterAxis = self.found["varied"]
         if self.reduced:
             raise InvalidSystem("a finite-element brake is reduced for what it varies, which [map] in the file says")
         other = self._about(self._strongest([varied.name]), 0.5, 1.5)
         x = varied.replace(points=MAP_POINTS)
-        return Map(x, other.replace(points=MAP_POINTS))
+        return ParameterPlane(x, other.replace(points=MAP_POINTS))
 
     def _strongest(self, but: list[str]) -> str:
         ranking: Sensitivity | None = self.found.get("ranking")
@@ -271,7 +269,7 @@ class _Work:
             raise ParameterError(type(self.design).__name__, "design", "it", "a parameter that changes the growth rate")
         return names[0]
 
-    def _about(self, name: str, low: float, high: float) -> Varied:
+    def _about(self, name: str, low: float, high: float) -> ParameterAxis:
         return _about(self.design, name, low, high)
 
 
@@ -282,17 +280,17 @@ def _loudness(cycle: Cycle) -> SoundLevel:
     return sound_level(np.interp(t, cycle.t, cycle.qd[:, dof], period=cycle.period), t)
 
 
-def usual_friction(design: Design, shares: tuple[float, float]) -> Varied | None:
+def usual_friction(design: Design, shares: tuple[float, float]) -> ParameterAxis | None:
     """The friction at rest over shares of its own value; None of a design that has none, or several."""
-    known = scalar_parameters(design)
+    known = design.scalars()
     return _about(design, "friction.static", *shares) if "friction.static" in known else None
 
 
-def _about(design: Design, name: str, low: float, high: float) -> Varied:
+def _about(design: Design, name: str, low: float, high: float) -> ParameterAxis:
     """A range about the design's own value in shares of it, inside what the parameter may be."""
-    value, about = float(design.value_of(name)), quantity_of(design, name)
+    value, about = float(design.value_of(name)), design.scalar(name)
     ends = sorted((low * value, high * value))
     ends = [float(np.clip(end, about.low, about.high)) for end in ends]
     if about.low_open and ends[0] == about.low:
         ends[0] += 1e-3 * abs(value)
-    return Varied(name, ends[0], ends[1])
+    return ParameterAxis(name, ends[0], ends[1])

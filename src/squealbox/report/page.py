@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.plots.figure_data import packed
+from squealbox.figure_data import packed
 from squealbox.report.blocks import Chart, Page, Section, Solid
 
 TEMPLATE = "page.html.j2"

@@ -8,9 +8,9 @@ import numpy as np
 
 from squealbox import plots
 from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.figure_data import FigureAxis, upright
 from squealbox.plots.as_data import map_over_two, modes_over_parameter
 from squealbox.plots.cards import has_drawing
-from squealbox.plots.figure_data import FigureAxis, upright
 from squealbox.plots.modes import unstable_stretches, upper_branches
 from squealbox.report import tables, words
 from squealbox.report.blocks import Chart, Section, Text

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.files.varied import quantity_of
 from squealbox.report.examination import Examination
 from squealbox.signals import SoundLevel
 from squealbox.stability import sentences
@@ -15,7 +14,7 @@ from squealbox.words import number, quantity, read_in
 
 def in_reading_unit(found: Examination, name: str) -> tuple[float, str]:
     """What SI values of a parameter are multiplied by to be read, and the unit then: degrees, kN/mm."""
-    unit, factor = read_in(quantity_of(found.design, name), found.design.value_of(name))
+    unit, factor = read_in(found.design.scalar(name), found.design.value_of(name))
     return 1.0 / factor, unit
 
 

@@ -7,8 +7,7 @@ from typing import Any
 from squealbox.designs import Design
 from squealbox.fe.meshed import MeshedBrake
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.files import DesignFile, read_file
-from squealbox.files.reduced import ONE_WAY, dense, promise
+from squealbox.files import ONE_WAY, DesignFile, dense, promise, read_file
 from squealbox.report.blocks import Page, ReportError
 from squealbox.report.design_page import design_page
 from squealbox.report.examination import Examination
@@ -16,8 +15,8 @@ from squealbox.report.examining import OF_LARGE, Progress, examine, usual_fricti
 from squealbox.report.page import write_page
 from squealbox.report.results import folder_page, result_page
 from squealbox.result import Result
-from squealbox.stability import complex_modes
-from squealbox.stability.second_mesh import ONE_MESH, mesh_doubt
+from squealbox.stability import complex_modes, mesh_doubt
+from squealbox.stability.second_mesh import ONE_MESH
 
 EXPECTED = "a design file (.toml), a result (.nc) or a folder that holds results"
 

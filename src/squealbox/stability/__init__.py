@@ -18,6 +18,7 @@ from squealbox.stability.onset import CriticalValue, CriticalValues, critical_va
 from squealbox.stability.routh_hurwitz import routh_hurwitz
 from squealbox.stability.second_mesh import MeshDoubt, mesh_doubt
 from squealbox.stability.sensitivity import Sensitivity, sensitivity
+from squealbox.stability.settings import ModeSettings
 from squealbox.stability.spectra import compiled_eigenvalues
 from squealbox.stability.tracking import TrackedModes, TrackedPoint, track, tracked_modes
 
@@ -35,6 +36,7 @@ __all__ = [
     "MeshDoubt",
     "Mode",
     "ModeEnergy",
+    "ModeSettings",
     "Sensitivity",
     "StabilityMap",
     "TrackedModes",

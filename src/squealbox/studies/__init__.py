@@ -12,6 +12,13 @@ from squealbox.studies.optimisation.goals import Constraint, Goal
 from squealbox.studies.optimisation.optimum import Optimum, optimise
 from squealbox.studies.quantity import Quantity, evaluate
 from squealbox.studies.refinement import Refined
+from squealbox.studies.settings import (
+    RefineSettings,
+    SampleSettings,
+    SearchSettings,
+    StudySettings,
+    WorkerSettings,
+)
 from squealbox.studies.space import Axis, Space, grid, latin_hypercube, sampled, sobol_sequence, zipped
 from squealbox.studies.store import (
     ForeignStore,
@@ -62,9 +69,12 @@ __all__ = [
     "Optimum",
     "Pace",
     "Quantity",
+    "RefineSettings",
     "Refined",
+    "SampleSettings",
     "Scatter",
     "ScipyDistribution",
+    "SearchSettings",
     "SobolIndices",
     "Space",
     "SquealProbability",
@@ -75,12 +85,14 @@ __all__ = [
     "StoreLocked",
     "StudyChanged",
     "StudyError",
+    "StudySettings",
     "SubsetProbability",
     "Surrogate",
     "Sweep",
     "Triangular",
     "TruncatedNormal",
     "Uniform",
+    "WorkerSettings",
     "as_distribution",
     "batched",
     "evaluate",

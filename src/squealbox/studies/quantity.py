@@ -149,8 +149,3 @@ def declared(design: Any, path: str) -> list[Parameter]:
     if isinstance(held, DataSheet) and names[0] not in design.field_names():
         return declared(held, path)  # within countermeasures a parameter of the brake keeps its name
     return found or [about for name, about, _ in design.leaves() if name == path]
-
-
-def unit_of(design: Any, path: str) -> str:
-    """The unit of a parameter, for tables and figures; empty when nothing declares it."""
-    return design.unit_of(path) if isinstance(design, DataSheet) else ""

@@ -4,17 +4,20 @@ from .methods import TABLEAUX, Method, Tableau
 from .observers import OBSERVERS, Observer
 from .readiness import needs_compiling
 from .resolution import carries, resolved
+from .settings import LARGE, MotionSettings, usual_duration
 from .simulate import simulate
 from .trajectory import EnergyAudit, Trajectory
 from .verdict import Verdict, verdict
 
 __all__ = [
+    "LARGE",
     "OBSERVERS",
     "TABLEAUX",
     "ContactComparison",
     "EnergyAudit",
     "Ensemble",
     "Method",
+    "MotionSettings",
     "Observer",
     "Tableau",
     "Trajectory",
@@ -25,5 +28,6 @@ __all__ = [
     "resolved",
     "simulate",
     "simulate_ensemble",
+    "usual_duration",
     "verdict",
 ]

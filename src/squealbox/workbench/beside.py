@@ -44,7 +44,7 @@ class Beside:
 
         Raises `DesignFileError` with all that is wrong.
         """
-        from squealbox.files.reading import read_text
+        from squealbox.files import read_text
 
         known = isinstance(group, str) and GROUP.fullmatch(group) and (self.folder / group).is_dir()
         if not known:
@@ -67,7 +67,7 @@ def in_one_text(found: "DesignFile", text: str) -> str:
     """
     import tomlkit
 
-    from squealbox.files.writing import design_text
+    from squealbox.files import design_text
     from squealbox.workbench.rewriting import with_sections
 
     return with_sections(design_text(found.design), tomlkit.parse(text))

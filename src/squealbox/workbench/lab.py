@@ -65,8 +65,7 @@ def serve(
 
 def _opened(path: Path, allow_code: bool) -> Any:
     """The design file to start with; all that is wrong with it is said before anything is served."""
-    from squealbox.files.reading import read_file, read_text
-    from squealbox.files.reduced import for_a_page
+    from squealbox.files import for_a_page, read_file, read_text
     from squealbox.workbench.session import Opened
 
     found = read_file(path, allow_code=allow_code)

@@ -47,8 +47,7 @@ def done(project: Project, message: Mapping[str, Any], written: Written) -> dict
 
 
 def _look(project: Project, message: Mapping[str, Any], written: Written) -> dict[str, Any]:
-    from squealbox.files.beginnings import BEGINNINGS
-    from squealbox.files.reading import BRAKES
+    from squealbox.files import BEGINNINGS, BRAKES
 
     lines, wrong = project.history()
     unnamed = [line for line in lines if not line["name"]]
@@ -106,8 +105,7 @@ def _save(project: Project, message: Mapping[str, Any], written: Written) -> dic
 def _open(project: Project, message: Mapping[str, Any], written: Written) -> dict[str, Any]:
     preset = message.get("preset")
     if preset is not None:
-        from squealbox.files.beginnings import BEGINNINGS, asked_of, first_design
-        from squealbox.files.writing import design_text
+        from squealbox.files import BEGINNINGS, asked_of, design_text, first_design
 
         if preset not in BEGINNINGS:
             raise ProjectError(f"preset: expected one of {', '.join(BEGINNINGS)}")

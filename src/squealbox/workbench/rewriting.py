@@ -10,12 +10,9 @@ from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import AoT, Array, InlineTable, Table
 
 from squealbox.designs import Design
-from squealbox.files.analyses import Varied
-from squealbox.files.document import DesignFileError
-from squealbox.files.reading import SECTIONS, STUDY, DesignFile, read_text
-from squealbox.files.units import UnitError, in_si, split, unit
-from squealbox.files.varied import VARY, scalar_parameters
-from squealbox.files.writing import design_text
+from squealbox.family import ParameterAxis
+from squealbox.files import SECTIONS, STUDY, VARY, DesignFile, DesignFileError, design_text, read_text
+from squealbox.units import UnitError, in_si, split, unit
 from squealbox.workbench.panels import Options
 
 STARTS = ("rest", "sliding")  # of a motion, as a file has them; a push is the page's own
@@ -89,7 +86,7 @@ def _alias(found: Any, name: str, before: Mapping[str, Any], after: Mapping[str,
 
     Where they are no longer equal, each is said by its own name.
     """
-    for alias, names in getattr(design, "innermost", design).aliases.items():
+    for alias, names in design.innermost.aliases.items():
         if name not in names or alias not in found:
             continue
         if all(after[each] == after[name] for each in names):
@@ -122,7 +119,7 @@ def _si(text: str) -> float:
     return number * unit(name).factor
 
 
-def _axes(found: DesignFile) -> Iterator[tuple[str, str, Varied]]:
+def _axes(found: DesignFile) -> Iterator[tuple[str, str, ParameterAxis]]:
     """(panel, its option, axis) of the sections that name one."""
     if found.map is not None:
         yield from (("map", "x", found.map.x), ("map", "y", found.map.y))
@@ -131,7 +128,7 @@ def _axes(found: DesignFile) -> Iterator[tuple[str, str, Varied]]:
             yield panel, "parameter", axis
 
 
-def _told(axis: Varied) -> dict[str, Any]:
+def _told(axis: ParameterAxis) -> dict[str, Any]:
     return {"parameter": axis.name, "range": [axis.low, axis.high], "points": int(axis.points)}
 
 
@@ -142,7 +139,7 @@ def _ask(found: Any, said: DesignFile, design: Design, settings: Mapping[str, An
     ranges = {name: ends for name, ends in ranges.items() if ends} if isinstance(ranges, Mapping) else {}
     for panel, option, axis in _axes(said):
         name, own = chosen.get(panel, {}).get(option, axis.name), [axis.low, axis.high]
-        if not isinstance(name, str) or name not in scalar_parameters(design):
+        if not isinstance(name, str) or name not in design.scalars():
             continue
         ends = ranges.get(name, own if name == axis.name else list(Options({}).span("span", design, name)))
         section = found["onset" if panel == "locus" else panel]

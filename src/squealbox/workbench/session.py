@@ -33,7 +33,7 @@ from squealbox.workbench.sheet import sheet
 from squealbox.workbench.state import StateError, UnknownBase, design_of
 
 if TYPE_CHECKING:
-    from squealbox.files.reading import DesignFile
+    from squealbox.files import DesignFile
     from squealbox.workbench.beside import Beside
 
 LONGEST_TEXT = 1_000_000  # characters of an opened file
@@ -205,7 +205,7 @@ class Session:
 
     def _file(self, text: str) -> Opened:
         """A design file by its text; one that is known may be that of the command line, with matrices beside it."""
-        from squealbox.files.reading import read_text
+        from squealbox.files import read_text
 
         read = functools.partial(read_text, name="the file", beside=False)
         return self.files.get(key_of(text)) or Opened(text, read(text), read)
@@ -260,7 +260,7 @@ class Session:
 
     def _toml(self, design: Design, message: Mapping[str, Any]) -> dict[str, Any]:
         """The text of a file of the design: that of the opened file with its changes, where it came from one."""
-        from squealbox.files.writing import NotWritable, design_text
+        from squealbox.files import NotWritable, design_text
 
         file = self.files.get(str(message["state"].get("base")))
         try:

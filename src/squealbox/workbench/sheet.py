@@ -9,10 +9,8 @@ import numpy as np
 
 from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
-from squealbox.files.sheets import LAW_NAMES, field_type
-from squealbox.files.varied import scalar_parameters
-from squealbox.friction import FrictionLaw
-from squealbox.parameters import DataSheet, Parameter
+from squealbox.friction import LAW_NAMES, FrictionLaw
+from squealbox.parameters import DataSheet, Parameter, field_type
 from squealbox.registers import name_of
 from squealbox.schedules import Schedule
 from squealbox.words import read_in
@@ -24,7 +22,7 @@ STEPS = 500  # of a slider
 
 def sheet(design: Design) -> dict[str, Any]:
     """The fields of a design in order, the parameters a study can vary, and its aliases."""
-    known, brake = scalar_parameters(design), getattr(design, "innermost", design)
+    known, brake = design.scalars(), design.innermost
     title = brake.title or type(brake).__name__
     return {
         "title": title if brake is design else f"{title}, with {', '.join(_layers(design))}",

@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import DESIGNS, Design
-from squealbox.files.sheets import LAW_NAMES
-from squealbox.friction import Coulomb, FrictionLaw
+from squealbox.friction import LAW_NAMES, Coulomb, FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, known_names
 from squealbox.registers import name_of
 from squealbox.schedules import Schedule, value_at

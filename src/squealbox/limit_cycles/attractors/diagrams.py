@@ -15,7 +15,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.cautions import along, told_place
-from squealbox.family import Family, Varied
+from squealbox.family import Family, Varied, unit_of
 from squealbox.limit_cycles.attractors.sections import Section, passages
 from squealbox.limit_cycles.attractors.settling import (
     FAILED,
@@ -35,7 +35,6 @@ from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import complex_modes
 from squealbox.start import Start
-from squealbox.studies.quantity import unit_of
 
 SWEEPS = ("up", "down", "rest")
 NUDGE = 1e-3  # of V, on every velocity

@@ -16,7 +16,7 @@ import numpy as np
 from squealbox import cautions
 from squealbox.arguments import public
 from squealbox.continuation import PathPoint, StepControl, along
-from squealbox.family import Bounds, Family, Varied
+from squealbox.family import Bounds, Family, Varied, unit_of
 from squealbox.limit_cycles.branches.doubling import doubled
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
 from squealbox.limit_cycles.branches.hopf import HopfPoint
@@ -29,7 +29,6 @@ from squealbox.limit_cycles.cycles.harmonic_balance import Grid, harmonic_balanc
 from squealbox.limit_cycles.cycles.shooting import CONTACTS, shooting
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
-from squealbox.studies.quantity import unit_of
 
 METHODS = ("harmonic_balance", "shooting")
 METHODS_FROM_HOPF = (("harmonic_balance", "exact"), ("shooting", "exact"))

@@ -12,8 +12,8 @@ import numpy as np
 
 from squealbox.papers.drum_brake_2011.cases import BRAKING, DURATION, Case
 from squealbox.papers.drum_brake_2011.claims import EXACT, RAW
-from squealbox.transient import Method, Trajectory, simulate
-from squealbox.transient.verdict import Verdict, verdict
+from squealbox.transient import Method, Trajectory, Verdict, simulate
+from squealbox.transient.verdict import verdict
 
 SAMPLES = 5001  # every 10 us, about 50 in a period
 FEWEST = 64  # samples: fewer say nothing of a motion

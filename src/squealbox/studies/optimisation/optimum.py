@@ -13,11 +13,12 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.family import unit_of
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.optimisation.goals import Candidates, Constraint, Goal
 from squealbox.studies.optimisation.search import FEASIBLE, best_of_one, pareto_front
-from squealbox.studies.quantity import input_of, unit_of
+from squealbox.studies.quantity import input_of
 from squealbox.studies.uncertainty.intervals import checked_box
 from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
 

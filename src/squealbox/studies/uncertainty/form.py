@@ -18,9 +18,10 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.extras import extra
+from squealbox.family import unit_of
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.studies.quantity import as_quantity, input_of, unit_of
+from squealbox.studies.quantity import as_quantity, input_of
 from squealbox.studies.uncertainty.importance import wide_sample
 from squealbox.studies.uncertainty.limit_state import LimitState, seeded
 from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter

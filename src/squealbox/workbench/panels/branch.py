@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.figure_data import FigureAxis, FigureData, Layer, band, line, points, span
 from squealbox.limit_cycles import (
     Branch,
     Cycle,
@@ -25,7 +26,6 @@ from squealbox.limit_cycles import (
 from squealbox.limit_cycles.branches.stretches import NEUTRAL
 from squealbox.parameters import ParameterError
 from squealbox.plots.facts import unit_at
-from squealbox.plots.figure_data import FigureAxis, FigureData, Layer, band, line, points, span
 from squealbox.stability import complex_modes, critical_values
 from squealbox.system import System
 from squealbox.words import number, scaled

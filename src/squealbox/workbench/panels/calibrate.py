@@ -5,7 +5,6 @@ from typing import Any
 from squealbox.calibration import calibrate
 from squealbox.calibration.measured import from_events
 from squealbox.designs import Design
-from squealbox.files.varied import scalar_parameters
 from squealbox.parameters import ParameterError
 from squealbox.signals import SignalError
 from squealbox.words import number
@@ -27,7 +26,7 @@ HEADS = ("parameter", "now", "fitted", "95 % interval")
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """Values, 95 % intervals, predictions beside the measured numbers, and words."""
     names = options.given.get("parameters")
-    known = scalar_parameters(design)
+    known = design.scalars()
     if not isinstance(names, list) or not 0 < len(names) <= MOST or any(name not in known for name in names):
         raise OptionError(f"parameters: expected one to {MOST} names of parameters of this design")
     share = options.number("share", 0.3, 0.001, 0.9)

@@ -5,9 +5,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.files.varied import scalar_parameters
+from squealbox.figure_data import FigureAxis, FigureData, across, line, span
 from squealbox.plots.cards import parameter_rows
-from squealbox.plots.figure_data import FigureAxis, FigureData, across, line, span
 from squealbox.plots.modes import followed
 from squealbox.stability import complex_modes, mechanism
 from squealbox.words import number, quantity, scaled
@@ -36,7 +35,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     sides = [("B", "s0", _side(design, parameter, ends))]
     try:
         other = options.design("a")
-        if other is not None and parameter not in scalar_parameters(other):
+        if other is not None and parameter not in other.scalars():
             raise OptionError(f"it has no {parameter}")
         if other is not None:
             sides.append(("A", "s1", _side(other, parameter, ends)))

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.plots.figure_data import Bars
+from squealbox.figure_data import Bars
 from squealbox.stability import mode_energy
 from squealbox.words import number, quantity
 from squealbox.workbench.frames import finite

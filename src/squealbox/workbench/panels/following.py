@@ -4,9 +4,8 @@ from typing import Any
 
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.files.runs import LARGE
 from squealbox.system import System
-from squealbox.transient import Trajectory, needs_compiling, simulate
+from squealbox.transient import LARGE, Trajectory, needs_compiling, simulate
 from squealbox.workbench.panels.panel import Elsewhere, OptionError, Work
 
 COMPILING = "compiling the kernel for this design, which happens once"

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.plots.figure_data import FigureAxis, FigureData, line, points, span, upright
+from squealbox.figure_data import FigureAxis, FigureData, line, points, span, upright
 from squealbox.system import linearise
 from squealbox.words import number, quantity
 from squealbox.workbench.panels.declared import Panel, Place

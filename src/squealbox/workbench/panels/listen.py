@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.figure_data import FigureAxis, FigureData, heat, line, text
 from squealbox.matrices import liveliest
-from squealbox.plots.figure_data import FigureAxis, FigureData, heat, line, text
 from squealbox.signals import SignalError, audible, dominant_frequency, rendered, spectrogram, squeal_events
 from squealbox.signals.radiation import AREA, AUDIBLE
 from squealbox.signals.wav import SAMPLING

@@ -7,7 +7,7 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.plots.figure_data import FigureData, heat, path
+from squealbox.figure_data import FigureData, heat, path
 from squealbox.stability import StabilityMap, map_boundary, stability_map
 from squealbox.words import number
 from squealbox.workbench.panels.declared import FRICTION, LOADS, Panel, Place, over, words

@@ -5,11 +5,10 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.files.runs import usual_duration
+from squealbox.figure_data import FigureAxis, FigureData, across, heat, hull, line, span, text
 from squealbox.plots.facts import unit_at
-from squealbox.plots.figure_data import FigureAxis, FigureData, across, heat, hull, line, span, text
 from squealbox.signals import SignalError, peaks, spectrogram, spectrum
-from squealbox.transient import Trajectory, Verdict, verdict
+from squealbox.transient import Trajectory, Verdict, usual_duration, verdict
 from squealbox.words import number, scaled
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import FREEDOM, Panel, Place, words

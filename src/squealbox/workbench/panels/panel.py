@@ -9,9 +9,8 @@ import numpy as np
 
 from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
-from squealbox.files.varied import scalar_parameters
+from squealbox.figure_data import Bars, FigureAxis, FigureData, packed
 from squealbox.parameters import ParameterError
-from squealbox.plots.figure_data import Bars, FigureAxis, FigureData, packed
 from squealbox.words import read_in
 from squealbox.workbench.sheet import slider, usual_value
 from squealbox.workbench.state import StateError, UnknownBase, design_of
@@ -143,7 +142,7 @@ class Options:
 
     def parameter(self, name: str, design: Design, *usual: str) -> str:
         """The name of a parameter a study can vary; left out, the first of `usual` that the design has."""
-        known = scalar_parameters(design)
+        known = design.scalars()
         value = self.given.get(name)
         if value is None:
             return next((each for each in usual if each in known), next(iter(known)))
@@ -153,7 +152,7 @@ class Options:
 
     def span(self, name: str, design: Design, parameter: str) -> tuple[float, float]:
         """The ends [SI] of an axis: those given as ``[low, high]`` or where the parameter's slider runs."""
-        about, value = scalar_parameters(design)[parameter], float(design.value_of(parameter) or 0.0)
+        about, value = design.scalars()[parameter], float(design.value_of(parameter) or 0.0)
         given = self.given.get(name)
         if given is None:
             low, high = slider(value, about)
@@ -178,7 +177,7 @@ class Options:
 
 def axis_of(design: Design, parameter: str) -> dict[str, Any]:
     """How an axis of this parameter is read: its name, unit and factor to SI."""
-    about = scalar_parameters(design)[parameter]
+    about = design.scalars()[parameter]
     head, _, name = parameter.rpartition(".")
     owner = design.value_of(head) if head else design
     while isinstance(owner, Countermeasure) and name not in owner.field_names():

@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.files.document import DesignFileError
-from squealbox.files.reading import read_text
+from squealbox.files import DesignFileError, read_text
 from squealbox.stability import mechanism
 from squealbox.words import number, quantity
 from squealbox.workbench.folder import LARGEST_TEXT, Project, ProjectError, standing

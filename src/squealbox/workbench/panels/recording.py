@@ -7,8 +7,8 @@ import numpy as np
 from squealbox import read_recording, squeal_events
 from squealbox.calibration import compare
 from squealbox.designs import Design
+from squealbox.figure_data import FigureAxis, FigureData, heat, line
 from squealbox.plots.facts import shown
-from squealbox.plots.figure_data import FigureAxis, FigureData, heat, line
 from squealbox.signals import SignalError, spectrogram
 from squealbox.signals.events import SquealEvents
 from squealbox.signals.recordings import Recording

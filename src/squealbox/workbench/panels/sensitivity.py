@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.files.varied import scalar_parameters
+from squealbox.figure_data import Bars
 from squealbox.parameters import ParameterError
-from squealbox.plots.figure_data import Bars
 from squealbox.plots.moving import moving_strokes
 from squealbox.plots.strokes import written_places
 from squealbox.remedies.production import usual_scatter
@@ -95,7 +94,7 @@ def _steps(design: Design, found: Any, step: str) -> Any:
         scatter: Mapping[str, Any] = usual_scatter(design).distributions
     except ParameterError:  # nothing of it is known to scatter
         scatter = {}
-    known = scalar_parameters(design)
+    known = design.scalars()
     return np.array([
         float(scatter[name].frozen().std()) if name in scatter
         else ANGLE if name in known and known[name].unit == "rad" else percent[i]

@@ -5,8 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from squealbox.designs import Design
-from squealbox.files import NotWritable
-from squealbox.files.writing import design_text
+from squealbox.files import NotWritable, design_text
 from squealbox.parameters import ParameterError
 from squealbox.remedies import Candidate, Remedies, candidates_for, silence
 from squealbox.remedies.candidates import more_friction

@@ -3,8 +3,8 @@
 import numpy as np
 
 from squealbox.designs import Design
+from squealbox.figure_data import FigureAxis, FigureData, Layer, across, line, points, text, upright
 from squealbox.parameters import ParameterError
-from squealbox.plots.figure_data import FigureAxis, FigureData, Layer, across, line, points, text, upright
 from squealbox.remedies.target import ASSUMED, Lot, lot_of
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import Panel, Place, number

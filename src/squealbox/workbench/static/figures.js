@@ -1,4 +1,4 @@
-// Figures as the server describes them (`plots/figure_data.py`): layers name arrays of the frame with "@name".
+// Figures as the server describes them (`figure_data.py`): layers name arrays of the frame with "@name".
 
 import { diverging, mechanismColours, sequential } from "./colours.js";
 import { label, raised, shown } from "./numbers.js";

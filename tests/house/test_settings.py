@@ -1,0 +1,70 @@
+"""An analysis' options are told once: sections of files, options of commands and Python's signatures agree."""
+
+import inspect
+import typing
+
+import pytest
+
+from squealbox import complex_modes, optimise, silence, simulate, squeal_probability, sweep
+from squealbox.cli import main
+from squealbox.declarations import field_type
+from squealbox.files import json_schema, read_file
+from squealbox.limit_cycles import DiagramSettings, bifurcation_diagram
+from squealbox.remedies import SilenceSettings
+from squealbox.stability import ModeSettings, band_modes
+from squealbox.studies import SampleSettings, SearchSettings, WorkerSettings
+from squealbox.transient import MotionSettings, simulate_ensemble
+
+# a sheet, the function it is of behind those it calls,
+# its fields that are arguments of another name, and those that are part of another
+SHEETS = [
+    (ModeSettings, (band_modes, complex_modes), {}, ()),
+    (MotionSettings, (simulate,), {}, ("mode", "amplitude", "q", "qd")),
+    (SampleSettings, (squeal_probability,), {"sampling": "method"}, ()),
+    (SearchSettings, (optimise,), {}, ()),
+    (WorkerSettings, (sweep,), {}, ()),
+    (SilenceSettings, (silence,), {}, ()),
+    (DiagramSettings, (bifurcation_diagram,), {}, ()),
+]
+# what a file calls the default of Python, and a duration, which Python must be given
+USUAL = {"method": None, "start": None, "times": None, "duration": inspect._empty}
+
+
+@pytest.mark.parametrize(("sheet", "functions", "renamed", "parts"), SHEETS, ids=[each[0].__name__ for each in SHEETS])
+def test_python_has_the_names_and_values_of_the_sheet(sheet, functions, renamed, parts):
+    given = {name: one for each in functions for name, one in inspect.signature(each).parameters.items()}
+    for name in (name for name in sheet.field_names() if name not in parts):
+        usual = getattr(sheet, name)
+        expected = USUAL.get(name, usual) if sheet is MotionSettings else usual
+        assert given[renamed.get(name, name)].default == expected, f"{functions[-1].__name__}({name}) and its section"
+
+
+def test_one_run_and_many_agree():
+    one, many = (inspect.signature(function).parameters for function in (simulate, simulate_ensemble))
+    for name in ("method", "contact", "rtol", "width", "start_time"):
+        assert name not in many or one[name].default == many[name].default, name
+
+
+@pytest.mark.parametrize(("sheet", "command"), [(ModeSettings, "modes"), (MotionSettings, "simulate"),
+                                                (SampleSettings, "scatter"), (SearchSettings, "optimise"),
+                                                (WorkerSettings, "run")])  # fmt: skip
+def test_options_and_schema_come_from_the_sheet(sheet, command, capsys):
+    assert main([command, "--help"]) == 0
+    text, section = capsys.readouterr().out, json_schema()["oneOf"][0]["properties"][command.replace("run", "study")]
+    for name in sheet.field_names():
+        if typing.get_origin(field_type(sheet, name)) is not typing.Annotated:  # an array stands in a file
+            assert f"--{name.replace('_', '-')}" in text
+        assert name in str(section)
+
+
+def test_names_of_former_versions_are_read_and_said(tmp_path, capsys):
+    path = tmp_path / "brake.toml"
+    path.write_text('brake = "drum_brake"\n[simulate]\nduration = "1 ms"\nbegin = "2 ms"\npoints = 11\n')
+    found = read_file(path)
+    assert (found.simulate.start_time, found.simulate.times) == (2e-3, 11)
+    assert found.caution == "simulate.begin is called start_time now; simulate.points is called times now"
+    assert main(["simulate", str(path), "--start-time", "3ms", "--times", "12"]) == 0
+    assert "Caution: simulate.begin is called start_time now" in capsys.readouterr().err
+    path.write_text('brake = "drum_brake"\n[simulate]\npoints = 11\ntimes = 11\n')
+    assert main(["simulate", str(path)]) == 2
+    assert "which the file sets elsewhere too" in capsys.readouterr().err
