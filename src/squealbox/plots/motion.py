@@ -10,7 +10,7 @@ from squealbox.plots.facts import read_of, unit_at
 from squealbox.plots.spectra import spectrum
 from squealbox.plots.style import drawing, figure_of, line, note, panels, uncertain
 from squealbox.signals import LEAST, SignalError, column, equal_steps, values
-from squealbox.transient import Trajectory, Verdict
+from squealbox.transient import Trajectory, Verdict, resolved
 from squealbox.transient.envelope import smooth_curve
 from squealbox.transient.verdict import verdict
 from squealbox.words import number, quantity_label, scaled
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SMOOTH = 20  # points of a drawn curve between two turning points
+LARGEST, STRETCHES = 20_000, 40  # points of a line, beyond which more only blacken it; parts of it that are then drawn
 MANY, LAST = 25.0, 6.0  # periods from which a history is a black block, and those of its end that are drawn apart
 
 
@@ -56,7 +57,8 @@ def time_history(
     with drawing(axes) as panel:
         for i, (times, x) in enumerate(curves):
             label = _dof_name(motion, columns[i]) if len(columns) > 1 else None
-            panel.plot(times / second, x / factor, label=label, **{**line(i), "linewidth": 0.7})
+            seen = _extremes(np.asarray(x))
+            panel.plot(times[seen] / second, x[seen] / factor, label=label, **{**line(i), "linewidth": 0.7})
         if verdict is not None:
             for sign in (-1.0, 1.0):
                 hull = (verdict.envelope_centre + sign * verdict.envelope) / factor
@@ -88,8 +90,9 @@ def phase_plane(
     speed, clock = scaled(unit_at(system, dof, moves=True), velocity, to=speed_unit)
     late = times >= times[-1] - part * (times[-1] - times[0])
     with drawing(axes, height=2.8) as panel:
-        panel.plot(x / factor, velocity / speed, color="#b0b0b0", linewidth=0.4)
-        panel.plot(x[late] / factor, velocity[late] / speed, color="#000000", linewidth=0.8)
+        for drawn, looks in ((np.ones_like(late), ("#b0b0b0", 0.4)), (late, ("#000000", 0.8))):
+            for some in _stretches(np.flatnonzero(drawn)):
+                panel.plot(x[some] / factor, velocity[some] / speed, color=looks[0], linewidth=looks[1])
         panel.plot(x[0] / factor, velocity[0] / speed, "o", color="#D55E00", markerfacecolor="white", zorder=3)
         panel.set(xlabel=quantity_label("displacement", read), ylabel=quantity_label("velocity", clock), title=title)
         panel.margins(0.08)
@@ -106,6 +109,23 @@ def _drawn(motion: Any, dof: int | str) -> tuple[Any, Any, Any]:
     curve = smooth_curve(motion, dof=dof)
     fine = np.linspace(curve.begin, curve.end, max(times.size, SMOOTH * curve.turns.size))
     return fine, curve.spline(fine), curve.spline(fine, 1)
+
+
+def _extremes(x: Any) -> Any:
+    """Which points of a history are drawn: all, or of too many the least and the largest of each part."""
+    width = x.size // (LARGEST // 4)
+    if x.size <= LARGEST:
+        return np.arange(x.size)
+    whole = x.size - x.size % width
+    parts, first = x[:whole].reshape(-1, width), np.arange(0, whole, width)
+    return np.unique(np.r_[0, first + parts.argmin(axis=1), first + parts.argmax(axis=1), whole : x.size])
+
+
+def _stretches(points: Any) -> list[Any]:
+    """The points of a curve in one piece, or of too many some stretches spread over the whole."""
+    if points.size <= LARGEST:
+        return [points]
+    return [part[: LARGEST // STRETCHES] for part in np.array_split(points, STRETCHES)]
 
 
 def energy(trajectory: Trajectory, *, unit: str | None = None, title: str = "", axes: Any = None) -> "Figure":
@@ -142,6 +162,7 @@ def motion_overview(trajectory: Trajectory, *, dof: int | str | None = None, tit
     judge is drawn without verdict and spectrum, one of few periods without the last of them. dof None takes the freedom
     that moves most, and the axis names it.
     """
+    trajectory = resolved(trajectory)  # what is drawn belongs to the motion, not to its instants
     names = trajectory.system.names
     if dof is None:
         dof = liveliest(np.ptp(trajectory.q, axis=0), trajectory.system.units)

@@ -15,7 +15,7 @@ from squealbox.signals.quality import SoundQuality, sound_quality
 from squealbox.signals.radiation import SoundLevel, a_weighting, piston_efficiency, sound_level
 from squealbox.signals.recordings import Recording, read_recording
 from squealbox.signals.rendering import rendered
-from squealbox.signals.samples import LEAST, Samples, SignalError, column, equal_steps, samples, values
+from squealbox.signals.samples import LEAST, Samples, SignalError, carries, column, equal_steps, samples, values
 from squealbox.signals.spectra import Peaks, Spectrogram, Spectrum, peaks, spectrogram, spectrum
 from squealbox.signals.wav import audible, sixteen_bits, sound
 
@@ -36,6 +36,7 @@ __all__ = [
     "SquealEvents",
     "a_weighting",
     "audible",
+    "carries",
     "column",
     "damping_onset",
     "dominant_frequency",

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 LEAST = 8  # fewer samples say nothing
+COARSE = 0.05  # of the velocity: some eight instants in a period
+FOLDED = 0.3  # of it: some three, fewer fold what swings
 COARSEST = 0.25  # of a step: times written with fewer digits do not show whether a sample is missing
 JITTER = 1e-3  # of a step: disturbs a line at half the sampling rate by 0.3 %, any other less
 
@@ -116,6 +118,36 @@ def values(signal: Any, t: Any = None, *, dof: int | str = 0, rate: float | None
     if np.any(np.diff(times) <= 0.0):
         raise SignalError("the times do not increase: expected increasing times in s")
     return times, x
+
+
+def carries(motion: Any, within: float = COARSE) -> bool:
+    """True where the kept instants of a trajectory are close enough in time for its fastest oscillation.
+
+    Of a trajectory both displacement and velocity are known. Where the instants are close enough,
+
+        (q_k+1 - q_k) / h = (qd_k + qd_k+1) / 2 + O((omega h)^2 / 12),
+
+    and the two sides differ by as much as the velocity itself where there are fewer than about three instants in a
+    period: such a record is aliased. `within` [-] is the share of the velocity by which they may differ: 0.05 with some
+    eight instants in a period, 0.3 with some three. Source: Taylor's series of the trapezoidal rule.
+
+    >>> from squealbox import MassOnBelt, simulate
+    >>> carries(simulate(MassOnBelt(), 100.0, times=9)), carries(simulate(MassOnBelt(), 10.0, times=999))
+    (False, True)
+    """
+    t, q, qd = motion.t, motion.q, motion.qd
+    if len(t) < 3:
+        return True
+    h = np.diff(t)[:, None]
+    moved, speed = np.diff(q, axis=0), 0.5 * h * (qd[1:] + qd[:-1])
+    late, went = t[1:] > t[-1] - 0.25 * (t[-1] - t[0]), h * np.abs(qd[1:])
+    unit = np.max(went, axis=0) + np.max(np.abs(moved), axis=0) + 1e-300  # a motion that blows up has no squares
+    for stretch in (late, np.ones(len(late), dtype=bool)):
+        missed = np.sqrt(np.sum(((moved - speed) / unit)[stretch] ** 2, axis=0))
+        size = np.sqrt(np.sum((went / unit)[stretch] ** 2, axis=0)) + 1e-9 * np.ptp(q, axis=0) / unit + 1e-300
+        if np.any(missed > within * size):
+            return False
+    return True
 
 
 def column(motion: Any, dof: int | str) -> int:

@@ -8,9 +8,13 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.result import Array, Result, quantity
-from squealbox.signals.samples import SignalError, given, samples
+from squealbox.signals.samples import FOLDED, SignalError, carries, given, samples
 
 LOBE_STEPS = 16
+TOO_FEW = (
+    "the instants kept, {rate:.4g} a second, are too few for the fastest oscillation of the motion: its lines fold"
+    " and stand elsewhere; take the spectrum of transient.resolved(motion) at equal steps, or of more times"
+)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -23,6 +27,7 @@ class Spectrum(Result):
     window: str
     resolution: float
     noise_bandwidth: float
+    caution: str = ""
 
     @property
     def angular_frequency(self) -> Any:
@@ -70,7 +75,7 @@ def spectrum(signal: Any, t: Any = None, *, window: str = "hann", pad: int = 4, 
     Spectrum
         `frequency` [Hz], `amplitude` in the signal's unit, `mean`, `window`, `resolution` [Hz], one over the length of
         the record (two closer lines are not told apart), `noise_bandwidth` [Hz], the window's equivalent noise
-        bandwidth.
+        bandwidth. `caution` says where the instants of a trajectory are too few for its motion.
 
     Limits
     ------
@@ -98,6 +103,7 @@ def spectrum(signal: Any, t: Any = None, *, window: str = "hann", pad: int = 4, 
         window=window,
         resolution=data.rate / count,
         noise_bandwidth=float(data.rate * np.sum(weights**2) / np.sum(weights) ** 2),
+        caution=TOO_FEW.format(rate=data.rate) if hasattr(signal, "qd") and not carries(signal, FOLDED) else "",
         settings={"pad": pad, "window": window, **given(cut)},
     )
 
