@@ -5,7 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from squealbox import Contact, Coulomb, DrumBrake, LinearSlope, Sinusoid, System, simulate, simulate_ensemble
+from squealbox import (
+    Contact,
+    Coulomb,
+    DrumBrake,
+    LinearSlope,
+    MassOnBelt,
+    Method,
+    ParameterError,
+    Sinusoid,
+    System,
+    simulate,
+    simulate_ensemble,
+)
 from squealbox.transient import packing
 from squealbox.transient.lanes import single
 from squealbox.transient.self_check import checked
@@ -53,9 +65,9 @@ def test_an_audit_that_does_not_close_is_no_completed_run():
     rows[:, 1 + 2 * size : 1 + 2 * size + m] = motion.work_friction
     at = 1 + 2 * size + m
     rows[:, at], rows[:, at + 1], rows[:, at + 2] = motion.work_load, motion.work_circulation, motion.work_dissipated
-    assert checked(motion, rows, size) is motion
+    assert checked(motion, *rows, size) is motion
     rows[:, 1 + 2 * size : 1 + 2 * size + m] *= 0.5
-    false = checked(replace(motion, work_friction=0.5 * motion.work_friction), rows, size)
+    false = checked(replace(motion, work_friction=0.5 * motion.work_friction), *rows, size)
     assert false.outcome == "energy_unbalanced"
     assert false.outcome.evidence["residual"] > 0.01
 
@@ -78,3 +90,30 @@ def test_one_in_a_thousand_is_run_again(blind):
 def test_and_confirmed_with_open_eyes():
     starts = np.linspace(0.0, 0.1, 1000)[:, None], np.zeros((1000, 1))
     assert simulate_ensemble(shaken(), duration=15.0, start=starts).outcome == "completed"
+
+
+@pytest.mark.parametrize("times", [None, [20.0], [5.0, 10.0]])
+@pytest.mark.parametrize("contact", ["exact", "tanh"])
+def test_a_wrong_motion_is_found_out_whatever_instants_are_kept(times, contact):
+    """A free oscillation far below the absolute tolerance: 20 rad later it is off by half its swing."""
+    free = System([[1.0]], [[0.0]], [[1.0]])
+    motion = simulate(free, 20.0, ([1e-9], [0.0]), times, "bogacki-shampine", contact)
+    assert motion.outcome == "energy_unbalanced"
+    assert simulate(free, 20.0, ([1.0], [0.0]), times, "bogacki-shampine", contact).outcome == "completed"
+
+
+@pytest.mark.parametrize("times", [[0.0, 0.003], [0.003], [0.0, 0.006]])
+@pytest.mark.parametrize("method", [None, Method("dormand-prince"), Method("taylor", most_steps=40)])
+def test_a_motion_goes_on_from_where_it_ended_whatever_instants_were_kept(times, method):
+    drum = DrumBrake(friction=LinearSlope(0.45, -0.05))
+    first = simulate(drum, 0.006, times=times, method=method)
+    reached = first.outcome.evidence.get("time", 0.006)
+    assert (reached < 0.006) == (first.outcome != "completed")
+    rest = simulate(drum, 0.01 - reached, start=first, times=[0.01 - reached])
+    assert rest.q[-1] == pytest.approx(simulate(drum, 0.01, times=[0.01]).q[-1], rel=1e-4)
+
+
+def test_no_instant_at_all_is_one_sentence():
+    for function in (simulate, simulate_ensemble):
+        with pytest.raises(ParameterError, match="one or more increasing instants"):
+            function(MassOnBelt(), duration=1.0, times=[])

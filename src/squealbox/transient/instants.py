@@ -24,8 +24,9 @@ def instants_of(function: str, times: Any, start_time: float, duration: float, *
         return equal_instants(start_time, end, int(times))
     instants = np.atleast_1d(np.asarray(times, dtype=float))
     inside = np.all((instants >= start_time) & (instants <= end * (1.0 + 1e-12)))
-    if instants.ndim != 1 or not inside or np.any(np.diff(instants) < 0.0):
-        raise ParameterError(function, "times", times, f"increasing instants within [{start_time:g}, {end:g}] s")
+    if instants.ndim != 1 or not instants.size or not inside or np.any(np.diff(instants) < 0.0):
+        expected = f"one or more increasing instants within [{start_time:g}, {end:g}] s"
+        raise ParameterError(function, "times", times, expected)
     return np.minimum(instants, end)
 
 

@@ -17,6 +17,7 @@ from squealbox.transient.choosing import check_scheme, check_series, chosen_meth
 from squealbox.transient.methods import TAYLOR, Method
 from squealbox.transient.one_motion import undetermined
 from squealbox.transient.own_laws import own_texts
+from squealbox.transient.rows import rows_of
 from squealbox.transient.self_check import checked
 from squealbox.transient.smooth_laws import smooth_kinds
 from squealbox.transient.trajectory import Trajectory
@@ -34,7 +35,8 @@ MESSAGES = {
     _march.NOT_FINITE: ("not_finite", "the motion left the range of finite numbers"),
     _march.CHATTERING: (
         "chattering",
-        "sgn(v) switches at almost every step: the contact sticks, which this scheme cannot hold",
+        "sgn(v) switches at almost every step: the contact sticks, which this scheme cannot hold, or the width of a "
+        "smoothed sgn is below what the steps resolve",
     ),
     _march.ZENO: ("zeno", "events accumulate at one instant"),
     _march.INCONSISTENT: ("inconsistent_contact", "no set of stick and slip modes satisfies the contacts together"),
@@ -88,7 +90,8 @@ class Ways:
 @dataclass(frozen=True, eq=False)
 class Leg:
     """What a march wrote: rows of output and of events, how it ended, the least normal force and the largest sliding
-    speed of each contact, steps taken, rejected and evaluated; by which method, and why by another than the usual one.
+    speed of each contact, steps taken, rejected and evaluated; by which method, and why by another than the usual one;
+    `last` begins as a row does: instant, state and works where it ended, whatever rows were asked for.
     """
 
     rows: Any
@@ -99,6 +102,7 @@ class Leg:
     steps: tuple[int, ...]
     method: Method
     atol: Any
+    last: Any
     reversals: int = 0
     instead_of: str = ""
 
@@ -155,7 +159,9 @@ def by_step(run: Any, end: float, progress: Progress | None = None) -> Leg:
     taken, tried = int(reached[1]), int(reached[2])
     rows, events = run.columns()
     steps = taken, tried - taken, tried * run.evaluations
-    return Leg(rows, events, outcome, lowest, fastest, steps, run.method, run.atol, int(run.at("reversals")))
+    names = ("t", *(f"{x}{i}" for x in "qv" for i in range(n)), *(f"done{k}" for k in range(m + 4)))
+    last = np.array([*map(run.at, names), 0.0])
+    return Leg(rows, events, outcome, lowest, fastest, steps, run.method, run.atol, last, int(run.at("reversals")))
 
 
 class Scalar:
@@ -233,12 +239,14 @@ class Scalar:
 
     def leg(self, outcome: Outcome) -> Leg:
         """What was written so far."""
-        m, s = len(self.system.contacts), self.scratch
+        m, s, n, room = len(self.system.contacts), self.scratch, self.system.size, len(self.problem["mk"])
+        y = s["state"]
+        last = np.r_[s["clock"][_motion.TIME], y[:n], y[room : room + n], y[2 * room : 2 * room + m + 5]]
         count = [int(x) for x in s["count"]]
         steps = count[_motion.ACCEPTED], count[_motion.REJECTED], count[_motion.EVALUATIONS]
         return Leg(
             self.rows[: count[_motion.ROWS]], self.events[: count[_motion.EVENTS]], outcome,
-            s["lowest"][:m], s["fastest"][:m], steps, self.method, self.atol, count[_motion.REVERSALS],
+            s["lowest"][:m], s["fastest"][:m], steps, self.method, self.atol, last, count[_motion.REVERSALS],
         )  # fmt: skip
 
 
@@ -279,6 +287,8 @@ def told(system: System, ways: Ways, start: tuple[Any, Any], begin: float, durat
         sliding_velocity=speed,
         friction_force=force,
         mode=mode.astype(np.int8),
+        end_q=of.last[1 : 1 + base.size],
+        end_qd=of.last[1 + n : 1 + n + base.size],
         work_friction=friction,
         work_load=load[:, 0],
         work_circulation=circulation[:, 0],
@@ -293,7 +303,13 @@ def told(system: System, ways: Ways, start: tuple[Any, Any], begin: float, durat
         rejected=of.steps[1],
         evaluations=of.steps[2],
     )
-    return checked(motion, rows, n) if ways.contact == "exact" else motion
+    if ways.contact == "raw":
+        return motion
+    first = np.zeros(len(of.last))
+    first[0], first[1 : 1 + n], first[1 + n : 1 + 2 * n] = begin, *start
+    if rows_of(system).all_have_mass:
+        return checked(motion, first, of.last, n)
+    return checked(motion, rows[0], rows[-1], n) if len(rows) > 1 else motion  # a start is changed to what rows allow
 
 
 def _caution(ways: Ways, reversals: int) -> str:

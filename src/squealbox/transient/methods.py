@@ -88,8 +88,11 @@ class Method:
             value = getattr(self, name)
             if value is not None and not 0.0 < value < np.inf:
                 raise ParameterError("Method", name, value, "a finite number in (0, inf) s, or None")
-        if self.atol is not None and not (np.all(np.isfinite(self.atol)) and np.all(np.asarray(self.atol) > 0.0)):
-            raise ParameterError("Method", "atol", self.atol, "finite numbers in (0, inf), or None")
+        good = self.atol is None or (
+            np.ndim(self.atol) < 2 and np.all(np.isfinite(self.atol)) and np.all(np.asarray(self.atol) > 0.0)
+        )
+        if not good:
+            raise ParameterError("Method", "atol", self.atol, "a number or a list of finite numbers in (0, inf), or None")
         if not self.most_steps >= 1:
             raise ParameterError("Method", "most_steps", self.most_steps, "a whole number of at least 1")
 

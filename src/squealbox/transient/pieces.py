@@ -100,8 +100,10 @@ def in_pieces(
     walk = _Walk(driven, start, begin, duration, how, weighed)
     legs = walk.whole(times, progress)
     system, last, cuts = walk.system, legs[-1], np.array(walk.cuts)
+    end = last.last.copy()
+    end[1 + 2 * system.size :] = np.sum([each.last[1 + 2 * system.size :] for each in legs], axis=0)
     joined = replace(
-        last, rows=_joined(legs, system, times), events=np.concatenate([each.events for each in legs]),
+        last, last=end, rows=_joined(legs, system, times), events=np.concatenate([each.events for each in legs]),
         lowest=np.min([each.lowest for each in legs], axis=0), fastest=np.max([each.fastest for each in legs], axis=0),
         steps=(*map(sum, zip(*(each.steps for each in legs), strict=True)),),
         reversals=sum(each.reversals for each in legs),

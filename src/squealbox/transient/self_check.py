@@ -18,22 +18,23 @@ LOOSE = 1e3  # times rtol, where that is larger
 LARGEST = 1e140  # of a row, whose square is an energy
 
 
-def checked(motion: Trajectory, rows: Any, size: int) -> Trajectory:
+def checked(motion: Trajectory, first: Any, last: Any, size: int) -> Trajectory:
     """The motion; with the outcome "energy_unbalanced" where it completed and its energy audit does not close.
 
-    `rows` are those the motion was told in, `size` their freedoms. The first and the last tell most, at a small share
-    of the cost of the audit; it is asked only where they do not close.
+    `first` and `last` are rows, of `size` freedoms, where the run began and ended, whatever instants were asked for.
+    They tell most, at a small share of the cost of the audit; it is asked only where they do not close.
     """
-    if not motion.outcome.ok or motion.system.is_sparse or len(rows) < 2:
+    if not motion.outcome.ok or motion.system.is_sparse:
         return motion
     rtol = float(motion.settings["rtol"])
     limit = max(CLOSES, LOOSE * rtol)
-    if not np.all(np.abs(rows[[0, -1]]) < LARGEST):  # a motion beyond all numbers, or a work that nobody counted
+    if not np.all(np.abs([first, last]) < LARGEST):  # a motion beyond all numbers, or a work that nobody counted
         return motion
-    missing, turned_over, held = _unclosed(motion.system, rows[0], rows[-1], size)
+    missing, turned_over, held = _unclosed(motion.system, first, last, size)
     if missing <= limit * turned_over + LOOSE * max(rtol, np.finfo(float).eps) * held:
         return motion
-    residual = motion.energy.relative_residual
+    whole = len(motion.t) > 1 and (motion.t[0], motion.t[-1]) == (first[0], last[0])
+    residual = motion.energy.relative_residual if whole else missing / max(turned_over, held)
     if residual <= limit:
         return motion
     why = f"the energy audit closes to {residual:.2g} of what was turned over, not to {limit:.2g}"

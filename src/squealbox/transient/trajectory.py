@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.power import mechanical_energy
-from squealbox.result import Array, Result, quantity
+from squealbox.result import Array, Result, optional, quantity
 from squealbox.system import System
 
 OPEN = 2  # contact modes: +1 and -1 slip with sgn(v), 0 stick, OPEN lifted off
@@ -72,6 +72,8 @@ class Trajectory(Result):
     event_time: Array = quantity("event", "s", "instants of stick, slip, reversal, lift-off and landing")
     event_contact: Array = quantity("event", "1", "contact of each event")
     event_mode: Array = quantity("event", "1", "mode the contact takes at the event")
+    end_q: Array = optional("dof", "m", "displacement where the run ended")
+    end_qd: Array = optional("dof", "m/s", "velocity where the run ended")
     caution: str = ""
     steps: int = 0
     rejected: int = 0
@@ -93,8 +95,8 @@ class Trajectory(Result):
 
     @property
     def end(self) -> tuple[Any, Any]:
-        """(q, qd) at the last instant, from which another motion can go on."""
-        return self.q[-1], self.qd[-1]
+        """(q, qd) where the run ended, whatever instants were asked for: from there another motion can go on."""
+        return (self.end_q, self.end_qd) if len(self.end_q) else (self.q[-1], self.qd[-1])
 
     @property
     def slip_direction(self) -> Any:
@@ -108,7 +110,7 @@ class Trajectory(Result):
 
     @property
     def energy(self) -> EnergyAudit:
-        """The energy audit from the start to each instant of `t`."""
+        """The energy audit from the first instant kept to each instant of `t`."""
         stored = mechanical_energy(self.system, self.q, self.qd)
         terms = (stored, self.work_friction, self.work_load, self.work_circulation, self.work_dissipated,
                  self.work_opening, self.work_impact)  # fmt: skip

@@ -42,7 +42,7 @@ class Cycle(Result):
     event_time: Array = quantity("event", "s", "instants of stick, slip and reversal")
     event_contact: Array = quantity("event", "1", "contact of each event")
     event_mode: Array = quantity("event", "1", "mode the contact takes at the event")
-    memory: Array = optional(  # noqa: RUF009
+    memory: Array = optional(
         "state", "m", "what is remembered beside q and q' at the beginning: bristles, loops' states"
     )
     error: float = float("nan")

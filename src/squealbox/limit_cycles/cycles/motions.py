@@ -54,7 +54,7 @@ class Motions:
         self.single = Single(system, method, rest, rest, 0.0, duration, None)
         self.shape, self.size = self.single.made.jobs.shape, n
         self.place = {name: row for row, name in enumerate(parameter_rows(self.shape))}
-        self.known: list[tuple[float, Any, Any]] = []
+        self.known: list[tuple[float, Any, Any, tuple[float, ...]]] = []
         self.line = None if bounds is None else self._line(*bounds)
         tried = [moving(p)] if self.line is None or bounds is None else [moving(each) for each in _tried(*bounds)]
         self.flows = Flows(tried, Method(method.tableau, FINE, FINE / method.rtol * np.asarray(method.atol)), EXACT,
@@ -91,17 +91,18 @@ class Motions:
         """The numbers at a parameter value, and their slope."""
         if self.line is not None:
             return _on(self.line, p), self.line[1]
-        for at, found, slope in self.known:
-            if abs(p - at) <= NEAR * self.span:  # half the curvature times 1e-14 of the span squared: round-off
+        for at, found, slope, ways in self.known:
+            low, high = ways[0] * NEAR * self.span, ways[2] * NEAR * self.span
+            if low <= p - at <= high:  # half the curvature times 1e-14 of the span squared: round-off
                 return found + (p - at) * slope, slope
-        found, slope = self._beside(p)
+        found, slope, ways = self._beside(p)
         if np.any(found[self.left_out]):
             raise RunApart("the system has another structure here")
-        self.known = [(p, found, slope), *self.known[: KEPT - 1]]
+        self.known = [(p, found, slope, ways), *self.known[: KEPT - 1]]
         return found, slope
 
-    def _beside(self, p: float) -> tuple[Any, Any]:
-        """Numbers and slope from systems to both sides, or to the one the range of the parameter allows."""
+    def _beside(self, p: float) -> tuple[Any, Any, tuple[float, ...]]:
+        """Numbers and slope from systems to both sides, or to the one the range of the parameter allows: -1, 0 or 1."""
         for ways in ((-1.0, 0.0, 1.0), (0.0, 0.0, 1.0), (-1.0, 0.0, 0.0)):
             values = [p + STEP * self.span * way for way in ways]
             try:
@@ -109,7 +110,7 @@ class Motions:
             except ParameterError as error:
                 refused = error
             else:
-                return here, difference(after, before) / (values[2] - values[0])
+                return here, difference(after, before) / (values[2] - values[0]), ways
         raise refused
 
     def confirmed(self, values: Sequence[float]) -> bool:
