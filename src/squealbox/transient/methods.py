@@ -92,7 +92,7 @@ class Method:
             np.ndim(self.atol) < 2 and np.all(np.isfinite(self.atol)) and np.all(np.asarray(self.atol) > 0.0)
         )
         if not good:
-            raise ParameterError("Method", "atol", self.atol, "a number or a list of finite numbers in (0, inf), or None")
+            raise ParameterError("Method", "atol", self.atol, "finite numbers in (0, inf), one or a list, or None")
         if not self.most_steps >= 1:
             raise ParameterError("Method", "most_steps", self.most_steps, "a whole number of at least 1")
 

@@ -22,7 +22,7 @@ RUNNING = -1.0  # in the row of results of a run that has not ended
 FIRST = 2_000  # trials between the first two looks at the keyboard
 MOST = 200_000
 LOOK = 0.02  # s that should pass between two
-ROWS, EVENTS = 32_768, 1_024  # room for rows of output, touched only as they are written, and for events at first
+ROWS, EVENTS = 8_192, 1_024  # room for rows of output, touched only as they are written, and for events at first
 
 
 @dataclass(frozen=True)
