@@ -113,6 +113,14 @@ def test_a_motion_goes_on_from_where_it_ended_whatever_instants_were_kept(times,
     assert rest.q[-1] == pytest.approx(simulate(drum, 0.01, times=[0.01]).q[-1], rel=1e-4)
 
 
+def test_time_stepping_goes_on_from_where_it_ended_as_well():
+    block, start = System([[1.0]], [[0.1]], [[1.0]]), ([1.0], [0.0])
+    first = simulate(block, 2.0, start, [0.0, 0.5], contact="time-stepping", step=1e-3)
+    whole = simulate(block, 4.0, start, [4.0], contact="time-stepping", step=1e-3)
+    rest = simulate(block, 2.0, first, [2.0], contact="time-stepping", step=1e-3)
+    assert rest.q[-1] == pytest.approx(whole.q[-1], abs=1e-9)
+
+
 def test_no_instant_at_all_is_one_sentence():
     for function in (simulate, simulate_ensemble):
         with pytest.raises(ParameterError, match="one or more increasing instants"):

@@ -29,6 +29,7 @@ def test_a_spectrum_of_too_few_instants_says_so():
     folded, seen = (signals.spectrum(swinging(count)) for count in (61, 161))
     assert signals.peaks(folded).frequency[0] == pytest.approx(1.0, abs=0.05)
     assert "too few" in folded.caution
+    assert signals.spectrogram(swinging(61)).caution == folded.caution
     assert folded.caution in str(folded).replace("\n    ", " ")
     assert signals.peaks(seen).frequency[0] == pytest.approx(2.0, abs=0.01)
     assert not seen.caution

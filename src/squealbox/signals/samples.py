@@ -10,6 +10,10 @@ import numpy as np
 LEAST = 8  # fewer samples say nothing
 COARSE = 0.05  # of the velocity: some eight instants in a period
 FOLDED = 0.3  # of it: some three, fewer fold what swings
+TOO_FEW = (
+    "the instants kept, {rate:.4g} a second, are too few for the fastest oscillation of the motion: its lines fold"
+    " and stand elsewhere; take the spectrum of transient.resolved(motion) at equal steps, or of more times"
+)
 COARSEST = 0.25  # of a step: times written with fewer digits do not show whether a sample is missing
 JITTER = 1e-3  # of a step: disturbs a line at half the sampling rate by 0.3 %, any other less
 
@@ -20,11 +24,12 @@ class SignalError(ValueError):
 
 @dataclass(frozen=True)
 class Samples:
-    """Equally spaced samples: `t` (k,) [s], `x` (k,), `rate` [Hz]."""
+    """Equally spaced samples: `t` (k,) [s], `x` (k,), `rate` [Hz]; `caution` where they are too few for a motion."""
 
     t: Any
     x: Any
     rate: float
+    caution: str = ""
 
     @property
     def duration(self) -> float:
@@ -60,7 +65,9 @@ def samples(
             f"the times are not equally spaced: steps from {steps.min():g} to {steps.max():g} s; expected equal steps, "
             "such as simulate(..., times=np.linspace(begin, end, count)) gives"
         )
-    return Samples(times, x, float((times.size - 1) / (times[-1] - times[0])))
+    per_second = float((times.size - 1) / (times[-1] - times[0]))
+    folds = hasattr(signal, "qd") and not carries(signal, FOLDED)
+    return Samples(times, x, per_second, TOO_FEW.format(rate=per_second) if folds else "")
 
 
 def equal_steps(t: Any, rounding: Any = 0.0) -> bool:

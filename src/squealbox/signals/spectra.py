@@ -8,13 +8,9 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.result import Array, Result, quantity
-from squealbox.signals.samples import FOLDED, SignalError, carries, given, samples
+from squealbox.signals.samples import SignalError, given, samples
 
 LOBE_STEPS = 16
-TOO_FEW = (
-    "the instants kept, {rate:.4g} a second, are too few for the fastest oscillation of the motion: its lines fold"
-    " and stand elsewhere; take the spectrum of transient.resolved(motion) at equal steps, or of more times"
-)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -50,6 +46,7 @@ class Spectrogram(Result):
     window: str
     segment: float
     resolution: float
+    caution: str = ""
 
     table_over: ClassVar = ("time", "frequency")
 
@@ -103,7 +100,7 @@ def spectrum(signal: Any, t: Any = None, *, window: str = "hann", pad: int = 4, 
         window=window,
         resolution=data.rate / count,
         noise_bandwidth=float(data.rate * np.sum(weights**2) / np.sum(weights) ** 2),
-        caution=TOO_FEW.format(rate=data.rate) if hasattr(signal, "qd") and not carries(signal, FOLDED) else "",
+        caution=data.caution,
         settings={"pad": pad, "window": window, **given(cut)},
     )
 
@@ -209,7 +206,7 @@ def spectrogram(
 
     A piece is `segment` [s] long, by default an eighth of the record; the resolution is 1/segment [Hz]. Only pieces
     that lie whole inside the record are kept, so `time` starts and ends half a piece inside it. Each piece is taken
-    about its own mean under the window.
+    about its own mean under the window. `caution` says where the instants of a trajectory are too few for its motion.
     """
     from scipy.signal import ShortTimeFFT
 
@@ -237,5 +234,6 @@ def spectrogram(
         window=window,
         segment=length / data.rate,
         resolution=data.rate / length,
+        caution=data.caution,
         settings={"overlap": overlap, **given(cut)},
     )

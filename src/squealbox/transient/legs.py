@@ -3,7 +3,6 @@
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -109,6 +108,12 @@ class Leg:
     def parts(self, n: int) -> tuple[Any, Any, Any]:
         """t, q and q' of all n rows."""
         return self.rows[:, 0], self.rows[:, 1 : 1 + n], self.rows[:, 1 + n : 1 + 2 * n]
+
+    def of_contacts(self, m: int) -> tuple[Any, Any, Any, Any]:
+        """N, v, force and mode of the m contacts, each (k, m): the last columns."""
+        first = self.rows.shape[1] - 4 * m
+        normal, speed, force, mode = (self.rows[:, first + k * m : first + (k + 1) * m] for k in range(4))
+        return normal, speed, force, mode
 
 
 def ways_of(system: System, contact: str, width: float, method: Any, given: tuple[float | None, Any]) -> Ways:
@@ -259,7 +264,9 @@ def failed(code: int, end: float, reached: float, step: float, state: tuple[Any,
 
 
 def told(system: System, ways: Ways, start: tuple[Any, Any], begin: float, duration: float, of: Leg) -> Trajectory:
-    """A march as a result. Its rows are t, q, q', the works, then N, v, force and mode of each contact."""
+    """A march as a result. Its rows are t, q, q', the works, then N, v, force and mode of each contact: of the works
+    first those of friction, then of load, circulation, damping, opening and impacts.
+    """
     settings: dict[str, Any] = {
         "duration": duration, "start": [x.tolist() for x in start], "start_time": begin, "contact": ways.contact,
         "width": ways.width, "tableau": of.method.tableau, "rtol": of.method.rtol, "atol": of.atol.tolist(),
@@ -270,17 +277,16 @@ def told(system: System, ways: Ways, start: tuple[Any, Any], begin: float, durat
         settings["instead_of"] = of.instead_of
         said.insert(0, f"run by {of.method.tableau} from the start, instead of {of.instead_of}")
     n, m, base, rows, events = system.size, len(system.contacts), base_of(system), of.rows, of.events
-    widths = [1, n, n, m, 1, 1, 1, 1, 1, m, m, m, m]
-    ends = list(accumulate(widths))
-    columns = (rows[:, end - width : end] for width, end in zip(widths, ends, strict=True))
-    t, q, qd, friction, load, circulation, dissipated, opening, impact, normal, speed, force, mode = columns
+    (t, q, qd), (normal, speed, force, mode) = of.parts(n), of.of_contacts(m)
+    works = rows[:, 1 + 2 * n : 6 + 2 * n + m]
+    friction, (load, circulation, dissipated, opening, impact) = works[:, :m], works[:, m:].T
     if any(smooth := smooth_kinds(system.contacts)):  # no events tell their sense
         mode = np.where((np.array(smooth) > 0) & (mode != OPEN), np.sign(speed), mode)
     motion = Trajectory(
         inputs={"system": base},
         settings=settings,
         outcome=of.outcome,
-        t=t[:, 0],
+        t=t,
         q=q[:, : base.size],
         qd=qd[:, : base.size],
         normal_force=np.where(mode == OPEN, 0.0, normal),
@@ -290,11 +296,11 @@ def told(system: System, ways: Ways, start: tuple[Any, Any], begin: float, durat
         end_q=of.last[1 : 1 + base.size],
         end_qd=of.last[1 + n : 1 + n + base.size],
         work_friction=friction,
-        work_load=load[:, 0],
-        work_circulation=circulation[:, 0],
-        work_dissipated=dissipated[:, 0],
-        work_opening=opening[:, 0],
-        work_impact=impact[:, 0],
+        work_load=load,
+        work_circulation=circulation,
+        work_dissipated=dissipated,
+        work_opening=opening,
+        work_impact=impact,
         event_time=events[:, 0],
         event_contact=events[:, 1].astype(np.int64),
         event_mode=events[:, 2].astype(np.int8),

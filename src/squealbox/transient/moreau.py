@@ -200,7 +200,7 @@ def _trajectory(
         normal_force=columns[2], sliding_velocity=columns[3], friction_force=columns[4], mode=mode,
         work_friction=columns[5], work_load=columns[6], work_circulation=columns[7], work_dissipated=columns[8],
         work_opening=columns[9], work_impact=np.zeros(len(instants)),
-        event_time=events[0], event_contact=events[1], event_mode=events[2],
+        event_time=events[0], event_contact=events[1], event_mode=events[2], end_q=q[-1], end_qd=qd[-1],
         steps=steps, rejected=0, evaluations=steps,
     )  # fmt: skip
 

@@ -1,7 +1,7 @@
 """What a finished run is asked before it says `completed`: does its energy audit close?
 
 The other question, whether events were passed over, is asked on the way: every sixteenth step is looked at in twice as
-many places (`_march.modes_held`, `lanes.recording.modes_held`).
+many places (`_march.modes_held`, `lanes.recording.series_held`).
 """
 
 from dataclasses import replace

@@ -133,7 +133,7 @@ def ordered(multipliers: Any) -> Any:
 
 def extremes(t: Any, q: Any, qd: Any) -> tuple[Any, Any]:
     """Least and largest displacement of each column, by the Hermite cubic of each interval; error of order h^4."""
-    low, high = (np.min(q, axis=0), np.max(q, axis=0))
+    low, high = np.min(q, axis=0), np.max(q, axis=0)
     if len(t) < 2:
         return low, high
     for value, _ in _turning(t, q, qd):

@@ -131,11 +131,9 @@ class Motions:
         self.single.fixed[3:] = self.numbers(p)[0]
         self.single.restart(x[:n], x[n:], 0.0, duration, times)
         leg = by_step(self.single, duration)
-        rows, events, first = leg.rows, leg.events, 6 + 2 * n + m
-        normal, speed, force, mode = (rows[:, first + k * m : first + (k + 1) * m] for k in range(4))
-        return MotionRows(rows[:, 0], rows[:, 1 : 1 + n], rows[:, 1 + n : 1 + 2 * n], normal, speed, force, mode,
-                      events[:, 0], events[:, 1].astype(int), events[:, 2].astype(int), leg.steps[0],
-                      leg.outcome)  # fmt: skip
+        events = leg.events
+        return MotionRows(*leg.parts(n), *leg.of_contacts(m), events[:, 0], events[:, 1].astype(int),
+                          events[:, 2].astype(int), leg.steps[0], leg.outcome)  # fmt: skip
 
     def rate(self, motion: MotionRows, p: float) -> Any:
         """x' at the end of a motion, (2n,)."""

@@ -94,11 +94,9 @@ class EquationText:
     def accelerations(self, q: list[str], v: list[str], time: str) -> dict[str, list[str]]:
         """q'' in locals, with the speed, normal force, friction force and stick margin of each contact."""
         n, m, shape = self.shape.n, self.shape.m, self.shape
+        time = self.within(time)
         self.tag += 1
         k = self.tag
-        if shape.varying:
-            self.put(f"at{k} = minimum({time}, inside_)")
-            time = f"at{k}"
         speeds = [self.total(f"v{c}_{k}", self.speed(c, q, v, time)) for c in range(m)]
         normals = [self.total(f"n{c}_{k}", self.signal(m + c, f"N0{c}", time) + self.product(f"n{c}", q))
                    for c in range(m)]  # fmt: skip

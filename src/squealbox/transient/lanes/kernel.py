@@ -44,7 +44,7 @@ from squealbox.transient.lanes.taylor import ends_near_zero, grow, reach, ready,
 from squealbox.transient.lanes.taylor_events import step_end
 """
 FEW = 12  # coefficients that are copied one by one
-FROM_THE_MARCH = ("pulled", "write_row")
+FROM_THE_MARCH = ("pulled", "chatters", "write_row")
 OF_EVERY_KERNEL = ("vectors.py", "tracing.py", "rough.py")
 WRITERS = (*OF_EVERY_KERNEL, "series.py", "tables.py", "taylor.py", "taylor_events.py")
 PLACES = {

@@ -11,7 +11,7 @@ import numpy as np
 
 from squealbox.transient._march import SAMPLED
 from squealbox.transient._motion import OPEN, is_open, row_mode
-from squealbox.transient.lanes.stages_again import write_end, write_within
+from squealbox.transient.lanes.stages_again import write_within
 
 ROWS_WRITTEN, EVENTS_WRITTEN = 0, 1  # of `count`
 
@@ -65,11 +65,11 @@ def write_rows(A, b, lane, o):
     times, rows, count = o.times, o.rows, o.count
     t0 = A[b + ROW_T_OLD * WIDTH + lane]
     t1 = A[b + ROW_T * WIDTH + lane]
-    if STAGED and times.shape[0] == 0:
-        write_end(A, b, lane, rows[count[ROWS_WRITTEN]], o)
-        count[ROWS_WRITTEN] += 1
-        return
-    if not STAGED and times.shape[0] == 0:
+    if times.shape[0] == 0:
+        if STAGED:
+            write_end(A, b, lane, rows[count[ROWS_WRITTEN]], o)
+            count[ROWS_WRITTEN] += 1
+            return
         span = A[b + ROW_SPAN * WIDTH + lane]
         part = A[b + ROW_WINDOW * WIDTH + lane] * (1e3 / 12.0)
         parts = min(max(int(np.ceil(span / part - 1e-6)), 1), SHARES)
@@ -93,6 +93,21 @@ def write_rows(A, b, lane, o):
         k += 1
     count[ROWS_WRITTEN] = k
     A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = times[k] if k < times.shape[0] else np.inf
+
+
+def write_end(A, b, lane, row, o):
+    """The row at the end of a step without events, which keeps its contacts there."""
+    row[0] = A[b + ROW_T * WIDTH + lane]
+    state(A, b, lane, row)
+    for k in range(CONTACTS + 4):
+        row[1 + 2 * DOFS + k] = A[b + (ROW_DONE + k) * WIDTH + lane]
+    row[5 + 2 * DOFS + CONTACTS] = 0.0
+    first = 6 + 2 * DOFS + CONTACTS
+    for c in range(CONTACTS):
+        row[first + c] = A[b + (ROW_NORMAL_END + c) * WIDTH + lane]
+        row[first + CONTACTS + c] = A[b + (ROW_SPEED_END + c) * WIDTH + lane]
+        row[first + 2 * CONTACTS + c] = A[b + (ROW_FRICTION_END + c) * WIDTH + lane]
+        row[first + 3 * CONTACTS + c] = row_mode(o.p, c, o.s.mode, row[first + c], row[first + CONTACTS + c])
 
 
 def write_from_series(A, b, lane, t, since, row, o):

@@ -21,12 +21,16 @@ from squealbox.transient._march import (
     TENSION,
     UNDERFLOW,
     ZENO,
+    chatters,
     pulled,
 )
 from squealbox.transient._modes import apply_event, start_modes
 from squealbox.transient._motion import (
+    FLIPS,
     INSIDE,
     OPEN,
+    REVERSALS,
+    STEP,
     STICK,
     derivative,
     event_tolerance,
@@ -91,9 +95,9 @@ def serve(A, b, flags, o):
             write_rows(A, b, lane, o)
         ended = RUNNING
         if code & LOST:
-            ended = UNDERFLOW if is_finite(A, b, lane) else NOT_FINITE
+            ended = or_chattering(A, b, lane, UNDERFLOW, o) if is_finite(A, b, lane) else NOT_FINITE
         elif code & OVER and not code & DONE:
-            ended = STEP_LIMIT
+            ended = or_chattering(A, b, lane, STEP_LIMIT, o)
         elif EXACT_CONTACT and code & LANDED:
             ended = change_modes(A, b, lane, int(A[b + ROW_TARGET * WIDTH + lane]), o)
         elif TRIES and code & EVENT:
@@ -103,21 +107,19 @@ def serve(A, b, flags, o):
         elif code & DONE:
             ended = next_piece(A, b, lane, o)
         if ended != RUNNING:
-            if STAGED:
-                ended = or_chattering(A, b, lane, ended)
             finish(A, b, lane, ended, o.out)
             idle += 1 - refill(A, b, lane, o)
     return idle
 
 
-def or_chattering(A, b, lane, ended):
-    """The end of a job that ran out of steps, or why it did: sliding that reversed at most steps of late, or that has
-    often reversed while the steps have become tiny.
-    """
-    tiny = A[b + ROW_H * WIDTH + lane] < A[b + ROW_WINDOW * WIDTH + lane]
-    chatters = A[b + ROW_FLIPS * WIDTH + lane] > 50.0 or (A[b + ROW_REVERSALS * WIDTH + lane] > 50.0 and tiny)
-    if chatters and (ended - UNDERFLOW) * (ended - STEP_LIMIT) == 0:
-        return CHATTERING
+def or_chattering(A, b, lane, ended, o):
+    """How a job ended that ran out of steps: as told, or because sliding reverses at most of them."""
+    if STAGED:
+        o.s.count[FLIPS] = int(np.ceil(A[b + ROW_FLIPS * WIDTH + lane]))
+        o.s.count[REVERSALS] = int(A[b + ROW_REVERSALS * WIDTH + lane])
+        o.s.clock[STEP] = A[b + ROW_H * WIDTH + lane]
+        if chatters(o.p, o.s):
+            return CHATTERING
     return ended
 
 
@@ -242,10 +244,11 @@ def refresh(A, b, lane, t, p, s):
             A[b + (ROW_Q + i) * WIDTH + lane] = s.state[i]
         A[b + (ROW_V + i) * WIDTH + lane] = s.state[room + i]
         A[b + (ROW_ACCELERATION + i) * WIDTH + lane] = s.dy[room + i]
-    for c in range(CONTACTS * STAGED):
-        A[b + (ROW_NORMAL_END + c) * WIDTH + lane] = s.normal[c]
-        A[b + (ROW_SPEED_END + c) * WIDTH + lane] = s.speed[c]
-        A[b + (ROW_FRICTION_END + c) * WIDTH + lane] = s.force[c]
+    if STAGED:
+        for c in range(CONTACTS):
+            A[b + (ROW_NORMAL_END + c) * WIDTH + lane] = s.normal[c]
+            A[b + (ROW_SPEED_END + c) * WIDTH + lane] = s.speed[c]
+            A[b + (ROW_FRICTION_END + c) * WIDTH + lane] = s.force[c]
     if EXACT_CONTACT:
         hold_matrix(A, b, lane, p, s)
         event_values(p, t, s.state, s.mode, s, s.phi)
