@@ -3,13 +3,15 @@
 Part 1 runs the same equations, the same method (Bogacki-Shampine 3(2) with plain sgn) and the same tolerances in this
 one process. SciPy gets a right-hand side of a few whole-array operations. Part 2 runs exact stick and slip for every
 reading of the drum, with the preload of the design (none, but in `consistent`, where it is the load) and with 1000 N
-on each contact.
+on each contact. Part 3 runs in new processes, first with an empty folder of compiled code, then with what that left.
 
 Times are of the processor, after one run that compiles. `--quick` takes fewer repetitions.
 """
 
 import os
+import subprocess
 import sys
+import tempfile
 import time
 
 # These choose other kernels of OpenBLAS and slow SciPy's small products down: the rival runs as it is shipped.
@@ -107,8 +109,36 @@ def exact_contact(reading, preload, repetitions):
     )
 
 
+FIRST = """
+import time
+began = time.process_time()
+import numpy as np
+from squealbox import DrumBrake, LinearSlope, ModeCoupling, Stribeck, simulate, simulate_ensemble
+line, curve = (DrumBrake(friction=law) for law in (LinearSlope(0.44, -0.05), Stribeck(0.44, 0.3, 1.0)))
+vary = {"friction.static": np.linspace(0.35, 0.5, 20)}
+for label, first in {
+    "first run, imports included; asked 3.0": lambda: simulate(line, 0.01),
+    "another law; asked 1.5": lambda: simulate(curve, 0.01),
+    "one contact in place of two; asked 1.5": lambda: simulate(ModeCoupling(), 0.01),
+    "first ensemble; asked 1.5": lambda: simulate_ensemble(line, vary, 0.01),
+    "ensemble of the other law; asked 1.5": lambda: simulate_ensemble(curve, vary, 0.01),
+}.items():
+    first()
+    print(f"{label:<45}{time.process_time() - began:8.2f} s")
+    began = time.process_time()
+"""
+
+
+def first_runs():
+    """What a newcomer waits for, and what a second session does."""
+    with tempfile.TemporaryDirectory() as fresh:
+        for what in ("nothing compiled yet", "read from disk; asked 0.3 each"):
+            print(f"\nPart 3: {what}")
+            subprocess.run([sys.executable, "-c", FIRST], env={**os.environ, "SQUEALBOX_CACHE": fresh}, check=True)
+
+
 def main():
-    """Print both parts."""
+    """Print all parts."""
     quick = "--quick" in sys.argv[1:]
     print(f"Part 1: raw sgn, rtol 1e-3, same atol, {DURATION} s, reading consistent, alpha {-SLOPE} s/m")
     for friction in (0.3, 0.45):
@@ -121,6 +151,8 @@ def main():
     for reading in READINGS:
         for preload in (None, 1000.0):
             exact_contact(reading, preload, 3 if quick else 15)
+    sys.stdout.flush()
+    first_runs()
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ import pytest
 import squealbox
 from law_examples import LAWS
 from squealbox import friction, schedules, simulate
+from squealbox.compiled.machine import Translated
 from squealbox.designs import DESIGNS
 from squealbox.files import read_design, write_design
 from squealbox.fit import fit_friction
@@ -50,7 +51,7 @@ def compiled():
     """The generated file's laws and schedules, each behind an entry: without one it has no code to be called."""
     names = ("law_mu", "law_slope", "schedule_value", "schedule_rate")
     doors = [f"@entry\ndef ask_{name}(kind, x, p):\n    return {name}(kind, x, p)\n" for name in names]
-    module = _engine.load_module("\n\n".join([_engine.source(events=False), *doors]))
+    module = Translated("\n\n".join([_engine.laws_and_schedules(), *doors]))
     return SimpleNamespace(**{name: getattr(module, f"ask_{name}") for name in names})
 
 

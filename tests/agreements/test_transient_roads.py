@@ -36,8 +36,8 @@ def in_plain_python(monkeypatch):
     """Runs of the same generated file without the compiler."""
     kernel = _engine.kernel
 
-    def plain(events, counts=(), own=()):
-        march = kernel(events, plain=True, counts=counts, own=own)
+    def plain(events, own=()):
+        march = kernel(events, plain=True, own=own)
 
         def run(*arguments):
             records = [SimpleNamespace(**{name: a[name] for name in a.dtype.names}) for a in arguments[:3]]

@@ -5,10 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from squealbox import Coulomb, DrumBrake, LinearSlope, MassOnBelt, simulate, simulate_ensemble
+from squealbox import Coulomb, DrumBrake, LinearSlope, MassOnBelt, Stribeck, simulate, simulate_ensemble
 from squealbox.compiled.kinds import Untranslatable
 from squealbox.compiled.machine import Compiled
 from squealbox.files.own_law import own_law
+from squealbox.transient.lanes import single
+from squealbox.transient.lanes.kernel import lane_kernel
 
 MAKERS = "import numpy as np\n\nSHARES = (0.0, 4.0, -6.0)\n\n"
 TEXTS = {
@@ -103,6 +105,49 @@ def test_what_is_not_plain_is_named_with_its_line(line, said):
     with pytest.raises(Untranslatable, match=said) as caught:
         Compiled(f"import numpy as np\n\n@entry\ndef f(x):\n    {line}\n", "f")(1.0)
     assert "in f, `" in str(caught.value)
+
+
+ASKS = """
+from squealbox.compiled.kinds import Elsewhere
+
+ROOM = Elsewhere("ROOM", "i")
+other = Elsewhere("other", "f")
+
+@entry
+def asks(x):
+    return other(x, 2) + other(x, 3) + ROOM, ROOM // 2
+"""
+
+
+def test_texts_that_are_joined_share_what_they_have_in_common(monkeypatch, tmp_path):
+    monkeypatch.setenv("SQUEALBOX_CACHE", str(tmp_path))
+    for room, sign, count in ((3, "+", 2), (5, "-", 3), (5, "-", 3)):
+        rest = f"ROOM = {room}\n\n@inner\ndef other(x, k):\n    return x {sign} k\n"
+        asks = Compiled(ASKS, "asks", rest)
+        assert asks.ready(1.0) == (count == len(list(tmp_path.iterdir())))
+        assert asks(10.0) == ((25.0 + room, room // 2) if sign == "+" else (15.0 + room, room // 2))
+        assert asks.ready(1.0)
+        assert len(list(tmp_path.glob("*.code"))) == count
+
+
+def test_what_another_text_lacks_is_said():
+    with pytest.raises(Untranslatable, match="other is asked for by another text, and not here"):
+        Compiled(ASKS, "asks", "ROOM = 2\n")(1.0)
+    with pytest.raises(Untranslatable, match="other returns a whole number, and a number is asked for"):
+        Compiled(ASKS, "asks", "ROOM = 2\n\n@inner\ndef other(x, k):\n    return k\n")(1.0)
+
+
+def test_a_new_law_compiles_its_step_alone(monkeypatch, tmp_path):
+    monkeypatch.setenv("SQUEALBOX_CACHE", str(tmp_path))
+    made = {}
+    for law in (Coulomb(0.4), Stribeck(0.4, 0.3, 0.5)):
+        single.KEPT.clear()
+        lane_kernel.cache_clear()
+        assert simulate(MassOnBelt(friction=law), 1.0).outcome == "completed"
+        made[law] = {path.name for path in tmp_path.glob("*.code")}
+    first, both = made.values()
+    assert (len(first), len(both)) == (2, 3)
+    assert first < both
 
 
 def test_a_single_run_is_the_lane_of_an_ensemble_to_the_bit():

@@ -19,6 +19,7 @@ from squealbox import (
     System,
     simulate,
 )
+from squealbox.compiled.machine import Translated
 from squealbox.result import Outcome, Result, ResultFileError
 from squealbox.system import InvalidSystem
 from squealbox.transient import Trajectory, _engine, packing
@@ -214,19 +215,19 @@ def test_cache_folder_that_cannot_be_written_warns_and_works(monkeypatch, tmp_pa
     blocked.write_text("not a folder")
     monkeypatch.setenv("SQUEALBOX_CACHE", str(blocked / "kernels"))
     with pytest.warns(RuntimeWarning, match="is not writable"):
-        assert _engine.load_module(TWICE).twice(1.5) == 3.0
+        assert Translated(TWICE).twice(1.5) == 3.0
 
 
 def test_cache_folder_is_chosen_by_the_environment(monkeypatch, tmp_path):
     monkeypatch.setenv("SQUEALBOX_CACHE", str(tmp_path / "here"))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert _engine.load_module(TWICE).twice(1.5) == 3.0
+        assert Translated(TWICE).twice(1.5) == 3.0
     (file,) = (tmp_path / "here").glob("*.code")
     content = file.read_bytes()
     for spoilt in (b"", b"spoilt", content[:-1], content[:100] + b"?" + content[101:]):
         file.write_bytes(spoilt)  # a damaged file is written anew
-        assert _engine.load_module(TWICE).twice(2.0) == 4.0
+        assert Translated(TWICE).twice(2.0) == 4.0
         assert file.read_bytes() == content
 
 

@@ -16,6 +16,7 @@ from squealbox.compiled.kinds import (
     TRUTH,
     WHOLE,
     Array,
+    Elsewhere,
     Named,
     Number,
     Record,
@@ -93,8 +94,16 @@ class Expressions(Arithmetic):
         if node.id in self.local:
             return self.named(node.id)
         if node.id in self.unit.names:
-            return self.unit.names[node.id]
+            found = self.unit.names[node.id]
+            return self.number_elsewhere(found) if isinstance(found, Elsewhere) else found
         raise Untranslatable(f"the name {node.id}")
+
+    def number_elsewhere(self, found: Elsewhere) -> Number:
+        """A number that another text holds."""
+        assert found.kind is not None
+        symbol = self.unit.symbol(found, None)
+        self.needed.add(f'@"{symbol}" = external constant {TEXTS[found.kind]}')
+        return Number(found.kind, self.put(f'load {TEXTS[found.kind]}, ptr @"{symbol}"'))
 
     def named(self, name: str) -> Value:
         """What a variable holds."""
@@ -281,8 +290,11 @@ class Expressions(Arithmetic):
         name = node.func.id if isinstance(node.func, ast.Name) else ""
         if name in self.unit.trees:
             return self.call(name, values)
-        if hasattr(self.unit.names.get(name), "write"):
-            return self.unit.names[name].write(self.unit, self, values)
+        found: Any = self.unit.names.get(name)
+        if isinstance(found, Elsewhere):
+            return self.call_elsewhere(found, [self.numbers(each) for each in values])
+        if hasattr(found, "write"):
+            return found.write(self.unit, self, values)
         if name in BUILT_IN:
             return BUILT_IN[name](self, values)
         raise Untranslatable(f"the function {ast.unparse(node.func)}")
@@ -291,7 +303,18 @@ class Expressions(Arithmetic):
         """A call of another plain function."""
         given = [self.numbers(each) for each in values]
         kinds = tuple(kind_of(each) for each in given)
-        made, returned = self.unit.function(name, kinds)
+        return self.call_made(*self.unit.function(name, kinds), kinds, given)
+
+    def call_elsewhere(self, found: Elsewhere, given: list[Value]) -> Value:
+        """A call of a function of another text."""
+        kinds = tuple(kind_of(each) for each in given)
+        symbol = self.unit.symbol(found, kinds)
+        types = ", ".join(text for kind in kinds for text in registers(kind))
+        self.needed.add(f'declare {result(found.kind)} @"{symbol}"({types})')
+        return self.call_made(symbol, found.kind, kinds, given)
+
+    def call_made(self, made: str, returned: Any, kinds: tuple[Any, ...], given: list[Value]) -> Value:
+        """A call of the function of that name in LLVM's text."""
         types = [text for kind in kinds for text in registers(kind)]
         texts = [text for each in given for text in handed(each)]
         arguments = ", ".join(f"{kind} {text}" for kind, text in zip(types, texts, strict=True))

@@ -49,6 +49,14 @@ class Named:
     values: tuple[Any, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Elsewhere:
+    """A number, or a function that returns one or nothing, of another text: joined to this one when both are loaded."""
+
+    name: str
+    kind: str | None
+
+
 Value = Any  # one of the above, a tuple of them, or a Python number known beforehand
 
 

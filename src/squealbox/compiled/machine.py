@@ -48,12 +48,16 @@ def cache_folder() -> Path:
 
 
 class Compiled:
-    """A plain function of a text, compiled at its first call for the kinds of its arguments, then read from disk."""
+    """A plain function of a text, compiled at its first call for the kinds of its arguments, then read from disk.
 
-    def __init__(self, text: str, name: str) -> None:
-        self.text, self.name = text, name
+    What the text has as `Elsewhere` is of the text `elsewhere`, compiled apart: so texts that differ in little share
+    the machine code of what they have in common.
+    """
+
+    def __init__(self, text: str, name: str, elsewhere: str = "") -> None:
+        self.text, self.name, self.elsewhere = text, name, elsewhere
         self.made: dict[Any, Callable[..., Any]] = {}
-        self.module: Any = None
+        self.modules: list[Any] = []
 
     def __call__(self, *given: Any) -> Any:
         return self.bound(*given)()
@@ -69,25 +73,35 @@ class Compiled:
 
     def _compiled(self, given: tuple[Any, ...]) -> Callable[..., Any]:
         kinds = tuple(_kind(each) for each in given)
-        returned, code = kept(self._path(kinds), lambda: self._built(kinds))
-        return _callable(loaded(code, self.name), kinds, returned)
+        self.modules = []
+        (returned, asked), code = kept(self._path(kinds), lambda: self._emitted(*built(self.text, self.name, kinds)))
+        codes = [code]
+        if asked:
+            codes.append(
+                kept(self._path_elsewhere(asked), lambda: self._emitted((), given_to(self.elsewhere, asked)))[1]
+            )
+        return _callable(loaded(codes, self.name), kinds, returned)
 
-    def _built(self, kinds: tuple[Any, ...]) -> tuple[Any, bytes]:
-        returned, self.module = built(self.text, self.name, kinds)
-        return returned, processor().emit_object(self.module)
+    def _emitted(self, told: Any, module: Any) -> tuple[Any, bytes]:
+        self.modules.append(module)
+        return told, processor().emit_object(module)
 
     def _path(self, kinds: tuple[Any, ...]) -> Path:
-        named = f"{self.text}\n{self.name} {kinds}".encode() + _of_this_machine()
-        return cache_folder() / f"{hashlib.sha256(named).hexdigest()[:32]}.code"
+        return _path(f"{self.text}\n{self.name} {kinds}")
+
+    def _path_elsewhere(self, asked: Any) -> Path:
+        return _path(f"{self.elsewhere}\n{asked}")
 
     def assembly(self) -> str:
         """The assembler's text of what was compiled last, not of what came from disk."""
-        text: str = processor().emit_assembly(self.module)
-        return text
+        return "\n".join(processor().emit_assembly(each) for each in self.modules)
 
     def ready(self, *given: Any) -> bool:
         """Whether a call with such arguments finds its machine code, here or on disk."""
-        return tuple(_key(each) for each in given) in self.made or self._path(tuple(_kind(x) for x in given)).exists()
+        if tuple(_key(each) for each in given) in self.made:
+            return True
+        found = on_disk(self._path(tuple(_kind(each) for each in given)))
+        return found is not None and (not found[0][1] or self._path_elsewhere(found[0][1]).exists())
 
 
 class Translated:
@@ -142,10 +156,38 @@ def _kind(value: Any) -> Any:
 
 
 def built(text: str, name: str, kinds: tuple[Any, ...]) -> tuple[Any, Any]:
-    """(the kind of what the function returns, LLVM's module with it)."""
+    """((the kind of what the function returns, what it asks of another text), LLVM's module with it)."""
     unit = _unit(text)
     made, returned = unit.function(name, kinds)
-    return returned, optimised("\n".join([unit.text(), _door(name, made, kinds, returned)]), unit.modules)
+    asked = [(symbol, *_plain(each)) for each, symbol in unit.asked.items()]
+    whole = "\n".join([unit.text(), _door(name, made, kinds, returned)])
+    return (returned, asked), optimised(whole, unit.modules)
+
+
+def given_to(text: str, asked: list[tuple[Any, ...]]) -> Any:
+    """LLVM's module with what another text asks of this one."""
+    unit = _unit(text)
+    for each in asked:
+        unit.give(*_of_plain(each))
+    return optimised(unit.text(), unit.modules)
+
+
+def _plain(kind: Any) -> Any:
+    """A kind as a literal: the layout of a record as a list."""
+    if isinstance(kind, np.dtype):
+        return kind.descr
+    return tuple(_plain(each) for each in kind) if isinstance(kind, tuple) else kind
+
+
+def _of_plain(kind: Any) -> Any:
+    if isinstance(kind, list):
+        return np.dtype(kind)
+    return tuple(_of_plain(each) for each in kind) if isinstance(kind, tuple) else kind
+
+
+def _path(named: str) -> Path:
+    digest = hashlib.sha256(named.encode() + _of_this_machine()).hexdigest()
+    return cache_folder() / f"{digest[:32]}.code"
 
 
 def _unit(text: str) -> Unit:
@@ -234,13 +276,14 @@ def _passed(module: Any, builder: Any, passes: tuple[str, ...]) -> None:
     manager.run(module, builder)
 
 
-def loaded(code: bytes, name: str) -> int:
-    """The address of a function of machine code."""
+def loaded(codes: list[bytes], name: str) -> int:
+    """The address of a function of machine code, which may be in several parts that call each other."""
     import llvmlite.binding as llvm
 
     processor()
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine_of_its_own())
-    engine.add_object_file(llvm.object_file.ObjectFileRef.from_data(code))
+    for code in codes:
+        engine.add_object_file(llvm.object_file.ObjectFileRef.from_data(code))
     engine.finalize_object()
     KEPT.append(engine)
     address: int = engine.get_function_address(name)
@@ -307,22 +350,31 @@ def _address(array: Any) -> int:
 
 
 def kept(path: Path, build: Callable[[], tuple[Any, bytes]]) -> tuple[Any, bytes]:
-    """What `build` gives, from disk where it was built before; a damaged file is written anew."""
+    """What `build` gives, a literal and bytes, from disk where it was built before; a damaged file is written anew."""
+    found = on_disk(path)
+    if found is not None:
+        return found
+    told = threading.Timer(PATIENCE, aside, ["compiling for this kind of system, once on this machine"])
+    told.daemon = True
+    told.start()
+    try:
+        literal, code = build()
+    finally:
+        told.cancel()
+        aside("")
+    content = repr(literal).encode() + b"\n" + code
+    _write(path, hashlib.sha256(content).hexdigest().encode() + b"\n" + content)
+    return literal, code
+
+
+def on_disk(path: Path) -> tuple[Any, bytes] | None:
+    """What was kept there; None where nothing is, or it is damaged."""
     try:
         check, _, content = path.read_bytes().partition(b"\n")
     except OSError:
-        check, content = b"", b""
+        return None
     if not content or hashlib.sha256(content).hexdigest().encode() != check:
-        told = threading.Timer(PATIENCE, aside, ["compiling for this kind of system, once on this machine"])
-        told.daemon = True
-        told.start()
-        try:
-            returned, code = build()
-        finally:
-            told.cancel()
-            aside("")
-        content = repr(returned).encode() + b"\n" + code
-        _write(path, hashlib.sha256(content).hexdigest().encode() + b"\n" + content)
+        return None
     first, _, code = content.partition(b"\n")
     return ast.literal_eval(first.decode()), code
 

@@ -15,12 +15,14 @@ from squealbox.compiled.expressions import SIGNS, Expressions, Room, Several, re
 from squealbox.compiled.kinds import (
     TEXTS,
     WHOLE,
+    Elsewhere,
     Named,
     Number,
     Untranslatable,
     Value,
     kind_of,
     registers,
+    said,
     taken,
     wider,
 )
@@ -45,6 +47,7 @@ class Unit:
         self.texts: list[str] = []
         self.needed: set[str] = set()
         self.modules: dict[str, Any] = {}  # of functions written with llvmlite, by name
+        self.asked: dict[tuple[str, Any, Any], str] = {}  # of another text: symbols, by name, kind and arguments' kinds
 
     def function(self, name: str, kinds: tuple[Any, ...]) -> tuple[str, Any]:
         """(its name in LLVM's text, the kind it returns)."""
@@ -57,6 +60,24 @@ class Unit:
             self.texts.append(function.text(wanted, returned, "internal", self.inline))
             self.needed |= function.needed
         return self.made[key]
+
+    def symbol(self, found: Elsewhere, kinds: tuple[Any, ...] | None) -> str:
+        """The name, in LLVM's text, of what another text has."""
+        return self.asked.setdefault((found.name, found.kind, kinds), f"{found.name}.elsewhere.{len(self.asked)}")
+
+    def give(self, symbol: str, name: str, kind: str | None, kinds: tuple[Any, ...] | None) -> None:
+        """Write what another text asks for, under the name it has there: a function of that kind, or a number."""
+        if kinds is None and isinstance(self.names.get(name), int):
+            self.texts.append(f'@"{symbol}" = constant i64 {self.names[name]}')
+            return
+        if kinds is None or name not in self.trees:
+            raise Untranslatable(f"{name} is asked for by another text, and not here")
+        function = Function(self, self.trees[name], kinds)
+        returned = function.translated()
+        if returned != kind:
+            raise Untranslatable(f"{name} returns {said(returned)}, and {said(kind)} is asked for")
+        self.texts.append(function.text(symbol, returned, "", False))
+        self.needed |= function.needed
 
     def text(self) -> str:
         """The whole module."""

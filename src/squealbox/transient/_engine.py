@@ -1,8 +1,8 @@
 """The one door to the compiler: plain functions in, compiled functions out, kept on disk between runs.
 
-The sources of the laws, the schedules and the march are joined into one text, which `compiled` turns into machine code
-named by the hash of that text. So a change of any source makes new code; nothing stale runs.
-`plain=True` runs the very same text without the compiler, which the tests use to compare the two.
+The sources of the march make one text, those of laws and schedules another, and `compiled` turns both into machine code
+named by the hash of the text. So a change of any source makes new code; nothing stale runs.
+`plain=True` runs the very same texts without the compiler, which the tests use to compare the two.
 """
 
 import ast
@@ -10,13 +10,14 @@ import hashlib
 import inspect
 import operator
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from squealbox.compiled.machine import Translated, cache_folder, kept
+from squealbox.compiled.kinds import FLOAT
+from squealbox.compiled.machine import Compiled, cache_folder, kept
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
 from squealbox.transient import (
@@ -36,6 +37,7 @@ COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Gt: operator.gt, ast.Lt: operator.lt,
 }  # fmt: skip
 ENTRIES = ("march", "time_stepping")
+FORMULAS = dict.fromkeys(("law_mu", "law_slope", "law_creep", "law_grip", "schedule_value", "schedule_rate"), FLOAT)
 HEADER = '"""Made by squealbox; safe to delete."""\n\nimport numpy as np\n\n{decorators}'
 PLAIN = """
 
@@ -50,40 +52,48 @@ entry = inner
 @cache
 def time_stepping_kernel(plain: bool = False, own: tuple[tuple[str, str], ...] = ()) -> Callable[..., Any]:
     """`_time_stepping.time_stepping`, compiled at first use; `own` as in `kernel`."""
-    parts = head(inline=True, plain=plain, own=own) + definitions(_time_stepping, {})
-    stepping: Callable[..., Any] = load_module("\n\n".join(parts) + "\n").time_stepping
-    return stepping
+    return _kernel("time_stepping", (_time_stepping,), {}, True, own, plain)
 
 
 @cache
-def kernel(
-    events: bool,
-    plain: bool = False,
-    counts: tuple[tuple[str, int], ...] = (),
-    own: tuple[tuple[str, str], ...] = (),
-) -> Callable[..., int]:
+def kernel(events: bool, plain: bool = False, own: tuple[tuple[str, str], ...] = ()) -> Callable[..., int]:
     """`_march.march`, compiled for each new room of its records at first use, then read from disk.
 
-    `counts` fixes numbers such as ``("p.contacts", 2)`` in the text, so the compiler unrolls the loops over them.
     `own` are the sources of mu(v, p) and slope(v, p) of friction laws that follow `LAWS`.
     """
-    text = kept_text(f"{events}, {plain}, {counts}, {own}", lambda: source(events, plain, counts, own))
-    march: Callable[..., int] = load_module(text).march
+    decisions = (_rigid, _sharing, _impacts, _modes, _events) if events else ()
+    modules = (_motion, _runge_kutta, *decisions, _march)
+    march: Callable[..., int] = _kernel("march", modules, {"WITH_EVENTS": events}, not events, own, plain)
     return march
 
 
-def source(
-    events: bool,
-    plain: bool = False,
-    counts: tuple[tuple[str, int], ...] = (),
-    own: tuple[tuple[str, str], ...] = (),
-) -> str:
-    """The text of the generated file."""
-    fixed = {"WITH_EVENTS": events, **dict(counts)}
-    parts = head(inline=not events, plain=plain, own=own)
-    for module in (_motion, _runge_kutta, *((_rigid, _sharing, _impacts, _modes, _events) if events else ()), _march):
-        parts += definitions(module, fixed)
-    return "\n\n".join(parts) + "\n"
+def _kernel(
+    name: str,
+    modules: Sequence[ModuleType],
+    fixed: Mapping[str, float],
+    inline: bool,
+    own: tuple[tuple[str, str], ...],
+    plain: bool,
+) -> Any:
+    """A function of some modules, which share their machine code whatever laws and schedules there are."""
+
+    def written() -> str:
+        return "\n\n".join(part for module in modules for part in definitions(module, fixed))
+
+    formulas = kept_text(f"formulas {own} {plain}", lambda: laws_and_schedules(own, plain))
+    text = kept_text(f"{name} {fixed}", written)
+    if plain:
+        module = ModuleType("squealbox_kernel")
+        exec(compile(f"{formulas}\n{text}", "<kernel>", "exec"), module.__dict__)  # text of our own making
+        return getattr(module, name)
+    decorators = "packed = None  # every function becomes part of its callers\n" if inline else ""
+    return Compiled(HEADER.format(decorators=decorators) + elsewhere(FORMULAS) + text, name, formulas)
+
+
+def elsewhere(names: Mapping[str, str | None]) -> str:
+    """The text that has these names, of numbers and functions of their kinds, as `Elsewhere`."""
+    lines = [f"{name} = Elsewhere({name!r}, {kind!r})" for name, kind in names.items()]
+    return "\n".join(["from squealbox.compiled.kinds import Elsewhere\n", *lines, "", ""])
 
 
 def kept_text(made_for: str, write: Callable[[], str]) -> str:
@@ -104,23 +114,22 @@ def _digest() -> bytes:
     return hashlib.sha256(b"".join(texts)).digest()
 
 
-def head(
-    inline: bool,
-    plain: bool = False,
+def laws_and_schedules(
     own: tuple[tuple[str, str], ...] = (),
+    plain: bool = False,
     laws: Collection[int] | None = None,
     schedules: Collection[int] | None = None,
     smooth: Collection[int] | None = None,
-) -> list[str]:
-    """Decorators, and the laws and schedules behind one function each; of all kinds, or only of those named."""
-    decorators = PLAIN if plain else "packed = None  # every function becomes part of its callers\n" if inline else ""
-    parts = [HEADER.format(decorators=decorators)]
+) -> str:
+    """The text of laws and schedules behind one function each, `FORMULAS`; of all kinds, or only of those named."""
+    parts = [HEADER.format(decorators=PLAIN if plain else "")]
     parts += _dispatcher("law_mu", [law.formula for law in LAWS], "v", laws, [mu for mu, _ in own])
     parts += _dispatcher("law_slope", [law.slope_formula for law in LAWS], "v", laws, _calls_of_mu(own))
     parts += _dispatcher("law_creep", [law.creep_formula or _no_creep for law in SMOOTH], "v, z", smooth)
     parts += _dispatcher("law_grip", [law.grip_formula for law in SMOOTH if law.grip_formula], "v, z, rate", smooth)
     parts += _dispatcher("schedule_value", [each.formula for each in SCHEDULES], "t", schedules)
-    return parts + _dispatcher("schedule_rate", [each.rate_formula for each in SCHEDULES], "t", schedules)
+    parts += _dispatcher("schedule_rate", [each.rate_formula for each in SCHEDULES], "t", schedules)
+    return "\n\n".join(parts) + "\n"
 
 
 _source = cache(inspect.getsource)
@@ -270,12 +279,3 @@ def _dotted(node: ast.expr) -> str:
     if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
         return f"{node.value.id}.{node.attr}"
     return node.id if isinstance(node, ast.Name) else ""
-
-
-def load_module(text: str) -> Any:
-    """The text as a module: its functions compiled when they are first called, or plain ones."""
-    if PLAIN not in text:
-        return Translated(text)
-    module = ModuleType("squealbox_kernel")
-    exec(compile(text, "<kernel>", "exec"), module.__dict__)  # text of our own making
-    return module

@@ -213,17 +213,12 @@ class Scalar:
             self.period = 6.0 * span
             self.problem["window"] = 1e-3 * self.period
         events = bool(self.problem["scheme"] == EXACT and self.problem["contacts"] > 0)
-        march = kernel(events, counts=() if events else self._counts(), own=own_texts(self.system.contacts))
+        march = kernel(events, own=own_texts(self.system.contacts))
         swing = float(packing.schedule_frequency(self.system))
         seen = self.period / 6.0 if events else np.pi / (3.0 * swing) if swing > 0.0 else np.inf
         largest = min(self.method.largest_step or np.inf, span, seen)
         limits = end, largest, 1e-14 * self.period, self.method.most_steps, BUDGET[0]
         return march, (self.problem, self.rule, self.scratch, MarchOrders(self.times, self.rows, self.events, *limits))
-
-    def _counts(self) -> tuple[tuple[str, int], ...]:
-        """What the kernel without events is compiled for; the one with events compiles longer and stays general."""
-        problem = [(f"p.{name}", int(self.problem[name])) for name in ("size", "contacts")]
-        return (*problem, *((f"r.{name}", int(self.rule[name])) for name in ("stages", "blended")))
 
     def _make_room(self) -> None:
         count = self.scratch["count"]

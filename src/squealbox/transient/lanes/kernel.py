@@ -1,12 +1,15 @@
-"""The kernel of an ensemble as a generated file: lane step, service and the scalar march's decisions in one text."""
+"""The kernel of lanes as two generated texts: the service, with the scalar march's decisions, and what a shape has.
+
+The service is compiled once for all shapes with the same features; a new shape compiles its step alone.
+"""
 
 import hashlib
-from collections.abc import Callable
 from dataclasses import fields
 from functools import cache
 from pathlib import Path
-from typing import Any
 
+from squealbox.compiled.kinds import FLOAT, WHOLE
+from squealbox.compiled.machine import Compiled
 from squealbox.schedules import SCHEDULES, Constant
 from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta, _sharing
 from squealbox.transient.lanes import alone, crossing, recording, roots, samples, service, stages_again
@@ -16,11 +19,15 @@ from squealbox.transient.lanes.step_text import Step
 from squealbox.transient.lanes.taylor_text import TaylorStep
 from squealbox.transient.methods import tableau
 
+SERVICE = """
+from squealbox.transient.lanes.tracing import take
+# written by modules whose texts have the digest {digest}: a change of theirs makes another file
+"""
 HEAD = """
 from collections import namedtuple
 
 from squealbox.transient.lanes.rough import rough_exp, rough_log
-from squealbox.transient.lanes.tracing import apart, take, traced, traced_as_written, wide
+from squealbox.transient.lanes.tracing import apart, traced, traced_as_written, wide
 from squealbox.transient.lanes.vectors import (
     Given, arctan, at_once, bits, cos, exp, forget, if_flagged, lane_tanh, load, log, maximum, minimum, sin, sqrt,
     store, store_known, where, with_sign,
@@ -68,15 +75,68 @@ PLACES = {
 }  # fmt: skip
 
 
+COUNTS = (
+    "DOFS", "CONTACTS", "FUNCTIONS", "GIVEN", "ALL_ROWS", "BREAKS", "FOLLOWED", "ROW_OBSERVED", "MEMORY",
+)  # fmt: skip
+OF_ONE_CONTACT = ("contact_normal", "contact_speed", "speed_scale", "slip_rate", "rate_scale", "contact_static")
+FLAGS, NOTHING = ("step", "evaluate"), ("gather", "set_observers", "push", "stop")
+OF_A_SHAPE = {
+    **_engine.FORMULAS, **dict.fromkeys((*PLACES, *COUNTS, *FLAGS), WHOLE), **dict.fromkeys(OF_ONE_CONTACT, FLOAT),
+    **dict.fromkeys(NOTHING),
+}  # fmt: skip
+
+
 @cache
-def lane_kernel(shape: Shape) -> Callable[..., Any]:
+def lane_kernel(shape: Shape) -> Compiled:
     """`service.run`, compiled for one shape at first use, then read from disk."""
-    run: Callable[..., Any] = _engine.load_module(_text(shape)).run
-    return run
+    return Compiled(service_text(features(shape)), "run", _text(shape))
+
+
+def features(shape: Shape) -> tuple[tuple[str, float], ...]:
+    """What of a shape its service is compiled for."""
+    found: dict[str, float] = {
+        "WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples, "WIDTH": shape.lanes,
+        "RECORDED": shape.recorded, "SHARES": PARTS if shape.taylor else 1, "STAGED": shape.staged,
+        "SERIES": shape.taylor, "TRIES": shape.exact and not shape.taylor, "SIMPLE": shape.simple,
+        "STEPPED": shape.stepped, "p.rigid[]": 0, "p.rigid_count": 0,
+    }  # fmt: skip
+    found |= {} if shape.varying else {"p.varying": 0}
+    found |= {} if shape.kinds else {"p.light": 0}
+    found |= {} if shape.smooth else {"p.smooth[]": 0}
+    return tuple((found | step_of(shape).constants()).items())
+
+
+def step_of(shape: Shape) -> Step | TaylorStep:
+    """The writer of a shape's step."""
+    return TaylorStep(shape) if shape.taylor else Step(shape)
+
+
+@cache
+def service_text(features: tuple[tuple[str, float], ...]) -> str:
+    """The text of the passes over one lane, for all shapes with such features, from disk where it was made before."""
+    return _engine.kept_text(f"service {features}", lambda: service_source(features))
+
+
+def service_source(features: tuple[tuple[str, float], ...]) -> str:
+    """That text; what belongs to a shape is elsewhere."""
+    fixed = dict(features)
+    exact, staged = fixed["EXACT_CONTACT"], fixed["STAGED"]
+    head = _engine.HEADER.format(decorators="")
+    parts = [head, SERVICE.format(digest=digest(("tracing.py",))), _engine.elsewhere(OF_A_SHAPE)]
+    for module in (_motion, *((_rigid, _sharing, _impacts, _modes, _events) if exact else ())):
+        parts += _engine.definitions(module, fixed)
+    kept = ("COMPLETED", "TENSION", "SAMPLED", *(f"@inner\ndef {name}(" for name in FROM_THE_MARCH))
+    parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith(kept)]
+    needed = {roots: fixed["TRIES"], crossing: fixed["TRIES"], alone: fixed["SIMPLE"]}
+    needed |= {_runge_kutta: fixed["STEPPED"] or staged, samples: fixed["SAMPLES"], recording: fixed["RECORDED"]}
+    needed |= {stages_again: staged}
+    for module in (*(each for each, used in needed.items() if used), service):
+        parts += _engine.definitions(module, fixed, entries=("run",))
+    return "\n\n".join(parts) + "\n"
 
 
 def _text(shape: Shape) -> str:
-    """The text, from disk where it was made before; not that of observers which are functions of the user's."""
+    """What belongs to a shape, from disk where it was made before; not with observers that are the user's functions."""
     asked = [(each.update.__module__, getattr(each.update, "__qualname__", "<>")) for each in shape.observers]
     if any(not module.startswith("squealbox.transient.") or "<" in name for module, name in asked):
         return source(shape)
@@ -90,49 +150,34 @@ def _text(shape: Shape) -> str:
 
 
 def source(shape: Shape) -> str:
-    """The text of the generated file."""
-    rows, step = layout(shape), TaylorStep(shape) if shape.taylor else Step(shape)
-    fixed: dict[str, float] = {"WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples}
-    fixed |= {"RECORDED": shape.recorded, "SHARES": PARTS if shape.taylor else 1, "FOLLOWED": len(shape.followed)}
-    fixed |= {"BREADTH": shape.breadth, "STAGED": shape.staged}
-    fixed |= {"SERIES": shape.taylor, "TRIES": shape.exact and not shape.taylor}
-    fixed |= {"SIMPLE": shape.simple, "STEPPED": shape.stepped, "p.rigid[]": 0, "p.rigid_count": 0}
-    fixed |= {} if shape.varying else {"p.varying": 0}
-    fixed |= {} if shape.kinds else {"p.light": 0}
-    fixed |= {} if shape.smooth else {"p.smooth[]": 0}
+    """The text of what belongs to a shape: its step, laws and schedules, and the places of its rows."""
+    rows = layout(shape)
     smooth = {kind - 1 for kind in shape.smooth if kind > 0}
     laws = {kind for kind, _ in shape.laws}
     schedules = {kind for terms in shape.signals for kind, _ in terms} | {SCHEDULES.index(Constant)}
-    parts = [
-        *_engine.head(inline=False, own=shape.own, laws=laws, schedules=schedules, smooth=smooth),
-        HEAD.format(
-            lanes=shape.lanes,
-            digest=digest(WRITERS if shape.taylor else OF_EVERY_KERNEL),
-            more=SERIES if shape.taylor else "",
-        ),
-        *formulas(shape),
-        step.text(),
-    ]
-    fixed |= {name: rows.places.get(row, 0) for name, row in PLACES.items()} | {"WIDTH": shape.lanes} | step.constants()
-    if shape.recorded and shape.taylor:
-        fixed["ROW_TERM"] = rows.places[f"term0_{shape.followed[0]}"]
     first = rows.places["o0_0_0"] if shape.observers else 0
-    fixed |= {
-        "DOFS": shape.n, "CONTACTS": shape.m, "FUNCTIONS": shape.functions, "GIVEN": len(parameter_rows(shape)),
-        "ALL_ROWS": len(rows), "BREAKS": shape.breaks, "ROW_OBSERVED": first,
-        "MEMORY": len(rows) - first if first else 0,
-    }  # fmt: skip
-    parts += [_gather(shape, rows.places), _observers(shape, rows.places)]
+    counts = (
+        shape.n, shape.m, shape.functions, len(parameter_rows(shape)), len(rows), shape.breaks, len(shape.followed),
+        first, len(rows) - first if first else 0,
+    )  # fmt: skip
+    places = {name: rows.places.get(row, 0) for name, row in PLACES.items()} | dict(zip(COUNTS, counts, strict=True))
+    if shape.recorded and shape.taylor:
+        places["ROW_TERM"] = rows.places[f"term0_{shape.followed[0]}"]
+    head = HEAD.format(
+        lanes=shape.lanes,
+        digest=digest(WRITERS if shape.taylor else OF_EVERY_KERNEL),
+        more=SERIES if shape.taylor else "",
+    )
+    parts = [
+        _engine.laws_and_schedules(shape.own, laws=laws, schedules=schedules, smooth=smooth),
+        head,
+        "\n".join(f"{name} = {value}" for name, value in places.items()),
+        *formulas(shape),
+        step_of(shape).text(),
+        _gather(shape, rows.places),
+        _observers(shape, rows.places),
+    ]
     parts += _one_contact(shape, rows.places) if shape.simple else []
-    for module in (_motion, *((_rigid, _sharing, _impacts, _modes, _events) if shape.exact else ())):
-        parts += _engine.definitions(module, fixed)
-    kept = ("COMPLETED", "TENSION", "SAMPLED", *(f"@inner\ndef {name}(" for name in FROM_THE_MARCH))
-    parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith(kept)]
-    needed = {roots: fixed["TRIES"], crossing: fixed["TRIES"], alone: shape.simple}
-    needed |= {_runge_kutta: shape.stepped or shape.staged, samples: shape.samples, recording: shape.recorded}
-    needed |= {stages_again: shape.staged}
-    for module in (*(each for each, used in needed.items() if used), service):
-        parts += _engine.definitions(module, fixed, entries=("run",))
     return "\n\n".join(parts) + "\n"
 
 

@@ -54,7 +54,8 @@ class TaylorStep(EquationText):
         breadth, places = self.shape.breadth, self.rows.places
         first = places[f"term0_{self.shape.followed[0]}"]
         call = f"{places['since']}, {first}, {breadth}, {ORDER + 2}, {places['value0']}, {places['slope_value0']}"
-        return f"\n@wide({breadth})\ndef evaluate(A, b):\n    return at_once(A, b, {call})\n"
+        written = f"\n@wide({breadth})\ndef series_at(A, b):\n    return at_once(A, b, {call})\n"
+        return written + "\n\n@inner\ndef evaluate(A, b):\n    return series_at(A, b)\n"
 
     def steps(self) -> str:
         """Another trial where no lane of the group sticks; not for a single run, which would gain a tenth by it and
