@@ -13,6 +13,7 @@ from squealbox.system import Contact, System
 
 SPEEDS = np.linspace(0.0, 1.0, 65)  # of the fastest sliding, at which a law is looked at
 SMALL = 0.25  # rad: beyond it sin differs from its angle by more than 1 %, and the equation knows only the angle
+COARSE = 1e-10  # of a run's duration: instants known no better are told
 PULL = 1e-9  # of the largest normal force: less is round-off
 
 
@@ -117,7 +118,22 @@ def of_a_run(system: System, lowest: Any, fastest: Any) -> tuple[str, ...]:
     return tuple(said)
 
 
-def of_many_runs(system: System, lowest: Any, fastest: Any, least_mu: Any) -> str:
+def of_the_clock(begin: float, duration: float) -> tuple[str, ...]:
+    """A sentence where a run [s] begins so late that a number of its instants has lost digits.
+
+    >>> of_the_clock(0.0, 0.05)
+    ()
+    >>> of_the_clock(1e6, 0.05)
+    ('start_time = 1e+06 s: instants are known to 1.2e-10 s there, 2.3e-09 of the duration; V(t) and f(t) no better',)
+    """
+    known = float(np.spacing(abs(begin) + duration))
+    if known <= COARSE * duration:
+        return ()
+    lost = f"instants are known to {known:.2g} s there, {known / duration:.2g} of the duration"
+    return (f"start_time = {begin:g} s: {lost}; V(t) and f(t) no better",)
+
+
+def of_many_runs(system: System, lowest: Any, fastest: Any, least_mu: Any) -> tuple[str, ...]:
     """As :func:`of_a_run`, of runs told in the rows of three tables (runs, contacts), NaN where there was no run."""
     said: list[str] = []
     for c, (name, contact) in enumerate(zip(system.contact_names, system.contacts, strict=True)):
@@ -131,7 +147,7 @@ def of_many_runs(system: System, lowest: Any, fastest: Any, least_mu: Any) -> st
             said.append(
                 BEYOND.format(name=_in(name, which, count), speed=np.max(fast[which]), known=_known(contact.law))
             )
-    return "; ".join(said)
+    return tuple(said)
 
 
 def least_coefficient(contact: Contact, fastest: Any) -> Any:

@@ -61,15 +61,19 @@ class Schedule(DataSheet):
         return ((1.0, self),)
 
     def __mul__(self, factor: Any) -> "Sum":
+        if isinstance(factor, Schedule):
+            raise ParameterError(
+                type(self).__name__, "factor", factor, "a number or an array: products of schedules are not compiled"
+            )
         factor = np.asarray(factor, dtype=float)
         return Sum(tuple((weight * factor, part) for weight, part in self.terms()))
 
     __rmul__ = __mul__
 
-    def __add__(self, other: "Schedule") -> "Sum":
-        if not isinstance(other, Schedule):
-            return NotImplemented
-        return Sum((*self.terms(), *other.terms()))
+    def __add__(self, other: Any) -> "Sum":
+        return Sum((*self.terms(), *as_schedule(other).terms()))
+
+    __radd__ = __add__
 
     def __neg__(self) -> "Sum":
         return self * -1.0

@@ -9,7 +9,18 @@ import pytest
 from scipy.linalg import expm
 
 from small_systems import METHODS, block_on_belt, two_masses
-from squealbox import Constant, Contact, Coulomb, LinearSlope, Ramp, Sinusoid, System, simulate
+from squealbox import (
+    Constant,
+    Contact,
+    Coulomb,
+    LinearSlope,
+    ParameterError,
+    Ramp,
+    Sinusoid,
+    System,
+    simulate,
+    simulate_ensemble,
+)
 from squealbox.schedules import Table
 
 RTOL = {"bogacki-shampine": 1e-9, "dormand-prince": 1e-11, "tsitouras": 1e-11, "dormand-prince-8": 1e-12}
@@ -125,3 +136,45 @@ def test_negative_slope_grows_at_half_its_damping():
     expected = 0.01 * np.exp(rate * motion.t) * np.cos(w * motion.t)
     assert np.max(np.abs(motion.q[:, 0] - middle - expected)) < 1e-10
     assert np.all(motion.mode == 1)
+
+
+FREE = System(np.eye(1), np.zeros((1, 1)), np.eye(1) * (2e3 * np.pi) ** 2, np.zeros(1), ())
+
+
+@pytest.mark.parametrize("method", [*METHODS, "taylor"])
+def test_a_free_motion_is_as_exact_however_small_it_is(method):
+    """Nothing slides: the usual tolerance is that of the motion, single and in an ensemble (it was that of 1 m/s)."""
+    runs = {a: simulate(FREE, 0.0203, ([a], [0.0]), method=method, times=2) for a in (1e-12, 1e-6, 1.0)}
+    steps = {motion.steps for motion in runs.values()}
+    assert max(steps) - min(steps) <= 1
+    for amplitude, motion in runs.items():
+        assert motion.outcome == "completed"
+        true = amplitude * np.cos(2e3 * np.pi * 0.0203)
+        assert abs(motion.q[-1, 0] - true) < 1e-4 * amplitude  # of bogacki-shampine; the others are closer
+    many = simulate_ensemble(FREE, None, 0.0203, start=(np.array([[1e-12], [1.0]]), np.zeros((2, 1))), method=method)
+    assert many.q.ravel() == pytest.approx([runs[1e-12].q[-1, 0], runs[1.0].q[-1, 0]], rel=1e-12)
+
+
+@pytest.mark.parametrize("push", [1e-9, 1.0])
+def test_a_small_swinging_force_is_followed_as_a_large_one(push):
+    force = Sinusoid(0.0, push, 900.0) * [1.0]
+    damped = FREE.replace({"C": [[300.0]], "load": force})
+    omega, drive = 2e3 * np.pi, 1800.0 * np.pi
+    gain = push / (omega**2 - drive**2 + 300j * drive)
+    motion = simulate(damped, 0.2, method="bogacki-shampine", times=2)
+    assert motion.outcome == "completed"
+    assert motion.q[-1, 0] == pytest.approx((gain * np.exp(1j * drive * 0.2)).imag, abs=1e-4 * abs(gain))
+
+
+def test_a_run_that_begins_too_late_for_its_clock_says_so():
+    late = simulate(FREE, 0.01, start_time=1e6)
+    assert "start_time = 1e+06 s: instants are known to 1.2e-10 s there" in late.caution
+    assert "start_time" in simulate_ensemble(FREE, None, 0.01, start=([1.0], [0.0]), start_time=1e6).caution
+    assert simulate(FREE, 0.01, start_time=10.0).caution == ""
+
+
+def test_a_number_joins_a_schedule_and_a_product_of_two_is_one_sentence():
+    assert (Sinusoid(0.0, 1.0, 5.0) + 1.0).value(0.05) == pytest.approx(2.0)
+    assert (1.0 + Ramp(1.0, -2.0)).value(0.25) == pytest.approx(1.5)
+    with pytest.raises(ParameterError, match="expected a number or an array: products of schedules"):
+        Sinusoid(0.0, 1.0, 5.0) * Ramp(1.0, -2.0)

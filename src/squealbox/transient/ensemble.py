@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from squealbox.arguments import designs, public
-from squealbox.cautions import of_many_runs
+from squealbox.cautions import of_many_runs, of_the_clock
 from squealbox.family import Family, values_of
 from squealbox.labelled import Labelled, Labels
 from squealbox.parameters import DataSheet, ParameterError, known_names
@@ -257,6 +257,7 @@ def _result(
         values = values[:, 0] if each.of == "system" else values
         observed[each.name] = values.reshape(*shape, *values.shape[1:])
         at += copies * width
+    late = of_the_clock(settings["start_time"], settings["duration"])
     samples = np.concatenate(work.samples) if work.times.size else np.zeros((total, 0, 2 * n))
     if len(samples) < total:
         samples = np.concatenate([samples, np.full((total - len(samples), *samples.shape[1:]), np.nan)])
@@ -277,7 +278,7 @@ def _result(
         sample_qd=samples[..., n:],
         parameters=parameters,
         observed=observed,
-        caution=of_many_runs(work.system, *np.split(rows[:, at:], 3, axis=1)),
+        caution="; ".join([*of_many_runs(work.system, *np.split(rows[:, at:], 3, axis=1)), *late]),
         seconds=work.elapsed(),
     )
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from squealbox.cautions import of_a_run
+from squealbox.cautions import of_a_run, of_the_clock
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import System
 from squealbox.transient import _march, _motion, packing
@@ -176,7 +176,7 @@ class Scalar:
         self, system: System, method: Method, scheme: int, width: float, q: Any, qd: Any, time: float, times: Any
     ) -> None:
         self.system, self.method = system, method
-        self.problem = packing.pack(system, method, scheme, width, times is None)
+        self.problem = packing.pack(system, method, scheme, width, times is None, (q, qd))
         self.rule = packing.rule(method.tableau)
         self.scratch = packing.scratch(self.problem, q, qd, time, method.first_step or 0.0)
         self.times = np.full(1, np.inf) if times is None else times
@@ -266,7 +266,7 @@ def told(system: System, ways: Ways, start: tuple[Any, Any], begin: float, durat
         "duration": duration, "start": [x.tolist() for x in start], "start_time": begin, "contact": ways.contact,
         "width": ways.width, "tableau": of.method.tableau, "rtol": of.method.rtol, "atol": of.atol.tolist(),
     }  # fmt: skip
-    said = [_caution(ways, of.reversals), *of_a_run(system, of.lowest, of.fastest)]
+    said = [_caution(ways, of.reversals), *of_a_run(system, of.lowest, of.fastest), *of_the_clock(begin, duration)]
     said += undetermined(system, of.rows, of.events)
     if of.instead_of:
         settings["instead_of"] = of.instead_of

@@ -61,8 +61,8 @@ class Method:
     tableau : name, one of `TABLEAUX`
     rtol : relative tolerance of each displacement and velocity in a step [-]; None takes the usual one of the method
     atol : absolute tolerance of a velocity [m/s]; that of a displacement is atol / (highest angular frequency). None
-        takes 1e-3 rtol times the fastest sliding speed, or times 1 m/s where nothing slides (below 1e-12 m/s). An
-        array of 2n values [m, m/s] is taken as it is.
+        takes 1e-3 rtol times the fastest sliding speed; where nothing slides (below 1e-12 m/s) times the speed that
+        start and load lead to, or 1 m/s without any. An array of 2n values [m, m/s] is taken as it is.
     first_step, largest_step [s] : None leaves them to the program
     most_steps : tried steps after which a run ends as "step_limit"
     """

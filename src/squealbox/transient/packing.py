@@ -5,7 +5,7 @@ attributes. The room of each field is a power of two, so that few sizes are ever
 """
 
 import math
-from functools import cache, lru_cache
+from functools import cache, lru_cache, reduce
 from typing import Any
 
 import numpy as np
@@ -29,10 +29,12 @@ from squealbox.transient.smooth_laws import smooth_kinds
 
 UNIT = Constant(1.0)
 STAGES, DEGREE = 16, 7  # room in the record of a tableau
-STANDING = 1e-12  # [m/s] a belt slower than that gives no scale for a tolerance
+STANDING = 1e-12  # [m/s] a belt slower than that gives no scale for a tolerance, and what is free to move does
 
 
-def pack(system: System, method: Method, scheme: int, width: float, every_step: bool) -> Any:
+def pack(
+    system: System, method: Method, scheme: int, width: float, every_step: bool, start: tuple[Any, Any] | None = None
+) -> Any:
     """The record of one system; raises `InvalidSystem` for a map of systems or a singular mass matrix.
 
     Systems are frozen, so the records of the last few are kept for the next run, with its own tolerances.
@@ -41,7 +43,7 @@ def pack(system: System, method: Method, scheme: int, width: float, every_step: 
     record = kept.copy()
     record["rtol"], record["every_step"] = method.rtol, every_step
     n, room = system.size, len(record["mk"])
-    atol = absolute_tolerances(system, method, highest)
+    atol = absolute_tolerances(system, method, np.asarray(highest), start)
     record["atol"][:n], record["atol"][room : room + n] = atol[:n], atol[n:]
     return record
 
@@ -238,15 +240,24 @@ def schedule_kind(part: Schedule) -> int:
     return SCHEDULES.index(type(part))
 
 
-def absolute_tolerances(system: System, method: Method, highest: float) -> Any:
-    """atol of the 2n states: as given, or from the fastest sliding speed, scaled so that both kinds weigh alike."""
+def absolute_tolerances(system: System, method: Method, highest: Any, start: tuple[Any, Any] | None = None) -> Any:
+    """atol (2n, ...) of the states: as given, or from the speed of the motion, scaled so that both kinds weigh alike.
+
+    highest (...) : angular frequency [rad/s]
+    start : q, q' (..., n), which tell the speed where nothing slides; None where they are not known
+    """
     n = system.size
     if method.atol is not None and np.ndim(method.atol) == 1:
         if np.shape(method.atol) != (2 * n,):
             raise InvalidSystem(f"atol has shape {np.shape(method.atol)}: expected a number or {2 * n} values")
         return np.array(method.atol, dtype=float)
-    velocity = float(1e-3 * method.rtol * fastest_speed(system) if method.atol is None else method.atol)
-    return np.concatenate([np.full(n, velocity / (highest or 1.0)), np.full(n, velocity)])
+    highest = np.where(highest > 0.0, highest, 1.0)
+    velocity = method.atol
+    if velocity is None:
+        slides = fastest_speed(system)
+        velocity = 1e-3 * method.rtol * np.where(slides > STANDING, slides, free_speed(system, highest, start))
+    velocity, highest = np.broadcast_arrays(velocity, highest)
+    return np.stack([velocity / highest] * n + [velocity] * n) if n else np.zeros((0, *np.shape(velocity)))
 
 
 def bernstein_matrix() -> Any:
@@ -257,14 +268,31 @@ def bernstein_matrix() -> Any:
 
 
 def fastest_speed(system: System) -> Any:
-    """Fastest sliding speed [m/s], which sets the usual tolerance; 1 when nothing slides. One for each leading axis."""
-    fastest = np.zeros(())
-    for contact in system.contacts:
-        speed = contact.V
-        speeds = [speed.value(t) for t in (0.0, *speed.breaks())] if isinstance(speed, Schedule) else [speed]
-        for each in speeds:
-            fastest = np.maximum(fastest, np.abs(each))
-    return np.where(fastest > STANDING, fastest, 1.0)
+    """Fastest sliding speed [m/s]; one for each leading axis."""
+    return reduce(np.maximum, (_largest(contact.V) for contact in system.contacts), np.zeros(()))
+
+
+def free_speed(system: System, highest: Any, start: tuple[Any, Any] | None) -> Any:
+    """Speed [m/s] of a motion in which nothing slides: that which start and load lead to, 1 where neither does."""
+    heaviest = np.max(np.abs(system.M), axis=(-1, -2), initial=0.0)
+    push = np.asarray(_largest(system.load))
+    pushed = np.max(push, axis=-1) if push.ndim else push
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = np.where(heaviest > 0.0, pushed / (heaviest * highest), 0.0)
+    if start is not None:
+        q, qd = (np.max(np.abs(each), axis=-1, initial=0.0) for each in start)
+        found = np.maximum(found, np.maximum(qd, highest * q))
+    return np.where(found > 0.0, found, 1.0)
+
+
+def _largest(value: Any) -> Any:
+    """The largest size of a number or schedule among its beginning, its kinks and a quarter of its period."""
+    if not isinstance(value, Schedule):
+        return np.abs(value)
+    with np.errstate(divide="ignore"):
+        quarter = 0.5 * np.pi / np.asarray(value.angular_frequency(), dtype=float)
+    instants = (0.0, *value.breaks(), np.where(np.isfinite(quarter), quarter, 0.0))
+    return reduce(np.maximum, (np.abs(value.value(t)) for t in instants))
 
 
 @cache

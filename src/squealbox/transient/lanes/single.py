@@ -35,6 +35,7 @@ class Prepared:
     record: Any
     scratch: Any
     kernel: Any
+    slides: bool
 
 
 KEPT, NUMBERS = Latest(), Latest()
@@ -55,7 +56,8 @@ def _prepared(system: System, scheme: int, name: str) -> Prepared:
     record[0] = packed
     rest = np.zeros(system.size)
     scratch = packing.scratch(record[0], rest, rest, 0.0, 0.0).base
-    return Prepared(jobs, layout(jobs.shape), names, record, scratch, lane_kernel(jobs.shape))
+    slides = bool(packing.fastest_speed(system) > packing.STANDING)
+    return Prepared(jobs, layout(jobs.shape), names, record, scratch, lane_kernel(jobs.shape), slides)
 
 
 def _table(system: System, scheme: int, name: str) -> Jobs:
@@ -64,11 +66,13 @@ def _table(system: System, scheme: int, name: str) -> Jobs:
     return tabulate(system, Method(name), scheme, 1e-3, (rest, rest), LONG, 0.0, (), (), False, recorded=True)
 
 
-def numbers(system: System, made: Prepared, method: Method, width: float, duration: float, begin: float) -> Any:
+def numbers(
+    system: System, made: Prepared, method: Method, width: float, duration: float, begin: float, start: tuple[Any, Any]
+) -> Any:
     """The fixed numbers of a run: those of the system, and the tolerances, limits and times of this run."""
     fixed = made.jobs.fixed.copy()
     fixed[:3] = begin + duration, begin, method.most_steps
-    for name, value in limits(system, method, made.jobs.own, made.jobs.shape.exact, duration).items():
+    for name, value in limits(system, method, made.jobs.own, made.jobs.shape.exact, duration, start).items():
         fixed[made.names[name]] = value
     fixed[made.names["width"]] = width
     return fixed
@@ -90,9 +94,11 @@ class Single:
         made = self.made = prepared(system, scheme, method.tableau)
         atol = None if method.atol is None else np.asarray(method.atol, dtype=float).tobytes()
         how = scheme, method.tableau, method.rtol, atol, method.first_step, method.largest_step, method.most_steps
+        begun = () if made.slides else (np.asarray(q).tobytes(), np.asarray(qd).tobytes())  # tells the tolerance then
         fixed = NUMBERS.of(
-            system, (*how, width, duration, begin), lambda: numbers(system, made, method, width, duration, begin)
-        )
+            system, (*how, width, duration, begin, *begun),
+            lambda: numbers(system, made, method, width, duration, begin, (q, qd)),
+        )  # fmt: skip
         self.fixed = fixed.copy()
         self.record, self.scratch = _copy(made.record), _copy(made.scratch)
         self.restart(q, qd, begin, begin + duration, times)

@@ -60,7 +60,7 @@ def tabulate(
     for k in range(n):
         values[f"start{k}"], values[f"start{n + k}"] = q[..., k], qd[..., k]
     own = _highest_frequency(values, n) if rows.all_have_mass else fastest_rate(system, rows)
-    values |= limits(system, method, own, scheme == EXACT and m > 0, duration)
+    values |= limits(system, method, own, scheme == EXACT and m > 0, duration, start)
     values |= {f"break{k}": instant for k, instant in enumerate(breaks)} | {"width": np.asarray(width)}
     contacts = system.contacts
     kinds = law_kinds(contacts)
@@ -198,20 +198,16 @@ def _terms(value: Any) -> list[tuple[Any, Schedule]]:
     return list(value.terms()) if isinstance(value, Schedule) else [(np.asarray(1.0), Constant(value))]
 
 
-def limits(system: System, method: Method, own: Any, exact: bool, duration: float) -> dict[str, Any]:
+def limits(
+    system: System, method: Method, own: Any, exact: bool, duration: float, start: tuple[Any, Any]
+) -> dict[str, Any]:
     """Tolerances and limits of the steps, as `packing` and `simulate` choose them, from each highest frequency."""
-    n = system.size
-    highest = np.where(own > 0.0, own, 1.0)
     swing = packing.schedule_frequency(system)
     pace = np.maximum(own, swing)
     pace = np.where(pace > 0.0, pace, np.pi / (3.0 * duration))
-    velocity = 1e-3 * method.rtol * packing.fastest_speed(system) if method.atol is None else np.asarray(method.atol)
     out: dict[str, Any] = {"rtol": np.asarray(method.rtol)}
-    if np.ndim(method.atol) == 1:
-        given = packing.absolute_tolerances(system, method, 1.0)
-        out |= {f"atol{k}": np.asarray(given[k]) for k in range(2 * n)}
-    else:
-        out |= {f"atol{k}": velocity / highest if k < n else np.asarray(velocity) for k in range(2 * n)}
+    given = packing.absolute_tolerances(system, method, own, start)
+    out |= {f"atol{k}": np.asarray(each) for k, each in enumerate(given)}
     period = 2.0 * np.pi / pace
     seen = period / 6.0 if exact else np.pi / (3.0 * np.maximum(swing, 1e-300)) + 0.0 * period
     largest = np.minimum(duration, seen)
