@@ -7,14 +7,17 @@ import pytest
 from scipy.io import wavfile
 from scipy.signal import butter, find_peaks, get_window, lfilter, resample_poly
 
+from squealbox import DrumBrake, LinearSlope, simulate
 from squealbox.signals import (
     SignalError,
     dominant_frequency,
     growth_rate,
     peaks,
+    rendered,
     samples,
     slope,
     sound,
+    sound_level,
     spectrogram,
     spectrum,
 )
@@ -224,7 +227,7 @@ def test_a_trajectory_is_taken_by_index_and_by_name():
         (np.r_[sine(2000.0)[:-1], np.nan], {"t": T}, "sample 3999 is not finite"),
         (sine(2000.0), {"t": T[:-1]}, "one value for each time"),
         (sine(2000.0), {"t": T[::-1]}, "do not increase"),
-        (sine(2000.0), {"t": T, "begin": 0.04}, "has 0 samples between begin = 0.04"),
+        (sine(2000.0), {"t": T, "begin": 0.04}, "has 0 samples from 0.04 s: expected 8 or more"),
         (Motion(T, np.zeros((T.size, 2))), {"dof": 2}, "dof = 2: expected an index from 0 to 1"),
         (Motion(T, np.zeros((T.size, 2))), {"dof": "z"}, "dof = 'z': expected one of x, y"),
     ],
@@ -305,3 +308,13 @@ def test_another_rate_is_that_of_scipy(ratio):
     x = np.random.default_rng(0).normal(size=1003)
     expected = resample_poly(x, ratio.numerator, ratio.denominator)
     np.testing.assert_allclose(resampled(x, ratio), expected, atol=1e-13)  # rounding of 20 terms each
+
+
+def test_what_can_carry_no_caution_refuses_instants_too_few_for_the_motion():
+    """A squeal of 2.03 kHz kept 580 times a second has no frequency, no growth, no level and no sound."""
+    brake = DrumBrake(friction=LinearSlope(0.45, -0.05))
+    few, enough = (simulate(brake, 0.05, times=count) for count in (30, 3001))
+    for answer in (growth_rate, dominant_frequency, sound_level, rendered):
+        with pytest.raises(SignalError, match="580 a second, are too few"):
+            answer(few)
+        answer(enough)

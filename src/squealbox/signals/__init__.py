@@ -15,7 +15,17 @@ from squealbox.signals.quality import SoundQuality, sound_quality
 from squealbox.signals.radiation import SoundLevel, a_weighting, piston_efficiency, sound_level
 from squealbox.signals.recordings import Recording, read_recording
 from squealbox.signals.rendering import rendered
-from squealbox.signals.samples import LEAST, Samples, SignalError, carries, column, equal_steps, samples, values
+from squealbox.signals.samples import (
+    LEAST,
+    Samples,
+    SignalError,
+    carries,
+    column,
+    equal_steps,
+    samples,
+    too_few,
+    values,
+)
 from squealbox.signals.spectra import Peaks, Spectrogram, Spectrum, peaks, spectrogram, spectrum
 from squealbox.signals.wav import audible, sixteen_bits, sound
 
@@ -58,6 +68,7 @@ __all__ = [
     "spectrogram",
     "spectrum",
     "squeal_events",
+    "too_few",
     "values",
     "with_error",
 ]

@@ -8,7 +8,7 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.result import Array, Result, quantity
 from squealbox.signals.exponentials import fit_exponentials
-from squealbox.signals.samples import Samples, SignalError, given, samples
+from squealbox.signals.samples import Samples, SignalError, given, unfolded
 from squealbox.signals.spectra import spectrum, window_weights
 from squealbox.signals.tones import SLOW, Tones, tones
 
@@ -59,7 +59,7 @@ def dominant_frequency(signal: Any, t: Any = None, *, above: float | None = None
     >>> round(dominant_frequency(np.exp(-8.0 * t) * np.sin(2 * np.pi * 41.3 * t), t), 6)
     41.3
     """
-    data = samples(signal, t, **cut)
+    data = unfolded(signal, t, **cut)
     found = tones(data.x, data.rate)
     return float(found.exponents[_main(found, data, above)].imag / (2.0 * np.pi))
 
@@ -72,7 +72,7 @@ def highest_line(signal: Any, t: Any = None, **cut: Any) -> float:
     """
     from scipy.optimize import minimize_scalar
 
-    data = samples(signal, t, **cut)
+    data = unfolded(signal, t, **cut)
     coarse = spectrum(data.x, rate=data.rate)
     heard = coarse.frequency >= SLOW * coarse.resolution
     if not np.any(coarse.amplitude[heard] > 0.0):
@@ -127,7 +127,7 @@ def growth_rate(
     """
     from scipy.special import ndtri
 
-    data = samples(signal, t, **cut)
+    data = unfolded(signal, t, **cut)
     found = tones(data.x, data.rate)
     if frequency is not None and _nearest(found, frequency) is None:
         found = tones(data.x, data.rate, near=float(frequency))

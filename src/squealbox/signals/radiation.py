@@ -21,7 +21,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.signals.samples import SignalError, column, given
+from squealbox.signals.samples import SignalError, column, folded, given
 from squealbox.signals.spectra import peaks, spectrum
 
 DENSITY = 1.204  # of air at 20 degC and 101.325 kPa [kg/m^3]
@@ -111,6 +111,8 @@ def sound_level(
     for name, value in (("area", area), ("distance", distance), ("efficiency", efficiency)):
         if value is not None and not (np.isfinite(value) and value > 0.0):
             raise SignalError(f"{name} = {value}: expected a number above 0")
+    if few := folded(velocity):
+        raise SignalError(few)
     if hasattr(velocity, "qd"):
         place = column(velocity, cut.pop("dof", 0))
         velocity, t = velocity.qd[:, place], velocity.t

@@ -6,7 +6,7 @@ import numpy as np
 
 from squealbox.signals.radiation import AREA, DENSITY
 from squealbox.signals.recordings import Recording
-from squealbox.signals.samples import SignalError, column, samples
+from squealbox.signals.samples import SignalError, column, folded, samples
 
 
 def rendered(
@@ -36,6 +36,8 @@ def rendered(
             raise SignalError(f"{name} = {size}: expected a number above 0")
     if not (np.isfinite(noise) and noise >= 0.0):
         raise SignalError(f"noise = {noise}: expected a standard deviation of 0 Pa or more")
+    if few := folded(motion):
+        raise SignalError(few)
     data = samples(np.asarray(motion.qd, dtype=float)[:, column(motion, dof)], motion.t)
     pressure = DENSITY * area / (2.0 * np.pi * distance) * np.gradient(data.x, 1.0 / data.rate)
     pressure = pressure + noise * np.random.default_rng(seed).standard_normal(pressure.size)

@@ -12,7 +12,7 @@ COARSE = 0.05  # of the velocity: some eight instants in a period
 FOLDED = 0.3  # of it: some three, fewer fold what swings
 TOO_FEW = (
     "the instants kept, {rate:.4g} a second, are too few for the fastest oscillation of the motion: its lines fold"
-    " and stand elsewhere; take the spectrum of transient.resolved(motion) at equal steps, or of more times"
+    " and stand elsewhere; run it with more equally spaced times"
 )
 COARSEST = 0.25  # of a step: times written with fewer digits do not show whether a sample is missing
 JITTER = 1e-3  # of a step: disturbs a line at half the sampling rate by 0.3 %, any other less
@@ -56,9 +56,7 @@ def samples(
     keep = (times >= (-np.inf if begin is None else begin)) & (times <= (np.inf if end is None else end))
     times, x = times[keep], x[keep]
     if x.size < LEAST:
-        raise SignalError(
-            f"the signal has {x.size} samples between begin = {begin} and end = {end}: expected {LEAST} or more"
-        )
+        raise too_few("signal", x.size, begin, end, LEAST)
     if not equal_steps(times):
         steps = np.diff(times)
         raise SignalError(
@@ -66,8 +64,28 @@ def samples(
             "such as simulate(..., times=np.linspace(begin, end, count)) gives"
         )
     per_second = float((times.size - 1) / (times[-1] - times[0]))
-    folds = hasattr(signal, "qd") and not carries(signal, FOLDED)
-    return Samples(times, x, per_second, TOO_FEW.format(rate=per_second) if folds else "")
+    return Samples(times, x, per_second, folded(signal))
+
+
+def too_few(what: str, count: int, begin: float | None, end: float | None, least: int) -> SignalError:
+    """The error for so few samples between two instants, as far as these were given."""
+    ends = [f" {word} {value:g} s" for word, value in (("from", begin), ("to", end)) if value is not None]
+    return SignalError(f"the {what} has {count} samples{''.join(ends)}: expected {least} or more")
+
+
+def folded(signal: Any) -> str:
+    """A sentence where it is a motion whose instants are too few for it; "" for any other."""
+    if not hasattr(signal, "qd") or carries(signal, FOLDED):
+        return ""
+    return TOO_FEW.format(rate=(len(signal.t) - 1) / (signal.t[-1] - signal.t[0]))
+
+
+def unfolded(signal: Any, t: Any = None, **cut: Any) -> Samples:
+    """As :func:`samples`, for what can carry no caution: `SignalError` where instants are too few for the motion."""
+    found = samples(signal, t, **cut)
+    if found.caution:
+        raise SignalError(found.caution)
+    return found
 
 
 def equal_steps(t: Any, rounding: Any = 0.0) -> bool:

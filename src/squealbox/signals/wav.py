@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.signals.samples import SignalError, samples
+from squealbox.signals.samples import SignalError, unfolded
 
 SAMPLING = 44100  # [Hz]
 
@@ -49,7 +49,7 @@ def audible(
 
     The true frequencies are kept; `slower` [-] stretches time. What cannot be written at that rate is filtered out.
     """
-    data = samples(signal, t, **cut)
+    data = unfolded(signal, t, **cut)
     if not (slower > 0.0 and fade >= 0.0):
         raise SignalError(f"slower = {slower}, fade = {fade}: expected > 0 and >= 0 s")
     ratio = Fraction(sampling * slower / data.rate).limit_denominator(10_000)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.signals import LEAST, SignalError, column, values
+from squealbox.signals import LEAST, column, too_few, values
 
 PERIODS = 2  # in a window: one holds a crest and a trough; the second leaves room for an error of the period
 LONGEST = 6  # periods of the dominant frequency after which a cycle may repeat: subharmonics down to a sixth
@@ -85,11 +85,9 @@ def smooth_curve(
 
     times, x = values(motion, t, dof=dof)
     keep = (times >= (-np.inf if begin is None else begin)) & (times <= (np.inf if end is None else end))
-    count = np.count_nonzero(keep)
+    count = int(np.count_nonzero(keep))
     if count < LEAST:
-        raise SignalError(
-            f"the motion has {count} samples from begin = {begin} to end = {end}: expected {LEAST} or more"
-        )
+        raise too_few("motion", count, begin, end, LEAST)
     times, x = times[keep], x[keep]
     velocity = getattr(motion, "qd", None)
     if velocity is None:
