@@ -108,10 +108,10 @@ def test_what_is_not_plain_is_named_with_its_line(line, said):
 
 
 ASKS = """
-from squealbox.compiled.kinds import Elsewhere
+from squealbox.compiled.kinds import OfAnotherText
 
-ROOM = Elsewhere("ROOM", "i")
-other = Elsewhere("other", "f")
+ROOM = OfAnotherText("ROOM", "i")
+other = OfAnotherText("other", "f")
 
 @entry
 def asks(x):

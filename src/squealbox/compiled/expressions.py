@@ -16,9 +16,9 @@ from squealbox.compiled.kinds import (
     TRUTH,
     WHOLE,
     Array,
-    Elsewhere,
     Named,
     Number,
+    OfAnotherText,
     Record,
     Untranslatable,
     Value,
@@ -95,10 +95,10 @@ class Expressions(Arithmetic):
             return self.named(node.id)
         if node.id in self.unit.names:
             found = self.unit.names[node.id]
-            return self.number_elsewhere(found) if isinstance(found, Elsewhere) else found
+            return self.number_elsewhere(found) if isinstance(found, OfAnotherText) else found
         raise Untranslatable(f"the name {node.id}")
 
-    def number_elsewhere(self, found: Elsewhere) -> Number:
+    def number_elsewhere(self, found: OfAnotherText) -> Number:
         """A number that another text holds."""
         assert found.kind is not None
         symbol = self.unit.symbol(found, None)
@@ -291,7 +291,7 @@ class Expressions(Arithmetic):
         if name in self.unit.trees:
             return self.call(name, values)
         found: Any = self.unit.names.get(name)
-        if isinstance(found, Elsewhere):
+        if isinstance(found, OfAnotherText):
             return self.call_elsewhere(found, [self.numbers(each) for each in values])
         if hasattr(found, "write"):
             return found.write(self.unit, self, values)
@@ -305,7 +305,7 @@ class Expressions(Arithmetic):
         kinds = tuple(kind_of(each) for each in given)
         return self.call_made(*self.unit.function(name, kinds), kinds, given)
 
-    def call_elsewhere(self, found: Elsewhere, given: list[Value]) -> Value:
+    def call_elsewhere(self, found: OfAnotherText, given: list[Value]) -> Value:
         """A call of a function of another text."""
         kinds = tuple(kind_of(each) for each in given)
         symbol = self.unit.symbol(found, kinds)

@@ -50,7 +50,7 @@ class Named:
 
 
 @dataclass(frozen=True, slots=True)
-class Elsewhere:
+class OfAnotherText:
     """A number, or a function that returns one or nothing, of another text: joined to this one when both are loaded."""
 
     name: str

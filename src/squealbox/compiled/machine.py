@@ -32,7 +32,6 @@ PASSES = (  # those that plain loops gain by; LLVM's own list takes ten times as
     "sroa", "simplify_cfg", "always_inliner", "instruction_combine", "loop_simplify", "loop_rotate", "new_gvn",
     "instruction_combine", "simplify_cfg", "global_dead_code_eliminate",
 )  # fmt: skip
-TRANSLATORS = ("kinds.py", "arithmetic.py", "expressions.py", "translation.py", "packed.py", "machine.py")
 CTYPES = {"ptr": ctypes.c_void_p, "i64": ctypes.c_int64, "double": ctypes.c_double, "i1": ctypes.c_bool}
 LOCK = threading.Lock()
 KEPT: list[Any] = []  # execution engines, for as long as their code may be called
@@ -50,8 +49,8 @@ def cache_folder() -> Path:
 class Compiled:
     """A plain function of a text, compiled at its first call for the kinds of its arguments, then read from disk.
 
-    What the text has as `Elsewhere` is of the text `elsewhere`, compiled apart: so texts that differ in little share
-    the machine code of what they have in common.
+    What the text has as `OfAnotherText` is in the text `elsewhere`, compiled apart: so texts that differ in little
+    share the machine code of what they have in common.
     """
 
     def __init__(self, text: str, name: str, elsewhere: str = "") -> None:
@@ -246,11 +245,11 @@ def _of_this_machine() -> bytes:
     import llvmlite.binding as llvm
 
     parts = [llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten(), str(llvm.llvm_version_info)]
-    folder = Path(__file__).parent
-    return b"".join(each.encode() for each in parts) + b"".join((folder / name).read_bytes() for name in TRANSLATORS)
+    texts = [path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py"))]
+    return b"".join([*(each.encode() for each in parts), *texts])
 
 
-def optimised(text: str, modules: dict[str, Any]) -> Any:
+def optimised(text: str, modules: dict[str, str]) -> Any:
     """A text and the modules it calls, as one; those are straight-line code, by which the passes gain nothing."""
     import llvmlite.binding as llvm
 
@@ -260,7 +259,7 @@ def optimised(text: str, modules: dict[str, Any]) -> Any:
     builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=1))
     _passed(module, builder, PASSES)
     for other, part in modules.items():
-        module.link_in(llvm.parse_assembly(str(part)))
+        module.link_in(llvm.parse_assembly(part))
         module.get_function(other).linkage = "internal"
     module.verify()
     _passed(module, builder, ("global_dead_code_eliminate",))

@@ -13,10 +13,13 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.compiled import vectors
 from squealbox.compiled.arithmetic import FLAGS
 from squealbox.compiled.kinds import FLOAT, LANES, MASK, PACKED, TEXTS, TRUTH, WHOLE, Array, Number, Untranslatable
+from squealbox.compiled.vectors import Lanes, Truth, as_reals, as_whole, bits, called, put, whole, wide, writing
 
-REALS, BITS, WORDS = TEXTS[PACKED], TEXTS[MASK], f"<{LANES} x i64>"
+REALS = TEXTS[PACKED]
+OBJECTS: dict[str, Callable[[str], Any]] = {PACKED: Lanes, MASK: Truth}
 
 
 class Written:
@@ -33,133 +36,105 @@ class Written:
         if len(values) != len(self.kinds):
             raise Untranslatable(f"{len(values)} arguments, of {len(self.kinds)} expected")
         given = [caller.numbered(x, kind) if kind != "a" else x for x, kind in zip(values, self.kinds, strict=True)]
-        return self.lines(caller, *given)
+        objects = [OBJECTS[x.kind](x.text) if getattr(x, "kind", "") in OBJECTS else x for x in given]
+        with writing(caller, LANES, FLAGS):
+            found = self.lines(*objects)
+        return tuple(map(_number, found)) if isinstance(found, tuple) else _number(found)
+
+
+def _number(found: Any) -> Any:
+    """What translated code knows: a number in a register."""
+    if isinstance(found, Lanes):
+        return Number(PACKED, found.vector)
+    return Number(MASK, found.vector) if isinstance(found, Truth) else found
 
 
 def written(kinds: str) -> Callable[[Callable[..., Any]], Written]:
-    """A function of kernels from the one that writes its instructions; an array is "a" among the kinds."""
+    """A function of kernels from one that works on lanes and writes; an array is "a" among the kinds."""
     return lambda write: Written(kinds, write)
 
 
-def _intrinsic(f: Any, name: str, *values: Number) -> Number:
-    f.needed.add(f"declare {REALS} @llvm.{name}.v{LANES}f64({', '.join([REALS] * len(values))})")
-    given = ", ".join(f"{REALS} {x.text}" for x in values)
-    return Number(PACKED, f.put(f"call {FLAGS} {REALS} @llvm.{name}.v{LANES}f64({given})"))
+select = written(MASK + PACKED + PACKED)(vectors.where)
+root = written(PACKED)(vectors.sqrt)
+larger = written(PACKED + PACKED)(vectors.maximum)
+smaller = written(PACKED + PACKED)(vectors.minimum)
 
 
-def _chosen(f: Any, where: Number, x: Number, y: Number) -> Number:
-    return Number(PACKED, f.put(f"select {BITS} {where.text}, {REALS} {x.text}, {REALS} {y.text}"))
-
-
-def _words(value: int) -> str:
-    return "<" + ", ".join([f"i64 {value}"] * LANES) + ">"
-
-
-@written(FLOAT)
-def splat(f: Any, x: Number) -> Number:
+@written(PACKED)
+def splat(x: Lanes) -> Lanes:
     """The same number in all lanes."""
-    return f.numbered(x, PACKED)
-
-
-@written(MASK + PACKED + PACKED)
-def select(f: Any, where: Number, x: Number, y: Number) -> Number:
-    """x where the mask holds, else y."""
-    return _chosen(f, where, x, y)
+    return x
 
 
 @written(MASK)
-def some(f: Any, where: Number) -> Number:
+def some(where: Truth) -> Number:
     """Whether the mask holds in any lane."""
-    bits = f.put(f"bitcast {BITS} {where.text} to i{LANES}")
-    return Number(TRUTH, f.put(f"icmp ne i{LANES} {bits}, 0"))
+    return Number(TRUTH, put(f"icmp ne i64 {bits(where)}, 0"))
 
 
 @written(MASK)
-def word(f: Any, where: Number) -> Number:
+def word(where: Truth) -> Number:
     """The mask as a whole number, whose bit k is lane k."""
-    bits = f.put(f"bitcast {BITS} {where.text} to i{LANES}")
-    return Number(WHOLE, f.put(f"zext i{LANES} {bits} to i64"))
-
-
-@written(PACKED)
-def root(f: Any, x: Number) -> Number:
-    """The square root."""
-    return _intrinsic(f, "sqrt", x)
+    return Number(WHOLE, bits(where))
 
 
 @written(PACKED + PACKED)
-def signed(f: Any, x: Number, y: Number) -> Number:
+def signed(x: Lanes, y: Lanes) -> Lanes:
     """|x| with the sign of y."""
-    return _intrinsic(f, "copysign", x, y)
-
-
-@written(PACKED + PACKED)
-def larger(f: Any, x: Number, y: Number) -> Number:
-    """The larger of two numbers; y when either is NaN."""
-    return _chosen(f, f.compare(">", x, y), x, y)
-
-
-@written(PACKED + PACKED)
-def smaller(f: Any, x: Number, y: Number) -> Number:
-    """The smaller of two numbers; y when either is NaN."""
-    return _chosen(f, f.compare("<", x, y), x, y)
+    return Lanes(called("copysign", x.vector, y.vector))
 
 
 @written(PACKED)
-def largest(f: Any, x: Number) -> Number:
+def largest(x: Lanes) -> Number:
     """The largest of the sixteen; of finite numbers only."""
-    f.needed.add(f"declare double @llvm.vector.reduce.fmax.v{LANES}f64({REALS})")
-    return Number(FLOAT, f.put(f"call nnan double @llvm.vector.reduce.fmax.v{LANES}f64({REALS} {x.text})"))
+    vectors.WRITER.get().needed.add(f"declare double @llvm.vector.reduce.fmax.v{LANES}f64({REALS})")
+    return Number(FLOAT, put(f"call nnan double @llvm.vector.reduce.fmax.v{LANES}f64({REALS} {x.vector})"))
 
 
 @written(PACKED)
-def inverse_power(f: Any, x: Number) -> Number:
+def inverse_power(x: Lanes) -> Lanes:
     """2^-e where 2^e <= |x| < 2^(e+1); 2^1023 where x = 0. Exact, and no division."""
-    word = f.put(f"bitcast {REALS} {x.text} to {WORDS}")
-    exponent = f.put(f"and {WORDS} {word}, {_words(0x7FF << 52)}")
-    turned = f.put(f"sub {WORDS} {_words(0x7FE << 52)}, {exponent}")
-    return Number(PACKED, f.put(f"bitcast {WORDS} {turned} to {REALS}"))
+    exponent = put(f"and {wide()} {as_whole(x.vector)}, {whole(0x7FF << 52)}")
+    return Lanes(as_reals(put(f"sub {wide()} {whole(0x7FE << 52)}, {exponent}")))
 
 
 @written(PACKED)
-def power_near_root(f: Any, x: Number) -> Number:
+def power_near_root(x: Lanes) -> Lanes:
     """The power of two f with x / 2 <= f^2 < 2 x, of x > 0."""
-    word = f.put(f"bitcast {REALS} {x.text} to {WORDS}")
-    high = f.put(f"lshr {WORDS} {word}, {_words(52)}")
-    exponent = f.put(f"sub {WORDS} {high}, {_words(1022)}")
-    half = f.put(f"ashr {WORDS} {exponent}, {_words(1)}")
-    biased = f.put(f"add {WORDS} {half}, {_words(1023)}")
-    shifted = f.put(f"shl {WORDS} {biased}, {_words(52)}")
-    return Number(PACKED, f.put(f"bitcast {WORDS} {shifted} to {REALS}"))
+    high = put(f"lshr {wide()} {as_whole(x.vector)}, {whole(52)}")
+    exponent = put(f"sub {wide()} {high}, {whole(1022)}")
+    half = put(f"ashr {wide()} {exponent}, {whole(1)}")
+    biased = put(f"add {wide()} {half}, {whole(1023)}")
+    return Lanes(as_reals(put(f"shl {wide()} {biased}, {whole(52)}")))
 
 
-def _place(f: Any, array: Array, index: Number, apart: int) -> str:
-    first = f.put(f"mul i64 {index.text}, {apart}")
-    place: str = f.put(f"getelementptr double, ptr {array.pointer}, i64 {first}")
-    return place
+def _place(array: Array, index: Number, apart: int) -> str:
+    first = put(f"mul i64 {index.text}, {apart}")
+    return put(f"getelementptr double, ptr {array.pointer}, i64 {first}")
 
 
 @written("a" + WHOLE)
-def load(f: Any, array: Array, index: Number) -> Number:
+def load(array: Array, index: Number) -> Lanes:
     """Packed number `index` of a flat array."""
-    return Number(PACKED, f.put(f"load {REALS}, ptr {_place(f, array, index, LANES)}, align 8"))
+    return Lanes(put(f"load {REALS}, ptr {_place(array, index, LANES)}, align 8"))
 
 
 @written("a" + WHOLE + PACKED)
-def store(f: Any, array: Array, index: Number, value: Number) -> None:
+def store(array: Array, index: Number, value: Lanes) -> None:
     """Write packed number `index` of a flat array."""
-    f.lines.append(f"store {REALS} {value.text}, ptr {_place(f, array, index, LANES)}, align 8")
+    at = _place(array, index, LANES)
+    vectors.WRITER.get().lines.append(f"store {REALS} {value.vector}, ptr {at}, align 8")
 
 
 @written("a" + WHOLE)
-def columns(f: Any, array: Array, index: Number) -> tuple[Number, ...]:
+def columns(array: Array, index: Number) -> tuple[Lanes, ...]:
     """The four entries, each of sixteen matrices of 2 x 2 that lie flat from the one numbered 16 `index` on."""
-    whole = f"<{4 * LANES} x double>"
-    found = f.put(f"load {whole}, ptr {_place(f, array, index, 4 * LANES)}, align 8")
+    full = f"<{4 * LANES} x double>"
+    found = put(f"load {full}, ptr {_place(array, index, 4 * LANES)}, align 8")
     out = []
     for k in range(4):
         places = ", ".join(f"i32 {4 * lane + k}" for lane in range(LANES))
-        out.append(Number(PACKED, f.put(f"shufflevector {whole} {found}, {whole} poison, <{LANES} x i32> <{places}>")))
+        out.append(Lanes(put(f"shufflevector {full} {found}, {full} poison, <{LANES} x i32> <{places}>")))
     return tuple(out)
 
 

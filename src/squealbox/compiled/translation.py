@@ -15,9 +15,9 @@ from squealbox.compiled.expressions import SIGNS, Expressions, Room, Several, re
 from squealbox.compiled.kinds import (
     TEXTS,
     WHOLE,
-    Elsewhere,
     Named,
     Number,
+    OfAnotherText,
     Untranslatable,
     Value,
     kind_of,
@@ -46,7 +46,7 @@ class Unit:
         self.made: dict[Any, tuple[str, Any]] = {}
         self.texts: list[str] = []
         self.needed: set[str] = set()
-        self.modules: dict[str, Any] = {}  # of functions written with llvmlite, by name
+        self.modules: dict[str, str] = {}  # of functions written in lanes, by name
         self.asked: dict[tuple[str, Any, Any], str] = {}  # of another text: symbols, by name, kind and arguments' kinds
 
     def function(self, name: str, kinds: tuple[Any, ...]) -> tuple[str, Any]:
@@ -61,7 +61,7 @@ class Unit:
             self.needed |= function.needed
         return self.made[key]
 
-    def symbol(self, found: Elsewhere, kinds: tuple[Any, ...] | None) -> str:
+    def symbol(self, found: OfAnotherText, kinds: tuple[Any, ...] | None) -> str:
         """The name, in LLVM's text, of what another text has."""
         return self.asked.setdefault((found.name, found.kind, kinds), f"{found.name}.elsewhere.{len(self.asked)}")
 

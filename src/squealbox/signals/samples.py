@@ -68,7 +68,7 @@ def samples(
 
 
 def too_few(what: str, count: int, begin: float | None, end: float | None, least: int) -> SignalError:
-    """The error for so few samples between two instants, as far as these were given."""
+    """The error for so few samples from `begin` [s] to `end` [s], as far as these were given."""
     ends = [f" {word} {value:g} s" for word, value in (("from", begin), ("to", end)) if value is not None]
     return SignalError(f"the {what} has {count} samples{''.join(ends)}: expected {least} or more")
 

@@ -1,4 +1,4 @@
-"""What happens in time? Depends on: compiled, system, signals, friction, schedules, result; llvmlite for kernels.
+"""What happens in time? Depends on: compiled, system, signals, friction, schedules, result.
 
 The names are listed in ``__init__.pyi``; each is loaded when it is first used.
 """

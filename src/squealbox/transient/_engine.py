@@ -91,9 +91,9 @@ def _kernel(
 
 
 def elsewhere(names: Mapping[str, str | None]) -> str:
-    """The text that has these names, of numbers and functions of their kinds, as `Elsewhere`."""
-    lines = [f"{name} = Elsewhere({name!r}, {kind!r})" for name, kind in names.items()]
-    return "\n".join(["from squealbox.compiled.kinds import Elsewhere\n", *lines, "", ""])
+    """The text that has these names, of numbers and functions of their kinds, as `OfAnotherText`."""
+    lines = [f"{name} = OfAnotherText({name!r}, {kind!r})" for name, kind in names.items()]
+    return "\n".join(["from squealbox.compiled.kinds import OfAnotherText\n", *lines, "", ""])
 
 
 def kept_text(made_for: str, write: Callable[[], str]) -> str:

@@ -102,15 +102,13 @@ class _OfLanes(ast.NodeTransformer):
 
 def tried(text: str) -> str:
     """Why a law's text mu(v, p) cannot be run on a series; empty where it can."""
-    from llvmlite import ir
+    from squealbox.compiled import vectors
+    from squealbox.transient.lanes import series
 
-    from squealbox.transient.lanes import series, vectors
-
-    builder = ir.IRBuilder(ir.Function(ir.Module(), ir.FunctionType(ir.VoidType(), []), "mu").append_basic_block())
     names: dict[str, Any] = {"np": np, **{name: getattr(series, name) for name in (*VECTOR_FUNCTIONS, "lane_tanh")}}
     try:
         exec(compile(lane_function(text, "mu"), "<own law>", "exec"), names)
-        with vectors.writing(builder, 1), series.deciding():
+        with vectors.writing(vectors.Writer(), 1), series.deciding():
             one = vectors.Lanes(vectors.number(1.0))
             numbers = [one] * 64
             found = names["mu"](series.Series(lambda k: None, (one, one)), numbers)

@@ -26,12 +26,12 @@ from squealbox.transient.lanes.tracing import take
 HEAD = """
 from collections import namedtuple
 
+from squealbox.compiled.in_memory import Given, at_once, load, store, store_known
+from squealbox.compiled.vectors import (
+    arctan, bits, cos, exp, forget, if_flagged, lane_tanh, log, maximum, minimum, sin, sqrt, where, with_sign,
+)
 from squealbox.transient.lanes.rough import rough_exp, rough_log
 from squealbox.transient.lanes.tracing import apart, traced, traced_as_written, wide
-from squealbox.transient.lanes.vectors import (
-    Given, arctan, at_once, bits, cos, exp, forget, if_flagged, lane_tanh, load, log, maximum, minimum, sin, sqrt,
-    store, store_known, where, with_sign,
-)
 # written by modules whose texts have the digest {digest}: a change of theirs makes another file
 {more}
 
@@ -49,10 +49,14 @@ from squealbox.transient.lanes.series import derivative as slope_series
 from squealbox.transient.lanes.tables import law_of_points, line_of_points, slope_of_points
 from squealbox.transient.lanes.taylor import ends_near_zero, grow, reach, ready, surely_slips
 from squealbox.transient.lanes.taylor_events import step_end
+
+@inner
+def evaluate(A, b):
+    return series_at(A, b)
 """
 FEW = 12  # coefficients that are copied one by one
 FROM_THE_MARCH = ("pulled", "chatters", "write_row")
-OF_EVERY_KERNEL = ("vectors.py", "tracing.py", "rough.py")
+OF_EVERY_KERNEL = ("tracing.py", "rough.py")
 WRITERS = (*OF_EVERY_KERNEL, "series.py", "tables.py", "taylor.py", "taylor_events.py")
 PLACES = {
     "ROW_JOB": "job", "ROW_ALIVE": "alive", "ROW_T": "t", "ROW_H": "h", "ROW_T_END": "t_end", "ROW_TRIES": "tries",

@@ -17,6 +17,7 @@ from squealbox.transient.lanes.shape import Places, layout, parameter_rows
 from squealbox.transient.lanes.table import Jobs, limits, tabulate
 from squealbox.transient.latest import Latest
 from squealbox.transient.methods import TAYLOR, Method, tableau
+from squealbox.transient.tolerances import STANDING, fastest_speed
 
 RUNNING = -1.0  # in the row of results of a run that has not ended
 FIRST = 2_000  # trials between the first two looks at the keyboard
@@ -56,7 +57,7 @@ def _prepared(system: System, scheme: int, name: str) -> Prepared:
     record[0] = packed
     rest = np.zeros(system.size)
     scratch = packing.scratch(record[0], rest, rest, 0.0, 0.0).base
-    slides = bool(packing.fastest_speed(system) > packing.STANDING)
+    slides = bool(fastest_speed(system) > STANDING)
     return Prepared(jobs, layout(jobs.shape), names, record, scratch, lane_kernel(jobs.shape), slides)
 
 

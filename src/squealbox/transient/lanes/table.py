@@ -17,6 +17,7 @@ from squealbox.transient.one_motion import lever, shared_motions
 from squealbox.transient.own_laws import law_kinds, own_texts
 from squealbox.transient.rows import EquationRows, audited, audited_matrix, consistent, fastest_rate, memories, rows_of
 from squealbox.transient.smooth_laws import smooth_kinds
+from squealbox.transient.tolerances import absolute_tolerances
 from squealbox.transient.widened import RunApart
 
 FEW = 3  # freedoms and contacts up to which a single run shares its kernel with other patterns of zeros
@@ -206,7 +207,7 @@ def limits(
     pace = np.maximum(own, swing)
     pace = np.where(pace > 0.0, pace, np.pi / (3.0 * duration))
     out: dict[str, Any] = {"rtol": np.asarray(method.rtol)}
-    given = packing.absolute_tolerances(system, method, own, start)
+    given = absolute_tolerances(system, method, own, start)
     out |= {f"atol{k}": np.asarray(each) for k, each in enumerate(given)}
     period = 2.0 * np.pi / pace
     seen = period / 6.0 if exact else np.pi / (3.0 * np.maximum(swing, 1e-300)) + 0.0 * period

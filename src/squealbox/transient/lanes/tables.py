@@ -6,8 +6,9 @@ pieces already, so its choice looks a little ahead.
 
 from typing import Any
 
+from squealbox.compiled.in_memory import Given
+from squealbox.compiled.vectors import Lanes, where
 from squealbox.transient.lanes.series import AHEAD, Series, above, at, plus, times
-from squealbox.transient.lanes.vectors import Given, Lanes, where
 
 FAR = 1e300  # where there is no further knot
 

@@ -2,9 +2,9 @@
 
 from typing import Any
 
+from squealbox.compiled.vectors import Lanes, Truth, minimum, where
 from squealbox.transient.lanes.rough import rough_exp, rough_log
 from squealbox.transient.lanes.series import Series, above, at, plus_product, times
-from squealbox.transient.lanes.vectors import Lanes, Truth, minimum, where
 
 FINITE = 1e300
 SHARE = 0.1  # of the tolerance that each of the last two terms may take

@@ -10,10 +10,10 @@ there. Where either fails, the step ends before that part, and the next one look
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from squealbox.compiled.vectors import Lanes, Truth, if_any, maximum, minimum, sqrt
+from squealbox.compiled.vectors import where as pick
 from squealbox.transient.lanes.series import Series, at, constant, value, value_and_slope, where
 from squealbox.transient.lanes.shape import PARTS
-from squealbox.transient.lanes.vectors import Lanes, Truth, if_any, maximum, minimum, sqrt
-from squealbox.transient.lanes.vectors import where as pick
 
 NEAR_ZERO = 1e-9  # share of its size at which a function starts at zero: its contact has just begun to slip
 TINY = 1e-6  # angle of the highest frequency over a step in which nothing turns: the signs at the ends tell

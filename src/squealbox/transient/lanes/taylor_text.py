@@ -46,16 +46,15 @@ class TaylorStep(EquationText):
         return {"TERMS": ORDER + 2, "UNIT_OF_WINDOW": UNIT_OF_WINDOW}
 
     def text(self) -> str:
-        """The function `step(A, b)`, and `evaluate(A, b)` of a recorded motion."""
+        """The function `step(A, b)`, and `series_at(A, b)` of a recorded motion."""
         return self.steps() + (self.evaluation() if self.shape.recorded else "")
 
     def evaluation(self) -> str:
-        """The text of `evaluate(A, b)`: all followed series and their slopes at the instant `since`, side by side."""
+        """The text of `series_at(A, b)`: all followed series and their slopes at the instant `since`, side by side."""
         breadth, places = self.shape.breadth, self.rows.places
         first = places[f"term0_{self.shape.followed[0]}"]
         call = f"{places['since']}, {first}, {breadth}, {ORDER + 2}, {places['value0']}, {places['slope_value0']}"
-        written = f"\n@wide({breadth})\ndef series_at(A, b):\n    return at_once(A, b, {call})\n"
-        return written + "\n\n@inner\ndef evaluate(A, b):\n    return series_at(A, b)\n"
+        return f"\n@wide({breadth})\ndef series_at(A, b):\n    return at_once(A, b, {call})\n"
 
     def steps(self) -> str:
         """Another trial where no lane of the group sticks; not for a single run, which would gain a tenth by it and

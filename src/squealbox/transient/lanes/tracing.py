@@ -4,48 +4,25 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any
 
-from llvmlite import ir
-
-from squealbox.compiled.kinds import WHOLE, Array, Number
+from squealbox.compiled.in_memory import Given, Group
+from squealbox.compiled.kinds import WHOLE, Array, Number, Untranslatable
 from squealbox.compiled.translation import Function, Unit
-from squealbox.transient.lanes.vectors import (
-    ALIGNED,
-    ALLOWED,
-    BUILDER,
-    DOUBLE,
-    INTEGER,
-    Given,
-    Group,
-    Lanes,
-    declared,
-    packed,
-    packed_type,
-    writing,
-)
-
-
-def on_lines(function: Any) -> None:
-    """Let the stack of a function begin with a line of the cache: a register put by across two lines costs twice."""
-    function.attributes.add("nounwind")  # llvmlite writes alignstack only beside another attribute
-    function.attributes.alignstack = ALIGNED
+from squealbox.compiled.vectors import WRITER, Lanes, Writer, packed, put, reals, writing
+from squealbox.system import InvalidSystem
 
 
 def apart(function: Callable[..., Any]) -> Callable[..., Any]:
     """A formula of one `Lanes` and many coefficients as a function of its own, called: for long tables."""
 
     def call(x: Lanes, given: Given) -> Lanes:
-        builder = BUILDER.get()
-        data = builder.gep(given.group.data, [INTEGER(given.place)])
-        kind = ir.FunctionType(packed_type(), [packed_type(), data.type])
-        made = declared(builder.module, kind, f"{function.__name__}_{given.count}")
-        if made.is_declaration:
-            made.linkage = "internal"
-            on_lines(made)
-            inside = ir.IRBuilder(made.append_basic_block())
-            with writing(inside):
-                value = function(Lanes(made.args[0]), Given(Group(made.args[1]), 0, given.count, given.whole))
-                inside.ret(packed(value))
-        return Lanes(builder.call(made, [x.vector, data]))
+        writer, kind, name = WRITER.get(), reals(), f"{function.__name__}_{given.count}"
+        data = given.group.at(given.place)
+        if name not in writer.functions:
+            with writing(Writer(writer.functions)) as inside:
+                value = function(Lanes("%x"), Given(Group("%p"), 0, given.count, given.whole))
+                inside.define(name, f"{kind} %x, ptr %p", kind, packed(value), "internal")
+            writer.needed |= inside.needed
+        return Lanes(put(f"call {kind} @{name}({kind} {x.vector}, ptr {data})"))
 
     return call
 
@@ -55,11 +32,8 @@ def traced_as_written(function: Callable[..., Any]) -> Any:
 
     @wraps(function)
     def strictly(*given: Any) -> Any:
-        token = ALLOWED.set(())
-        try:
+        with writing(WRITER.get(), allowed=""):
             return function(*given)
-        finally:
-            ALLOWED.reset(token)
 
     return traced(strictly)
 
@@ -70,7 +44,7 @@ def traced(function: Callable[..., Any]) -> "Traced":
 
 
 def wide(lanes: int) -> Callable[[Callable[..., Any]], "Traced"]:
-    """As `traced_as_written`, on so many lanes whatever the kernel has."""
+    """As `traced`, on so many lanes whatever the kernel has."""
     return lambda function: Traced(function, lanes)
 
 
@@ -90,15 +64,15 @@ class Traced:
         place = caller.put(f"getelementptr double, ptr {rows.pointer}, i64 {caller.numbered(offset, WHOLE).text}")
         return Number(WHOLE, caller.put(f"call i64 @{name}(ptr {place})"))
 
-    def module(self, name: str, lanes: int) -> ir.Module:
-        """The function alone in LLVM's module, for so many lanes."""
-        module = ir.Module(name)
-        made = ir.Function(module, ir.FunctionType(INTEGER, [DOUBLE.as_pointer()]), name)
-        on_lines(made)
-        builder = ir.IRBuilder(made.append_basic_block())
-        with writing(builder, lanes):
-            builder.ret(self.function(Group(made.args[0]), 0))
-        return module
+    def module(self, name: str, lanes: int) -> str:
+        """The function alone as LLVM's module, for so many lanes."""
+        with writing(Writer(), lanes) as writer:
+            try:
+                value = self.function(Group("%rows"), 0)
+            except Untranslatable as error:
+                raise InvalidSystem(str(error)) from error
+            writer.define(name, "ptr %rows", "i64", value)
+        return "\n".join([*sorted(writer.needed), *writer.functions.values()])
 
 
 class Take:
