@@ -17,6 +17,7 @@ from squealbox.friction import FrictionLaw
 from squealbox.limit_cycles import Branch, PointCurve
 from squealbox.limit_cycles.attractors.basins import Basin
 from squealbox.parameters import DataSheet, Parameter
+from squealbox.plots.brakes import has_drawing
 from squealbox.plots.dispatch import drawer_of, plot
 from squealbox.plots.facts import facts
 from squealbox.plots.style import drawn
@@ -146,14 +147,6 @@ def _design_card(design: Design) -> str:
     if has_drawing(design):
         parts.append(inline(plot(design)))
     return _framed(parts, table(("parameter", "value", "range", "meaning", "source"), parameter_rows(design)))
-
-
-def has_drawing(design: Design) -> bool:
-    """True when a drawing is known for this design and it is one brake, not a map of them."""
-    from squealbox.plots.brakes import drawing_of
-
-    single = not any(np.ndim(value) for _, about, value in design.leaves() if about.unit != "-")
-    return single and drawing_of(type(design)) is not None
 
 
 def parameter_rows(design: DataSheet) -> list[tuple[str, str, str, str, str]]:

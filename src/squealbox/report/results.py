@@ -9,7 +9,8 @@ import numpy as np
 from squealbox import plots
 from squealbox.designs import Design
 from squealbox.matrices import liveliest
-from squealbox.plots.cards import has_drawing, has_figure, parameter_rows
+from squealbox.plots.brakes import has_drawing
+from squealbox.plots.cards import has_figure, parameter_rows
 from squealbox.plots.sweeps import numeric_answers
 from squealbox.remedies import Remedies
 from squealbox.report.blocks import Code, Page, Picture, Points, ReportError, Section, Sound, Table, Text

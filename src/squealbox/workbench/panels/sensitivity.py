@@ -5,11 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.designs import Design, drawing_of
 from squealbox.figure_data import Bars
 from squealbox.parameters import ParameterError
-from squealbox.plots.moving import moving_strokes
-from squealbox.plots.strokes import written_places
 from squealbox.remedies.production import usual_scatter
 from squealbox.stability import critical_values, sensitivity
 from squealbox.system import InvalidSystem
@@ -55,8 +53,8 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     change = steps * found.first
     none = ROUND_OFF * abs(found.eigenvalue)
     order = [i for i in np.argsort(-np.abs(change.real), kind="stable") if abs(change[i].real) > none][:MOST_BARS]
-    drawn = moving_strokes(design)
-    places = written_places(design, drawn["strokes"], drawn["points"])
+    drawn = drawing_of(design)
+    places = drawn.places()
     bars: list[dict[str, Any]] = []
     for count, i in enumerate(order):
         work.progress(count / len(order), "looking for what each needs")
@@ -77,8 +75,8 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "words": MERGE if found.near_defective else _words(bars, step, bool(modes.stable)),
     }
     if places:
-        data |= {"strokes": drawn["strokes"], "box": drawn["box"]}
-    return Answer(data, {"points": drawn["points"]}, [Bars("sensitivity", f"growth rate [1/s] for {told}", shown)])
+        data |= drawn.data()
+    return Answer(data, {"points": drawn.points}, [Bars("sensitivity", f"growth rate [1/s] for {told}", shown)])
 
 
 def _none(outcome: str, why: str) -> Answer:
