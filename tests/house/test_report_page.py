@@ -120,6 +120,8 @@ def numbers(written):
     charts = []
     for text in re.findall(r'<script type="application/json">(.*?)</script>', written.read_text()):
         given = json.loads(text)
+        if "figures" not in given:  # the brake that vibrates
+            continue
         arrays = {name: np.frombuffer(base64.b64decode(packed), "<f4") for name, (_, packed) in given["arrays"].items()}
         charts.append({each["name"]: unpacked(given, arrays, each["name"]) for each in given["figures"]})
     return charts
@@ -178,7 +180,9 @@ def test_it_says_what_an_engineer_asks(opened):
     assert float(critical[1]) == pytest.approx(0.33269, abs=5e-6)  # the digits printed
     assert "Unstable: it will squeal at about 2.086 kHz" in text
     assert "flutter" in text
-    assert "it pulls, which a real contact cannot" in text  # shoe 1 carries -612 N in this reading
+    assert (
+        "it would have to pull, where a unilateral contact lifts off" in text
+    )  # shoe 1 carries -612 N in this reading
     assert "stable limit cycle" in text
     assert "100 cm²" in text
     assert "an assumption" in text

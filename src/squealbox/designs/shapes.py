@@ -220,7 +220,7 @@ class Shapes:
 
         Negative for a negative value, 0 for none; a schedule is drawn as usual.
         """
-        value, usual = self.design.value_of(name), getattr(type(self.design), name, None)
+        value, usual = self.design.value_of(name), self.design.usual(name)
         if not isinstance(value, float) or not usual:
             return 1.0
         return float(np.sign(value) * np.clip(np.sqrt(abs(value / usual)), 0.3, 1.6)) if value else 0.0

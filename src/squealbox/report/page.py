@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.figure_data import packed
+from squealbox.labelled import whole
 from squealbox.report.blocks import Chart, Page, Section, Vibrating
 
 TEMPLATE = "page.html.j2"
@@ -88,9 +89,8 @@ def _micro(value: Any) -> Any:
 def write_page(page: Page, path: str | os.PathLike[str]) -> Path:
     """Write a page to an HTML file, whole or not at all; returns the path."""
     path = Path(path)
-    part = path.with_name(path.name + ".part")
-    part.write_text(render(page), encoding="utf-8")
-    part.replace(path)
+    with whole(path) as part:
+        part.write_text(render(page), encoding="utf-8")
     return path
 
 

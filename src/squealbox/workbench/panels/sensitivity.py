@@ -9,7 +9,7 @@ from squealbox.designs import Design, drawing_of
 from squealbox.figure_data import Bars
 from squealbox.parameters import ParameterError
 from squealbox.remedies.production import usual_scatter
-from squealbox.stability import critical_values, sensitivity
+from squealbox.stability import critical_values, sensitivity, sentences
 from squealbox.system import InvalidSystem
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import Panel, Place, words
@@ -23,7 +23,6 @@ PANEL = Panel(
 )  # fmt: skip
 
 MOST_BARS = 16
-MERGE = "Two modes nearly merge here: derivatives mean little."
 ROUND_OFF = 1e-12  # of the eigenvalue: smaller changes of its real part are none
 POINTS = 101  # of the range in which a critical value is looked for
 LARGE = 40  # degrees of freedom beyond which it is not: the verdict looks along one parameter
@@ -72,7 +71,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "condition": finite(found.condition),
         "near": found.near_defective,
         "stable": bool(modes.stable),
-        "words": MERGE if found.near_defective else _words(bars, step, bool(modes.stable)),
+        "words": sentences.MERGE if found.near_defective else _words(bars, step, bool(modes.stable)),
     }
     if places:
         data |= drawn.data()
