@@ -4,7 +4,10 @@ The file is written by h5netcdf as xarray would read it, without loading xarray:
 """
 
 import os
-from collections.abc import Mapping
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -12,6 +15,20 @@ import numpy as np
 if TYPE_CHECKING:
     import h5netcdf
     import xarray
+
+
+@contextmanager
+def whole(path: Path) -> Iterator[Path]:
+    """A file to write in place of `path`, which it becomes at the end: that is there whole or not at all."""
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
+    os.close(handle)
+    part = Path(name)
+    try:
+        yield part
+        part.chmod(0o644)  # a temporary file is readable by its owner alone
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
 
 
 class Labels(NamedTuple):

@@ -163,10 +163,16 @@ class DataSheet:
             key, _, rest = rest.partition(".")
             value = value[self._place(name, value, key)]
         if rest and not isinstance(value, DataSheet):
-            raise ParameterError(
-                type(self).__name__, path, UNSAID, f"a name without a part: {name} holds no parameters"
-            )
+            raise ParameterError(type(self).__name__, path, UNSAID, f"a name without a part: {name} has no parameters")
         return value.value_of(rest) if rest else value
+
+    def usual(self, path: str) -> Any:
+        """The value that the class gives to what is behind a dotted name; the present one where that is no number."""
+        name, _, rest = self._paths(path)[0].partition(".")
+        value, usual = getattr(self, name, None), getattr(type(self), name, None)
+        if rest and isinstance(value, DataSheet):
+            return value.usual(rest)
+        return usual if isinstance(usual, (int, float)) else self.value_of(path)
 
     def unit_of(self, path: str) -> str:
         """Unit of a dotted parameter or of an alias; empty for a pure number and for what has none."""
@@ -210,8 +216,7 @@ class DataSheet:
         return known.index(key)
 
     def _check_known(self, path: str, head: str, name: str, value: Any) -> None:
-        names = self.field_names()
-        if name not in names:
+        if name not in self.field_names():
             raise ParameterError(type(self).__name__, path, value, known_names(head, self._known()))
 
     def _known(self) -> list[str]:

@@ -10,7 +10,6 @@ import importlib
 import json
 import os
 import platform
-import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib import metadata
@@ -20,7 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from squealbox.labelled import Labelled, Labels
+from squealbox.labelled import Labelled, Labels, whole
 from squealbox.parameters import DRAWN_BY, from_plain, load_kind, screenful, to_plain, with_cautions
 
 if TYPE_CHECKING:
@@ -59,6 +58,11 @@ class Outcome(str):
     def ok(self) -> bool:
         """True when the computation reached its end."""
         return self == COMPLETED
+
+    @property
+    def told(self) -> str:
+        """The name, and the sentence where there is one."""
+        return f"{self!s}: {self.message}" if self.message else str(self)
 
     def to_plain(self) -> dict[str, Any]:
         """Name, message and evidence as plain data."""
@@ -150,7 +154,7 @@ class Result:
     def summary(self) -> str:
         """At most a screenful: how it ended, each number with its unit, each array by its shape and range."""
         name, ended, fields = type(self).__name__, self.outcome, _quantities(type(self))
-        said = f"{name} ended as {ended}: {ended.message}" if ended.message and not ended.ok else f"{name}: {ended}"
+        said = f"{name}: {ended}" if ended.ok else f"{name} ended as {ended.told}"
         lines = [f"  {field.name:<20s} {_told(field, getattr(self, field.name))}" for field in fields[:MOST_LINES]]
         if len(fields) > MOST_LINES:
             lines.append(f"  and {len(fields) - MOST_LINES} more arrays, listed by .to_dataset()")
@@ -244,14 +248,8 @@ class Result:
             )
         if not path.parent.is_dir():
             raise ResultFileError(f"{path}: there is no folder {path.parent}, expected one that is there")
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
-        os.close(handle)
-        try:
-            self._write(temporary)
-            os.chmod(temporary, 0o644)  # a temporary file is readable by its owner alone
-            os.replace(temporary, path)
-        finally:
-            Path(temporary).unlink(missing_ok=True)
+        with whole(path) as part:
+            self._write(str(part))
         return path
 
     def _write(self, path: str) -> None:

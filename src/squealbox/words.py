@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from squealbox.parameters import Parameter
 
 MINUS = "\N{MINUS SIGN}"
+AUDIBLE = (20.0, 20e3)  # Hz that people hear
 
 PREFIXES: dict[str, tuple[tuple[float, str], ...]] = {
     "m": ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")),
@@ -86,10 +87,15 @@ def quantity(value: Any, unit: str, digits: int = 4) -> str:
     >>> quantity(12.3e-6, "m")
     '12.3 µm'
     """
+    return " ".join(read(value, unit, digits)).rstrip()
+
+
+def read(value: Any, unit: str, digits: int = 4) -> tuple[str, str]:
+    """The two words of a `quantity`: the number, and the unit it is read in."""
     if not np.isfinite(float(value)):
-        return "not known"
+        return "not known", ""
     factor, written = scaled(unit, value)
-    return f"{number(float(value) / factor, digits)} {plain_unit(written)}".rstrip()
+    return number(float(value) / factor, digits), plain_unit(written)
 
 
 def plain_unit(unit: str) -> str:

@@ -24,10 +24,9 @@ from house import test_nothing_is_forgotten as house
 import squealbox
 from squealbox import DrumBrake, complex_modes, fit_friction, plot, read_design, simulate, write_design
 from squealbox.cli import main
-from squealbox.designs import TiltedBlock
+from squealbox.designs import TiltedBlock, drawing_of
 from squealbox.friction import Gaussian, LAWS, Coulomb
 from squealbox.plots import brake_drawing
-from squealbox.plots.strokes import brake_strokes
 from squealbox.result import Result
 from squealbox.stability.friction_course import friction_course
 from squealbox.workbench.panels import PANELS, Options, Work, function_of
@@ -54,7 +53,8 @@ course.save("course.nc")
 out["growth"] = [course.growth.tolist(), Result.load("course.nc").growth.tolist()]
 plot(course).savefig("course.png")
 brake_drawing(brake).savefig("brake.png")
-out["strokes"] = len(brake_strokes(brake)["strokes"])
+drawn = drawing_of(brake)
+out["drawn"] = [drawn.places(), np.abs(drawn.moved(1)).max(), drawn.contacts_moved(1).tolist()]
 
 # the page
 chosen = design_of({"brake": "tilted_block", "laws": {"friction": "gaussian"}}, {})
@@ -123,7 +123,10 @@ def test_a_result_and_its_figure_are_used(used):
     assert computed == kept
     assert len(computed) == 3
     assert (used["folder"] / "course.png").stat().st_size > 1000
-    assert used["strokes"] == 4
+    places, most, touching = used["drawn"]
+    assert set(places) == {"m", "k", "load", "sliding_speed"}
+    assert places["m"] == [0.5, 0.3]  # the middle of the block
+    assert (most, touching) == (1.0, [[[1.0, 0.0]]])  # the block and its contact go along x, nothing goes farther
 
 
 def test_the_page_and_the_command_line_know_them(used):

@@ -18,7 +18,7 @@ from squealbox.designs import DESIGNS, Design
 from squealbox.fit import FITTED
 from squealbox.friction import LAW_NAMES
 from squealbox.plots import plot
-from squealbox.plots.brakes import drawing_of
+from squealbox.plots.brakes import draws
 from squealbox.result import Result
 from squealbox.transient.methods import TABLEAUX
 from squealbox.workbench.panels import PANELS
@@ -57,7 +57,7 @@ def designs() -> list[str]:
     for name, kind in DESIGNS.items():
         if not kind.title or not kind.source:
             lacks.append(f"the design {kind.__name__} says no `title` or no `source`")
-        if drawing_of(kind) is None:
+        if not draws(kind):
             lacks.append(f"the design {kind.__name__} is not drawn: write its `draw`")
         if kind.__name__ not in gallery:
             lacks.append(f"the design {kind.__name__} stands on no page of docs/gallery")

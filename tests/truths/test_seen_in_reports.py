@@ -11,9 +11,9 @@ from squealbox.family import ParameterAxis
 from squealbox.fe.surface import Surface, surface_of
 from squealbox.plots.surfaces import REACH, contact_pressure, from_side, mode_on_surface, outline
 from squealbox.report import design_page, examine
-from squealbox.report.blocks import Solid, Table
+from squealbox.report.blocks import Table, Vibrating
 from squealbox.report.page import every, render
-from squealbox.report.solid import MOST_FACES, vibrating_solid
+from squealbox.report.vibrating import MOST_FACES, vibrating
 
 BAND = (2500.0, 5000.0)
 
@@ -43,7 +43,7 @@ def cube() -> Surface:
 def test_each_drawn_node_moves_as_the_full_mode_does(meshed):
     brake, small = meshed
     modes = complex_modes(small)
-    solid = vibrating_solid(small, modes)
+    solid = vibrating(small, modes)
     full = small.expand(modes.most_unstable.shape)
     numbers, places = brake.node_rows()
     middle = surface_of(brake).middle
@@ -64,7 +64,7 @@ def test_each_drawn_node_moves_as_the_full_mode_does(meshed):
 
 
 def test_the_page_holds_the_same_numbers_and_stays_light(page):
-    (solid,) = every(Solid, page.sections)
+    (solid,) = every(Vibrating, page.sections)
     html = render(page)
     (packed,) = [part for part in html.split('<script type="application/json">') if part.startswith('{"data":{"names"')]
     data = json.loads(packed.split("</script>")[0])

@@ -7,8 +7,7 @@ import pytest
 
 from squealbox import DrumBrake, complex_modes
 from squealbox.countermeasures import TunedMass
-from squealbox.designs import DESIGNS
-from squealbox.plots.moving import moving_strokes
+from squealbox.designs import DESIGNS, drawing_of
 from workbench.browsing import Page
 
 QUESTIONS = ("why", "when", "happens", "silences", "matches", "tells", "project")
@@ -135,31 +134,29 @@ def test_stick_and_slip_have_their_colours_and_a_dot_goes_along(page):
 @pytest.mark.parametrize("name", sorted(DESIGNS))
 def test_each_freedom_moves_its_part_and_no_wall(name):
     design = DESIGNS[name]()
-    drawn = moving_strokes(design)
-    sizes = dict(zip(design.system().names, np.abs(drawn["moves"]).max(axis=(1, 2)), strict=True))
+    system, drawn = design.system(), drawing_of(design)
+    sizes = dict(zip(system.names, np.abs(drawn.moved(system.size)).max(axis=(1, 2)), strict=True))
     seen = [
         size for dof, size in sizes.items() if dof != "q2"
     ]  # the disc tilts about two axes: one is not in the section
     assert min(seen) > 0.0, "each freedom is seen"
-    first = 0
-    for stroke in drawn["strokes"]:
-        own = drawn["moves"][:, first : first + stroke["count"]]
-        first += stroke["count"]
-        if stroke["role"] == "motion":
-            assert not np.any(own), "the belt and its arrow stand where they are"
-    assert first == len(drawn["points"])
-    assert len(drawn["contacts"]) in (0, len(design.system().contacts))
+    for shape in drawn.shapes:
+        if shape.role in ("motion", "support"):
+            assert not np.any(shape.moved(system.size)), "walls, the belt and its arrow stand where they are"
+    assert len(drawn.contacts) in (0, len(system.contacts))
+    assert drawn.contacts_moved(system.size).shape == (system.size, len(drawn.contacts), 2)
+    assert set(drawn.places()) <= set(design.scalars()) | set(design.parameters())
 
 
 def test_the_drum_moves_as_its_mode_does_and_its_springs_share_it_out():
-    drawn = moving_strokes(DrumBrake())
+    drawn = drawing_of(DrumBrake())
     shape = complex_modes(DrumBrake()).most_unstable.shape.real
-    moved = np.tensordot(shape, drawn["moves"], axes=1)
-    inside = np.hypot(*drawn["points"].T) < 0.5
+    moved = np.tensordot(shape, drawn.moved(2), axes=1)
+    inside = np.hypot(*drawn.points.T) < 0.5
     assert np.allclose(moved[inside], shape)
     way = np.linalg.norm(moved, axis=1)
     assert np.max(way) == pytest.approx(np.linalg.norm(shape), rel=1e-12)
     assert np.any((way > 0.01 * np.max(way)) & (way < 0.99 * np.max(way))), "springs are stretched"
-    cured = moving_strokes(TunedMass(DrumBrake(), "x", 0.02, 2000.0, 0.1))
-    assert cured["moves"].shape[0] == 3
-    assert np.array_equal(cured["moves"][:2], drawn["moves"])
+    cured = drawing_of(TunedMass(DrumBrake(), "x", 0.02, 2000.0, 0.1)).moved(3)
+    assert np.array_equal(cured[:2], drawn.moved(2))
+    assert not np.any(cured[2])

@@ -123,7 +123,7 @@ class Calibration(Result):
         width = max(len(name) for name in ("parameter", *self.names))
         lines = [f"{'parameter':{width}}  {'value':>13}  {'sd':>10}  95 % interval"]
         if not np.all(np.isfinite(self.values)):
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         for i, name in enumerate(self.names):
             numbers = f"{self.values[i]:13.6g}  {self.errors[i]:10.3g}  {self.low[i]:.6g} to {self.high[i]:.6g}"
             lines.append(f"{name:{width}}  {numbers}")
@@ -132,7 +132,7 @@ class Calibration(Result):
             mark = "  <- not reached" if abs(away) > FAR else ""
             lines.append(f"  {text}: the model says {found:.6g}, {round(float(away), 2) + 0.0:+.2f} sd{mark}")
         if not self.outcome.ok:
-            lines.append(f"{self.outcome}: {self.outcome.message}")
+            lines.append(self.outcome.told)
         return "\n".join([*lines, *self.cannot_tell])
 
 

@@ -41,7 +41,7 @@ class Comparison(Result):
                 for x, w, p in ((self.simulated[i], 12, 7), (self.measured[i], 12, 7), (self.error[i], 10, 2))
             )
             lines.append(f"{name:12}  {numbers}  {self._distance(i)}  {self.settings['units'][i]}")
-        head = [] if self.outcome.ok else [f"{self.outcome}: {self.outcome.message}"]
+        head = [] if self.outcome.ok else [self.outcome.told]
         return "\n".join([*head, *lines, *self.settings["notes"]])
 
     def _distance(self, i: int) -> str:

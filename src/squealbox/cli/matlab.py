@@ -1,12 +1,12 @@
 """A sweep as a MAT file: names that MATLAB takes, units beside them, words as cells."""
 
-import os
 import re
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from squealbox.labelled import whole
 
 if TYPE_CHECKING:
     from squealbox.studies import Sweep
@@ -29,14 +29,8 @@ def write_mat(path: Path, found: "Sweep") -> Path:
         units[name], names[name] = str(dataset[variable].attrs.get("units", "")), str(variable)
     dimensions = {_name(str(v), {}): " x ".join(map(str, dataset[v].dims)) for v in dataset.data_vars}
     holds |= {"units": units, "names": names, "dimensions": dimensions, "study": str(dataset.attrs.get("settings", ""))}
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            savemat(stream, holds, long_field_names=True, oned_as="column", do_compression=True)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    finally:
-        Path(temporary).unlink(missing_ok=True)
+    with whole(path) as part, part.open("wb") as stream:
+        savemat(stream, holds, long_field_names=True, oned_as="column", do_compression=True)
     return path
 
 

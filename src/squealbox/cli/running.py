@@ -23,7 +23,7 @@ class ComputationFailed(Exception):
 
     def __init__(self, outcome: Outcome) -> None:
         self.outcome = outcome
-        super().__init__(f"{outcome}: {outcome.message}" if outcome.message else str(outcome))
+        super().__init__(outcome.told)
 
 
 def run(name: str, command: Command, words: Sequence[str]) -> int:

@@ -1,30 +1,23 @@
 """Numbers as a CSV file that spreadsheets open: a first line with names and units, then one row each."""
 
 import csv
-import os
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from squealbox.labelled import whole
 from squealbox.result import Result
 
 
 def write_csv(path: Path, columns: Mapping[str, Any]) -> Path:
     """Write columns of equal length to `path`, whole or not at all; the keys are the first line."""
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="") as stream:
-            writer = csv.writer(stream, lineterminator="\n")
-            writer.writerow(columns)
-            arrays = [np.asarray(column) for column in columns.values()]
-            writer.writerows(zip(*(_cells(array) for array in arrays), strict=True))
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    finally:
-        Path(temporary).unlink(missing_ok=True)
+    with whole(path) as part, part.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(columns)
+        arrays = [np.asarray(column) for column in columns.values()]
+        writer.writerows(zip(*(_cells(array) for array in arrays), strict=True))
     return path
 
 

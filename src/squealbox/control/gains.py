@@ -41,7 +41,7 @@ class StableGains(Result):
     def summary(self) -> str:
         """The ranges, or that there is none."""
         if not self.outcome.ok:
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         spans = ", ".join(f"{a:.6g} to {b:.6g}" for a, b in zip(self.low, self.high, strict=True))
         return (
             f"stable with the loops' forces times {spans}; fastest decay {self.least_growth:.6g} 1/s at {self.best:.6g}"

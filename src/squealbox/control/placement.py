@@ -52,7 +52,7 @@ class Placement(Result):
     def summary(self) -> str:
         """The best pairs for the mode with the largest growth rate, and what they do to the others."""
         if not self.outcome.ok:
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         pole = self.poles[self.target]
         lines = [
             f"mode at {abs(pole.imag) / (2.0 * np.pi):.6g} Hz, growth {pole.real:+.6g} 1/s; per N s/m of feedback:"

@@ -45,7 +45,7 @@ class DefeatingPush(Result):
     def summary(self) -> str:
         """The edge, and the amplitude there."""
         if not self.outcome.ok:
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         return (
             f"defeated by pushes above {self.push:.6g} m/s; the motion at the edge has an amplitude of "
             f"{float(np.max(self.amplitude)):.6g} m ({self.runs} runs)"

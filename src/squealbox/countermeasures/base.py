@@ -57,6 +57,10 @@ class Countermeasure(Design):
         own = path.partition(".")[0] in {*self.field_names(), *self.aliases}
         return super().value_of(path) if own else self.brake.value_of(path)
 
+    def usual(self, path: str) -> Any:
+        own = path.partition(".")[0] in {*self.field_names(), *self.aliases}
+        return super().usual(path) if own else self.brake.usual(path)
+
     def unit_of(self, path: str) -> str:
         """The unit of a dotted name, the countermeasure's own or the brake's."""
         return super().unit_of(path) or self.brake.unit_of(path)

@@ -5,6 +5,7 @@ from typing import Annotated, Any, ClassVar, get_origin
 
 import numpy as np
 
+from squealbox.designs.shapes import Shapes
 from squealbox.friction import FrictionLaw
 from squealbox.parameters import (
     DRAWN_BY,
@@ -76,8 +77,8 @@ class Design(DataSheet):
         """The fields that hold one of several words, those of a brake within countermeasures included."""
         return self.choices()
 
-    def draw(self, panel: Any) -> None:
-        """Where `plots.brakes` knows no drawing: with `plot`, `text`, `annotate`, `add_patch` of a Matplotlib panel."""
+    def draw(self, shapes: Shapes) -> None:
+        """Add the shapes of its drawing, and its contacts in the order of the system; a design may have none."""
 
     def __str__(self) -> str:
         further = "complex_modes(it), simulate(it, 0.05), plot(it); it.replace({name: value}) has another value"

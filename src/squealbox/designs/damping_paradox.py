@@ -24,6 +24,7 @@ import numpy as np
 from squealbox.designs.base import Design
 from squealbox.designs.mode_coupling import X, Y
 from squealbox.designs.rows import block, column, diagonal
+from squealbox.designs.shapes import DOWN, RIGHT, STILL, UP, Moves, Shapes
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import parameter
 from squealbox.system import Contact, System
@@ -67,3 +68,20 @@ class DampingParadox(Design):
         )
         stiffness = diagonal(self.k1, self.k2)
         return System(block(self.m) * np.eye(2), diagonal(*damping), stiffness, np.zeros(2), contacts, ("x", "y"))
+
+    def draw(self, shapes: Shapes) -> None:
+        """A mass with a spring and dashpot to each of two sliding walls at right angles."""
+        mass: Moves = {0: RIGHT, 1: DOWN}
+        shapes.box((-0.35, -0.35), 0.7, 0.7, "m", "m", mass)
+        shapes.spring((0.35, 0.0), (1.15, 0.0), "$k_1, c_1$", "k1", moves=(mass, STILL))
+        shapes.spring((0.0, -0.35), (0.0, -1.15), "$k_2, c_2$", "k2", moves=(mass, STILL))
+        shapes.line((1.15, -0.6), (1.15, 0.6), role="motion", width=2.0)
+        shapes.line((-0.6, -1.15), (0.6, -1.15), role="motion", width=2.0)
+        shapes.velocity((1.3, -0.4), (1.3, 0.4), "V", "sliding_speed", (1.45, 0.0))
+        shapes.velocity((-0.4, -1.3), (0.4, -1.3), "V", "sliding_speed", (0.0, -1.48))
+        shapes.load((-1.0, 0.0), (-0.38, 0.0), "N", "load", (-1.1, 0.0), mass)
+        shapes.load((0.0, 1.0), (0.0, 0.38), "N", "load", (0.0, 1.12), mass)
+        shapes.axis((0.5, 0.75), (0.95, 0.75), "x", (1.05, 0.75))
+        shapes.axis((0.5, 0.75), (0.5, 0.42), "y", (0.62, 0.52))
+        shapes.contact((1.15, 0.0), (-1.0, 0.0))
+        shapes.contact((0.0, -1.15), UP)

@@ -19,6 +19,7 @@ import numpy as np
 from squealbox.designs.base import Design
 from squealbox.designs.drum_brake_readings import ASSUMED_SLOPE, READINGS, TABLE_SPEED, Reading
 from squealbox.designs.rows import matrix, vector
+from squealbox.designs.shapes import RIGHT, STILL, UP, Moves, Shapes
 from squealbox.friction import FrictionLaw, LinearSlope
 from squealbox.parameters import ParameterError, choice, parameter
 from squealbox.schedules import as_schedule
@@ -121,6 +122,29 @@ class DrumBrake(Design):
         k22 = self.k2 + self.k3 * c1**2 + self.k4 * c2**2 + zero
         stiffness = matrix((k11, cross), (cross, k22))
         return System(mass, damping, stiffness, self._load(), READINGS[self.reading].contacts(self), names=("x", "y"))
+
+    def draw(self, shapes: Shapes) -> None:
+        """The drum as a mass, its two shoes at their angles from the y axis."""
+        drum: Moves = {0: RIGHT, 1: UP}
+        shapes.circle((0.0, 0.0), 0.8, moves=drum)
+        shapes.text((-0.28, -0.28), "m", "m", "body", moves=drum)
+        shoes = ((1, self.theta1, "$N_1$", "$k_3$", "k3", 0.3), (2, self.theta2, "$N_2$", "$k_4$", "k4", 0.52))
+        for shoe, theta, load, spring, of, radius in shoes:
+            out, across = np.array([np.sin(theta), np.cos(theta)]), np.array([np.cos(theta), -np.sin(theta)])
+            shapes.line((0.0, 0.0), 0.8 * out, width=0.5, dashes=(4, 2), moves=(drum,))
+            shapes.spring(0.82 * out, 1.5 * out, spring, of, moves=(drum, STILL))
+            shapes.line(*(1.5 * out + s * across for s in (-0.3, 0.3)), role="part", width=4.0)
+            shapes.load(2.05 * out, 1.56 * out, load, f"load{shoe}", 2.2 * out)
+            name = f"{np.rad2deg(theta):.0f}°"
+            shapes.arc((0.0, 0.0), radius, np.pi / 2, np.pi / 2 - theta, name, f"theta{shoe}", drum)
+            shapes.contact(0.8 * out, -out, drum)
+        shapes.line((0.0, 0.0), (0.0, 1.15), width=0.5, moves=(drum, STILL))
+        shapes.text((-0.08, 1.1), "y", size=7.0)
+        shapes.spring((-0.8, 0.0), (-1.5, 0.0), "$k_1$", "k1", moves=(drum, STILL))
+        shapes.wall((-1.5, 0.0), 0.0)
+        shapes.spring((0.0, -0.8), (0.0, -1.5), "$k_2$", "k2", moves=(drum, STILL))
+        shapes.wall((0.0, -1.5), np.pi / 2)
+        shapes.turning(0.95, np.deg2rad(250.0), np.deg2rad(195.0), "$V_B$", "sliding_speed")
 
     @property
     def directions(self) -> tuple[Any, Any, Any, Any]:

@@ -26,6 +26,7 @@ import numpy as np
 
 from squealbox.designs.base import Design
 from squealbox.designs.rows import block, column, diagonal, outer
+from squealbox.designs.shapes import RIGHT, UP, Moves, Shapes
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import ParameterError, choice, parameter
 from squealbox.schedules import value_at
@@ -109,6 +110,34 @@ class DrumBrakeShoes(Design):
                 contacts.append(Contact(*rows, preload, self.sliding_speed, self.friction, name, True, normal))
         names = ("drum_x", "drum_y", "shoe1_x", "shoe1_y", "shoe1_turn", "shoe2_x", "shoe2_y", "shoe2_turn")
         return System(mass, block(self.damping) * stiffness, stiffness, load, tuple(contacts), names)
+
+    def draw(self, shapes: Shapes) -> None:
+        """The drum with both shoes to scale of its radius, contact points, abutments and actuator."""
+        drum: Moves = {0: RIGHT, 1: UP}
+        shapes.circle((0.0, 0.0), 1.12, moves=drum)
+        shapes.circle((0.0, 0.0), 1.0, "hollow", drum)
+        half, top = 0.5 * self.arc, self.arm / self.radius
+        for shoe, side in ((0, 1.0), (1, -1.0)):
+            middle = SHOES[shoe]
+            own: Moves = {2 + 3 * shoe: RIGHT, 3 + 3 * shoe: UP, 4 + 3 * shoe: float(self.radius)}
+            shapes.ring(0.9, 0.14, middle - half, middle + half, "shoe", own)
+            shapes.ring(1.0, 0.1, middle - half, middle + half, "lining", own)
+            for angle in self.lining_angles(shoe):
+                out = np.array([np.cos(angle), np.sin(angle)])
+                shapes.line(0.88 * out, out, role="contact", width=1.2, moves=(own,))
+                shapes.contact(0.95 * out, -out, own)
+            foot = self.abutment_point(shoe) / self.radius
+            low, high = ((0.83 * np.cos(a), 0.83 * np.sin(a)) for a in (middle - side * half, middle + side * half))
+            shapes.line(low, foot, role="part", width=2.0, moves=(own,))
+            shapes.circle(foot, 0.03, "pivot", own)
+            shapes.line(high, (side * 0.42, top), role="part", width=2.0, moves=(own,))
+            shapes.load((side * 0.05, top), (side * 0.42, top), "F", "load", (side * 0.2, top + 0.1), own)
+            shapes.text((side * 0.55, -0.3), f"shoe {shoe + 1}", size=7.0, moves=own)
+        shapes.text((0.0, -top - 0.13), "abutments", "abutment", size=7.0)
+        shapes.turning(1.22, np.deg2rad(60.0), np.deg2rad(120.0), "V", "sliding_speed")
+        shapes.text(
+            (0.0, 0.02), f"R = {1e3 * self.radius:.0f} mm\n{2 * self.points} contact points", "radius points", size=7.0
+        )
 
     def lining_angles(self, shoe: int) -> Any:
         """Angles of the points of a lining, in the middle of equal pieces, shape (points, ...)."""

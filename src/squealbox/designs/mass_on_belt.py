@@ -18,6 +18,7 @@ import numpy as np
 
 from squealbox.designs.base import Design
 from squealbox.designs.rows import block
+from squealbox.designs.shapes import DOWN, RIGHT, STILL, Moves, Shapes
 from squealbox.friction import FrictionLaw, Hyperbolic
 from squealbox.parameters import ParameterError, parameter
 from squealbox.system import Contact, System
@@ -53,6 +54,19 @@ class MassOnBelt(Design):
         along = np.ones(1)
         contact = Contact(0.0 * along, along, along, self.load, self.sliding_speed, self.friction, name="belt")
         return System(block(self.m) * unit, block(self.c) * unit, block(self.k) * unit, [0.0], (contact,), names=("x",))
+
+    def draw(self, shapes: Shapes) -> None:
+        """A block on a belt, spring and dashpot to a wall."""
+        block: Moves = {0: RIGHT}
+        shapes.belt(-1.6, 1.6)
+        shapes.box((-0.4, 0.03), 0.8, 0.6, "m", "m", block)
+        shapes.spring((-1.8, 0.45), (-0.4, 0.45), "k", "k", moves=(STILL, block))
+        shapes.dashpot((-1.8, 0.17), (-0.4, 0.17), moves=(STILL, block))
+        shapes.text((-0.85, 0.27), "c", "c", size=7.0)
+        shapes.wall((-1.8, 0.33), 0.0, 0.8)
+        shapes.load((0.0, 1.2), (0.0, 0.65), "N", "load", (0.15, 1.1), block)
+        shapes.axis((0.5, 0.75), (0.95, 0.75), "x", (1.05, 0.75))
+        shapes.contact((0.0, 0.03), DOWN, block)
 
 
 class BlockChain(Design):
@@ -97,3 +111,20 @@ class BlockChain(Design):
         )
         names = tuple(f"x{i + 1}" for i in range(n))
         return System(block(self.m) * unit, block(self.c) * unit, stiffness, np.zeros(n), contacts, names)
+
+    def draw(self, shapes: Shapes) -> None:
+        """The first five blocks on their belt."""
+        shown, pitch = min(self.blocks, 5), 1.5
+        shapes.belt(-1.1, pitch * (shown - 1) + 1.1)
+        for i in range(shown):
+            x, block = pitch * i, {i: RIGHT}
+            shapes.box((x - 0.35, 0.03), 0.7, 0.5, "m", "m", block)
+            shapes.spring((x - 0.15, 0.53), (x - 0.55, 1.4), "k", "k", moves=(block, STILL))
+            shapes.load((x + 0.12, 1.1), (x + 0.12, 0.56), "N", "load", (x + 0.28, 1.0), block)
+            if i:
+                between = ((x - pitch + 0.35, 0.28), (x - 0.35, 0.28))
+                shapes.spring(*between, "$k_c$", "kc", moves=({i - 1: RIGHT}, block))
+            shapes.contact((x, 0.03), DOWN, block)
+        shapes.wall((0.5 * pitch * (shown - 1) - 0.55, 1.4), -np.pi / 2, pitch * (shown - 1) + 0.7)
+        if shown < self.blocks:
+            shapes.text((pitch * (shown - 1) + 0.8, 0.28), f"... {self.blocks} blocks", "blocks", anchor="left")

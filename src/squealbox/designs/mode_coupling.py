@@ -19,6 +19,7 @@ import numpy as np
 
 from squealbox.designs.base import Design
 from squealbox.designs.rows import block, column, diagonal, matrix, outer, vector
+from squealbox.designs.shapes import DOWN, RIGHT, STILL, Moves, Shapes
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import parameter
 from squealbox.system import Contact, System
@@ -63,6 +64,12 @@ class ModeCoupling(Design):
         stiffness = matrix((self.k11, self.k12), (self.k12, self.k22))
         return _on_belt(self, stiffness, diagonal(self.c1, self.c2))
 
+    def draw(self, shapes: Shapes) -> None:
+        """The principal springs of the stiffness without the contact, at their angles."""
+        _, vectors = np.linalg.eigh([[self.k11, self.k12], [self.k12, self.k22 - self.k3]])
+        angles = [float(np.arctan2(-v[1], v[0])) for v in vectors.T]  # y is downwards in the picture
+        _draw_on_belt(shapes, (angles[0], "soft", ""), (angles[1], "stiff", ""))
+
 
 class InclinedSprings(Design):
     """Mode coupling in its geometric form: a mass on a belt, held by two springs at angles.
@@ -99,7 +106,30 @@ class InclinedSprings(Design):
         stiffness = block(self.k1) * first + block(self.k2) * second + block(self.k3) * outer(Y, Y)
         return _on_belt(self, stiffness, block(self.c1) * first + block(self.c2) * second)
 
+    def draw(self, shapes: Shapes) -> None:
+        """The springs at their angles."""
+        _draw_on_belt(shapes, (-self.angle1, "$k_1$", "k1"), (-self.angle2, "$k_2$", "k2"))
+
 
 def _on_belt(brake: Any, stiffness: Any, damping: Any) -> System:
     contact = Contact(column(brake.k3) * Y, X, X, brake.load, brake.sliding_speed, brake.friction, "belt", False, Y)
     return System(block(brake.m) * np.eye(2), damping, stiffness, np.zeros(2), (contact,), names=("x", "y"))
+
+
+def _draw_on_belt(shapes: Shapes, *springs: tuple[float, str, str]) -> None:
+    """A mass above a belt with its contact spring, and springs (angle to the belt [rad], text, parameters)."""
+    mass: Moves = {0: RIGHT, 1: DOWN}
+    centre = np.array([0.0, 0.85])
+    shapes.belt(-1.7, 1.7)
+    for angle, text, of in springs:
+        way = angle if np.sin(angle) >= -1e-9 else angle + np.pi  # a spring has no sense: drawn away from the belt
+        out = np.array([np.cos(way), np.sin(way)])
+        shapes.spring(centre + 0.3 * out, centre + 1.5 * out, text, of, moves=(mass, STILL))
+        shapes.wall(centre + 1.5 * out, way + np.pi)
+    shapes.circle((0.0, 0.85), 0.3, moves=mass)
+    shapes.text((0.0, 0.85), "m", "m", "body", moves=mass)
+    shapes.spring((0.0, 0.55), (0.0, 0.04), "$k_3$", "k3", -1.0, (mass, STILL))
+    shapes.load((0.0, 1.75), (0.0, 1.18), "N", "load", (-0.14, 1.65), mass)
+    shapes.axis((1.55, 0.35), (2.0, 0.35), "x", (2.1, 0.35))
+    shapes.axis((1.55, 0.35), (1.55, 0.07), "y", (1.42, 0.15))
+    shapes.contact((0.0, 0.04), DOWN)

@@ -14,6 +14,7 @@ import numpy as np
 
 from squealbox.designs.base import Design
 from squealbox.designs.rows import diagonal
+from squealbox.designs.shapes import DOWN, RIGHT, STILL, Shapes
 from squealbox.friction import FrictionLaw, LinearSlope
 from squealbox.parameters import parameter
 from squealbox.system import Contact, System
@@ -49,3 +50,20 @@ class PadOnDisc(Design):
         contact = Contact(np.zeros(2), slip, slip, self.load, self.sliding_speed, self.friction, name="pad")
         mass, damping = diagonal(self.m1, self.m2), diagonal(self.c1, self.c2)
         return System(mass, damping, diagonal(self.k1, self.k2), np.zeros(2), (contact,), names=("pad", "disc"))
+
+    def draw(self, shapes: Shapes) -> None:
+        """Pad on disc, a spring and a dashpot from each to a wall."""
+        pad, disc = {0: RIGHT}, {1: RIGHT}
+        shapes.box((-1.2, -0.45), 2.4, 0.42, "disc $m_2$", "m2", disc)
+        shapes.box((-0.5, 0.0), 1.0, 0.42, "pad $m_1$", "m1", pad)
+        shapes.spring((-1.6, 0.3), (-0.5, 0.3), "$k_1$", "k1", moves=(STILL, pad))
+        shapes.dashpot((-1.6, 0.1), (-0.5, 0.1), moves=(STILL, pad))
+        shapes.text((-1.28, -0.02), "$c_1$", "c1", size=7.0)
+        shapes.wall((-1.6, 0.2), 0.0, 0.5)
+        shapes.spring((-2.2, -0.15), (-1.2, -0.15), moves=(STILL, disc))
+        shapes.text((-1.85, 0.05), "$k_2$", "k2")
+        shapes.dashpot((-2.2, -0.36), (-1.2, -0.36), "$c_2$", "c2", -1.0, (STILL, disc))
+        shapes.wall((-2.2, -0.25), 0.0, 0.5)
+        shapes.velocity((-0.4, -0.68), (0.5, -0.68), "V", "sliding_speed", (0.05, -0.84))
+        shapes.load((0.0, 1.0), (0.0, 0.45), "N", "load", (0.14, 0.9), pad)
+        shapes.contact((0.0, 0.0), DOWN, pad)

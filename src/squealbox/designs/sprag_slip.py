@@ -21,6 +21,7 @@ import numpy as np
 from squealbox.designs.base import Design
 from squealbox.designs.mode_coupling import X, Y
 from squealbox.designs.rows import block, column, diagonal, outer, times, vector
+from squealbox.designs.shapes import DOWN, RIGHT, STILL, Moves, Shapes
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import parameter
 from squealbox.system import Contact, System
@@ -58,3 +59,17 @@ class SpragSlip(Design):
         contact = Contact(column(self.k) * Y, X, X, 0.0, self.sliding_speed, self.friction, "belt", False, Y)
         mass, damping = block(self.m) * np.eye(2), diagonal(self.c, self.c)
         return System(mass, damping, stiffness, times(self.load, Y), (contact,), names=("x", "y"))
+
+    def draw(self, shapes: Shapes) -> None:
+        """A block on a belt and its strut, to the angle."""
+        block: Moves = {0: RIGHT, 1: DOWN}
+        start, out = np.array([0.0, 0.23]), np.array([np.cos(self.angle), np.sin(self.angle)])
+        shapes.belt(-1.3, 1.9)
+        shapes.box((-0.3, 0.03), 0.6, 0.4, moves=block)
+        shapes.text((-0.16, 0.3), "m", "m", "body", moves=block)
+        shapes.spring(start, start + 1.6 * out, "$k_s$", "ks", moves=(block, STILL))
+        shapes.wall(start + 1.6 * out, self.angle + np.pi)
+        shapes.line((0.0, 0.23), (1.1, 0.23), width=0.5, dashes=(4, 2))
+        shapes.arc((0.0, 0.23), 0.6, 0.0, self.angle, f"{np.rad2deg(self.angle):.0f}°", "angle")
+        shapes.load((-0.18, 1.1), (-0.18, 0.46), "L", "load", (-0.32, 1.0), block)
+        shapes.contact((0.0, 0.03), DOWN, block)

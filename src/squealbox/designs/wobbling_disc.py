@@ -23,6 +23,7 @@ import numpy as np
 
 from squealbox.designs.base import Design
 from squealbox.designs.rows import block, matrix, vector
+from squealbox.designs.shapes import STILL, Shapes
 from squealbox.friction import Coulomb, FrictionLaw
 from squealbox.parameters import parameter
 from squealbox.system import Contact, System
@@ -86,3 +87,29 @@ class WobblingDisc(Design):
         )
         inertia, names = block(self.J) * np.eye(2), ("q1", "q2")
         return System(inertia, damping, stiffness, np.zeros(2), contacts, names=names, angles=names)
+
+    def draw(self, shapes: Shapes) -> None:
+        """A section through the axis and the pins, the thickness to the scale of the pins' radius."""
+        tilt = -0.1  # q1 > 0 turns the right side down
+        half = max(0.5 * self.h / self.r, 0.02)
+        disc, pin = {0: -float(self.r)}, {0: (0.0, -float(self.r))}
+        turn = np.array([[np.cos(tilt), -np.sin(tilt)], [np.sin(tilt), np.cos(tilt)]])
+        corners = turn @ np.array([[-1.25, 1.25, 1.25, -1.25], [-half, -half, half, half]])
+        shapes.polygon(list(corners.T), moves=disc)
+        shapes.line((0.0, -1.15), (0.0, 0.9), width=0.6, dashes=(6, 2, 1, 2))
+        shapes.line((-1.4, 0.0), (1.4, 0.0), width=0.5, dashes=(4, 2))
+        shapes.arc((0.0, 0.0), 1.38, tilt, 0.0, "$q_1$")
+        for side in (1.0, -1.0):
+            touch = np.tan(tilt) + side * half / np.cos(tilt)
+            end = (1.0, touch + side * 0.2)
+            shapes.line((1.0, touch), end, role="body", width=3.0, moves=(pin,))
+            text, of = ("k, d", "k d") if side > 0.0 else ("", "")
+            shapes.spring(end, (1.0, touch + side * 0.8), text, of, -1.0, (pin, STILL))
+            shapes.wall((1.0, touch + side * 0.8), -side * np.pi / 2)
+            tail, tip, name = ((x, touch + side * y) for x, y in ((0.75, 0.65), (0.75, 0.12), (0.6, 0.5)))
+            shapes.load(tail, tip, "$N_0$", "load", name, pin)
+            shapes.contact((1.0, touch), (0.0, -side), pin)
+        shapes.velocity((-0.3, 0.72), (0.3, 0.72), "$\\Omega$", "spin", (-0.6, 0.72))
+        shapes.line((0.0, -1.1), (1.0, -1.1), width=0.5)
+        shapes.text((0.4, -1.2), f"r = {1e3 * self.r:.0f} mm", "r", size=7.0)
+        shapes.text((-0.75, -0.2), f"h = {1e3 * self.h:.0f} mm, $k_t$, $d_t$", "h kt dt", size=7.0)

@@ -1,6 +1,5 @@
 """A reduced brake in one `.npz` file: M, C, K for any program, and everything that opens it again as a brake here."""
 
-import io
 import json
 import os
 import zipfile
@@ -10,6 +9,7 @@ import numpy as np
 
 from squealbox.fe.readers.matrix import MatrixFileError
 from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.labelled import whole
 from squealbox.parameters import ParameterError, from_plain, to_plain
 
 MEMBER = "squealbox"
@@ -25,12 +25,9 @@ def save_reduced(brake: ReducedBrake, path: str | os.PathLike[str]) -> Path:
     if path.suffix.lower() != ".npz":
         raise ParameterError("save_reduced", "path", str(path), "a name that ends in .npz")
     text = json.dumps(to_plain(brake)).encode()
-    buffer = io.BytesIO()
     matrices = {name: np.asarray(brake.array(name)) for name in ("M", "C", "K")}
-    np.savez_compressed(buffer, **{MEMBER: np.frombuffer(text, dtype=np.uint8)}, **matrices)  # type: ignore[arg-type]
-    part = path.with_name(f"{path.name}.part")
-    part.write_bytes(buffer.getvalue())
-    part.replace(path)
+    with whole(path) as part, part.open("wb") as stream:
+        np.savez_compressed(stream, **{MEMBER: np.frombuffer(text, dtype=np.uint8)}, **matrices)  # type: ignore[arg-type]
     return path
 
 

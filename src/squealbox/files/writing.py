@@ -3,7 +3,6 @@
 import dataclasses
 import json
 import os
-import tempfile
 import textwrap
 import typing
 from collections.abc import Iterator, Mapping
@@ -20,6 +19,7 @@ from squealbox.files.document import LARGEST
 from squealbox.files.reading import BRAKES
 from squealbox.files.sheets import unit_in
 from squealbox.friction import FrictionLaw, OwnLaw
+from squealbox.labelled import whole
 from squealbox.parameters import Choice, DataSheet, Parameter, field_type
 from squealbox.registers import name_of
 from squealbox.schedules import SCHEDULE_NAMES, Constant, Schedule, Sum
@@ -53,14 +53,8 @@ def write_design(design: Design, path: str | os.PathLike[str], *, sections: str 
     path = Path(path)
     if not path.parent.is_dir():
         raise NotWritable(f"{path}: there is no folder {path.parent}, expected one that is there")
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(design_text(design) + sections)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    finally:
-        Path(temporary).unlink(missing_ok=True)
+    with whole(path) as part:
+        part.write_text(design_text(design) + sections, encoding="utf-8")
     return path
 
 

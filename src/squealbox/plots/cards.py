@@ -14,9 +14,11 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.friction import FrictionLaw
+from squealbox.labelled import Labels
 from squealbox.limit_cycles import Branch, PointCurve
 from squealbox.limit_cycles.attractors.basins import Basin
 from squealbox.parameters import DataSheet, Parameter
+from squealbox.plots.brakes import has_drawing
 from squealbox.plots.dispatch import drawer_of, plot
 from squealbox.plots.facts import facts
 from squealbox.plots.style import drawn
@@ -35,6 +37,8 @@ if TYPE_CHECKING:
 DOTS = 90.0  # an inch: small, but sharp enough for a notebook
 WALKED = (Branch, PointCurve, Basin, Trajectory, Sweep)  # what was reached is worth seeing, however it ended
 MOST_MODES = 30  # degrees of freedom of a system whose frequencies a card tells
+MOST_WORDS = 8  # of an array of words that are named
+ARRAYS = ("array", "shape", "unit", "meaning", "least", "greatest")
 MOST_POINTS = 500_000  # more numbers than this are not drawn unasked
 
 
@@ -81,13 +85,14 @@ def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 def _result_card(result: Result) -> str:
     kind = type(result).__name__
-    ended = f"{result.outcome}: {result.outcome.message}" if result.outcome.message else str(result.outcome)
+    ended = result.outcome.told
     parts = [f"<p><b>{escape(kind)}</b> &middot; {escape(ended)}</p>"]
     parts += [f"<p><b>Caution:</b> {escape(result.warning)}</p>"] * bool(result.warning)
     parts.append(_said(result))
     if has_figure(result):
         parts.append(inline(plot(result)))
-    return _framed(parts, _folded("arrays, settings, versions", [_arrays(result), _settings(result)]))
+    tables = [table(ARRAYS, array_rows(result)), table(("", "name", "value"), setting_rows(result))]
+    return _framed(parts, _folded("arrays, settings, versions", tables))
 
 
 def _said(result: Result) -> str:
@@ -116,24 +121,29 @@ def _points(result: Result) -> int:
     return int(np.size(result.outcomes))
 
 
-def _arrays(result: Result) -> str:
-    rows = []
-    if not _quantities(result):
-        for name, held in result.to_dataset().data_vars.items():
-            shape = " x ".join(f"{count} {dim}" for dim, count in held.sizes.items()) or "one value"
-            words = (str(held.attrs.get(key, "")) for key in ("units", "long_name"))
-            rows.append((str(name), shape, *words))
-    for name, about in _quantities(result):
-        array = np.asarray(getattr(result, name))
-        size = " x ".join(str(n) for n in array.shape) or "one value"
-        rows.append((name, size, plain_unit(about["unit"]), str(about["meaning"])))
-    return table(("array", "shape", "unit", "meaning"), rows)
+def array_rows(result: Result) -> list[tuple[str, ...]]:
+    """(name, shape, unit, meaning, least, greatest) of every array; of words, which there are."""
+    if isinstance(result, Sweep):
+        held = result.dataset.data_vars.items()
+        return [_array_row(str(name), Labels(each.dims, each.values, each.attrs)) for name, each in held]
+    return [_array_row(name, each) for name, each in result.labelled().variables.items()]
 
 
-def _settings(result: Result) -> str:
+def _array_row(name: str, held: Labels) -> tuple[str, ...]:
+    values = np.asarray(held.values)
+    shape = " x ".join(f"{size} {dim}" for size, dim in zip(values.shape, held.dims, strict=True)) or "one value"
+    said = (name, shape, plain_unit(str(held.about.get("units", ""))), str(held.about.get("long_name", "")))
+    if values.dtype.kind not in "biufc":
+        return *said, ", ".join(sorted({str(word) for word in np.ravel(values)})[:MOST_WORDS]), ""
+    finite = np.abs(values) if np.iscomplexobj(values) else np.asarray(values, dtype=float)
+    finite = finite[np.isfinite(finite)]
+    return *said, *((f"{finite.min():.6g}", f"{finite.max():.6g}") if finite.size else ("", ""))
+
+
+def setting_rows(result: Result) -> list[tuple[str, str, str]]:
+    """(what it is, name, value) of every setting and version."""
     given = [("setting", name, _short(value)) for name, value in result.settings.items()]
-    given += [("version", name, str(value)) for name, value in result.provenance.items()]
-    return table(("", "name", "value"), given)
+    return given + [("version", name, str(value)) for name, value in result.provenance.items()]
 
 
 def _quantities(result: Result) -> list[tuple[str, Mapping[str, Any]]]:
@@ -148,25 +158,17 @@ def _design_card(design: Design) -> str:
     return _framed(parts, table(("parameter", "value", "range", "meaning", "source"), parameter_rows(design)))
 
 
-def has_drawing(design: Design) -> bool:
-    """True when a drawing is known for this design and it is one brake, not a map of them."""
-    from squealbox.plots.brakes import drawing_of
-
-    single = not any(np.ndim(value) for _, about, value in design.leaves() if about.unit != "-")
-    return single and drawing_of(type(design)) is not None
-
-
 def parameter_rows(design: DataSheet) -> list[tuple[str, str, str, str, str]]:
     """(name, value with unit, range, meaning, source) of every parameter, nested sheets included, in units as read."""
-    rows = [(name, *_with_unit(value, about), about.meaning, about.source) for name, about, value in design.leaves()]
+    rows = [(name, *_with_unit(value, about, design.usual(name)), about.meaning, about.source)
+            for name, about, value in design.leaves()]  # fmt: skip
     words = [(name, str(getattr(design, name)), "one of " + ", ".join(about.options), about.meaning, "")
              for name, about in design.choices().items()]  # fmt: skip
     return rows + words
 
 
-def _with_unit(value: Any, about: Parameter) -> tuple[str, str]:
+def _with_unit(value: Any, about: Parameter, usual: Any) -> tuple[str, str]:
     """Value and range in the unit a reader uses: degrees, kN/mm."""
-    usual = float(value) if not np.ndim(value) and isinstance(value, (int, float)) else 0.0
     unit, factor = read_in(about, usual)
     range_ = dataclasses.replace(about, unit=unit, low=about.low / factor, high=about.high / factor).range
     if value is None:

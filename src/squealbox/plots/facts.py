@@ -11,7 +11,7 @@ from squealbox.parameters import DataSheet
 from squealbox.signals import Spectrum, peaks
 from squealbox.stability import CriticalValue, StabilityMap
 from squealbox.transient import Ensemble, Trajectory, Verdict
-from squealbox.words import MINUS, number, plain_unit, scaled
+from squealbox.words import MINUS, number, plain_unit, read
 
 Fact = tuple[str, str, str]  # name, value, unit
 
@@ -39,20 +39,12 @@ def shown(value: Any, digits: int = 6) -> str:
     return "not known" if np.isnan(float(value)) else number(float(value), digits)
 
 
-def read(name: str, value: Any, unit: str, digits: int = 4) -> Fact:
-    """A fact in the unit that suits the number: 1.2e-5 m is read as 12 µm."""
-    if not np.isfinite(float(value)):
-        return name, "not known", ""
-    factor, written = scaled(unit, value)
-    return name, number(float(value) / factor, digits), plain_unit(written)
-
-
 @facts.register
 def _of_trajectory(motion: Trajectory) -> list[Fact]:
     names = motion.system.names
-    found = [read("duration", motion.t[-1] - motion.t[0] if len(motion.t) else np.nan, "s")]
+    found = [("duration", *read(motion.t[-1] - motion.t[0] if len(motion.t) else np.nan, "s"))]
     if len(motion.t):
-        found += [read(f"half peak to peak of {name}", 0.5 * np.ptp(motion.q[:, i]), unit_at(motion.system, i))
+        found += [(f"half peak to peak of {name}", *read(0.5 * np.ptp(motion.q[:, i]), unit_at(motion.system, i)))
                   for i, name in list(enumerate(names))[:6]]  # fmt: skip
     found.append(("events (stick, slip, lift-off, landing)", str(len(motion.event_time)), ""))
     found.append(("steps, of which rejected", f"{motion.steps}, {motion.rejected}", ""))
@@ -62,19 +54,22 @@ def _of_trajectory(motion: Trajectory) -> list[Fact]:
 
 @facts.register
 def _of_verdict(verdict: Verdict) -> list[Fact]:
-    found = [read("amplitude, half peak to peak", verdict.amplitude, "m"), read("frequency", verdict.frequency, "Hz")]
+    found = [
+        ("amplitude, half peak to peak", *read(verdict.amplitude, "m")),
+        ("frequency", *read(verdict.frequency, "Hz")),
+    ]
     if verdict.kind != "settles_on_cycle":
-        found.append(read("growth rate", verdict.growth_rate, "1/s"))
-    return [*found, read("settled at", verdict.settled_at, "s")] if np.isfinite(verdict.settled_at) else found
+        found.append(("growth rate", *read(verdict.growth_rate, "1/s")))
+    return [*found, ("settled at", *read(verdict.settled_at, "s"))] if np.isfinite(verdict.settled_at) else found
 
 
 @facts.register
 def _of_cycle(cycle: Cycle) -> list[Fact]:
     if not cycle.outcome.ok:
         return []
-    found = [read("period", cycle.period, "s", 6), read("frequency", cycle.frequency, "Hz", 6)]
+    found = [("period", *read(cycle.period, "s", 6)), ("frequency", *read(cycle.frequency, "Hz", 6))]
     about = zip(cycle.system.names, cycle.amplitude, cycle.system.units, strict=True)
-    found += [read(f"amplitude of {name}", size, unit) for name, size, unit in about]
+    found += [(f"amplitude of {name}", *read(size, unit)) for name, size, unit in about]
     largest = float(np.max(np.abs(cycle.multipliers[1:]), initial=0.0))
     found.append(("stable", "yes" if cycle.stable else "no", ""))
     return [*found, ("largest multiplier but the trivial one", number(largest, 4), "")]
@@ -85,7 +80,7 @@ def _of_critical_value(found: CriticalValue) -> list[Fact]:
     unit = unit_of(found, found.parameter)
     return [
         (found.parameter, shown(found.value, 8), unit),
-        read("frequency there", found.frequency, "Hz", 6),
+        ("frequency there", *read(found.frequency, "Hz", 6)),
         ("direction", found.direction, ""),
         ("mechanism", found.mechanism.replace("_", " "), ""),
     ]
@@ -96,12 +91,12 @@ def _of_map(found: StabilityMap) -> list[Fact]:
     known, growing = int(np.sum(found.exists)), int(np.sum(found.unstable))
     worst = np.nanmax(found.growth_rate) if known else np.nan
     return [("points", str(found.growth_rate.size), ""), ("unstable", str(growing), f"of {known}"),
-            read("largest growth rate", worst, "1/s")]  # fmt: skip
+            ("largest growth rate", *read(worst, "1/s"))]  # fmt: skip
 
 
 @facts.register
 def _of_spectrum(found: Spectrum) -> list[Fact]:
-    return [read(f"line {i + 1}", frequency, "Hz", 6) for i, (frequency, _) in enumerate(peaks(found, 3))]
+    return [(f"line {i + 1}", *read(frequency, "Hz", 6)) for i, (frequency, _) in enumerate(peaks(found, 3))]
 
 
 @facts.register
@@ -121,7 +116,7 @@ def _largest(branch: Branch) -> list[Fact]:
     """The largest amplitude, of displacements and of rotations."""
     units = np.array(getattr(branch.inputs.get("system"), "units", ["m"] * branch.amplitude.shape[1]))
     words = {"m": "largest amplitude", "rad": "largest amplitude of rotation"}
-    return [read(words[unit], np.max(branch.amplitude[:, units == unit]), unit) for unit in dict.fromkeys(units)]
+    return [(words[unit], *read(np.max(branch.amplitude[:, units == unit]), unit)) for unit in dict.fromkeys(units)]
 
 
 @facts.register

@@ -109,7 +109,7 @@ def calibration_figure(found: Calibration, *, title: str = "") -> "Figure":
         for panel in (values, residuals):
             panel.margins(y=0.3)
             panel.invert_yaxis()
-    ended = "" if found.outcome.ok else f"{found.outcome}: {found.outcome.message}"
+    ended = "" if found.outcome.ok else found.outcome.told
     figure.suptitle("\n".join(filter(None, (title, ended))), fontsize=8, wrap=True)
     return figure
 

@@ -186,7 +186,7 @@ def motion_overview(trajectory: Trajectory, *, dof: int | str | None = None, tit
         spectrum(x, times, axes=lines, quantity=unit_at(trajectory.system, place),
                  remark="" if even else "through unequal steps")  # fmt: skip
     if title or not trajectory.outcome.ok:
-        ended = "" if trajectory.outcome.ok else f"{trajectory.outcome}: {trajectory.outcome.message}"
+        ended = "" if trajectory.outcome.ok else trajectory.outcome.told
         figure.suptitle(". ".join(filter(None, (title, ended))), fontsize=8)
     return figure
 

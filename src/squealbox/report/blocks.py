@@ -131,19 +131,20 @@ class Chart:
 
 
 @dataclass(frozen=True)
-class Solid:
-    """A brake in 3-D that vibrates in a mode and is turned by hand, as the workbench draws it.
+class Vibrating:
+    """A brake that vibrates in a mode, as the workbench draws it: its drawing, or in 3-D to be turned by hand.
 
-    data holds the names of its parts and its size [m]; arrays the places, faces, parts and touching nodes of a surface,
-    a mode as re and im (k, 3), its shares (f,), the outline (e, 2); normal [N] the forces of the contacts. The
-    drawing is what is printed, and what is seen where scripts do not run.
+    Of a drawing, data and points are those of its `Shapes`, and re and im (k, 2) what the mode adds to the points.
+    In 3-D data holds the names of its parts and its size [m]; arrays the places, faces, parts and touching nodes of a
+    surface, a mode as re and im (k, 3), its shares (f,), the outline (e, 2); normal [N] the forces of the contacts.
+    The picture `drawing` is what is printed, and what is seen where scripts do not run.
     """
 
     drawing: Drawing
     data: Mapping[str, Any]
     arrays: Mapping[str, Any]
-    normal: tuple[float, ...]
-    kind = "solid"
+    normal: tuple[float, ...] = ()
+    kind = "vibrating"
 
 
 @dataclass(frozen=True)

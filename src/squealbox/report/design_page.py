@@ -9,12 +9,12 @@ import numpy as np
 from squealbox import plots
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files import NotWritable, design_text
-from squealbox.plots.cards import has_drawing
+from squealbox.plots.brakes import has_drawing
 from squealbox.report import motion_sections, stability_sections, tables, words
 from squealbox.report.blocks import Code, Page, Points, Section, Text, Tiles
 from squealbox.report.examination import Examination
 from squealbox.report.pictures import picture
-from squealbox.report.solid import pressed
+from squealbox.report.vibrating import pressed
 from squealbox.result import provenance
 from squealbox.system import equilibrium
 

@@ -20,7 +20,6 @@ from squealbox.remedies import silence
 from squealbox.report.examination import Examination
 from squealbox.schedules import Schedule, value_at
 from squealbox.signals import SignalError, SoundLevel, sound_level
-from squealbox.signals.radiation import AUDIBLE
 from squealbox.stability import (
     Sensitivity,
     band_modes,
@@ -37,6 +36,7 @@ from squealbox.stability.mode_table import mode_table
 from squealbox.system import InvalidSystem
 from squealbox.transient import LARGE, MotionSettings, usual_duration, verdict
 from squealbox.transient.simulate import TIME_STEPPING
+from squealbox.words import AUDIBLE
 
 Progress = Callable[[str], None]
 MAP_POINTS = 81

@@ -49,7 +49,7 @@ def transient(found: Examination) -> Iterator[Any]:
         )
         yield from _heard(found)
     elif motion is not None:
-        yield Text(f"{motion.outcome}: {motion.outcome.message}")
+        yield Text(motion.outcome.told)
     yield from why_not(found, "transient", "sound")
 
 

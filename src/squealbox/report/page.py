@@ -1,6 +1,6 @@
 """A page of blocks as one HTML file that needs nothing else: no network, no folder beside it.
 
-Figures and brakes in 3-D come to life by the workbench's own scripts, which lie in the same file. The page's policy
+Figures and brakes come to life by the workbench's own scripts, which lie in the same file. The page's policy
 allows exactly these and what starts them, by their hash, and no connection to anywhere.
 """
 
@@ -17,11 +17,22 @@ from typing import Any
 import numpy as np
 
 from squealbox.figure_data import packed
-from squealbox.report.blocks import Chart, Page, Section, Solid
+from squealbox.labelled import whole
+from squealbox.report.blocks import Chart, Page, Section, Vibrating
 
 TEMPLATE = "page.html.j2"
 STATIC = files("squealbox") / "workbench" / "static"
-DRAWS = ("elements.js", "theme.js", "numbers.js", "colours.js", "chart.js", "figures.js", "zoom.js", "mesh.js")
+DRAWS = (
+    "elements.js",
+    "theme.js",
+    "numbers.js",
+    "colours.js",
+    "chart.js",
+    "figures.js",
+    "zoom.js",
+    "mesh.js",
+    "drawing.js",
+)
 MODULE = re.compile(r"^(import .*;\n|export )", re.MULTILINE)
 MICRO = re.compile(r"(\d |\[)u(?=[msNJ]\b)")
 
@@ -38,7 +49,7 @@ def render(page: Page) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    moving = [packed_block(block) for block in every((Chart, Solid), page.sections)]
+    moving = [packed_block(block) for block in every((Chart, Vibrating), page.sections)]
     script = live(environment.get_template("live.js").render()) if moving else ""
     return environment.get_template(TEMPLATE).render(
         page=page,
@@ -50,12 +61,12 @@ def render(page: Page) -> str:
 
 
 def live(start: str) -> str:
-    """What draws figures and a brake in 3-D in the workbench, and what starts it here, as one script."""
+    """What draws figures and brakes in the workbench, and what starts it here, as one script."""
     parts = [(STATIC / name).read_text(encoding="utf-8") for name in DRAWS]
     return "(() => {\n" + MODULE.sub("", "".join(parts)) + start + "})();"
 
 
-def packed_block(block: Chart | Solid) -> str:
+def packed_block(block: Chart | Vibrating) -> str:
     """What a block is drawn from as JSON, its arrays as the base64 of typed arrays; safe inside a script element."""
     if isinstance(block, Chart):
         figures, arrays = packed(block.figures)
@@ -78,9 +89,8 @@ def _micro(value: Any) -> Any:
 def write_page(page: Page, path: str | os.PathLike[str]) -> Path:
     """Write a page to an HTML file, whole or not at all; returns the path."""
     path = Path(path)
-    part = path.with_name(path.name + ".part")
-    part.write_text(render(page), encoding="utf-8")
-    part.replace(path)
+    with whole(path) as part:
+        part.write_text(render(page), encoding="utf-8")
     return path
 
 

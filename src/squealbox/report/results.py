@@ -1,6 +1,6 @@
 """Results of any kind as pages and sections: how each ended, its key numbers, its figure, arrays and settings."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -9,20 +9,20 @@ import numpy as np
 from squealbox import plots
 from squealbox.designs import Design
 from squealbox.matrices import liveliest
-from squealbox.plots.cards import has_drawing, has_figure, parameter_rows
+from squealbox.plots.brakes import has_drawing
+from squealbox.plots.cards import ARRAYS, array_rows, has_figure, parameter_rows, setting_rows
 from squealbox.plots.sweeps import numeric_answers
 from squealbox.remedies import Remedies
 from squealbox.report.blocks import Code, Page, Picture, Points, ReportError, Section, Sound, Table, Text
 from squealbox.report.pictures import picture, wav
 from squealbox.result import Result, provenance
 from squealbox.signals import LEAST, equal_steps
-from squealbox.signals.radiation import AUDIBLE
 from squealbox.studies import Sweep
 from squealbox.transient import Trajectory, verdict
+from squealbox.words import AUDIBLE
 
 MOST_RESULTS = 40  # of a folder on one page
 MOST_ANSWERS = 6  # of a sweep that are drawn
-MOST_WORDS = 8  # of an array of words that are named
 
 
 def result_page(result: Result, *, title: str = "") -> Page:
@@ -33,7 +33,7 @@ def result_page(result: Result, *, title: str = "") -> Page:
     if design is not None:
         sections.append(Section("The brake", tuple(_design(design))))
     sections.append(Section("Arrays, settings and versions", result_section(kind, result).blocks))
-    return Page(title or kind, _ended(result), tuple(sections), _made())
+    return Page(title or kind, result.outcome.told, tuple(sections), _made())
 
 
 def folder_page(folder: Path) -> Page:
@@ -59,13 +59,9 @@ def _design_of(result: Result) -> Design | None:
     return next((kept for kept in result.inputs.values() if isinstance(kept, Design)), None)
 
 
-def _ended(result: Result) -> str:
-    return f"{result.outcome}: {result.outcome.message}" if result.outcome.message else str(result.outcome)
-
-
 def _about(result: Result) -> Iterator[Any]:
     """What the result says: its summary, its key numbers, its figure, a motion also its verdicts and sound."""
-    yield Text(f"Ended: {_ended(result)}.")
+    yield Text(f"Outcome: {result.outcome.told}.")
     told = getattr(result, "summary", None)
     if isinstance(result, Remedies):
         yield from _cures(result)
@@ -116,31 +112,13 @@ def _made() -> str:
 
 def result_section(title: str, result: Result, pictures: tuple[Picture, ...] = (), *, folded: bool = False) -> Section:
     """A section about one result: how it ended, its pictures, its arrays, its settings and versions."""
-    ended = f"Outcome: {result.outcome}. {result.outcome.message}".strip()
-    arrays = tuple(_array_row(name, about) for name, about in result.to_dataset().data_vars.items())
-    facts = (*_facts("settings", result.settings), *_facts("version", result.provenance))
     return Section(
         title,
         (
-            Text(ended),
+            Text(f"Outcome: {result.outcome.told}."),
             *pictures,
-            Table(("array", "unit", "meaning", "shape", "least", "greatest"), arrays),
-            Table(("", "", ""), facts, "Settings and versions"),
+            Table(ARRAYS, tuple(array_rows(result))),
+            Table(("", "", ""), tuple(setting_rows(result)), "Settings and versions"),
         ),
         folded,
     )
-
-
-def _array_row(name: Any, about: Any) -> tuple[str, ...]:
-    values = about.values
-    shape = " by ".join(f"{size} {dim}" for dim, size in about.sizes.items()) or "one value"
-    said = (str(name), str(about.attrs.get("units", "")), str(about.attrs.get("long_name", "")), shape)
-    if values.dtype.kind not in "biufc":  # words: which there are
-        return *said, ", ".join(sorted({str(word) for word in np.ravel(values)})[:MOST_WORDS]), ""
-    finite = np.abs(values) if np.iscomplexobj(values) else np.asarray(values, dtype=float)
-    finite = finite[np.isfinite(finite)]
-    return *said, *((f"{finite.min():.6g}", f"{finite.max():.6g}") if finite.size else ("", ""))
-
-
-def _facts(kind: str, items: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
-    return ((kind, name, str(value)) for name, value in items.items())

@@ -7,17 +7,14 @@ from typing import Any
 import numpy as np
 
 from squealbox import plots
-from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.figure_data import FigureAxis, upright
 from squealbox.plots.as_data import map_over_two, modes_over_parameter
-from squealbox.plots.cards import has_drawing
 from squealbox.plots.modes import unstable_stretches, upper_branches
 from squealbox.report import tables, words
 from squealbox.report.blocks import Chart, Section, Text
 from squealbox.report.examination import Examination
-from squealbox.report.moving import vibrating
 from squealbox.report.pictures import picture, why_not
-from squealbox.report.solid import vibrating_solid
+from squealbox.report.vibrating import vibrating
 
 
 def stability(found: Examination) -> Iterator[Any]:
@@ -26,9 +23,7 @@ def stability(found: Examination) -> Iterator[Any]:
         yield Text(found.missing.get("stability", "there is no steady sliding"))
         return
     yield tables.modes(found.modes) if found.mode_table is None else tables.modes_in_band(found.mode_table)
-    moving: Any = vibrating(found.design, found.modes) if has_drawing(found.design) else None
-    if isinstance(found.design, ReducedBrake):
-        moving = vibrating_solid(found.design, found.modes)
+    moving = vibrating(found.design, found.modes)
     if moving is not None:
         yield moving
     yield picture(plots.plot(found.modes), "Eigenvalues. To the right of the line a mode grows.")

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from squealbox.cautions import pulling
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.report.examination import Examination
 from squealbox.signals import SoundLevel
@@ -14,7 +15,7 @@ from squealbox.words import number, quantity, read_in
 
 def in_reading_unit(found: Examination, name: str) -> tuple[float, str]:
     """What SI values of a parameter are multiplied by to be read, and the unit then: degrees, kN/mm."""
-    unit, factor = read_in(found.design.scalar(name), found.design.value_of(name))
+    unit, factor = read_in(found.design.scalar(name), found.design.usual(name))
     return 1.0 / factor, unit
 
 
@@ -126,36 +127,24 @@ def caveats(found: Examination) -> list[str]:
     said = [
         f"The model has {size} degrees of freedom and {len(found.system.contacts)} contacts: modes of the "
         "real parts that are not in it, temperature, wear and the scatter of friction are not in the result either.",
-        "A positive growth rate says that steady sliding is left, not how large or how loud the vibration becomes; a "
-        "negative one says that small disturbances decay, not that large ones do.",
+        sentences.LINEAR,
     ]
     if found.cycle is not None:
         said.append(
             f"Limit cycles were looked for from {_listed(found.tried)}. Others may exist that none of these reaches."
         )
     if found.ranking is not None and found.ranking.near_defective:
-        said.append("Two modes nearly merge here: derivatives in the ranking of parameters change within a small step.")
+        said.append(sentences.MERGE)
     if found.loudness is not None:
         said.append(
             "The sound level is an estimate; differences between two designs can be trusted more than the level itself."
         )
-    said += [
-        f"{name} carries {quantity(force, 'N')} in steady sliding: it pulls, which a real contact cannot. Around this "
-        "state the model's contact is not a real one."
-        for name, force in _pulling(found)
-    ]
+    state, system = equilibrium(found.system, found.time), found.system
+    if state.exists:
+        unilateral = [contact.unilateral for contact in system.contacts]
+        said += [f"In steady sliding {each}." for each in pulling(system.contact_names, unilateral, state.normal_force)]
     said += [f"Note of the {name}: {text}" for name, text in _cautions(found)]
     return said
-
-
-def _pulling(found: Examination) -> Iterator[tuple[str, float]]:
-    """Contacts that can only push in reality, and pull in this model's steady sliding."""
-    state = equilibrium(found.system, found.time)
-    if not state.exists:
-        return
-    for i, contact in enumerate(found.system.contacts):
-        if float(state.normal_force[i]) < 0.0 and not contact.unilateral:
-            yield found.system.contact_names[i], float(state.normal_force[i])
 
 
 def _cautions(found: Examination) -> Iterator[tuple[str, str]]:

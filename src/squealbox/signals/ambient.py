@@ -60,7 +60,7 @@ class OperationalModes(Result):
     def summary(self) -> str:
         """A table, one line for each mode."""
         if not self.outcome.ok:
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         rows = zip(self.frequency, self.frequency_error, self.damping_ratio, self.damping_error, strict=True)
         lines = [f"{f:10.2f} +- {df:<6.2g}  {100.0 * z:8.4f} +- {100.0 * dz:<8.2g}" for f, df, z, dz in rows]
         notes = [f"note: {note}" for note in self.settings["notes"]]
@@ -142,7 +142,7 @@ class DampingOnset(Result):
         rows = [f"{a:12.6g}  {f:10.2f}  {g:10.4g} +- {e:.2g}" for a, f, g, e in columns]
         name = self.settings["name"]
         ended = f"growth rate 0 at {name} = {self.value:.6g}, 95 % {self.low:.6g} to {self.high:.6g}"
-        ended = ended if self.outcome.ok else f"{self.outcome}: {self.outcome.message}"
+        ended = ended if self.outcome.ok else self.outcome.told
         head = f"{name:>12}  {'f [Hz]':>10}  {'growth rate [1/s]':>17}"
         return self.warned([head, *rows, ended])
 

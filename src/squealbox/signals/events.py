@@ -101,7 +101,7 @@ class SquealEvents(Result):
         notes = [f"note: {note}" for note in self.settings.get("notes", ())]
         return "\n".join(
             [
-                head if self.count else f"{self.outcome}: {self.outcome.message}",
+                head if self.count else self.outcome.told,
                 *lines[: self.count + 1 if self.count else 0],
                 *notes,
             ]

@@ -37,7 +37,7 @@ class NoiseMatrix(Result):
     def summary(self) -> str:
         """Occurrence in all and per cell, and the frequencies."""
         if not self.outcome.ok:
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         x, y = self.settings["x"], self.settings["y"]
         percent = 100.0 * self.total_noisy / self.total
         lines = [

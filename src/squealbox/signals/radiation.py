@@ -23,12 +23,12 @@ from squealbox.arguments import public
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals.samples import SignalError, column, folded, given
 from squealbox.signals.spectra import peaks, spectrum
+from squealbox.words import AUDIBLE
 
 DENSITY = 1.204  # of air at 20 degC and 101.325 kPa [kg/m^3]
 SPEED_OF_SOUND = 343.2  # in air at 20 degC [m/s]
 HEARING = 20e-6  # reference pressure [Pa]
 AREA = 0.01  # of the piston unless said otherwise [m^2]: a disc of 11 cm, about a drum's web or a pad's back plate
-AUDIBLE = (20.0, 20e3)  # [Hz]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,7 +64,7 @@ class SoundLevel(Result):
     def summary(self) -> str:
         """The level, the loudest line, and what it rests on."""
         if not self.outcome.ok:
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         loudest = f"loudest at {float(self.frequency[0]):.5g} Hz"
         return f"{float(self.level):.0f} dB, {float(self.weighted):.0f} dB(A), {loudest}. {self.assumption}"
 

@@ -66,7 +66,7 @@ class Boundary(Result):
     def summary(self) -> str:
         """The curves in words: how many points, open or closed, and where they run."""
         if len(self.x) == 0:
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         lines = []
         for i, points in enumerate(self.curves):
             low, high = points.min(axis=0), points.max(axis=0)

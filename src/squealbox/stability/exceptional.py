@@ -31,7 +31,7 @@ class ExceptionalPoints(Result):
     def summary(self) -> str:
         """One line for each point."""
         if len(self.x) == 0:
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         a, b = self.parameters
         rows = zip(self.x, self.y, self.eigenvalue, strict=True)
         return "\n".join(f"{a} = {x:.10g}, {b} = {y:.10g}: lambda = {v:.8g} 1/s" for x, y, v in rows)

@@ -45,7 +45,7 @@ class FiniteSpectrum(Result):
     def summary(self) -> str:
         """One line for each eigenvalue, conjugates once."""
         if not self.outcome.ok:
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         shown = [value for value in self.eigenvalues if value.imag >= 0.0]
         lines = [f"{value.real:+.6g} 1/s at {value.imag / (2.0 * np.pi):.6g} Hz" for value in shown]
         return "\n".join([*lines, f"{self.infinite} eigenvalues at infinity"])

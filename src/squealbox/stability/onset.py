@@ -71,7 +71,7 @@ class CriticalValue(OneEigenvalue, Result):
     def summary(self) -> str:
         """One line: the value, where it leads, the frequency and the mechanism with its shares."""
         if not self.outcome.ok:
-            return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
+            return f"{self.parameter}: {self.outcome.told}"
         why = Mechanism(self.mechanism, self.base, self.circulation, self.slope)
         aside = f"; {self.outcome.message}" if self.outcome.message else ""
         return f"{self.parameter} = {float(self.value):.10g} ({self.direction}), {self.frequency:.6g} Hz, {why}{aside}"
@@ -128,7 +128,7 @@ class CriticalValues(Result):
     def summary(self) -> str:
         """A line for each crossing, ready for an e-mail."""
         if len(self) == 0:
-            return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
+            return f"{self.parameter}: {self.outcome.told}"
         return "\n".join(crossing.summary() for crossing in self)
 
 

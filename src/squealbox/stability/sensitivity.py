@@ -24,6 +24,7 @@ from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import NEAR_DEFECTIVE, Mode, complex_modes, modes_of
 from squealbox.stability.family import SteadyFamily, steady_sliding
+from squealbox.stability.sentences import MERGE
 
 CENTRAL = np.arange(-3.0, 4.0)
 REPEATED = 1e-9  # distance to the next eigenvalue, as a share of |lambda|, below which the two are one
@@ -74,7 +75,7 @@ class Sensitivity(Result):
         for i in order:
             change = 0.01 * self.values[i] * self.first[i]
             rows.append(f"{self.parameters[i]:<20} {change.real:>+18.6g} {turn * change.imag:>+16.6g}")
-        rows += ["two modes nearly merge here: derivatives mean little"] * self.near_defective
+        rows += [MERGE] * self.near_defective
         return "\n".join(rows)
 
 

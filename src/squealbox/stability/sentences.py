@@ -10,7 +10,7 @@ from collections.abc import Callable
 from squealbox.stability.eigenvalues import ComplexModes
 from squealbox.stability.mechanism import Mechanism
 from squealbox.stability.onset import CriticalValues
-from squealbox.words import number, quantity
+from squealbox.words import AUDIBLE, number, quantity
 
 MECHANISMS = {
     "flutter": "mode coupling (flutter)",
@@ -19,7 +19,11 @@ MECHANISMS = {
     "mixed": "mode coupling and falling friction together",
     "unknown": "a mechanism that is not known",
 }
-AUDIBLE = (20.0, 20e3)  # Hz
+LINEAR = (
+    "Growth rates are linear and about steady sliding: they say whether squeal can start, not how loud it gets; stable "
+    "sliding can still squeal after a push."
+)
+MERGE = "Two modes nearly merge here: growth rates and shares react strongly to small changes, derivatives mean little."
 UNDAMPED = 1e-9  # damping ratio below which what is left is round-off
 Words = list[str | tuple[str, bool]]  # texts, those with True to be seen first
 

@@ -1,4 +1,4 @@
-// What moves in place of its printed picture: figures that are read out and zoomed into, brakes in 3-D that vibrate and turn.
+// What moves in place of its printed picture: figures that are read out and zoomed into, brakes that vibrate.
 const period = 2400; // ms
 const HOW = "Drag it or use the arrow keys to turn it; click it and use the wheel to come nearer; Z looks along the axis.";
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
@@ -41,26 +41,39 @@ function rest({ canvas, view, size }, { places, outline }) {
   pen.stroke();
 }
 
-for (const figure of document.querySelectorAll("figure.solid")) {
-  const { data, arrays, normal } = given(figure);
-  let [phase, held, seen] = [0, calm.matches, false];
-  const mesh = new Mesh(figure.querySelector(".live"), { arrays, data }, () => draw());
+/** What draws a brake in 3-D at a phase [rad] of its mode; `again` is called when it was turned. */
+function solid(place, { data, arrays, normal }, again) {
+  const mesh = new Mesh(place, { arrays, data }, again);
   Object.assign(mesh, { re: arrays.re, im: arrays.im, shares: arrays.shares, normal });
   mesh.view.near = 1.3;
-  const draw = () => (mesh.draw(phase), rest(mesh, arrays));
-  mesh.canvas.parentElement.addEventListener("wheel", (event) => document.activeElement === mesh.canvas || event.stopPropagation(), { capture: true }); // the page scrolls by
+  place.addEventListener("wheel", (event) => document.activeElement === mesh.canvas || event.stopPropagation(), { capture: true }); // the page scrolls by
+  return { draw: (phase) => (mesh.draw(phase), rest(mesh, arrays)), keys: () => [...mesh.keys(), make("small", {}, HOW)] };
+}
+
+/** The same of the drawing of a brake. */
+function flat(place, { data, arrays: { points, re, im } }) {
+  const { svg, parts } = drawn(data, points, "The brake vibrating in its worst mode");
+  place.classList.add("drawing");
+  place.append(svg);
+  const at = (i, phase) => points[i] + re[i] * Math.cos(phase) - im[i] * Math.sin(phase);
+  return { draw: (phase) => parts((p) => [at(2 * p, phase), at(2 * p + 1, phase)]), keys: () => [] };
+}
+
+for (const figure of document.querySelectorAll("figure.vibrating")) {
+  const about = given(figure);
+  let [phase, held, seen] = [0, calm.matches, false];
+  const { draw, keys } = (about.data.shapes ? flat : solid)(figure.querySelector(".live"), about, () => draw(phase));
   const play = button("", () => say(!held));
   const say = (now) => (play.textContent = (held = now) ? "Move" : "Pause");
   say(held);
-  const keys = () => figure.querySelector(".keys").replaceChildren(play, " ", ...mesh.keys(), make("small", {}, HOW));
-  keys();
-  night.addEventListener("change", () => (draw(), keys()));
+  const told = () => figure.querySelector(".keys").replaceChildren(play, " ", ...keys());
+  told();
+  night.addEventListener("change", () => (draw(phase), told()));
   new IntersectionObserver(([now]) => (seen = now.isIntersecting)).observe(figure);
   const step = (now) => {
     requestAnimationFrame(step);
     if (!seen || held) return;
-    phase = (2 * Math.PI * now) / period;
-    draw();
+    draw((phase = (2 * Math.PI * now) / period));
   };
   requestAnimationFrame(step);
 }

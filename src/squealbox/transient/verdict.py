@@ -116,7 +116,7 @@ def verdict(
     if outcome.ok:
         kind, why, course = _judged(course, steady, gone, least_periods)
     else:
-        kind, why = NOT_DECIDED, f"the run ended early, {outcome}: {outcome.message}"
+        kind, why = NOT_DECIDED, f"the run ended early, {outcome.told}"
     settled = _settled_at(course, kind, band)
     return Verdict(
         amplitude=course.amplitude,

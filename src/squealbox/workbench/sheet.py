@@ -63,12 +63,6 @@ def slider(value: float, about: Parameter, whole: bool = False) -> tuple[float, 
     return low, min(top, about.high)
 
 
-def usual_value(owner: DataSheet, name: str) -> Any:
-    """The value the class gives to a field, or the present one where the class has none."""
-    usual = getattr(type(owner), name, None)
-    return usual if isinstance(usual, (int, float)) else owner.value_of(name)
-
-
 def _fields(owner: DataSheet, prefix: str) -> Iterator[dict[str, Any]]:
     parameters, words = owner.parameters(), owner.choices()
     if isinstance(owner, Countermeasure):
@@ -95,7 +89,7 @@ def _parameter(owner: DataSheet, name: str, value: Any, path: str, about: Parame
     field = {"path": path, "meaning": about.meaning, "source": about.source, "range": about.range}
     if isinstance(value, Schedule) or np.ndim(value) > 0:
         return {**field, "kind": "fixed", "value": f"{value!r}" if isinstance(value, Schedule) else _size(value)}
-    return field | _number(path, about, value, usual_value(owner, name), field_type(type(owner), name) is int)
+    return field | _number(path, about, value, owner.usual(name), field_type(type(owner), name) is int)
 
 
 def _number(path: str, about: Parameter, value: Any, usual: Any, whole: bool) -> dict[str, Any]:

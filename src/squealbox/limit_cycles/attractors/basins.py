@@ -84,7 +84,7 @@ class Basin(Result):
     def summary(self) -> str:
         """The share that vibrates, and a line for each attractor."""
         if self.outcome == "no_sliding":
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         if len(self.attractor) and np.all(self.attractor == len(self.kind)):
             return f"every one of {len(self.attractor)} runs failed: {self.outcome.message or self.outcome}"
         low, high = self.interval
@@ -99,7 +99,7 @@ class Basin(Result):
         if len(self.kind) > MOST_LINES:
             lines.append(f"  and {len(self.kind) - MOST_LINES} smaller ones, in `attractors`: a continuum of motions?")
         if not self.outcome.ok:
-            lines.append(f"  {self.outcome}: {self.outcome.message}")
+            lines.append(f"  {self.outcome.told}")
         return "\n".join(lines)
 
 

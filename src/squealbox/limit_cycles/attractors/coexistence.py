@@ -64,7 +64,7 @@ class Coexistence(Result):
     def summary(self) -> str:
         """The share of the plane, and the edges of each row."""
         if not self.outcome.ok:
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         x, y = self.parameters
         lines = [f"stable sliding and vibration coexist at {100 * self.share:.1f} % of {self.stable.size} points"]
         rows = zip(self.y, self.end, self.onset, strict=True)

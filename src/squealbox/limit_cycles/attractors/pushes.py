@@ -59,7 +59,7 @@ class DangerousPush(Result):
     def summary(self) -> str:
         """Energy, push, what it leads to and what is known below it."""
         if not self.outcome.ok:
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         parts = [f"{name} {value:+.4g}" for name, value in zip(state_names(self.system), self.push, strict=True)]
         to = f", to: {self.to.summary()}" if self.to is not None else ""
         return (

@@ -80,7 +80,7 @@ class Branch(Result):
     def summary(self) -> str:
         """What the branch holds, in a few lines."""
         if len(self.value) == 0:
-            return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
+            return f"{self.parameter}: {self.outcome.told}"
         low, high = np.min(self.value), np.max(self.value)
         walked = f"{len(self.value)} cycles, {self.parameter} from {low:.6g} to {high:.6g}"
         ended = self.outcome.message or str(self.outcome)

@@ -47,7 +47,7 @@ class PointCurve(Result):
     def summary(self) -> str:
         """One line: kind, points and ranges."""
         if len(self.x) == 0:
-            return f"{self.kind} curve: {self.outcome}: {self.outcome.message}"
+            return f"{self.kind} curve: {self.outcome.told}"
         spans = [f"{name} {np.min(v):.6g} to {np.max(v):.6g}"
                  for name, v in zip(self.parameters, (self.x, self.y), strict=True)]  # fmt: skip
         return f"{self.kind} curve, {len(self.x)} points: {', '.join(spans)}; ended: {self.outcome.message}"

@@ -85,7 +85,7 @@ class HopfPoint(OneEigenvalue, Result):
     def summary(self) -> str:
         """One line: where, at which frequency, of which kind, and how far its contacts keep sliding."""
         if not self.outcome.ok:
-            return f"{self.parameter}: {self.outcome}: {self.outcome.message}"
+            return f"{self.parameter}: {self.outcome.told}"
         kind = "Hopf point of unknown kind" if self.kind == "unknown" else f"{self.kind} Hopf point"
         said = f"{kind} at {self.parameter} = {float(self.value):.10g}, {self.frequency:.6g} Hz"
         if np.isfinite(rest := self.first_rest):

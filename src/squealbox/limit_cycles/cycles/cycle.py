@@ -106,7 +106,7 @@ class Cycle(Result):
     def summary(self) -> str:
         """One line: period, frequency, amplitudes, stability."""
         if not self.outcome.ok:
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         about = zip(self.system.names, self.amplitude, self.system.units, strict=True)
         sizes = ", ".join(f"{name} {a:.6g} {unit}" for name, a, unit in about)
         said = (

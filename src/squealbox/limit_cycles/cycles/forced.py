@@ -100,7 +100,7 @@ class ForcedCycle(Result):
     def summary(self) -> str:
         """Period, stability and amplitudes."""
         if not self.outcome.ok:
-            return f"{self.outcome}: {self.outcome.message}"
+            return self.outcome.told
         sizes = ", ".join(f"{size:.6g}" for size in np.atleast_1d(self.amplitude))
         return (
             f"forced motion of period {float(self.period):.6g} s is {self.stability}: growth rate "

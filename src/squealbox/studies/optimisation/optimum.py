@@ -79,7 +79,7 @@ class Optimum(Result):
     def summary(self) -> str:
         """Before and after, and what binds."""
         if not self.outcome.ok:
-            return f"optimum: {self.outcome}: {self.outcome.message}"
+            return f"optimum: {self.outcome.told}"
         lines = []
         if len(self.values) > 1:
             lines.append(f"{len(self.values)} designs on the Pareto front; the compromise among them:")

@@ -118,7 +118,7 @@ class Surrogate(Result):
     def summary(self) -> str:
         """What it is made of and how far it is to be trusted."""
         if not self.outcome.ok:
-            return f"surrogate: {self.outcome}: {self.outcome.message}"
+            return f"surrogate: {self.outcome.told}"
         settings, about = self.settings, self.settings["quantity"]
         unit = f" {about['unit']}" if about["unit"] else ""
         top = int(np.max(np.sum(self.degrees, axis=1)))

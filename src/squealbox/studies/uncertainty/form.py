@@ -65,7 +65,7 @@ class DesignPoint(Result):
     def summary(self) -> str:
         """Both probabilities, and a table of the design point, the most important parameter first."""
         if not self.outcome.ok:
-            return f"FORM: {self.outcome}: {self.outcome.message}"
+            return f"FORM: {self.outcome.told}"
         settings, about = self.settings, self.settings["quantity"]
         level = f"{100.0 * settings['level']:g} %"
         agrees = "agrees" if self.straight else "the boundary is curved or has other near points: take this one"

@@ -56,7 +56,7 @@ class IntervalBounds(Result):
         """The range, where its ends are, and what is guaranteed."""
         about = self.settings["quantity"]
         if not self.outcome.ok:
-            return f"interval: {self.outcome}: {self.outcome.message}"
+            return f"interval: {self.outcome.told}"
         unit = f" {about['unit']}" if about["unit"] else ""
         lines = [f"{about['name']} lies in [{float(self.low):.6g}, {float(self.high):.6g}]{unit} at least"]
         for word, at in (("least", self.low_at), ("largest", self.high_at)):

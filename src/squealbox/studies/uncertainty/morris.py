@@ -44,7 +44,7 @@ class MorrisEffects(Result):
         """A table, the strongest parameter first."""
         about = self.settings["quantity"]
         if not self.outcome.ok:
-            return f"Morris effects: {self.outcome}: {self.outcome.message}"
+            return f"Morris effects: {self.outcome.told}"
         width = max(len(name) for name in ("parameter", *self.names))
         unit = f" [{about['unit'] or '-'}]"
         lines = [

@@ -52,7 +52,7 @@ class SquealProbability(Result):
         """The probability in a sentence, how it was found, and how the quantity is spread."""
         about, settings = self.settings["quantity"], self.settings
         if not self.outcome.ok:
-            return f"P(squeal): {self.outcome}: {self.outcome.message}"
+            return f"P(squeal): {self.outcome.told}"
         unit = f" {about['unit']}" if about["unit"] else ""
         level = f"{100.0 * settings['level']:g} %"
         lines = [

@@ -46,7 +46,7 @@ class SobolIndices(Result):
         """A table, the strongest parameter first."""
         about, settings = self.settings["quantity"], self.settings
         if not self.outcome.ok:
-            return f"Sobol' indices: {self.outcome}: {self.outcome.message}"
+            return f"Sobol' indices: {self.outcome.told}"
         unit = f" {about['unit']}" if about["unit"] else ""
         width = max(len(name) for name in ("parameter", *self.names))
         level = f"{100.0 * settings['level']:g} % interval"

@@ -45,7 +45,7 @@ class SubsetProbability(Result):
     def summary(self) -> str:
         """The probability with its interval, and what the runs say about each other."""
         if not self.outcome.ok:
-            return f"subset simulation: {self.outcome}: {self.outcome.message}"
+            return f"subset simulation: {self.outcome.told}"
         settings, about = self.settings, self.settings["quantity"]
         level = f"{100.0 * settings['level']:g} %"
         unit = f" {about['unit']}" if about["unit"] else ""

@@ -4,9 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.designs import Design, drawing_of
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.plots.moving import moving_strokes
 from squealbox.plots.surfaces import largest_motion
 from squealbox.system import equilibrium
 from squealbox.workbench.panels.declared import Panel
@@ -19,7 +18,7 @@ SEEN = 0.05  # of the freedom that moves most: what moves less has no phase to t
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
-    """Strokes, their motion for each freedom, forces of steady sliding, and a mode as real and imaginary part.
+    """Shapes, their motion for each freedom, forces of steady sliding, and a mode as real and imaginary part.
 
     Of a finite-element brake with a surface the mode is that of its nodes, (k, 3), the largest of them 1; the surface
     itself is the answer of the panel `mesh`.
@@ -31,9 +30,10 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     data |= {"contactNames": list(system.contact_names), "normal": np.nan_to_num(state.normal_force).tolist()}
     arrays: dict[str, Any] = {}
     if surface is None:
-        drawn = moving_strokes(design)
-        data |= {name: drawn[name] for name in ("strokes", "box", "contacts")}
-        arrays |= {name: drawn[name] for name in ("points", "moves", "contactMoves")}
+        drawn = drawing_of(design)
+        data |= drawn.data()
+        moves = {"moves": drawn.moved(system.size), "contactMoves": drawn.contacts_moved(system.size)}
+        arrays |= {"points": drawn.points, **moves}
     if not bool(modes.exists):
         return Answer({**data, "modes": [], "message": modes.outcome.message}, arrays)
     order, chosen = seen(design, options)

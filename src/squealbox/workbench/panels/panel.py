@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.countermeasures import Countermeasure
 from squealbox.designs import Design
 from squealbox.figure_data import Bars, FigureAxis, FigureData, packed
 from squealbox.parameters import ParameterError
 from squealbox.words import read_in
-from squealbox.workbench.sheet import slider, usual_value
+from squealbox.workbench.sheet import slider
 from squealbox.workbench.state import StateError, UnknownBase, design_of
 
 LONGEST_UNIT = 12  # characters
@@ -178,11 +177,7 @@ class Options:
 def axis_of(design: Design, parameter: str) -> dict[str, Any]:
     """How an axis of this parameter is read: its name, unit and factor to SI."""
     about = design.scalars()[parameter]
-    head, _, name = parameter.rpartition(".")
-    owner = design.value_of(head) if head else design
-    while isinstance(owner, Countermeasure) and name not in owner.field_names():
-        owner = owner.brake
-    unit, factor = read_in(about, usual_value(owner, owner.aliases.get(name, (name,))[0]))
+    unit, factor = read_in(about, design.usual(parameter))
     return {"parameter": parameter, "unit": unit, "factor": factor, "meaning": about.meaning}
 
 

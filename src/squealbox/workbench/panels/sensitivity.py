@@ -5,13 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.designs import Design, drawing_of
 from squealbox.figure_data import Bars
 from squealbox.parameters import ParameterError
-from squealbox.plots.moving import moving_strokes
-from squealbox.plots.strokes import written_places
 from squealbox.remedies.production import usual_scatter
-from squealbox.stability import critical_values, sensitivity
+from squealbox.stability import critical_values, sensitivity, sentences
 from squealbox.system import InvalidSystem
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import Panel, Place, words
@@ -25,7 +23,6 @@ PANEL = Panel(
 )  # fmt: skip
 
 MOST_BARS = 16
-MERGE = "Two modes nearly merge here: derivatives mean little."
 ROUND_OFF = 1e-12  # of the eigenvalue: smaller changes of its real part are none
 POINTS = 101  # of the range in which a critical value is looked for
 LARGE = 40  # degrees of freedom beyond which it is not: the verdict looks along one parameter
@@ -55,8 +52,8 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     change = steps * found.first
     none = ROUND_OFF * abs(found.eigenvalue)
     order = [i for i in np.argsort(-np.abs(change.real), kind="stable") if abs(change[i].real) > none][:MOST_BARS]
-    drawn = moving_strokes(design)
-    places = written_places(design, drawn["strokes"], drawn["points"])
+    drawn = drawing_of(design)
+    places = drawn.places()
     bars: list[dict[str, Any]] = []
     for count, i in enumerate(order):
         work.progress(count / len(order), "looking for what each needs")
@@ -74,11 +71,11 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "condition": finite(found.condition),
         "near": found.near_defective,
         "stable": bool(modes.stable),
-        "words": MERGE if found.near_defective else _words(bars, step, bool(modes.stable)),
+        "words": sentences.MERGE if found.near_defective else _words(bars, step, bool(modes.stable)),
     }
     if places:
-        data |= {"strokes": drawn["strokes"], "box": drawn["box"]}
-    return Answer(data, {"points": drawn["points"]}, [Bars("sensitivity", f"growth rate [1/s] for {told}", shown)])
+        data |= drawn.data()
+    return Answer(data, {"points": drawn.points}, [Bars("sensitivity", f"growth rate [1/s] for {told}", shown)])
 
 
 def _none(outcome: str, why: str) -> Answer:

@@ -1,4 +1,4 @@
-// The brake, drawn from the strokes the server makes of its geometry; it turns and grows with the parameters.
+// The brake, drawn from the shapes its design makes of its parameters; it turns and grows with the parameters.
 
 import { element, set } from "./elements.js";
 import { View } from "./view.js";
@@ -27,7 +27,7 @@ export class Drawing {
 }
 
 /** A drawing as SVG; `parts(read)` puts each point that `moves` where `read(number)` says; `at` is where that is in the picture. */
-export function drawn({ strokes, box }, points, words, moves = () => true) {
+export function drawn({ shapes, box }, points, words, moves = () => true) {
   const [left, right, bottom, top] = box;
   const room = 10;
   const scale = Math.min((SIZE.width - 2 * room) / (right - left || 1), (SIZE.height - 2 * room) / (top - bottom || 1));
@@ -36,10 +36,10 @@ export function drawn({ strokes, box }, points, words, moves = () => true) {
   const at = ([x, y]) => [dx + scale * (x - left), SIZE.height - dy - scale * (y - bottom)];
   const svg = element("svg", { viewBox: `0 0 ${SIZE.width} ${SIZE.height}`, role: "img", "aria-label": words });
   let next = 0;
-  const pieces = strokes.flatMap((stroke) => {
-    const own = Array.from({ length: stroke.count }, (_, i) => next + i);
-    next += stroke.count;
-    const [nodes, put] = DRAW[stroke.kind](stroke, scale);
+  const pieces = shapes.flatMap((shape) => {
+    const own = Array.from({ length: shape.count }, (_, i) => next + i);
+    next += shape.count;
+    const [nodes, put] = PUT[shape.kind](shape, scale);
     svg.append(...nodes);
     const piece = (read) => put(own.map((p) => at(read(p))));
     piece((p) => [points[2 * p], points[2 * p + 1]]);
@@ -54,17 +54,17 @@ const known = (spot) => spot.every(Number.isFinite); // extreme values lead to p
 const joined = (spots) => spots.filter(known).map(([x, y]) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ");
 
 // Each gives its nodes, and a function that puts them at the spots of its points.
-const DRAW = {
+const PUT = {
   line(s) {
-    const node = element("polyline", { class: `stroke ${s.role}`, "stroke-width": 0.5 + 0.8 * s.width, ...(s.dashed ? { "stroke-dasharray": "5 3" } : {}) });
+    const node = element("polyline", { class: `stroke ${s.role}`, "stroke-width": 0.5 + 0.8 * s.width, ...(s.dashes.length ? { "stroke-dasharray": "5 3" } : {}) });
     return [[node], (spots) => node.setAttribute("points", joined(spots))];
   },
   polygon(s) {
-    const node = element("polygon", { class: `solid ${s.role} ${tint(s.fill)}` });
+    const node = element("polygon", { class: `solid ${s.role}` });
     return [[node], (spots) => node.setAttribute("points", joined(spots))];
   },
   circle(s, scale) {
-    const node = element("circle", { r: s.filled ? 3 : s.radius * scale, class: s.filled ? "dot" : `solid ${s.role} ${tint(s.fill)}` });
+    const node = element("circle", { r: s.radius * scale, class: `solid ${s.role}` });
     return [[node], ([[x, y]]) => set(node, { cx: x, cy: y })];
   },
   arrow(s) {
@@ -113,5 +113,3 @@ function symbols(words) {
   }
   return parts;
 }
-
-const tint = (fill) => (fill === "#ffffff" ? "hollow" : fill === "#e6c9a8" ? "lining" : "filled");

@@ -17,7 +17,7 @@ export default {
     const go = ({ name, needed }) => button(`${name} ${typographic(` ${needed.told}`).trim()}`, () => panel.app.store.commit({ [name]: needed.beyond }), { title: "Put this value, and one hundredth of the way more, on the page", data: { needs: name } });
     panel.needs.replaceChildren(...data.bars.filter((bar) => bar.needed?.near).map(go));
     panel.stage.replaceChildren();
-    if (!data.strokes || !data.bars.length) return;
+    if (!data.shapes || !data.bars.length) return;
     const { svg, at } = drawn(data, arrays.points, "Drawing of the brake, with what each parameter does");
     const most = Math.abs(data.bars[0].growth);
     for (const bar of data.bars.filter((each) => each.place)) {
