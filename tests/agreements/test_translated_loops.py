@@ -1,5 +1,6 @@
 """Plain functions run by Python and as machine code of the house: the same bits; and one engine of any width."""
 
+import ast
 import math
 
 import numpy as np
@@ -9,6 +10,7 @@ from squealbox import Coulomb, DrumBrake, LinearSlope, MassOnBelt, Stribeck, sim
 from squealbox.compiled.kinds import Untranslatable
 from squealbox.compiled.machine import Compiled
 from squealbox.files.own_law import own_law
+from squealbox.transient import _engine
 from squealbox.transient.lanes import single
 from squealbox.transient.lanes.kernel import lane_kernel
 
@@ -180,3 +182,18 @@ def test_what_has_no_series_is_run_by_another_method():
     assert simulate(MassOnBelt(friction=rooted), 0.05).outcome == "completed"
     assert simulate(MassOnBelt(friction=Coulomb(0.3)), 0.01).settings["tableau"] == "taylor"
     assert math.isclose(simulate(MassOnBelt(friction=Coulomb(0.3)), 0.01).settings["rtol"], 1e-10)
+
+
+def test_a_row_of_a_lane_is_spelled_as_its_place():
+    """A kernel says `lane.q[i]`; what is compiled finds it in the array of the group."""
+    said = """
+def moved(lane, o):
+    lane.q[2 * o + 1] += lane.t
+    return moved(Lane(B, 8 * o, 3), o) + Lane(B, 0, 0).v[o]
+"""
+    spelled = ast.unparse(_engine._Spelled().visit(ast.parse(said)))
+    assert spelled.splitlines() == [
+        "def moved(A, b, lane, o):",
+        "    A[b + (ROW_Q + 2 * o + 1) * WIDTH + lane] += A[b + ROW_T * WIDTH + lane]",
+        "    return moved(B, 8 * o, 3, o) + B[0 + (ROW_V + o) * WIDTH + 0]",
+    ]

@@ -56,6 +56,9 @@ class OfAnotherText:
     name: str
     kind: str | None
 
+    def __call__(self, *_: Any) -> Any:
+        raise TypeError(f"{self.name} is of compiled code alone")
+
 
 Value = Any  # one of the above, a tuple of them, or a Python number known beforehand
 

@@ -9,7 +9,7 @@ from squealbox.designs.mechanism import Body, OwnMechanism, Spring, Touch
 from squealbox.designs.mode_coupling import InclinedSprings, ModeCoupling
 from squealbox.designs.own_brake import OwnBrake, OwnContact, Part
 from squealbox.designs.pad_on_disc import PadOnDisc
-from squealbox.designs.shapes import Shape, Shapes, drawing_of
+from squealbox.designs.shapes import DrawnShape, Shapes, drawing_of
 from squealbox.designs.sprag_slip import SpragSlip
 from squealbox.designs.wobbling_disc import WobblingDisc
 from squealbox.registers import kinds_in, name_of
@@ -25,7 +25,18 @@ DESIGNS: dict[str, type[Design]] = {
 globals().update({kind.__name__: kind for kind in DESIGNS.values()})
 
 __all__ = [
-    "DESIGNS", "Body", "Design", "OwnBrake", "OwnContact", "OwnMechanism", "Part", "Shape", "Shapes", "Spring", "Touch",
-    "drawing_of", "published_matrices",
+    "DESIGNS",
+    "Body",
+    "Design",
+    "DrawnShape",
+    "OwnBrake",
+    "OwnContact",
+    "OwnMechanism",
+    "Part",
+    "Shapes",
+    "Spring",
+    "Touch",
+    "drawing_of",
+    "published_matrices",
 ]  # fmt: skip
 __all__ += [kind.__name__ for kind in DESIGNS.values()]

@@ -17,7 +17,7 @@ RIGHT, UP, DOWN = (1.0, 0.0), (0.0, 1.0), (0.0, -1.0)
 
 
 @dataclass(frozen=True)
-class Shape:
+class DrawnShape:
     """A ``line``, ``polygon``, ``circle`` (its middle), ``arrow`` (tail and tip) or ``text``, and what it is.
 
     `role` is ``body``, ``shoe``, ``lining``, ``hollow``, ``pivot``, ``part``, ``spring``, ``damper``, ``support``,
@@ -46,7 +46,7 @@ class Shapes:
 
     def __init__(self, design: Any) -> None:
         self.design = design
-        self.shapes: list[Shape] = []
+        self.shapes: list[DrawnShape] = []
         self.contacts: list[tuple[Point, Point, Moves]] = []
 
     def data(self) -> dict[str, Any]:
@@ -82,7 +82,7 @@ class Shapes:
 
     def _add(self, kind: str, role: str, points: Any, *moves: Moves, of: str = "", **about: Any) -> None:
         moves = moves or (STILL,)
-        self.shapes.append(Shape(kind, role, np.round(points, 4), (moves[0], moves[-1]), tuple(of.split()), about))
+        self.shapes.append(DrawnShape(kind, role, np.round(points, 4), (moves[0], moves[-1]), tuple(of.split()), about))
 
     # shapes
 

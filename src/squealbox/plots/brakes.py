@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.designs import DESIGNS, Design, Shape, drawing_of
+from squealbox.designs import DESIGNS, Design, DrawnShape, drawing_of
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, drawing, figure_of
 
@@ -54,40 +54,40 @@ def has_drawing(design: Design) -> bool:
     return draws(type(design)) and not any(np.ndim(x) for _, about, x in design.leaves() if about.unit != "-")
 
 
-def _line(panel: Any, shape: Shape, ink: str) -> None:
+def _line(panel: Any, shape: DrawnShape, ink: str) -> None:
     dashes = shape.about["dashes"]
     look = {"linewidth": shape.about["width"], "linestyle": (0, dashes) if dashes else "-"}
     panel.plot(*shape.points.T, color=ink, solid_capstyle="round", **look)
 
 
-def _polygon(panel: Any, shape: Shape, ink: str) -> None:
+def _polygon(panel: Any, shape: DrawnShape, ink: str) -> None:
     from matplotlib.patches import Polygon
 
     panel.add_patch(Polygon(shape.points, **_filled(shape, ink)))
 
 
-def _circle(panel: Any, shape: Shape, ink: str) -> None:
+def _circle(panel: Any, shape: DrawnShape, ink: str) -> None:
     from matplotlib.patches import Circle
 
     panel.add_patch(Circle(shape.points[0], shape.about["radius"], **_filled(shape, ink)))
 
 
-def _filled(shape: Shape, ink: str) -> dict[str, Any]:
+def _filled(shape: DrawnShape, ink: str) -> dict[str, Any]:
     order = {"zorder": 2.0}  # of lines, so that later shapes lie over earlier ones
     return {"facecolor": "white", "edgecolor": ink, "linewidth": 1.0, **order, **FILLED.get(shape.role, {})}
 
 
-def _arrow(panel: Any, shape: Shape, ink: str) -> None:
+def _arrow(panel: Any, shape: DrawnShape, ink: str) -> None:
     start, end = shape.points
     panel.annotate("", xy=end, xytext=start, arrowprops={**ARROW, "color": ink})
     panel.update_datalim(shape.points)
 
 
-def _text(panel: Any, shape: Shape, ink: str) -> None:
+def _text(panel: Any, shape: DrawnShape, ink: str) -> None:
     look = {"ha": shape.about["anchor"], "va": "center", "fontsize": shape.about["size"]}
     panel.text(*shape.points[0], shape.about["text"], color=ink, **look)
 
 
-DRAW: dict[str, Callable[[Any, Shape, str], None]] = {
+DRAW: dict[str, Callable[[Any, DrawnShape, str], None]] = {
     "line": _line, "polygon": _polygon, "circle": _circle, "arrow": _arrow, "text": _text,
 }  # fmt: skip

@@ -16,7 +16,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from squealbox.compiled.kinds import FLOAT
+from squealbox.compiled.kinds import OfAnotherText
 from squealbox.compiled.machine import Compiled, cache_folder, kept
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
@@ -30,6 +30,7 @@ from squealbox.transient import (
     _runge_kutta,
     _sharing,
     _time_stepping,
+    formulas,
 )
 from squealbox.transient.smooth_laws import SMOOTH
 
@@ -37,7 +38,7 @@ COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Gt: operator.gt, ast.Lt: operator.lt,
 }  # fmt: skip
 ENTRIES = ("march", "time_stepping")
-FORMULAS = dict.fromkeys(("law_mu", "law_slope", "law_creep", "law_grip", "schedule_value", "schedule_rate"), FLOAT)
+FORMULAS = {name: each.kind for name, each in vars(formulas).items() if isinstance(each, OfAnotherText)}
 HEADER = '"""Made by squealbox; safe to delete."""\n\nimport numpy as np\n\n{decorators}'
 PLAIN = """
 
@@ -80,14 +81,14 @@ def _kernel(
     def written() -> str:
         return "\n\n".join(part for module in modules for part in definitions(module, fixed))
 
-    formulas = kept_text(f"formulas {own} {plain}", lambda: laws_and_schedules(own, plain))
+    rest = kept_text(f"formulas {own} {plain}", lambda: laws_and_schedules(own, plain))
     text = kept_text(f"{name} {fixed}", written)
     if plain:
         module = ModuleType("squealbox_kernel")
-        exec(compile(f"{formulas}\n{text}", "<kernel>", "exec"), module.__dict__)  # text of our own making
+        exec(compile(f"{rest}\n{text}", "<kernel>", "exec"), module.__dict__)  # text of our own making
         return getattr(module, name)
     decorators = "packed = None  # every function becomes part of its callers\n" if inline else ""
-    return Compiled(HEADER.format(decorators=decorators) + elsewhere(FORMULAS) + text, name, formulas)
+    return Compiled(HEADER.format(decorators=decorators) + elsewhere(FORMULAS) + text, name, rest)
 
 
 def elsewhere(names: Mapping[str, str | None]) -> str:
@@ -178,17 +179,16 @@ def definitions(module: ModuleType, fixed: Mapping[str, float], entries: tuple[s
 @cache
 def _plain(module: ModuleType) -> list[tuple[str, str, tuple[str, ...]]]:
     """Of each constant and function of a module: its name ("" of a constant), its text, what can be fixed in it."""
-    source = inspect.getsource(module)
     parts: list[tuple[str, str, tuple[str, ...]]] = []
-    lines = source.splitlines()
-    for node in ast.parse(source).body:
+    for node in ast.parse(inspect.getsource(module)).body:
         if isinstance(node, ast.Assign):
             parts.append(("", ast.unparse(node), ()))
         elif isinstance(node, ast.FunctionDef):
-            inside = list(ast.walk(node))
+            spelled = _Spelled().visit(node)
+            inside = list(ast.walk(spelled))
             names = {_dotted(each) for each in inside if isinstance(each, (ast.Name, ast.Attribute))}
             names |= {f"{_dotted(each.value)}[]" for each in inside if isinstance(each, ast.Subscript)}
-            parts.append((node.name, "\n".join(lines[node.lineno - 1 : node.end_lineno]), tuple(sorted(names))))
+            parts.append((node.name, ast.unparse(spelled), tuple(sorted(names))))
     return parts
 
 
@@ -200,6 +200,58 @@ def _chosen(module: ModuleType, index: int, given: tuple[tuple[str, type, float]
     """
     function = ast.parse(_plain(module)[index][1]).body[0]
     return ast.unparse(_Fixed({name: value for name, _, value in given}).visit(function))
+
+
+class _Spelled(ast.NodeTransformer):
+    """A `lane` as what compiled code hands over, array, group and number, and its rows as places in the array."""
+
+    def visit_arguments(self, node: ast.arguments) -> ast.arguments:
+        """A parameter `lane` becomes three."""
+        node.args = [ast.arg(name) for each in node.args for name in (PARTS if each.arg == "lane" else (each.arg,))]
+        return node
+
+    def visit_Call(self, node: ast.Call) -> ast.Call:
+        """What is handed over as `lane` or `Lane(A, b, k)` becomes three."""
+        self.generic_visit(node)
+        node.args = [part for each in node.args for part in _parts(each)]
+        return node
+
+    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
+        """`lane.q[i]`, the i-th row from q on."""
+        row = _row(node.value)
+        self.generic_visit(node)
+        return _place(*row, node.ctx, node.slice) if row else node
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
+        """`lane.t`, a row."""
+        row = _row(node)
+        self.generic_visit(node)
+        return _place(*row, node.ctx) if row else node
+
+
+PARTS = ("A", "b", "lane")
+
+
+def _parts(given: ast.expr) -> Sequence[ast.expr]:
+    """Array, group and number of a lane; anything else as it is."""
+    if isinstance(given, ast.Name) and given.id == "lane":
+        return [ast.Name(name) for name in PARTS]
+    return given.args if isinstance(given, ast.Call) and _dotted(given.func) == "Lane" else [given]
+
+
+def _row(node: ast.expr) -> tuple[Sequence[ast.expr], str] | None:
+    """The lane and the name of one of its rows; None where it is none."""
+    parts = _parts(node.value) if isinstance(node, ast.Attribute) else ()
+    return (parts, node.attr) if isinstance(node, ast.Attribute) and len(parts) == len(PARTS) else None
+
+
+def _place(parts: Sequence[ast.expr], name: str, context: ast.expr_context, index: ast.expr | None = None) -> ast.expr:
+    array, group, number = map(ast.unparse, parts)
+    row = f"ROW_{name.upper()}" if index is None else f"(ROW_{name.upper()} + {ast.unparse(index)})"
+    place = ast.parse(f"{array}[{group} + {row} * WIDTH + {number}]", mode="eval").body
+    assert isinstance(place, ast.Subscript)
+    place.ctx = context
+    return place
 
 
 class _Fixed(ast.NodeTransformer):

@@ -7,7 +7,7 @@ its Bernstein coefficients are positive the quartic has no root in the interval,
 two crossings inside one step are not missed.
 """
 
-# mypy: disable-error-code="name-defined,no-untyped-def"
+# mypy: disable-error-code="no-untyped-def"
 
 import numpy as np
 

@@ -10,7 +10,7 @@ as one complementarity problem, after Moreau 1988 and Glocker 2001. A rebound sl
 landing of the run is none: the contact stays closed. That ends the endless sequence of ever smaller rebounds.
 """
 
-# mypy: disable-error-code="name-defined,no-untyped-def"
+# mypy: disable-error-code="no-untyped-def"
 
 from squealbox.transient._motion import FASTEST, OPEN, STICK, contact_kinematics, sliding_coefficient
 from squealbox.transient._rigid import constrain

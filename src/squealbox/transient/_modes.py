@@ -4,7 +4,7 @@ At an instant at which several contacts have zero sliding velocity their modes d
 together: each sticks with |force| <= static N, or slips with the acceleration of its speed in its own sense.
 """
 
-# mypy: disable-error-code="name-defined,no-untyped-def"
+# mypy: disable-error-code="no-untyped-def"
 
 import numpy as np
 

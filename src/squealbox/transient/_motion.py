@@ -9,13 +9,21 @@ out by damping, work of taking out an open contact's reaction, and work of the n
 scheme uses it. A rigid contact has -gap in the place of N while it is open; closed, its N is solved for in `_rigid`.
 """
 
-# ruff: noqa: F821  (law_mu, law_slope, law_creep, law_grip, schedule_value, schedule_rate and WITH_EVENTS are written by _engine)
-# mypy: disable-error-code="name-defined,no-untyped-def"
+# mypy: disable-error-code="no-untyped-def"
 
 import numpy as np
 
 from squealbox.transient._rigid import constrain
 from squealbox.transient._sharing import all_held, contact_matrix, share_out, solve, weigh_sticking
+from squealbox.transient.formulas import (
+    WITH_EVENTS,
+    law_creep,
+    law_grip,
+    law_mu,
+    law_slope,
+    schedule_rate,
+    schedule_value,
+)
 
 RAW, EXACT, TANH, ARCTAN = 0, 1, 2, 3  # WITH_EVENTS is true in the file compiled for EXACT
 STICK, OPEN = 0, 2

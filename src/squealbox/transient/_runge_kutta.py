@@ -1,6 +1,6 @@
 """One embedded Runge-Kutta step, its error and its dense output, for any tableau; plain loops compiled by `_engine`."""
 
-# mypy: disable-error-code="name-defined,no-untyped-def"
+# mypy: disable-error-code="no-untyped-def"
 
 import numpy as np
 

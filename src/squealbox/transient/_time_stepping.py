@@ -17,10 +17,11 @@ Source: Moreau 1988, Unilateral contact and dry friction in finite freedom dynam
 Contacts and Friction, chapter 4.
 """
 
-# ruff: noqa: F821  (law_mu, schedule_value are written by _engine)
-# mypy: disable-error-code="name-defined,no-untyped-def"
+# mypy: disable-error-code="no-untyped-def"
 
 import numpy as np
+
+from squealbox.transient.formulas import law_mu, schedule_value
 
 STUCK = 1e-9  # share of the limit by which the pair of a sticking contact is below it; round-off of a projection
 

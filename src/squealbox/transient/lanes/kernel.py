@@ -8,11 +8,11 @@ from dataclasses import fields
 from functools import cache
 from pathlib import Path
 
-from squealbox.compiled.kinds import FLOAT, WHOLE
+from squealbox.compiled.kinds import WHOLE, OfAnotherText
 from squealbox.compiled.machine import Compiled
 from squealbox.schedules import SCHEDULES, Constant
 from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta, _sharing
-from squealbox.transient.lanes import alone, crossing, recording, roots, samples, service, stages_again
+from squealbox.transient.lanes import alone, crossing, of_a_shape, recording, roots, samples, service, stages_again
 from squealbox.transient.lanes.formulas import formulas
 from squealbox.transient.lanes.shape import PARTS, Shape, layout, parameter_rows
 from squealbox.transient.lanes.step_text import Step
@@ -51,7 +51,7 @@ from squealbox.transient.lanes.taylor import ends_near_zero, grow, reach, ready,
 from squealbox.transient.lanes.taylor_events import step_end
 
 @inner
-def evaluate(A, b):
+def evaluate(A, b, lane):
     return series_at(A, b)
 """
 FEW = 12  # coefficients that are copied one by one
@@ -59,10 +59,10 @@ FROM_THE_MARCH = ("pulled", "chatters", "write_row")
 OF_EVERY_KERNEL = ("tracing.py", "rough.py")
 WRITERS = (*OF_EVERY_KERNEL, "series.py", "tables.py", "taylor.py", "taylor_events.py")
 PLACES = {
-    "ROW_JOB": "job", "ROW_ALIVE": "alive", "ROW_T": "t", "ROW_H": "h", "ROW_T_END": "t_end", "ROW_TRIES": "tries",
-    "ROW_TAKEN": "taken", "ROW_CAUTIOUS": "cautious", "ROW_CODE": "code", "ROW_MOST": "most", "ROW_Q": "q0",
-    "ROW_V": "v0", "ROW_ACCELERATION": "a0", "ROW_START": "start0", "ROW_FIRST": "first", "ROW_RTOL": "rtol",
-    "ROW_WINDOW": "window", "ROW_BREAK": "break0", "ROW_TARGET": "target", "ROW_TOLERANCE": "tolerance",
+    "ROW_ALL": "", "ROW_JOB": "job", "ROW_ALIVE": "alive", "ROW_T": "t", "ROW_H": "h", "ROW_T_END": "t_end",
+    "ROW_TRIES": "tries", "ROW_TAKEN": "taken", "ROW_CAUTIOUS": "cautious", "ROW_CODE": "code", "ROW_MOST": "most",
+    "ROW_Q": "q0", "ROW_V": "v0", "ROW_ACCELERATION": "a0", "ROW_START": "start0", "ROW_FIRST": "first",
+    "ROW_RTOL": "rtol", "ROW_WINDOW": "window", "ROW_BREAKS": "break0", "ROW_TARGET": "target", "ROW_TOLERANCE": "tolerance",
     "ROW_TRUST": "trust", "ROW_RESUME": "resume", "ROW_EVENTS": "events", "ROW_WINDOW_START": "window_start",
     "ROW_WINDOW_EVENTS": "window_events", "ROW_TURNS": "turns", "ROW_LOW": "low", "ROW_LOW_PHI": "low_phi",
     "ROW_HIGH": "high", "ROW_HIGH_PHI": "high_phi", "ROW_HIGH_RATE": "high_rate", "ROW_PROBE": "probe0_0",
@@ -82,11 +82,9 @@ PLACES = {
 COUNTS = (
     "DOFS", "CONTACTS", "FUNCTIONS", "GIVEN", "ALL_ROWS", "BREAKS", "FOLLOWED", "ROW_OBSERVED", "MEMORY",
 )  # fmt: skip
-OF_ONE_CONTACT = ("contact_normal", "contact_speed", "speed_scale", "slip_rate", "rate_scale", "contact_static")
-FLAGS, NOTHING = ("step", "evaluate"), ("gather", "set_observers", "push", "stop")
 OF_A_SHAPE = {
-    **_engine.FORMULAS, **dict.fromkeys((*PLACES, *COUNTS, *FLAGS), WHOLE), **dict.fromkeys(OF_ONE_CONTACT, FLOAT),
-    **dict.fromkeys(NOTHING),
+    **_engine.FORMULAS, **dict.fromkeys((*PLACES, *COUNTS), WHOLE),
+    **{name: each.kind for name, each in vars(of_a_shape).items() if isinstance(each, OfAnotherText)},
 }  # fmt: skip
 
 

@@ -4,8 +4,7 @@ These are scalar passes over one lane of a group. Modes are decided by the very 
 record filled from the lane, so stick, slip and lift-off mean the same in both.
 """
 
-# ruff: noqa: F821  (the places of the rows, FUNCTIONS, EXACT_CONTACT, TRIES, SERIES, SIMPLE, SAMPLES, gather, step and take are generated)
-# mypy: disable-error-code="name-defined,no-untyped-def"
+# mypy: disable-error-code="no-untyped-def"
 
 import numpy as np
 
@@ -40,8 +39,31 @@ from squealbox.transient._motion import (
 from squealbox.transient._sharing import contact_matrix, share_out, solve, weigh_sticking
 from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
+from squealbox.transient.lanes.of_a_shape import (
+    ALL_ROWS,
+    BREAKS,
+    CONTACTS,
+    DOFS,
+    EXACT_CONTACT,
+    FUNCTIONS,
+    GIVEN,
+    MEMORY,
+    RECORDED,
+    SAMPLES,
+    SERIES,
+    SIMPLE,
+    STAGED,
+    STEPPED,
+    TRIES,
+    WIDTH,
+    Lane,
+    gather,
+    set_observers,
+    step,
+)
 from squealbox.transient.lanes.recording import first_row, log_event, room_left, series_held, write_rows
 from squealbox.transient.lanes.samples import on_end, on_quintic, on_series, on_step
+from squealbox.transient.lanes.tracing import take
 
 OVERFLOW = 1e200  # a state that large has a series beyond all numbers
 TOO_LARGE = 1e30  # one whose error has an eighth power beyond them
@@ -54,13 +76,12 @@ def run(A, live, o):
     """
     groups = live.shape[0]
     size = A.shape[0] // groups
-    if A[ROW_ALIVE * WIDTH] < 0.0:  # fresh arrays
+    if Lane(A, 0, 0).alive < 0.0:  # fresh arrays
         for g in range(groups):
-            for lane in range(WIDTH):
-                A[g * size + ROW_ALIVE * WIDTH + lane] = 0.0
-                live[g] += refill(A, g * size, lane, o)
+            for k in range(WIDTH):
+                live[g] += refill(Lane(A, g * size, k), o)
         if RECORDED and live[0] > 0:
-            first_row(A, 0, 0, o)
+            first_row(Lane(A, 0, 0), o)
     while True:
         busy = 0
         for _ in range(o.every):
@@ -71,141 +92,139 @@ def run(A, live, o):
                         return False
                     busy += 1
                     flags = step(A, g * size)
-                    if RECORDED and EXACT_CONTACT and not series_held(A, 0, o.p):
-                        finish(A, 0, 0, MISSED, o.out)
+                    if RECORDED and EXACT_CONTACT and not series_held(Lane(A, 0, 0), o.p):
+                        finish(Lane(A, 0, 0), MISSED, o.out)
                         return True
                     if flags != 0:
-                        live[g] -= serve(A, g * size, flags, o)
+                        for k in range(WIDTH):
+                            if (flags >> k) & 1 != 0:
+                                live[g] -= serve(Lane(A, g * size, k), o)
             if busy == 0:
                 return True
         if RECORDED or o.stop[0] != 0:
             return False
 
 
-def serve(A, b, flags, o):
-    """Look after every flagged lane; returns how many of them found no further job."""
-    idle = 0
-    for lane in range(WIDTH):
-        if (flags >> lane) & 1 == 0:
-            continue
-        code = int(A[b + ROW_CODE * WIDTH + lane])
-        if SAMPLES and code & DUE:
-            write_samples(A, b, lane, o)
-        if RECORDED and code & DUE:
-            write_rows(A, b, lane, o)
-        ended = RUNNING
-        if code & LOST:
-            ended = or_chattering(A, b, lane, UNDERFLOW, o) if is_finite(A, b, lane) else NOT_FINITE
-        elif code & OVER and not code & DONE:
-            ended = or_chattering(A, b, lane, STEP_LIMIT, o)
-        elif EXACT_CONTACT and code & LANDED:
-            ended = change_modes(A, b, lane, int(A[b + ROW_TARGET * WIDTH + lane]), o)
-        elif TRIES and code & EVENT:
-            which = locate(A, b, lane)
-            if which >= 0:
-                ended = change_modes(A, b, lane, which, o)
-        elif code & DONE:
-            ended = next_piece(A, b, lane, o)
-        if ended != RUNNING:
-            finish(A, b, lane, ended, o.out)
-            idle += 1 - refill(A, b, lane, o)
-    return idle
+def serve(lane, o):
+    """Look after a flagged lane; returns 1 where it found no further job."""
+    code = int(lane.code)
+    if SAMPLES and code & DUE:
+        write_samples(lane, o)
+    if RECORDED and code & DUE:
+        write_rows(lane, o)
+    ended = RUNNING
+    if code & LOST:
+        ended = or_chattering(lane, UNDERFLOW, o) if is_finite(lane) else NOT_FINITE
+    elif code & OVER and not code & DONE:
+        ended = or_chattering(lane, STEP_LIMIT, o)
+    elif EXACT_CONTACT and code & LANDED:
+        ended = change_modes(lane, int(lane.target), o)
+    elif TRIES and code & EVENT:
+        which = locate(lane)
+        if which >= 0:
+            ended = change_modes(lane, which, o)
+    elif code & DONE:
+        ended = next_piece(lane, o)
+    if ended == RUNNING:
+        return 0
+    finish(lane, ended, o.out)
+    return 1 - refill(lane, o)
 
 
-def or_chattering(A, b, lane, ended, o):
+def or_chattering(lane, ended, o):
     """How a job ended that ran out of steps: as told, or because sliding reverses at most of them."""
     if STAGED:
-        o.s.count[FLIPS] = int(np.ceil(A[b + ROW_FLIPS * WIDTH + lane]))
-        o.s.count[REVERSALS] = int(A[b + ROW_REVERSALS * WIDTH + lane])
-        o.s.clock[STEP] = A[b + ROW_H * WIDTH + lane]
+        o.s.count[FLIPS] = int(np.ceil(lane.flips))
+        o.s.count[REVERSALS] = int(lane.reversals)
+        o.s.clock[STEP] = lane.h
         if chatters(o.p, o.s):
             return CHATTERING
     return ended
 
 
-def is_finite(A, b, lane):
+def is_finite(lane):
     """Whether the present state and its derivative are numbers: then the step was too small, not the motion lost."""
     total = 0.0
     for i in range(DOFS):
-        total += abs(A[b + (ROW_Q + i) * WIDTH + lane]) + abs(A[b + (ROW_V + i) * WIDTH + lane])
-        total += abs(A[b + (ROW_ACCELERATION + i) * WIDTH + lane])
+        total += abs(lane.q[i]) + abs(lane.v[i])
+        total += abs(lane.acceleration[i])
     return total < (OVERFLOW if SERIES else TOO_LARGE)
 
 
-def refill(A, b, lane, o):
+def refill(lane, o):
     """Begin the next job in a lane; returns 0 when there is none. A job whose start has no modes ends at once."""
     while True:
         job = take(o.counter)
         if job >= o.total:
-            A[b + ROW_ALIVE * WIDTH + lane] = 0.0
+            lane.alive = 0.0
             return 0
         for row in range(GIVEN):
-            A[b + row * WIDTH + lane] = o.table[job, o.varies[row]] if o.varies[row] >= 0 else o.fixed[3 + row]
+            lane.all[row] = o.table[job, o.varies[row]] if o.varies[row] >= 0 else o.fixed[3 + row]
         for row in range(GIVEN, ALL_ROWS):
-            A[b + row * WIDTH + lane] = 0.0
-        begin(A, b, lane, job, o)
-        ended = start(A, b, lane, o.p, o.s)
+            lane.all[row] = 0.0
+        begin(lane, job, o)
+        ended = start(lane, o.p, o.s)
         if ended == RUNNING:
-            A[b + ROW_ALIVE * WIDTH + lane] = 1.0
+            lane.alive = 1.0
             return 1
-        finish(A, b, lane, ended, o.out)
+        finish(lane, ended, o.out)
 
 
-def begin(A, b, lane, job, o):
+def begin(lane, job, o):
     """Clock, counters, start and the observers' memory; fixed holds the end, the start and the cap, then the rows."""
-    A[b + ROW_JOB * WIDTH + lane] = job
-    A[b + ROW_T * WIDTH + lane] = o.fixed[1]
-    A[b + ROW_MOST * WIDTH + lane] = o.fixed[2]
-    A[b + ROW_H * WIDTH + lane] = A[b + ROW_FIRST * WIDTH + lane]
-    A[b + ROW_T_END * WIDTH + lane] = piece_end(A, b, lane, o.fixed[0])
+    lane.job = job
+    lane.t = o.fixed[1]
+    lane.most = o.fixed[2]
+    lane.h = lane.first
+    lane.t_end = piece_end(lane, o.fixed[0])
     for k in range(DOFS):
-        A[b + (ROW_Q + k) * WIDTH + lane] = A[b + (ROW_START + k) * WIDTH + lane]
-        A[b + (ROW_V + k) * WIDTH + lane] = A[b + (ROW_START + DOFS + k) * WIDTH + lane]
+        lane.q[k] = lane.start[k]
+        lane.v[k] = lane.start[DOFS + k]
     for c in range(CONTACTS):
-        A[b + (ROW_LOWEST + c) * WIDTH + lane] = np.inf
-        A[b + (ROW_FASTEST + c) * WIDTH + lane] = 0.0
-    set_observers(A, b, lane, o.fixed)
+        lane.lowest[c] = np.inf
+        lane.fastest[c] = 0.0
+    set_observers(lane, o.fixed)
     if SAMPLES:
-        A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = o.times[0]
+        lane.next_sample = o.times[0]
     if EXACT_CONTACT:
-        A[b + ROW_TARGET * WIDTH + lane] = -1.0
-        A[b + ROW_WINDOW_START * WIDTH + lane] = o.fixed[1]
+        lane.target = -1.0
+        lane.window_start = o.fixed[1]
 
 
-def piece_end(A, b, lane, end):
+def piece_end(lane, end):
     """The next kink of a schedule, or the end."""
-    t = A[b + ROW_T * WIDTH + lane]
+    t = lane.t
     first = end
     for k in range(BREAKS):
-        at = A[b + (ROW_BREAK + k) * WIDTH + lane]
+        at = lane.breaks[k]
         if t < at < first:
             first = at
     return first
 
 
-def start(A, b, lane, p, s):
+def start(lane, p, s):
     """Modes and accelerations at the start."""
-    gather(A, b, lane, p, s)
-    load_state(A, b, lane, p, s)
-    t = A[b + ROW_T * WIDTH + lane]
+    gather(lane, p, s)
+    load_state(lane, p, s)
+    t = lane.t
     if EXACT_CONTACT and not start_modes(p, t, s.state, s.mode, s):
         return TENSION if pulled(p, s) else INCONSISTENT
-    refresh(A, b, lane, t, p, s)
+    refresh(lane, t, p, s)
     return RUNNING
 
 
-def next_piece(A, b, lane, o):
+def next_piece(lane, o):
     """Go on behind a kink of a schedule, where a force that jumps may let a contact go; COMPLETED at the end."""
-    t = A[b + ROW_T * WIDTH + lane]
+    t = lane.t
     if t >= o.fixed[0]:
         return COMPLETED
     p, s = o.p, o.s
-    A[b + ROW_T_END * WIDTH + lane] = piece_end(A, b, lane, o.fixed[0])
-    gather(A, b, lane, p, s)
-    load_state(A, b, lane, p, s)
+    lane.t_end = piece_end(lane, o.fixed[0])
+    gather(lane, p, s)
+    load_state(lane, p, s)
     for c in range(CONTACTS):
         s.fresh[c] = 0
-    refresh(A, b, lane, t, p, s)
+    refresh(lane, t, p, s)
     if EXACT_CONTACT:
         fastest = 0.0
         for c in range(CONTACTS):
@@ -214,59 +233,57 @@ def next_piece(A, b, lane, o):
             slips = s.mode[c] != STICK and s.mode[c] != OPEN
             rests = slips and abs(s.speed[c]) <= event_tolerance(p, c, s.state, s, 0.0) + 1e-12 * fastest
             if rests or (s.mode[c] == STICK and s.phi[c] < 0.0):
-                A[b + ROW_RESUME * WIDTH + lane] = A[b + ROW_H * WIDTH + lane]
-                A[b + (ROW_FORCE + c) * WIDTH + lane] = s.force[c]
-                return change_modes(A, b, lane, c, o)
+                lane.resume = lane.h
+                lane.force[c] = s.force[c]
+                return change_modes(lane, c, o)
     return RUNNING
 
 
-def load_state(A, b, lane, p, s):
+def load_state(lane, p, s):
     """State and modes of a lane into the records of the scalar march."""
     room = p.mk.shape[0]
     s.clock[INSIDE] = np.inf
     for i in range(DOFS):
-        s.state[i] = A[b + (ROW_Q + i) * WIDTH + lane]
-        s.state[room + i] = A[b + (ROW_V + i) * WIDTH + lane]
+        s.state[i] = lane.q[i]
+        s.state[room + i] = lane.v[i]
     if EXACT_CONTACT:
         for c in range(CONTACTS):
             s.bias[c] = 1.0
-            s.mode[c] = (
-                OPEN if A[b + (ROW_OPENED + c) * WIDTH + lane] > 0.0 else int(A[b + (ROW_SLIPS + c) * WIDTH + lane])
-            )
+            s.mode[c] = OPEN if lane.opened[c] > 0.0 else int(lane.slips[c])
 
 
-def refresh(A, b, lane, t, p, s):
+def refresh(lane, t, p, s):
     """Velocities, accelerations, modes, event functions and the inverse of the sticking contacts, back into a lane."""
     room = p.mk.shape[0]
     derivative(p, t, s.state, s.mode, s, s.dy)
     for i in range(DOFS):
         if p.light:  # an algebraic row follows the others
-            A[b + (ROW_Q + i) * WIDTH + lane] = s.state[i]
-        A[b + (ROW_V + i) * WIDTH + lane] = s.state[room + i]
-        A[b + (ROW_ACCELERATION + i) * WIDTH + lane] = s.dy[room + i]
+            lane.q[i] = s.state[i]
+        lane.v[i] = s.state[room + i]
+        lane.acceleration[i] = s.dy[room + i]
     if STAGED:
         for c in range(CONTACTS):
-            A[b + (ROW_NORMAL_END + c) * WIDTH + lane] = s.normal[c]
-            A[b + (ROW_SPEED_END + c) * WIDTH + lane] = s.speed[c]
-            A[b + (ROW_FRICTION_END + c) * WIDTH + lane] = s.force[c]
+            lane.normal_end[c] = s.normal[c]
+            lane.speed_end[c] = s.speed[c]
+            lane.friction_end[c] = s.force[c]
     if EXACT_CONTACT:
-        hold_matrix(A, b, lane, p, s)
+        hold_matrix(lane, p, s)
         event_values(p, t, s.state, s.mode, s, s.phi)
         for c in range(CONTACTS):
-            A[b + (ROW_OPENED + c) * WIDTH + lane] = 1.0 if s.mode[c] == OPEN else 0.0
-            A[b + (ROW_SLIPS + c) * WIDTH + lane] = 0.0 if s.mode[c] == OPEN else float(s.mode[c])
-            A[b + (ROW_FRESH + c) * WIDTH + lane] = s.leave[c] if s.fresh[c] else 0.0
-            A[b + (ROW_NOISE + c) * WIDTH + lane] = force_noise(p, c, s.state, s) if s.mode[c] == STICK else 0.0
-            A[b + (ROW_PHI + c) * WIDTH + lane] = 0.0 if s.fresh[c] else s.phi[c]
+            lane.opened[c] = 1.0 if s.mode[c] == OPEN else 0.0
+            lane.slips[c] = 0.0 if s.mode[c] == OPEN else float(s.mode[c])
+            lane.fresh[c] = s.leave[c] if s.fresh[c] else 0.0
+            lane.noise[c] = force_noise(p, c, s.state, s) if s.mode[c] == STICK else 0.0
+            lane.phi[c] = 0.0 if s.fresh[c] else s.phi[c]
             if FUNCTIONS > CONTACTS:
-                A[b + (ROW_PHI + CONTACTS + c) * WIDTH + lane] = s.phi[p.contacts + c]
+                lane.phi[CONTACTS + c] = s.phi[p.contacts + c]
 
 
-def hold_matrix(A, b, lane, p, s):
+def hold_matrix(lane, p, s):
     """Rows H: the inverse of t . M^-1 d over the sticking contacts; where it is singular, `_sharing.share_out`."""
     for c in range(CONTACTS):
         for e in range(CONTACTS):
-            A[b + (ROW_HOLD + c * CONTACTS + e) * WIDTH + lane] = 0.0
+            lane.hold[c * CONTACTS + e] = 0.0
     sticking = list_sticking(p, s.mode, s)
     for e in range(sticking):
         for a in range(sticking):
@@ -278,89 +295,89 @@ def hold_matrix(A, b, lane, p, s):
             weigh_sticking(p, s, sticking)
             share_out(s, sticking)
         for a in range(sticking):
-            A[b + (ROW_HOLD + s.stuck[a] * CONTACTS + s.stuck[e]) * WIDTH + lane] = s.right[a]
+            lane.hold[s.stuck[a] * CONTACTS + s.stuck[e]] = s.right[a]
 
 
-def change_modes(A, b, lane, j, o):
+def change_modes(lane, j, o):
     """An event of function j at the present state: new modes, and the bound on events in a window of time."""
-    p, s, t = o.p, o.s, A[b + ROW_T * WIDTH + lane]
+    p, s, t = o.p, o.s, lane.t
     done = False
     if SIMPLE:
-        before = A[b + (ROW_SLIPS + j) * WIDTH + lane]
-        done = change_alone(A, b, lane, j)
-        if done and A[b + (ROW_SLIPS + j) * WIDTH + lane] != before:
-            A[b + ROW_EVENTS * WIDTH + lane] += 1.0
+        before = lane.slips[j]
+        done = change_alone(lane, j)
+        if done and lane.slips[j] != before:
+            lane.events += 1.0
             if RECORDED:
-                log_event(A, b, lane, j, A[b + (ROW_SLIPS + j) * WIDTH + lane], o)
+                log_event(lane, j, lane.slips[j], o)
     if not done:
-        gather(A, b, lane, p, s)
-        load_state(A, b, lane, p, s)
+        gather(lane, p, s)
+        load_state(lane, p, s)
         solved = apply_event(p, t, s.state, s.mode, s, j if j < CONTACTS else p.contacts + j - CONTACTS)
         for c in range(CONTACTS):
             if s.mode[c] != s.old[c]:
-                A[b + ROW_EVENTS * WIDTH + lane] += 1.0
+                lane.events += 1.0
                 if RECORDED:
-                    log_event(A, b, lane, c, s.mode[c], o)
+                    log_event(lane, c, s.mode[c], o)
         if not solved:
             return TENSION if pulled(p, s) else INCONSISTENT
         opened = j >= CONTACTS or s.old[j] == OPEN or s.mode[j] == OPEN
-        refresh(A, b, lane, t, p, s)
+        refresh(lane, t, p, s)
         if FUNCTIONS > CONTACTS and opened:  # N = 0 there: round-off of the other sign is no event of its own
             c = j if j < CONTACTS else j - CONTACTS
             at = c if s.mode[c] == OPEN else CONTACTS + c
-            A[b + (ROW_PHI + at) * WIDTH + lane] = max(A[b + (ROW_PHI + at) * WIDTH + lane], 1e-300)
-    A[b + ROW_H * WIDTH + lane] = A[b + ROW_RESUME * WIDTH + lane]
-    A[b + ROW_TARGET * WIDTH + lane] = -1.0
-    A[b + ROW_TRUST * WIDTH + lane] = 0.0
+            lane.phi[at] = max(lane.phi[at], 1e-300)
+    lane.h = lane.resume
+    lane.target = -1.0
+    lane.trust = 0.0
     if not SERIES:
-        A[b + ROW_EASED * WIDTH + lane] = 0.0
-    A[b + ROW_WINDOW_EVENTS * WIDTH + lane] += 1.0
-    if t - A[b + ROW_WINDOW_START * WIDTH + lane] > A[b + ROW_WINDOW * WIDTH + lane]:
-        A[b + ROW_WINDOW_START * WIDTH + lane] = t
-        A[b + ROW_WINDOW_EVENTS * WIDTH + lane] = 0.0
-    if A[b + ROW_WINDOW_EVENTS * WIDTH + lane] <= 40.0 * (CONTACTS + 1):
+        lane.eased = 0.0
+    lane.window_events += 1.0
+    if t - lane.window_start > lane.window:
+        lane.window_start = t
+        lane.window_events = 0.0
+    if lane.window_events <= 40.0 * (CONTACTS + 1):
         return RUNNING
-    gather(A, b, lane, p, s)
-    load_state(A, b, lane, p, s)
+    gather(lane, p, s)
+    load_state(lane, p, s)
     derivative(p, t, s.state, s.mode, s, s.dy)
     for c in range(CONTACTS):
         s.at_zero[c] = s.mode[c] == STICK or c == j
     return TENSION if pulled(p, s) else ZENO
 
 
-def finish(A, b, lane, ended, out):
+def finish(lane, ended, out):
     """Write what a job leaves: how it ended, its clock and counts, its state and the observers' memory."""
-    job = int(A[b + ROW_JOB * WIDTH + lane])
+    job = int(lane.job)
     out[job, 0] = ended
-    out[job, 1] = A[b + ROW_T * WIDTH + lane]
-    out[job, 2] = A[b + ROW_TAKEN * WIDTH + lane]
-    out[job, 3] = A[b + ROW_TRIES * WIDTH + lane]
-    out[job, 4] = A[b + ROW_EVENTS * WIDTH + lane] if EXACT_CONTACT else 0.0
+    out[job, 1] = lane.t
+    out[job, 2] = lane.taken
+    out[job, 3] = lane.tries
+    out[job, 4] = lane.events if EXACT_CONTACT else 0.0
     for k in range(2 * DOFS):
-        out[job, 5 + k] = A[b + (ROW_Q + k) * WIDTH + lane]
+        out[job, 5 + k] = lane.q[k]
     for k in range(MEMORY):
-        out[job, 5 + 2 * DOFS + k] = A[b + (ROW_OBSERVED + k) * WIDTH + lane]
+        out[job, 5 + 2 * DOFS + k] = lane.observed[k]
     for c in range(CONTACTS):
-        out[job, 5 + 2 * DOFS + MEMORY + c] = A[b + (ROW_LOWEST + c) * WIDTH + lane]
-        out[job, 5 + 2 * DOFS + MEMORY + CONTACTS + c] = A[b + (ROW_FASTEST + c) * WIDTH + lane]
+        out[job, 5 + 2 * DOFS + MEMORY + c] = lane.lowest[c]
+        out[job, 5 + 2 * DOFS + MEMORY + CONTACTS + c] = lane.fastest[c]
 
 
-def write_samples(A, b, lane, o):
+def write_samples(lane, o):
     """State at the instants that lie in the step just taken."""
-    job = int(A[b + ROW_JOB * WIDTH + lane])
+    job = int(lane.job)
     if STEPPED:
-        gather(A, b, lane, o.p, o.s)
-        load_state(A, b, lane, o.p, o.s)
-    k = int(A[b + ROW_SAMPLE * WIDTH + lane])
-    while k < o.times.shape[0] and o.times[k] <= A[b + ROW_T * WIDTH + lane]:
-        if o.times[k] == A[b + ROW_T * WIDTH + lane]:
-            on_end(A, b, lane, o.samples[job, k])
+        gather(lane, o.p, o.s)
+        load_state(lane, o.p, o.s)
+    k = int(lane.sample)
+    while k < o.times.shape[0] and o.times[k] <= lane.t:
+        if o.times[k] == lane.t:
+            on_end(lane, o.samples[job, k])
         elif SERIES:
-            on_series(A, b, lane, o.times[k], o.samples[job, k])
+            on_series(lane, o.times[k], o.samples[job, k])
         elif STEPPED:
-            on_step(A, b, lane, o.times[k], o.samples[job, k], o)
+            on_step(lane, o.times[k], o.samples[job, k], o)
         else:
-            on_quintic(A, b, lane, o.times[k], o.samples[job, k])
+            on_quintic(lane, o.times[k], o.samples[job, k])
         k += 1
-    A[b + ROW_SAMPLE * WIDTH + lane] = k
-    A[b + ROW_NEXT_SAMPLE * WIDTH + lane] = o.times[k] if k < o.times.shape[0] else np.inf
+    lane.sample = k
+    lane.next_sample = o.times[k] if k < o.times.shape[0] else np.inf

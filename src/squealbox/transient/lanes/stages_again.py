@@ -2,7 +2,6 @@
 march, whose dense output tells the rows asked for. Compiled by `kernel`; without events.
 """
 
-# ruff: noqa: F821  (the places of the rows, the counts and gather are generated; load_state is of `service`)
 # mypy: disable-error-code="name-defined,no-untyped-def"
 
 import numpy as np
@@ -10,23 +9,24 @@ import numpy as np
 from squealbox.transient._march import write_row
 from squealbox.transient._motion import INSIDE, ROWS, derivative, evaluate_signals
 from squealbox.transient._runge_kutta import dense_stages, interpolate, take_step
+from squealbox.transient.lanes.of_a_shape import CONTACTS, DOFS, gather
 
 
-def write_within(A, b, lane, k, o):
+def write_within(lane, k, o):
     """The rows from number k on that lie before the end of the step just taken; returns the number of the next."""
     p, r, s, times = o.p, o.r, o.s, o.times
     room = p.mk.shape[0]
-    t0 = A[b + ROW_T_OLD * WIDTH + lane]
-    t1 = A[b + ROW_T * WIDTH + lane]
+    t0 = lane.t_old
+    t1 = lane.t
     evaluate_signals(p, t0, s)  # the load's own, whose power no lane needs otherwise, and all that `gather` sets
-    gather(A, b, lane, p, s)
-    load_state(A, b, lane, p, s)
+    gather(lane, p, s)
+    load_state(lane, p, s)  # noqa: F821 - of `service`, which imports this module
     s.clock[INSIDE] = np.nextafter(t1, -np.inf)
     for i in range(DOFS):
-        s.state[i] = A[b + (ROW_Q_OLD + i) * WIDTH + lane]
-        s.state[room + i] = A[b + (ROW_V_OLD + i) * WIDTH + lane]
+        s.state[i] = lane.q_old[i]
+        s.state[room + i] = lane.v_old[i]
     for i in range(CONTACTS + 4):
-        s.state[2 * room + i] = A[b + (ROW_WAS + i) * WIDTH + lane]
+        s.state[2 * room + i] = lane.was[i]
     derivative(p, t0, s.state, s.mode, s, s.stage[0])
     h = t1 - t0
     take_step(p, r, s, t0, h)

@@ -78,6 +78,9 @@ class Traced:
 class Take:
     """`take(counter)`: the counter's value, which is raised by one at once, whatever other threads do."""
 
+    def __call__(self, *_: Any) -> Any:
+        raise TypeError("a function of compiled code alone")
+
     def write(self, unit: Unit, caller: Function, values: list[Any]) -> Number:
         """Its call there."""
         (counter,) = values
