@@ -8,7 +8,7 @@ import numpy as np
 import psutil
 import pytest
 
-from squealbox import complex_modes, sweep
+from squealbox import complex_modes, sweep, workers
 from squealbox.studies import StudyError
 
 LOADS = np.arange(24.0)
@@ -21,7 +21,7 @@ def children():
 @pytest.fixture(autouse=True)
 def nothing_is_left():
     yield
-    assert not [each for each in children() if "crew" in " ".join(each.cmdline())]
+    assert not [each for each in children() if "squealbox.workers" in " ".join(each.cmdline())]
 
 
 @pytest.mark.parametrize("chunk", [1, 8, None])
@@ -93,9 +93,7 @@ def test_an_analysis_that_returns_nonsense_is_said(drum):
 
 
 def test_workers_that_do_not_start_are_said(drum, monkeypatch):
-    from squealbox.studies import crew
-
-    monkeypatch.setattr(crew, "_CODE", "raise SystemExit('no such library')")
+    monkeypatch.setattr(workers, "_CODE", "raise SystemExit('no such library')")
     with pytest.raises(StudyError, match="do not start: exit code 1: no such library"):
         sweep(drum, {"load": LOADS}, lambda design: 1.0, workers=2)
 
