@@ -48,18 +48,11 @@ def away(arguments, folder, **environment):
 def test_commands_run_without_what_windows_lacks(tmp_path):
     (tmp_path / "brake.toml").write_text('brake = "drum_brake"\n' + SMALL)
     lines = ["init|first", "list", "modes|brake.toml|--out|modes", "onset|brake.toml|--parameter|k3|--range|1e8|3e8",
-             "map|brake.toml|--out|map", "simulate|brake.toml|--duration|5ms|--out|motion", "run|brake.toml|--out|s",
-             "show|s", "export|s|--to|study.csv"]  # fmt: skip
+             "map|brake.toml|--out|map", "simulate|brake.toml|--duration|5ms|--out|motion",
+             "run|brake.toml|--out|s|--workers|2", "show|s", "export|s|--to|study.csv"]  # fmt: skip
     done = away(["-c", AS_ON_WINDOWS, *lines], tmp_path)
     assert done.returncode == 0, done.stderr[-2000:]
     assert (tmp_path / "study.csv").is_file()
-
-
-def test_a_process_of_the_workbench_needs_no_nice(tmp_path):
-    code = "import os; del os.nice\nfrom squealbox.workbench.apart import serve\nfrom multiprocessing import Pipe\n"
-    code += "here, there = Pipe(); here.close(); serve(there)"
-    done = away(["-c", code], tmp_path)
-    assert "nice" not in done.stderr
 
 
 def test_letters_that_the_locale_does_not_know(tmp_path):

@@ -8,7 +8,7 @@ import numpy as np
 import psutil
 import pytest
 
-from squealbox import complex_modes, sweep
+from squealbox import complex_modes, sweep, workers
 from squealbox.studies import StudyError
 
 LOADS = np.arange(24.0)
@@ -21,49 +21,47 @@ def children():
 @pytest.fixture(autouse=True)
 def nothing_is_left():
     yield
-    assert not [each for each in children() if "crew" in " ".join(each.cmdline())]
+    assert not [each for each in children() if "squealbox.workers" in " ".join(each.cmdline())]
 
 
-@pytest.mark.parametrize("chunk", [1, 8, None])
-def test_a_poisonous_and_a_hanging_point_are_isolated(drum, chunk):
+def falls():
+    os.kill(os.getpid(), signal.SIGSEGV)
+
+
+def leaves():
+    print("out of brake pads", flush=True)
+    os._exit(3)
+
+
+def spins():
+    while True:
+        pass
+
+
+@pytest.mark.parametrize(
+    ("chunk", "dies", "hangs", "words"),
+    [(1, falls, lambda: time.sleep(1000.0), "SIGSEGV"),
+     (8, leaves, lambda: time.sleep(1000.0), "exit code 3: out of brake pads"),
+     (None, falls, spins, "SIGSEGV")],
+)  # fmt: skip
+def test_a_poisonous_and_a_hanging_point_are_isolated(drum, chunk, dies, hangs, words):
     def answer(design):
         if design.load1 == 5.0:
-            os.kill(os.getpid(), signal.SIGSEGV)
+            dies()
         if design.load1 == 13.0:
-            time.sleep(1000.0)
+            hangs()
         return design.load1
 
     began = time.monotonic()
     table = sweep(drum, {"load": LOADS}, answer, workers=2, time_limit=1.5, chunk=chunk)
-    assert time.monotonic() - began < 30.0
+    assert time.monotonic() - began < 120.0  # some ten processes are started, on a machine with much else to do
     expected = np.full(24, "completed", dtype=object)
     expected[5], expected[13] = "worker_died", "time_limit"
     assert table.outcomes.tolist() == expected.tolist()
-    assert "SIGSEGV" in table.failures[5]
+    assert words in table.failures[5]
     assert "1.5 s" in table.failures[13]
     good = np.delete(np.arange(24), [5, 13])
     np.testing.assert_array_equal(table["value"].values[good], LOADS[good])
-
-
-def test_a_loop_that_never_lets_go_is_ended(drum):
-    def answer(design):
-        while design.load1 == 1.0:
-            pass
-        return design.load1
-
-    table = sweep(drum, {"load": LOADS[:4]}, answer, workers=1, time_limit=1.0)
-    assert table.outcomes.tolist() == ["completed", "time_limit", "completed", "completed"]
-
-
-def test_last_words_are_kept(drum):
-    def answer(design):
-        if design.load1 == 2.0:
-            print("out of brake pads", flush=True)
-            os._exit(3)
-        return design.load1
-
-    table = sweep(drum, {"load": LOADS[:4]}, answer, workers=1)
-    assert "exit code 3: out of brake pads" in table.failures[2]
 
 
 def test_many_workers_give_the_bits_of_one_process(drum, tmp_path):
@@ -93,9 +91,7 @@ def test_an_analysis_that_returns_nonsense_is_said(drum):
 
 
 def test_workers_that_do_not_start_are_said(drum, monkeypatch):
-    from squealbox.studies import crew
-
-    monkeypatch.setattr(crew, "_CODE", "raise SystemExit('no such library')")
+    monkeypatch.setattr(workers, "_CODE", "raise SystemExit('no such library')")
     with pytest.raises(StudyError, match="do not start: exit code 1: no such library"):
         sweep(drum, {"load": LOADS}, lambda design: 1.0, workers=2)
 

@@ -292,5 +292,5 @@ def test_jobs_run_in_their_own_processes_and_wait_for_what_they_need() -> None:
 
 def test_a_job_that_fails_says_which(tmp_path) -> None:
     work = [{"kind": "search", "reading": "no such reading", "label": "nonsense"}]
-    with pytest.raises(jobs.JobFailed, match="nonsense: its process ended with code 1"):
+    with pytest.raises(jobs.JobFailed, match="nonsense: its process ended with exit code 1: .*no such reading"):
         jobs.run(work)

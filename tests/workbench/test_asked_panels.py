@@ -122,9 +122,9 @@ def test_the_sound_has_the_frequency_of_the_motion_before_and_after(page):
 
 
 def test_what_cannot_be_heard_is_said():
-    found = function_of("listen")(brake(), Options({"dof": 1}), Work())
+    found = function_of("listen")(brake(), Options({"dof": 1}), Work(apart=True))
     assert found.data["level"] < 0.0  # stable: after a second and a half nothing is left
-    slow = function_of("listen")(design_of_the_belt(), Options({}), Work())
+    slow = function_of("listen")(design_of_the_belt(), Options({}), Work(apart=True))
     assert "Nothing to hear" in slow.data["silent"]  # a second and a half tells nothing of a motion that takes twelve
     with pytest.raises(OptionError, match="dof"):
         function_of("listen")(brake(), Options({"dof": 0.5}), Work())

@@ -76,9 +76,13 @@ def question(name="branch", options=None):
     return name, {"id": 1, "state": STATE, "options": options or {}}, {}
 
 
+def nobody(share, text):
+    """Does not listen."""
+
+
 def computing():
     """The processes that compute answers for this one."""
-    return [each for each in psutil.Process().children() if "spawn_main" in " ".join(each.cmdline())]
+    return [each for each in psutil.Process().children() if "squealbox.workers" in " ".join(each.cmdline())]
 
 
 def test_a_process_is_killed_and_the_next_question_gets_another():
@@ -93,10 +97,10 @@ def test_a_process_is_killed_and_the_next_question_gets_another():
         assert found is None
         assert said, "it was stopped before it had begun"
         assert computing() == []
-        header, _ = unframed(processes.answer(question("energy"), None, lambda: False))
+        header, _ = unframed(processes.answer(question("energy"), nobody, lambda: False))
         assert header["kind"] == "answer"
         first = computing()
-        processes.answer(question("energy"), None, lambda: False)
+        processes.answer(question("energy"), nobody, lambda: False)
         assert computing() == first != [], "one process serves many questions"
     finally:
         processes.close()
@@ -112,7 +116,7 @@ def test_a_process_that_dies_is_told():
     try:
         with pytest.raises(Died, match="without an answer"):
             processes.answer(question(), murder, lambda: False)
-        assert unframed(processes.answer(question("energy"), None, lambda: False))[0]["kind"] == "answer"
+        assert unframed(processes.answer(question("energy"), nobody, lambda: False))[0]["kind"] == "answer"
     finally:
         processes.close()
 
@@ -120,7 +124,7 @@ def test_a_process_that_dies_is_told():
 def test_a_question_that_waits_for_a_process_can_be_stopped():
     processes = Processes(0)
     begin = time.monotonic()
-    assert processes.answer(question(), None, lambda: time.monotonic() > begin + 0.05) is None
+    assert processes.answer(question(), nobody, lambda: time.monotonic() > begin + 0.05) is None
 
 
 def test_a_kernel_is_compiled_elsewhere(monkeypatch):

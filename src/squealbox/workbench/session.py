@@ -31,6 +31,7 @@ from squealbox.workbench.frames import frame
 from squealbox.workbench.panels import PANELS, Answer, Elsewhere, OptionError, Options, Stopped, Work, function_of
 from squealbox.workbench.sheet import sheet
 from squealbox.workbench.state import StateError, UnknownBase, design_of
+from squealbox.workers import Tell
 
 if TYPE_CHECKING:
     from squealbox.files import DesignFile
@@ -331,6 +332,11 @@ def answered(name: str, message: Mapping[str, Any], bases: Mapping[str, Design],
     except Exception as error:  # a panel that fails says so in its own place; the others go on
         return _failed(about, error)
     return framed
+
+
+def answered_apart(tell: Tell, name: str, message: Mapping[str, Any], bases: Mapping[str, Design]) -> bytes:
+    """The same in a process of its own, which tells how far it is."""
+    return answered(name, message, bases, Work(tell, apart=True))
 
 
 def _asked(state: Any, bases: Mapping[str, Design]) -> tuple[Design, int]:

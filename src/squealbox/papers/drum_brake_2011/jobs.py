@@ -1,25 +1,14 @@
-"""The paper's computation as independent jobs, run by a few worker processes.
-
-Drawing and eigenvalues hold Python's lock, so threads would not help; and processes that Python's multiprocessing
-starts import the caller's script again, which a user's plain script does not survive. So a worker is
-``python -m squealbox.papers.drum_brake_2011.jobs``: one job a line in, one answer a line out, as JSON.
-"""
+"""The paper's computation as independent jobs, run by a few processes: drawing and eigenvalues hold Python's lock."""
 
 import gc
-import json
 import os
-import signal
-import subprocess
-import sys
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from queue import SimpleQueue
 from typing import Any
 
 from squealbox.papers.drum_brake_2011.cases import DEFAULT_READING, PRINTED, RECONSTRUCTED, Case
 from squealbox.papers.drum_brake_2011.claims import EXACT, RAW
+from squealbox.workers import Crew, Ended, Tell
 
 MOST_WORKERS = 4  # each holds about 300 MB
 HEAVIEST = (DEFAULT_READING, "eq1_printed", "eq3", RECONSTRUCTED)  # begun first, so that the workers end together
@@ -29,7 +18,7 @@ BESIDE = {
 }  # need no transients, and so keep a worker busy while these are compiled
 Job = dict[str, Any]
 Progress = Callable[[str, float], None]
-Idle = SimpleQueue[subprocess.Popen[str]]
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1"}  # the matrices are 4 x 4: threads only get in the way
 
 
 class JobFailed(RuntimeError):
@@ -45,23 +34,28 @@ def run(jobs: list[Job], progress: Progress | None = None, meanwhile: Callable[[
     that fails.
     """
     answers: list[Any] = [None] * len(jobs)
-    waiting, done, running = list(range(len(jobs))), set[str](), dict[Any, int]()
+    waiting, done = list(range(len(jobs))), set[str]()
     count = min(processors(), MOST_WORKERS, len(jobs))
-    with ThreadPoolExecutor(count) as threads, _workers(count) as idle:
-        while waiting or running:
-            ready = (i for i in waiting if done.issuperset(jobs[i].get("after", ())))
-            while len(running) < count and (i := next(ready, None)) is not None:
-                running[threads.submit(_ask, idle, jobs[i])] = i
-            waiting = [i for i in waiting if i not in running.values()]
+    with Crew(f"{__name__}:work", environment=ONE_THREAD) as crew:
+        while len(done) < len(jobs):
+            for worker in crew.idle(count):
+                i = next((i for i in waiting if done.issuperset(jobs[i].get("after", ()))), None)
+                if i is not None:
+                    waiting.remove(i)
+                    worker.ask(jobs[i], task=i)
             if meanwhile is not None:
                 meanwhile()
                 meanwhile = None
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                i = running.pop(future)
-                answers[i] = future.result()
-                done.add(jobs[i]["label"])
+            for _, i, answer in crew.news():
+                label = "a worker without a job" if i is None else jobs[i]["label"]
+                if isinstance(answer, Ended):
+                    error = JobFailed(f"{label}: its process ended with {answer.how}")
+                    error.add_note(answer.printed)
+                    raise error
+                answers[i] = answer
+                done.add(label)
                 if progress is not None:
-                    progress(jobs[i]["label"], len(done) / len(jobs))
+                    progress(label, len(done) / len(jobs))
     return answers
 
 
@@ -119,6 +113,12 @@ def do(job: Job) -> Any:
     return search.search(job["reading"])
 
 
+def work(tell: Tell, job: Job) -> Any:
+    """One job in a worker."""
+    gc.set_threshold(50_000, 20, 50)  # figures are many small things: the usual 700 looks through them over and over
+    return do(job)
+
+
 def _task(kind: str, reading: str, figures: Path, fine: bool, compiled: list[str]) -> Job:
     folder = figures if reading == DEFAULT_READING else figures / reading
     label = f"{'study of' if kind == 'study' else 'search in'} {reading}"
@@ -129,54 +129,3 @@ def _task(kind: str, reading: str, figures: Path, fine: bool, compiled: list[str
 def processors() -> int:
     """How many processors this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-@contextmanager
-def _workers(count: int) -> Iterator[Idle]:
-    """A queue of idle workers; they are stopped at the end, whatever happens. What goes wrong in them is printed."""
-    idle: Idle = SimpleQueue()
-    command = [sys.executable, "-m", "squealbox.papers.drum_brake_2011.jobs"]
-    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # the matrices are 4 x 4: threads only get in the way
-    pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "encoding": "utf-8"}
-    started = []
-    try:
-        for _ in range(count):
-            started.append(subprocess.Popen(command, env=environment, **pipes))
-            idle.put(started[-1])
-        yield idle
-    finally:
-        for worker in started:
-            worker.kill()
-            worker.communicate()
-
-
-def _ask(idle: Idle, job: Job) -> Any:
-    worker = idle.get()
-    assert worker.stdin is not None
-    assert worker.stdout is not None
-    try:
-        worker.stdin.write(json.dumps(job) + "\n")
-        worker.stdin.flush()
-        answer = worker.stdout.readline()
-    except BrokenPipeError:
-        answer = ""
-    finally:
-        idle.put(worker)
-    if not answer:
-        raise JobFailed(f"{job['label']}: its process ended with code {worker.wait()}; what it wrote stands above")
-    return json.loads(answer)
-
-
-def _work() -> None:
-    """Answer jobs until the input ends. What libraries print goes to standard error, not between the answers."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the caller's: it stops the workers
-    gc.set_threshold(50_000, 20, 50)  # figures are many small things: the usual 700 looks through them over and over
-    answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    for line in sys.stdin:
-        answers.write(json.dumps(do(json.loads(line))) + "\n")
-        answers.flush()
-
-
-if __name__ == "__main__":
-    _work()
