@@ -5,12 +5,24 @@ import typing
 
 import pytest
 
-from squealbox import complex_modes, optimise, silence, simulate, squeal_probability, sweep
+from squealbox import calibrate, complex_modes, optimise, silence, simulate, squeal_probability, sweep
+from squealbox.calibration import CalibrateSettings
 from squealbox.cli import main
+from squealbox.countermeasures import AbsorberSettings, best_absorber
 from squealbox.declarations import field_type
 from squealbox.files import json_schema, read_file
-from squealbox.limit_cycles import DiagramSettings, bifurcation_diagram
+from squealbox.limit_cycles import (
+    BasinSettings,
+    BranchSettings,
+    CycleSettings,
+    DiagramSettings,
+    basin,
+    bifurcation_diagram,
+    isolated_branches,
+    shooting,
+)
 from squealbox.remedies import SilenceSettings
+from squealbox.signals import EventSettings, read_recording, squeal_events
 from squealbox.stability import ModeSettings, band_modes
 from squealbox.studies import SampleSettings, SearchSettings, WorkerSettings
 from squealbox.transient import MotionSettings, simulate_ensemble
@@ -25,6 +37,12 @@ SHEETS = [
     (WorkerSettings, (sweep,), {}, ()),
     (SilenceSettings, (silence,), {}, ()),
     (DiagramSettings, (bifurcation_diagram,), {}, ()),
+    (BasinSettings, (basin,), {}, ()),
+    (CycleSettings, (shooting,), {}, ("period", "exponents")),
+    (BranchSettings, (isolated_branches,), {"runs": "starts", "at": "values"}, ("start", "estimates")),
+    (CalibrateSettings, (calibrate,), {}, ()),
+    (EventSettings, (read_recording, squeal_events), {}, ("channel", "band")),
+    (AbsorberSettings, (best_absorber,), {}, ()),
 ]
 # what a file calls the default of Python, and a duration, which Python must be given
 USUAL = {"method": None, "start": None, "times": None, "duration": inspect._empty}
@@ -47,7 +65,7 @@ def test_one_run_and_many_agree():
 
 @pytest.mark.parametrize(("sheet", "command"), [(ModeSettings, "modes"), (MotionSettings, "simulate"),
                                                 (SampleSettings, "scatter"), (SearchSettings, "optimise"),
-                                                (WorkerSettings, "run")])  # fmt: skip
+                                                (CalibrateSettings, "calibrate"), (WorkerSettings, "run")])  # fmt: skip
 def test_options_and_schema_come_from_the_sheet(sheet, command, capsys):
     assert main([command, "--help"]) == 0
     text, section = capsys.readouterr().out, json_schema()["oneOf"][0]["properties"][command.replace("run", "study")]

@@ -142,8 +142,11 @@ def _option(sheet: type[DataSheet], name: str) -> Any:
     unit = f" [{about.unit}]" if about and about.unit not in ("", "-") else ""
     options = f": {', '.join(words.options)}" if words and len(words.options) < 6 else ""
     meaning = about.meaning if about else words.meaning if words else sheet.told[name][1]
-    told = f"{meaning}{unit}{options}"
-    how = cyclopts.Parameter(help=told, negative="", show_default=False, consume_multiple=several)
+    usual = getattr(sheet, name, None)
+    word = " ".join(usual or ()) if several else f"{usual:g}" if about and usual is not None else usual
+    told = f"{meaning}{unit}{options}{'' if word in (None, '') else f' [default: {word}]'}"
+    no = None if usual is True else ""  # --no-name, where the switch is on
+    how = cyclopts.Parameter(help=told, negative=no, show_default=False, consume_multiple=several)
     return Annotated[kind | None, how]
 
 

@@ -1,4 +1,4 @@
-"""What of `bifurcation_diagram` can be set, for the command line."""
+"""What of `bifurcation_diagram` and `basin` can be set, for the command line."""
 
 from collections.abc import Mapping
 from typing import ClassVar, Literal
@@ -19,3 +19,15 @@ class DiagramSettings(DataSheet):
         meaning="of the first stretch at each value; what has not settled runs on",
     )  # fmt: skip
     seed: int = parameter("-", 0, default=0, meaning="of the drawn starts")
+
+
+class BasinSettings(DataSheet):
+    """Which starts are looked at."""
+
+    starts: int = parameter("-", 1, default=1000, meaning="number of starts")
+    spread: float = parameter("-", 0.0, low_open=True, default=1.0, meaning="size of the box, in V/w and V")
+    duration: float | None = parameter(
+        "s", 0.0, low_open=True, default=None, optional=True,
+        meaning="of the first stretch of each motion; what has not settled runs on",
+    )  # fmt: skip
+    seed: int = parameter("-", 0, default=1, meaning="of the starts")
