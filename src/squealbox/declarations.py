@@ -26,6 +26,7 @@ class Parameter:
     source: str = ""
     optional: bool = False
     schedule: bool = False
+    ends: bool = False
 
     @property
     def range(self) -> str:
@@ -134,6 +135,17 @@ def parameter(
     if default_factory is not dataclasses.MISSING:
         return dataclasses.field(default_factory=default_factory, metadata={"parameter": about})
     return dataclasses.field(default=default, metadata={"parameter": about})
+
+
+def above_zero(unit: str, *, default: None, meaning: str, ends: bool = False, source: str = "") -> Any:
+    """Declare a field that holds a number above zero, or two with the lower first (`ends`), or None."""
+    about = Parameter(unit, 0.0, low_open=True, meaning=meaning, source=source, optional=True, ends=ends)
+    return dataclasses.field(default=default, metadata={"parameter": about})
+
+
+def free(*, default: Any, meaning: str) -> Any:
+    """Declare a field that holds any word, or yes or no."""
+    return dataclasses.field(default=default, metadata={"said": meaning})
 
 
 @dataclasses.dataclass(frozen=True)

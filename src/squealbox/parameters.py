@@ -23,9 +23,11 @@ from squealbox.declarations import (  # what stands here is known by this room's
     Parameter,
     ParameterError,
     Vector,
+    above_zero,
     choice,
     complete,
     field_type,
+    free,
     known_names,
     parameter,
     screenful,
@@ -35,15 +37,18 @@ from squealbox.declarations import (  # what stands here is known by this room's
 from squealbox.registers import load_kind
 
 __all__ = [
-    "Choice", "DataSheet", "Matrix", "Missing", "Parameter", "ParameterError", "Vector", "choice", "field_type",
-    "from_plain", "known_names", "load_kind", "members", "parameter", "screenful", "shown", "to_plain", "with_cautions",
+    "Choice", "DataSheet", "Matrix", "Missing", "Parameter", "ParameterError", "Vector", "above_zero", "choice",
+    "field_type", "free", "from_plain", "known_names", "load_kind", "members", "parameter", "screenful", "shown",
+    "to_plain", "with_cautions",
 ]  # fmt: skip
 DRAWN_BY = "squealbox.plots"  # by name, when asked: a sheet may know that it can be drawn, but not by whom
 MOST_ENTRIES = 16  # of an array that is printed in full
 _SHEETS: dict[str, type["DataSheet"]] = {}
 
 
-@dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(parameter, choice, dataclasses.field))
+@dataclass_transform(
+    frozen_default=True, eq_default=False, field_specifiers=(parameter, above_zero, choice, free, dataclasses.field)
+)
 class DataSheet:
     """Base of every frozen noun with parameters: laws, schedules and designs.
 
@@ -77,6 +82,9 @@ class DataSheet:
         if "__repr__" not in cls.__dict__:
             cls.__repr__ = DataSheet.__repr__  # type: ignore[method-assign]  # a dataclass would print every array
         dataclasses.dataclass(frozen=True, eq=False)(cls)
+        fields = dataclasses.fields(cls)  # type: ignore[arg-type]
+        said = {field.name: ("", field.metadata["said"]) for field in fields if "said" in field.metadata}
+        cls.told = {**cls.told, **said}
         if "__init__" in cls.__dict__:
             cls.__init__ = complete(cls.__init__)  # type: ignore[method-assign]
         _SHEETS[cls.kind()] = cls
@@ -328,6 +336,8 @@ def _checked(sheet: DataSheet, name: str, about: Parameter) -> Any:
         raise ParameterError(owner, name, value, about.expected) from error
     if not about.accepts(number):
         raise ParameterError(owner, name, value, about.expected)
+    if about.ends and (number.shape != (2,) or number[0] >= number[1]):
+        raise ParameterError(owner, name, value, f"two numbers in {about.range}, the lower first")
     if number.ndim == 0:
         return float(number)
     number = number.copy()

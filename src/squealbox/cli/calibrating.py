@@ -7,7 +7,6 @@ from squealbox.calibration import calibrate as fitted
 from squealbox.cli.answers import show
 from squealbox.cli.inputs import NOTHING_SAID, Said, folder, keywords, read
 from squealbox.cli.options import AS_WRITTEN, Asked
-from squealbox.cli.recordings import Band, ends_of
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import written
 from squealbox.files import DesignFile, write_design
@@ -64,7 +63,6 @@ def compare_(
     recording: Path | None = None,
     *,
     how: Said[EventSettings] = NOTHING_SAID,
-    band: Band = None,
     modes: Path | None = None,
     out: Path | None = None,
     asked: Asked = AS_WRITTEN,
@@ -77,9 +75,6 @@ def compare_(
         design file; its section [simulate] says what is run, [recording] what it is compared with
     recording
         another recording than that of the section
-    band
-        lowest and highest frequency at which squeal is looked for, --band 1kHz 16kHz; by default 2 to 16 kHz, and as
-        far down as half the frequency of the design's own mode
     modes
         table (.csv) or universal file of the modes of a test or another code, to compare with those of the design
     out
@@ -94,7 +89,7 @@ def compare_(
             figures["mode_table"] = compare(own, read_mode_table(modes))
             show("modes", figures["mode_table"])
         if modes is None or recording is not None:
-            sound, channel, events = _heard(found, recording, how, band, own)
+            sound, channel, events = _heard(found, recording, how, own)
             figures["modes"] = compare(own, events)
             show("modes", figures["modes"])
             if found.simulate is not None:
@@ -117,7 +112,6 @@ def _heard(
     found: DesignFile,
     recording: Path | None = None,
     how: Said[EventSettings] = NOTHING_SAID,
-    band: Band = None,
     own: ComplexModes | None = None,
 ) -> tuple[Recording, int | str, SquealEvents]:
     """The recording of the section or the one that is named, the channel of it that is heard, and its squeal events.
@@ -133,7 +127,7 @@ def _heard(
     path = Path(about.file) if recording is not None else found.path.parent / about.file
     try:
         sound = about.read(path)
-        ends = ends_of(band) if band is not None else _around(own) if about.band is None else tuple(about.band)
+        ends = _around(own) if about.band is None else tuple(about.band)
         events = squeal_events(sound, channel=about.place, band=ends, least_level=about.least_level)
     except SignalError as error:
         raise UsageError(str(error)) from error

@@ -133,12 +133,13 @@ NOTHING_SAID: Any = Said()
 
 
 def _option(sheet: type[DataSheet], name: str) -> Any:
-    """The type of the option for a field, with its help; None for an array, which stands in a file."""
+    """The type of the option for a field, with its help; None for an array of any length, which stands in a file."""
     declared, about, words = field_type(sheet, name), sheet.parameters().get(name), sheet.choices().get(name)
-    if get_origin(declared) is Annotated:
+    pair = about is not None and about.ends
+    if get_origin(declared) is Annotated and not pair:
         return None
     several = get_origin(declared) is tuple
-    kind = declared if several or declared in (bool, int) else str
+    kind = tuple[str, str] if pair else declared if several or declared in (bool, int) else str
     unit = f" [{about.unit}]" if about and about.unit not in ("", "-") else ""
     options = f": {', '.join(words.options)}" if words and len(words.options) < 6 else ""
     meaning = about.meaning if about else words.meaning if words else sheet.told[name][1]
@@ -152,13 +153,22 @@ def _option(sheet: type[DataSheet], name: str) -> Any:
 
 def put_over(section: Filed, said: Mapping[str, Any]) -> Filed:
     """A section with other values, of which numbers with units are texts."""
-    units = {name: about.unit for name, about in section.parameters().items() if isinstance(said.get(name), str)}
-    numbers = {name: number(said[name], unit, f"--{name} {said[name][:60]}") for name, unit in units.items()}
+    abouts = section.parameters().items()
+    units = {name: about.unit for name, about in abouts if isinstance(said.get(name), (str, tuple))}
+    numbers = {name: _numbers(name, said[name], unit) for name, unit in units.items()}
     try:
         return section.replace(section.spelled({**said, **numbers}))
     except ParameterError as error:
-        option = error.name.replace("_", "-")
-        raise UsageError(f"--{option} {said.get(error.name, error.value)}: {error.expectation}") from error
+        given = said.get(error.name, error.value)
+        words = " ".join(given) if isinstance(given, tuple) else given
+        raise UsageError(f"--{error.name.replace('_', '-')} {words}: {error.expectation}") from error
+
+
+def _numbers(name: str, text: str | tuple[str, ...], unit: str) -> Any:
+    """The number of an option, or the two of a pair."""
+    if isinstance(text, tuple):
+        return [_numbers(name, each, unit) for each in text]
+    return number(text, unit, f"--{name} {text[:60]}")
 
 
 def keywords(section: DataSheet) -> dict[str, Any]:

@@ -35,7 +35,6 @@ ABOUT = {
 }
 
 SOUNDS = (".wav", ".flac", ".csv", ".uff", ".unv")
-Band = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
 
 
 def events(
@@ -43,7 +42,6 @@ def events(
     /,
     *,
     how: Said[EventSettings] = NOTHING_SAID,
-    band: Band = None,
     out: Path | None = None,
 ) -> None:
     """Find squeal events: onset, end, frequency, level, growth and decay.
@@ -52,8 +50,6 @@ def events(
     ----------
     recordings
         .wav, .flac, .csv, .npy, .uff files
-    band
-        lowest and highest frequency: --band 2kHz 16kHz
     out
         file for the events as a dataset (.nc), of one recording
     """
@@ -63,7 +59,7 @@ def events(
         raise UsageError("--out: expected one recording")
     settings = how.over(EventSettings())
     for path in recordings:
-        found = _found(path, settings, band)
+        found = _found(path, settings)
         show(f"{path}", found)
         if out is not None:
             print(f"written: {found.save(out)}")
@@ -75,7 +71,6 @@ def noise(
     x: str = "speed",
     y: str = "pressure",
     how: Said[EventSettings] = NOTHING_SAID,
-    band: Band = None,
 ) -> None:
     """How often it squeals over a folder of stops: occurrence, the noise matrix, frequencies.
 
@@ -89,8 +84,6 @@ def noise(
         braking quantity of the rows
     y
         braking quantity of the columns
-    band
-        lowest and highest frequency: --band 2kHz 16kHz
     """
     if not folder.is_dir():
         raise UsageError(f"{folder}: expected a folder of recordings")
@@ -100,7 +93,7 @@ def noise(
     stops, refused, settings = [], [], how.over(EventSettings())
     for path in paths:
         try:
-            stops.append(_found(path, settings, band))
+            stops.append(_found(path, settings))
         except UsageError as error:
             refused.append(str(error))
     for text in refused:
@@ -142,10 +135,11 @@ def damping(
     if out is not None and not against:
         raise UsageError("--out: keeps the onset, which --against asks for")
     found, at, settings = [], [], how.over(RecordingSettings())
+    low, high = (number(each, "Hz", f"--band {each[:40]}") for each in band)
     for path in recordings:
         with _named(path):
             sound = _read(path, settings)
-            found.append(operational_modes(sound, channel=settings.place, band=ends_of(band)))
+            found.append(operational_modes(sound, channel=settings.place, band=(low, high)))
             show(f"{path}", found[-1])
             if against and against not in sound.braking:
                 known = ", ".join(sound.braking) or f"nothing: {path.with_suffix('.braking.csv').name} is missing"
@@ -200,16 +194,10 @@ def _read(path: Path, how: RecordingSettings) -> Recording:
     return how.read(path, braking)
 
 
-def _found(path: Path, how: EventSettings, band: Band) -> SquealEvents:
-    ends = BAND if band is None else ends_of(band)
+def _found(path: Path, how: EventSettings) -> SquealEvents:
+    ends = BAND if how.band is None else tuple(how.band)
     with _named(path):
         return squeal_events(_read(path, how), channel=how.place, band=ends, least_level=how.least_level)
-
-
-def ends_of(band: tuple[str, str]) -> tuple[float, float]:
-    """The ends of a --band [Hz]."""
-    low, high = (number(each, "Hz", f"--band {each[:40]}") for each in band)
-    return low, high
 
 
 @contextmanager

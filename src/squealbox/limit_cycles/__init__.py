@@ -10,20 +10,17 @@ from squealbox.limit_cycles.attractors.diagrams import BifurcationDiagram, bifur
 from squealbox.limit_cycles.attractors.exponents import lyapunov_exponents
 from squealbox.limit_cycles.attractors.pushes import DangerousPush, dangerous_push, push_along
 from squealbox.limit_cycles.attractors.sections import Section, maxima, poincare_section
-from squealbox.limit_cycles.attractors.settings import BasinSettings, DiagramSettings
 from squealbox.limit_cycles.branches.branch import Branch, branch
 from squealbox.limit_cycles.branches.curves import PointCurve, hopf_curve
 from squealbox.limit_cycles.branches.hopf import HopfPoint, hopf_point
 from squealbox.limit_cycles.branches.isolated import isolated_branches, settled_cycles
 from squealbox.limit_cycles.branches.joined import joined
 from squealbox.limit_cycles.branches.point_curves import point_curve
-from squealbox.limit_cycles.branches.settings import BranchSettings
 from squealbox.limit_cycles.branches.special_points import BranchPoint
 from squealbox.limit_cycles.branches.stretches import beside_sliding, stable_sliding, stretches
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.limit_cycles.cycles.forced import ForcedCycle, forced_branch, forced_cycle, forced_path
 from squealbox.limit_cycles.cycles.harmonic_balance import harmonic_balance
-from squealbox.limit_cycles.cycles.settings import CycleSettings
 from squealbox.limit_cycles.cycles.shooting import shooting
 from squealbox.limit_cycles.estimates.averaging import (
     averaged_curve,
@@ -33,6 +30,7 @@ from squealbox.limit_cycles.estimates.averaging import (
 )
 from squealbox.limit_cycles.estimates.curves import EstimateCurve, estimate_curves
 from squealbox.limit_cycles.estimates.stick_slip_limit import return_gap, stick_slip_limit
+from squealbox.limit_cycles.settings import BasinSettings, BranchSettings, CycleSettings, DiagramSettings
 
 __all__ = [
     "Attractor",

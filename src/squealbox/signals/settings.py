@@ -2,10 +2,9 @@
 
 import os
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any
 
-from squealbox.arguments import band
-from squealbox.parameters import DataSheet, ParameterError, Vector, parameter
+from squealbox.parameters import DataSheet, Vector, above_zero, free, parameter
 from squealbox.signals.events import LEAST_LEVEL
 from squealbox.signals.recordings import Recording, read_recording
 
@@ -13,20 +12,12 @@ from squealbox.signals.recordings import Recording, read_recording
 class RecordingSettings(DataSheet):
     """How a recording is read."""
 
-    told: ClassVar[Mapping[str, tuple[str, str]]] = {
-        "unit": ("", "unit of the channels: Pa for sound pressure"),
-        "channel": ("", "number from 0 on, or name"),
-    }
-
-    unit: str = ""
-    full_scale: float | None = parameter(
-        "", 0.0, low_open=True, default=None, optional=True,
-        meaning="what full scale (of sound files) or one unit is worth: 20 for 20 Pa",
-    )  # fmt: skip
-    rate: float | None = parameter(
-        "Hz", 0.0, low_open=True, default=None, optional=True, meaning="sampling rate of files that do not tell it"
+    unit: str = free(default="", meaning="unit of the channels: Pa for sound pressure")
+    full_scale: float | None = above_zero(
+        "", default=None, meaning="what full scale (of sound files) or one unit is worth: 20 for 20 Pa"
     )
-    channel: str = "0"
+    rate: float | None = above_zero("Hz", default=None, meaning="sampling rate of files that do not tell it")
+    channel: str = free(default="0", meaning="number from 0 on, or name")
 
     @staticmethod
     def unit_for(given: Mapping[str, Any]) -> str:
@@ -52,13 +43,8 @@ class RecordingSettings(DataSheet):
 class EventSettings(RecordingSettings):
     """How a recording is read, and what counts as squeal in it."""
 
-    band: Vector = parameter("Hz", 0.0, default=None, optional=True, meaning="lowest and highest frequency of squeal")
+    band: Vector = above_zero("Hz", default=None, ends=True, meaning="lowest and highest frequency, 2kHz 16kHz")
     least_level: float = parameter(
         "-", default=LEAST_LEVEL,
         meaning="peak level an event must reach in dB(A); asked of calibrated recordings only",
     )  # fmt: skip
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.band is not None and (expected := band(self.band)):
-            raise ParameterError(type(self).__name__, "band", self.band, expected)
