@@ -21,11 +21,14 @@ from squealbox.limit_cycles import (
     isolated_branches,
     shooting,
 )
+from squealbox.parameters import load_kind
 from squealbox.remedies import SilenceSettings
 from squealbox.signals import EventSettings, read_recording, squeal_events
 from squealbox.stability import ModeSettings, band_modes
 from squealbox.studies import SampleSettings, SearchSettings, WorkerSettings
 from squealbox.transient import MotionSettings, simulate_ensemble
+from squealbox.workbench.panels import PANELS, Options
+from squealbox.workbench.panels.declared import told
 
 # a sheet, the function it is of behind those it calls,
 # its fields that are arguments of another name, and those that are part of another
@@ -73,6 +76,20 @@ def test_options_and_schema_come_from_the_sheet(sheet, command, capsys):
         if typing.get_origin(field_type(sheet, name)) is not typing.Annotated:  # an array stands in a file
             assert f"--{name.replace('_', '-')}" in text
         assert name in str(section)
+
+
+@pytest.mark.parametrize("panel", PANELS)
+def test_a_page_offers_what_the_sheet_has(panel):
+    for choice in (each for each in PANELS[panel].choices if each.get("of")):
+        sheet, name, offered = load_kind(choice["of"]), choice["name"], told(choice)
+        assert offered["meaning"], name
+        if name in sheet.choices():
+            assert {word for word, _ in choice["options"]} <= set(sheet.choices()[name].options)
+            continue
+        about = sheet.parameters()[name]
+        values = [float(word) for word, _ in choice.get("options", ())] or [offered["low"], offered["high"]]
+        assert all(about.low <= value <= about.high for value in values), name
+        assert Options({}).chosen(choice)[name] == offered["usual"]
 
 
 def test_names_of_former_versions_are_read_and_said(tmp_path, capsys):

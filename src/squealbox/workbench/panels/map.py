@@ -32,7 +32,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     up = options.parameter("y", design, "load", "load1", "sliding_speed", "theta1")
     if across == up:
         raise OptionError(f"x and y are both {across}: choose two different parameters")
-    show = options.word("show", ("growth", "frequency", "mechanism"))
+    show = options.chosen(*PANEL.choices)["show"]
     spans = [options.span(name, design, parameter) for name, parameter in (("xspan", across), ("yspan", up))]
     few = design.system().size > 2
     usual = FEWEST if isinstance(design, ReducedBrake) else FEWER if few else POINTS
