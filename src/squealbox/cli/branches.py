@@ -34,6 +34,8 @@ ABOUT = {"branch": "limit cycles over a range of a parameter: stable, unstable, 
 if TYPE_CHECKING:
     from squealbox.designs import Design
 
+AS_USUAL = BranchSettings()
+
 
 def branch(
     file: Path,
@@ -53,7 +55,7 @@ def branch(
         folder for a figure, the tables branch.csv and special.csv, and the data of each branch
     """
     found = read(file, asked)
-    varied, settings = varies.of(found.design, found.branch), how.over(BranchSettings())
+    varied, settings = varies.of(found.design, found.branch), how.over(AS_USUAL)
     folder(out, "branch", "special")
     found = in_motion(found, varied)
     with Progress("looking for the onset") as progress:
@@ -85,7 +87,7 @@ def branch(
 def all_branches(
     design: "Design",
     varied: ParameterAxis,
-    how: BranchSettings,
+    how: BranchSettings = AS_USUAL,
     progress: Progress | None = None,
 ) -> tuple[HopfPoint, tuple[Branch, ...]]:
     """The Hopf point, the branch from it and those that runs lead to."""

@@ -24,14 +24,7 @@ from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import kept, write_csv, written
 from squealbox.family import ParameterAxis
-from squealbox.limit_cycles import (
-    BifurcationDiagram,
-    Branch,
-    BranchSettings,
-    DiagramSettings,
-    Section,
-    bifurcation_diagram,
-)
+from squealbox.limit_cycles import BifurcationDiagram, Branch, DiagramSettings, Section, bifurcation_diagram
 from squealbox.limit_cycles.attractors.settling import KINDS
 from squealbox.parameters import known_names
 from squealbox.waiting import Progress
@@ -87,7 +80,7 @@ def diagram(
         if np.all(result.kind < 0):
             raise ComputationFailed(result.outcome)
         progress("following the cycles")
-        _, several = all_branches(found.design, varied, BranchSettings(), progress) if branches else (None, ())
+        _, several = all_branches(found.design, varied, progress=progress) if branches else (None, ())
     keep(result)
     print(f"{found.design.title}, {file}\n{_said(result, found.design, varied)}")
     if out is not None:

@@ -222,11 +222,6 @@ def readable(design: Design, varied: ParameterAxis, values: Any) -> tuple[Any, s
     return values, "" if unit == "-" else unit
 
 
-def time_of(option: str, text: str) -> float:
-    """A time [s] from the command line."""
-    return number(text, "s", f"{option} {text[:60]}")
-
-
 def folder(path: Path | None, *stems: str) -> None:
     """Make the folder of --out, if any; files of these names in it are only overwritten with --force."""
     if path is None:

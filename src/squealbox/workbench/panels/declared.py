@@ -52,8 +52,7 @@ class Panel:
 
     def data(self, name: str) -> dict[str, Any]:
         """For the page."""
-        choices = [{key: None if value in (-inf, inf) else value for key, value in told(each).items()}
-                   for each in self.choices if each.get("text", name)]  # fmt: skip
+        choices = [told(each) for each in self.choices if each.get("text", name)]
         return {**vars(self), "name": name, "choices": choices, "figures": [vars(each) for each in self.figures],
                 "script": (SCRIPTS / f"{name}.js").is_file()}  # fmt: skip
 
@@ -94,9 +93,9 @@ def told(choice: Choice) -> Choice:
     if not choice.get("of"):
         return choice
     sheet, name = load_kind(choice["of"]), choice["name"]
-    about = vars(sheet.parameters().get(name) or sheet.choices()[name])
-    own = {key: value for key, value in choice.items() if value is not None}
-    return {**about, "usual": getattr(sheet, name), "whole": field_type(sheet, name) is int, **own}
+    both = (vars(sheet.parameters().get(name) or sheet.choices()[name]), choice)
+    about = {key: value for part in both for key, value in part.items() if value not in (None, inf, -inf)}
+    return {"usual": getattr(sheet, name), "whole": field_type(sheet, name) is int, **about}
 
 
 FREEDOM = {"kind": "freedom", "text": "of"}  # a choice among the degrees of freedom that the answer names
@@ -106,4 +105,5 @@ START = (  # of a motion, and the push as a share of the static deflection
     words("push", "push", ("0.001", "0.1 %"), ("0.05", "5 %"), ("0.5", "50 %"), ("2", "200 %"), usual="0.05"),
 )  # fmt: skip
 FRICTION = "friction.static"
+OVER = over("over", "parameter", FRICTION)
 LOADS = ("load", "load1", "sliding_speed", "theta1")

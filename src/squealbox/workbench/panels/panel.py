@@ -127,7 +127,7 @@ class Options:
             if not found:
                 raise OptionError(f"{name}: expected one of {', '.join(known)}")
             return found[0]
-        value = self.number(name, usual, about["low"], about["high"])
+        value = self.number(name, usual, about.get("low", -np.inf), about.get("high", np.inf))
         return int(value) if about.get("whole") and value is not None else value
 
     def number(self, name: str, usual: Any, low: float, high: float) -> Any:
@@ -172,6 +172,11 @@ class Options:
         if not (low < high and about.accepts(np.array([low, high]))):
             raise OptionError(f"{name}: expected a lower and a higher value in {about.range}")
         return low, high
+
+    def over(self, design: Design, choice: dict[str, Any]) -> tuple[str, tuple[float, float]]:
+        """The parameter that is chosen and the ends [SI] of its axis."""
+        parameter = self.parameter(choice["name"], design, *choice["usual"])
+        return parameter, self.span(choice["span"], design, parameter)
 
     def axis(self, design: Design, parameter: str, ends: tuple[float, float]) -> FigureAxis:
         """An axis over a parameter, its ends given in SI, in the unit that was chosen for it or the usual one."""
