@@ -25,8 +25,8 @@ from squealbox.declarations import (  # what stands here is known by this room's
     Vector,
     above_zero,
     choice,
-    complete,
     field_type,
+    finish,
     free,
     known_names,
     parameter,
@@ -82,11 +82,7 @@ class DataSheet:
         if "__repr__" not in cls.__dict__:
             cls.__repr__ = DataSheet.__repr__  # type: ignore[method-assign]  # a dataclass would print every array
         dataclasses.dataclass(frozen=True, eq=False)(cls)
-        fields = dataclasses.fields(cls)  # type: ignore[arg-type]
-        said = {field.name: ("", field.metadata["said"]) for field in fields if "said" in field.metadata}
-        cls.told = {**cls.told, **said}
-        if "__init__" in cls.__dict__:
-            cls.__init__ = complete(cls.__init__)  # type: ignore[method-assign]
+        finish(cls)
         _SHEETS[cls.kind()] = cls
 
     def __post_init__(self) -> None:
@@ -324,7 +320,7 @@ def _sheet_class(kind: object) -> type[DataSheet]:
 def _checked(sheet: DataSheet, name: str, about: Parameter) -> Any:
     value = getattr(sheet, name)
     owner = type(sheet).__name__
-    if type(value) is float and about.low < value < about.high:  # most of them, without an array
+    if type(value) is float and about.low < value < about.high and not about.ends:  # most of them, without an array
         return value
     if (isinstance(value, DataSheet) and about.schedule) or (value is None and about.optional):
         return value
@@ -334,10 +330,8 @@ def _checked(sheet: DataSheet, name: str, about: Parameter) -> Any:
         number = np.asarray(value, dtype=float)
     except (TypeError, ValueError) as error:
         raise ParameterError(owner, name, value, about.expected) from error
-    if not about.accepts(number):
+    if not about.allows(number):
         raise ParameterError(owner, name, value, about.expected)
-    if about.ends and (number.shape != (2,) or number[0] >= number[1]):
-        raise ParameterError(owner, name, value, f"two numbers in {about.range}, the lower first")
     if number.ndim == 0:
         return float(number)
     number = number.copy()

@@ -10,7 +10,7 @@ from squealbox.calibration import CalibrateSettings
 from squealbox.cli import main
 from squealbox.countermeasures import AbsorberSettings, best_absorber
 from squealbox.declarations import field_type
-from squealbox.files import json_schema, read_file
+from squealbox.files import DesignFileError, Reduce, json_schema, read_file
 from squealbox.limit_cycles import (
     BasinSettings,
     BranchSettings,
@@ -21,7 +21,7 @@ from squealbox.limit_cycles import (
     isolated_branches,
     shooting,
 )
-from squealbox.parameters import load_kind
+from squealbox.parameters import ParameterError, load_kind
 from squealbox.remedies import SilenceSettings
 from squealbox.signals import EventSettings, read_recording, squeal_events
 from squealbox.stability import ModeSettings, band_modes
@@ -76,6 +76,27 @@ def test_options_and_schema_come_from_the_sheet(sheet, command, capsys):
         if typing.get_origin(field_type(sheet, name)) is not typing.Annotated:  # an array stands in a file
             assert f"--{name.replace('_', '-')}" in text
         assert name in str(section)
+
+
+@pytest.mark.parametrize("sheet", [ModeSettings, EventSettings, Reduce])
+def test_a_band_is_two_numbers_the_lower_first(sheet):
+    assert list(sheet(band=(500.0, 1e4)).band) == [500.0, 1e4]
+    for wrong in ((1e4, 500.0), (500.0,), (0.0, 500.0), 500.0, (500.0, 600.0, 700.0)):
+        with pytest.raises(ParameterError, match="in \\(0, inf\\) Hz"):
+            sheet(band=wrong)
+
+
+def test_help_tells_the_usual_value_and_a_section_what_it_takes(tmp_path, capsys):
+    assert main(["basin", "--help"]) == 0
+    assert f"[default: {BasinSettings.starts}]" in capsys.readouterr().out
+    path = tmp_path / "brake.toml"
+    path.write_text(
+        'brake = "drum_brake"\n[recording]\nfile = "a.wav"\nunit = "Pa"\nfull_scale = "20 Pa"\nchannel = 1\n'
+    )
+    assert (read_file(path).recording.place, read_file(path).recording.full_scale) == (1, 20.0)
+    path.write_text(path.read_text().replace("channel = 1", 'channel = "mic"\nband = ["16 kHz", "2 kHz"]'))
+    with pytest.raises(DesignFileError, match="the lower first"):
+        read_file(path)
 
 
 @pytest.mark.parametrize("panel", PANELS)
