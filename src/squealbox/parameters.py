@@ -86,10 +86,8 @@ class DataSheet:
         _SHEETS[cls.kind()] = cls
 
     def __post_init__(self) -> None:
-        for field in dataclasses.fields(self):  # type: ignore[arg-type]
-            about = field.metadata.get("parameter")
-            if about is not None:
-                object.__setattr__(self, field.name, _checked(self, field.name, about))
+        for name, about in self.parameters().items():
+            object.__setattr__(self, name, _checked(self, name, about))
         for name, words in self.choices().items():
             value = getattr(self, name)
             if value not in words.options:
@@ -112,8 +110,7 @@ class DataSheet:
 
     def _repr_html_(self) -> str:
         """What a notebook shows: a drawing where there is one, and the fields with value, unit, range and meaning."""
-        card: str = importlib.import_module(DRAWN_BY).card(self)
-        return card
+        return str(importlib.import_module(DRAWN_BY).card(self))
 
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):
@@ -324,13 +321,11 @@ def _checked(sheet: DataSheet, name: str, about: Parameter) -> Any:
         return value
     if (isinstance(value, DataSheet) and about.schedule) or (value is None and about.optional):
         return value
-    if isinstance(value, (bool, np.bool_, str)) or value is None:
-        raise ParameterError(owner, name, value, about.expected)
     try:
         number = np.asarray(value, dtype=float)
     except (TypeError, ValueError) as error:
         raise ParameterError(owner, name, value, about.expected) from error
-    if not about.allows(number):
+    if isinstance(value, (bool, np.bool_, str)) or value is None or not about.allows(number):
         raise ParameterError(owner, name, value, about.expected)
     if number.ndim == 0:
         return float(number)
