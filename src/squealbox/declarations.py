@@ -26,6 +26,7 @@ class Parameter:
     source: str = ""
     optional: bool = False
     schedule: bool = False
+    ends: bool = False
 
     @property
     def range(self) -> str:
@@ -38,11 +39,15 @@ class Parameter:
     @property
     def expected(self) -> str:
         """What a value must be, as the end of a sentence."""
-        return f"a finite number in {self.range}"
+        return f"two numbers in {self.range}, the lower first" if self.ends else f"a finite number in {self.range}"
 
     def accepts(self, value: np.ndarray) -> bool:
         """True when every entry of `value` is finite and inside the range."""
         return bool(np.all(np.isfinite(value) & self.contains(value)))
+
+    def allows(self, value: np.ndarray) -> bool:
+        """True when a field may hold `value`: every entry is accepted, and of two ends the lower comes first."""
+        return self.accepts(value) and (not self.ends or (value.shape == (2,) and bool(value[0] < value[1])))
 
     def contains(self, value: Any) -> Any:
         """Where a number, or each of an array, is inside the range."""
@@ -112,6 +117,14 @@ def complete(made: Any) -> Any:
     return init
 
 
+def finish(sheet: Any) -> None:
+    """What a new class of sheets has of its fields: the meanings `free` was told, and a maker that says what lacks."""
+    said = {each.name: ("", each.metadata["said"]) for each in dataclasses.fields(sheet) if "said" in each.metadata}
+    sheet.told = {**sheet.told, **said}
+    if "__init__" in sheet.__dict__:
+        sheet.__init__ = complete(sheet.__init__)
+
+
 def parameter(
     unit: str,
     low: float = -math.inf,
@@ -134,6 +147,17 @@ def parameter(
     if default_factory is not dataclasses.MISSING:
         return dataclasses.field(default_factory=default_factory, metadata={"parameter": about})
     return dataclasses.field(default=default, metadata={"parameter": about})
+
+
+def above_zero(unit: str, *, default: None, meaning: str, ends: bool = False, source: str = "") -> Any:
+    """Declare a field that holds a number above zero, or two with the lower first (`ends`), or None."""
+    about = Parameter(unit, 0.0, low_open=True, meaning=meaning, source=source, optional=True, ends=ends)
+    return dataclasses.field(default=default, metadata={"parameter": about})
+
+
+def free(*, default: Any, meaning: str) -> Any:
+    """Declare a field that holds any word, or yes or no."""
+    return dataclasses.field(default=default, metadata={"said": meaning})
 
 
 @dataclasses.dataclass(frozen=True)

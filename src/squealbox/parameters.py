@@ -23,9 +23,11 @@ from squealbox.declarations import (  # what stands here is known by this room's
     Parameter,
     ParameterError,
     Vector,
+    above_zero,
     choice,
-    complete,
     field_type,
+    finish,
+    free,
     known_names,
     parameter,
     screenful,
@@ -35,15 +37,18 @@ from squealbox.declarations import (  # what stands here is known by this room's
 from squealbox.registers import load_kind
 
 __all__ = [
-    "Choice", "DataSheet", "Matrix", "Missing", "Parameter", "ParameterError", "Vector", "choice", "field_type",
-    "from_plain", "known_names", "load_kind", "members", "parameter", "screenful", "shown", "to_plain", "with_cautions",
+    "Choice", "DataSheet", "Matrix", "Missing", "Parameter", "ParameterError", "Vector", "above_zero", "choice",
+    "field_type", "free", "from_plain", "known_names", "load_kind", "members", "parameter", "screenful", "shown",
+    "to_plain", "with_cautions",
 ]  # fmt: skip
 DRAWN_BY = "squealbox.plots"  # by name, when asked: a sheet may know that it can be drawn, but not by whom
 MOST_ENTRIES = 16  # of an array that is printed in full
 _SHEETS: dict[str, type["DataSheet"]] = {}
 
 
-@dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(parameter, choice, dataclasses.field))
+@dataclass_transform(
+    frozen_default=True, eq_default=False, field_specifiers=(parameter, above_zero, choice, free, dataclasses.field)
+)
 class DataSheet:
     """Base of every frozen noun with parameters: laws, schedules and designs.
 
@@ -77,15 +82,12 @@ class DataSheet:
         if "__repr__" not in cls.__dict__:
             cls.__repr__ = DataSheet.__repr__  # type: ignore[method-assign]  # a dataclass would print every array
         dataclasses.dataclass(frozen=True, eq=False)(cls)
-        if "__init__" in cls.__dict__:
-            cls.__init__ = complete(cls.__init__)  # type: ignore[method-assign]
+        finish(cls)
         _SHEETS[cls.kind()] = cls
 
     def __post_init__(self) -> None:
-        for field in dataclasses.fields(self):  # type: ignore[arg-type]
-            about = field.metadata.get("parameter")
-            if about is not None:
-                object.__setattr__(self, field.name, _checked(self, field.name, about))
+        for name, about in self.parameters().items():
+            object.__setattr__(self, name, _checked(self, name, about))
         for name, words in self.choices().items():
             value = getattr(self, name)
             if value not in words.options:
@@ -108,8 +110,7 @@ class DataSheet:
 
     def _repr_html_(self) -> str:
         """What a notebook shows: a drawing where there is one, and the fields with value, unit, range and meaning."""
-        card: str = importlib.import_module(DRAWN_BY).card(self)
-        return card
+        return str(importlib.import_module(DRAWN_BY).card(self))
 
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):
@@ -316,17 +317,15 @@ def _sheet_class(kind: object) -> type[DataSheet]:
 def _checked(sheet: DataSheet, name: str, about: Parameter) -> Any:
     value = getattr(sheet, name)
     owner = type(sheet).__name__
-    if type(value) is float and about.low < value < about.high:  # most of them, without an array
+    if type(value) is float and about.low < value < about.high and not about.ends:  # most of them, without an array
         return value
     if (isinstance(value, DataSheet) and about.schedule) or (value is None and about.optional):
         return value
-    if isinstance(value, (bool, np.bool_, str)) or value is None:
-        raise ParameterError(owner, name, value, about.expected)
     try:
         number = np.asarray(value, dtype=float)
     except (TypeError, ValueError) as error:
         raise ParameterError(owner, name, value, about.expected) from error
-    if not about.accepts(number):
+    if isinstance(value, (bool, np.bool_, str)) or value is None or not about.allows(number):
         raise ParameterError(owner, name, value, about.expected)
     if number.ndim == 0:
         return float(number)

@@ -40,7 +40,7 @@ def test_the_start_decides_what_a_cycle_is_found_from(block, capsys):
         (["--start", "x"], "expected rest, sliding, mode 2, or NAME=VALUE"),
         (["--start", "x=1", "x=2"], "x is given twice"),
         (["--period", "1s"], "expected --start with the state that is on the cycle"),
-        (["--settle", "0s"], "expected a time above 0 s"),
+        (["--settle", "0s"], "--settle 0s: expected a finite number in (0, inf) s"),
     ],
 )
 def test_what_is_no_start_gets_a_sentence(block, words, said, capsys):

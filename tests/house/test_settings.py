@@ -5,15 +5,30 @@ import typing
 
 import pytest
 
-from squealbox import complex_modes, optimise, silence, simulate, squeal_probability, sweep
+from squealbox import calibrate, complex_modes, optimise, silence, simulate, squeal_probability, sweep
+from squealbox.calibration import CalibrateSettings
 from squealbox.cli import main
+from squealbox.countermeasures import AbsorberSettings, best_absorber
 from squealbox.declarations import field_type
-from squealbox.files import json_schema, read_file
-from squealbox.limit_cycles import DiagramSettings, bifurcation_diagram
+from squealbox.files import DesignFileError, Reduce, json_schema, read_file
+from squealbox.limit_cycles import (
+    BasinSettings,
+    BranchSettings,
+    CycleSettings,
+    DiagramSettings,
+    basin,
+    bifurcation_diagram,
+    isolated_branches,
+    shooting,
+)
+from squealbox.parameters import ParameterError, load_kind
 from squealbox.remedies import SilenceSettings
+from squealbox.signals import EventSettings, read_recording, squeal_events
 from squealbox.stability import ModeSettings, band_modes
 from squealbox.studies import SampleSettings, SearchSettings, WorkerSettings
 from squealbox.transient import MotionSettings, simulate_ensemble
+from squealbox.workbench.panels import PANELS, Options
+from squealbox.workbench.panels.declared import told
 
 # a sheet, the function it is of behind those it calls,
 # its fields that are arguments of another name, and those that are part of another
@@ -25,6 +40,12 @@ SHEETS = [
     (WorkerSettings, (sweep,), {}, ()),
     (SilenceSettings, (silence,), {}, ()),
     (DiagramSettings, (bifurcation_diagram,), {}, ()),
+    (BasinSettings, (basin,), {}, ()),
+    (CycleSettings, (shooting,), {}, ("period", "exponents")),
+    (BranchSettings, (isolated_branches,), {"runs": "starts", "at": "values"}, ("start", "estimates")),
+    (CalibrateSettings, (calibrate,), {}, ()),
+    (EventSettings, (read_recording, squeal_events), {}, ("channel", "band")),
+    (AbsorberSettings, (best_absorber,), {}, ()),
 ]
 # what a file calls the default of Python, and a duration, which Python must be given
 USUAL = {"method": None, "start": None, "times": None, "duration": inspect._empty}
@@ -47,7 +68,7 @@ def test_one_run_and_many_agree():
 
 @pytest.mark.parametrize(("sheet", "command"), [(ModeSettings, "modes"), (MotionSettings, "simulate"),
                                                 (SampleSettings, "scatter"), (SearchSettings, "optimise"),
-                                                (WorkerSettings, "run")])  # fmt: skip
+                                                (CalibrateSettings, "calibrate"), (WorkerSettings, "run")])  # fmt: skip
 def test_options_and_schema_come_from_the_sheet(sheet, command, capsys):
     assert main([command, "--help"]) == 0
     text, section = capsys.readouterr().out, json_schema()["oneOf"][0]["properties"][command.replace("run", "study")]
@@ -55,6 +76,41 @@ def test_options_and_schema_come_from_the_sheet(sheet, command, capsys):
         if typing.get_origin(field_type(sheet, name)) is not typing.Annotated:  # an array stands in a file
             assert f"--{name.replace('_', '-')}" in text
         assert name in str(section)
+
+
+@pytest.mark.parametrize("sheet", [ModeSettings, EventSettings, Reduce])
+def test_a_band_is_two_numbers_the_lower_first(sheet):
+    assert list(sheet(band=(500.0, 1e4)).band) == [500.0, 1e4]
+    for wrong in ((1e4, 500.0), (500.0,), (0.0, 500.0), 500.0, (500.0, 600.0, 700.0)):
+        with pytest.raises(ParameterError, match="in \\(0, inf\\) Hz"):
+            sheet(band=wrong)
+
+
+def test_help_tells_the_usual_value_and_a_section_what_it_takes(tmp_path, capsys):
+    assert main(["basin", "--help"]) == 0
+    assert f"[default: {BasinSettings.starts}]" in capsys.readouterr().out
+    path = tmp_path / "brake.toml"
+    path.write_text(
+        'brake = "drum_brake"\n[recording]\nfile = "a.wav"\nunit = "Pa"\nfull_scale = "20 Pa"\nchannel = 1\n'
+    )
+    assert (read_file(path).recording.place, read_file(path).recording.full_scale) == (1, 20.0)
+    path.write_text(path.read_text().replace("channel = 1", 'channel = "mic"\nband = ["16 kHz", "2 kHz"]'))
+    with pytest.raises(DesignFileError, match="the lower first"):
+        read_file(path)
+
+
+@pytest.mark.parametrize("panel", PANELS)
+def test_a_page_offers_what_the_sheet_has(panel):
+    for choice in (each for each in PANELS[panel].choices if each.get("of")):
+        sheet, name, offered = load_kind(choice["of"]), choice["name"], told(choice)
+        assert offered["meaning"], name
+        if name in sheet.choices():
+            assert {word for word, _ in choice["options"]} <= set(sheet.choices()[name].options)
+            continue
+        about = sheet.parameters()[name]
+        values = [float(word) for word, _ in choice.get("options", ())] or [offered["low"], offered["high"]]
+        assert all(about.low <= value <= about.high for value in values), name
+        assert Options({}).chosen(choice)[name] == offered["usual"]
 
 
 def test_names_of_former_versions_are_read_and_said(tmp_path, capsys):

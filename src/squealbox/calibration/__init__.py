@@ -9,9 +9,11 @@ from squealbox.calibration.calibrate import Calibration, calibrate
 from squealbox.calibration.comparison import Comparison, compare, modal_assurance
 from squealbox.calibration.measured import QUANTITIES, Measured, from_events, from_friction, from_signal
 from squealbox.calibration.mode_tables import ModeTable, read_mode_table
+from squealbox.calibration.settings import CalibrateSettings
 
 __all__ = [
     "QUANTITIES",
+    "CalibrateSettings",
     "Calibration",
     "Comparison",
     "Measured",

@@ -21,6 +21,7 @@ from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.uncertainty.distributions import TruncatedNormal
 from squealbox.studies.uncertainty.scatter import Scatter
 
+LOSSES = ("squares", "robust")
 FIRST = 256  # points of the box from which the best are followed
 STARTS = 12
 RANK = 1e-6  # singular value beside the largest, from which a combination counts as unknown
@@ -176,7 +177,7 @@ def calibrate(
     from scipy.stats import chi2
 
     problem = _Problem(design, tuple(parameters), list(parameters.values()), _flat(measured))
-    if loss not in ("squares", "robust") or not 0.0 < level < 1.0:
+    if loss not in LOSSES or not 0.0 < level < 1.0:
         raise ParameterError("calibrate", "loss, level", (loss, level), "'squares' or 'robust', and a level in (0, 1)")
     robust = loss == "robust"
     settings = {"names": list(problem.names), "bounds": problem.bounds, "loss": loss, "level": level, "seed": seed}

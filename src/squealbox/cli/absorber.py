@@ -1,14 +1,13 @@
 """`squealbox absorber`: the best tuned mass for a brake."""
 
 from pathlib import Path
-from typing import Literal
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import folder, number, read
+from squealbox.cli.inputs import NOTHING_SAID, Said, folder, keywords, number, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import UsageError
 from squealbox.cli.tables import kept, written
-from squealbox.countermeasures import best_absorber
+from squealbox.countermeasures import AbsorberSettings, best_absorber
 from squealbox.files import write_design
 from squealbox.waiting import Progress
 
@@ -20,7 +19,7 @@ def absorber(
     *,
     on: str,
     mass: str,
-    aim: Literal["decay", "margin", "probability"] = "decay",
+    how: Said[AbsorberSettings] = NOTHING_SAID,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
@@ -34,19 +33,18 @@ def absorber(
         degree of freedom it stands on, such as y
     mass
         of the absorber, with or without a unit: "50 g"
-    aim
-        fastest decay, highest critical friction, or least probability of squeal
     out
         folder for the detuning map and the brake with its absorber as a design file
     """
     found = read(file, asked)
-    if aim == "probability" and found.scatter is None:
+    settings = how.over(AbsorberSettings())
+    if settings.aim == "probability" and found.scatter is None:
         raise UsageError(f"{file} has no section [scatter], which --aim probability needs")
     kilograms = number(mass, "kg", f"--mass {mass[:60]}")
     scatter = found.scatter.scatter if found.scatter else None
     folder(out, "absorber", "with_absorber")
     with Progress("tuning the absorber"):
-        best = best_absorber(found.design, on, kilograms, aim, scatter)
+        best = best_absorber(found.design, on, kilograms, scatter=scatter, **keywords(settings))
     show(f"{found.design.title}, {file}", best)
     if out is not None:
         paths = kept(best, out / "absorber", title=found.path.name)

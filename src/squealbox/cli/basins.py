@@ -1,18 +1,18 @@
 """`squealbox basin`: which starts lead to which motion, how likely each is, and the smallest dangerous push."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from cyclopts import Parameter
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import folder, in_motion, read
+from squealbox.cli.inputs import NOTHING_SAID, Said, folder, in_motion, keywords, read
 from squealbox.cli.options import AS_WRITTEN, Asked
-from squealbox.cli.running import ComputationFailed, UsageError
+from squealbox.cli.running import ComputationFailed
 from squealbox.cli.states import States, box_from
 from squealbox.cli.tables import kept, written
-from squealbox.limit_cycles import Basin, basin, dangerous_push
+from squealbox.limit_cycles import Basin, BasinSettings, basin, dangerous_push
 from squealbox.limit_cycles.attractors.basins import half_widths
 from squealbox.limit_cycles.attractors.sections import state_names
 from squealbox.waiting import Progress
@@ -26,12 +26,10 @@ Push = Annotated[bool, Parameter(negative="")]
 def basin_(
     file: Path,
     *,
-    starts: int = 2000,
-    spread: float = 1.0,
+    how: Said[BasinSettings] = NOTHING_SAID,
     box: States = (),
     plane: Two = None,
     push: Push = False,
-    seed: int = 1,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
@@ -45,38 +43,30 @@ def basin_(
     ----------
     file
         design file; squealbox init writes a first one
-    starts
-        number of starts
-    spread
-        size of the box, in V/w and V
     box
         ends of some states, such as x=-1mm:1mm "y'=0:0.2 m/s" (a prime is a velocity); x=0 holds one
     plane
         two states to draw: x y' (a prime is a velocity)
     push
         look for the smallest push that ends in a vibration, too
-    seed
-        of the starts
     out
         folder for basin.nc, basin.csv and the figure
     """
-    if starts < 1 or not (np.isfinite(spread) and spread > 0.0):
-        raise UsageError(f"--starts {starts} --spread {spread:g}: expected at least one start and a spread above 0")
+    settings = how.over(BasinSettings())
     found = in_motion(read(file, asked))
     folder(out, "basin", "push")
-    half: Any = spread
-    through = None
+    asked_of, through = keywords(settings), None
     if box:
         system = found.design.system()
-        half, through = box_from(system, box, half_widths(system, spread))
-    with Progress(f"{starts} starts") as progress:
-        result = basin(found.design, half, starts, plane=plane, through=through, seed=seed)
+        asked_of["spread"], through = box_from(system, box, half_widths(system, settings.spread))
+    with Progress(f"{settings.starts:g} starts") as progress:
+        result = basin(found.design, plane=plane, through=through, **asked_of)
         if result.outcome in ("no_sliding", "failed_runs"):
             raise ComputationFailed(result.outcome)
         smallest = None
         if push:
             progress("the smallest push")
-            smallest = dangerous_push(found.design, seed=seed)
+            smallest = dangerous_push(found.design, seed=asked_of["seed"])
     show(f"{found.design.title}, {file}", result)
     if smallest is not None:
         show("", smallest)

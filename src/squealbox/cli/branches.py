@@ -1,18 +1,19 @@
 """`squealbox branch`: the cycles over a range of a parameter, stable and unstable, and where they begin and end."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import AS_FILED, OneVaried, folder, in_motion, read, readable
+from squealbox.cli.inputs import AS_FILED, NOTHING_SAID, OneVaried, Said, folder, in_motion, read, readable
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.tables import write_csv, written
 from squealbox.family import ParameterAxis
 from squealbox.limit_cycles import (
     Branch,
+    BranchSettings,
     EstimateCurve,
     HopfPoint,
     beside_sliding,
@@ -33,17 +34,14 @@ ABOUT = {"branch": "limit cycles over a range of a parameter: stable, unstable, 
 if TYPE_CHECKING:
     from squealbox.designs import Design
 
-Start = Literal["all", "hopf", "runs"]
+AS_USUAL = BranchSettings()
 
 
 def branch(
     file: Path,
     *,
     varies: OneVaried = AS_FILED,
-    start: Start = "all",
-    runs: int = 8,
-    at: int = 3,
-    estimates: bool = True,
+    how: Said[BranchSettings] = NOTHING_SAID,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
@@ -53,23 +51,15 @@ def branch(
     ----------
     file
         design file; its section [branch] says what is varied, unless the options do
-    start
-        where branches begin: at the Hopf point of steady sliding (hopf), in what long runs settle to (runs), or both
-    runs
-        number of runs from different states at each value
-    at
-        number of values, evenly inside the range, at which runs are made
-    estimates
-        quick estimates beside the branches: describing function, and averaging for a block on a belt
     out
         folder for a figure, the tables branch.csv and special.csv, and the data of each branch
     """
     found = read(file, asked)
-    varied = varies.of(found.design, found.branch)
+    varied, settings = varies.of(found.design, found.branch), how.over(AS_USUAL)
     folder(out, "branch", "special")
     found = in_motion(found, varied)
     with Progress("looking for the onset") as progress:
-        born, several = all_branches(found.design, varied, start, runs, at, progress)
+        born, several = all_branches(found.design, varied, settings, progress)
     if not several:
         raise ComputationFailed(Outcome("no_cycle", "no cycle was found in the range: try more runs, or another range"))
     keep(*several)
@@ -80,11 +70,14 @@ def branch(
             f"{born.kind} Hopf point at {varied.name} = {float(value):.8g} {unit}".rstrip()
             + f", {born.frequency:.6g} Hz"
         )
-    quiet = stable_sliding(found.design, varied.name, (varied.low, varied.high))
+    ends = (varied.low, varied.high)
+    quiet = stable_sliding(found.design, varied.name, ends)
     for i, one in enumerate(several, 1):
         print(_said(f"Branch {i}", one, quiet, found.design, varied))
     print(_coexistence(several, quiet, found.design, varied))
-    curves = estimate_curves(found.design, varied.name, (varied.low, varied.high), several) if estimates else ()
+    curves = (
+        estimate_curves(found.design, varied.name, (varied.low, varied.high), several) if settings.estimates else ()
+    )
     for curve in curves:
         print(f"Estimate beside them: {curve}")
     if out is not None:
@@ -94,22 +87,21 @@ def branch(
 def all_branches(
     design: "Design",
     varied: ParameterAxis,
-    start: Start = "all",
-    runs: int = 8,
-    at: int = 3,
+    how: BranchSettings = AS_USUAL,
     progress: Progress | None = None,
 ) -> tuple[HopfPoint, tuple[Branch, ...]]:
     """The Hopf point, the branch from it and those that runs lead to."""
     bounds, points, say = (varied.low, varied.high), int(varied.points), progress or (lambda text: None)
     several: tuple[Branch, ...] = ()
     born = hopf_point(design, varied.name, bounds)
-    if born.outcome.ok and start != "runs":
+    if born.outcome.ok and how.start != "runs":
         say("following the branch from the Hopf point")
         first = followed(design, varied.name, bounds, born, method="shooting", points=points)
         several = (first,) if len(first.value) else ()
-    if start != "hopf":
+    if how.start != "hopf":
         say("runs, and the branches they lead to")
-        several += isolated_branches(design, varied.name, bounds, values=at, starts=runs, known=several, points=points)
+        tried = {"values": int(how.at), "starts": int(how.runs)}
+        several += isolated_branches(design, varied.name, bounds, known=several, points=points, **tried)
     # runs may lead to a branch that goes on through the whole of an earlier one, which ended after so many points
     return born, tuple(x for i, x in enumerate(several) if not any(lies_on(x, later) for later in several[i + 1 :]))
 

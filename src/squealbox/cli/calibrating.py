@@ -2,17 +2,16 @@
 
 from pathlib import Path
 
-from squealbox.calibration import Comparison, Measured, compare, from_events, read_mode_table
+from squealbox.calibration import CalibrateSettings, Comparison, compare, from_events, read_mode_table
 from squealbox.calibration import calibrate as fitted
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import folder, read
+from squealbox.cli.inputs import NOTHING_SAID, Said, folder, keywords, read
 from squealbox.cli.options import AS_WRITTEN, Asked
-from squealbox.cli.recordings import Band, ends_of
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import written
 from squealbox.files import DesignFile, write_design
 from squealbox.files.measurements import Recorded
-from squealbox.signals import Recording, SignalError, SquealEvents, read_recording, squeal_events
+from squealbox.signals import EventSettings, Recording, SignalError, SquealEvents, squeal_events
 from squealbox.signals.events import BAND
 from squealbox.stability import ComplexModes, complex_modes
 from squealbox.waiting import Progress
@@ -26,6 +25,7 @@ ABOUT = {
 def calibrate(
     file: Path,
     *,
+    how: Said[CalibrateSettings] = NOTHING_SAID,
     out: Path | None = None,
     heard: bool = False,
     asked: Asked = AS_WRITTEN,
@@ -44,12 +44,12 @@ def calibrate(
     found = read(file, asked)
     if found.calibrate is None:
         raise UsageError(f"{file}: has no section [calibrate], which says what is fitted to what")
-    measured: list[Measured] = list(found.calibrate.measured)
+    measured, settings = list(found.calibrate.measured), how.over(found.calibrate.how)
     if heard:
         *_, events = _heard(found, own=complex_modes(found.design))
         measured += from_events(events, int(events.level.argmax())) if events.count else []
     with Progress("calibrating"):
-        result = fitted(found.design, found.calibrate.parameters, measured, loss=found.calibrate.loss)
+        result = fitted(found.design, found.calibrate.parameters, measured, **keywords(settings))
     if result.outcome == "no_fit":
         raise ComputationFailed(result.outcome)
     show("", result)
@@ -62,9 +62,7 @@ def compare_(
     file: Path,
     recording: Path | None = None,
     *,
-    unit: str = "Pa",
-    full_scale: float | None = None,
-    band: Band = None,
+    how: Said[EventSettings] = NOTHING_SAID,
     modes: Path | None = None,
     out: Path | None = None,
     asked: Asked = AS_WRITTEN,
@@ -77,13 +75,6 @@ def compare_(
         design file; its section [simulate] says what is run, [recording] what it is compared with
     recording
         another recording than that of the section
-    unit
-        unit of that recording
-    full_scale
-        what its full scale is worth
-    band
-        lowest and highest frequency at which squeal is looked for, --band 1kHz 16kHz; by default 2 to 16 kHz, and as
-        far down as half the frequency of the design's own mode
     modes
         table (.csv) or universal file of the modes of a test or another code, to compare with those of the design
     out
@@ -98,7 +89,7 @@ def compare_(
             figures["mode_table"] = compare(own, read_mode_table(modes))
             show("modes", figures["mode_table"])
         if modes is None or recording is not None:
-            sound, channel, events = _heard(found, recording, unit, full_scale, band, own)
+            sound, channel, events = _heard(found, recording, how, own)
             figures["modes"] = compare(own, events)
             show("modes", figures["modes"])
             if found.simulate is not None:
@@ -120,11 +111,9 @@ def compare_(
 def _heard(
     found: DesignFile,
     recording: Path | None = None,
-    unit: str = "Pa",
-    full_scale: float | None = None,
-    band: Band = None,
+    how: Said[EventSettings] = NOTHING_SAID,
     own: ComplexModes | None = None,
-) -> tuple[Recording, int, SquealEvents]:
+) -> tuple[Recording, int | str, SquealEvents]:
     """The recording of the section or the one that is named, the channel of it that is heard, and its squeal events.
 
     `own` are the modes that are expected in it, where no band is given.
@@ -133,15 +122,16 @@ def _heard(
     if about is None and recording is None:
         raise UsageError(f"{found.path}: has no section [recording], and no recording is named")
     if recording is not None or about is None:
-        about = Recorded(str(recording), unit, full_scale)
+        about = Recorded(file=str(recording), unit="Pa")
+    about = how.over(about)
     path = Path(about.file) if recording is not None else found.path.parent / about.file
     try:
-        sound = read_recording(path, unit=about.unit, full_scale=about.full_scale, rate=about.rate)
-        ends = ends_of(band) if band is not None else about.band or _around(own)
-        events = squeal_events(sound, channel=about.channel, band=ends, least_level=about.least_level)
+        sound = about.read(path)
+        ends = _around(own) if about.band is None else tuple(about.band)
+        events = squeal_events(sound, channel=about.place, band=ends, least_level=about.least_level)
     except SignalError as error:
         raise UsageError(str(error)) from error
-    return sound, about.channel, events
+    return sound, about.place, events
 
 
 def _around(own: ComplexModes | None) -> tuple[float, float]:

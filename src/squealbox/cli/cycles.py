@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import folder, in_motion, read, time_of
+from squealbox.cli.inputs import NOTHING_SAID, Said, folder, in_motion, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.states import States, start_from
 from squealbox.cli.tables import kept, written
-from squealbox.limit_cycles import Cycle, lyapunov_exponents, shooting
+from squealbox.limit_cycles import Cycle, CycleSettings, lyapunov_exponents, shooting
 from squealbox.limit_cycles.attractors.exponents import LOST
 from squealbox.stability import complex_modes
 from squealbox.transient import simulate
@@ -29,9 +29,7 @@ def cycle(
     file: Path,
     *,
     start: States = (),
-    period: str | None = None,
-    settle: str | None = None,
-    exponents: int = 0,
+    how: Said[CycleSettings] = NOTHING_SAID,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
@@ -44,29 +42,17 @@ def cycle(
     start
         of the run that leads to the cycle: rest, sliding, or states such as x=1mm "y'=0.2 m/s" (a prime is a velocity),
         the others as in steady sliding; left out, along the most unstable mode, else from rest
-    period
-        with --start, a state taken to be on the cycle already, which also finds unstable ones: 12ms
-    settle
-        length of that run, by default 300 periods of the slowest mode: 2s
-    exponents
-        number of periods over which Lyapunov exponents are computed as well, such as 50; where no cycle is found, of
-        the motion from rest after 300 periods of the slowest mode
     out
         folder for cycle.nc, cycle.png and cycle.svg
     """
-    if exponents < 0:
-        raise UsageError(f"--exponents {exponents}: expected a number of periods")
+    settings = how.over(CycleSettings())
     found = in_motion(read(file, asked))
     begin = start_from(found.design.system(), start)
-    if period is not None and begin is None:
-        raise UsageError(f"--period {period[:40]}: expected --start with the state that is on the cycle")
-    times = {name: time_of(f"--{name}", text) for name, text in (("period", period), ("settle", settle)) if text}
-    for name, value in times.items():
-        if not value > 0.0:
-            raise UsageError(f"--{name} {value:g}: expected a time above 0 s")
+    if settings.period is not None and begin is None:
+        raise UsageError(f"--period {settings.period:g}: expected --start with the state that is on the cycle")
     folder(out, "cycle")
-    guess = begin if period is None or begin is None else (*begin, times["period"])
-    result = shooting(found.design, guess, settle=times.get("settle"))
+    guess = begin if settings.period is None or begin is None else (*begin, settings.period)
+    result, exponents = shooting(found.design, guess, settle=settings.settle), int(settings.exponents)
     if not result.outcome.ok:
         if exponents:
             print(f"{found.design.title}, {file}\n{_of_the_motion(found.design, exponents)}")

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 
-from squealbox.cli.inputs import folder, number, read
+from squealbox.cli.inputs import NOTHING_SAID, Said, folder, number, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import UsageError
 from squealbox.cli.tables import write_csv, written
-from squealbox.countermeasures import Dithered
+from squealbox.countermeasures import Dithered, DitherSettings
 from squealbox.parameters import with_cautions
 from squealbox.stability import complex_modes
 
@@ -19,9 +19,7 @@ def dither(
     file: Path,
     *,
     velocity: tuple[str, str] = ("0.01 m/s", "1 m/s"),
-    frequency: str = "40 kHz",
-    along: str = "",
-    points: int = 25,
+    how: Said[DitherSettings] = NOTHING_SAID,
     asked: Asked = AS_WRITTEN,
     out: Path | None = None,
 ) -> None:
@@ -33,25 +31,16 @@ def dither(
         design file
     velocity
         lowest and highest amplitude, with or without a unit: 0.01 1
-    frequency
-        of the dither; said to be near a mode where it is
-    along
-        name of the contact that is shaken; all when left out
-    points
-        amplitudes looked at
     out
         folder for the table
     """
-    found = read(file, asked)
+    found, settings = read(file, asked), how.over(DitherSettings())
     low, high = (number(text, "m/s", f"--velocity {text[:60]}") for text in velocity)
-    if not 0.0 < low < high or points < 2:
-        raise UsageError(
-            f"--velocity {' '.join(velocity)} --points {points}: expected 0 < low < high and 2 points or more"
-        )
+    if not 0.0 < low < high:
+        raise UsageError(f"--velocity {' '.join(velocity)}: expected 0 < low < high")
     folder(out, "dither")
-    hertz = number(frequency, "Hz", f"--frequency {frequency[:60]}")
-    amplitudes = np.geomspace(low, high, points)
-    cures = [Dithered(found.design, float(w), hertz, along) for w in amplitudes]
+    amplitudes = np.geomspace(low, high, int(settings.points))
+    cures = [Dithered(found.design, float(w), settings.frequency, settings.along) for w in amplitudes]
     growth = np.array([float(complex_modes(cure).largest_growth_rate) for cure in cures])
     left = np.array([float(np.min(cure.friction_left)) for cure in cures])
     print(f"{found.design.title}, {file}\nvelocity [m/s]  growth [1/s]  least mean friction left [%]")

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.cli.answers import keep
-from squealbox.cli.inputs import folder, in_motion, read, time_of
+from squealbox.cli.inputs import folder, in_motion, number, read
 from squealbox.cli.maps import AS_FILED, Plane, TwoVaried
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
@@ -44,7 +44,7 @@ def ensemble(
     """
     found = read(file, asked)
     across, up = over.of(found)
-    seconds = usual_duration(found.design) if duration is None else time_of("--duration", duration)
+    seconds = usual_duration(found.design) if duration is None else number(duration, "s", f"--duration {duration[:60]}")
     if not seconds > 0.0:
         raise UsageError(f"--duration {duration}: expected a time above 0 s")
     folder(out, "ensemble")

@@ -133,29 +133,42 @@ NOTHING_SAID: Any = Said()
 
 
 def _option(sheet: type[DataSheet], name: str) -> Any:
-    """The type of the option for a field, with its help; None for an array, which stands in a file."""
+    """The type of the option for a field, with its help; None for an array of any length, which stands in a file."""
     declared, about, words = field_type(sheet, name), sheet.parameters().get(name), sheet.choices().get(name)
-    if get_origin(declared) is Annotated:
+    pair = about is not None and about.ends
+    if get_origin(declared) is Annotated and not pair:
         return None
     several = get_origin(declared) is tuple
-    kind = declared if several or declared in (bool, int) else str
+    kind = tuple[str, str] if pair else declared if several or declared in (bool, int) else str
     unit = f" [{about.unit}]" if about and about.unit not in ("", "-") else ""
     options = f": {', '.join(words.options)}" if words and len(words.options) < 6 else ""
     meaning = about.meaning if about else words.meaning if words else sheet.told[name][1]
-    told = f"{meaning}{unit}{options}"
-    how = cyclopts.Parameter(help=told, negative="", show_default=False, consume_multiple=several)
+    usual = getattr(sheet, name, None)
+    word = " ".join(usual or ()) if several else f"{usual:g}" if about and usual is not None else usual
+    told = f"{meaning}{unit}{options}{'' if word in (None, '') else f' [default: {word}]'}"
+    no = None if usual is True else ""  # --no-name, where the switch is on
+    how = cyclopts.Parameter(help=told, negative=no, show_default=False, consume_multiple=several)
     return Annotated[kind | None, how]
 
 
 def put_over(section: Filed, said: Mapping[str, Any]) -> Filed:
     """A section with other values, of which numbers with units are texts."""
-    units = {name: about.unit for name, about in section.parameters().items() if isinstance(said.get(name), str)}
-    numbers = {name: number(said[name], unit, f"--{name} {said[name][:60]}") for name, unit in units.items()}
+    abouts = section.parameters().items()
+    units = {name: about.unit for name, about in abouts if isinstance(said.get(name), (str, tuple))}
+    numbers = {name: _numbers(name, said[name], unit) for name, unit in units.items()}
     try:
         return section.replace(section.spelled({**said, **numbers}))
     except ParameterError as error:
-        option = error.name.replace("_", "-")
-        raise UsageError(f"--{option} {said.get(error.name, error.value)}: {error.expectation}") from error
+        given = said.get(error.name, error.value)
+        words = " ".join(given) if isinstance(given, tuple) else given
+        raise UsageError(f"--{error.name.replace('_', '-')} {words}: {error.expectation}") from error
+
+
+def _numbers(name: str, text: str | tuple[str, ...], unit: str) -> Any:
+    """The number of an option, or the two of a pair."""
+    if isinstance(text, tuple):
+        return [_numbers(name, each, unit) for each in text]
+    return number(text, unit, f"--{name} {text[:60]}")
 
 
 def keywords(section: DataSheet) -> dict[str, Any]:
@@ -207,11 +220,6 @@ def readable(design: Design, varied: ParameterAxis, values: Any) -> tuple[Any, s
     if unit == "rad":
         return np.rad2deg(values), "deg"
     return values, "" if unit == "-" else unit
-
-
-def time_of(option: str, text: str) -> float:
-    """A time [s] from the command line."""
-    return number(text, "s", f"{option} {text[:60]}")
 
 
 def folder(path: Path | None, *stems: str) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.cli.inputs import free, in_motion, read, time_of
+from squealbox.cli.inputs import free, in_motion, number, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.signals import SignalError, column, dominant_frequency, sound, sound_level
@@ -45,7 +45,7 @@ def listen(
     if out.suffix.lower() != ".wav":
         raise UsageError(f"--out {out}: expected a name that ends in .wav")
     free(out)
-    seconds = time_of("--duration", duration)
+    seconds = number(duration, "s", f"--duration {duration[:60]}")
     if not 0.0 < seconds <= 60.0:
         raise UsageError(f"--duration {duration}: expected more than 0 and at most 60 s")
     found = in_motion(found, contact=(found.simulate or MotionSettings()).contact)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -10,10 +9,12 @@ import cyclopts
 import numpy as np
 
 from squealbox.cli.answers import show
-from squealbox.cli.inputs import number
+from squealbox.cli.inputs import NOTHING_SAID, Said, number
 from squealbox.cli.running import UsageError
 from squealbox.signals import (
+    EventSettings,
     Recording,
+    RecordingSettings,
     SignalError,
     SquealEvents,
     damping_onset,
@@ -23,7 +24,7 @@ from squealbox.signals import (
     sound_quality,
     squeal_events,
 )
-from squealbox.signals.events import BAND, LEAST_LEVEL
+from squealbox.signals.events import BAND
 from squealbox.waiting import Progress
 
 ABOUT = {
@@ -34,57 +35,13 @@ ABOUT = {
 }
 
 SOUNDS = (".wav", ".flac", ".csv", ".uff", ".unv")
-Band = Annotated[tuple[str, str] | None, cyclopts.Parameter(negative="")]
-
-
-@dataclass(frozen=True)
-class HowRead:
-    """How a recording is read, options of every command that takes one.
-
-    Parameters
-    ----------
-    unit
-        unit of the channels: Pa for sound pressure
-    full_scale
-        what full scale (of sound files) or one unit is worth: 20 for 20 Pa
-    rate
-        sampling rate of files that do not tell it: 48kHz
-    channel
-        number from 0 on, or name
-    """
-
-    unit: str = ""
-    full_scale: float | None = None
-    rate: str | None = None
-    channel: str = "0"
-
-    def read(self, path: Path) -> Recording:
-        """A recording with the braking quantities of the table beside it."""
-        braking = {}
-        beside = path.with_suffix(".braking.csv")
-        if beside.is_file():
-            table = read_recording(beside)
-            braking = {name: (table.t, table.samples[:, i]) for i, name in enumerate(table.names)}
-        own = None if self.rate is None else number(self.rate, "Hz", f"--rate {self.rate[:40]}")
-        return read_recording(path, unit=self.unit, full_scale=self.full_scale, rate=own, braking=braking)
-
-    @property
-    def place(self) -> int | str:
-        """The channel as a number or a name."""
-        return int(self.channel) if self.channel.isdigit() else self.channel
-
-
-How = Annotated[HowRead, cyclopts.Parameter(name="*")]
-AS_TOLD = HowRead()
 
 
 def events(
     recordings: tuple[Path, ...],
     /,
     *,
-    how: How = AS_TOLD,
-    band: Band = None,
-    least_level: float = LEAST_LEVEL,
+    how: Said[EventSettings] = NOTHING_SAID,
     out: Path | None = None,
 ) -> None:
     """Find squeal events: onset, end, frequency, level, growth and decay.
@@ -93,10 +50,6 @@ def events(
     ----------
     recordings
         .wav, .flac, .csv, .npy, .uff files
-    band
-        lowest and highest frequency: --band 2kHz 16kHz
-    least_level
-        peak level an event must reach in dB(A); asked of calibrated recordings only
     out
         file for the events as a dataset (.nc), of one recording
     """
@@ -104,8 +57,9 @@ def events(
         raise UsageError("expected one recording or more")
     if out is not None and len(recordings) > 1:
         raise UsageError("--out: expected one recording")
+    settings = how.over(EventSettings())
     for path in recordings:
-        found = _found(path, how, band, least_level)
+        found = _found(path, settings)
         show(f"{path}", found)
         if out is not None:
             print(f"written: {found.save(out)}")
@@ -116,9 +70,7 @@ def noise(
     *,
     x: str = "speed",
     y: str = "pressure",
-    how: How = AS_TOLD,
-    band: Band = None,
-    least_level: float = LEAST_LEVEL,
+    how: Said[EventSettings] = NOTHING_SAID,
 ) -> None:
     """How often it squeals over a folder of stops: occurrence, the noise matrix, frequencies.
 
@@ -132,20 +84,16 @@ def noise(
         braking quantity of the rows
     y
         braking quantity of the columns
-    band
-        lowest and highest frequency: --band 2kHz 16kHz
-    least_level
-        peak level an event must reach in dB(A)
     """
     if not folder.is_dir():
         raise UsageError(f"{folder}: expected a folder of recordings")
     paths = sorted(p for p in folder.iterdir() if p.suffix.lower() in SOUNDS and not p.name.endswith(".braking.csv"))
     if not paths:
         raise UsageError(f"{folder}: holds no recordings ({', '.join(SOUNDS)})")
-    stops, refused = [], []
+    stops, refused, settings = [], [], how.over(EventSettings())
     for path in paths:
         try:
-            stops.append(_found(path, how, band, least_level))
+            stops.append(_found(path, settings))
         except UsageError as error:
             refused.append(str(error))
     for text in refused:
@@ -162,7 +110,7 @@ def damping(
     band: Annotated[tuple[str, str], cyclopts.Parameter(negative="")],
     against: str = "",
     near: str | None = None,
-    how: How = AS_TOLD,
+    how: Said[RecordingSettings] = NOTHING_SAID,
     out: Path | None = None,
 ) -> None:
     """Damping of the modes in recordings without squeal, and where it ends: the onset of squeal, continued.
@@ -186,11 +134,12 @@ def damping(
         raise UsageError("expected one recording or more")
     if out is not None and not against:
         raise UsageError("--out: keeps the onset, which --against asks for")
-    found, at = [], []
+    found, at, settings = [], [], how.over(RecordingSettings())
+    low, high = (number(each, "Hz", f"--band {each[:40]}") for each in band)
     for path in recordings:
         with _named(path):
-            sound = how.read(path)
-            found.append(operational_modes(sound, channel=how.place, band=ends_of(band)))
+            sound = _read(path, settings)
+            found.append(operational_modes(sound, channel=settings.place, band=(low, high)))
             show(f"{path}", found[-1])
             if against and against not in sound.braking:
                 known = ", ".join(sound.braking) or f"nothing: {path.with_suffix('.braking.csv').name} is missing"
@@ -209,9 +158,7 @@ def quality(
     recordings: tuple[Path, ...],
     /,
     *,
-    full_scale: float | None = None,
-    rate: str | None = None,
-    channel: str = "0",
+    how: Said[RecordingSettings] = NOTHING_SAID,
     begin: str | None = None,
     end: str | None = None,
 ) -> None:
@@ -221,12 +168,6 @@ def quality(
     ----------
     recordings
         .wav, .flac, .csv, .npy, .uff files
-    full_scale
-        what full scale (of sound files) or one unit is worth, in Pa
-    rate
-        sampling rate of files that do not tell it: 48kHz
-    channel
-        number from 0 on, or name
     begin
         where the stretch begins: 0.2s
     end
@@ -235,24 +176,28 @@ def quality(
     if not recordings:
         raise UsageError("expected one recording or more")
     ends = [None if each is None else number(each, "s", f"--{name}") for name, each in (("begin", begin), ("end", end))]
+    settings = how.over(RecordingSettings(unit="Pa"))
     for path in recordings:
         with _named(path):
-            how = HowRead("Pa", full_scale, rate, channel)
             with Progress(f"{path.name}: roughness takes some seconds for each second of sound"):
-                found = sound_quality(how.read(path), channel=how.place, begin=ends[0], end=ends[1])
+                found = sound_quality(_read(path, settings), channel=settings.place, begin=ends[0], end=ends[1])
             show(str(path), found)
 
 
-def _found(path: Path, how: "HowRead", band: Band, least_level: float) -> SquealEvents:
-    ends = BAND if band is None else ends_of(band)
+def _read(path: Path, how: RecordingSettings) -> Recording:
+    """A recording with the braking quantities of the table beside it."""
+    braking = {}
+    beside = path.with_suffix(".braking.csv")
+    if beside.is_file():
+        table = read_recording(beside)
+        braking = {name: (table.t, table.samples[:, i]) for i, name in enumerate(table.names)}
+    return how.read(path, braking)
+
+
+def _found(path: Path, how: EventSettings) -> SquealEvents:
+    ends = BAND if how.band is None else tuple(how.band)
     with _named(path):
-        return squeal_events(how.read(path), channel=how.place, band=ends, least_level=least_level)
-
-
-def ends_of(band: tuple[str, str]) -> tuple[float, float]:
-    """The ends of a --band [Hz]."""
-    low, high = (number(each, "Hz", f"--band {each[:40]}") for each in band)
-    return low, high
+        return squeal_events(_read(path, how), channel=how.place, band=ends, least_level=how.least_level)
 
 
 @contextmanager

@@ -3,9 +3,7 @@
 import dataclasses
 from pathlib import Path
 
-import numpy as np
-
-from squealbox.cli.inputs import Ends, free, number, read
+from squealbox.cli.inputs import NOTHING_SAID, Said, free, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import UsageError
 from squealbox.cli.tables import written
@@ -17,7 +15,7 @@ from squealbox.waiting import Progress
 ABOUT = {"reduce_": "a small brake from a finite-element one, with its error, in a file"}
 
 
-def reduce_(file: Path, *, out: Path, band: Ends = None, asked: Asked = AS_WRITTEN) -> None:
+def reduce_(file: Path, *, out: Path, how: Said[Reduce] = NOTHING_SAID, asked: Asked = AS_WRITTEN) -> None:
     """Make a small brake of a finite-element one: its modes in a band are those of the full one, with a known error.
 
     It is reduced for everything that the file varies: varying of [reduce], [onset], [branch], [map], [scatter]. A file
@@ -29,21 +27,14 @@ def reduce_(file: Path, *, out: Path, band: Ends = None, asked: Asked = AS_WRITT
         design file of a finite-element brake
     out
         the .npz file that is written; M, C and K in it are for any program
-    band
-        lowest and highest frequency, with or without a unit: 500 10kHz; left out, that of [reduce] or [modes]
     """
     found = read(file, asked)
     if out.suffix.lower() != ".npz":
         raise UsageError(f"--out {out}: expected a name that ends in .npz")
     if not found.design.system().is_sparse:
         raise UsageError(f"{file} is no finite-element brake: its matrices are dense and need no reduction")
-    if band is not None:
-        given = found.reduce or Reduced(Reduce(), {})
-        low, high = (number(text, "Hz", f"--band {text}") for text in band)
-        if not 0.0 < low < high:
-            raise UsageError(f"--band {' '.join(band)}: expected 0 < lowest < highest")
-        how = given.how.replace(band=np.array([low, high]))
-        found = dataclasses.replace(found, reduce=dataclasses.replace(given, how=how))
+    given = found.reduce or Reduced(Reduce(), {})
+    found = dataclasses.replace(found, reduce=dataclasses.replace(given, how=how.over(given.how)))
     free(out)
     with Progress("reducing the finite-element brake"):
         small = dense(found).design

@@ -10,7 +10,6 @@ from squealbox.cli.finite_elements import print_more
 from squealbox.cli.inputs import (
     AS_FILED,
     NOTHING_SAID,
-    Ends,
     OneVaried,
     Said,
     folder,
@@ -53,7 +52,6 @@ def modes(
     *,
     asked: Asked = AS_WRITTEN,
     how: Said[ModeSettings] = NOTHING_SAID,
-    band: Ends = None,
     second_mesh: str | None = None,
     out: Path | None = None,
 ) -> None:
@@ -63,8 +61,6 @@ def modes(
     ----------
     file
         design file; squealbox init writes a first one
-    band
-        of a finite-element brake: lowest and highest frequency, with or without a unit: 500 10kHz
     second_mesh
         of a brake that meshes itself: element size of the mesh it is compared with; 1.5 times its own by default
     out
@@ -75,9 +71,9 @@ def modes(
     time = settings.time
     folder(out, "modes", "mode_energy", "coalescence")
     if found.design.system().is_sparse:
-        _modes_in_band(found, settings, band, second_mesh, out)
+        _modes_in_band(found, settings, second_mesh, out)
         return
-    if band is not None or "certify" in how.given or second_mesh:
+    if how.given.keys() & {"band", "certify"} or second_mesh:
         raise UsageError(
             "--band, --certify and --second-mesh: for finite-element brakes; of this one all modes are shown"
         )
@@ -91,19 +87,12 @@ def modes(
         print(written(*_mode_files(spectrum, found, time, out)))
 
 
-def _modes_in_band(
-    found: "DesignFile", settings: ModeSettings, band: Ends, second_mesh: str | None, out: Path | None
-) -> None:
+def _modes_in_band(found: "DesignFile", settings: ModeSettings, second_mesh: str | None, out: Path | None) -> None:
     """The modes of a finite-element brake in its band, each with an error bar."""
     mesh = None if second_mesh is None else number(second_mesh, "m", f"--second-mesh {second_mesh}")
-    if band is not None:
-        low, high = (number(text, "Hz", f"--band {text}") for text in band)
-    elif np.shape(settings.band) == (2,):
-        low, high = (float(value) for value in settings.band)
-    else:
+    if settings.band is None:
         raise UsageError('which band? give --band 500 10kHz, or band = ["500 Hz", "10 kHz"] under [modes]')
-    if not 0.0 < low < high:
-        raise UsageError(f"the band from {low:g} to {high:g} Hz: expected 0 < lowest < highest")
+    low, high = (float(value) for value in settings.band)
     with Progress("looking for the modes"):
         spectrum = complex_modes(found.design, settings.time, band=(low, high), certify=settings.certify)
     if not spectrum.outcome.ok:

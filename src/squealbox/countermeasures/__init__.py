@@ -12,9 +12,11 @@ from squealbox.countermeasures.shims import LayerDamping, Shim, ross_kerwin_unga
 
 if TYPE_CHECKING:
     from squealbox.countermeasures.best import BestAbsorber, best_absorber
+    from squealbox.countermeasures.settings import AbsorberSettings, DitherSettings
 
 # The search is loaded when it is first asked for: designs with a countermeasure need no analysis.
-__getattr__, _, _ = lazy_loader.attach(__name__, submod_attrs={"best": ["BestAbsorber", "best_absorber"]})
+LATER = {"best": ["BestAbsorber", "best_absorber"], "settings": ["AbsorberSettings", "DitherSettings"]}
+__getattr__, _, _ = lazy_loader.attach(__name__, submod_attrs=LATER)
 
 COUNTERMEASURES: dict[str, type[Countermeasure]] = {
     "tuned_mass": TunedMass,
@@ -30,6 +32,7 @@ COUNTERMEASURES: dict[str, type[Countermeasure]] = {
 
 __all__ = [
     "COUNTERMEASURES",
+    "AbsorberSettings",
     "AddedDamping",
     "AddedMass",
     "AddedStiffness",
@@ -37,6 +40,7 @@ __all__ = [
     "BestAbsorber",
     "Controlled",
     "Countermeasure",
+    "DitherSettings",
     "Dithered",
     "LayerDamping",
     "NormalDither",

@@ -17,7 +17,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.countermeasures.base import Countermeasure, added, contact_index, direction, extended, outer
-from squealbox.parameters import ParameterError, choice, parameter
+from squealbox.parameters import ParameterError, above_zero, choice, parameter
 from squealbox.system import System
 
 OWN = "chosen by the user"
@@ -170,9 +170,7 @@ class LayerDamping(Countermeasure):
     on: str
     loss_factor: float = parameter("-", 0.0, meaning="loss factor of the viscoelastic material", source=OWN)
     stiffness_parameter: float = parameter("-", 0.0, meaning="Y, geometry of plate and constraining layer", source=OWN)
-    shear_parameter: float | None = parameter(
-        "-", 0.0, low_open=True, default=None, optional=True, meaning="X of the layer; the best when left out"
-    )
+    shear_parameter: float | None = above_zero("-", default=None, meaning="X of the layer; the best when left out")
     frequency: float = parameter(
         "Hz", 0.0, low_open=True, default=2000.0, meaning="where the loss is given", source=OWN
     )

@@ -21,7 +21,7 @@ import numpy as np
 
 from squealbox.designs.base import Design
 from squealbox.friction import Coulomb, FrictionLaw
-from squealbox.parameters import DataSheet, ParameterError, choice, known_names, parameter
+from squealbox.parameters import DataSheet, ParameterError, above_zero, choice, known_names, parameter
 from squealbox.system import Contact, System
 
 GROUND = "ground"
@@ -33,9 +33,7 @@ class Body(DataSheet):
 
     name: str
     mass: float = parameter("kg", 0.0, low_open=True, meaning="mass")
-    inertia: float = parameter(
-        "kg m^2", 0.0, low_open=True, default=None, optional=True, meaning="inertia; left out, it does not turn"
-    )
+    inertia: float = above_zero("kg m^2", default=None, meaning="inertia; left out, it does not turn")
     x: float = parameter("m", default=0.0, meaning="position of its centre of mass")
     y: float = parameter("m", default=0.0, meaning="position of its centre of mass")
     moves: str = choice("plane", "x", "y", default="plane", meaning="the directions it may move in")

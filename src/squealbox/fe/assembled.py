@@ -11,7 +11,7 @@ from squealbox.fe.readers.matrix import MatrixFileError
 from squealbox.fe.structure import Structure, read_structure
 from squealbox.fe.units import unit_system
 from squealbox.friction import Coulomb, FrictionLaw
-from squealbox.parameters import DataSheet, ParameterError, parameter
+from squealbox.parameters import DataSheet, ParameterError, above_zero, parameter
 from squealbox.system import InvalidSystem, System
 
 
@@ -92,9 +92,7 @@ class AssembledBrake(Design):
     systems: tuple[CoordinateSystem, ...] = ()
     friction: FrictionLaw = Coulomb(0.3)
     angular_speed: float = parameter("rad/s", 0.0, low_open=True, default=1.0, meaning="angular speed of the disc")
-    sliding_speed: float = parameter(
-        "m/s", 0.0, low_open=True, default=None, optional=True, meaning="speed where masters move along a direction"
-    )
+    sliding_speed: float = above_zero("m/s", default=None, meaning="speed where masters move along a direction")
     alpha: float = parameter("1/s", 0.0, default=0.0, meaning="mass-proportional damping")
     beta: float = parameter("s", 0.0, default=0.0, meaning="stiffness-proportional damping")
     reference_speed: float = parameter(

@@ -15,82 +15,53 @@ sd = "20 1/s"
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
-from squealbox.calibration import QUANTITIES, Measured
+from squealbox.calibration import QUANTITIES, CalibrateSettings, Measured
 from squealbox.calibration.measured import UNITS
 from squealbox.designs import Design
 from squealbox.files.analyses import read_ends, read_spans
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, only, read_choice, read_number, wrong
+from squealbox.files.sheets import read_sheet
 from squealbox.files.varied import flattened, known
 from squealbox.parameters import Parameter, ParameterError
-from squealbox.signals.events import LEAST_LEVEL
+from squealbox.signals import EventSettings
 
-LOSSES = ("squares", "robust")
-FREQUENCY = Parameter("Hz", 0.0, low_open=True)
 KEYS = ("quantity", "value", "sd", "mode", "at", "parameter", "range", "speed", "duration")
 
 
 @dataclass(frozen=True)
 class Calibrated:
-    """[calibrate]: what is fitted, to what, and how bad numbers are treated."""
+    """[calibrate]: what is fitted, to what, and how."""
 
     parameters: dict[str, tuple[float, float]]
     measured: tuple[Measured, ...]
-    loss: str = "squares"
+    how: CalibrateSettings
 
 
-@dataclass(frozen=True)
-class Recorded:
-    """[recording]: the file beside the design, what its numbers are worth, and what counts as squeal.
+class Recorded(EventSettings):
+    """[recording]: a recording beside the design file, what its numbers are worth, and what counts as squeal.
 
     Without a band squeal is looked for where it is usual, and as far down as half the frequency that is expected.
     """
 
-    file: str
-    unit: str = ""
-    full_scale: float | None = None
-    rate: float | None = None
-    channel: int = 0
-    band: tuple[float, float] | None = None
-    least_level: float = LEAST_LEVEL
+    file: str = field(kw_only=True)
 
 
 def read_recorded(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Recorded | None:
     """The section [recording]."""
-    before = len(document.problems)
-    words = ("file", "unit", "full_scale", "rate", "channel", "band", "least_level")
-    only(document, table, key, words)
-    for name in ("file", "unit"):
-        if not isinstance(table.get(name, "x" if name == "unit" else None), str):
-            wrong(document, (*key, name), table.get(name), "a word in quotes")
-    unit = table.get("unit", "") if isinstance(table.get("unit", ""), str) else ""
-    numbers: dict[str, Any] = {}
-    about = {
-        "full_scale": Parameter("Pa" if unit == "Pa" else "-", 0.0, low_open=True),
-        "rate": FREQUENCY,
-        "least_level": Parameter("-"),
-    }
-    for name, each in about.items():
-        if name in table:
-            numbers[name] = read_number(document, table[name], each, (*key, name))
-    channel = table.get("channel", 0)
-    if not isinstance(channel, int) or isinstance(channel, bool) or channel < 0:
-        wrong(document, (*key, "channel"), channel, "a whole number from 0 on")
-    if "band" in table:
-        numbers["band"] = read_ends(document, table["band"], FREQUENCY, (*key, "band"))
-    if len(document.problems) > before:
-        return None
-    return Recorded(str(table["file"]), unit, channel=channel, **numbers)
+    return read_sheet(document, Recorded, table, key)
 
 
 def read_calibrated(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Calibrated | None:
     """The section [calibrate]."""
     before = len(document.problems)
-    only(document, table, key, ("parameters", "measured", "loss"))
+    own = ("parameters", "measured")
+    rest = {name: value for name, value in table.items() if name not in own}
+    how = read_sheet(document, CalibrateSettings, rest, key, beside=own)
     parameters = table.get("parameters")
     bounds: dict[str, tuple[float, float]] = {}
     if not isinstance(parameters, Mapping) or not parameters:
@@ -105,10 +76,9 @@ def read_calibrated(document: Document, table: Mapping[str, Any], key: Key, desi
         wrong(document, (*key, "measured"), rows, "tables, each under a line [[calibrate.measured]]")
     else:
         measured = [_measured(document, row, (*key, "measured", i), design) for i, row in enumerate(rows)]
-    loss = read_choice(document, table.get("loss", "squares"), {word: word for word in LOSSES}, (*key, "loss"))
-    if len(document.problems) > before:
+    if how is None or len(document.problems) > before:
         return None
-    return Calibrated(bounds, tuple(each for each in measured if each is not None), loss)
+    return Calibrated(bounds, tuple(each for each in measured if each is not None), how)
 
 
 def _measured(document: Document, row: Mapping[str, Any], key: Key, design: Design | None) -> Measured | None:
@@ -161,8 +131,8 @@ def _conditions(document: Document, table: Mapping[str, Any], key: Key, design: 
     return {name: value for name, value in found.items() if value is not WRONG}
 
 
-def measurement_schemas() -> dict[str, Any]:
-    """The JSON schemas of the two sections."""
+def fitted_schemas() -> dict[str, Any]:
+    """The JSON schemas of what is fitted and to what, in [calibrate]."""
     number: dict[str, Any] = {"type": ["number", "string"]}
     ends = {"type": "array", "items": number, "minItems": 2, "maxItems": 2, "description": "low and high"}
     table: dict[str, Any] = {"type": "object"}
@@ -174,20 +144,5 @@ def measurement_schemas() -> dict[str, Any]:
             "at": table, "parameter": {"type": "string"}, "range": ends,
         },
     }  # fmt: skip
-    calibrate = {
-        "type": "object", "description": "[calibrate]: parameters fitted to measured numbers",
-        "properties": {
-            "parameters": {**table, "additionalProperties": {"anyOf": [ends, table]}},
-            "measured": {"type": "array", "items": row, "minItems": 1}, "loss": {"enum": list(LOSSES)},
-        },
-        "required": ["parameters", "measured"], "additionalProperties": False,
-    }  # fmt: skip
-    recording = {
-        "type": "object", "description": "[recording]: a recording beside the design file",
-        "properties": {
-            "file": {"type": "string"}, "unit": {"type": "string"}, "full_scale": number, "rate": number, "band": ends,
-            "channel": {"type": "integer", "minimum": 0}, "least_level": number,
-        },
-        "required": ["file"], "additionalProperties": False,
-    }  # fmt: skip
-    return {"calibrate": calibrate, "recording": recording}
+    parameters = {**table, "additionalProperties": {"anyOf": [ends, table]}}
+    return {"parameters": parameters, "measured": {"type": "array", "items": row, "minItems": 1}}

@@ -31,7 +31,7 @@ from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, only, shown, wrong
 from squealbox.files.sheets import read_law, read_sheet
 from squealbox.files.varied import flattened
-from squealbox.parameters import DataSheet, ParameterError, Vector, choice, parameter
+from squealbox.parameters import DataSheet, ParameterError, Vector, above_zero, choice, parameter
 from squealbox.system import InvalidSystem
 from squealbox.transient import MotionSettings
 
@@ -51,7 +51,9 @@ MISSING = 'give [reduce] band = ["500 Hz", "10 kHz"] in the file, or the band of
 class Reduce(DataSheet):
     """[reduce]: a finite-element brake is made small once, for all that needs dense matrices."""
 
-    band: Vector = parameter("Hz", 0.0, default=None, optional=True, meaning="from, to; left out, that of [modes]")
+    band: Vector = above_zero(
+        "Hz", default=None, ends=True, meaning="lowest and highest frequency; left out, that of [modes]"
+    )
     method: str = choice("enriched", "craig-bampton", "pod", default="enriched", meaning="which basis")
     tolerance: float = parameter("1/s", 0.0, low_open=True, default=0.05, meaning="error wanted of an eigenvalue")
 
@@ -73,10 +75,6 @@ def read_reduce(document: Document, table: Mapping[str, Any], key: Key, design: 
         wrong(document, (*key, "varying"), given, 'a table such as { "friction.static" = [0, 0.8] }')
         return None
     varying = read_spans(document, given, (*key, "varying"), design)
-    band = None if how is None else how.band
-    if band is not None and not (np.shape(band) == (2,) and 0.0 < band[0] < band[1]):
-        wrong(document, (*key, "band"), [float(f) for f in band], 'two values such as ["500 Hz", "10 kHz"]')
-        return None
     return None if how is None else Reduced(how, varying)
 
 
@@ -120,7 +118,7 @@ def dense(found: "DesignFile", axes: Iterable[ParameterAxis] = ()) -> "DesignFil
         return found
     about = found.reduce or Reduced(Reduce(), {})
     band = about.how.band if about.how.band is not None else found.modes.band if found.modes else None
-    if band is None or np.shape(band) != (2,):
+    if band is None:
         raise InvalidSystem(f"a finite-element brake is made small for this, which needs a frequency band: {MISSING}")
     from squealbox.fe.reduction import reduce
 

@@ -6,12 +6,13 @@ import typing
 from collections.abc import Sequence
 from typing import Any
 
+from squealbox.calibration import CalibrateSettings
 from squealbox.family import ParameterAxis
 from squealbox.fe.assembled import AssembledBrake
 from squealbox.files import countermeasures
 from squealbox.files.arrays import TRIANGLES
 from squealbox.files.assembled import ASSEMBLED
-from squealbox.files.measurements import measurement_schemas
+from squealbox.files.measurements import Recorded, fitted_schemas
 from squealbox.files.reading import BRAKES, STUDY
 from squealbox.files.reduced import REDUCED, Reduce
 from squealbox.files.sheets import OWN, is_required
@@ -61,7 +62,8 @@ def json_schema() -> Schema:
         "scatter": _or_vary(scatter_schema(_sheet), "parameters"),
         "optimise": _or_vary(optimise_schema(_sheet), "variables"),
         **countermeasures.schemas(_field),
-        **measurement_schemas(),
+        "calibrate": _sheet(CalibrateSettings, first=fitted_schemas()),
+        "recording": _sheet(Recorded, more={"channel": {"type": ["integer", "string"], "minimum": 0}}),
     }
     brakes = [_sheet(brake, first={"brake": {"const": name}}, more=sections) for name, brake in BRAKES.items()]
     return {

@@ -10,7 +10,6 @@ from squealbox.limit_cycles.attractors.diagrams import BifurcationDiagram, bifur
 from squealbox.limit_cycles.attractors.exponents import lyapunov_exponents
 from squealbox.limit_cycles.attractors.pushes import DangerousPush, dangerous_push, push_along
 from squealbox.limit_cycles.attractors.sections import Section, maxima, poincare_section
-from squealbox.limit_cycles.attractors.settings import DiagramSettings
 from squealbox.limit_cycles.branches.branch import Branch, branch
 from squealbox.limit_cycles.branches.curves import PointCurve, hopf_curve
 from squealbox.limit_cycles.branches.hopf import HopfPoint, hopf_point
@@ -31,15 +30,19 @@ from squealbox.limit_cycles.estimates.averaging import (
 )
 from squealbox.limit_cycles.estimates.curves import EstimateCurve, estimate_curves
 from squealbox.limit_cycles.estimates.stick_slip_limit import return_gap, stick_slip_limit
+from squealbox.limit_cycles.settings import BasinSettings, BranchSettings, CycleSettings, DiagramSettings
 
 __all__ = [
     "Attractor",
     "Basin",
+    "BasinSettings",
     "BifurcationDiagram",
     "Branch",
     "BranchPoint",
+    "BranchSettings",
     "Coexistence",
     "Cycle",
+    "CycleSettings",
     "DangerousPush",
     "DiagramSettings",
     "EstimateCurve",

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.loops.rows import Rows, lagging
-from squealbox.parameters import DataSheet, ParameterError, known_names, parameter
+from squealbox.parameters import DataSheet, ParameterError, above_zero, known_names, parameter
 
 
 class Loop(DataSheet):
@@ -28,16 +28,10 @@ class Loop(DataSheet):
 
     on: str = ""
     sense: str = ""
-    bandwidth: float | None = parameter(
-        "Hz", 0.0, low_open=True, default=None, optional=True, meaning="of a first-order actuator; ideal when left out"
-    )
-    limit: float | None = parameter(
-        "N", 0.0, low_open=True, default=None, optional=True, meaning="largest force; none when left out"
-    )
+    bandwidth: float | None = above_zero("Hz", default=None, meaning="of a first-order actuator; ideal when left out")
+    limit: float | None = above_zero("N", default=None, meaning="largest force; none when left out")
     delay: float = parameter("s", 0.0, default=0.0, meaning="by which the force is late")
-    sampling: float | None = parameter(
-        "Hz", 0.0, low_open=True, default=None, optional=True, meaning="rate; continuous when left out"
-    )
+    sampling: float | None = above_zero("Hz", default=None, meaning="rate; continuous when left out")
     computing: float = parameter("-", 0.0, default=0.0, meaning="computing time in samples")
 
     @property

@@ -149,15 +149,15 @@ def _in_dB(difference: float, unit: str) -> str:
 
 
 def spectrograms_beside(
-    simulated: Any, recording: Recording, events: SquealEvents | None = None, *, channel: int = 0, dof: int | str = 0,
-    title: str = "",
+    simulated: Any, recording: Recording, events: SquealEvents | None = None, *,
+    channel: int | str = 0, dof: int | str = 0, title: str = "",
 ) -> "Figure":  # fmt: skip
     """The spectrogram of a motion beside that of a recording, in dB below the largest of each, at one resolution.
 
     Of the recording the loudest event is shown, from its onset on, as long as eight times the motion at most; without
     `events` its beginning. `channel` is the recording's, `dof` the motion's that is heard.
     """
-    heard = recording.samples[:, channel]
+    heard = recording.channel(channel)
     began, ended = 0.0, len(heard) / recording.rate
     if events is not None and events.count:
         loudest = int(np.argmax(events.level))

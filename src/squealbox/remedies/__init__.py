@@ -1,8 +1,8 @@
-"""What would silence this brake? Depends on: countermeasures, control, stability, transient, studies, loops, result."""
+"""What would silence this brake? Depends on: countermeasures, control, stability, transient, studies, loops, result.
 
-from squealbox.remedies.candidates import Candidate, candidates_for
-from squealbox.remedies.production import usual_scatter
-from squealbox.remedies.ranking import Remedies, silence
-from squealbox.remedies.settings import SilenceSettings
+The names are listed in ``__init__.pyi``; each is loaded when it is first used.
+"""
 
-__all__ = ["Candidate", "Remedies", "SilenceSettings", "candidates_for", "silence", "usual_scatter"]
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

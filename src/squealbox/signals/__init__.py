@@ -1,7 +1,7 @@
 """What a signal holds: spectrum, peaks, growth rate, sound and how loud; recordings, the squeal events in them, and
 the damping before it squeals.
 
-Depends on: result.
+Depends on: parameters, result.
 
 Every function takes an array with its times ``t`` [s] or its sampling rate [Hz], or anything with ``.t`` and ``.q``,
 such as a trajectory, of which ``dof`` names one column. Fourier methods need equal time steps and refuse others.
@@ -26,17 +26,20 @@ from squealbox.signals.samples import (
     too_few,
     values,
 )
+from squealbox.signals.settings import EventSettings, RecordingSettings
 from squealbox.signals.spectra import Peaks, Spectrogram, Spectrum, peaks, spectrogram, spectrum
 from squealbox.signals.wav import audible, sixteen_bits, sound
 
 __all__ = [
     "LEAST",
     "DampingOnset",
+    "EventSettings",
     "GrowthRate",
     "NoiseMatrix",
     "OperationalModes",
     "Peaks",
     "Recording",
+    "RecordingSettings",
     "Samples",
     "SignalError",
     "SoundLevel",

@@ -1,6 +1,6 @@
 """How much work a study is, for files and the command line: workers, samples, generations."""
 
-from squealbox.parameters import DataSheet, choice, parameter
+from squealbox.parameters import DataSheet, above_zero, choice, parameter
 from squealbox.studies.refinement import FINEST
 from squealbox.studies.uncertainty.scatter import SAMPLINGS
 
@@ -14,9 +14,7 @@ class WorkerSettings(DataSheet):
     chunk: int | None = parameter(
         "-", 1, 2**40, default=None, optional=True, meaning="points in a block; left out, it takes about a second"
     )
-    time_limit: float | None = parameter(
-        "s", 0.0, low_open=True, default=None, optional=True, meaning="of a block that a worker computes"
-    )
+    time_limit: float | None = above_zero("s", default=None, meaning="of a block that a worker computes")
 
 
 class StudySettings(WorkerSettings):
@@ -24,10 +22,11 @@ class StudySettings(WorkerSettings):
 
     analysis: str = choice(*ANALYSES, default="modes", meaning="what is asked at every point")
     seed: int = parameter("-", 0, 2**53, default=0, meaning="of samples and random numbers")
-    duration: float | None = parameter(
-        "s", 0.0, low_open=True, default=None, optional=True,
-        meaning="of each transient of an ensemble; left out, 200 periods of the worst mode of the file's brake",
-    )  # fmt: skip
+    duration: float | None = above_zero(
+        "s",
+        default=None,
+        meaning="of each transient of an ensemble; left out, 200 periods of the brake's worst mode",
+    )
 
 
 class RefineSettings(DataSheet):

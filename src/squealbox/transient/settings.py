@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.parameters import DataSheet, ParameterError, Vector, choice, parameter
+from squealbox.parameters import DataSheet, ParameterError, Vector, above_zero, choice, parameter
 from squealbox.start import Start, in_words
 from squealbox.system import System, as_system
 from squealbox.transient.legs import SCHEMES
@@ -24,19 +24,17 @@ class MotionSettings(DataSheet):
 
     formerly: ClassVar[Mapping[str, str]] = {"begin": "start_time", "points": "times"}
 
-    duration: float | None = parameter(
-        "s", 0.0, low_open=True, default=None, optional=True,
-        meaning="how long the motion is followed; left out, 200 periods of the worst mode",
-    )  # fmt: skip
+    duration: float | None = above_zero(
+        "s", default=None, meaning="how long the motion is followed; left out, 200 periods of the worst mode"
+    )
     start: str = choice(
         "rest", "sliding", "mode", default="rest",
         meaning="where it starts: at zero, in steady sliding, or beside it in a mode; mode 2 says in which",
     )  # fmt: skip
     mode: int | None = parameter("-", 1, default=None, optional=True, meaning="left out, the mode that grows fastest")
-    amplitude: float | None = parameter(
-        "m", 0.0, low_open=True, default=None, optional=True,
-        meaning="of the mode; left out, the sliding speed of a contact swings by a hundredth",
-    )  # fmt: skip
+    amplitude: float | None = above_zero(
+        "m", default=None, meaning="of the mode; left out, the sliding speed of a contact swings by a hundredth"
+    )
     q: Vector = parameter("m", default=None, optional=True, meaning="displacement added at the start; left out, none")
     qd: Vector = parameter("m/s", default=None, optional=True, meaning="velocity at the start; left out, zero")
     method: str = choice(

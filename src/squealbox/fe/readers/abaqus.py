@@ -76,11 +76,11 @@ def read_coordinates(path: Path, stream: BinaryIO, first: str, *, half: bool = F
 def read_matrix_input(path: Path, stream: BinaryIO, first: str) -> MatrixFile:
     """``row node, row dof, column node, column dof, value``; half or complete is found by pairs."""
     node, direction, other, along, values = columns_of(path, stream, 1, 5, comma="," in first)
-    rows, columns = coded(path, node, direction), coded(path, other, along)
+    entries = Entries(coded(path, node, direction), coded(path, other, along), values, lambda i: i + 1)
     del node, direction, other, along
     digits = significant_digits(re.split(r"[,\s]+", first.strip())[-1:])
     kind = kind_of(path.stem)
-    found = between_labels(path, path.name, kind, rows, columns, values, "either", lambda i: i + 1, digits=digits)
+    found = between_labels(path, path.name, kind, entries, "either", digits=digits)
     return MatrixFile(path, "Abaqus, matrix input text", (found,))
 
 

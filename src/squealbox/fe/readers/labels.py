@@ -26,23 +26,9 @@ def decoded_labels(codes: Any) -> Any:
     return np.column_stack([np.where(place > 2**45, 2**45 - place, place), direction])
 
 
-def between_labels(
-    path: Path, name: str, kind: str, rows: Any, columns: Any, values: Any, rule: str, lines: Any = None, **about: Any
-) -> FileMatrix:
-    """A square matrix from coded row and column labels, on the union of both."""
-    codes = np.union1d(rows, columns)
-    return complete(
-        path,
-        name,
-        kind,
-        Entries(
-            np.searchsorted(codes, rows).astype(np.int32),
-            np.searchsorted(codes, columns).astype(np.int32),
-            values,
-            lines,
-        ),
-        len(codes),
-        rule,
-        labels=decoded_labels(codes),
-        **about,
-    )
+def between_labels(path: Path, name: str, kind: str, entries: Entries, rule: str, **about: Any) -> FileMatrix:
+    """A square matrix from entries whose rows and columns are coded labels, on the union of both."""
+    codes = np.union1d(entries.rows, entries.columns)
+    entries.rows = np.searchsorted(codes, entries.rows).astype(np.int32)
+    entries.columns = np.searchsorted(codes, entries.columns).astype(np.int32)
+    return complete(path, name, kind, entries, len(codes), rule, labels=decoded_labels(codes), **about)

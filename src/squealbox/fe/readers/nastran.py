@@ -184,9 +184,8 @@ def _finished(path: Path, card: _Card) -> FileMatrix:
             digits=digits,
         )
     rule = "half" if card.form == 6 else "full"
-    found = between_labels(
-        path, card.name, kind, rows, columns, table[4], rule, lambda i: int(table[5][i]), digits=digits
-    )
+    entries = Entries(rows, columns, table[4], lambda i: int(table[5][i]))
+    found = between_labels(path, card.name, kind, entries, rule, digits=digits)
     short = card.columns_said - len(found.labels)
     if short > 0 and kind == "stiffness":
         raise MatrixFileError(

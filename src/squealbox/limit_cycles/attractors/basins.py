@@ -106,7 +106,7 @@ class Basin(Result):
 @public()
 def basin(
     design_or_system: Any,
-    spread: Any = None,
+    spread: Any = 1.0,
     starts: int = 1000,
     *,
     plane: Sequence[Any] | None = None,
@@ -121,8 +121,8 @@ def basin(
     Parameters
     ----------
     design_or_system : a design or a `System` with constant loads and speeds
-    spread : half widths, shape (2n,): displacements [m] and velocities [m/s]; None takes V/w1 and V, with V the fastest
-        sliding speed and w1 the slowest frequency [rad/s]; a number multiplies that
+    spread : half widths, shape (2n,): displacements [m] and velocities [m/s]; a number is that many times V/w1 and V,
+        with V the fastest sliding speed and w1 the slowest frequency [rad/s]; None as 1
     starts : number of starts, a Sobol sequence with `seed`; with `plane`, about that many on a square grid
     plane : two states, by place in (q, q') or by name, as in ("x", "x'"); the others stay at `through`
     through : the middle of the box or plane, as the start of `simulate`, such as a cycle; None takes steady sliding

@@ -30,12 +30,12 @@ from squealbox.stability import complex_modes, critical_values
 from squealbox.system import System
 from squealbox.words import number, scaled
 from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.declared import FREEDOM, FRICTION, Panel, Place, over
+from squealbox.workbench.panels.declared import FREEDOM, OVER, Panel, Place
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
 
 PANEL = Panel(
     "Limit cycles over a parameter", questions=("when",), slow=True, apart=True, along=True,
-    choices=(over("over", "parameter", FRICTION), FREEDOM),
+    choices=(OVER, FREEDOM),
     figures=(Place("branch", "", 270, "bent", "amplitude of the cycles: press Follow"),),
 )  # fmt: skip
 
@@ -52,8 +52,7 @@ Make = Callable[[float], System]
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """The branches as curves (value, amplitude, stable), their special points, and the stretches of coexistence."""
-    parameter = options.parameter("parameter", design, "friction.static")
-    ends = options.span("span", design, parameter)
+    parameter, ends = options.over(design, OVER)
     ends = (ends[0] + EDGE * (ends[1] - ends[0]), ends[1])
     usual = min(max(float(design.value_of(parameter) or ends[0]), ends[0]), ends[1])
     at = max(options.number("at", usual, -1e300, 1e300), ends[0])

@@ -29,7 +29,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     known = design.scalars()
     if not isinstance(names, list) or not 0 < len(names) <= MOST or any(name not in known for name in names):
         raise OptionError(f"parameters: expected one to {MOST} names of parameters of this design")
-    share = options.number("share", 0.3, 0.001, 0.9)
+    share = options.chosen(*PANEL.choices)["share"]
     _, events = heard(options, work)
     bounds = {str(name): _bounds(design, str(name), share, known[name]) for name in names}
     work.progress(0.5, "fitting")

@@ -11,12 +11,12 @@ from squealbox.plots.modes import followed
 from squealbox.stability import complex_modes, mechanism
 from squealbox.words import number, quantity, scaled
 from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.declared import FRICTION, Panel, Place, over
+from squealbox.workbench.panels.declared import OVER, Panel, Place
 from squealbox.workbench.panels.modes import crossings_of, modes_of
 from squealbox.workbench.panels.panel import NONE, Answer, OptionError, Options, Work, table, try_value
 
 PANEL = Panel(
-    "Compare two designs", questions=("silences",), columns=2, choices=(over("over", "parameter", FRICTION),),
+    "Compare two designs", questions=("silences",), columns=2, choices=(OVER,),
     layout="two", figures=(Place("frequency", "Frequencies", 200), Place("growth", "Growth rate", 200)),
     table="The two designs in numbers",
 )  # fmt: skip
@@ -29,8 +29,7 @@ Side = dict[str, Any]
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """Frequencies and growth rates of both over a parameter, and what differs in numbers and in parameters."""
-    parameter = options.parameter("parameter", design, "friction.static")
-    ends = options.span("span", design, parameter)
+    parameter, ends = options.over(design, OVER)
     axis, words = options.axis(design, parameter, ends), KEEP
     sides = [("B", "s0", _side(design, parameter, ends))]
     try:

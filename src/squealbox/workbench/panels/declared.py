@@ -1,12 +1,16 @@
 """What stands in a panel: its title, the choices in its head, the places of its figures.
 
 Each panel's file says it in ``PANEL = Panel(...)`` with the words of this module alone: the page knows it before the
-file, which may load half the house, is first needed.
+file, which may load half the house, is first needed. An option that an analysis has is declared on the analysis' sheet,
+``of="remedies.SilenceSettings"``: what is said here is what the page calls it and has otherwise.
 """
 
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from typing import Any
+
+from squealbox.parameters import field_type, load_kind
 
 SCRIPTS = Path(__file__).parents[1] / "static" / "panels"
 
@@ -48,32 +52,58 @@ class Panel:
 
     def data(self, name: str) -> dict[str, Any]:
         """For the page."""
-        return {**vars(self), "name": name, "figures": [vars(each) for each in self.figures],
+        choices = [told(each) for each in self.choices if each.get("text", name)]
+        return {**vars(self), "name": name, "choices": choices, "figures": [vars(each) for each in self.figures],
                 "script": (SCRIPTS / f"{name}.js").is_file()}  # fmt: skip
 
 
-def over(text: str, name: str, *usual: str, span: str = "span") -> dict[str, Any]:
+Choice = dict[str, Any]
+
+
+def over(text: str, name: str, *usual: str, span: str = "span") -> Choice:
     """A choice among the parameters that can be varied: the option `name`; the ends of its axis `span`, "" for none."""
-    return {"kind": "over", "text": text, "name": name, "usual": usual, "span": span}
+    return {"kind": "over", **locals()}
 
 
-def words(text: str, name: str, *options: tuple[str, str], usual: str = "") -> dict[str, Any]:
-    """A choice among words (value, as it is read); the first is usual. Values that are numbers are sent as numbers."""
+def words(text: str, name: str, *options: tuple[str, str], usual: str | None = None, of: str = "") -> Choice:
+    """A choice among words (value, as it is read); the first is usual. Values that are numbers are sent as numbers.
+
+    Without a text it is no choice in the head, but an option of the question all the same; so is a number.
+    """
     numbers = all(value.replace(".", "").isdigit() for value, _ in options)
-    return {"kind": "words", "text": text, "name": name, "options": options, "usual": usual or options[0][0],
-            "numbers": numbers}  # fmt: skip
+    usual = usual or (None if of else options[0][0])
+    return {"kind": "words", **locals()}
 
 
-def number(text: str, name: str, usual: float, low: float, high: float, step: float) -> dict[str, Any]:
+def number(
+    text: str, name: str, usual: float | None = None, low: float | None = None, high: float | None = None,
+    step: float | str = "any", of: str = "",
+) -> Choice:  # fmt: skip
     """A number to be typed, the option `name`."""
-    return {"kind": "number", "text": text, "name": name, "usual": usual, "low": low, "high": high, "step": step}
+    return {"kind": "number", **locals()}
 
 
-def shared(panel: str, name: str) -> dict[str, Any]:
+def shared(panel: str, name: str) -> Choice:
     """The option `name` as it was chosen in another panel."""
-    return {"kind": "shared", "name": name, "panel": panel}
+    return {"kind": "shared", **locals()}
+
+
+def told(choice: Choice) -> Choice:
+    """A choice with what it leaves to the sheet it is of."""
+    if not choice.get("of"):
+        return choice
+    sheet, name = load_kind(choice["of"]), choice["name"]
+    both = (vars(sheet.parameters().get(name) or sheet.choices()[name]), choice)
+    about = {key: value for part in both for key, value in part.items() if value not in (None, inf, -inf)}
+    return {"usual": getattr(sheet, name), "whole": field_type(sheet, name) is int, **about}
 
 
 FREEDOM = {"kind": "freedom", "text": "of"}  # a choice among the degrees of freedom that the answer names
+START = (  # of a motion, and the push as a share of the static deflection
+    words("start", "start", ("push", "steady sliding, pushed"), ("rest", "loads applied at rest"),
+          ("sliding", "steady sliding")),
+    words("push", "push", ("0.001", "0.1 %"), ("0.05", "5 %"), ("0.5", "50 %"), ("2", "200 %"), usual="0.05"),
+)  # fmt: skip
 FRICTION = "friction.static"
+OVER = over("over", "parameter", FRICTION)
 LOADS = ("load", "load1", "sliding_speed", "theta1")

@@ -15,7 +15,7 @@ from squealbox.words import number, quantity, scaled
 from squealbox.workbench.panels.declared import FREEDOM, Panel, Place, words
 from squealbox.workbench.panels.following import followed, moving
 from squealbox.workbench.panels.loudness import loudest, loudness
-from squealbox.workbench.panels.panel import Answer, Elsewhere, OptionError, Options, Work
+from squealbox.workbench.panels.panel import Answer, Elsewhere, Options, Work
 from squealbox.workbench.panels.start import start_and_dof
 from squealbox.workbench.panels.stop import LEFT_OUT, braking
 
@@ -31,7 +31,6 @@ SECONDS = 1.5
 RATE = 2.0 * SAMPLING  # of the motion: nothing heard is folded down
 FADE = 0.01  # s at each end
 FRAMES, TURNS = 1500, 12  # pictures that go along with a sound, and periods they seem to show
-SHORTEST, LONGEST = 0.5, 4.0  # s of a stop
 LATE = 3.0  # s that a second of a stop takes, in a process of its own
 BAND, LEAST = (200.0, 16000.0), 70.0  # Hz and dB(A) of the events looked for
 ROOM = 2e-5 * 10.0 ** (30.0 / 20.0)  # Pa: noise of 30 dB, which a microphone would hear too
@@ -47,12 +46,11 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     With `braking` [s] it is that of a stop: sound pressure, its spectrogram (frequencies, times) and the squeal events.
     `frameQ`, `frameForce` and `frameState` are what the brake looks like as it sounds, lit once a period.
     """
-    seconds = options.number("braking", 0.0, 0.0, LONGEST)
-    if seconds:
-        return _stop(design, seconds, options, work)
+    area, braked = options.number("area", AREA, 1e-6, 10.0), options.chosen(*PANEL.choices)["braking"]
+    if braked:
+        return _stop(design, braked, area, work)
     system = moving(design)
     start, dof = start_and_dof(design, options)
-    area = options.number("area", AREA, 1e-6, 10.0)
     motion = followed(system, SECONDS, work, 0.8, start=start, times=int(SECONDS * RATE) + 1)
     work.progress(0.8, "listening")
     if options.given.get("dof") is None and motion.outcome.ok:
@@ -98,13 +96,10 @@ def _frames(motion: Trajectory, pitch: float) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _stop(design: Design, seconds: float, options: Options, work: Work) -> Answer:
-    if seconds < SHORTEST:
-        raise OptionError(f"braking: expected 0, or {SHORTEST:g} to {LONGEST:g} s")
+def _stop(design: Design, seconds: float, area: float, work: Work) -> Answer:
     stopping, speed, unit = braking(design, seconds)
     if not work.apart:
         raise Elsewhere("following the stop", 1.0 + LATE * seconds)
-    area = options.number("area", AREA, 1e-6, 10.0)
     system = moving(stopping)
     motion = followed(system, seconds, work, 0.6, start="rest", times=int(seconds * RATE) + 1)
     if not motion.outcome.ok:

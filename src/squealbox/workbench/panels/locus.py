@@ -8,12 +8,12 @@ from squealbox.designs import Design
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.plots.as_data import modes_over_parameter
 from squealbox.plots.modes import unstable_stretches
-from squealbox.workbench.panels.declared import FRICTION, Panel, Place, over
+from squealbox.workbench.panels.declared import OVER, Panel, Place
 from squealbox.workbench.panels.modes import modes_of, ranked, tracks_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, try_value
 
 PANEL = Panel(
-    "Modes over a parameter", questions=("why",), columns=2, choices=(over("over", "parameter", FRICTION),),
+    "Modes over a parameter", questions=("why",), columns=2, choices=(OVER,),
     layout="three",
     figures=(Place("frequency", "Frequency", 216), Place("growth", "Growth rate (above zero: squeal)", 216),
              Place("plane", "Eigenvalue plane", 216)),
@@ -26,8 +26,7 @@ LARGE, FEWEST = 40, 21  # and of many
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """Frequency [Hz] and growth rate [1/s] of each mode along the axis, and the modes of the design itself."""
-    parameter = options.parameter("parameter", design, "friction.static")
-    low, high = options.span("span", design, parameter)
+    parameter, (low, high) = options.over(design, OVER)
     here = modes_of(design)
     half = here.eigenvalues.shape[-1] // 2
     values = np.linspace(low, high, POINTS if half <= 2 else FEWER if half <= LARGE else FEWEST)

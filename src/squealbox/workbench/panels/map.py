@@ -28,12 +28,11 @@ BLOCKS = 8  # parts of a map between which it can be stopped
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """Largest growth rate [1/s] on a grid, row by row from below; with ``show = "mechanism"`` also the mechanism."""
-    across = options.parameter("x", design, "friction.static")
-    up = options.parameter("y", design, "load", "load1", "sliding_speed", "theta1")
+    (across, *spans), (up, *more) = (options.over(design, each) for each in PANEL.choices[:2])
     if across == up:
         raise OptionError(f"x and y are both {across}: choose two different parameters")
-    show = options.word("show", ("growth", "frequency", "mechanism"))
-    spans = [options.span(name, design, parameter) for name, parameter in (("xspan", across), ("yspan", up))]
+    show = options.chosen(*PANEL.choices)["show"]
+    spans += more
     few = design.system().size > 2
     usual = FEWEST if isinstance(design, ReducedBrake) else FEWER if few else POINTS
     points = int(options.number("points", usual, FEWEST, 401))

@@ -9,9 +9,10 @@ from squealbox.figure_data import FigureAxis, FigureData, across, heat, hull, li
 from squealbox.plots.facts import unit_at
 from squealbox.signals import SignalError, peaks, spectrogram, spectrum
 from squealbox.transient import Trajectory, Verdict, usual_duration, verdict
-from squealbox.words import number, scaled
+from squealbox.words import number as digits
+from squealbox.words import scaled
 from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.declared import FREEDOM, Panel, Place, words
+from squealbox.workbench.panels.declared import FREEDOM, START, Panel, Place, number, words
 from squealbox.workbench.panels.following import followed, moving
 from squealbox.workbench.panels.loudness import loudest, loudness
 from squealbox.workbench.panels.panel import Answer, Options, Work
@@ -19,10 +20,8 @@ from squealbox.workbench.panels.start import start_and_dof
 
 PANEL = Panel(
     "Motion", questions=("happens",), columns=2, slow=True, layout="two",
-    choices=(words("start", "start", ("push", "steady sliding, pushed"), ("rest", "loads applied at rest"),
-                   ("sliding", "steady sliding")),
-             words("push", "push", ("0.001", "0.1 %"), ("0.05", "5 %"), ("0.5", "50 %"), ("2", "200 %"), usual="0.05"),
-             FREEDOM),
+    choices=(*START, FREEDOM, number("", "duration", high=1e6, of="transient.MotionSettings"),
+             words("", "contact", ("exact", ""), ("smooth", ""), of="transient.MotionSettings")),
     figures=(Place("time", "Displacement", 190), Place("spectrum", "Spectrum of the second half", 190),
              Place("phase", "Phase plane of the second half"), Place("spectrogram", "Spectrogram")),
 )  # fmt: skip
@@ -32,16 +31,15 @@ DRAWN = 1024  # pairs of least and largest value along the time axis
 SHOWN = 241  # instants at the end in which the brake is seen to move: six periods of a hundred
 LAST = 0.25  # share of the motion that the verdict and the estimate of the sound level are about
 PERIODS = 100  # followed when nothing is given
-CONTACTS = ("exact", "smooth")
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """The motion of one degree of freedom over time, and what a signal analysis says of it."""
     system = moving(design)
     start, dof = start_and_dof(design, options)
-    contact = options.word("contact", CONTACTS)
-    duration = options.number("duration", 0.0, 0.0, 1e6) or usual_duration(design, periods=PERIODS)
-    motion = followed(system, duration, work, 0.6, start=start, times=SAMPLES, contact=contact)
+    how = options.chosen(*PANEL.choices)
+    duration = how["duration"] or usual_duration(design, periods=PERIODS)
+    motion = followed(system, duration, work, 0.6, start=start, times=SAMPLES, contact=how["contact"])
     work.progress(0.6, "spectrum")
     data = {
         "names": list(system.names),
@@ -97,7 +95,7 @@ def _signals(motion: Trajectory, dof: int, judged: Verdict, data: dict[str, Any]
     f, sizes = lines.frequency[shown] / factor, lines.amplitude[shown] / metre
     over = FigureAxis("frequency", hertz, (0.0, float(f[-1])), factor=factor, quantity="frequency")
     upward = FigureAxis("amplitude", size, (0.0, 1.18 * float(np.max(sizes)) or 1.0))
-    named = [text(at / factor, a, number(at / factor)) for at, a in found[:3]]
+    named = [text(at / factor, a, digits(at / factor)) for at, a in found[:3]]
     figures.append(FigureData("spectrum", over, upward, [line(f, sizes), across(0.0), *named]))
     stretch = (float(grid.time[0] / second), float(grid.time[-1] / second))
     upward = FigureAxis(

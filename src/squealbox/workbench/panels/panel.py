@@ -11,6 +11,7 @@ from squealbox.designs import Design
 from squealbox.figure_data import Bars, FigureAxis, FigureData, packed
 from squealbox.parameters import ParameterError
 from squealbox.words import read_in
+from squealbox.workbench.panels.declared import told
 from squealbox.workbench.sheet import slider
 from squealbox.workbench.state import StateError, UnknownBase, design_of
 
@@ -113,15 +114,24 @@ class Options:
         except StateError as error:
             raise OptionError(f"{name}: {error}") from error
 
-    def word(self, name: str, options: tuple[str, ...]) -> str:
-        """One of several words; the first where nothing is given."""
-        value = self.given.get(name, options[0])
-        if value not in options:
-            raise OptionError(f"{name}: expected one of {', '.join(options)}")
-        return str(value)
+    def chosen(self, *choices: dict[str, Any]) -> dict[str, Any]:
+        """What words and numbers among the choices of a panel are, by name, each within what it and its sheet say."""
+        abouts = [told(each) for each in choices if each["kind"] in ("words", "number")]
+        return {about["name"]: self._chosen(**about) for about in abouts}
 
-    def number(self, name: str, usual: float, low: float, high: float) -> float:
-        """A finite number from low to high."""
+    def _chosen(self, name: str, kind: str, usual: Any, **about: Any) -> Any:
+        if kind == "words":
+            value, known = self.given.get(name), [value for value, _ in about["options"]]
+            value, read = usual if value is None else value, float if about["numbers"] else str
+            found = [read(each) for each in known if value in (each, read(each))]
+            if not found:
+                raise OptionError(f"{name}: expected one of {', '.join(known)}")
+            return found[0]
+        value = self.number(name, usual, about.get("low", -np.inf), about.get("high", np.inf))
+        return int(value) if about.get("whole") and value is not None else value
+
+    def number(self, name: str, usual: Any, low: float, high: float) -> Any:
+        """A finite number from low to high; `usual`, which may be None, where nothing is given."""
         value = self.given.get(name)
         if value is None:
             return usual
@@ -162,6 +172,11 @@ class Options:
         if not (low < high and about.accepts(np.array([low, high]))):
             raise OptionError(f"{name}: expected a lower and a higher value in {about.range}")
         return low, high
+
+    def over(self, design: Design, choice: dict[str, Any]) -> tuple[str, tuple[float, float]]:
+        """The parameter that is chosen and the ends [SI] of its axis."""
+        parameter = self.parameter(choice["name"], design, *choice["usual"])
+        return parameter, self.span(choice["span"], design, parameter)
 
     def axis(self, design: Design, parameter: str, ends: tuple[float, float]) -> FigureAxis:
         """An axis over a parameter, its ends given in SI, in the unit that was chosen for it or the usual one."""

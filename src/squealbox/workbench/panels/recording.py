@@ -13,19 +13,21 @@ from squealbox.signals import SignalError, spectrogram
 from squealbox.signals.events import SquealEvents
 from squealbox.signals.recordings import Recording
 from squealbox.stability import complex_modes
-from squealbox.words import number
+from squealbox.words import number as digits
 from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.declared import Panel, Place
+from squealbox.workbench.panels.declared import Panel, Place, number, words
 from squealbox.workbench.panels.panel import NONE, Answer, OptionError, Options, Work, table
 from squealbox.workbench.recorded import path_of
 
 PANEL = Panel(
     "Recording", questions=("matches",), columns=2, slow=True, layout="two", table="Squeal events",
+    choices=(words("unit", "unit", ("FS", "not calibrated"), ("Pa", "Pa"), ("g", "g"), ("m/s^2", "m/s²")),
+             number("1 is worth", "full_scale", 1.0, 1e-12, 1e12, of="signals.RecordingSettings"),
+             number("", "lowest", 1e3, 20.0, 16e3)),
     figures=(Place("recording", "Spectrogram with the events", 230, "events",
                    "drop a recording here: WAV, FLAC, CSV, UFF"),),
 )  # fmt: skip
 
-UNITS = ("FS", "Pa", "g", "m/s^2")
 PIECE = 0.04  # s of sound behind a column of the spectrogram
 COLUMNS, ROWS = 400, 240  # of it, at most
 TOP = 16e3  # Hz
@@ -77,13 +79,11 @@ def heard(options: Options, work: Work) -> tuple[Recording, SquealEvents]:
     path = path_of(options.given.get("id"))
     if path is None:
         raise OptionError("the recording is not here any more: drop it again")
-    unit = options.word("unit", UNITS)
-    scale = options.number("full_scale", 1.0, 1e-12, 1e12)
+    unit, scale, low = options.chosen(*PANEL.choices).values()
     work.progress(0.05, "reading")
     try:
         recording = read_recording(path) if unit == "FS" else read_recording(path, unit=unit, full_scale=scale)
         work.progress(0.2, "looking for squeal")
-        low = options.number("lowest", 1000.0, 20.0, 16e3)
         return recording, squeal_events(recording, band=(low, min(TOP, 0.49 * recording.rate)))
     except (SignalError, ModuleNotFoundError) as error:
         raise OptionError(str(error).replace(f"{path.name}: ", "")) from error
@@ -93,16 +93,16 @@ def _words(recording: Recording, events: SquealEvents) -> str:
     """What was found in how much sound, and the notes of the recording."""
     counted = f"{events.outcome.message or 'No squeal event'}."
     if events.count:
-        share = f"{number(100.0 * events.occurrence, 3)} % of {number(recording.duration, 3)} s"
+        share = f"{digits(100.0 * events.occurrence, 3)} % of {digits(recording.duration, 3)} s"
         counted = f"{events.count} event{'s' if events.count > 1 else ''}, {share}."
     return " ".join([counted, *(f"{each}." for each in recording.notes)])
 
 
 def _compared(name: str, simulated: Any, measured: Any, error: Any, away: Any) -> list[str]:
     """A row of what the model says beside what was measured."""
-    spread = f" ± {number(error, 2)}" if np.isfinite(error) else ""
+    spread = f" ± {digits(error, 2)}" if np.isfinite(error) else ""
     unit = {"frequency": "Hz", "growth rate": "1/s"}.get(name, "")
-    apart = f"{number(away, 3)} sd" if np.isfinite(away) else NONE
+    apart = f"{digits(away, 3)} sd" if np.isfinite(away) else NONE
     return [f"{name} {unit}".strip(), shown(simulated, 5), f"{shown(measured, 5)}{spread}", apart]
 
 

@@ -26,7 +26,6 @@ MOST_BARS = 16
 ROUND_OFF = 1e-12  # of the eigenvalue: smaller changes of its real part are none
 POINTS = 101  # of the range in which a critical value is looked for
 LARGE = 40  # degrees of freedom beyond which it is not: the verdict looks along one parameter
-STEPS = ("percent", "tolerance")
 ANGLE = np.deg2rad(1.0)  # tolerance of an angle, assumed
 FAR = 0.1  # of an angle's range: what is farther is no small change
 BEYOND = 0.01  # of the needed change, by which one goes further than to the edge
@@ -39,7 +38,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     angle, else one per cent). `needed` is the nearest value at which stability changes, with the way there in words,
     and a value just beyond; `place` is where the parameter is written in the drawing.
     """
-    step = options.word("step", STEPS)
+    step = options.chosen(*PANEL.choices)["step"]
     modes = modes_of(design)
     if not bool(modes.exists):
         return _none(str(modes.outcome), modes.outcome.message)
@@ -63,7 +62,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         bars.append(bar | {"needed": _needed(design, name) if design.system().size <= LARGE else None})
     shown = [{"name": bar["name"], "parts": [("b0" if bar["growth"] > 0.0 else "b2", bar["growth"])],
               "sum": bar["growth"]} for bar in bars]  # fmt: skip
-    told = {"percent": "+1 %", "tolerance": "one tolerance"}[step]
+    told = dict(PANEL.choices[0]["options"])[step]
     data = {
         "outcome": "completed",
         "bars": bars,

@@ -10,26 +10,29 @@ from squealbox.parameters import ParameterError
 from squealbox.remedies import Candidate, Remedies, candidates_for, silence
 from squealbox.remedies.candidates import more_friction
 from squealbox.workbench.frames import finite
-from squealbox.workbench.panels.declared import Panel
+from squealbox.workbench.panels.declared import Panel, number, words
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
 
-PANEL = Panel("Cures", questions=("silences",), columns=2, slow=True, apart=True)
-
-SAMPLES = 1024  # brakes of the lot
+PANEL = Panel(
+    "Cures", questions=("silences",), columns=2, slow=True, apart=True,
+    choices=(words("quiet up to", "margin", ("0.05", "5 % more friction"), ("0.1", "10 % more friction"),
+                   ("0.2", "20 % more friction"), ("0.4", "40 % more friction"), of="remedies.SilenceSettings"),
+             number("", "samples", 1024, 16, 1e5, of="remedies.SilenceSettings")),
+)  # fmt: skip
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """Rows of cures, the best first: numbers, words, and either other values or the text of the cured brake's file."""
-    margin = options.number("margin", 0.1, 0.0, 2.0)
+    how = options.chosen(*PANEL.choices)
     try:
-        chosen = candidates_for(design, more_friction(design, 1.0 + margin))
+        chosen = candidates_for(design, more_friction(design, 1.0 + how["margin"]))
         count = len(chosen)
         watched = [_watched(each, work, i / (count + 1)) for i, each in enumerate(chosen)]
-        table = silence(design, None, watched, margin, samples=int(options.number("samples", SAMPLES, 16, 1e5)))
+        table = silence(design, None, watched, **how)
     except (ParameterError, ValueError) as error:
         raise OptionError(f"no cures are known for this brake: {error}") from error
     data = {
-        "margin": margin,
+        "margin": how["margin"],
         "growth": finite(table.growth_before),
         "probability": table.before,
         "amplitude": finite(table.amplitude_before),

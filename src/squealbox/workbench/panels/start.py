@@ -7,18 +7,14 @@ import numpy as np
 from squealbox.designs import Design
 from squealbox.stability import complex_modes
 from squealbox.system import equilibrium
+from squealbox.workbench.panels.declared import START
 from squealbox.workbench.panels.panel import Options
-
-STARTS = ("push", "rest", "sliding")
-PUSH = 0.05  # of the static deflection
-LARGEST_PUSH = 10.0
 
 
 def start_and_dof(design: Design, options: Options) -> tuple[Any, int]:
     """The start as `simulate` takes it, and the degree of freedom."""
-    start, dof = options.word("start", STARTS), options.dof(design)
-    push = options.number("push", PUSH, 0.0, LARGEST_PUSH)
-    return pushed(design, push) if start == "push" else start, dof
+    how, dof = options.chosen(*START), options.dof(design)
+    return pushed(design, how["push"]) if how["start"] == "push" else how["start"], dof
 
 
 def pushed(design: Design, push: float) -> Any:

@@ -15,15 +15,13 @@ PANEL = Panel(
     choices=(number("friction", "friction", 0.45, 0.01, 5.0, 0.01), number("for %", "share", 95.0, 1.0, 99.9, 0.1)),
 )  # fmt: skip
 
-FRICTION, SHARE = 0.45, 95.0
 POINTS = 241  # of the figure
 TELLING = 0.05  # of the variance: less matters to nobody
 
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """Share of the lot [%] that is stable up to each friction, how far that is from the target, and words for it."""
-    friction = options.number("friction", FRICTION, 0.01, 5.0)
-    share = options.number("share", SHARE, 1.0, 99.9)
+    friction, share = options.chosen(*PANEL.choices).values()
     top = max(1.0, 1.3 * friction)
     try:
         lot = lot_of(design, top, say=lambda part: work.progress(part, "trying the lot"))

@@ -8,7 +8,7 @@ from squealbox.cautions import pulled, pulling
 from squealbox.designs import Design
 from squealbox.stability import mechanism, sentences
 from squealbox.system import equilibrium
-from squealbox.workbench.panels.declared import Panel
+from squealbox.workbench.panels.declared import OVER, Panel
 from squealbox.workbench.panels.modes import crossings_of, modes_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, try_value
 
@@ -17,8 +17,7 @@ PANEL = Panel("Verdict")
 
 def answer(design: Design, options: Options, work: Work) -> Answer:
     """Headline, reasons and caveats; critical values of the chosen parameter and the margin to the nearest."""
-    parameter = options.parameter("parameter", design, "friction.static")
-    ends = options.span("span", design, parameter)
+    parameter, ends = options.over(design, OVER)
     axis, value, modes = options.axis(design, parameter, ends), try_value(design, parameter), modes_of(design)
     exists = bool(modes.exists)
     why = mechanism(design) if exists and not bool(modes.stable) else None

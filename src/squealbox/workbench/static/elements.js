@@ -53,12 +53,12 @@ export function spot(node, event) {
 export const button = (text, onclick, about = {}) => make("button", { type: "button", onclick, ...about }, text);
 
 /** A select with its label; `choices` are [value, text] pairs. */
-export function choose(text, choices, value, onchange) {
+export function choose(text, choices, value, onchange, title) {
   const select = make("select", { "aria-label": text });
   for (const [each, name] of choices) select.append(make("option", { value: each, selected: each === value }, name));
   select.value = value;
   select.addEventListener("change", () => onchange(select.value));
-  return make("label", { class: "choice" }, `${text} `, select);
+  return make("label", { class: "choice", title }, `${text} `, select);
 }
 
 /** A table: the words of its head, and rows whose first cell names them; a cell is a text, an element, or [text, class]. */

@@ -128,15 +128,15 @@ export class Panel {
   }
 
   /** A select among words, kept as option `name`. */
-  words({ text, name, options, usual, numbers }) {
-    this.controls.append(choose(text, options, String(this.chosen[name] ?? usual), (value) => this.choose({ [name]: numbers ? Number(value) : value })));
+  words({ text, name, options, usual, numbers, meaning }) {
+    this.controls.append(choose(text, options, String(this.chosen[name] ?? usual), (value) => this.choose({ [name]: numbers ? Number(value) : value }), meaning));
   }
 
   /** A number to be typed, kept as option `name`. */
-  number({ text, name, usual, low, high, step }) {
+  number({ text, name, usual, low, high, step, meaning }) {
     const input = make("input", { type: "number", class: "end", "aria-label": `${this.name}: ${name}`, min: low, max: high, step, value: this.chosen[name] ?? usual });
     input.addEventListener("change", () => input.value && input.checkValidity() && this.choose({ [name]: input.valueAsNumber }));
-    this.controls.append(make("label", { class: "choice" }, `${text} `, input));
+    this.controls.append(make("label", { class: "choice", title: meaning }, `${text} `, input));
   }
 
   /** A select over the degrees of freedom of what was drawn. */

@@ -1,7 +1,6 @@
 // The design fitted to an event of the recording, and the fitted values taken over.
 
 import { Asked } from "../asked.js";
-import { asked } from "./recording.js";
 
 export default {
   setup(panel) {
@@ -15,7 +14,7 @@ export default {
     const recording = panel.app.panels.get("recording");
     if (!panel.asked.current || !recording?.id) return null;
     const parameters = panel.about.choices.filter((each) => each.kind === "over").map(({ name, usual }) => panel.parameter(name, ...usual));
-    return { ...asked(recording), event: recording.frame?.data.event ?? 0, parameters: [...new Set(parameters)] };
+    return { ...recording.request().options, event: recording.frame?.data.event ?? 0, parameters: [...new Set(parameters)] };
   },
 
   draw(panel, { data }) {

@@ -1,14 +1,13 @@
 // A recording of the brake: dropped onto the page, kept on this machine; its events, beside what the model says.
 
-import { button, choose, make, note, table } from "../elements.js";
+import { button, make, note, table } from "../elements.js";
 import { shown, withUnit } from "../numbers.js";
 import { sound } from "../sound.js";
 
 export default {
   setup(panel) {
     panel.file = make("input", { type: "file", accept: ".wav,.flac,.ogg,.csv,.npy,.uff,.unv", "aria-label": "Recording", onchange: () => panel.take(panel.file.files[0]) });
-    panel.scale = make("input", { type: "text", size: 6, value: panel.chosen.full_scale ?? 1, "aria-label": "One is worth", onchange: () => panel.choose({ full_scale: Number(panel.scale.value.replace(",", ".")) }) });
-    panel.controls.append(panel.file, choose("unit", [["FS", "not calibrated"], ["Pa", "Pa"], ["g", "g"], ["m/s^2", "m/s²"]], panel.chosen.unit ?? "FS", (unit) => panel.choose({ unit })), make("label", {}, "1 is worth ", panel.scale));
+    panel.controls.prepend(panel.file);
     panel.keys = [panel.button("Hear the recording", () => hear(panel), { disabled: true }), panel.button("Hear the model", () => model(panel), { disabled: true })];
     panel.events = make("div", {}, make("p", { class: "quiet" }, "Here stand the squeal events: onset, frequency, level, growth; and the model beside the one you choose."));
     panel.list.prepend(panel.events);
@@ -18,7 +17,7 @@ export default {
     panel.element.dataset.state = "idle";
   },
 
-  options: (panel) => (panel.id ? asked(panel) : null),
+  options: ({ id, chosen }) => (id ? { id, event: chosen.event } : null),
 
   draw(panel, { data }) {
     panel.list.prepend(events(panel, data));
@@ -26,11 +25,6 @@ export default {
     const { frequency, growth_rate } = data.events[data.event] ?? {};
     panel.app.hearing(data.events.length ? { frequency, "growth rate": growth_rate ?? undefined } : {});
   },
-};
-
-export const asked = (panel) => {
-  const { unit, full_scale, event } = panel.chosen;
-  return { id: panel.id, unit, full_scale, event };
 };
 
 async function take(panel, file) {

@@ -1,7 +1,7 @@
 // The cures, the best first: a click applies one, another takes it back, and one key plays before and after.
 
 import { Asked } from "../asked.js";
-import { button, choose, make, note, table } from "../elements.js";
+import { button, make, note, table } from "../elements.js";
 import { shown, withUnit } from "../numbers.js";
 import { fullScale, sound } from "../sound.js";
 import { same } from "../store.js";
@@ -16,7 +16,6 @@ export default {
     panel.applied = null; // { row, design } on the page now
     panel.heard = new Map();
     panel.asked = new Asked(panel, "Press Find cures; it takes some seconds.", () => of(panel));
-    panel.controls.append(choose("quiet up to", [["0.05", "5 % more friction"], ["0.1", "10 % more friction"], ["0.2", "20 % more friction"], ["0.4", "40 % more friction"]], String(panel.chosen.margin ?? 0.1), (margin) => panel.choose({ margin: Number(margin) })));
     panel.keys = {
       find: button("Find cures", () => panel.asked.ask()),
       back: button("Take it back", () => apply(panel, null), { disabled: true }),
@@ -32,7 +31,7 @@ export default {
     });
   },
 
-  options: (panel) => (panel.asked.current ? { margin: panel.chosen.margin ?? 0.1 } : null),
+  options: (panel) => (panel.asked.current ? {} : null),
 
   state: (panel) => of(panel),
 
