@@ -58,25 +58,17 @@ FEW = 12  # coefficients that are copied one by one
 FROM_THE_MARCH = ("pulled", "chatters", "write_row")
 OF_EVERY_KERNEL = ("tracing.py", "rough.py")
 WRITERS = (*OF_EVERY_KERNEL, "series.py", "tables.py", "taylor.py", "taylor_events.py")
-PLACES = {
-    "ROW_ALL": "", "ROW_JOB": "job", "ROW_ALIVE": "alive", "ROW_T": "t", "ROW_H": "h", "ROW_T_END": "t_end",
-    "ROW_TRIES": "tries", "ROW_TAKEN": "taken", "ROW_CAUTIOUS": "cautious", "ROW_CODE": "code", "ROW_MOST": "most",
-    "ROW_Q": "q0", "ROW_V": "v0", "ROW_ACCELERATION": "a0", "ROW_START": "start0", "ROW_FIRST": "first",
-    "ROW_RTOL": "rtol", "ROW_WINDOW": "window", "ROW_BREAKS": "break0", "ROW_TARGET": "target", "ROW_TOLERANCE": "tolerance",
-    "ROW_TRUST": "trust", "ROW_RESUME": "resume", "ROW_EVENTS": "events", "ROW_WINDOW_START": "window_start",
-    "ROW_WINDOW_EVENTS": "window_events", "ROW_TURNS": "turns", "ROW_LOW": "low", "ROW_LOW_PHI": "low_phi",
-    "ROW_HIGH": "high", "ROW_HIGH_PHI": "high_phi", "ROW_HIGH_RATE": "high_rate", "ROW_PROBE": "probe0_0",
-    "ROW_SLIPS": "s0", "ROW_OPENED": "open0", "ROW_HOLD": "h0_0", "ROW_PHI": "phi0", "ROW_FRESH": "fresh0",
-    "ROW_END": "end0", "ROW_RATE": "rate0", "ROW_RATE_END": "rate_end0", "ROW_INNER": "inner0", "ROW_FORCE":
-    "force0", "ROW_ZERO": "zero0", "ROW_OWN_G": "own_g0", "ROW_NEXT_SAMPLE": "next", "ROW_SAMPLE": "sample",
-    "ROW_HIGHEST": "highest", "ROW_CLOSE": "close", "ROW_PACE": "pace", "ROW_EARLY": "early0",
-    "ROW_EARLY_RATE": "early_rate0", "ROW_T_OLD": "t_old", "ROW_Q_OLD": "q_old0", "ROW_TERM": "term0_0",
-    "ROW_SPAN": "span", "ROW_FASTEST": "fastest0", "ROW_SINCE": "since", "ROW_VALUE": "value0",
-    "ROW_SLOPE": "slope_value0",
-    "ROW_NOISE": "noise0", "ROW_LOWEST": "lowest0", "ROW_REVERSALS": "reversals", "ROW_FLIPS": "flips",
-    "ROW_EASED": "eased", "ROW_V_OLD": "v_old0", "ROW_WAS": "was0", "ROW_DONE": "done0",
-    "ROW_NORMAL_END": "normal_end0", "ROW_SPEED_END": "speed_end0", "ROW_FRICTION_END": "friction_end0",
+ROWS = (  # of a lane, by the names that kernels have for them
+    "job alive t h t_end tries taken cautious code most first rtol window target tolerance trust resume events "
+    "window_start window_events turns low low_phi high high_phi high_rate sample highest close pace t_old span "
+    "since reversals flips eased q v start phi fresh end rate rate_end inner force zero own_g early early_rate "
+    "q_old fastest value noise lowest v_old was done normal_end speed_end friction_end"
+)
+OTHERWISE = {
+    "all": "", "acceleration": "a0", "breaks": "break0", "probe": "probe0_0", "slips": "s0", "opened": "open0",
+    "hold": "h0_0", "next_sample": "next", "term": "term0_0", "slope": "slope_value0",
 }  # fmt: skip
+PLACES = {f"ROW_{name.upper()}": OTHERWISE.get(name, name) for name in (*ROWS.split(), *OTHERWISE)}
 
 
 COUNTS = (
@@ -162,7 +154,9 @@ def source(shape: Shape) -> str:
         shape.n, shape.m, shape.functions, len(parameter_rows(shape)), len(rows), shape.breaks, len(shape.followed),
         first, len(rows) - first if first else 0,
     )  # fmt: skip
-    places = {name: rows.places.get(row, 0) for name, row in PLACES.items()} | dict(zip(COUNTS, counts, strict=True))
+    places = {name: rows.places.get(row, rows.places.get(f"{row}0", 0)) for name, row in PLACES.items()} | dict(
+        zip(COUNTS, counts, strict=True)
+    )
     if shape.recorded and shape.taylor:
         places["ROW_TERM"] = rows.places[f"term0_{shape.followed[0]}"]
     head = HEAD.format(
