@@ -9,10 +9,10 @@ from collections.abc import Iterator, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
-from scipy import sparse
+import scipy
 
 from squealbox.friction import FrictionLaw
-from squealbox.matrices import InvalidSystem, array
+from squealbox.matrices import InvalidSystem, array, is_sparse
 from squealbox.parameters import DataSheet
 from squealbox.schedules import Schedule, value_at
 
@@ -236,9 +236,7 @@ class Contacts(DataSheet):
         return tuple(self._contact(i, rows) for i in range(len(self)))
 
     def _contact(self, i: int, rows: dict[str, Any]) -> Contact:
-        row: dict[str, Any] = {
-            f: None if r is None else r[[i]] if sparse.issparse(r) else r[i] for f, r in rows.items()
-        }
+        row: dict[str, Any] = {f: None if r is None else r[[i]] if is_sparse(r) else r[i] for f, r in rows.items()}
         if not self.unilateral[i]:
             row["normal"] = None
         about: dict[str, Any] = {"name": self.names[i], "unilateral": bool(self.unilateral[i]), "law": self.law_of(i)}
@@ -273,9 +271,9 @@ class Contacts(DataSheet):
 
 def _stacked(rows: Sequence[Any], size: int) -> Any:
     """Rows, dense, sparse or missing, as one sparse table."""
-    empty = sparse.csr_array((1, size))
-    parts = [empty if row is None else sparse.csr_array(row.reshape((1, -1))) for row in rows]
-    return sparse.vstack(parts, format="csr") if parts else sparse.csr_array((0, size))
+    empty = scipy.sparse.csr_array((1, size))
+    parts = [empty if row is None else scipy.sparse.csr_array(row.reshape((1, -1))) for row in rows]
+    return scipy.sparse.vstack(parts, format="csr") if parts else scipy.sparse.csr_array((0, size))
 
 
 def _each(name: str, values: Any, count: int) -> Any:
@@ -294,18 +292,18 @@ def _each(name: str, values: Any, count: int) -> Any:
 
 def _rows(name: str, rows: Any) -> Any:
     """A table of rows in compressed sparse rows, whose values are real and finite."""
-    if sparse.issparse(rows):
-        return _finite(name, rows if isinstance(rows, sparse.csr_array) else sparse.csr_array(rows))
+    if is_sparse(rows):
+        return _finite(name, rows if isinstance(rows, scipy.sparse.csr_array) else scipy.sparse.csr_array(rows))
     table = array(name, rows, 2)
     if table.ndim != 2:
         raise InvalidSystem(f"{name} has shape {table.shape}: expected (contacts, n)")
-    return sparse.csr_array(table)
+    return scipy.sparse.csr_array(table)
 
 
 def _row(name: str, row: Any) -> Any:
-    if not sparse.issparse(row):
+    if not is_sparse(row):
         return array(name, row, 1)
-    kept = sparse.csr_array(row.reshape((1, -1)) if row.ndim == 1 else row)
+    kept = scipy.sparse.csr_array(row.reshape((1, -1)) if row.ndim == 1 else row)
     if kept.shape[0] != 1:
         raise InvalidSystem(f"{name} has shape {kept.shape}: expected one sparse row, (1, n)")
     return _finite(name, kept)
@@ -314,18 +312,18 @@ def _row(name: str, row: Any) -> Any:
 def dense_rows(contact: Contact) -> Contact:
     """The contact with its sparse rows, if it has any, made dense."""
     rows = {field: getattr(contact, field) for field in ROWS}
-    rows = {field: row.toarray()[0] for field, row in rows.items() if sparse.issparse(row)}
+    rows = {field: row.toarray()[0] for field, row in rows.items() if is_sparse(row)}
     return contact.replace(rows) if rows else contact
 
 
 def sparse_matrix(name: str, matrix: Any, ndim: int = 2) -> Any:
     """A matrix in compressed sparse rows, finite and real, or `InvalidSystem`."""
-    if sparse.issparse(matrix):
-        return _finite(name, matrix if isinstance(matrix, sparse.csr_array) else sparse.csr_array(matrix))
+    if is_sparse(matrix):
+        return _finite(name, matrix if isinstance(matrix, scipy.sparse.csr_array) else scipy.sparse.csr_array(matrix))
     found = array(name, matrix, ndim)
     if found.ndim != 2:
         raise InvalidSystem(f"{name} has shape {found.shape}: beside sparse matrices expected one matrix, (n, n)")
-    return sparse.csr_array(found)
+    return scipy.sparse.csr_array(found)
 
 
 def _finite(name: str, table: Any) -> Any:

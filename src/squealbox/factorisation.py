@@ -10,9 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse import csgraph
-from scipy.sparse.linalg import splu
+import scipy
 
 Library = Literal["auto", "superlu", "rslab"]
 LIBRARIES = ("auto", "superlu", "rslab")
@@ -105,7 +103,7 @@ class Factor:
     def _signs(self) -> tuple[int, int, int]:
         lu = self._superlu()
         if not np.array_equal(lu.perm_r, lu.perm_c):  # rows were exchanged: the pivots are not those of L D L'
-            lu = splu(self._matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+            lu = _decomposed(self._matrix, 0.0)
             _check(lu.solve, self._matrix)
         if not np.array_equal(lu.perm_r, lu.perm_c):
             raise SingularMatrix("inertia: a pivot on the diagonal is zero; shift the matrix, or install rslab")
@@ -192,7 +190,9 @@ def factor(
     if library not in LIBRARIES:
         raise ValueError(f"library = {library!r}: expected one of {', '.join(LIBRARIES)}")
     mirrored = symmetric and getattr(A, "format", "") == "csr" and A.has_canonical_format  # its rows are its columns
-    matrix = sparse.csc_array((A.data, A.indices, A.indptr), shape=A.shape) if mirrored else sparse.csc_array(A)
+    matrix = (
+        scipy.sparse.csc_array((A.data, A.indices, A.indptr), shape=A.shape) if mirrored else scipy.sparse.csc_array(A)
+    )
     matrix.sort_indices()
     matrix.sum_duplicates()
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
@@ -226,15 +226,15 @@ def _placed(matrix: Any, pattern: Any) -> Any:
         return None
     data = np.zeros(pattern.nnz, dtype=matrix.dtype)
     data[where] = matrix.data
-    return sparse.csc_array((data, pattern.indices, pattern.indptr), shape=pattern.shape)
+    return scipy.sparse.csc_array((data, pattern.indices, pattern.indptr), shape=pattern.shape)
 
 
 def is_symmetric(matrix: Any) -> bool:
     """True where A = A' to round-off."""
-    matrix = sparse.csc_array(matrix)
+    matrix = scipy.sparse.csc_array(matrix)
     if matrix.shape[0] != matrix.shape[1]:
         return False
-    mirrored, largest = sparse.csc_array(matrix.T), np.max(np.abs(matrix.data), initial=0.0)
+    mirrored, largest = scipy.sparse.csc_array(matrix.T), np.max(np.abs(matrix.data), initial=0.0)
     if matrix.has_canonical_format and all(
         np.array_equal(getattr(matrix, part), getattr(mirrored, part)) for part in ("indptr", "indices")
     ):
@@ -244,11 +244,16 @@ def is_symmetric(matrix: Any) -> bool:
     return bool(np.max(np.abs(differences), initial=0.0) <= SYMMETRIC * largest)
 
 
+def _decomposed(matrix: Any, threshold: float) -> Any:
+    options = {"SymmetricMode": True}
+    return scipy.sparse.linalg.splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=threshold, options=options)
+
+
 def _superlu(matrix: Any, symmetric: bool) -> Any:
     """SuperLU in its mode for matrices with (nearly) symmetric pattern, which keeps to the diagonal where it can."""
     threshold = 1e-3 if symmetric else 1e-2
     try:
-        lu = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=threshold, options={"SymmetricMode": True})
+        lu = _decomposed(matrix, threshold)
     except RuntimeError as error:
         raise SingularMatrix(f"the matrix of {matrix.shape[0]} rows is singular: {error}") from error
     _check(lu.solve, matrix)
@@ -270,6 +275,6 @@ def _check(solve: Any, matrix: Any) -> None:
 def _parity(permutation: Any) -> int:
     """0 for an even permutation, 1 for an odd one: rows less cycles."""
     size = len(permutation)
-    graph = sparse.csr_array((np.ones(size), (np.arange(size), permutation)), shape=(size, size))
-    cycles = csgraph.connected_components(graph, directed=False, return_labels=False)
+    graph = scipy.sparse.csr_array((np.ones(size), (np.arange(size), permutation)), shape=(size, size))
+    cycles = scipy.sparse.csgraph.connected_components(graph, directed=False, return_labels=False)
     return int(size - cycles) % 2

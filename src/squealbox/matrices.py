@@ -1,5 +1,6 @@
 """The arrays of a system: what is wrong with one, steady sliding, and sums over contacts as products of matrices."""
 
+import sys
 from collections import Counter
 from dataclasses import dataclass
 from typing import Any
@@ -14,6 +15,12 @@ SYMMETRIC = 1e-8  # of the largest entry: differences beyond it are no round-off
 
 class InvalidSystem(ValueError):
     """Matrices, vectors or contacts do not make a system; the message names array, shape and what was expected."""
+
+
+def is_sparse(value: Any) -> bool:
+    """Whether it is a sparse array of SciPy: nothing is while those are not loaded, which takes a quarter second."""
+    loaded = sys.modules.get("scipy.sparse")
+    return loaded is not None and bool(loaded.issparse(value))
 
 
 def runs_of_true(inside: Any) -> list[tuple[int, int]]:

@@ -13,7 +13,7 @@ Where this does not settle, the matrix of the step is factored itself.
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy import sparse
+import scipy
 
 from squealbox.contacts import Contacts
 from squealbox.factorisation import Factor, SingularMatrix, factor
@@ -183,7 +183,7 @@ def linearised(damping: Any, stiffness: Any, contacts: Contacts, state: Any) -> 
     found = damping + damping_along(contacts, pressing * slope)
     found = found + damping_across(contacts, pressing * state.friction / np.abs(state.sliding_speed))
     coupling = state.friction * np.sign(state.sliding_speed)
-    return sparse.csr_array(found), stiffness_of(stiffness, contacts, coupling, closed)
+    return scipy.sparse.csr_array(found), stiffness_of(stiffness, contacts, coupling, closed)
 
 
 def stiffness_of(stiffness: Any, contacts: Contacts, coupling: Any, closed: Any) -> Any:
@@ -193,20 +193,20 @@ def stiffness_of(stiffness: Any, contacts: Contacts, coupling: Any, closed: Any)
         found = found - contacts.d.T @ _scaled(contacts.n, sliding)
     if contacts.normal is not None and not np.all(closed):
         found = found - contacts.normal.T @ _scaled(contacts.n, np.where(closed, 0.0, 1.0))
-    return sparse.csr_array(found)
+    return scipy.sparse.csr_array(found)
 
 
 def damping_along(contacts: Contacts, weight: Any) -> Any:
     """D' diag(N mu'(V)) T: what a slope of friction adds to the damping."""
-    return sparse.csr_array(contacts.d.T @ _scaled(contacts.t, weight))
+    return scipy.sparse.csr_array(contacts.d.T @ _scaled(contacts.t, weight))
 
 
 def damping_across(contacts: Contacts, weight: Any) -> Any:
     """A' diag(mu N / |V|) A: what friction that turns with the relative velocity adds to the damping."""
     if contacts.across is None:
-        return sparse.csr_array((contacts.n.shape[1],) * 2)
-    return sparse.csr_array(contacts.across.T @ _scaled(contacts.across, weight))
+        return scipy.sparse.csr_array((contacts.n.shape[1],) * 2)
+    return scipy.sparse.csr_array(contacts.across.T @ _scaled(contacts.across, weight))
 
 
 def _scaled(rows: Any, factors: Any) -> Any:
-    return sparse.diags_array(factors) @ rows
+    return scipy.sparse.diags_array(factors) @ rows

@@ -20,7 +20,7 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from scipy import sparse
+import scipy
 
 from squealbox import sampled_sliding, sparse_sliding
 from squealbox.arguments import design
@@ -37,6 +37,7 @@ from squealbox.matrices import (
     checked_names,
     coupled,
     felt,
+    is_sparse,
 )
 from squealbox.memory_rows import no_memory, remembering, with_memory
 from squealbox.parameters import DataSheet, shown
@@ -93,7 +94,7 @@ class System(DataSheet):
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
-        any_sparse = any(sparse.issparse(getattr(self, field)) for field in ("M", "C", "K"))
+        any_sparse = any(is_sparse(getattr(self, field)) for field in ("M", "C", "K"))
         for field in ("M", "C", "K"):
             set_(self, field, (sparse_matrix if any_sparse else array)(field, getattr(self, field), 2))
         size = self.M.shape[-1]
@@ -353,7 +354,7 @@ def _sparse_linearised(system: System, state: Equilibrium) -> tuple[Any, Any]:
     table: Contacts = system.contacts
     no_memory(table, "a sparse system")
     if not state.exists:
-        nothing = sparse.diags_array(np.full(system.size, np.nan), format="csr")
+        nothing = scipy.sparse.diags_array(np.full(system.size, np.nan), format="csr")
         return nothing, nothing
     return sparse_sliding.linearised(system.C, system.K, table, state)
 
