@@ -153,7 +153,7 @@ CASES = {
     "simulate_ensemble": values(lambda d, v: simulate_ensemble(d, v, duration=1e-3), None, lambda f: f["amplitude"]),
     "sweep": values(lambda d, v: sweep(d, v, complex_modes), None, lambda f: f["largest_growth_rate"].values),
     "squeal_probability": scattered(lambda d, v: squeal_probability(d, v, GROWTH, samples=64), lambda f: f.probability),
-    "form": scattered(lambda d, v: form(d, v, margin(MU, (0.0, 1.0), points=9), samples=64), lambda f: f.beta),
+    "form": scattered(lambda d, v: form(d, v, GROWTH, samples=16), lambda f: f.normal_point),
     "subset_simulation": scattered(lambda d, v: subset_simulation(d, v, GROWTH, samples=100), lambda f: f.probability),
     "sobol_indices": scattered(lambda d, v: sobol_indices(d, v, GROWTH, samples=64), lambda f: f.first),
     "morris_effects": scattered(lambda d, v: morris_effects(d, v, GROWTH, trajectories=5), lambda f: f.strength),

@@ -61,7 +61,7 @@ def test_a_mass_on_a_node_is_that_in_the_matrices(disc):
 
 def test_cures_are_the_brakes_their_lines_make(disc):
     _, small = disc
-    found = silence(small, samples=8)
+    found = silence(small, samples=2)  # of the lot nothing is asked here
     assert {"linings", "backplates", "disc"} <= {name.split()[0] for name in found.name}
     assert any(name.startswith("mass on node") for name in found.name)
     assert np.all(found.growth_at_margin <= found.growth_before + 1e3)
@@ -73,7 +73,7 @@ def test_cures_are_the_brakes_their_lines_make(disc):
 
 
 def test_a_drum_of_finite_elements_has_cures_too():
-    found = silence(reduce(MeshedDrumBrake(element_size=0.03), (500.0, 4000.0)), samples=4)
+    found = silence(reduce(MeshedDrumBrake(element_size=0.03), (500.0, 4000.0)), samples=2)
     assert "tables" in " ".join(found.name)
 
 

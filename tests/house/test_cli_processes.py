@@ -66,9 +66,9 @@ def test_an_example_runs(path, capsys):
     found = read_file(path, allow_code=True)
     allowed = ["--allow-code"] if path.stem == "own_law" else []
     assert main(["modes", str(path), *allowed]) == 0
-    for section in ("onset", "map"):
+    for section, coarse in (("onset", []), ("map", ["--points", "21"])):  # the file's own: in test_cli_commands
         if getattr(found, section) is not None:
-            assert main([section, str(path), *allowed]) == 0
+            assert main([section, str(path), *allowed, *coarse]) == 0
     assert capsys.readouterr().err == ""
 
 

@@ -2,6 +2,7 @@
 
 import importlib
 import inspect
+import json
 import subprocess
 import sys
 import typing
@@ -109,23 +110,40 @@ WITHOUT = {  # words of a command, what is not installed, and the extra that bri
     "surrogate": (["scatter", EXAMPLES / "scatter.toml", "--study", "surrogate"], "openturns", "studies"),
     "disc brake": (["modes", "disc.toml"], "skfem", "fe"),
     "lab": (["lab", "--no-browser"], "uvicorn", "workbench"),
-    "quality": (["quality", "stop.wav", "--full-scale", "20"], "mosqito", "sound"),
     "recording": (["events", "stop.wav"], "soundfile", "recordings"),
+    "quality": (["quality", "stop.wav", "--full-scale", "20"], "mosqito", "sound"),
 }
 
 
+ASK = """
+import contextlib, io, json, sys
+from squealbox.cli import main
+
+told = {}
+for case, (words, library, _) in json.loads(sys.argv[1]).items():
+    sys.modules[library] = None
+    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
+        told[case] = main(words), out, err
+    del sys.modules[library]
+print(json.dumps({case: (code, out.getvalue(), err.getvalue()) for case, (code, out, err) in told.items()}))
+"""
+
+
+@pytest.fixture(scope="module")
+def without(tmp_path_factory):
+    """Exit code, output and errors of each case, of a process in which no other test has imported what is missing."""
+    folder = tmp_path_factory.mktemp("without")
+    (folder / "disc.toml").write_text(DISC)
+    scipy.io.wavfile.write(folder / "stop.wav", 8000, (1e4 * np.sin(np.arange(4000.0))).astype(np.int16))
+    words = [sys.executable, "-c", ASK, json.dumps(WITHOUT, default=str)]
+    return json.loads(subprocess.run(words, capture_output=True, text=True, cwd=folder, timeout=900, check=True).stdout)
+
+
 @pytest.mark.parametrize("case", WITHOUT)
-def test_a_missing_extra_is_one_sentence_with_its_command(tmp_path, case):
+def test_a_missing_extra_is_one_sentence_with_its_command(without, case):
     """It was told as a mistake inside the program, and the workbench printed its address before it failed."""
-    words, library, extra = WITHOUT[case]
-    (tmp_path / "disc.toml").write_text(DISC)
-    scipy.io.wavfile.write(tmp_path / "stop.wav", 8000, (1e4 * np.sin(np.arange(4000.0))).astype(np.int16))
-    block = f"import sys; sys.modules[{library!r}] = None; from squealbox.cli import main; "  # in a process of its own,
-    run = f"sys.exit(main({[str(word) for word in words]!r}))"  # where no other test has imported it before
-    done = subprocess.run(
-        [sys.executable, "-c", block + run], capture_output=True, text=True, cwd=tmp_path, timeout=900
-    )
-    code, out, err = done.returncode, done.stdout, done.stderr
+    _, library, extra = WITHOUT[case]
+    code, out, err = without[case]
     assert code == 2
     assert err.count("\n") == 1
     assert "an error inside" not in err

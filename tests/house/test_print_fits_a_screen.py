@@ -19,7 +19,6 @@ from squealbox import (
     tracked_modes,
 )
 from squealbox.designs import DESIGNS
-from squealbox.limit_cycles import coexistence
 from squealbox.result import Result
 
 LINES, WIDTH = 30, 120  # of a terminal on a laptop
@@ -140,8 +139,8 @@ def test_a_table_has_a_row_an_instant_and_a_column_a_freedom():
 
 
 def test_a_result_within_a_result_is_saved(tmp_path):
-    brake, area = DrumBrake(), {"friction.static": (0.1, 0.4), "load": (900.0, 1100.0)}
-    region = coexistence(brake, area, columns=4, rows=2, starts=4)
+    region = EXAMPLES["Coexistence"]()
+    assert len(region.hopf.x) > 1
     again = Result.load(region.save(tmp_path / "region.nc"))
     assert type(again) is type(region)
     assert type(again.hopf) is type(region.hopf)

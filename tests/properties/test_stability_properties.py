@@ -91,6 +91,18 @@ def test_zero_mass_has_its_first_order_mode_and_spares_its_neighbours() -> None:
     assert list(modes.stable) == [True, True]
 
 
+def test_a_force_through_a_row_without_mass_is_faster_than_any_spring() -> None:
+    """det = L^2 (m^2 L^2 + m + 500), L = lambda: a pair at 22 million rad/s, M and K alone make 1000 rad/s expected."""
+    m = 1e-6
+    damping, stiffness = np.zeros((3, 3)), np.diag([0.0, 1.0, 1.0])
+    damping[0, 1], damping[2, 0], stiffness[1, 2] = 250.0, 2.0, 1.0
+    values = complex_modes(System(M=np.diag([m, m, 0.0]), C=damping, K=stiffness)).eigenvalues
+    fast = np.sqrt(m + 500.0) / m
+    found = np.sort(values[np.isfinite(values)].imag)
+    assert found == pytest.approx(np.array([-fast, 0.0, 0.0, fast]), rel=1e-12)
+    assert np.nanmax(np.abs(values.real)) < 1e-12 * fast
+
+
 def test_a_defective_pair_is_right_and_marked() -> None:
     modes = complex_modes(System(M=np.eye(2), C=np.zeros((2, 2)), K=[[2.0, 0.0], [1.0, 2.0]]))
     assert modes.outcome.ok

@@ -191,8 +191,12 @@ def test_effects_of_a_linear_and_of_a_curved_quantity():
 
 def test_range_over_a_box():
     """The onset [k12 + (k11 - k22)^2/(4 k12)]/k3 is least inside the box, at k11 = k22, and largest in a corner."""
-    onset = quantities.critical_value("friction.static", (0.0, 10.0), limit=0.4, points=21)
-    found = interval_bounds(ModeCoupling(k12=0.4), {"k11": (1.5, 2.8), "k3": (0.8, 1.25)}, onset, runs=2)
+    design = ModeCoupling(k12=0.4)
+    ask = Quantity(lambda at: onset({"k11": at.k11, "k22": at.k22, "k3": at.k3}), "onset", limit=0.4, squeals="below")
+    found = interval_bounds(design, {"k11": (1.5, 2.8), "k3": (0.8, 1.25)}, ask, runs=2)
+    by_eigenvalues = quantities.critical_value("friction.static", (0.0, 10.0), limit=0.4)
+    ends = design.replace(dict(zip(("k11", "k3"), np.transpose([found.low_at, found.high_at]), strict=True)))
+    assert by_eigenvalues(ends) == pytest.approx([float(found.low), float(found.high)], rel=1e-9)
     assert float(found.low) == pytest.approx(0.4 / 1.25, rel=1e-6)
     assert float(found.high) == pytest.approx((0.4 + 0.8**2 / 1.6) / 0.8, rel=1e-9)
     assert found.low_at == pytest.approx([2.0, 1.25], abs=1e-2)

@@ -139,7 +139,7 @@ def test_a_worn_brake_reduces_over_friction_and_a_wide_range_of_depth_is_refused
 
 def test_from_a_file(tmp_path):
     path = tmp_path / "disc.toml"
-    path.write_text('brake = "disc_brake"\nrunning_in = "20 um"\npiston_offset = "2 mm"\n')
+    path.write_text('brake = "disc_brake"\nelement_size = "50 mm"\nrunning_in = "20 um"\npiston_offset = "2 mm"\n')
     brake = read_design(path)
     assert (brake.running_in, brake.piston_offset) == (pytest.approx(2e-5), pytest.approx(2e-3))
     with pytest.raises(ParameterError, match="running_in"):

@@ -18,6 +18,7 @@ from squealbox.stability.massless import reduced
 from squealbox.stability.ordering import halves, spectrum_order
 
 SLOW = 1e-6  # share of the largest |lambda| below which a mode counts as slow: a body that is only just held
+LARGEST = 1e9  # entry of A, with time in units of the typical frequency, above which time is scaled anew
 ZERO = 1e-12  # singular values below this share of 1 (all matrices are scaled to 1) count as zero
 
 
@@ -27,15 +28,16 @@ def special_modes(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, Any, An
     The first n hold Im >= 0, as in `ComplexModes`. None where every number is an eigenvalue.
     """
     size = len(mass)
-    level, rate = _levels(mass, damping, stiffness)
-    m, c, k = (level[:, None] * part * level for part in (rate**2 * mass, rate * damping, stiffness))
-    zero, one = np.zeros(m.shape), np.eye(size)
-    found = reduced(np.block([[one, zero], [zero, m]]), np.block([[zero, one], [-k, -c]]))
+    rate = _rate(mass, damping, stiffness)
+    found = _states(mass, damping, stiffness, rate)
+    if found is not None and (faster := _missed(found[-1])) > 1.0:
+        rate *= faster
+        found = _states(mass, damping, stiffness, rate)
     if found is None:
         return None
-    left, right, embedding = found
+    level, (m, c, k), embedding, matrix = found
     empty = np.zeros(0, complex), np.zeros((0, 0))
-    values, states = _eigen(np.linalg.solve(left, right), _held(stiffness)) if len(left) else empty
+    values, states = _eigen(matrix, _held(stiffness)) if len(matrix) else empty
     states = embedding @ states
     shapes = np.where(np.max(np.abs(states[:size]), axis=0, initial=0.0) > ZERO, states[:size], states[size:])
     lefts, condition = _lefts(m, c, k, values, shapes)
@@ -64,18 +66,50 @@ def uncertain(eigenvalues: Any, condition: Any, scale: Any) -> Any:
     return np.where(slow & np.isfinite(error), error, 0.0)
 
 
-def _levels(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, float]:
-    """Factors (n,) that bring each freedom to one unit, and a typical angular frequency [rad/s]."""
-    rows = [np.max(np.abs(part), axis=1, initial=0.0) for part in (mass, damping, stiffness)]
-    both = (rows[0] > 0.0) & (rows[2] > 0.0)  # a heavy free body must not set the rate of a light spring
-    m, c, k = (float(np.max(part, initial=0.0)) for part in rows)
+def _rate(mass: Any, damping: Any, stiffness: Any) -> float:
+    """A typical angular frequency [rad/s]: a heavy free body must not set the rate of a light spring or damper."""
+    rows = m, c, k = [np.max(np.abs(part), axis=1, initial=0.0) for part in (mass, damping, stiffness)]
+    other = k if np.any(k > 0.0) else c
+    both = (m > 0.0) & (other > 0.0)
     if np.any(both):
-        m, k = (float(np.exp(np.mean(np.log(part[both])))) for part in (rows[0], rows[2]))
-    rate = np.sqrt(k / m) if m > 0.0 and k > 0.0 else k / c if c > 0.0 and k > 0.0 else c / m if m > 0.0 else 1.0
-    rate = float(rate) if np.isfinite(rate) and rate > 0.0 else 1.0
+        ratio = np.exp(np.mean(np.log(other[both] / m[both])))
+        rate = np.sqrt(ratio) if other is k else ratio
+    else:
+        m, c, k = (float(np.max(part, initial=0.0)) for part in rows)
+        rate = np.sqrt(k / m) if m > 0.0 and k > 0.0 else k / c if c > 0.0 and k > 0.0 else c / m if m > 0.0 else 1.0
+    return float(rate) if np.isfinite(rate) and rate > 0.0 else 1.0
+
+
+def _states(mass: Any, damping: Any, stiffness: Any, rate: float) -> tuple[Any, Any, Any, Any] | None:
+    """Levels (n,), scaled M, C and K, what the states left stand for, and the matrix A of x' = A x in them.
+
+    None where every number is an eigenvalue.
+    """
+    level = _levels(mass, damping, stiffness, rate)
+    m, c, k = (level[:, None] * part * level for part in (rate**2 * mass, rate * damping, stiffness))
+    zero, one = np.zeros(m.shape), np.eye(len(m))
+    found = reduced(np.block([[one, zero], [zero, m]]), np.block([[zero, one], [-k, -c]]))
+    if found is None:
+        return None
+    left, right, embedding = found
+    return level, (m, c, k), embedding, np.linalg.solve(left, right)
+
+
+def _missed(matrix: Any) -> float:
+    """By how much time has to be scaled anew: a force through a row without mass is faster than any spring and mass.
+
+    Ranks are decided by the largest entry: `ZERO` times it would count motions at the typical frequency as none.
+    """
+    if np.max(np.abs(matrix), initial=0.0) <= LARGEST:
+        return 1.0
+    return float(np.max(np.abs(np.linalg.eigvals(matrix)), initial=1.0))
+
+
+def _levels(mass: Any, damping: Any, stiffness: Any, rate: float) -> Any:
+    """Factors (n,) that bring each freedom to one unit."""
     size = np.maximum(np.max(np.abs(stiffness), axis=1), rate**2 * np.max(np.abs(mass), axis=1))
     size = np.maximum(size, rate * np.max(np.abs(damping), axis=1))
-    return 1.0 / np.sqrt(np.where(size > 0.0, size, 1.0)), rate
+    return 1.0 / np.sqrt(np.where(size > 0.0, size, 1.0))
 
 
 def _held(stiffness: Any) -> bool:
