@@ -30,7 +30,7 @@ from squealbox.transient import (
     _runge_kutta,
     _sharing,
     _time_stepping,
-    formulas,
+    by_kind,
 )
 from squealbox.transient.smooth_laws import SMOOTH
 
@@ -38,7 +38,7 @@ COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Gt: operator.gt, ast.Lt: operator.lt,
 }  # fmt: skip
 ENTRIES = ("march", "time_stepping")
-FORMULAS = {name: each.kind for name, each in vars(formulas).items() if isinstance(each, OfAnotherText)}
+FORMULAS = {name: each.kind for name, each in vars(by_kind).items() if isinstance(each, OfAnotherText)}
 HEADER = '"""Made by squealbox; safe to delete."""\n\nimport numpy as np\n\n{decorators}'
 PLAIN = """
 

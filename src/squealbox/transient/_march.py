@@ -41,7 +41,7 @@ from squealbox.transient._motion import (
 )
 from squealbox.transient._rigid import paradox
 from squealbox.transient._runge_kutta import dense_stages, error_norm, first_step, interpolate, take_step
-from squealbox.transient.formulas import WITH_EVENTS
+from squealbox.transient.by_kind import WITH_EVENTS
 
 SMALLEST = 1e-300  # a positive number that stands for zero
 SOON = 1e-3  # share of a step: what has just begun and ends before it is searched again in a shorter one

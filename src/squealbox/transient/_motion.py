@@ -15,7 +15,7 @@ import numpy as np
 
 from squealbox.transient._rigid import constrain
 from squealbox.transient._sharing import all_held, contact_matrix, share_out, solve, weigh_sticking
-from squealbox.transient.formulas import (
+from squealbox.transient.by_kind import (
     WITH_EVENTS,
     law_creep,
     law_grip,

@@ -21,7 +21,7 @@ Contacts and Friction, chapter 4.
 
 import numpy as np
 
-from squealbox.transient.formulas import law_mu, schedule_value
+from squealbox.transient.by_kind import law_mu, schedule_value
 
 STUCK = 1e-9  # share of the limit by which the pair of a sticking contact is below it; round-off of a projection
 

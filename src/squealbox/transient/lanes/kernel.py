@@ -122,7 +122,7 @@ def service_source(features: tuple[tuple[str, float], ...]) -> str:
     kept = ("COMPLETED", "TENSION", "SAMPLED", *(f"@inner\ndef {name}(" for name in FROM_THE_MARCH))
     parts += [text for text in _engine.definitions(_march, fixed) if text.lstrip("(").startswith(kept)]
     needed = {roots: fixed["TRIES"], crossing: fixed["TRIES"], alone: fixed["SIMPLE"]}
-    needed |= {_runge_kutta: fixed["STEPPED"] or staged, samples: fixed["SAMPLES"], recording: fixed["RECORDED"]}
+    needed |= {_runge_kutta: fixed["STEPPED"] or staged, samples: True, recording: fixed["RECORDED"]}
     needed |= {stages_again: staged}
     for module in (*(each for each, used in needed.items() if used), service):
         parts += _engine.definitions(module, fixed, entries=("run",))

@@ -1,10 +1,25 @@
-"""A lane's state at an instant within its last step: q, then q', into a row of samples; compiled by `kernel`."""
+"""A lane's state: into the records of the scalar march, or at an instant within its last step; compiled by `kernel`."""
 
 # mypy: disable-error-code="no-untyped-def"
 
-from squealbox.transient._motion import derivative
+import numpy as np
+
+from squealbox.transient._motion import INSIDE, OPEN, derivative
 from squealbox.transient._runge_kutta import take_step
-from squealbox.transient.lanes.of_a_shape import DOFS, TERMS, UNIT_OF_WINDOW
+from squealbox.transient.lanes.of_a_shape import CONTACTS, DOFS, EXACT_CONTACT, TERMS, UNIT_OF_WINDOW
+
+
+def load_state(lane, p, s):
+    """State and modes of a lane into the records of the scalar march."""
+    room = p.mk.shape[0]
+    s.clock[INSIDE] = np.inf
+    for i in range(DOFS):
+        s.state[i] = lane.q[i]
+        s.state[room + i] = lane.v[i]
+    if EXACT_CONTACT:
+        for c in range(CONTACTS):
+            s.bias[c] = 1.0
+            s.mode[c] = OPEN if lane.opened[c] > 0.0 else int(lane.slips[c])
 
 
 def on_end(lane, row):

@@ -26,7 +26,6 @@ from squealbox.transient._march import (
 from squealbox.transient._modes import apply_event, start_modes
 from squealbox.transient._motion import (
     FLIPS,
-    INSIDE,
     OPEN,
     REVERSALS,
     STEP,
@@ -62,7 +61,7 @@ from squealbox.transient.lanes.of_a_shape import (
     step,
 )
 from squealbox.transient.lanes.recording import first_row, log_event, room_left, series_held, write_rows
-from squealbox.transient.lanes.samples import on_end, on_quintic, on_series, on_step
+from squealbox.transient.lanes.samples import load_state, on_end, on_quintic, on_series, on_step
 from squealbox.transient.lanes.tracing import take
 
 OVERFLOW = 1e200  # a state that large has a series beyond all numbers
@@ -237,19 +236,6 @@ def next_piece(lane, o):
                 lane.force[c] = s.force[c]
                 return change_modes(lane, c, o)
     return RUNNING
-
-
-def load_state(lane, p, s):
-    """State and modes of a lane into the records of the scalar march."""
-    room = p.mk.shape[0]
-    s.clock[INSIDE] = np.inf
-    for i in range(DOFS):
-        s.state[i] = lane.q[i]
-        s.state[room + i] = lane.v[i]
-    if EXACT_CONTACT:
-        for c in range(CONTACTS):
-            s.bias[c] = 1.0
-            s.mode[c] = OPEN if lane.opened[c] > 0.0 else int(lane.slips[c])
 
 
 def refresh(lane, t, p, s):

@@ -2,7 +2,7 @@
 march, whose dense output tells the rows asked for. Compiled by `kernel`; without events.
 """
 
-# mypy: disable-error-code="name-defined,no-untyped-def"
+# mypy: disable-error-code="no-untyped-def"
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from squealbox.transient._march import write_row
 from squealbox.transient._motion import INSIDE, ROWS, derivative, evaluate_signals
 from squealbox.transient._runge_kutta import dense_stages, interpolate, take_step
 from squealbox.transient.lanes.of_a_shape import CONTACTS, DOFS, gather
+from squealbox.transient.lanes.samples import load_state
 
 
 def write_within(lane, k, o):
@@ -20,7 +21,7 @@ def write_within(lane, k, o):
     t1 = lane.t
     evaluate_signals(p, t0, s)  # the load's own, whose power no lane needs otherwise, and all that `gather` sets
     gather(lane, p, s)
-    load_state(lane, p, s)  # noqa: F821 - of `service`, which imports this module
+    load_state(lane, p, s)
     s.clock[INSIDE] = np.nextafter(t1, -np.inf)
     for i in range(DOFS):
         s.state[i] = lane.q_old[i]
