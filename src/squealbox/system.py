@@ -351,12 +351,11 @@ def _sparse_equilibrium(system: System, time: float, start: sparse_sliding.Nearb
 
 def _sparse_linearised(system: System, state: Equilibrium) -> tuple[Any, Any]:
     """C_eff and K_eff; both NaN on the diagonal where there is no steady sliding."""
-    table: Contacts = system.contacts
-    no_memory(table, "a sparse system")
+    no_memory(system.contacts, "a sparse system")
     if not state.exists:
         nothing = scipy.sparse.diags_array(np.full(system.size, np.nan), format="csr")
         return nothing, nothing
-    return sparse_sliding.linearised(system.C, system.K, table, state)
+    return sparse_sliding.linearised(system.C, system.K, system.contacts, state)
 
 
 def _sliding(system: System, time: float) -> tuple[Any, Any, Any]:
