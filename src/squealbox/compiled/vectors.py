@@ -18,7 +18,7 @@ from squealbox.compiled.arithmetic import Arithmetic, written
 from squealbox.compiled.kinds import Untranslatable
 
 FLAGS = "contract nsz arcp"  # nnan and ninf would remove the tests for failed lanes
-ALIGNED = 64  # bytes: rows begin with a line of the cache
+ALIGNED = 64  # bytes: rows and stacks begin with a line of the cache: a register put by across two costs twice
 BRANCH = (
     "a friction law, schedule or observer chooses by if, and, or, min or max: lanes compute both sides, "
     "and numpy.where, &, |, numpy.minimum or numpy.maximum select"
@@ -31,6 +31,10 @@ ARITHMETIC = {
     "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "divide": operator.truediv,
     "less": operator.lt, "less_equal": operator.le, "greater": operator.gt, "greater_equal": operator.ge,
 }  # fmt: skip
+PART = 1_000  # lines of a block: the time to choose instructions grows with their square
+UNCUT = (
+    8_000  # lines where a block's end keeps a product and a sum from being rounded as one: bits of small kernels stay
+)
 SELDOM = '!0 = !{!"branch_weights", i32 1, i32 99}'
 WIDTH: ContextVar[int] = ContextVar("lanes of a number")
 WRITER: ContextVar[Any] = ContextVar("writer of the function being written")
@@ -43,16 +47,30 @@ class Writer(Arithmetic):
     def __init__(self, functions: dict[str, str] | None = None) -> None:
         super().__init__()
         self.functions = {} if functions is None else functions
-        self.block, self.blocks = "entry", 0
+        self.block, self.blocks, self.room, self.cut = "entry", 0, UNCUT, 0
+
+    def put(self, line: str) -> str:
+        """A line whose result goes into a fresh register; a long text goes on in another block now and then."""
+        if len(self.lines) >= max(self.cut, self.room):
+            self.cut, self.blocks = len(self.lines) + PART, self.blocks + 1
+            nowhere = super().put("icmp eq ptr %rows, null")  # never: no optimiser may join the blocks again
+            self.lines.append(f"br i1 {nowhere}, label %nowhere, label %part{self.blocks}")
+            self.label(f"part{self.blocks}")
+        return super().put(line)
 
     def label(self, name: str) -> None:
         """A block begins."""
         self.lines.append(f"{name}:")
         self.block = name
 
+    def joined(self, *ways: tuple[str, str]) -> str:
+        """The register that is the first of each pair where one comes from the block that is the second."""
+        return super().put(f"phi {reals()} " + ", ".join(f"[ {value}, %{block} ]" for value, block in ways))
+
     def define(self, name: str, given: str, returned: str, value: str, linkage: str = "") -> None:
-        """The function as text; its stack begins with a line of the cache: a register put by across two costs twice."""
-        lines = "\n  ".join([*self.lines, f"ret {returned} {value}"])
+        """The function as text, which is given `ptr %rows`; its stack begins with a line of the cache."""
+        cut = ["nowhere:", f"ret {returned} zeroinitializer"] if self.cut else []
+        lines = "\n  ".join([*self.lines, f"ret {returned} {value}", *cut])
         head = f"define {linkage} {returned} @{name}({given}) nounwind alignstack({ALIGNED})"
         self.functions[name] = f"{head} {{\nentry:\n  {lines}\n}}\n"
 
@@ -265,28 +283,26 @@ def fused(a: Lanes, b: Lanes, c: Lanes) -> Lanes:
 
 
 @contextmanager
-def _where_any(flags: str, weights: str = "") -> Iterator[None]:
-    """Lines that are skipped where no bit is set."""
+def _where_any(flags: str, weights: str = "") -> Iterator[str]:
+    """Lines that are skipped where no bit is set; gives the block before them."""
     writer = WRITER.get()
     writer.blocks += 1
     inside, behind = f"inside{writer.blocks}", f"behind{writer.blocks}"
-    some = put(f"icmp ne i64 {flags}, 0")
+    some, before = put(f"icmp ne i64 {flags}, 0"), writer.block
     writer.lines.append(f"br i1 {some}, label %{inside}, label %{behind}{weights}")
     writer.label(inside)
-    yield
+    yield before
     writer.lines.append(f"br label %{behind}")
     writer.label(behind)
 
 
 def if_any(truth: Truth, compute: Callable[[], tuple[Lanes, ...]], otherwise: tuple[Lanes, ...]) -> tuple[Lanes, ...]:
     """What `compute` gives, skipped where the truth holds in no lane; it must give `otherwise` to a lane without it."""
-    writer, values, flags = WRITER.get(), [packed(x) for x in otherwise], bits(truth)
-    before = writer.block
-    with _where_any(flags):
+    values, flags = [packed(x) for x in otherwise], bits(truth)
+    with _where_any(flags) as before:
         found = [packed(x) for x in compute()]
-        inside = writer.block
-    pairs = zip(found, values, strict=True)
-    return tuple(Lanes(put(f"phi {reals()} [ {yes}, %{inside} ], [ {no}, %{before} ]")) for yes, no in pairs)
+        inside = WRITER.get().block
+    return tuple(Lanes(WRITER.get().joined((yes, inside), (no, before))) for yes, no in zip(found, values, strict=True))
 
 
 def if_flagged(flags: str, act: Callable[[], None]) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 from squealbox.compiled.in_memory import Given, Group
 from squealbox.compiled.kinds import WHOLE, Array, Number, Untranslatable
 from squealbox.compiled.translation import Function, Unit
-from squealbox.compiled.vectors import WRITER, Lanes, Writer, packed, put, reals, writing
+from squealbox.compiled.vectors import PART, WRITER, Lanes, Writer, packed, put, reals, writing
 from squealbox.system import InvalidSystem
 
 
@@ -19,8 +19,8 @@ def apart(function: Callable[..., Any]) -> Callable[..., Any]:
         data = given.group.at(given.place)
         if name not in writer.functions:
             with writing(Writer(writer.functions)) as inside:
-                value = function(Lanes("%x"), Given(Group("%p"), 0, given.count, given.whole))
-                inside.define(name, f"{kind} %x, ptr %p", kind, packed(value), "internal")
+                value = function(Lanes("%x"), Given(Group("%rows"), 0, given.count, given.whole))
+                inside.define(name, f"{kind} %x, ptr %rows", kind, packed(value), "internal")
             writer.needed |= inside.needed
         return Lanes(put(f"call {kind} @{name}({kind} {x.vector}, ptr {data})"))
 
@@ -32,7 +32,8 @@ def traced_as_written(function: Callable[..., Any]) -> Any:
 
     @wraps(function)
     def strictly(*given: Any) -> Any:
-        with writing(WRITER.get(), allowed=""):
+        with writing(WRITER.get(), allowed="") as writer:
+            writer.room = PART
             return function(*given)
 
     return traced(strictly)
