@@ -19,8 +19,8 @@ class InvalidSystem(ValueError):
 
 def is_sparse(value: Any) -> bool:
     """Whether it is a sparse array of SciPy: nothing is while those are not loaded, which takes a quarter second."""
-    loaded = sys.modules.get("scipy.sparse")
-    return loaded is not None and bool(loaded.issparse(value))
+    asked = getattr(sys.modules.get("scipy.sparse"), "issparse", None)  # None also while another thread loads them
+    return asked is not None and bool(asked(value))
 
 
 def runs_of_true(inside: Any) -> list[tuple[int, int]]:

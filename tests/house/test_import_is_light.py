@@ -3,8 +3,11 @@
 import json
 import subprocess
 import sys
+from types import ModuleType
 
 import pytest
+
+from squealbox import DrumBrake
 
 HEAVY = {
     "numba", "llvmlite", "matplotlib", "xarray", "pandas", "h5py", "pydantic", "pint", "rich", "cyclopts", "dask",
@@ -28,3 +31,9 @@ def test_nothing_heavy_is_loaded(code):
 
 def test_a_heavy_import_is_seen():
     assert loaded_by("import jinja2") == {"jinja2"}
+
+
+def test_a_system_is_made_while_another_thread_loads_sparse_matrices(monkeypatch):
+    """A module in the making is in sys.modules already, without what it will have."""
+    monkeypatch.setitem(sys.modules, "scipy.sparse", ModuleType("scipy.sparse"))
+    assert not DrumBrake().system().is_sparse

@@ -82,7 +82,8 @@ def nobody(share, text):
 
 def computing():
     """The processes that compute answers for this one."""
-    return [each for each in psutil.Process().children() if "squealbox.workers" in " ".join(each.cmdline())]
+    living = [each for each in psutil.Process().children() if each.status() != psutil.STATUS_ZOMBIE]
+    return [each for each in living if "squealbox.workers" in " ".join(each.cmdline())]
 
 
 def test_a_process_is_killed_and_the_next_question_gets_another():
