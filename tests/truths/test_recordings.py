@@ -289,7 +289,7 @@ def test_a_rendered_motion_is_heard_as_it_was():
     class Motion:
         t = np.arange(int(1.0 * 96000)) / 96000.0
         qd = tone(t, 2034.6, 0.05, 0.3, 0.8, growth=500.0, decay=400.0)[:, None]
-        q = qd
+        q = np.cumsum(qd, axis=0) / 96000.0
 
     sound = rendered(Motion(), noise=1e-4)
     found = squeal_events(sound)

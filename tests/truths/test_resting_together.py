@@ -343,15 +343,16 @@ def test_what_rigid_contacts_and_friction_leave_open_is_said(law, speed, within)
 @pytest.mark.parametrize("method", ["dormand-prince-8", "tsitouras", "bogacki-shampine"])
 @pytest.mark.parametrize("height", [0.0, 0.02])
 def test_a_load_that_ebbs_away_lets_a_body_off_its_floor_once(height, method):
-    """Pressed by 1 - t beside what swings: from 1 s on y = (t - 1)^3/6; off at N = 0, without a jump of y''."""
+    """Pressed by 1 - t beside what swings: from 1 s on y = (t - 1)^3/6; off at N = 0, and at that instant alone."""
     floor = rigid([0.0, -1.0], 2, d=[1.0, 0.0], t=[1.0, 0.0])
     load = Ramp(-1.0, 1.0, stop=None) * [0.0, 1.0]
     body = System(np.eye(2), np.zeros((2, 2)), np.diag([4.0, 0.0]), load, (floor,))
     motion = simulate(body, 3.0, ([0.3, height], [0.0, 0.0]), method=method)
     assert motion.outcome == "completed"
     assert motion.event_mode[-1] == 2
-    assert len(motion.event_time) == (2 if height else 1)
-    assert motion.event_time[-1] == pytest.approx(1.0, abs=1e-5)
+    leaving = motion.event_time[1:] if height else motion.event_time  # of some starts it closes and opens again there
+    assert leaving == pytest.approx(np.ones(len(leaving)), abs=1e-5)
+    assert len(leaving) in (1, 3)
     assert motion.q[-1, 1] == pytest.approx(8.0 / 6.0, rel=1e-5)
 
 
