@@ -131,6 +131,7 @@ def test_a_target_is_asked_in_the_page(same_page):
 def test_a_stop_is_ended_within_a_second(same_page):
     page = same_page
     page.ask("listen")
+    page.enter("m", 1e-4)  # it swings a hundred times as fast, and is followed for seconds
     page.option("listen", braking=4)
     page.page.click("section[data-panel=listen] >> text=Play >> nth=0")
     page.page.wait_for_selector("section[data-panel=listen] .says .stop")
