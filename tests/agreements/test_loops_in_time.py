@@ -27,6 +27,19 @@ def block(c, loop):
     return System([[1.0]], [[c]], [[1.0]], loops=(loop,))
 
 
+@pytest.mark.parametrize("amplitude", [1e-9, 1.0])
+def test_a_sampled_run_without_sliding_has_one_tolerance(amplitude):
+    """That of the whole motion: what the samples push with neither sets it nor turns it negative."""
+    mass = System([[0.01]], [[0.5]], [[4e4]],
+                  loops=(PID(on="q1", proportional=2e3, derivative=3.0, sampling=3e3, computing=0.4),))  # fmt: skip
+    matrix, _ = held(closed_loop(mass).plant)
+    state = np.zeros(len(matrix))
+    state[0] = amplitude
+    run = simulate(mass, 0.02, ([amplitude], [0.0]))
+    assert run.settings["atol"] == pytest.approx([1e-13 * amplitude, 1e-13 * amplitude * 2e3])
+    assert run.q[-1, 0] == pytest.approx((np.linalg.matrix_power(matrix, 60) @ state)[0], abs=1e-9 * amplitude)
+
+
 @pytest.mark.parametrize("computing", [1.0, 0.4])
 def test_a_sampled_run_is_its_discrete_matrix(computing):
     brake = block(-0.1, PID(on="q1", derivative=0.5, sampling=2.0, computing=computing))

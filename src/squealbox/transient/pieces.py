@@ -22,6 +22,7 @@ from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Polynomial, Schedule
 from squealbox.start import Start
 from squealbox.system import System
+from squealbox.transient import packing
 from squealbox.transient.legs import SCHEMES, Leg, Progress, by_step, leg, told, ways_of
 from squealbox.transient.limited import in_time
 from squealbox.transient.methods import TAYLOR
@@ -142,7 +143,10 @@ class _Walk:
         self.cuts, self.marks, self.work = [begin], [True], [0.0]
         self.after: list[Any] = []
         self.before: list[Any] = []
-        self.ways = ways_of(self.system, *how)
+        ways = ways_of(self.system, *how)
+        whole = packing.pack(self.system, ways.method, SCHEMES[ways.contact], ways.width, False, start)
+        atol = whole["atol"].reshape(2, -1)[:, : self.system.size].ravel()  # that of the motion, not of each piece
+        self.ways = replace(ways, method=replace(ways.method, atol=atol))
         self.pushed: Any = None
         if self.ways.method.tableau == TAYLOR:
             from squealbox.transient.lanes.single import Pushed

@@ -26,8 +26,10 @@ def absolute_tolerances(system: System, method: Method, highest: Any, start: tup
     highest = np.where(highest > 0.0, highest, 1.0)
     velocity = method.atol
     if velocity is None:
-        slides = fastest_speed(system)
-        velocity = 1e-3 * method.rtol * np.where(slides > STANDING, slides, free_speed(system, highest, start))
+        speed = fastest_speed(system)
+        if not np.all(speed > STANDING):
+            speed = np.where(speed > STANDING, speed, free_speed(system, highest, start))
+        velocity = 1e-3 * method.rtol * speed
     velocity, highest = np.broadcast_arrays(velocity, highest)
     return np.stack([velocity / highest] * n + [velocity] * n) if n else np.zeros((0, *np.shape(velocity)))
 
