@@ -250,6 +250,17 @@ def test_a_stable_brake_is_said_to_decay_and_the_level_is_that_of_its_cycle(quie
     assert tiles["estimated level of the limit cycle at 1 m"] == f"{level:.0f} dB(A)"
 
 
+def paused(page, seen):
+    """What is seen of a picture that moves until Pause is pressed, and then stands still."""
+    first = page.evaluate(seen)
+    page.wait_for_function(f"first => {seen} !== first", arg=first)  # it moves
+    page.get_by_role("button", name="Pause").click()
+    still = page.evaluate(seen)
+    page.wait_for_timeout(150)
+    assert page.evaluate(seen) == still
+    return still
+
+
 def test_the_brake_vibrates_in_its_worst_mode_and_stands_still_on_paper(browser, quiet, tmp_path):
     block = vibrating(quiet.design, quiet.modes)
     angles = np.linspace(0.0, 2.0 * np.pi, 3601)[:, None, None]
@@ -260,12 +271,7 @@ def test_the_brake_vibrates_in_its_worst_mode_and_stands_still_on_paper(browser,
     reading = Opened(browser, path)
     page = reading.page
     seen = "document.querySelector('figure.vibrating circle').getAttribute('cx')"
-    first = page.evaluate(seen)
-    page.wait_for_function(f"first => {seen} !== first", arg=first)  # it moves
-    page.get_by_role("button", name="Pause").click()
-    still = page.evaluate(seen)
-    page.wait_for_timeout(150)
-    assert page.evaluate(seen) == still
+    paused(page, seen)
     page.emulate_media(media="print")
     assert page.locator("figure.vibrating img").is_visible()
     assert not page.locator("figure.vibrating svg").is_visible()
@@ -282,12 +288,7 @@ def test_a_finite_element_brake_vibrates_and_is_turned_by_hand(browser, tmp_path
     page = reading.page
     seen = "document.querySelector('figure.vibrating canvas').toDataURL()"
     page.wait_for_function(f"{seen}.length > 5000")
-    first = page.evaluate(seen)
-    page.wait_for_function(f"first => {seen} !== first", arg=first)  # it moves
-    page.get_by_role("button", name="Pause").click()
-    still = page.evaluate(seen)
-    page.wait_for_timeout(150)
-    assert page.evaluate(seen) == still
+    still = paused(page, seen)
     page.locator("figure.vibrating canvas").press("ArrowRight")
     assert page.evaluate(seen) != still  # it was turned
     assert "contact slips" in page.inner_text(".keys")

@@ -8,7 +8,9 @@ import ast
 import ctypes
 import hashlib
 import inspect
+import io
 import os
+import pickle
 import tempfile
 import threading
 import warnings
@@ -158,7 +160,7 @@ def built(text: str, name: str, kinds: tuple[Any, ...]) -> tuple[Any, Any]:
     """((the kind of what the function returns, what it asks of another text), LLVM's module with it)."""
     unit = _unit(text)
     made, returned = unit.function(name, kinds)
-    asked = [(symbol, *_plain(each)) for each, symbol in unit.asked.items()]
+    asked = [(symbol, *each) for each, symbol in unit.asked.items()]
     whole = "\n".join([unit.text(), _door(name, made, kinds, returned)])
     return (returned, asked), optimised(whole, unit.modules)
 
@@ -167,21 +169,8 @@ def given_to(text: str, asked: list[tuple[Any, ...]]) -> Any:
     """LLVM's module with what another text asks of this one."""
     unit = _unit(text)
     for each in asked:
-        unit.give(*_of_plain(each))
+        unit.give(*each)
     return optimised(unit.text(), unit.modules)
-
-
-def _plain(kind: Any) -> Any:
-    """A kind as a literal: the layout of a record as a list."""
-    if isinstance(kind, np.dtype):
-        return kind.descr
-    return tuple(_plain(each) for each in kind) if isinstance(kind, tuple) else kind
-
-
-def _of_plain(kind: Any) -> Any:
-    if isinstance(kind, list):
-        return np.dtype(kind)
-    return tuple(_of_plain(each) for each in kind) if isinstance(kind, tuple) else kind
 
 
 def _path(named: str) -> Path:
@@ -349,7 +338,7 @@ def _address(array: Any) -> int:
 
 
 def kept(path: Path, build: Callable[[], tuple[Any, bytes]]) -> tuple[Any, bytes]:
-    """What `build` gives, a literal and bytes, from disk where it was built before; a damaged file is written anew."""
+    """What `build` gives, a note and bytes, from disk where it was built before; a damaged file is written anew."""
     found = on_disk(path)
     if found is not None:
         return found
@@ -357,13 +346,13 @@ def kept(path: Path, build: Callable[[], tuple[Any, bytes]]) -> tuple[Any, bytes
     told.daemon = True
     told.start()
     try:
-        literal, code = build()
+        note, code = build()
     finally:
         told.cancel()
         aside("")
-    content = repr(literal).encode() + b"\n" + code
+    content = pickle.dumps(note) + code
     _write(path, hashlib.sha256(content).hexdigest().encode() + b"\n" + content)
-    return literal, code
+    return note, code
 
 
 def on_disk(path: Path) -> tuple[Any, bytes] | None:
@@ -374,8 +363,8 @@ def on_disk(path: Path) -> tuple[Any, bytes] | None:
         return None
     if not content or hashlib.sha256(content).hexdigest().encode() != check:
         return None
-    first, _, code = content.partition(b"\n")
-    return ast.literal_eval(first.decode()), code
+    stream = io.BytesIO(content)
+    return pickle.load(stream), stream.read()
 
 
 def _write(path: Path, content: bytes) -> None:

@@ -14,7 +14,7 @@ from squealbox.schedules import SCHEDULES, Constant
 from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta, _sharing
 from squealbox.transient.lanes import alone, crossing, of_a_shape, recording, roots, samples, service, stages_again
 from squealbox.transient.lanes.formulas import formulas
-from squealbox.transient.lanes.shape import PARTS, Shape, layout, parameter_rows
+from squealbox.transient.lanes.shape import ORDER, PARTS, UNIT_OF_WINDOW, Shape, layout, parameter_rows
 from squealbox.transient.lanes.step_text import Step
 from squealbox.transient.lanes.taylor_text import TaylorStep
 from squealbox.transient.methods import tableau
@@ -89,7 +89,7 @@ def lane_kernel(shape: Shape) -> Compiled:
 def features(shape: Shape) -> tuple[tuple[str, float], ...]:
     """What of a shape its service is compiled for."""
     found: dict[str, float] = {
-        "WITH_EVENTS": shape.exact, "EXACT_CONTACT": shape.exact, "SAMPLES": shape.samples, "WIDTH": shape.lanes,
+        "WITH_EVENTS": shape.exact, "SAMPLES": shape.samples, "WIDTH": shape.lanes,
         "RECORDED": shape.recorded, "SHARES": PARTS if shape.taylor else 1, "STAGED": shape.staged,
         "SERIES": shape.taylor, "TRIES": shape.exact and not shape.taylor, "SIMPLE": shape.simple,
         "STEPPED": shape.stepped, "p.rigid[]": 0, "p.rigid_count": 0,
@@ -97,12 +97,8 @@ def features(shape: Shape) -> tuple[tuple[str, float], ...]:
     found |= {} if shape.varying else {"p.varying": 0}
     found |= {} if shape.kinds else {"p.light": 0}
     found |= {} if shape.smooth else {"p.smooth[]": 0}
-    return tuple((found | step_of(shape).constants()).items())
-
-
-def step_of(shape: Shape) -> Step | TaylorStep:
-    """The writer of a shape's step."""
-    return TaylorStep(shape) if shape.taylor else Step(shape)
+    found |= {"TERMS": ORDER + 2, "UNIT_OF_WINDOW": UNIT_OF_WINDOW} if shape.taylor else Step.constants(shape)
+    return tuple(found.items())
 
 
 @cache
@@ -114,7 +110,7 @@ def service_text(features: tuple[tuple[str, float], ...]) -> str:
 def service_source(features: tuple[tuple[str, float], ...]) -> str:
     """That text; what belongs to a shape is elsewhere."""
     fixed = dict(features)
-    exact, staged = fixed["EXACT_CONTACT"], fixed["STAGED"]
+    exact, staged = fixed["WITH_EVENTS"], fixed["STAGED"]
     head = _engine.HEADER.format(decorators="")
     parts = [head, SERVICE.format(digest=digest(("tracing.py",))), _engine.elsewhere(OF_A_SHAPE)]
     for module in (_motion, *((_rigid, _sharing, _impacts, _modes, _events) if exact else ())):
@@ -169,7 +165,7 @@ def source(shape: Shape) -> str:
         head,
         "\n".join(f"{name} = {value}" for name, value in places.items()),
         *formulas(shape),
-        step_of(shape).text(),
+        (TaylorStep if shape.taylor else Step)(shape).text(),
         _gather(shape, rows.places),
         _observers(shape, rows.places),
     ]

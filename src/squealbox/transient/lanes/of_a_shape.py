@@ -7,7 +7,7 @@ from squealbox.compiled.kinds import FLOAT, WHOLE, OfAnotherText
 DOFS = CONTACTS = FUNCTIONS = 0  # degrees of freedom, contacts, event functions
 GIVEN = ALL_ROWS = 0  # rows that come with a job, and in all
 BREAKS = FOLLOWED = MEMORY = 0  # kinks of schedules, series that are followed, numbers of the observers
-EXACT_CONTACT = TRIES = SIMPLE = False  # events are located; by rejected trials; the usual one on the rows alone
+TRIES = SIMPLE = False  # events are located by rejected trials; the usual one is decided on the rows alone
 SERIES = STAGED = STEPPED = False  # a Taylor step; a recorded one by stages; samples by steps of the method
 RECORDED = SAMPLES = False  # rows of output are kept, or states at given instants
 WIDTH = SHARES = 1  # lanes of a group; parts of a step that are rows of output

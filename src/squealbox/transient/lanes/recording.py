@@ -10,10 +10,10 @@ import numpy as np
 
 from squealbox.transient._march import SAMPLED
 from squealbox.transient._motion import OPEN, is_open, row_mode
+from squealbox.transient.by_kind import WITH_EVENTS
 from squealbox.transient.lanes.of_a_shape import (
     CONTACTS,
     DOFS,
-    EXACT_CONTACT,
     FOLLOWED,
     SHARES,
     STAGED,
@@ -135,7 +135,7 @@ def write_from_series(lane, t, since, row, o):
     row[5 + 2 * DOFS + CONTACTS] = 0.0
     first = 6 + 2 * DOFS + CONTACTS
     for c in range(CONTACTS):
-        if EXACT_CONTACT:
+        if WITH_EVENTS:
             mode = lane.slips[c]
             row[first + 3 * CONTACTS + c] = OPEN if lane.opened[c] > 0.0 else mode
         else:

@@ -6,7 +6,8 @@ import numpy as np
 
 from squealbox.transient._motion import INSIDE, OPEN, derivative
 from squealbox.transient._runge_kutta import take_step
-from squealbox.transient.lanes.of_a_shape import CONTACTS, DOFS, EXACT_CONTACT, TERMS, UNIT_OF_WINDOW
+from squealbox.transient.by_kind import WITH_EVENTS
+from squealbox.transient.lanes.of_a_shape import CONTACTS, DOFS, TERMS, UNIT_OF_WINDOW
 
 
 def load_state(lane, p, s):
@@ -16,7 +17,7 @@ def load_state(lane, p, s):
     for i in range(DOFS):
         s.state[i] = lane.q[i]
         s.state[room + i] = lane.v[i]
-    if EXACT_CONTACT:
+    if WITH_EVENTS:
         for c in range(CONTACTS):
             s.bias[c] = 1.0
             s.mode[c] = OPEN if lane.opened[c] > 0.0 else int(lane.slips[c])

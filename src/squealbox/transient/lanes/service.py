@@ -36,6 +36,7 @@ from squealbox.transient._motion import (
     list_sticking,
 )
 from squealbox.transient._sharing import contact_matrix, share_out, solve, weigh_sticking
+from squealbox.transient.by_kind import WITH_EVENTS
 from squealbox.transient.lanes.alone import change_alone
 from squealbox.transient.lanes.crossing import locate
 from squealbox.transient.lanes.of_a_shape import (
@@ -43,7 +44,6 @@ from squealbox.transient.lanes.of_a_shape import (
     BREAKS,
     CONTACTS,
     DOFS,
-    EXACT_CONTACT,
     FUNCTIONS,
     GIVEN,
     MEMORY,
@@ -91,7 +91,7 @@ def run(A, live, o):
                         return False
                     busy += 1
                     flags = step(A, g * size)
-                    if RECORDED and EXACT_CONTACT and not series_held(Lane(A, 0, 0), o.p):
+                    if RECORDED and WITH_EVENTS and not series_held(Lane(A, 0, 0), o.p):
                         finish(Lane(A, 0, 0), MISSED, o.out)
                         return True
                     if flags != 0:
@@ -116,7 +116,7 @@ def serve(lane, o):
         ended = or_chattering(lane, UNDERFLOW, o) if is_finite(lane) else NOT_FINITE
     elif code & OVER and not code & DONE:
         ended = or_chattering(lane, STEP_LIMIT, o)
-    elif EXACT_CONTACT and code & LANDED:
+    elif WITH_EVENTS and code & LANDED:
         ended = change_modes(lane, int(lane.target), o)
     elif TRIES and code & EVENT:
         which = locate(lane)
@@ -185,7 +185,7 @@ def begin(lane, job, o):
     set_observers(lane, o.fixed)
     if SAMPLES:
         lane.next_sample = o.times[0]
-    if EXACT_CONTACT:
+    if WITH_EVENTS:
         lane.target = -1.0
         lane.window_start = o.fixed[1]
 
@@ -206,7 +206,7 @@ def start(lane, p, s):
     gather(lane, p, s)
     load_state(lane, p, s)
     t = lane.t
-    if EXACT_CONTACT and not start_modes(p, t, s.state, s.mode, s):
+    if WITH_EVENTS and not start_modes(p, t, s.state, s.mode, s):
         return TENSION if pulled(p, s) else INCONSISTENT
     refresh(lane, t, p, s)
     return RUNNING
@@ -224,7 +224,7 @@ def next_piece(lane, o):
     for c in range(CONTACTS):
         s.fresh[c] = 0
     refresh(lane, t, p, s)
-    if EXACT_CONTACT:
+    if WITH_EVENTS:
         fastest = 0.0
         for c in range(CONTACTS):
             fastest = max(fastest, abs(s.speed[c]))
@@ -252,7 +252,7 @@ def refresh(lane, t, p, s):
             lane.normal_end[c] = s.normal[c]
             lane.speed_end[c] = s.speed[c]
             lane.friction_end[c] = s.force[c]
-    if EXACT_CONTACT:
+    if WITH_EVENTS:
         hold_matrix(lane, p, s)
         event_values(p, t, s.state, s.mode, s, s.phi)
         for c in range(CONTACTS):
@@ -338,7 +338,7 @@ def finish(lane, ended, out):
     out[job, 1] = lane.t
     out[job, 2] = lane.taken
     out[job, 3] = lane.tries
-    out[job, 4] = lane.events if EXACT_CONTACT else 0.0
+    out[job, 4] = lane.events if WITH_EVENTS else 0.0
     for k in range(2 * DOFS):
         out[job, 5 + k] = lane.q[k]
     for k in range(MEMORY):

@@ -59,9 +59,11 @@ class Step(RecordedText):
         self.put(f"g{c}_{k} = {self.row(f'law{c}_0')} * {normal} - abs(hold{c}_{k})")
         return f"g{c}_{k}"
 
-    def constants(self) -> dict[str, float]:
+    @staticmethod
+    def constants(shape: Shape) -> dict[str, float]:
         """Numbers that stand in the texts of the passes over one lane."""
-        at = [float(self.rule.c[k]) for k in self.probes]
+        rule = tableau(shape.tableau)
+        at = [float(rule.c[k]) for k in probes(rule)]
         return {"PROBES": len(at)} | {f"PROBE_{k}": place for k, place in enumerate((at * 3)[:3])}
 
     def text(self) -> str:

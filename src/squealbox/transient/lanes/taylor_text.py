@@ -41,10 +41,6 @@ class TaylorStep(EquationText):
         super().__init__(shape)
         self.gliding = False
 
-    def constants(self) -> dict[str, float]:
-        """Numbers that stand in the texts of the passes over one lane."""
-        return {"TERMS": ORDER + 2, "UNIT_OF_WINDOW": UNIT_OF_WINDOW}
-
     def text(self) -> str:
         """The function `step(A, b)`, and `series_at(A, b)` of a recorded motion."""
         return self.steps() + (self.evaluation() if self.shape.recorded else "")
