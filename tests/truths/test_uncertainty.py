@@ -194,6 +194,7 @@ def test_range_over_a_box():
     design = ModeCoupling(k12=0.4)
     ask = Quantity(lambda at: onset({"k11": at.k11, "k22": at.k22, "k3": at.k3}), "onset", limit=0.4, squeals="below")
     found = interval_bounds(design, {"k11": (1.5, 2.8), "k3": (0.8, 1.25)}, ask, runs=2)
+    assert "2 searches agree to" in found.summary()
     by_eigenvalues = quantities.critical_value("friction.static", (0.0, 10.0), limit=0.4)
     ends = design.replace(dict(zip(("k11", "k3"), np.transpose([found.low_at, found.high_at]), strict=True)))
     assert by_eigenvalues(ends) == pytest.approx([float(found.low), float(found.high)], rel=1e-9)
@@ -286,6 +287,7 @@ def test_results_are_saved_read_back_and_drawn(tmp_path):
         assert again.inputs["scatter"] == scatter
         assert len(plot(again).get_axes()) >= 1
     box = interval_bounds(ModeCoupling(), {"k12": (0.5, 0.7)}, quantities.growth_rate(), runs=1)
+    assert "one search, which no other confirms" in box.summary()
     assert Result.load(box.save(tmp_path / "box.nc")).summary() == box.summary()
 
 

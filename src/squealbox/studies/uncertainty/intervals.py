@@ -62,10 +62,9 @@ class IntervalBounds(Result):
         for word, at in (("least", self.low_at), ("largest", self.high_at)):
             where = ", ".join(f"{name} = {value:.6g}" for name, value in zip(self.names, at, strict=True))
             lines.append(f"  {word} at {where}")
-        lines.append(
-            f"{self.lows.size} searches agree to {100.0 * self.agreement:.2g} % of the range; both ends do occur, "
-            "and nothing beyond them was found, which is no proof"
-        )
+        several = f"{self.lows.size} searches agree to {100.0 * self.agreement:.2g} % of the range"
+        searched = several if self.lows.size > 1 else "one search, which no other confirms"
+        lines.append(f"{searched}; both ends do occur, and nothing beyond them was found, which is no proof")
         return "\n".join(lines)
 
 
