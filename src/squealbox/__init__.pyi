@@ -167,6 +167,7 @@ from .transient import (
 )
 
 __version__: str
+from .writing import write
 
 __all__ = [
     # friction laws: mu(|v|) and its slope
@@ -348,9 +349,10 @@ __all__ = [
     "calibrate",
     "Calibration",
     "compare",
-    # any result as a figure
+    # any result as a figure, and as files
     "plots",
     "plot",
+    "write",
     # what every analysis hands back, and what a bad number raises
     "Result",
     "Outcome",

@@ -46,6 +46,11 @@ class FrictionFit(Result):
 
     coordinates: ClassVar = {"along": "curve_speeds"}
 
+    def table(self) -> dict[str, Any]:
+        """The curve of the best law with its band."""
+        told = {"mu [-]": self.curves, "low [-]": self.low, "high [-]": self.high}
+        return {"speed [m/s]": self.curve_speeds, **{head: each[self.best] for head, each in told.items()}}
+
     @property
     def names(self) -> tuple[str, ...]:
         """The laws that were tried."""

@@ -3,6 +3,7 @@
 The file is written by h5netcdf as xarray would read it, without loading xarray: that takes longer than most analyses.
 """
 
+import io
 import os
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -19,16 +20,25 @@ if TYPE_CHECKING:
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """A file to write in place of `path`, which it becomes at the end: that is there whole or not at all."""
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
-    os.close(handle)
-    part = Path(name)
+    """A file to write in place of `path`, which it becomes at the end: that is there whole or not at all.
+
+    Where the disc is full or nothing may be written there, the `OSError` names `path`.
+    """
+    part: Path | None = None
     try:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
+        os.close(handle)
+        part = Path(name)
         yield part
         part.chmod(0o644)  # a temporary file is readable by its owner alone
         part.replace(path)
+    except OSError as error:
+        if error.errno is None:
+            raise  # a sentence of its own
+        raise OSError(error.errno, error.strerror, str(path)) from error
     finally:
-        part.unlink(missing_ok=True)
+        if part is not None:
+            part.unlink(missing_ok=True)
 
 
 class Labels(NamedTuple):
@@ -57,6 +67,11 @@ class Labelled(NamedTuple):
         of = (zip(each.dims, np.shape(each.values), strict=True) for each in self.everything.values())
         return {dim: size for pairs in of for dim, size in pairs}
 
+    def labels(self, dim: str) -> Labels | None:
+        """What the entries of a dimension are called, or None where they are only counted."""
+        found = self.everything.get(dim)
+        return found if found is not None and found.dims == (dim,) else None
+
     def renamed(self, names: Mapping[str, str]) -> "Labelled":
         """With other names for some dimensions."""
 
@@ -82,11 +97,14 @@ class Labelled(NamedTuple):
         """As a NetCDF 4 file; equal arrays give equal bytes."""
         import h5netcdf
 
-        with h5netcdf.File(path, "w", invalid_netcdf=True) as file:
+        made = io.BytesIO()  # HDF5 ends the whole program where it meets a full disc
+        with h5netcdf.File(made, "w", invalid_netcdf=True) as file:
             file.dimensions = self.sizes
             for name, (dims, values, about) in self.everything.items():
                 put(file, name, dims, np.asarray(values), about)
             put_attributes(file, {name: each.dims for name, each in self.coordinates.items()}, self.attributes)
+        with open(path, "wb") as stream:
+            stream.write(made.getbuffer())
 
 
 def about(unit: str, meaning: str) -> dict[str, str]:

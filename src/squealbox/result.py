@@ -21,6 +21,8 @@ from numpy.typing import NDArray
 
 from squealbox.labelled import Labelled, Labels, whole
 from squealbox.parameters import DRAWN_BY, from_plain, load_kind, screenful, to_plain, with_cautions
+from squealbox.tables import Tabled
+from squealbox.words import array_told
 
 if TYPE_CHECKING:
     import xarray
@@ -28,8 +30,8 @@ if TYPE_CHECKING:
 Array = NDArray[Any]
 """An array of a result; its dimensions and unit stand where it is declared."""
 COMPLETED = "completed"
+OF_QUANTITY = "of the quantity"  # the unit of an array that holds what a study asked for
 MOST_LINES = 20  # of a summary
-MOST_COLUMNS = 100  # that one array gives to a table
 NAMED_BY = {  # dimension to the attributes that may hold its names
     "parameter": ("parameters", "names"), "parameter2": ("parameters", "names"), "other": ("parameters", "names"),
     "scheme": ("schemes",), "law": ("names",), "damper": ("damper_names",), "row": ("names",), "sweep": ("sweeps",),
@@ -124,7 +126,7 @@ def _versions() -> tuple[tuple[str, str], ...]:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
-class Result:
+class Result(Tabled):
     """Base of all results. Subclasses add arrays declared with :func:`quantity`."""
 
     inputs: Mapping[str, Any] = dataclasses.field(default_factory=dict)
@@ -133,12 +135,8 @@ class Result:
     provenance: Mapping[str, str] = dataclasses.field(default_factory=provenance)
 
     kinds: ClassVar[dict[str, type["Result"]]] = {}
-    coordinates: ClassVar[Mapping[str, str]] = {}
-    """Dimension to its attribute; dof, contact, state are named by the system, others as `NAMED_BY`."""
     derived: ClassVar[Mapping[str, tuple[str, str, str]]] = {}
     """Attributes that follow from the arrays and stand in the dataset too, with dimensions, unit and meaning."""
-    table_over: ClassVar[tuple[str, ...]] = ()
-    """Dimensions that have a row each in a table; empty means those of the first array."""
     swept: ClassVar[Mapping[str, tuple[str, str, str]]] = {}
     """Attributes a study keeps of each point, with dimensions, unit and meaning; empty means every declared array."""
 
@@ -155,7 +153,8 @@ class Result:
         """At most a screenful: how it ended, each number with its unit, each array by its shape and range."""
         name, ended, fields = type(self).__name__, self.outcome, _quantities(type(self))
         said = f"{name}: {ended}" if ended.ok else f"{name} ended as {ended.told}"
-        lines = [f"  {field.name:<20s} {_told(field, getattr(self, field.name))}" for field in fields[:MOST_LINES]]
+        arrays = [(f.name, array_told(getattr(self, f.name), self._about(f)[0])) for f in fields[:MOST_LINES]]
+        lines = [f"  {name:<20s} {told}" for name, told in arrays]
         if len(fields) > MOST_LINES:
             lines.append(f"  and {len(fields) - MOST_LINES} more arrays, listed by .to_dataset()")
         return self.warned([said, *lines])
@@ -181,7 +180,7 @@ class Result:
 
     def columns(self) -> dict[str, Column]:
         """What a study keeps of this result: the attributes in `swept`, or every declared array."""
-        arrays = {f.name: (" ".join(f.metadata["dims"]), *_about(f)) for f in _quantities(type(self))}
+        arrays = {f.name: (" ".join(f.metadata["dims"]), *self._about(f)) for f in _quantities(type(self))}
         return {
             name: Column(getattr(self, name), tuple(part for part in dims.split() if part != "..."), unit, meaning)
             for name, (dims, unit, meaning) in (self.swept or arrays).items()
@@ -196,47 +195,25 @@ class Result:
         """
         return self.labelled().dataset()
 
+    def _about(self, field: dataclasses.Field[Any]) -> tuple[str, str]:
+        """Unit and meaning of an array; the unit may be that of what was asked for, or of the parameter it holds."""
+        unit, meaning = field.metadata["unit"], field.metadata["meaning"]
+        if unit == OF_QUANTITY:
+            return str(self.settings.get("quantity", {}).get("unit", "") or "1"), meaning
+        return unit or self.unit_of(self.holds.get(field.name, "")), meaning
+
     def labelled(self) -> Labelled:
         """What `to_dataset` holds and `save` writes."""
         found = {}
         for field in _quantities(type(self)):
             array = np.asarray(getattr(self, field.name))
-            found[field.name] = Labels(_dims(field.metadata["dims"], array.ndim), array, _said(*_about(field)))
+            found[field.name] = Labels(_dims(field.metadata["dims"], array.ndim), array, _said(*self._about(field)))
         for name, (dims, unit, meaning) in self.derived.items():
             array = np.asarray(getattr(self, name))
             found[name] = Labels(_dims(tuple(dims.split()), array.ndim), array, _said(unit, meaning))
         attributes = {KEPT.get(name, name): json.dumps(to_plain(value)) for name, value in self._plain().items()}
         whole = Labelled(found, {}, {"kind": self.kind_name(), **attributes})
         return whole.with_({}, self._labels(whole))
-
-    def to_dataframe(self) -> Any:
-        """One row for each entry of what the result runs over (instants, points, trajectories), as a `pandas` table.
-
-        Columns are the arrays over it; what runs over more gives a column each: ``q[x]``, ``q[y]``. Arrays of more than
-        100, or over something else, are left out: `to_dataset` has all. ``attrs["units"]`` has the unit of each column.
-        """
-        dataset = self.to_dataset()
-        first: tuple[Any, ...] = self.table_over or next(
-            iter(dataset[field.name].dims for field in _quantities(type(self))), ()
-        )
-        first = tuple(dim for dim in first if dim in dataset.dims)
-        twice = {name: f"{name} values" for name in dataset.coords if dataset[name].ndim > 1}  # named as a dimension
-        dataset = dataset.rename_vars(twice).reset_coords([*twice.values()])
-        table = dataset.drop_vars([name for name in dataset.coords if name not in first])
-        columns: dict[str, Any] = {}
-        for name, variable in table.data_vars.items():
-            more = [dim for dim in variable.dims if dim not in first]
-            if not set(first) <= set(variable.dims) or np.prod([variable.sizes[d] for d in more]) > MOST_COLUMNS:
-                continue
-            for at in np.ndindex(*(variable.sizes[dim] for dim in more)):
-                labels = [str(dataset[d].values[i]) if d in dataset.coords else str(i)
-                          for d, i in zip(more, at, strict=True)]  # fmt: skip
-                own = f"{name}[{','.join(labels)}]" if labels else str(name)
-                columns[own] = variable.isel(dict(zip(more, at, strict=True)))
-        frame = table.drop_vars(list(table.data_vars)).assign(columns)
-        made = frame.to_dataframe() if first else frame.expand_dims("row").to_dataframe()
-        made.attrs["units"] = {name: str(frame[name].attrs.get("units", "")) for name in made.columns}
-        return made
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the result to a NetCDF file, whole or not at all; returns the path."""
@@ -310,13 +287,12 @@ class Result:
             if dim in sizes and np.shape(getattr(self, name)) == (sizes[dim],):
                 about = known[name].about if name in known else {}
                 found[dim] = Labels((dim,), np.asarray(getattr(self, name)), about)
-        system: Any = self.inputs.get("system") if isinstance(self.inputs, Mapping) else None
-        if {"dof", "contact", "state"} & set(sizes):
-            system = system.system() if hasattr(system, "system") else system
+        system = self.kept_system() if {"dof", "contact", "state"} & set(sizes) else None
         dofs = tuple(getattr(system, "names", ()))
         names = {"dof": dofs, "contact": getattr(system, "contact_names", ()),
                  "state": (*dofs, *(f"{name}'" for name in dofs)), "end": ("low", "high"),
-                 "goal": tuple(each["name"] for each in self.settings.get("goals", ()))}  # fmt: skip
+                 **{which: tuple(each["name"] for each in self.settings.get(f"{which}s", ()))
+                    for which in ("goal", "constraint")}}  # fmt: skip
         for dim in set(sizes) - set(found) - set(known):
             words = names.get(dim, ())
             for attribute in NAMED_BY.get(dim, ()):
@@ -333,23 +309,6 @@ def _moved(name: str) -> "type[Result] | None":
     within = [kind for at, kind in Result.kinds.items() if at.startswith(f"{room}.")]
     alike = [kind for kind in within if kind.__name__ == last.rpartition(".")[2]]
     return alike[0] if len(alike) == 1 else None
-
-
-def _told(field: dataclasses.Field[Any], value: Any) -> str:
-    """One array in a line: a number with its unit, or shape, range and unit."""
-    unit, array = field.metadata["unit"], np.asarray(value)
-    behind = "" if unit in ("", "1", "-") else f" {unit}"
-    if array.ndim == 0:
-        return f"{array.item():.6g}{behind}" if array.dtype.kind in "fc" else f"{array.item()}{behind}"
-    if array.dtype.kind in "OUSb" or array.size == 0:
-        names, counts = np.unique(array.astype(str), return_counts=True)
-        listed = ", ".join(f"{count} {name}" for name, count in list(zip(names, counts, strict=True))[:4])
-        return f"{array.shape} {listed}{', ...' if len(names) > 4 else ''}" if array.size else f"{array.shape} empty"
-    numbers = np.abs(array) if array.dtype.kind == "c" else array
-    known = numbers[np.isfinite(numbers)]
-    span = f"{known.min():.4g} to {known.max():.4g}{behind}" if known.size else "nothing finite"
-    unknown = f", {numbers.size - known.size} not finite" if 0 < known.size < numbers.size else ""
-    return f"{array.shape} {'magnitudes ' if array.dtype.kind == 'c' else ''}{span}{unknown}"
 
 
 def _folded(value: Any) -> Any:
@@ -381,10 +340,6 @@ def _tuples(kind: type[Result], plain: dict[str, Any]) -> dict[str, Any]:
 
 def _said(unit: str, meaning: str) -> dict[str, str]:
     return {"units": unit, "long_name": meaning}
-
-
-def _about(field: dataclasses.Field[Any]) -> tuple[str, str]:
-    return field.metadata["unit"], field.metadata["meaning"]
 
 
 def _quantities(kind: type[Result]) -> list[dataclasses.Field[Any]]:

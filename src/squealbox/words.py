@@ -105,4 +105,33 @@ def plain_unit(unit: str) -> str:
 
 def quantity_label(name: str, unit: str) -> str:
     """``displacement [mm]``; a pure number is marked ``[-]``."""
-    return f"{name} [{unit or '-'}]"
+    return f"{name} [{plain_unit(unit) or '-'}]"
+
+
+def as_read(values: Any, unit: str) -> tuple[Any, str]:
+    """Values of a parameter and their unit as people read them: angles in degrees, all else in SI."""
+    return (np.rad2deg(values), "deg") if unit == "rad" else (values, plain_unit(unit))
+
+
+def unit_at(system: Any, dof: int | str, *, moves: bool = False) -> str:
+    """The unit of a degree of freedom of a system, m or rad; of its velocity where it `moves`."""
+    names, units = getattr(system, "names", ()), getattr(system, "units", ())
+    place = list(names).index(dof) if isinstance(dof, str) and dof in names else dof
+    unit = units[place] if isinstance(place, (int, np.integer)) and place < len(units) else "m"
+    return f"{unit}/s" if moves else unit
+
+
+def array_told(values: Any, unit: str) -> str:
+    """An array in a line: a number with its unit, or shape, range and unit; of words, how many of which."""
+    array, behind = np.asarray(values), f" {plain_unit(unit)}".rstrip()
+    if array.ndim == 0:
+        return f"{array.item():.6g}{behind}" if array.dtype.kind in "fc" else f"{array.item()}{behind}"
+    if array.dtype.kind in "OUSb" or array.size == 0:
+        names, counts = np.unique(array.astype(str), return_counts=True)
+        listed = ", ".join(f"{count} {name}" for name, count in list(zip(names, counts, strict=True))[:4])
+        return f"{array.shape} {listed}{', ...' if len(names) > 4 else ''}" if array.size else f"{array.shape} empty"
+    numbers = np.abs(array) if array.dtype.kind == "c" else array
+    known = numbers[np.isfinite(numbers)]
+    span = f"{known.min():.4g} to {known.max():.4g}{behind}" if known.size else "nothing finite"
+    unknown = f", {numbers.size - known.size} not finite" if 0 < known.size < numbers.size else ""
+    return f"{array.shape} {'magnitudes ' if array.dtype.kind == 'c' else ''}{span}{unknown}"

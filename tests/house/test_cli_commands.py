@@ -291,7 +291,8 @@ def test_cycle(said, brake, tmp_path):
     code, out, err = said("cycle", brake, "--set", "friction.static=0.45", "--out", tmp_path / "cycle")
     assert (code, err) == (0, "")
     assert "stable cycle" in out
-    assert sorted(path.name for path in (tmp_path / "cycle").iterdir()) == ["cycle.nc", "cycle.png", "cycle.svg"]
+    names = ["cycle.csv", "cycle.nc", "cycle.png", "cycle.svg"]
+    assert sorted(path.name for path in (tmp_path / "cycle").iterdir()) == names
     assert said("cycle", brake, "--set", "friction.static=0.1")[0] != 0
 
 

@@ -74,7 +74,9 @@ def test_compare_leaves_figures_and_both_spectrograms(stop, said):
     code, _, err = said("compare", str(stop / "brake.toml"), "--out", str(stop / "beside"))
     assert (code, err) == (0, "")
     names = {path.name for path in (stop / "beside").iterdir()}
-    assert names == {f"{name}.{kind}" for name in ("modes", "motion", "spectrograms") for kind in ("png", "svg")}
+    assert names == {f"{name}.{kind}" for name in ("modes", "motion") for kind in ("nc", "csv", "png", "svg")} | {
+        "spectrograms.png", "spectrograms.svg"
+    }  # fmt: skip
     found = read_file(stop / "brake.toml")
     sound = read_recording(stop / "stop.csv", unit="Pa")
     motion = found.simulate.run_closely(found.design.system())

@@ -41,7 +41,8 @@ def test_a_whole_session(tmp_path, capsys, monkeypatch):
     assert "study: finished" in capsys.readouterr().out
     assert main(["show", "study", "--of", "largest_growth_rate", "--out", "figures"]) == 0
     assert "and 9862 more" in capsys.readouterr().out
-    assert sorted(path.name for path in (tmp_path / "figures").iterdir()) == ["sweep.csv", "sweep.png", "sweep.svg"]
+    names = ["sweep.csv", "sweep.nc", "sweep.png", "sweep.svg"]
+    assert sorted(path.name for path in (tmp_path / "figures").iterdir()) == names
     for kind in ("csv", "nc", "mat"):
         assert main(["export", "study", "--format", kind]) == 0
     table = open_sweep("study")

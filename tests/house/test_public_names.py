@@ -17,7 +17,7 @@ STUB = ast.parse((PACKAGE / "__init__.pyi").read_text())
 STORY = [
     "friction", "schedules", "system", "contacts", "designs", "files", "fit", "fe", "stability", "transient",
     "continuation", "limit_cycles", "studies", "quantities", "countermeasures", "loops", "control", "remedies",
-    "signals", "calibration", "plots", "result", "parameters",
+    "signals", "calibration", "plots", "writing", "result", "parameters",
 ]  # fmt: skip
 
 

@@ -2,14 +2,14 @@
 
 from pathlib import Path
 
-from squealbox.cli.answers import show
+from squealbox.cli.answers import show, written
 from squealbox.cli.inputs import NOTHING_SAID, Said, folder, keywords, number, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import UsageError
-from squealbox.cli.tables import kept, written
 from squealbox.countermeasures import AbsorberSettings, best_absorber
 from squealbox.files import write_design
 from squealbox.waiting import Progress
+from squealbox.writing import write
 
 ABOUT = {"absorber": "the best tuned mass: frequency, damping, how narrow it is"}
 
@@ -34,7 +34,7 @@ def absorber(
     mass
         of the absorber, with or without a unit: "50 g"
     out
-        folder for the detuning map and the brake with its absorber as a design file
+        folder for the detuning map, its numbers and the brake with its absorber as a design file
     """
     found = read(file, asked)
     settings = how.over(AbsorberSettings())
@@ -47,5 +47,5 @@ def absorber(
         best = best_absorber(found.design, on, kilograms, scatter=scatter, **keywords(settings))
     show(f"{found.design.title}, {file}", best)
     if out is not None:
-        paths = kept(best, out / "absorber", title=found.path.name)
+        paths = write(best, out, "absorber", title=found.path.name)
         print(written(*paths, write_design(best.design, out / "with_absorber.toml")))

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import redirect_stdout
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -73,6 +74,11 @@ def show(title: str, *results: Any) -> None:
 def keep(*results: Any) -> None:
     """Keep results for scripts that have been printed in other words."""
     manner().results.extend(each for each in results if isinstance(each, Result))
+
+
+def written(*paths: Path) -> str:
+    """A line that says which files there are now."""
+    return f"written to {paths[0].parent}: {', '.join(path.name for path in paths)}"
 
 
 def plain(result: Result) -> dict[str, Any]:

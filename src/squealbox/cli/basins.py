@@ -3,19 +3,17 @@
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
 from cyclopts import Parameter
 
-from squealbox.cli.answers import show
+from squealbox.cli.answers import show, written
 from squealbox.cli.inputs import NOTHING_SAID, Said, folder, in_motion, keywords, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.states import States, box_from
-from squealbox.cli.tables import kept, written
-from squealbox.limit_cycles import Basin, BasinSettings, basin, dangerous_push
+from squealbox.limit_cycles import BasinSettings, basin, dangerous_push
 from squealbox.limit_cycles.attractors.basins import half_widths
-from squealbox.limit_cycles.attractors.sections import state_names
 from squealbox.waiting import Progress
+from squealbox.writing import write
 
 ABOUT = {"basin_": "which starts lead to which motion: shares, a picture, the smallest push"}
 
@@ -75,15 +73,4 @@ def basin_(
 
         figure = plots.basin_picture(result, push=smallest, title=found.path.name)
         push_file = [] if smallest is None else [smallest.save(out / "push.nc")]
-        print(written(*kept(result, out / "basin", _columns(result), figure), *push_file))
-
-
-def _columns(result: Basin) -> dict[str, object]:
-    """One row for each start: the state, what it leads to, and how long it ran."""
-    names = state_names(result.system)
-    units = [*result.system.units, *(f"{unit}/s" for unit in result.system.units)]
-    columns: dict[str, object] = {
-        f"{name} [{unit}]": result.start[:, i] for i, (name, unit) in enumerate(zip(names, units, strict=True))
-    }
-    kinds = np.array([*result.kind, "failed", "not settled"], dtype=str)
-    return {**columns, "attractor": result.attractor, "kind": kinds[result.attractor], "time [s]": result.time}
+        print(written(*write(result, out, "basin", figure=figure), *push_file))

@@ -5,11 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.cli.answers import keep
+from squealbox.cli.answers import keep, written
 from squealbox.cli.inputs import AS_FILED, NOTHING_SAID, OneVaried, Said, folder, in_motion, read, readable
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed
-from squealbox.cli.tables import write_csv, written
 from squealbox.family import ParameterAxis
 from squealbox.limit_cycles import (
     Branch,
@@ -28,6 +27,7 @@ from squealbox.limit_cycles.branches.isolated import lies_on
 from squealbox.matrices import liveliest
 from squealbox.result import Outcome
 from squealbox.waiting import Progress
+from squealbox.writing import write_table
 
 ABOUT = {"branch": "limit cycles over a range of a parameter: stable, unstable, folds, onset"}
 
@@ -156,35 +156,19 @@ def _files(
     name = f"{varied.name} [{unit or '-'}]"
     system = several[0].inputs["system"]
     dof = liveliest(np.max(np.concatenate([one.amplitude for one in several]), axis=0), system.units)
+    tables = [one.table() for one in several]
+    table = {"branch": np.repeat(np.arange(1, len(several) + 1), [len(one.value) for one in several])}
+    table |= {head: np.concatenate([each[head] for each in tables]) for head in tables[0]}
     labels = [f"branch {i}" for i in range(1, len(several) + 1)] if len(several) > 1 else []
     title = f"{title}, {several[0].inputs['system'].names[dof]}"
     figure = plots.branch_diagram(several, dof=dof, hopf=born, labels=labels, name=name, scale=1.0 / scale,
                                   estimates=curves, title=title)  # fmt: skip
-    paths = [*plots.save(figure, out / "branch"), write_csv(out / "branch.csv", _columns(several, name, scale))]
+    paths = [*plots.save(figure, out / "branch"), write_table(out / "branch.csv", table)]
     special: dict[str, list[Any]] = {"branch": [], "kind": [], name: [], "uncertainty": []}
     for i, one in enumerate(several, 1):
         special["branch"] += [i] * len(one.special_kind)
         special["kind"] += [str(kind) for kind in one.special_kind]
         special[name] += list(one.special_value * scale)
         special["uncertainty"] += list(one.special_uncertainty * scale)
-    paths.append(write_csv(out / "special.csv", special))
+    paths.append(write_table(out / "special.csv", special))
     return paths + [one.save(out / f"branch_{i}.nc") for i, one in enumerate(several, 1)]
-
-
-def _columns(several: tuple[Branch, ...], name: str, scale: float) -> dict[str, Any]:
-    def column(part: Any) -> Any:
-        return np.concatenate([part(one) for one in several])
-
-    columns = {
-        "branch": np.repeat(np.arange(1, len(several) + 1), [len(one.value) for one in several]),
-        name: column(lambda one: one.value * scale),
-        "frequency [Hz]": column(lambda one: 1.0 / one.period),
-        "period [s]": column(lambda one: one.period),
-        "stable": column(lambda one: one.stable),
-        "largest multiplier [-]": column(lambda one: np.max(np.abs(one.multipliers[:, 1:]), axis=1)),
-        "longest sticking [s]": column(lambda one: one.sticking),
-    }
-    system = several[0].inputs["system"]
-    for i, (dof, unit) in enumerate(zip(system.names, system.units, strict=True)):
-        columns[f"amplitude {dof} [{unit}]"] = column(lambda one, i=i: one.amplitude[:, i])
-    return columns

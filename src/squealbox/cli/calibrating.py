@@ -4,17 +4,17 @@ from pathlib import Path
 
 from squealbox.calibration import CalibrateSettings, Comparison, compare, from_events, read_mode_table
 from squealbox.calibration import calibrate as fitted
-from squealbox.cli.answers import show
+from squealbox.cli.answers import show, written
 from squealbox.cli.inputs import NOTHING_SAID, Said, folder, keywords, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import written
 from squealbox.files import DesignFile, write_design
 from squealbox.files.measurements import Recorded
 from squealbox.signals import EventSettings, Recording, SignalError, SquealEvents, squeal_events
 from squealbox.signals.events import BAND
 from squealbox.stability import ComplexModes, complex_modes
 from squealbox.waiting import Progress
+from squealbox.writing import write
 
 ABOUT = {
     "calibrate": "parameters fitted to what was measured, with what stays open",
@@ -78,7 +78,7 @@ def compare_(
     modes
         table (.csv) or universal file of the modes of a test or another code, to compare with those of the design
     out
-        folder for a figure of each comparison and the spectrogram of the motion beside that of the recording
+        folder for each comparison, with a figure, and the spectrogram of the motion beside that of the recording
     """
     found = read(file, asked)
     figures: dict[str, Comparison] = {}
@@ -102,10 +102,11 @@ def compare_(
     if out is not None:
         from squealbox import plots
 
-        drawn = {name: plots.plot(result) for name, result in figures.items()}
+        paths = [path for name, result in figures.items() for path in write(result, out, name)]
         if "motion" in figures:
-            drawn["spectrograms"] = plots.spectrograms_beside(motion, sound, events, channel=channel)
-        print(written(*(path for name, figure in drawn.items() for path in plots.save(figure, out / name))))
+            beside = plots.spectrograms_beside(motion, sound, events, channel=channel)
+            paths += plots.save(beside, out / "spectrograms")
+        print(written(*paths))
 
 
 def _heard(

@@ -5,16 +5,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.cli.answers import show
+from squealbox.cli.answers import show, written
 from squealbox.cli.inputs import NOTHING_SAID, Said, folder, in_motion, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.states import States, start_from
-from squealbox.cli.tables import kept, written
 from squealbox.limit_cycles import Cycle, CycleSettings, lyapunov_exponents, shooting
 from squealbox.limit_cycles.attractors.exponents import LOST
 from squealbox.stability import complex_modes
 from squealbox.transient import simulate
+from squealbox.writing import write
 
 ABOUT = {"cycle": "what the motion settles to: the limit cycle, its stability, figure and data"}
 
@@ -43,7 +43,7 @@ def cycle(
         of the run that leads to the cycle: rest, sliding, or states such as x=1mm "y'=0.2 m/s" (a prime is a velocity),
         the others as in steady sliding; left out, along the most unstable mode, else from rest
     out
-        folder for cycle.nc, cycle.png and cycle.svg
+        folder for cycle.nc, cycle.csv and the figure
     """
     settings = how.over(CycleSettings())
     found = in_motion(read(file, asked))
@@ -62,7 +62,7 @@ def cycle(
     if exponents:
         print(_beside_multipliers(result, exponents))
     if out is not None:
-        print(written(*kept(result, out / "cycle")))
+        print(written(*write(result, out, "cycle")))
 
 
 def _beside_multipliers(cycle: Cycle, periods: int) -> str:

@@ -1,12 +1,12 @@
 """`squealbox diagram`: a bifurcation diagram by brute force, ensembles over a parameter, with a Poincare section."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from cyclopts import Parameter
 
-from squealbox.cli.answers import keep
+from squealbox.cli.answers import keep, written
 from squealbox.cli.branches import all_branches
 from squealbox.cli.inputs import (
     AS_FILED,
@@ -22,12 +22,13 @@ from squealbox.cli.inputs import (
 )
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import kept, write_csv, written
 from squealbox.family import ParameterAxis
 from squealbox.limit_cycles import BifurcationDiagram, Branch, DiagramSettings, Section, bifurcation_diagram
 from squealbox.limit_cycles.attractors.settling import KINDS
 from squealbox.parameters import known_names
 from squealbox.waiting import Progress
+from squealbox.words import quantity, unit_at
+from squealbox.writing import write, write_table
 
 ABOUT = {"diagram": "what transients settle to over a parameter, with a Poincare section"}
 
@@ -125,9 +126,9 @@ def _said(result: BifurcationDiagram, design: "Design", varied: ParameterAxis) -
         )
         moves = result.stretches((kind == 2) | (kind == 0), shown)
         where = f"; vibrates {moves}" if moves else ""
-        units = _units(result)
-        about = zip(units.items(), size.T, strict=True)
-        most = ", ".join(f"{each} {np.nanmax(a):.3g} {unit}" for (each, unit), a in about)
+        about = [(each, quantity(np.nanmax(a), unit_at(result.kept_system(), each), 3))
+                 for each, a in zip(result.dofs, size.T, strict=True)]  # fmt: skip
+        most = ", ".join(f"{each} {largest}" for each, largest in about)
         lines.append(f"{sweep}: {counts}{where}; largest amplitude {most}")
     if np.any(result.coexist):
         over = result.stretches(result.coexist, shown)
@@ -135,13 +136,6 @@ def _said(result: BifurcationDiagram, design: "Design", varied: ParameterAxis) -
     if not result.outcome.ok:
         lines.append(f"Note: {result.outcome.message}")
     return result.warned(lines)
-
-
-def _units(result: BifurcationDiagram) -> dict[str, str]:
-    """The unit of each degree of freedom."""
-    from squealbox.plots.facts import unit_at
-
-    return {name: unit_at(result.inputs.get("system"), name) for name in result.dofs}
 
 
 def _files(
@@ -159,17 +153,8 @@ def _files(
     name = f"{varied.name} [{unit or '-'}]"
     dof = result.dofs.index(result.read.rstrip("'"))
     figure = plots.amplitude_and_section(result, branches=several, dof=dof, name=name, scale=1.0 / scale, title=title)
-    values, units = result.value * scale, _units(result)
-    rows: dict[str, Any] = {"sweep": np.repeat(np.array(result.sweeps), len(values)),
-                            name: np.tile(values, len(result.sweeps)),
-                            "kind": np.array([KINDS[int(code)] for code in result.kind.ravel()])}  # fmt: skip
-    for i, each in enumerate(result.dofs):
-        rows |= {f"amplitude {each} [{units[each]}]": result.amplitude[..., i].ravel(),
-                 f"least {each} [{units[each]}]": result.lowest[..., i].ravel(),
-                 f"largest {each} [{units[each]}]": result.highest[..., i].ravel(),
-                 f"frequency of {each} [Hz]": result.frequency[..., i].ravel()}  # fmt: skip
     sweep, point, _ = held = np.nonzero(np.isfinite(result.crossings))
-    read_unit = units[result.read.rstrip("'")] + ("" if result.read in result.dofs else "/s")
-    passed = {"sweep": np.array(result.sweeps)[sweep], name: values[point],
+    read_unit = unit_at(result.kept_system(), result.read.rstrip("'"), moves=result.read not in result.dofs)
+    passed = {"sweep": np.array(result.sweeps)[sweep], name: result.value[point] * scale,
               f"{result.section} [{read_unit}]": result.crossings[held]}  # fmt: skip
-    return [*kept(result, out / "diagram", rows, figure), write_csv(out / "section.csv", passed)]
+    return [*write(result, out, "diagram", figure=figure), write_table(out / "section.csv", passed)]

@@ -4,13 +4,14 @@ from pathlib import Path
 
 import numpy as np
 
+from squealbox.cli.answers import written
 from squealbox.cli.inputs import NOTHING_SAID, Said, folder, number, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import UsageError
-from squealbox.cli.tables import write_csv, written
 from squealbox.countermeasures import Dithered, DitherSettings
 from squealbox.parameters import with_cautions
 from squealbox.stability import complex_modes
+from squealbox.writing import write_table
 
 ABOUT = {"dither": "fast dither of the sliding: growth rate and friction left over its amplitude"}
 
@@ -50,4 +51,4 @@ def dither(
     print(with_cautions([], *said))
     if out is not None:
         columns = {"velocity [m/s]": amplitudes, "growth rate [1/s]": growth, "friction left [-]": left}
-        print(written(write_csv(out / "dither.csv", columns)))
+        print(written(write_table(out / "dither.csv", columns)))

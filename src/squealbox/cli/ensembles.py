@@ -5,17 +5,17 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.cli.answers import keep
+from squealbox.cli.answers import keep, written
 from squealbox.cli.inputs import folder, in_motion, number, read
 from squealbox.cli.maps import AS_FILED, Plane, TwoVaried
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import kept, written
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.matrices import liveliest
 from squealbox.system import as_system
 from squealbox.transient import Ensemble, MotionSettings, simulate_ensemble, usual_duration
 from squealbox.waiting import Progress
+from squealbox.writing import write
 
 ABOUT = {"ensemble": "transients over two parameters: amplitude and frequency of each"}
 
@@ -108,11 +108,5 @@ def _files(many: Ensemble, plane: Plane, title: str, out: Path) -> list[Path]:
     figure = plots.amplitude_map(
         plane.x, plane.y, amplitude.T, **plane.labels, title=title, unit=unit, name=f"amplitude, {which}"
     )
-    columns = {
-        **plane.columns(np.repeat(plane.x, len(plane.y)), np.tile(plane.y, len(plane.x))),
-        f"amplitude [{unit}]": amplitude.ravel(),
-        "frequency [Hz]": frequency.ravel(),
-        "events": many.events.ravel(),
-        "ended": many.ended.ravel(),
-    }
-    return kept(many, out / "ensemble", columns, figure)
+    largest = {f"amplitude [{unit}]": amplitude.ravel(), "frequency [Hz]": frequency.ravel()}
+    return write(many, out, "ensemble", table={**many.table(), **largest}, figure=figure)

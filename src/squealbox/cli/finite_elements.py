@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.cli.answers import written
 from squealbox.cli.inputs import small
-from squealbox.cli.tables import write_csv, written
 from squealbox.family import ParameterAxis
 from squealbox.fe.assembled import AssembledBrake
 from squealbox.fe.meshed import MeshedBrake
@@ -17,6 +17,7 @@ from squealbox.stability import complex_modes, mesh_doubt
 from squealbox.stability.mode_table import mode_table, table_text
 from squealbox.stability.second_mesh import ONE_MESH
 from squealbox.waiting import Progress
+from squealbox.writing import write_table
 
 FRICTION = "friction.static"
 POINTS = 61
@@ -39,7 +40,7 @@ def print_more(
             print(f"Doubt: {doubt}.")
     if out is None:
         return
-    paths = [spectrum.save(out / "modes.nc"), write_csv(out / "modes.csv", table)]
+    paths = [spectrum.save(out / "modes.nc"), write_table(out / "modes.csv", table)]
     paths += [] if second is None else [second.save(out / "second_mesh.nc")]
     paths += _shapes(found, spectrum, out) + _coalescence(found, band, out)
     print(written(*paths))

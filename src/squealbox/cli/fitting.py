@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from squealbox.cli.answers import show
+from squealbox.cli.answers import show, written
 from squealbox.cli.inputs import folder
 from squealbox.cli.running import ComputationFailed
-from squealbox.cli.tables import kept, written
 from squealbox.files import read_points
 from squealbox.fit import fit_friction
+from squealbox.writing import write
 
 ABOUT = {"fit": "measured friction coefficients (CSV) to a friction law, with confidence bands"}
 
@@ -38,7 +38,4 @@ def fit(file: Path, *, law: tuple[str, ...] = (), level: float = 0.95, out: Path
     numbers = ", ".join(f"{name} = {value:.6g}" for name, _, value in best.leaves() if value is not None)
     print(f'in a design file: friction = {{ law = "{found.names[found.best]}", {numbers} }}')
     if out is not None:
-        row = found.best
-        columns = {"speed [m/s]": found.curve_speeds, "mu [-]": found.curves[row]}
-        columns |= {"low [-]": found.low[row], "high [-]": found.high[row]}
-        print(written(*kept(found, out / "fit", columns)))
+        print(written(*write(found, out, "fit")))

@@ -17,9 +17,12 @@ from squealbox.family import ParameterAxis
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files import DesignFile, read_file
 from squealbox.parameters import DataSheet, Parameter, ParameterError, field_type
+from squealbox.result import ResultFileError
 from squealbox.transient.simulate import TIME_STEPPING
 from squealbox.units import UnitError, in_si
 from squealbox.waiting import Progress
+from squealbox.words import as_read
+from squealbox.writing import made
 
 Sheet = TypeVar("Sheet", bound=DataSheet)
 Filed = TypeVar("Filed", bound=DataSheet)
@@ -216,10 +219,7 @@ def axis(
 
 def readable(design: Design, varied: ParameterAxis, values: Any) -> tuple[Any, str]:
     """Values of a parameter in the unit people read it in, and that unit: angles in degrees, the rest in SI."""
-    unit = design.scalar(varied.name).unit
-    if unit == "rad":
-        return np.rad2deg(values), "deg"
-    return values, "" if unit == "-" else unit
+    return as_read(values, design.scalar(varied.name).unit)
 
 
 def folder(path: Path | None, *stems: str) -> None:
@@ -227,15 +227,9 @@ def folder(path: Path | None, *stems: str) -> None:
     if path is None:
         return
     try:
-        path.mkdir(parents=True, exist_ok=True)
-    except FileExistsError as error:
-        raise UsageError(
-            f"--out {path}: a file of that name is there, expected a folder or a name for a new one"
-        ) from error
-    except OSError as error:
-        raise UsageError(
-            f"--out {path}: no folder can be made there ({error.strerror}), expected one to write in"
-        ) from error
+        made(path)
+    except ResultFileError as error:
+        raise UsageError(f"--out {error}") from error
     free(*(each for stem in stems for part in (".*", "_*") for each in sorted(path.glob(f"{stem}{part}"))))
 
 

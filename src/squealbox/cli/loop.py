@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from squealbox.cli.answers import show
+from squealbox.cli.answers import show, written
 from squealbox.cli.inputs import folder, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import kept, written
 from squealbox.control import closed_loop
+from squealbox.writing import write
 
 ABOUT = {"loop": "poles and margins of a brake with loops: gain, phase, delay, sampling"}
 
@@ -36,9 +36,8 @@ def loop(
     if out is not None:
         from squealbox import plots
 
-        columns = {"growth rate [1/s]": closed.poles.real, "frequency [Hz]": closed.frequency}
         title = found.path.name
-        paths = kept(closed, out / "poles", columns, title=title)
+        paths = write(closed, out, "poles", title=title)
         paths += plots.save(plots.loop_locus(closed, title=title), out / "root_locus")
         paths += plots.save(plots.nyquist_curve(closed, title=title), out / "nyquist")
         print(written(*paths))

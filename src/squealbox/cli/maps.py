@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from cyclopts import Parameter
 
-from squealbox.cli.answers import keep
+from squealbox.cli.answers import keep, written
 from squealbox.cli.inputs import Vary, axis, folder, read, readable, small, spans
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import kept, write_csv, written
 from squealbox.family import ParameterAxis
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability import Boundary, StabilityMap, map_boundary, stability_boundary, stability_map
 from squealbox.waiting import Progress
+from squealbox.writing import write, write_table
 
 ABOUT = {"map_": "stability over two parameters, with the boundary as curves"}
 
@@ -108,7 +108,8 @@ def map_(
     print(f"{found.design.title}, {file}\n{_map_summary(grid, plane)}\n{_edge_summary(edge, plane)}")
     if out is not None:
         figure = _drawn(grid, edge, plane, show, found.path.name)
-        print(written(*_files(grid, edge, plane, figure, out)))
+        boundary = write_table(out / "boundary.csv", edge.table())
+        print(written(*write(grid, out, "map", figure=figure), boundary))
 
 
 class Plane:
@@ -132,10 +133,6 @@ class Plane:
         values = [readable(self.design, each, value)[0] for each, value in zip(self.axes, point, strict=True)]
         words = [f"{n} = {v:.5g} {u}".rstrip() for n, v, u in zip(self.names, values, self.units, strict=True)]
         return ", ".join(words)
-
-    def columns(self, x: Any, y: Any) -> dict[str, Any]:
-        """The first two columns of a table."""
-        return {f"{n} [{u or '-'}]": v for n, u, v in zip(self.names, self.units, (x, y), strict=True)}
 
 
 def _split(span: tuple[str, str, str] | None) -> tuple[str | None, tuple[str, str] | None]:
@@ -185,20 +182,3 @@ def _drawn(grid: StabilityMap, edge: Boundary, plane: Plane, show: str, title: s
         return plots.mechanism_map(grid, boundary=edge, scales=scales, title=title)
     curves = [points * plane.factors for points in edge.curves]
     return plots.stability_map(plane.x, plane.y, grid.growth_rate.T, **plane.labels, curves=curves, title=title)
-
-
-def _files(grid: StabilityMap, edge: Boundary, plane: Plane, figure: "Figure", out: Path) -> list[Path]:
-    columns = {
-        **plane.columns(np.repeat(plane.x, len(plane.y)), np.tile(plane.y, len(plane.x))),
-        "growth rate [1/s]": grid.growth_rate.ravel(),
-        "frequency [Hz]": grid.frequency.ravel(),
-        "growing modes": grid.unstable_modes.ravel(),
-        "mechanism": np.array([*grid.mechanism_names, "none"])[grid.mechanism.ravel()],
-    }
-    along = {
-        "piece": edge.curve + 1,
-        **plane.columns(edge.x * plane.factors[0], edge.y * plane.factors[1]),
-        "growth rate [1/s]": edge.growth_rate,
-        "frequency [Hz]": edge.frequency,
-    }
-    return [*kept(grid, out / "map", columns, figure), write_csv(out / "boundary.csv", along)]

@@ -1,20 +1,16 @@
 """`squealbox optimise`: the best design within bounds, one or a front of them."""
 
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from squealbox.cli.answers import show
+from squealbox.cli.answers import show, written
 from squealbox.cli.inputs import NOTHING_SAID, Said, folder, keywords, read, small
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import kept, write_csv, written
-from squealbox.family import unit_of
 from squealbox.files import write_design
-from squealbox.studies import Optimum, SearchSettings
+from squealbox.studies import SearchSettings
 from squealbox.studies import optimise as optimised
 from squealbox.waiting import Progress
+from squealbox.writing import write
 
 ABOUT = {"optimise": "the best design within bounds: before and after, or a Pareto front"}
 
@@ -56,18 +52,7 @@ def optimise(
         )  # fmt: skip
     show(f"{found.design.title}, {file}", result)
     if out is not None:
-        print(written(*_files(result, found.path.name, out)))
+        best = [write_design(result.design, out / "optimum.toml")] if result.outcome.ok else []
+        print(written(*best, *write(result, out, "optimum", title=found.path.name)))
     if not result.outcome.ok:
         raise ComputationFailed(result.outcome)
-
-
-def _files(found: Optimum, title: str, out: Path) -> list[Path]:
-    design = found.inputs["design"]
-    columns: dict[str, Any] = {"best": np.arange(len(found.values)) == found.best}
-    columns |= {f"{n} [{unit_of(design, n) or '-'}]": found.values[:, i] for i, n in enumerate(found.names)}
-    for kind in ("goals", "constraints"):
-        for i, about in enumerate(found.settings[kind]):
-            columns[f"{about['name']} [{about['unit'] or '-'}]"] = getattr(found, kind)[:, i]
-    if not found.outcome.ok:
-        return [found.save(out / "optimum.nc"), write_csv(out / "optimum.csv", columns)]
-    return [write_design(found.design, out / "optimum.toml"), *kept(found, out / "optimum", columns, title=title)]

@@ -4,16 +4,16 @@ from pathlib import Path
 
 import numpy as np
 
-from squealbox.cli.answers import keep
+from squealbox.cli.answers import keep, written
 from squealbox.cli.inputs import NOTHING_SAID, Said, folder, keywords, read, small
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed
-from squealbox.cli.tables import kept, written
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.files import NotWritable, cure_text
 from squealbox.remedies import Remedies, SilenceSettings
 from squealbox.remedies import silence as silenced
 from squealbox.waiting import Progress
+from squealbox.writing import write
 
 ABOUT = {"silence": "what would silence this brake: cures ranked, with dose, cost and cautions"}
 
@@ -53,9 +53,8 @@ def silence(
         print(f"{table.name[0]}: {file.name} {where}\n\n{lines[0]}")
     keep(table)
     if out is not None:
-        columns = {name: np.array(column) for name, *column in zip(table.heads(), *table.rows(), strict=True)}
-        columns["python"], columns["toml"] = table.line, np.array(lines)
-        print(written(*kept(table, out / "silence", columns, title=found.path.name)))
+        columns = {**table.table(), "toml": np.array(lines)}
+        print(written(*write(table, out, "silence", table=columns, title=found.path.name)))
     if not table.outcome.ok:
         raise ComputationFailed(table.outcome)
 

@@ -1,11 +1,11 @@
 """`squealbox modes` and `onset`: is steady sliding stable, and from where on is it not?"""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealbox.cli.answers import keep, show
+from squealbox.cli.answers import keep, show, written
 from squealbox.cli.finite_elements import print_more
 from squealbox.cli.inputs import (
     AS_FILED,
@@ -20,7 +20,6 @@ from squealbox.cli.inputs import (
 )
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import kept, written
 from squealbox.family import ParameterAxis
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability import (
@@ -34,6 +33,8 @@ from squealbox.stability import (
     mode_energy,
 )
 from squealbox.waiting import Progress
+from squealbox.words import quantity_label
+from squealbox.writing import write
 
 ABOUT = {
     "modes": "is steady sliding stable? complex eigenvalues of a design file",
@@ -132,22 +133,11 @@ def onset(
         print(written(*_onset_files(found, varied, crossings, out)))
 
 
-def _mode_columns(spectrum: ComplexModes) -> dict[str, Any]:
-    half = spectrum.eigenvalues.shape[-1] // 2
-    return {
-        "mode": np.arange(1, half + 1),
-        "frequency [Hz]": spectrum.frequency[:half],
-        "growth rate [1/s]": spectrum.growth_rate[:half],
-        "damping ratio [-]": spectrum.damping_ratio[:half],
-        "angular frequency [rad/s]": spectrum.angular_frequency[:half],
-    }
-
-
 def _mode_files(spectrum: ComplexModes, found: "DesignFile", time: float, out: Path) -> list[Path]:
     """The spectrum as data, table and figure, and the energy of the worst mode where it oscillates."""
     from squealbox import plots
 
-    paths = kept(spectrum, out / "modes", _mode_columns(spectrum), title=found.path.name)
+    paths = write(spectrum, out, "modes", title=found.path.name)
     if spectrum.most_unstable.angular_frequency > 0.0:
         fed = plots.plot(mode_energy(found.design, spectrum.most_unstable, time), title=found.path.name)
         paths += plots.save(fed, out / "mode_energy")
@@ -176,8 +166,5 @@ def _onset_files(found: "DesignFile", varied: ParameterAxis, crossings: Critical
     spectra = complex_modes(found.design.replace({varied.name: np.sort(points)}))
     values, unit = readable(found.design, varied, np.sort(points))
     figure = plots.coalescence(values, spectra, name=varied.name, unit=unit, title=found.path.name)
-    half = spectra.eigenvalues.shape[-1] // 2
-    columns = {f"{varied.name} [{unit or '-'}]": values}
-    columns |= {f"frequency {i + 1} [Hz]": spectra.frequency[:, i] for i in range(half)}
-    columns |= {f"growth rate {i + 1} [1/s]": spectra.growth_rate[:, i] for i in range(half)}
-    return kept(crossings, out / "onset", columns, figure)
+    table = {quantity_label(varied.name, unit): values, **spectra.table()}
+    return write(crossings, out, "onset", table=table, figure=figure)

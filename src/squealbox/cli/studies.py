@@ -12,12 +12,12 @@ from squealbox.cli.inputs import NOTHING_SAID, Said, changed, folder, free, in_m
 from squealbox.cli.options import AllowCode, Changes
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.study_analyses import UNITS, analysis_of
-from squealbox.cli.tables import write_csv, written
 from squealbox.family import ParameterAxis
 from squealbox.files import read_study
 from squealbox.studies import Space, Store, WorkerSettings, open_sweep, sweep
 from squealbox.studies.store import LOG, RESULT
 from squealbox.waiting import Progress
+from squealbox.writing import write, write_table
 
 ABOUT = {
     "run": "a study: any analysis over a space of parameters; stopped or killed, it goes on",
@@ -78,7 +78,7 @@ def run(
     if table.outcome == "interrupted":
         raise ComputationFailed(table.outcome)
     answers.show(f"{design.title}, {file}", table)
-    print(written(out / RESULT, out / LOG))
+    print(answers.written(out / RESULT, out / LOG))
 
 
 def status(directory: Where) -> None:
@@ -114,7 +114,7 @@ def show(directory: Where, *, of: str | None = None, out: Path | None = None) ->
     of
         the answer that the figure shows; left out, the first
     out
-        folder for sweep.png, sweep.svg and sweep.csv
+        folder for sweep.nc, sweep.csv and the figure
     """
     found = open_sweep(directory)
     answers.show("", found)
@@ -129,7 +129,7 @@ def show(directory: Where, *, of: str | None = None, out: Path | None = None) ->
             figure = plots.sweep_overview(found, answer=of, title=str(directory))
         except ValueError as error:
             raise UsageError(f"no figure: {error}") from error
-        print(written(*plots.save(figure, out / "sweep"), write_csv(out / "sweep.csv", found.table())))
+        print(answers.written(*write(found, out, "sweep", figure=figure)))
 
 
 def export(directory: Where, *, format: Literal["csv", "nc", "mat"] = "csv", to: Path | None = None) -> None:
@@ -149,14 +149,14 @@ def export(directory: Where, *, format: Literal["csv", "nc", "mat"] = "csv", to:
     folder(path.parent)
     free(path)
     if format == "csv":
-        write_csv(path, found.table())
+        write_table(path, found.table())
     elif format == "nc":
         found.save(path)
     else:
         from squealbox.cli.matlab import write_mat
 
         write_mat(path, found)
-    print(written(path))
+    print(answers.written(path))
 
 
 def _rows(found: "Sweep") -> str:

@@ -2,16 +2,16 @@
 
 import dataclasses
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from squealbox.cli.answers import keep
+from squealbox.cli.answers import keep, written
 from squealbox.cli.inputs import NOTHING_SAID, Said, folder, in_motion, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed
-from squealbox.cli.tables import write_csv, written
 from squealbox.parameters import with_cautions
 from squealbox.transient import MotionSettings
 from squealbox.waiting import Progress
+from squealbox.writing import write
 
 ABOUT = {"simulate": "what happens in time: a transient with verdict, figures and data"}
 
@@ -85,7 +85,7 @@ def _judged(motion: "Trajectory") -> tuple[str, list["Verdict"]]:
 
 def _files(motion: "Trajectory", text: str, judged: list["Verdict"], title: str, out: Path) -> list[Path]:
     """The files written: data, and of what could be judged its verdict, figures of what moves most, and sound."""
-    data = [motion.save(out / "motion.nc"), write_csv(out / "motion.csv", _columns(motion))]
+    data = write(motion, out, "motion", figure=False)
     if not judged:
         return data
     from squealbox import plots
@@ -112,15 +112,3 @@ def _sound(motion: "Trajectory", dof: int, pitch: float, out: Path) -> list[Path
     heard = AUDIBLE[0] <= pitch <= AUDIBLE[1] and equal_steps(motion.t)
     heard = heard and SAMPLES_A_PERIOD * pitch * (motion.t[-1] - motion.t[0]) <= len(motion.t)
     return [sound(motion, out / "motion.wav", dof=dof)] if heard else []
-
-
-def _columns(motion: "Trajectory") -> dict[str, Any]:
-    names = motion.system.names
-    contacts = motion.system.contact_names
-    columns = {"t [s]": motion.t}
-    named = list(enumerate(zip(names, motion.system.units, strict=True)))
-    columns |= {f"{name} [{unit}]": motion.q[:, i] for i, (name, unit) in named}
-    columns |= {f"d{name}/dt [{unit}/s]": motion.qd[:, i] for i, (name, unit) in named}
-    columns |= {f"normal force, {name} [N]": motion.normal_force[:, i] for i, name in enumerate(contacts)}
-    columns |= {f"friction force, {name} [N]": motion.friction_force[:, i] for i, name in enumerate(contacts)}
-    return columns | {f"mode, {name}": motion.mode[:, i] for i, name in enumerate(contacts)}

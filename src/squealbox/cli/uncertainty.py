@@ -4,20 +4,18 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
 from cyclopts import Parameter
 
 from squealbox import studies
-from squealbox.cli.answers import keep
+from squealbox.cli.answers import keep, written
 from squealbox.cli.inputs import NOTHING_SAID, Said, folder, read, small
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.cli.tables import kept, write_csv, written
-from squealbox.family import unit_of
 from squealbox.files import STUDIES, Scattered
 from squealbox.result import Result
 from squealbox.studies import SampleSettings
 from squealbox.waiting import Progress
+from squealbox.writing import write
 
 ABOUT = {"scatter": "parameters scatter: how probable is squeal, and which matters?"}
 
@@ -67,7 +65,7 @@ def scatter(
         print(f"\n{name}\n{result}")
         failed = failed or (None if result.outcome.ok else result.outcome)
         if out is not None:
-            files += _files(name, result, found.design, out)
+            files += write(result, out, name)
     if out is not None:
         print(f"\n{written(*files)}")
     if failed is not None:
@@ -96,45 +94,3 @@ def _run(name: str, design: "Design", section: Scattered, how: SampleSettings) -
     scatter = section.scatter.box() if name == "bounds" else section.scatter
     more |= {} if name in ("surrogate", "bounds") else {"level": how.level}
     return function(design, scatter, section.quantity, seed=int(how.seed), **more)
-
-
-def _files(name: str, result: Any, design: "Design", out: Path) -> list[Path]:
-    columns = _columns(name, result, design)
-    if result.outcome.ok:
-        return kept(result, out / name, columns)
-    return [result.save(out / f"{name}.nc"), write_csv(out / f"{name}.csv", columns)]
-
-
-def _columns(name: str, found: Any, design: "Design") -> dict[str, Any]:
-    about = found.settings["quantity"]
-    unit = about["unit"] or "-"
-    value = f"{about['name']} [{unit}]"
-    if name in ("probability", "surrogate"):
-        columns = {_headed(design, each): found.points[:, i] for i, each in enumerate(found.names)}
-        more = {"squeals": found.squeals} if name == "probability" else {f"{value}, not seen": found.held_out}
-        return {**columns, value: found.values, **more}
-    if name == "subset":
-        known = np.isfinite(found.thresholds)
-        runs = np.nonzero(known)[0] + 1
-        return {"run": runs, value: found.thresholds[known], "probability": found.exceedance[known]}
-    columns = {"parameter": np.array(found.names)}
-    if name == "sobol":
-        for each in ("first", "first_low", "first_high", "total", "total_low", "total_high"):
-            columns[each.replace("_", " ")] = getattr(found, each)
-    if name == "morris":
-        for each in ("strength", "strength_error", "direction", "spread"):
-            columns[f"{each.replace('_', ' ')} [{unit}]"] = getattr(found, each)
-    if name == "form":
-        columns |= {"unit": _units(design, found.names), "median": found.median, "squeals at": found.point}
-        columns |= {"in standard deviations": found.normal_point, "importance": found.importance}
-    if name == "bounds":
-        columns |= {"unit": _units(design, found.names), "least at": found.low_at, "largest at": found.high_at}
-    return columns
-
-
-def _headed(design: "Design", name: str) -> str:
-    return f"{name} [{unit_of(design, name) or '-'}]"
-
-
-def _units(design: "Design", names: Any) -> Any:
-    return np.array([unit_of(design, name) or "-" for name in names])

@@ -31,6 +31,9 @@ class ClosedLoop(Result):
     counted: int = 0
     cautions: tuple[str, ...] = ()
 
+    def table(self) -> dict[str, Any]:
+        return {"growth rate [1/s]": self.poles.real, "frequency [Hz]": self.frequency}
+
     @property
     def growth_rate(self) -> float:
         """The largest growth rate [1/s]; positive grows."""

@@ -10,9 +10,8 @@ from squealbox.limit_cycles.attractors.basins import place
 from squealbox.limit_cycles.attractors.sections import state_names
 from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import unit_at
 from squealbox.plots.style import drawing, figure_of
-from squealbox.words import number, quantity_label, scaled
+from squealbox.words import number, quantity_label, scaled, unit_at
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

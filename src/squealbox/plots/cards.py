@@ -106,12 +106,19 @@ def _said(result: Result) -> str:
     return said + (table(("", "value", "unit"), numbers) if numbers else "")
 
 
+def drawable(result: Result) -> bool:
+    """True where a figure is known and there is something to draw."""
+    known = drawer_of(type(result)) is not drawer_of(object)
+    return known and (result.outcome.ok or isinstance(result, WALKED)) and _sizes(result)[0] > 0
+
+
 def has_figure(result: Result) -> bool:
-    """True where a figure is known, there is something to draw, and the arrays are small enough to draw unasked."""
-    if drawer_of(type(result)) is drawer_of(object) or not (result.outcome.ok or isinstance(result, WALKED)):
-        return False
-    sizes = [np.size(getattr(result, name)) for name, _ in _quantities(result)] or [_points(result)]
-    return sizes[0] > 0 and max(sizes) <= MOST_POINTS
+    """True where it is `drawable` and the arrays are small enough to draw unasked."""
+    return drawable(result) and max(_sizes(result)) <= MOST_POINTS
+
+
+def _sizes(result: Result) -> list[int]:
+    return [np.size(getattr(result, name)) for name, _ in _quantities(result)] or [_points(result)]
 
 
 def _points(result: Result) -> int:

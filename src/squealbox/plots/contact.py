@@ -5,10 +5,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import unit_at
 from squealbox.plots.style import drawing, figure_of, line, panels
 from squealbox.transient import ContactComparison
-from squealbox.words import quantity_label, scaled
+from squealbox.words import quantity_label, scaled, unit_at
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,9 +11,9 @@ from squealbox.limit_cycles.estimates.curves import AVERAGED, DESCRIBING
 from squealbox.matrices import liveliest
 from squealbox.parameters import DataSheet, ParameterError
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import read_of, unit_at
+from squealbox.plots.facts import read_of
 from squealbox.plots.style import LOOK, WIDTH, cautioned, drawing, figure_of, line, panels
-from squealbox.words import number, quantity_label, scaled
+from squealbox.words import number, quantity_label, scaled, unit_at
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

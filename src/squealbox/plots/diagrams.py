@@ -7,9 +7,8 @@ import numpy as np
 
 from squealbox.limit_cycles import BifurcationDiagram, Branch, Coexistence
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import unit_at, unit_of
 from squealbox.plots.style import WIDTH, cautioned, drawing, figure_of, note, panels, styled
-from squealbox.words import quantity_label, scaled
+from squealbox.words import quantity_label, scaled, unit_at
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -69,7 +68,7 @@ def bifurcation_diagram(
             panel.plot(at.ravel(), up.ravel(), mark, color=colour, markersize=size, markerfacecolor="none",
                        markeredgewidth=rim, label=None if kind in told else text)  # fmt: skip
             told.add(kind)
-        unit_x = unit_of(diagram, diagram.parameter)
+        unit_x = diagram.unit_of(diagram.parameter)
         panel.set(xlabel=name or quantity_label(diagram.parameter, unit_x), ylabel=quantity_label(words, unit))
         panel.set_title(title)
         panel.set_xlim(*(diagram.value[[0, -1]] / scale) if len(diagram.value) > 1 else (None, None))
@@ -167,7 +166,7 @@ def coexistence_region(
     """
     x, y = region.x / scales[0], region.y / scales[1]
     share = np.where(region.stable, 100.0 * region.vibrates, np.nan).T
-    labels = names or [quantity_label(p, unit_of(region, p)) for p in region.parameters]
+    labels = names or [quantity_label(p, region.unit_of(p)) for p in region.parameters]
     with drawing(axes, width=4.6, height=3.3) as panel:
         panel.set_facecolor("#dddddd")
         mesh = panel.pcolormesh(x, y, share, cmap="Oranges", vmin=0.0, vmax=100.0, shading="nearest", zorder=1)

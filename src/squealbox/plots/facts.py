@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 
 from squealbox.limit_cycles import Branch, Cycle
-from squealbox.parameters import DataSheet
 from squealbox.signals import Spectrum, peaks
 from squealbox.stability import CriticalValue, StabilityMap
 from squealbox.transient import Ensemble, Trajectory, Verdict
-from squealbox.words import MINUS, number, plain_unit, read
+from squealbox.words import MINUS, number, plain_unit, read, unit_at
 
 Fact = tuple[str, str, str]  # name, value, unit
 
@@ -77,7 +76,7 @@ def _of_cycle(cycle: Cycle) -> list[Fact]:
 
 @facts.register
 def _of_critical_value(found: CriticalValue) -> list[Fact]:
-    unit = unit_of(found, found.parameter)
+    unit = found.unit_of(found.parameter)
     return [
         (found.parameter, shown(found.value, 8), unit),
         ("frequency there", *read(found.frequency, "Hz", 6)),
@@ -103,7 +102,7 @@ def _of_spectrum(found: Spectrum) -> list[Fact]:
 def _of_branch(branch: Branch) -> list[Fact]:
     if len(branch.value) == 0:
         return []
-    unit = unit_of(branch, branch.parameter)
+    unit = branch.unit_of(branch.parameter)
     low, high = float(np.min(branch.value)), float(np.max(branch.value))
     return [
         (branch.parameter, f"{number(low)} to {number(high)}", unit),
@@ -128,20 +127,6 @@ def _of_ensemble(found: Ensemble) -> list[Fact]:
             ("observed", ", ".join(found.observed) or "nothing", "")]  # fmt: skip
 
 
-def unit_at(system: Any, dof: int | str, *, moves: bool = False) -> str:
-    """The unit of a degree of freedom of a system, m or rad; of its velocity where it `moves`."""
-    names, units = getattr(system, "names", ()), getattr(system, "units", ())
-    place = list(names).index(dof) if isinstance(dof, str) and dof in names else dof
-    unit = units[place] if isinstance(place, (int, np.integer)) and place < len(units) else "m"
-    return f"{unit}/s" if moves else unit
-
-
 def read_of(names: Any, dof: int) -> str:
     """What an axis calls the displacement of a freedom: with its name where there are several."""
     return "displacement" if len(names) < 2 else f"displacement {names[dof]}"
-
-
-def unit_of(result: Any, parameter: str) -> str:
-    """The unit of a dotted parameter, or of an alias, of the design a result came from; empty where it kept none."""
-    design = result.inputs.get("system")
-    return design.unit_of(parameter) if isinstance(design, DataSheet) else ""

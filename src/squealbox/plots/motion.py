@@ -6,14 +6,14 @@ import numpy as np
 
 from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import read_of, unit_at
+from squealbox.plots.facts import read_of
 from squealbox.plots.spectra import spectrum
 from squealbox.plots.style import drawing, figure_of, line, note, panels, uncertain
 from squealbox.signals import LEAST, SignalError, column, equal_steps, values
 from squealbox.transient import Trajectory, Verdict, resolved
 from squealbox.transient.envelope import smooth_curve
 from squealbox.transient.verdict import verdict
-from squealbox.words import number, quantity_label, scaled
+from squealbox.words import number, quantity_label, scaled, unit_at
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,7 +8,6 @@ from squealbox.designs import Design
 from squealbox.limit_cycles import HopfPoint, PointCurve
 from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import unit_of
 from squealbox.plots.style import drawing, figure_of, line, note, power_of_ten
 from squealbox.stability import (
     CriticalValue,
@@ -56,7 +55,7 @@ def crossings(found: CriticalValue | CriticalValues, *, title: str = "", axes: A
             panel.annotate(text, at, fontsize=6.5, textcoords="offset points", **place)
         panel.margins(x=0.4 if around is None else 0.0, y=0.4)
         note(panel, "▲ a mode grows above   ▼ below" if every else "no crossing", "lower left")
-        name = quantity_label(found.parameter, unit_of(found, found.parameter))
+        name = quantity_label(found.parameter, found.unit_of(found.parameter))
         value = quantity_label("frequency", read) if around is None else quantity_label("largest growth rate", "1/s")
         panel.set(xlabel=name, ylabel=value, title=title)
         return figure_of(panel)
@@ -98,7 +97,7 @@ def merging_points(found: ExceptionalPoints, *, title: str = "", axes: Any = Non
             text = f"{number(abs(value.imag) / (2.0 * np.pi) / factor)} {read}"
             panel.annotate(text, (x, y), xytext=(5.0, 4.0), textcoords="offset points", fontsize=6.5)
         panel.margins(x=0.3, y=0.3)
-        x_name, y_name = (quantity_label(name, unit_of(found, name)) for name in names)
+        x_name, y_name = (quantity_label(name, found.unit_of(name)) for name in names)
         panel.set(xlabel=x_name, ylabel=y_name, title=title)
         return figure_of(panel)
 
@@ -110,7 +109,7 @@ def damping_split(found: DampingSplit, *, title: str = "", axes: Any = None) -> 
         panel.plot(found.share, found.critical, **line(0, marker=True, count=np.size(found.share)), label="damped")
         panel.plot(found.best_share, found.best, "o", color=UP, label=f"best, {number(found.best)}")
         panel.axhline(float(found.undamped), **{**line(1), "linewidth": 0.8}, label="without damping")
-        unit = unit_of(found, found.parameter)
+        unit = found.unit_of(found.parameter)
         share = f"share of {found.dampers[0]}" if found.dampers else "share of the first damper"
         panel.set(xlabel=quantity_label(share, ""), ylabel=quantity_label(f"critical {found.parameter}", unit))
         panel.set(title=title, xlim=(float(found.share[0]), float(found.share[-1])))
@@ -132,7 +131,7 @@ def point_curve(found: PointCurve, *, title: str = "", axes: Any = None) -> "Fig
         panel.margins(0.08)
         panel.locator_params(axis="x", nbins=5)
         panel.legend(loc="best")
-        x_name, y_name = (quantity_label(name, unit_of(found, name)) for name in names)
+        x_name, y_name = (quantity_label(name, found.unit_of(name)) for name in names)
         panel.set(xlabel=x_name, ylabel=y_name, title=title)
         return figure_of(panel)
 
@@ -152,7 +151,7 @@ def birth_of_a_cycle(found: HopfPoint, *, title: str = "", axes: Any = None) -> 
     sizes = sizes[:, dof]
     factor, read = scaled(units[dof], sizes)
     stable = found.kind == "supercritical"
-    unit = unit_of(found, found.parameter)
+    unit = found.unit_of(found.parameter)
     narrow = reach < 0.01 * abs(float(found.value))  # then the axis counts from the point
     at, called, origin = float(found.value), found.parameter, 0.0
     if narrow:

@@ -7,7 +7,6 @@ import numpy as np
 from squealbox.matrices import liveliest
 from squealbox.parameters import known_names
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import unit_of
 from squealbox.plots.maps import amplitude_map
 from squealbox.plots.style import LINES, cautioned, drawing, figure_of
 from squealbox.system import as_system
@@ -59,13 +58,13 @@ def ensemble_overview(
     if len(found.shape) == 2 and len(found.parameters) == 2:
         (x_name, x), (y_name, y) = found.parameters.items()
         x, y = (np.broadcast_to(each, found.shape) for each in (x, y))
-        figure = amplitude_map(x[:, 0], y[0], values.T, x_name=x_name, x_unit=unit_of(found, x_name), y_name=y_name,
-                             y_unit=unit_of(found, y_name), unit=unit, name=label, title=title, axes=axes)  # fmt: skip
+        figure = amplitude_map(x[:, 0], y[0], values.T, x_name=x_name, x_unit=found.unit_of(x_name), y_name=y_name,
+                             y_unit=found.unit_of(y_name), unit=unit, name=label, title=title, axes=axes)  # fmt: skip
         cautioned(figure.axes[0], [found.caution], axes is None)
         return figure
     if len(found.parameters) == 1:
         key, across = next(iter(found.parameters.items()))
-        along, across = quantity_label(key, unit_of(found, key)), np.broadcast_to(across, found.shape).ravel()
+        along, across = quantity_label(key, found.unit_of(key)), np.broadcast_to(across, found.shape).ravel()
         values = values.ravel()
     else:
         along, across, values = "run, sorted", np.arange(values.size) + 1.0, np.sort(values.ravel())

@@ -6,9 +6,8 @@ import numpy as np
 
 from squealbox import signals
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import unit_at
 from squealbox.plots.style import LINES, drawing, figure_of, line, note, uncertain
-from squealbox.words import number, quantity_label, scaled
+from squealbox.words import number, quantity_label, scaled, unit_at
 
 WIDER = 2.4  # so much of the frequency of the highest peak is drawn: its first harmonic with its name
 NAMED = 0.03  # share of the highest peak from which a peak is named

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import unit_of
 from squealbox.plots.modes import coalescence
 from squealbox.plots.style import LINES, drawing, figure_of, line, note
 from squealbox.stability import (
@@ -306,4 +305,4 @@ def _curves(panel: Any, boundary: Boundary, x_factor: float, y_factor: float, **
 
 
 def _scale(found: StabilityMap | Boundary, name: str, scales: Scales) -> tuple[float, str]:
-    return (scales or {}).get(name, (1.0, unit_of(found, name)))
+    return (scales or {}).get(name, (1.0, found.unit_of(name)))

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squealbox.labelled import whole
 from squealbox.parameters import with_cautions
 from squealbox.plots.ticks import spread_ticks
 from squealbox.signals import with_error
@@ -260,7 +261,8 @@ def save(
         for kind in formats:
             written.append(stem.with_name(f"{stem.name}.{kind}"))
             packed: dict[str, Any] = {"pil_kwargs": {"compress_level": PACKED}} if kind == "png" else {}
-            figure.savefig(written[-1], format=kind, metadata=NAMELESS.get(kind), dpi=dots, **packed)
+            with whole(written[-1]) as part:
+                figure.savefig(part, format=kind, metadata=NAMELESS.get(kind), dpi=dots, **packed)
     return written
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -59,6 +59,8 @@ class Remedies(Result):
     amplitude_before: float = float("nan")
     margin: float = 0.1
     assumption: str = ""
+
+    headings: ClassVar = {"name": "cure", "unit": "unit of the dose", "probability": "P(squeal)", "line": "python"}
 
     def __len__(self) -> int:
         return len(self.name)

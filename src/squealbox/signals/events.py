@@ -11,7 +11,7 @@ Band and threshold follow SAE J2521 as its public summary states them: a peak of
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -61,6 +61,8 @@ class SquealEvents(Result):
     track_frequency: Array = quantity("event frame", "Hz", "frequency in each frame")
     track_level: Array = quantity("event frame", "dB", "level in each frame")
     braking: Array = quantity("event braking", "", "quantities of the braking at the onset")
+
+    headings: ClassVar = {"track_time": "", "track_frequency": "", "track_level": ""}
     duration: float = 0.0
 
     @property

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -28,6 +28,8 @@ class NoiseMatrix(Result):
     total: int = 0
     total_noisy: int = 0
     unplaced: int = 0
+
+    table_over: ClassVar = ("x", "y")
 
     @property
     def share(self) -> Any:

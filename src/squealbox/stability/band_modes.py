@@ -67,6 +67,9 @@ class BandModes(ComplexModes):
         half = len(self.eigenvalues) // 2
         return np.array(np.sum((np.abs(self.growth_rate) <= self.error)[:half]))
 
+    def table(self) -> dict[str, Any]:
+        return {**super().table(), "error [1/s]": self.error[: len(self.error) // 2]}
+
     def summary(self) -> str:
         """The verdict, what is known of completeness, and a table of the modes, unstable ones first."""
         return band_table(self)

@@ -9,7 +9,7 @@ one, so no component is lost. At the end all points are polished onto zero growt
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -51,6 +51,11 @@ class Boundary(Result):
     growth_rate: Array = quantity("point", "1/s", "largest growth rate at the point: what is left of zero")
     frequency: Array = quantity("point", "Hz", "frequency of the mode on the boundary")
     parameters: tuple[str, ...] = ()
+
+    headings: ClassVar = {"curve": ""}
+
+    def table(self) -> dict[str, Any]:
+        return {"piece": self.curve + 1, **super().table()}
 
     @property
     def curves(self) -> list[Any]:

@@ -73,6 +73,18 @@ class ComplexModes(Result):
         half = self.eigenvalues.shape[-1] // 2
         return np.r_[1 : half + 1, -(np.arange(half) + 1)]
 
+    def table(self) -> dict[str, Any]:
+        """A row for each mode without its conjugate; of several spectra a row each, and columns for each mode."""
+        half = self.eigenvalues.shape[-1] // 2
+        told = {
+            "frequency [Hz]": self.frequency, "growth rate [1/s]": self.growth_rate,
+            "damping ratio [-]": self.damping_ratio, "angular frequency [rad/s]": self.angular_frequency,
+        }  # fmt: skip
+        if self.eigenvalues.ndim == 1:
+            return {"mode": np.arange(1, half + 1), **{head: values[:half] for head, values in told.items()}}
+        return {head.replace(" [", f" {i + 1} ["): values[..., i].ravel()
+                for head, values in told.items() for i in range(half)}  # fmt: skip
+
     @property
     def outcomes(self) -> Any:
         return np.where(self.exists, COMPLETED, str(self.outcome))

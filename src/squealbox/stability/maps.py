@@ -6,13 +6,12 @@ without steady sliding is a missing value, not an error. The boundary as curves 
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from squealbox.arguments import named, public
 from squealbox.labelled import Labelled, Labels
-from squealbox.parameters import DataSheet
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.eigenvalues import MARGINAL
 from squealbox.stability.family import Steady, SteadyFamily, entry, steady_sliding
@@ -41,6 +40,7 @@ class StabilityMap(Result):
     axes: Mapping[str, Any]
 
     mechanism_names = NAMES
+    headings: ClassVar = {"unstable_modes": "growing modes"}
 
     @property
     def unstable(self) -> Array:
@@ -52,6 +52,9 @@ class StabilityMap(Result):
         """True where there is steady sliding."""
         return np.isfinite(self.growth_rate)
 
+    def table(self) -> dict[str, Any]:
+        return {**super().table(), "mechanism": np.array([*NAMES, "none"])[self.mechanism.ravel()]}
+
     def summary(self) -> str:
         """How much of the map is unstable, by which mechanism, and where it is worst."""
         total, known = self.growth_rate.size, int(np.sum(self.exists))
@@ -62,22 +65,19 @@ class StabilityMap(Result):
         parts = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in names if count)
         place = np.unravel_index(int(np.nanargmax(self.growth_rate)), self.growth_rate.shape)
         axes = zip(self.axes.items(), place, strict=True)
-        where = ", ".join(f"{n} = {np.asarray(v)[i]:.6g} {self._unit(n)}".rstrip() for (n, v), i in axes)
+        where = ", ".join(f"{n} = {np.asarray(v)[i]:.6g} {self.unit_of(n)}".rstrip() for (n, v), i in axes)
         lines = [f"{unstable} of {known} points unstable ({unstable / known:.2%}){': ' + parts if parts else ''}"]
         lines += [f"largest growth rate {self.growth_rate[place]:+.6g} 1/s at {self.frequency[place]:.6g} Hz, {where}"]
         if known < total:
             lines.append(f"{total - known} points without steady sliding")
         return "\n".join(lines)
 
-    def _unit(self, name: str) -> str:
-        """The unit of an axis, empty for a pure number or where no design is known."""
-        design = self.inputs.get("system")
-        return design.unit_of(name) if isinstance(design, DataSheet) else ""
-
     def labelled(self) -> Labelled:
         """The arrays with the parameters as named coordinates."""
         names = {f"axis_{i}": name for i, name in enumerate(self.axes)}
-        labels = {name: Labels((name,), np.asarray(at), {"units": self._unit(name)}) for name, at in self.axes.items()}
+        labels = {
+            name: Labels((name,), np.asarray(at), {"units": self.unit_of(name)}) for name, at in self.axes.items()
+        }
         return super().labelled().renamed(names).with_({}, labels)
 
 

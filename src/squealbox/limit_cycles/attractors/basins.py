@@ -74,6 +74,11 @@ class Basin(Result):
     attractors: tuple[Attractor, ...] = field(default=(), metadata={"transient": True})
 
     table_over: ClassVar = ("start",)
+    headings: ClassVar = {"start": "{}"}
+
+    def table(self) -> dict[str, Any]:
+        kinds = np.array([*self.kind, "failed", "not settled"], dtype=str)
+        return {**super().table(), "kind": kinds[self.attractor]}
 
     @property
     def system(self) -> System:

@@ -70,7 +70,15 @@ class BifurcationDiagram(Result):
     caution: str = ""
 
     coordinates: ClassVar = {"point": "value"}
-    table_over: ClassVar = ("point",)
+    derived: ClassVar = {"amplitude": ("sweep point dof", "m", "half peak to peak; 0 where it rests")}
+    table_over: ClassVar = ("sweep", "point")
+    headings: ClassVar = {
+        "maxima": "", "state": "", "crossings": "", "lowest": "least {}", "highest": "largest {}",
+        "frequency": "frequency of {}",
+    }  # fmt: skip
+
+    def table(self) -> dict[str, Any]:
+        return {**super().table(), "kind": np.array([KINDS[int(code)] for code in self.kind.ravel()])}
 
     @property
     def amplitude(self) -> Any:

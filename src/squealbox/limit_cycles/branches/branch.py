@@ -9,7 +9,7 @@ such cycle.
 """
 
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -62,6 +62,26 @@ class Branch(Result):
     caution: str = ""
     points: tuple[BranchPoint, ...] = field(default=(), metadata={"transient": True})
     family: Any = field(default=None, metadata={"transient": True})
+
+    derived: ClassVar = {
+        "frequency": ("point", "Hz", "frequency"), "stable": ("point", "1", "True where stable"),
+        "largest_multiplier": ("point", "1", "absolute value of the largest Floquet multiplier but the trivial one"),
+        "amplitude": ("point dof", "m", "half peak to peak"),
+    }  # fmt: skip
+    headings: ClassVar = {
+        "lowest": "least {}", "highest": "largest {}", "multipliers": "", "start": "", "unknowns": "",
+        "sticking": "longest sticking",
+    }  # fmt: skip
+
+    @property
+    def frequency(self) -> Array:
+        """1 / period [Hz], shape (point,)."""
+        return 1.0 / self.period
+
+    @property
+    def largest_multiplier(self) -> Array:
+        """Absolute value of the largest Floquet multiplier but the trivial one [-], shape (point,)."""
+        return np.max(np.abs(self.multipliers[:, 1:]), axis=1)
 
     @property
     def amplitude(self) -> Array:

@@ -43,11 +43,19 @@ class Optimum(Result):
     best: int = 0
 
     table_over: ClassVar = ("design",)
+    headings: ClassVar = {"values": "{}", "goals": "{}", "constraints": "{}"}
 
     @property
     def names(self) -> tuple[str, ...]:
         """The varied parameters, in order."""
         return tuple(self.settings["names"])
+
+    def table(self) -> dict[str, Any]:
+        return {"best": np.arange(len(self.values)) == self.best, **super().table()}
+
+    def _unit_at(self, dim: str, label: str, unit: str) -> str:
+        asked = {each["name"]: each["unit"] for each in self.settings.get(f"{dim}s", ())}
+        return str(asked.get(label) or "-") if asked else super()._unit_at(dim, label, unit)
 
     @property
     def changes(self) -> dict[str, float]:

@@ -13,14 +13,14 @@ no polynomial follows: use a smooth quantity, such as the margin of friction.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from squealbox.arguments import public
 from squealbox.extras import extra
 from squealbox.parameters import ParameterError
-from squealbox.result import Array, Outcome, Result, quantity
+from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
 from squealbox.studies.quantity import Quantity, as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.distributions import Lognormal, Normal
 from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
@@ -46,9 +46,12 @@ class Surrogate(Result):
     coefficients: Array = quantity("term", "", "c_k")
     degrees: Array = quantity("term parameter", "1", "a_ki, degree of each parameter in each term")
     points: Array = quantity("point parameter", "", "training points, in SI")
-    values: Array = quantity("point", "", "the quantity there")
-    held_out: Array = quantity("point", "", "what a surrogate that has not seen the point says there")
+    values: Array = quantity("point", OF_QUANTITY, "the quantity there")
+    held_out: Array = quantity("point", OF_QUANTITY, "what a surrogate that has not seen the point says there")
     q2: Any = quantity("", "1", "share of the variance explained at points not seen")
+
+    table_over: ClassVar = ("point",)
+    headings: ClassVar = {"points": "{}", "held_out": "said of it unseen"}
 
     def __call__(self, at: Any) -> Any:
         """The surrogate at named values (arrays broadcast together), in the unit of the quantity."""

@@ -20,7 +20,7 @@ from squealbox.arguments import public
 from squealbox.extras import extra
 from squealbox.family import unit_of
 from squealbox.parameters import ParameterError
-from squealbox.result import Array, Outcome, Result, quantity
+from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, input_of
 from squealbox.studies.uncertainty.importance import wide_sample
 from squealbox.studies.uncertainty.limit_state import LimitState, seeded
@@ -48,9 +48,10 @@ class DesignPoint(Result):
     normal_point: Array = quantity("parameter", "1", "z*, the design point in standard normal numbers")
     importance: Array = quantity("parameter", "1", "alpha^2, share of each parameter")
     distance: Array = quantity("along", "1", "distance from the median along z*, in standard deviations")
-    values: Array = quantity("along", "", "the quantity there")
+    values: Array = quantity("along", OF_QUANTITY, "the quantity there")
 
     table_over: ClassVar = ("parameter",)
+    headings: ClassVar = {"point": "squeals at", "normal_point": "in standard deviations"}
 
     @property
     def names(self) -> tuple[str, ...]:

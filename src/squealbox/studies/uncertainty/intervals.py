@@ -9,14 +9,14 @@ parameter; and the search is run from several seeds, whose agreement is reported
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from squealbox.arguments import public
 from squealbox.family import bounds_of
 from squealbox.parameters import ParameterError
-from squealbox.result import Array, Outcome, Result, quantity
+from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
 
 MOST_CORNERS = 12  # parameters up to which every corner of the box is looked at
@@ -26,13 +26,16 @@ MOST_CORNERS = 12  # parameters up to which every corner of the box is looked at
 class IntervalBounds(Result):
     """The range of a quantity over a box, as :func:`interval_bounds` returns it."""
 
-    low: Any = quantity("", "", "least value found")
-    high: Any = quantity("", "", "largest value found")
+    low: Any = quantity("", OF_QUANTITY, "least value found")
+    high: Any = quantity("", OF_QUANTITY, "largest value found")
     low_at: Array = quantity("parameter", "", "parameters of the least value")
     high_at: Array = quantity("parameter", "", "parameters of the largest value")
-    lows: Array = quantity("run", "", "least value of each run of the search")
-    highs: Array = quantity("run", "", "largest value of each run of the search")
-    nominal: Any = quantity("", "", "value in the middle of the box")
+    lows: Array = quantity("run", OF_QUANTITY, "least value of each run of the search")
+    highs: Array = quantity("run", OF_QUANTITY, "largest value of each run of the search")
+    nominal: Any = quantity("", OF_QUANTITY, "value in the middle of the box")
+
+    table_over: ClassVar = ("parameter",)
+    headings: ClassVar = {"low_at": "least at", "high_at": "largest at"}
 
     @property
     def names(self) -> tuple[str, ...]:

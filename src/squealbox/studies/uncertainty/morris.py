@@ -14,7 +14,7 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.extras import extra
 from squealbox.parameters import ParameterError
-from squealbox.result import Array, Outcome, Result, quantity
+from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.scatter import Scattered, as_scatter
 from squealbox.studies.uncertainty.sobol import finite_outcome, need_independent
@@ -30,10 +30,10 @@ class MorrisEffects(Result):
     An effect is the change of the quantity per range of the parameter, the central 99 % of its distribution.
     """
 
-    strength: Array = quantity("parameter", "", "mu*, mean of |effect|")
-    strength_error: Array = quantity("parameter", "", "half width of its bootstrap interval")
-    direction: Array = quantity("parameter", "", "mu, mean of the effect")
-    spread: Array = quantity("parameter", "", "sigma, standard deviation of the effect")
+    strength: Array = quantity("parameter", OF_QUANTITY, "mu*, mean of |effect|")
+    strength_error: Array = quantity("parameter", OF_QUANTITY, "half width of its bootstrap interval")
+    direction: Array = quantity("parameter", OF_QUANTITY, "mu, mean of the effect")
+    spread: Array = quantity("parameter", OF_QUANTITY, "sigma, standard deviation of the effect")
 
     @property
     def names(self) -> tuple[str, ...]:

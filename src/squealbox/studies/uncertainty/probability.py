@@ -1,13 +1,13 @@
 """How probable is squeal when parameters scatter? Samples, a count, and an interval that says how much it is worth."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from squealbox.arguments import public
 from squealbox.parameters import ParameterError
-from squealbox.result import Array, Outcome, Result, quantity
+from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.replicates import binomial_interval, student_interval
 from squealbox.studies.uncertainty.scatter import Sampling, Scattered, as_scatter, unit_points
@@ -26,10 +26,14 @@ class SquealProbability(Result):
     probability: Any = quantity("", "1", "estimated probability of squeal")
     low: Any = quantity("", "1", "lower end of the confidence interval")
     high: Any = quantity("", "1", "upper end of the confidence interval")
-    values: Array = quantity("point", "", "the quantity at each point; NaN is unknown")
+    values: Array = quantity("point", OF_QUANTITY, "the quantity at each point; NaN is unknown")
     points: Array = quantity("point parameter", "", "values of the parameters that scatter, in SI")
     of_replicates: Array = quantity("replicate", "1", "the estimate of each randomisation")
     interval: str = ""
+
+    derived: ClassVar = {"squeals": ("point", "1", "True where a point squeals")}
+    table_over: ClassVar = ("point",)
+    headings: ClassVar = {"points": "{}"}
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -8,14 +8,14 @@ Source: S.-K. Au, J. L. Beck 2001, Probabilistic Engineering Mechanics 16, 263-2
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from squealbox.arguments import public
 from squealbox.extras import extra
 from squealbox.parameters import ParameterError
-from squealbox.result import Array, Outcome, Result, quantity
+from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
 from squealbox.studies.quantity import as_quantity, input_of
 from squealbox.studies.uncertainty.form import lognormal_interval
 from squealbox.studies.uncertainty.limit_state import LimitState, seeded
@@ -34,8 +34,11 @@ class SubsetProbability(Result):
     high: Any = quantity("", "1", "upper end of the confidence interval")
     of_runs: Array = quantity("run", "1", "P(squeal) of each run")
     variation_of_runs: Array = quantity("run", "1", "coefficient of variation each run states")
-    thresholds: Array = quantity("run level", "", "the quantity at each level; NaN behind the last")
+    thresholds: Array = quantity("run level", OF_QUANTITY, "the quantity at each level; NaN behind the last")
     exceedance: Array = quantity("run level", "1", "probability that the quantity is beyond that level")
+
+    table_over: ClassVar = ("run", "level")
+    headings: ClassVar = {"exceedance": "probability"}
 
     @property
     def spread(self) -> float:

@@ -25,10 +25,9 @@ from squealbox.limit_cycles import (
 )
 from squealbox.limit_cycles.branches.stretches import NEUTRAL
 from squealbox.parameters import ParameterError
-from squealbox.plots.facts import unit_at
 from squealbox.stability import complex_modes, critical_values
 from squealbox.system import System
-from squealbox.words import number, scaled
+from squealbox.words import number, scaled, unit_at
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import FREEDOM, OVER, Panel, Place
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work

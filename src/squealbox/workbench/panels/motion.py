@@ -6,11 +6,10 @@ import numpy as np
 
 from squealbox.designs import Design
 from squealbox.figure_data import FigureAxis, FigureData, across, heat, hull, line, span, text
-from squealbox.plots.facts import unit_at
 from squealbox.signals import SignalError, peaks, spectrogram, spectrum
 from squealbox.transient import Trajectory, Verdict, usual_duration, verdict
 from squealbox.words import number as digits
-from squealbox.words import scaled
+from squealbox.words import scaled, unit_at
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import FREEDOM, START, Panel, Place, number, words
 from squealbox.workbench.panels.following import followed, moving
