@@ -118,6 +118,11 @@ class Tabled:
         kept = self.inputs.get("system", self.inputs.get("design")) if isinstance(self.inputs, Mapping) else None
         return kept.unit_of(parameter) if isinstance(kept, DataSheet) and parameter else ""
 
+    def read_value(self, parameter: str, value: Any, digits: int = 6) -> str:
+        """A value of a parameter with the unit it is read in: angles in degrees."""
+        number, unit = as_read(float(value), self.unit_of(parameter))
+        return f"{number:.{digits}g} {unit}".rstrip()
+
     @property
     def holds(self) -> dict[str, str]:
         """What arrays and dimensions of values are values of: parameters by their names, the quantity of a study."""

@@ -1,5 +1,6 @@
 """Numbers and units as a reader writes them: the same in figures, reports, cards and on the page."""
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -96,6 +97,24 @@ def read(value: Any, unit: str, digits: int = 4) -> tuple[str, str]:
         return "not known", ""
     factor, written = scaled(unit, value)
     return number(float(value) / factor, digits), plain_unit(written)
+
+
+def growing(rate: Any, frequency: Any) -> str:
+    """How a mode grows, or decays: ``+12.5 1/s at 2080.85 Hz``."""
+    return f"{float(rate):+.6g} 1/s at {float(frequency):.6g} Hz"
+
+
+def sizes_told(names: Iterable[str], sizes: Iterable[Any], units: Iterable[str], digits: int = 6) -> str:
+    """What each freedom does, with units that suit: ``x 2.31 µm, y 0.4 mm``; of (least, largest) both.
+
+    >>> sizes_told(("x", "y"), (2.31e-6, (1e-4, 4e-4)), ("m", "m"))
+    'x 2.31 µm, y 0.1 to 0.4 mm'
+    """
+    told = []
+    for name, size, unit in zip(names, sizes, units, strict=True):
+        ends, (factor, written) = np.ravel(size), scaled(unit, size)
+        told.append(f"{name} {' to '.join(number(end / factor, digits) for end in ends)} {written}")
+    return ", ".join(told)
 
 
 def plain_unit(unit: str) -> str:

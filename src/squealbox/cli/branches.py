@@ -65,15 +65,11 @@ def branch(
     keep(*several)
     print(f"{found.design.title}, {file}")
     if born.outcome.ok:
-        value, unit = readable(found.design, varied, born.value)
-        print(
-            f"{born.kind} Hopf point at {varied.name} = {float(value):.8g} {unit}".rstrip()
-            + f", {born.frequency:.6g} Hz"
-        )
+        print(born.told(8))
     ends = (varied.low, varied.high)
     quiet = stable_sliding(found.design, varied.name, ends)
     for i, one in enumerate(several, 1):
-        print(_said(f"Branch {i}", one, quiet, found.design, varied))
+        print(_said(f"Branch {i}", one, quiet))
     print(_coexistence(several, quiet, found.design, varied))
     curves = (
         estimate_curves(found.design, varied.name, (varied.low, varied.high), several) if settings.estimates else ()
@@ -106,23 +102,13 @@ def all_branches(
     return born, tuple(x for i, x in enumerate(several) if not any(lies_on(x, later) for later in several[i + 1 :]))
 
 
-def _said(name: str, one: Branch, quiet: list[tuple[float, float]], design: "Design", varied: ParameterAxis) -> str:
-    def shown(value: float) -> str:
-        number, unit = readable(design, varied, value)
-        return f"{float(number):.7g} {unit}".rstrip()
-
-    system = one.inputs["system"]
-    about = zip(system.names, one.amplitude.T, system.units, strict=True)
-    sizes = [f"{dof} {np.min(a):.3g} to {np.max(a):.3g} {unit}" for dof, a, unit in about]
-    over = f"{varied.name} {shown(np.min(one.value))} to {shown(np.max(one.value))}"
-    pitch = f"{1.0 / np.max(one.period):.5g} to {1.0 / np.min(one.period):.5g} Hz"
-    lines = [f"{name}: {len(one.value)} cycles, {over}, {pitch}, amplitude {', '.join(sizes)}"]
-    for low, high, stable in stretches(one, [end for each in quiet for end in each]):
-        lines.append(f"  {'stable' if stable else 'unstable'} from {shown(low)} to {shown(high)}")
-    for kind, value in zip(one.special_kind, one.special_value, strict=True):
-        lines.append(f"  {str(kind).replace('_', ' ')} at {shown(value)}")
-    lines.append(f"  ends: {one.outcome.message or one.outcome}")
-    return one.warned(lines)
+def _said(name: str, one: Branch, quiet: list[tuple[float, float]]) -> str:
+    """A branch in words, and on which stretches its cycles are stable."""
+    lines = [f"{name}: {one.summary()}"]
+    for ends in stretches(one, [end for each in quiet for end in each]):
+        low, high = (one.read_value(one.parameter, end, 7) for end in ends[:2])
+        lines.append(f"  {'stable' if ends[2] else 'unstable'} from {low} to {high}")
+    return "\n".join(lines)
 
 
 def _coexistence(

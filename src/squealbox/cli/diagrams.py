@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 from cyclopts import Parameter
 
-from squealbox.cli.answers import keep, written
+from squealbox.cli.answers import show, written
 from squealbox.cli.branches import all_branches
 from squealbox.cli.inputs import (
     AS_FILED,
@@ -24,10 +24,9 @@ from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.family import ParameterAxis
 from squealbox.limit_cycles import BifurcationDiagram, Branch, DiagramSettings, Section, bifurcation_diagram
-from squealbox.limit_cycles.attractors.settling import KINDS
 from squealbox.parameters import known_names
 from squealbox.waiting import Progress
-from squealbox.words import quantity, unit_at
+from squealbox.words import unit_at
 from squealbox.writing import write, write_table
 
 ABOUT = {"diagram": "what transients settle to over a parameter, with a Poincare section"}
@@ -82,8 +81,7 @@ def diagram(
             raise ComputationFailed(result.outcome)
         progress("following the cycles")
         _, several = all_branches(found.design, varied, progress=progress) if branches else (None, ())
-    keep(result)
-    print(f"{found.design.title}, {file}\n{_said(result, found.design, varied)}")
+    show(f"{found.design.title}, {file}", result)
     if out is not None:
         print(written(*_files(result, several, found.design, varied, found.path.name, out)))
 
@@ -110,32 +108,6 @@ def _section(design: "Design", text: str, dof: str | None) -> Section:
     turns = system.units[system.names.index(where.rstrip("'"))] if where in known else "m"
     unit = turns if where in system.names else f"{turns}/s"
     return Section(name, where, number(words[2], unit, f"--section {text[:60]}") if len(words) == 3 else 0.0, way)
-
-
-def _said(result: BifurcationDiagram, design: "Design", varied: ParameterAxis) -> str:
-    def shown(value: float) -> str:
-        read_, unit = readable(design, varied, value)
-        return f"{float(read_):.6g} {unit}".rstrip()
-
-    lines = [
-        f"{varied.name} from {shown(varied.low)} to {shown(varied.high)}, {len(result.value)} values; {result.section}"
-    ]
-    for sweep, kind, size in zip(result.sweeps, result.kind, result.amplitude, strict=True):
-        counts = ", ".join(
-            f"{int(np.sum(kind == code))} {KINDS[code]}" for code in (1, 2, 0, -1) if np.any(kind == code)
-        )
-        moves = result.stretches((kind == 2) | (kind == 0), shown)
-        where = f"; vibrates {moves}" if moves else ""
-        about = [(each, quantity(np.nanmax(a), unit_at(result.kept_system(), each), 3))
-                 for each, a in zip(result.dofs, size.T, strict=True)]  # fmt: skip
-        most = ", ".join(f"{each} {largest}" for each, largest in about)
-        lines.append(f"{sweep}: {counts}{where}; largest amplitude {most}")
-    if np.any(result.coexist):
-        over = result.stretches(result.coexist, shown)
-        lines.append(f"Rest and vibration coexist at {int(np.sum(result.coexist))} values, {over}.")
-    if not result.outcome.ok:
-        lines.append(f"Note: {result.outcome.message}")
-    return result.warned(lines)
 
 
 def _files(

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-import numpy as np
 from cyclopts import Parameter
 
-from squealbox.cli.answers import keep, written
+from squealbox.cli.answers import show as say
+from squealbox.cli.answers import written
 from squealbox.cli.inputs import Vary, axis, folder, read, readable, small, spans
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
@@ -104,8 +104,7 @@ def map_(
         ends = {each.name: (each.low, each.high) for each in (across, up)}
         edge = map_boundary(grid, close=CLOSE) if reduced else stability_boundary(found.design, ends)
     plane = Plane(found.design, across, up)
-    keep(grid, edge)
-    print(f"{found.design.title}, {file}\n{_map_summary(grid, plane)}\n{_edge_summary(edge, plane)}")
+    say(f"{found.design.title}, {file}", grid, edge)
     if out is not None:
         figure = _drawn(grid, edge, plane, show, found.path.name)
         boundary = write_table(out / "boundary.csv", edge.table())
@@ -137,41 +136,6 @@ class Plane:
 
 def _split(span: tuple[str, str, str] | None) -> tuple[str | None, tuple[str, str] | None]:
     return (None, None) if span is None else (span[0], (span[1], span[2]))
-
-
-def _map_summary(grid: StabilityMap, plane: Plane) -> str:
-    """How much of the plane squeals, by which mechanism, and where it is worst."""
-    known, unstable = np.count_nonzero(grid.exists), np.count_nonzero(grid.unstable)
-    counts = [(name, np.count_nonzero(grid.mechanism == code)) for code, name in enumerate(grid.mechanism_names)]
-    parts = ", ".join(f"{name.replace('_', ' ')} {100.0 * n / unstable:.1f} %" for name, n in counts[1:] if n)
-    column, row = np.unravel_index(np.nanargmax(grid.growth_rate), grid.growth_rate.shape)
-    lines = [f"{unstable} of {known} points are unstable ({100.0 * unstable / known:.1f} %)"]
-    lines += [f"mechanism of the unstable points: {parts}"] * bool(parts)
-    lines.append(
-        f"the largest growth rate is {grid.growth_rate[column, row]:+.5g} 1/s at "
-        f"{grid.frequency[column, row]:.5g} Hz, "
-        f"{plane.place((plane.axes[0].values[column], plane.axes[1].values[row]))}"
-    )
-    missing = grid.growth_rate.size - known
-    return "\n".join(lines + [f"{missing} more points have no steady sliding"] * bool(missing))
-
-
-def _edge_summary(edge: Boundary, plane: Plane) -> str:
-    """The pieces of the boundary: from where to where each runs, and at which frequencies."""
-    if not edge.outcome.ok:
-        return f"boundary: none, {edge.outcome.message}"
-    curves = edge.curves
-    whole = f"{len(curves)} piece{'s' * (len(curves) > 1)}"
-    lines = [f"boundary: {whole}; who follows one as it is told has the unstable side on the left"]
-    for i, points in enumerate(curves):
-        hertz = edge.frequency[edge.curve == i]
-        span = f"{np.min(hertz):.5g} to {np.max(hertz):.5g} Hz"
-        if edge.closed(i):
-            low, high = plane.place(points.min(axis=0)), plane.place(points.max(axis=0))
-            lines.append(f"  {i + 1}: an island between {low} and {high}; {span}")
-        else:
-            lines.append(f"  {i + 1}: from {plane.place(points[0])} to {plane.place(points[-1])}; {span}")
-    return "\n".join(lines)
 
 
 def _drawn(grid: StabilityMap, edge: Boundary, plane: Plane, show: str, title: str) -> "Figure":

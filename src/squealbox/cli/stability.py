@@ -24,7 +24,6 @@ from squealbox.family import ParameterAxis
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability import (
     ComplexModes,
-    CriticalValue,
     CriticalValues,
     ModeSettings,
     complex_modes,
@@ -44,7 +43,6 @@ ABOUT = {
 SPECTRA = 61  # values at which the modes of a reduced brake are drawn
 
 if TYPE_CHECKING:
-    from squealbox.designs import Design
     from squealbox.files import DesignFile
 
 
@@ -128,7 +126,7 @@ def onset(
         raise ComputationFailed(crossings.outcome)
     keep(crossings)
     print(f"{found.design.title}, {file}")
-    print("\n".join(_crossing(crossing, found.design, varied) for crossing in crossings))
+    print("\n".join(crossing.told(7) for crossing in crossings))
     if out is not None:
         print(written(*_onset_files(found, varied, crossings, out)))
 
@@ -142,18 +140,6 @@ def _mode_files(spectrum: ComplexModes, found: "DesignFile", time: float, out: P
         fed = plots.plot(mode_energy(found.design, spectrum.most_unstable, time), title=found.path.name)
         paths += plots.save(fed, out / "mode_energy")
     return paths
-
-
-def _crossing(crossing: CriticalValue, design: "Design", varied: ParameterAxis) -> str:
-    value, unit = readable(design, varied, crossing.value)
-    side = "above" if crossing.direction == "destabilising" else "below"
-    shares = ", ".join(f"{name.replace('_', ' ')} {100.0 * share:.0f} %" for name, share in crossing.shares.items())
-    first = "squeal begins" if crossing.changes_stability else "one more mode"
-    place = f"{varied.name} = {float(value):.7g} {unit}".rstrip()
-    return (
-        f"{place}: {first}; {side} it a mode of {crossing.frequency:.6g} Hz grows, "
-        f"mechanism {crossing.mechanism.replace('_', ' ')} ({shares})"
-    )
 
 
 def _onset_files(found: "DesignFile", varied: ParameterAxis, crossings: CriticalValues, out: Path) -> list[Path]:

@@ -12,6 +12,7 @@ from squealbox.control.poles import Late, late_poles
 from squealbox.extras import extra
 from squealbox.parameters import ParameterError, with_cautions
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
+from squealbox.words import growing
 
 MOST_HELD = 200.0  # samples in a delay up to which a sampling rate is looked for
 
@@ -168,7 +169,7 @@ class ClosedLoop(Result):
                 f"gain between {low:.6g} and {high:.6g} times, phase margin {np.rad2deg(self.phase_margin):.6g} deg, "
                 f"delay margin {self.delay_margin:.6g} s, sampling above {self.sampling_margin():.6g} Hz"
             )
-        lines += [f"{s.real:+.6g} 1/s at {s.imag / (2.0 * np.pi):.6g} Hz" for s in self.poles if s.imag >= 0.0]
+        lines += [growing(s.real, s.imag / (2.0 * np.pi)) for s in self.poles if s.imag >= 0.0]
         return with_cautions(lines, *self.cautions)
 
 

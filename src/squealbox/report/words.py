@@ -10,7 +10,7 @@ from squealbox.report.examination import Examination
 from squealbox.signals import SoundLevel
 from squealbox.stability import sentences
 from squealbox.system import equilibrium
-from squealbox.words import number, quantity, read_in
+from squealbox.words import number, quantity, read_in, sizes_told
 
 
 def in_reading_unit(found: Examination, name: str) -> tuple[float, str]:
@@ -94,10 +94,7 @@ def _cycle(found: Examination) -> Iterator[str]:
         yield f"No limit cycle was found from {why}; that does not prove there is none."
         return
     kind = cycle.stability
-    sizes = ", ".join(
-        f"{name} {quantity(size, unit)}"
-        for name, size, unit in zip(found.system.names, cycle.amplitude, found.system.units, strict=True)
-    )
+    sizes = sizes_told(found.system.names, cycle.amplitude, found.system.units, 4)
     pitch = quantity(cycle.frequency, "Hz", 5)
     yield f"There is a {kind} limit cycle of {pitch}, half peak to peak {sizes}, reached from {found.tried[-1]}."
     if found.coexists:

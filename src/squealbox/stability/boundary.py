@@ -69,16 +69,21 @@ class Boundary(Result):
         return bool(len(points) > 2 and np.array_equal(points[0], points[-1]))
 
     def summary(self) -> str:
-        """The curves in words: how many points, open or closed, and where they run."""
+        """The pieces of the boundary: from where to where each runs, and at which frequencies."""
         if len(self.x) == 0:
-            return self.outcome.told
-        lines = []
-        for i, points in enumerate(self.curves):
-            low, high = points.min(axis=0), points.max(axis=0)
-            spans = ", ".join(
-                f"{name} {a:.6g} to {b:.6g}" for name, a, b in zip(self.parameters, low, high, strict=True)
+            return f"boundary: none, {self.outcome.message or self.outcome}"
+        curves = self.curves
+        pieces = f"{len(curves)} piece{'s' * (len(curves) > 1)}"
+        lines = [f"boundary: {pieces}; who follows one as it is told has the unstable side on the left"]
+        for i, points in enumerate(curves):
+            hertz = self.frequency[self.curve == i]
+            ends = (points.min(axis=0), points.max(axis=0)) if self.closed(i) else (points[0], points[-1])
+            low, high = (
+                ", ".join(f"{n} = {self.read_value(n, v)}" for n, v in zip(self.parameters, end, strict=True))
+                for end in ends
             )
-            lines.append(f"curve {i + 1} ({'closed' if self.closed(i) else 'open'}, {len(points)} points): {spans}")
+            runs = f"an island between {low} and {high}" if self.closed(i) else f"from {low} to {high}"
+            lines.append(f"  {i + 1}: {runs}; {np.min(hertz):.6g} to {np.max(hertz):.6g} Hz")
         return "\n".join(lines)
 
 

@@ -28,6 +28,7 @@ from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import Mode, complex_modes, modes_of
 from squealbox.stability.family import across_dampers, steady_sliding
 from squealbox.system import System, as_system, linearise
+from squealbox.words import growing
 
 MOST_DAMPERS = 12  # named one by one; the damping of a larger structure is given by degree of freedom
 
@@ -131,7 +132,7 @@ class ModeEnergy(Result):
     def summary(self) -> str:
         """What each contact and damper brings to the growth rate [1/s]."""
         hertz = abs(np.imag(self.eigenvalue)) / (2.0 * np.pi)
-        rows = [f"growth rate {float(np.real(self.eigenvalue)):+.6g} 1/s at {hertz:.6g} Hz"]
+        rows = [f"growth rate {growing(np.real(self.eigenvalue), hertz)}"]
         unit = "W" if self.balanced else "1/s"
         rows += ["  kinetic and strain energy cancel; powers at 1 m instead"] * self.balanced
         rows += [f"  {name}: {value:+.6g} {unit}" for name, value in self.shares]

@@ -18,6 +18,7 @@ from squealbox.stability.family import Steady, SteadyFamily, entry, steady_slidi
 from squealbox.stability.in_band import largest_in_band
 from squealbox.stability.mechanism import NAMES, STEPS, contributions, mechanism_codes
 from squealbox.stability.spectra import Engine, largest_growth
+from squealbox.words import growing
 
 STEPS_IN_BAND = 2  # of a mechanism's split at a point of a reduced brake's map
 CHUNK = 1 << 15  # points computed together: their arrays stay in the processor's cache
@@ -62,15 +63,15 @@ class StabilityMap(Result):
             return f"no steady sliding at any of {total} points"
         unstable = int(np.sum(self.unstable))
         names = [(name, int(np.sum(self.mechanism == code))) for code, name in enumerate(NAMES) if code > 0]
-        parts = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in names if count)
+        shares = [f"{name.replace('_', ' ')} {100.0 * count / unstable:.1f} %" for name, count in names if count]
         place = np.unravel_index(int(np.nanargmax(self.growth_rate)), self.growth_rate.shape)
-        axes = zip(self.axes.items(), place, strict=True)
-        where = ", ".join(f"{n} = {np.asarray(v)[i]:.6g} {self.unit_of(n)}".rstrip() for (n, v), i in axes)
-        lines = [f"{unstable} of {known} points unstable ({unstable / known:.2%}){': ' + parts if parts else ''}"]
-        lines += [f"largest growth rate {self.growth_rate[place]:+.6g} 1/s at {self.frequency[place]:.6g} Hz, {where}"]
-        if known < total:
-            lines.append(f"{total - known} points without steady sliding")
-        return "\n".join(lines)
+        at = zip(self.axes.items(), place, strict=True)
+        where = ", ".join(f"{name} = {self.read_value(name, np.asarray(values)[i])}" for (name, values), i in at)
+        lines = [f"{unstable} of {known} points are unstable ({100.0 * unstable / known:.1f} %)"]
+        lines += [f"mechanism of the unstable points: {', '.join(shares)}"] * bool(shares)
+        grows = growing(self.growth_rate[place], self.frequency[place])
+        lines.append(f"the largest growth rate is {grows}, {where}")
+        return "\n".join(lines + [f"{total - known} more points have no steady sliding"] * (known < total))
 
     def labelled(self) -> Labelled:
         """The arrays with the parameters as named coordinates."""

@@ -17,6 +17,7 @@ import numpy as np
 
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability.family import steady_sliding
+from squealbox.words import growing
 
 ZERO = 1e-12  # singular values below this share of 1 (all matrices are scaled to 1) count as zero
 
@@ -47,7 +48,7 @@ class FiniteSpectrum(Result):
         if not self.outcome.ok:
             return self.outcome.told
         shown = [value for value in self.eigenvalues if value.imag >= 0.0]
-        lines = [f"{value.real:+.6g} 1/s at {value.imag / (2.0 * np.pi):.6g} Hz" for value in shown]
+        lines = [growing(value.real, value.imag / (2.0 * np.pi)) for value in shown]
         return "\n".join([*lines, f"{self.infinite} eigenvalues at infinity"])
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squealbox.parameters import with_cautions
+from squealbox.words import growing
 
 if TYPE_CHECKING:
     from squealbox.stability.eigenvalues import ComplexModes
@@ -61,7 +62,7 @@ def _rows(modes: "ComplexModes") -> tuple[tuple[int, ...], list[tuple[str, ...]]
 def _verdict(modes: "ComplexModes", entry: tuple[int, ...]) -> str:
     worst = modes.mode(modes.most_unstable.index, entry)
     state = "STABLE" if bool(modes.stable[entry]) else "UNSTABLE"
-    text = f"Steady sliding is {state}: largest growth rate {worst.growth_rate:+.6g} 1/s at {worst.frequency:.6g} Hz"
+    text = f"Steady sliding is {state}: largest growth rate {growing(worst.growth_rate, worst.frequency)}"
     if entry:
         total = int(np.size(modes.exists))
         unstable = total - int(np.sum(modes.stable)) - int(np.sum(~modes.exists))

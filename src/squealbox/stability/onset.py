@@ -70,11 +70,18 @@ class CriticalValue(OneEigenvalue, Result):
 
     def summary(self) -> str:
         """One line: the value, where it leads, the frequency and the mechanism with its shares."""
+        return self.told()
+
+    def told(self, digits: int = 10) -> str:
+        """The `summary`, with so many digits [-] of the value."""
         if not self.outcome.ok:
             return f"{self.parameter}: {self.outcome.told}"
         why = Mechanism(self.mechanism, self.base, self.circulation, self.slope)
         aside = f"; {self.outcome.message}" if self.outcome.message else ""
-        return f"{self.parameter} = {float(self.value):.10g} ({self.direction}), {self.frequency:.6g} Hz, {why}{aside}"
+        first = "squeal begins" if self.changes_stability else "one more mode"
+        side = "above" if self.direction == "destabilising" else "below"
+        place = f"{self.parameter} = {self.read_value(self.parameter, self.value, digits)}"
+        return f"{place}: {first}; {side} it a mode of {self.frequency:.6g} Hz grows, mechanism {why}{aside}"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -15,6 +15,7 @@ from squealbox.limit_cycles.attractors.settling import FAILED, MOVING, REPEATS, 
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.limit_cycles.cycles.shooting import shooting
 from squealbox.system import System
+from squealbox.words import sizes_told
 
 SLIDING, REST, CYCLE, VIBRATION, IRREGULAR = "steady sliding", "rest elsewhere", "cycle", "vibration", "irregular"
 UNSTABLE = "unstable cycle"
@@ -51,14 +52,16 @@ class Attractor:
         """Half range of each degree of freedom [m]."""
         return 0.5 * (self.high - self.low)
 
-    def summary(self) -> str:
-        """One line: kind, amplitude, frequency."""
+    def summary(self, system: System | None = None) -> str:
+        """One line: kind, amplitude, frequency; with the `system` freedoms have names, and those that turn radians."""
         if self.kind in (SLIDING, REST):
             return self.kind
-        sizes = ", ".join(f"{a:.4g}" for a in self.amplitude)
+        count = len(self.low)
+        names, units = (range(1, count + 1), ["m"] * count) if system is None else (system.names, system.units)
+        sizes = sizes_told(map(str, names), self.amplitude, units, 4)
         if self.kind in (CYCLE, UNSTABLE) and self.cycle is not None:
-            return f"{self.cycle.stability} cycle, amplitude {sizes} m, {self.cycle.frequency:.6g} Hz"
-        return f"{self.kind}, amplitude {sizes} m, maxima at {self.frequency:.5g} Hz"
+            return f"{self.cycle.stability} cycle, amplitude {sizes}, {self.cycle.frequency:.6g} Hz"
+        return f"{self.kind}, amplitude {sizes}, maxima at {self.frequency:.5g} Hz"
 
 
 def attractors(

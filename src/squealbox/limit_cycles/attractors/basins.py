@@ -98,7 +98,7 @@ class Basin(Result):
         shown = np.sort(np.argsort(-np.asarray(self.shares), kind="stable")[:MOST_LINES])
         for i in shown:
             kind = self.kind[i]
-            about = self.attractors[i].summary() if self.attractors else str(kind)
+            about = self.attractors[i].summary(self.system) if self.attractors else str(kind)
             low, high = self.intervals[i]
             lines.append(f"  {100 * self.shares[i]:5.1f} % ({100 * low:.1f} to {100 * high:.1f} %) {about}")
         if len(self.kind) > MOST_LINES:

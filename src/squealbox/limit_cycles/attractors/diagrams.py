@@ -35,6 +35,7 @@ from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import complex_modes
 from squealbox.start import Start
+from squealbox.words import sizes_told, unit_at
 
 SWEEPS = ("up", "down", "rest")
 NUDGE = 1e-3  # of V, on every velocity
@@ -98,13 +99,23 @@ class BifurcationDiagram(Result):
 
     def summary(self) -> str:
         """A line for each sweep, and where sliding and vibration coexist."""
-        lines = []
-        for name, kind in zip(self.sweeps, self.kind, strict=True):
-            counts = ", ".join(f"{int(np.sum(kind == code))} {KINDS[code]}" for code in (1, 2, 0, -1))
-            lines.append(f"{name}: {len(self.value)} values of {self.parameter}: {counts}")
+
+        def shown(value: float) -> str:
+            return self.read_value(self.parameter, value)
+
+        system, span = self.kept_system(), f"{shown(self.value[0])} to {shown(self.value[-1])}"
+        units = [unit_at(system, dof) for dof in self.dofs]
+        lines = [f"{self.parameter} from {span}, {len(self.value)} values{f'; {self.section}' if self.section else ''}"]
+        for sweep, kind, size in zip(self.sweeps, self.kind, self.amplitude, strict=True):
+            counts = [f"{n} {KINDS[code]}" for code in (1, 2, 0, -1) if (n := int(np.sum(kind == code)))]
+            moves = self.stretches((kind == 2) | (kind == 0), shown)
+            where = f"; vibrates {moves}" if moves else ""
+            largest = sizes_told(self.dofs, np.nanmax(size, axis=0), units, 3)
+            lines.append(f"{sweep}: {', '.join(counts)}{where}; largest amplitude {largest}")
         if np.any(self.coexist):
-            over = self.stretches(self.coexist, lambda value: f"{value:.5g}")
-            lines.append(f"rest and vibration coexist at {int(np.sum(self.coexist))} values, {over}")
+            over = self.stretches(self.coexist, shown)
+            lines.append(f"Rest and vibration coexist at {int(np.sum(self.coexist))} values, {over}.")
+        lines += [f"Note: {self.outcome.message}"] * (not self.outcome.ok)
         return self.warned(lines)
 
 

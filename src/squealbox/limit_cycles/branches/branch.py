@@ -29,6 +29,7 @@ from squealbox.limit_cycles.cycles.harmonic_balance import Grid, harmonic_balanc
 from squealbox.limit_cycles.cycles.shooting import CONTACTS, shooting
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
+from squealbox.words import sizes_told, unit_at
 
 METHODS = ("harmonic_balance", "shooting")
 METHODS_FROM_HOPF = (("harmonic_balance", "exact"), ("shooting", "exact"))
@@ -102,15 +103,23 @@ class Branch(Result):
         if len(self.value) == 0:
             return f"{self.parameter}: {self.outcome.told}"
         low, high = np.min(self.value), np.max(self.value)
-        walked = f"{len(self.value)} cycles, {self.parameter} from {low:.6g} to {high:.6g}"
+        first, last = (self.read_value(self.parameter, end) for end in (low, high))
+        pitch = f"{np.min(self.frequency):.6g} to {np.max(self.frequency):.6g} Hz"
+        moved = np.array([np.min(self.amplitude, axis=0), np.max(self.amplitude, axis=0)]).T
+        dofs = [unit_at(self.kept_system(), i) for i in range(len(moved))]
+        names = getattr(self.kept_system(), "names", map(str, range(1, len(moved) + 1)))
         ended = self.outcome.message or str(self.outcome)
-        lines = [f"{walked}, {int(np.sum(self.stable))} stable; ended: {ended}"]
+        lines = [
+            f"{len(self.value)} cycles, {self.parameter} from {first} to {last}, {pitch}, amplitude "
+            f"{sizes_told(names, moved, dofs)}, {int(np.sum(self.stable))} stable; ended: {ended}"
+        ]
         if len(self.value) > 2 and high - low < STRAIGHT * max(abs(low), abs(high)):
             lines += [f"it goes straight up: cycles of every amplitude at {self.parameter} = {low:.8g}"]
         one_way = self.settings.get("one_way")
         if one_way:
             lines += [f"the other way from its start is another walk: direction={-one_way:g}"]
-        lines += [f"{kind} at {value:.8g}" for kind, value in zip(self.special_kind, self.special_value, strict=True)]
+        special = zip(self.special_kind, self.special_value, strict=True)
+        lines += [f"{kind.replace('_', ' ')} at {self.read_value(self.parameter, at, 8)}" for kind, at in special]
         return self.warned(lines)
 
 

@@ -84,12 +84,17 @@ class HopfPoint(OneEigenvalue, Result):
 
     def summary(self) -> str:
         """One line: where, at which frequency, of which kind, and how far its contacts keep sliding."""
+        return self.told()
+
+    def told(self, digits: int = 10) -> str:
+        """The `summary`, with so many digits [-] of values of the parameter."""
         if not self.outcome.ok:
             return f"{self.parameter}: {self.outcome.told}"
         kind = "Hopf point of unknown kind" if self.kind == "unknown" else f"{self.kind} Hopf point"
-        said = f"{kind} at {self.parameter} = {float(self.value):.10g}, {self.frequency:.6g} Hz"
-        if np.isfinite(rest := self.first_rest):
-            said += f"; on its cycle contacts keep sliding as far as {rest:.10g}"
+        place, rest = (self.read_value(self.parameter, value, digits) for value in (self.value, self.first_rest))
+        said = f"{kind} at {self.parameter} = {place}, {self.frequency:.6g} Hz"
+        if np.isfinite(self.first_rest):
+            said += f"; on its cycle contacts keep sliding as far as {rest}"
         return f"{said}; {self.caution}" if self.caution else said
 
 

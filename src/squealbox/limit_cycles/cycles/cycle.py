@@ -13,6 +13,7 @@ import numpy as np
 
 from squealbox.result import Array, Result, optional, quantity
 from squealbox.system import System
+from squealbox.words import sizes_told
 
 BESIDE = 1e-3  # of a period: where a turning point is looked at once more
 NEUTRAL = 1e-8  # how far from the unit circle a multiplier is known not to lie on it
@@ -107,8 +108,7 @@ class Cycle(Result):
         """One line: period, frequency, amplitudes, stability."""
         if not self.outcome.ok:
             return self.outcome.told
-        about = zip(self.system.names, self.amplitude, self.system.units, strict=True)
-        sizes = ", ".join(f"{name} {a:.6g} {unit}" for name, a, unit in about)
+        sizes = sizes_told(self.system.names, self.amplitude, self.system.units)
         said = (
             f"{self.stability} cycle, period {float(self.period):.10g} s ({self.frequency:.6g} Hz), amplitude {sizes}"
         )

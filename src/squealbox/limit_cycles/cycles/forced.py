@@ -40,6 +40,7 @@ from squealbox.schedules import Constant, Schedule, Sinusoid, value_at
 from squealbox.start import Start
 from squealbox.system import System, as_system, equilibrium
 from squealbox.transient import Method, Trajectory, simulate
+from squealbox.words import sizes_told
 
 MOST_ROUNDS = 1000  # periods of one harmonic within which the others must come back
 INSTANT = 1e-6  # share of the period over which an event function is differenced in time
@@ -101,10 +102,11 @@ class ForcedCycle(Result):
         """Period, stability and amplitudes."""
         if not self.outcome.ok:
             return self.outcome.told
-        sizes = ", ".join(f"{size:.6g}" for size in np.atleast_1d(self.amplitude))
+        system = self.kept_system()
+        sizes = sizes_told(system.names, self.amplitude, system.units)
         return (
             f"forced motion of period {float(self.period):.6g} s is {self.stability}: growth rate "
-            f"{self.growth_rate:+.6g} 1/s, {self.events} events, amplitudes {sizes} m"
+            f"{self.growth_rate:+.6g} 1/s, {self.events} events, amplitude {sizes}"
         )
 
     def __repr__(self) -> str:
