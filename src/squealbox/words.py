@@ -104,6 +104,11 @@ def growing(rate: Any, frequency: Any) -> str:
     return f"{float(rate):+.6g} 1/s at {float(frequency):.6g} Hz"
 
 
+def level_told(level: Any, weighted: Any) -> str:
+    """How loud, to the decibel that an estimate is worth: ``74 dB, 72 dB(A)``."""
+    return f"{float(level):.0f} dB, {float(weighted):.0f} dB(A)"
+
+
 def sizes_told(names: Iterable[str], sizes: Iterable[Any], units: Iterable[str], digits: int = 6) -> str:
     """What each freedom does, with units that suit: ``x 2.31 µm, y 0.4 mm``; of (least, largest) both.
 
@@ -113,7 +118,7 @@ def sizes_told(names: Iterable[str], sizes: Iterable[Any], units: Iterable[str],
     told = []
     for name, size, unit in zip(names, sizes, units, strict=True):
         ends, (factor, written) = np.ravel(size), scaled(unit, size)
-        told.append(f"{name} {' to '.join(number(end / factor, digits) for end in ends)} {written}")
+        told.append(f"{name} {' to '.join(number(end / factor, digits) for end in ends)} {written}".strip())
     return ", ".join(told)
 
 

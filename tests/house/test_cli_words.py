@@ -1,7 +1,13 @@
 """The words of a command line: their order, ranges below zero, what is missing, files with a byte order mark."""
 
-from squealbox import DrumBrake, LinearSlope, mechanism, simulate
+import numpy as np
+
+from squealbox import DrumBrake, LinearSlope, System, critical_value, mechanism, simulate, stability_boundary
 from squealbox.cautions import told_place
+from squealbox.files import read_design
+from squealbox.limit_cycles.attractors.attractor import Attractor
+from squealbox.plots import card
+from squealbox.result import Result
 
 
 def test_changes_may_stand_before_the_file_and_ranges_may_be_negative(said, brake):
@@ -44,3 +50,28 @@ def test_numbers_are_told_in_the_words_of_the_reader():
     frame = simulate(brake, 1e-3).to_dataframe()
     assert frame.attrs["units"]["q[x]"] == "m"
     assert set(frame.attrs["units"]) == set(frame.columns)
+
+
+def test_a_command_says_of_a_result_what_it_says_of_itself(said, brake, tmp_path):
+    """Angles in degrees, in Python, on a card and on the command line; the command had other words and other units."""
+    plane = ["--vary", "friction.static=0:1", "theta1=20deg:80deg", "--points", "7"]
+    _, out, _ = said("map", brake, *plane, "--out", tmp_path / "map")
+    grid = Result.load(tmp_path / "map" / "map.nc")
+    edge = stability_boundary(read_design(brake), {"friction.static": (0.0, 1.0), "theta1": np.deg2rad([20.0, 80.0])})
+    assert grid.summary() in out
+    assert edge.summary() in out
+    assert "theta1 = 80 deg" in grid.summary()
+    assert grid.summary().splitlines()[0] in card(grid)
+    _, out, _ = said("onset", brake, "--vary", "theta1=10deg:90deg")
+    onset = critical_value(read_design(brake), "theta1", np.deg2rad([10.0, 90.0]))
+    assert onset.told(7) in out
+    assert " deg: squeal begins" in str(onset)
+    assert "rad" not in str(onset)
+
+
+def test_amplitudes_are_told_by_name_in_a_unit_that_suits():
+    """A rotation was told in metres."""
+    moves = Attractor("vibration", np.array([-2e-6, -1e-3]), np.array([2e-6, 1e-3]), np.zeros((2, 8)), 100.0, ((), ()))
+    system = System(np.eye(2), np.eye(2), np.eye(2), names=("x", "y"), angles=("y",))
+    assert moves.summary(system) == "vibration, amplitude x 2 µm, y 1 mrad, maxima at 100 Hz"
+    assert moves.summary() == "vibration, amplitude 2 µm, 1 mm, maxima at 100 Hz"

@@ -15,6 +15,7 @@ from squealbox.matrices import liveliest
 from squealbox.system import as_system
 from squealbox.transient import Ensemble, MotionSettings, simulate_ensemble, usual_duration
 from squealbox.waiting import Progress
+from squealbox.words import quantity
 from squealbox.writing import write
 
 ABOUT = {"ensemble": "transients over two parameters: amplitude and frequency of each"}
@@ -93,10 +94,11 @@ def _summary(many: Ensemble, plane: Plane) -> str:
     if np.all(np.isnan(amplitude)):
         return many.warned(lines)
     column, row = np.unravel_index(np.nanargmax(amplitude), amplitude.shape)
-    where = plane.place((plane.axes[0].values[column], plane.axes[1].values[row]))
+    at = zip(plane.names, (plane.axes[0].values[column], plane.axes[1].values[row]), strict=True)
+    where = ", ".join(f"{name} = {many.read_value(name, value)}" for name, value in at)
     lines.append(
-        f"amplitude over the last fifth, {which}: median {np.nanmedian(amplitude):.4g} {unit}, "
-        f"largest {amplitude[column, row]:.4g} {unit} at {frequency[column, row]:.5g} Hz, {where}"
+        f"amplitude over the last fifth, {which}: median {quantity(np.nanmedian(amplitude), unit)}, largest "
+        f"{quantity(amplitude[column, row], unit)} at {quantity(frequency[column, row], 'Hz', 6)}, {where}"
     )
     return many.warned(lines)
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
@@ -126,12 +126,6 @@ class Plane:
         """Names and units of the axes, as figures take them."""
         (x_name, y_name), (x_unit, y_unit) = self.names, self.units
         return {"x_name": x_name, "x_unit": x_unit, "y_name": y_name, "y_unit": y_unit}
-
-    def place(self, point: Any) -> str:
-        """A point in words."""
-        values = [readable(self.design, each, value)[0] for each, value in zip(self.axes, point, strict=True)]
-        words = [f"{n} = {v:.5g} {u}".rstrip() for n, v, u in zip(self.names, values, self.units, strict=True)]
-        return ", ".join(words)
 
 
 def _split(span: tuple[str, str, str] | None) -> tuple[str | None, tuple[str, str] | None]:

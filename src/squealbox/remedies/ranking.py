@@ -21,6 +21,7 @@ from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
 from squealbox.system import InvalidSystem, equilibrium
 from squealbox.transient import simulate
+from squealbox.words import as_read
 
 TUNING = 0.03  # standard deviation of an absorber's frequency in production, relative
 ZOOM, SLOW_ZOOM = 17, 6
@@ -224,7 +225,8 @@ def _row(each: Candidate, brake: Design, margin: float, lot: Any, tuning: Any, p
 
 def _told(dose: float, unit: str) -> str:
     """A dose as a reader writes it: angles in degrees, pure numbers without a unit."""
-    return f"{np.rad2deg(dose):.4g} deg" if unit == "rad" else f"{dose:.4g} {unit.strip('-')}".strip()
+    number, unit = as_read(dose, unit)
+    return f"{number:.4g} {unit}".rstrip()
 
 
 def _dose(each: Candidate, margin: float) -> tuple[float, bool]:

@@ -10,7 +10,7 @@ from squealbox.report.examination import Examination
 from squealbox.signals import SoundLevel
 from squealbox.stability import sentences
 from squealbox.system import equilibrium
-from squealbox.words import number, quantity, read_in, sizes_told
+from squealbox.words import level_told, number, quantity, read_in, sizes_told
 
 
 def in_reading_unit(found: Examination, name: str) -> tuple[float, str]:
@@ -115,7 +115,7 @@ def _loudness(found: Examination) -> Iterator[str]:
 
 
 def _level(loud: SoundLevel) -> str:
-    return f"about {float(loud.level):.0f} dB ({float(loud.weighted):.0f} dB(A))"
+    return f"about {level_told(loud.level, loud.weighted)}"
 
 
 def caveats(found: Examination) -> list[str]:

@@ -23,7 +23,7 @@ from squealbox.arguments import public
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals.samples import SignalError, column, folded, given
 from squealbox.signals.spectra import peaks, spectrum
-from squealbox.words import AUDIBLE
+from squealbox.words import AUDIBLE, level_told
 
 DENSITY = 1.204  # of air at 20 degC and 101.325 kPa [kg/m^3]
 SPEED_OF_SOUND = 343.2  # in air at 20 degC [m/s]
@@ -66,7 +66,7 @@ class SoundLevel(Result):
         if not self.outcome.ok:
             return self.outcome.told
         loudest = f"loudest at {float(self.frequency[0]):.5g} Hz"
-        return f"{float(self.level):.0f} dB, {float(self.weighted):.0f} dB(A), {loudest}. {self.assumption}"
+        return f"{level_told(self.level, self.weighted)}, {loudest}. {self.assumption}"
 
 
 @public()

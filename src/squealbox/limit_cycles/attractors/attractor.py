@@ -57,8 +57,8 @@ class Attractor:
         if self.kind in (SLIDING, REST):
             return self.kind
         count = len(self.low)
-        names, units = (range(1, count + 1), ["m"] * count) if system is None else (system.names, system.units)
-        sizes = sizes_told(map(str, names), self.amplitude, units, 4)
+        names, units = ([""] * count, ["m"] * count) if system is None else (system.names, system.units)
+        sizes = sizes_told(names, self.amplitude, units, 4)
         if self.kind in (CYCLE, UNSTABLE) and self.cycle is not None:
             return f"{self.cycle.stability} cycle, amplitude {sizes}, {self.cycle.frequency:.6g} Hz"
         return f"{self.kind}, amplitude {sizes}, maxima at {self.frequency:.5g} Hz"

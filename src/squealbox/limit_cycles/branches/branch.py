@@ -107,7 +107,7 @@ class Branch(Result):
         pitch = f"{np.min(self.frequency):.6g} to {np.max(self.frequency):.6g} Hz"
         moved = np.array([np.min(self.amplitude, axis=0), np.max(self.amplitude, axis=0)]).T
         dofs = [unit_at(self.kept_system(), i) for i in range(len(moved))]
-        names = getattr(self.kept_system(), "names", map(str, range(1, len(moved) + 1)))
+        names = getattr(self.kept_system(), "names", [""] * len(moved))
         ended = self.outcome.message or str(self.outcome)
         lines = [
             f"{len(self.value)} cycles, {self.parameter} from {first} to {last}, {pitch}, amplitude "

@@ -11,7 +11,7 @@ from squealbox.signals import SignalError, audible, dominant_frequency, rendered
 from squealbox.signals.radiation import AREA, AUDIBLE
 from squealbox.signals.wav import SAMPLING
 from squealbox.transient import Trajectory
-from squealbox.words import number, quantity, scaled
+from squealbox.words import level_told, number, quantity, scaled
 from squealbox.workbench.panels.declared import FREEDOM, Panel, Place, words
 from squealbox.workbench.panels.following import followed, moving
 from squealbox.workbench.panels.loudness import loudest, loudness
@@ -64,7 +64,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         return Answer({**data, "silent": f"Nothing to hear: {error}."})
     if not AUDIBLE[0] <= pitch <= AUDIBLE[1]:
         slow = pitch < AUDIBLE[0]  # too few periods for a number: the panel of the motion takes longer
-        told = f"below {AUDIBLE[0]:g} Hz" if slow else f"at {pitch:.4g} Hz"
+        told = f"below {AUDIBLE[0]:g} Hz" if slow else f"at {quantity(pitch, 'Hz')}"
         return Answer({**data, "silent": f"It moves {told}, which nobody hears."})
     wave = audible(motion, dof=dof, fade=FADE)
     factor, unit = scaled(system.units[dof], wave)
@@ -75,7 +75,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "largest": float(np.max(np.abs(wave))),
         **loudness(motion, dof, begin=0.75 * SECONDS, area=area),
     }
-    data["words"] = f"{system.names[dof]} at {pitch:.5g} Hz, {_loud(data)}"
+    data["words"] = f"{system.names[dof]} at {quantity(pitch, 'Hz', 5)}, {_loud(data)}"
     return Answer(data, {"wave": wave / factor, **_frames(motion, pitch)})
 
 
@@ -83,7 +83,7 @@ def _loud(data: dict[str, Any]) -> str:
     """The level while it lasts, or that it does not: the estimate looks at the end of the sound."""
     if data["level"] is None or data["level"] < 0.0:
         return "and dies away: in the end nothing is left to hear"
-    return f"about {data['level']:.3g} dB, {data['weighted']:.3g} dB(A) at 1 m"
+    return f"about {level_told(data['level'], data['weighted'])} at 1 m"
 
 
 def _frames(motion: Trajectory, pitch: float) -> dict[str, Any]:
@@ -163,5 +163,5 @@ def _events(pressure: Any, times: Any) -> list[list[float]]:
 def _told(events: list[list[float]], name: str) -> str:
     if not events:
         return f"No squeal of {LEAST:g} dB(A) or more in this stop. {LEFT_OUT}."
-    told = [f"{f:.4g} Hz, {level:.0f} dB(A), {begin:.2g} to {end:.2g} s" for begin, end, f, level in events]
+    told = [f"{quantity(f, 'Hz')}, {level:.0f} dB(A), {begin:.2g} to {end:.2g} s" for begin, end, f, level in events]
     return f"Squeal of {name} at 1 m, an estimate: {'; '.join(told)}. {LEFT_OUT}."
