@@ -112,7 +112,7 @@ def of_a_run(system: System, lowest: Any, fastest: Any) -> tuple[str, ...]:
     """As :func:`out_of_range`, from the least normal force [N] and the fastest sliding [m/s] of each contact."""
     said: list[str] = []
     for name, contact, least, most in zip(system.contact_names, system.contacts, lowest, fastest, strict=True):
-        if np.isfinite(least):
+        if -np.inf < least < 0.0:
             said += _pulls(name, contact, float(least), _round_off(contact))
         said += _leaves(name, contact, float(most) * SPEEDS, float(most))
     return tuple(said)
@@ -177,7 +177,7 @@ def _leaves(name: str, contact: Contact, looked: Any, fastest: float) -> list[st
     said, mu = [], np.asarray(contact.law.mu(looked), dtype=float)
     least = float(np.fmin.reduce(mu, axis=None))
     if least < 0.0:
-        at = float(np.broadcast_to(looked, mu.shape).flat[int(np.nanargmin(mu))])
+        at = float(np.broadcast_to(looked, mu.shape).flat[int(np.flatnonzero(mu == least)[0])])
         said.append(DRIVES.format(name=name, speed=at, mu=least))
     if isinstance(contact.law, Table) and fastest > _known(contact.law):
         said.append(BEYOND.format(name=name, speed=fastest, known=_known(contact.law)))
