@@ -1,6 +1,6 @@
 """What of `calibrate` can be set, for files and the command line."""
 
-from squealbox.calibration.calibrate import LOSSES
+from squealbox.calibration.calibrating import LOSSES
 from squealbox.parameters import DataSheet, choice, parameter
 
 

@@ -9,10 +9,8 @@ from squealbox.cli.inputs import NOTHING_SAID, Said, folder, keywords, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import written
-from squealbox.files import DesignFile, write_design
-from squealbox.files.measurements import Recorded
-from squealbox.signals import EventSettings, Recording, SignalError, SquealEvents, squeal_events
-from squealbox.signals.events import BAND
+from squealbox.files import DesignFile, Recorded, write_design
+from squealbox.signals import BAND, EventSettings, Recording, SignalError, SquealEvents, squeal_events
 from squealbox.stability import ComplexModes, complex_modes
 from squealbox.waiting import Progress
 

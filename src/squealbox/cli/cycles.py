@@ -11,8 +11,7 @@ from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.states import States, start_from
 from squealbox.cli.tables import kept, written
-from squealbox.limit_cycles import Cycle, CycleSettings, lyapunov_exponents, shooting
-from squealbox.limit_cycles.attractors.exponents import LOST
+from squealbox.limit_cycles import LOST, Cycle, CycleSettings, lyapunov_exponents, shooting
 from squealbox.stability import complex_modes
 from squealbox.transient import simulate
 

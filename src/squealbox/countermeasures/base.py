@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from squealbox.designs import Design
-from squealbox.loops.rows import padded_load
+from squealbox.loops import padded_load
 from squealbox.parameters import Choice, Parameter, ParameterError, known_names
 from squealbox.system import Contact, System
 

@@ -16,13 +16,11 @@ from squealbox.arguments import public, with_parameters
 from squealbox.countermeasures.base import outer
 from squealbox.countermeasures.loss import at_the_window, first_loss, growth_about, growth_of
 from squealbox.countermeasures.mechanical import TunedMass
-from squealbox.designs.base import Design
+from squealbox.designs import Design
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Array, Result, quantity
-from squealbox.stability import complex_modes
-from squealbox.stability.family import steady_sliding
-from squealbox.stability.state_matrix import spectrum
-from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
+from squealbox.stability import complex_modes, spectrum, steady_sliding
+from squealbox.studies import Scatter, Scattered, as_scatter
 from squealbox.system import Equilibrium, Linearised, as_system
 
 AIMS = ("decay", "margin", "probability")

@@ -14,10 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.stability.family import steady_sliding
-from squealbox.stability.in_band import eigenvalues_in_band, worst_in_band
-from squealbox.stability.spectra import largest_growth
+from squealbox.fe import ReducedBrake
+from squealbox.stability import eigenvalues_in_band, largest_growth, steady_sliding, worst_in_band
 from squealbox.system import Linearised
 
 MOST_ROWS = 12  # of a state matrix, whose products are 66 then

@@ -3,6 +3,9 @@
 from squealbox.designs.base import Design
 from squealbox.designs.damping_paradox import DampingParadox
 from squealbox.designs.drum_brake import DrumBrake, published_matrices
+from squealbox.designs.drum_brake_readings import ASSUMED_SLOPE as ASSUMED_SLOPE
+from squealbox.designs.drum_brake_readings import READINGS as READINGS
+from squealbox.designs.drum_brake_readings import TABLE_SPEED as TABLE_SPEED
 from squealbox.designs.drum_brake_shoes import DrumBrakeShoes
 from squealbox.designs.mass_on_belt import BlockChain, MassOnBelt
 from squealbox.designs.mechanism import Body, OwnMechanism, Spring, Touch

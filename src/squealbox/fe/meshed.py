@@ -19,7 +19,7 @@ from scipy import sparse
 from squealbox.contacts import Contacts, unchanging
 from squealbox.designs import Design
 from squealbox.fe.grids import FacePoints, MeshedBody
-from squealbox.fe.real_modes import RealModes, real_modes
+from squealbox.fe.undamped_modes import RealModes, real_modes
 from squealbox.fe.wear import Pressed, Worn, run_in
 from squealbox.parameters import DataSheet, ParameterError, parameter
 from squealbox.system import Equilibrium, System, equilibrium

@@ -25,8 +25,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from squealbox.designs import Design
-from squealbox.fe.assembled import AssembledBrake, StructureFiles
-from squealbox.fe.interfaces import CoordinateSystem, Interface, Rotation
+from squealbox.fe import AssembledBrake, CoordinateSystem, Interface, Rotation, StructureFiles
 from squealbox.files.arrays import ArrayFileError, path_beside
 from squealbox.files.document import Document
 from squealbox.files.lines import Key

@@ -18,8 +18,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from squealbox.calibration import QUANTITIES, CalibrateSettings, Measured
-from squealbox.calibration.measured import UNITS
+from squealbox.calibration import QUANTITIES, UNITS, CalibrateSettings, Measured
 from squealbox.designs import Design
 from squealbox.files.analyses import read_ends, read_spans
 from squealbox.files.document import Document

@@ -11,9 +11,7 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.designs import DESIGNS, Design, OwnBrake, OwnMechanism
 from squealbox.family import ParameterAxis, ParameterPlane
-from squealbox.fe.disc_brake import DiscBrake
-from squealbox.fe.meshed import MeshedBrake
-from squealbox.fe.meshed_drum import MeshedDrumBrake
+from squealbox.fe import DiscBrake, MeshedBrake, MeshedDrumBrake
 from squealbox.files import analyses, countermeasures
 from squealbox.files.assembled import ASSEMBLED, read_assembled
 from squealbox.files.document import Document, document_of, open_document

@@ -8,7 +8,7 @@ from typing import Any
 
 from squealbox.calibration import CalibrateSettings
 from squealbox.family import ParameterAxis
-from squealbox.fe.assembled import AssembledBrake
+from squealbox.fe import AssembledBrake
 from squealbox.files import countermeasures
 from squealbox.files.arrays import TRIANGLES
 from squealbox.files.assembled import ASSEMBLED

@@ -14,6 +14,7 @@ from squealbox.files.sheets import read_sheet
 from squealbox.parameters import Choice, Parameter, ParameterError, known_names
 from squealbox.studies import (
     DISTRIBUTIONS,
+    POINT,
     SAMPLINGS,
     Axis,
     Scatter,
@@ -24,7 +25,6 @@ from squealbox.studies import (
     sobol_sequence,
     zipped,
 )
-from squealbox.studies.space import POINT
 
 EXAMPLE = "parameter = 'friction.static', range = [0.2, 0.5], points = 61"
 MOST = 10**8

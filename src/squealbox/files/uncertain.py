@@ -30,12 +30,12 @@ from squealbox.studies import (
     Constraint,
     Distribution,
     Goal,
+    Over,
     Quantity,
     SampleSettings,
     Scatter,
     SearchSettings,
 )
-from squealbox.studies.optimisation.goals import Over
 
 STUDIES = ("probability", "sobol", "morris", "form", "subset", "surrogate", "bounds")
 SENSES = ("minimise", "maximise")

@@ -7,18 +7,16 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public, with_parameters
-from squealbox.control.closed_loop import closed_loop
-from squealbox.countermeasures import Controlled, Countermeasure, Dithered
-from squealbox.countermeasures.loss import growth_of
-from squealbox.designs.base import Design
-from squealbox.fe.modified import with_component, with_mass
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.control import closed_loop
+from squealbox.countermeasures import Controlled, Countermeasure, Dithered, growth_of
+from squealbox.designs import Design
+from squealbox.fe import ReducedBrake, with_component, with_mass
 from squealbox.parameters import ParameterError
 from squealbox.remedies.candidates import Candidate, candidates_for, more_friction
 from squealbox.remedies.production import ASSUMED, LOT, lot_size, usual_scatter
 from squealbox.remedies.structural import ON_THE_BASIS, structural_candidates
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
+from squealbox.studies import Scatter, Scattered, as_scatter
 from squealbox.system import InvalidSystem, equilibrium
 from squealbox.transient import simulate
 

@@ -10,9 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.fe.band_spectrum import condensed
-from squealbox.fe.pencil import vibrating
-from squealbox.fe.small import Small
+from squealbox.fe import Small, condensed, vibrating
 from squealbox.stability.eigenvalues import complex_modes
 from squealbox.stability.family import SteadyFamily
 

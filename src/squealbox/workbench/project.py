@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from squealbox.designs import Design
-from squealbox.plots.cards import parameter_rows
+from squealbox.plots import parameter_rows
 from squealbox.workbench.folder import (
     LARGEST_STATE,
     LARGEST_TEXT,

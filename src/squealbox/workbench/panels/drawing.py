@@ -3,7 +3,7 @@
 import numpy as np
 
 from squealbox.designs import Design, drawing_of
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe import ReducedBrake
 from squealbox.workbench.panels.declared import Panel
 from squealbox.workbench.panels.panel import Answer, Options, Work
 

@@ -18,8 +18,7 @@ from squealbox.calibration.measured import Measured
 from squealbox.calibration.search import WORST, linearised, losses, searched
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.studies.uncertainty.distributions import TruncatedNormal
-from squealbox.studies.uncertainty.scatter import Scatter
+from squealbox.studies import Scatter, TruncatedNormal
 
 LOSSES = ("squares", "robust")
 FIRST = 256  # points of the box from which the best are followed
