@@ -22,3 +22,4 @@ __all__ = [
 
 # What neighbours may use too; no names of the reference (docs/house.md, Faces).
 from .measured import UNITS as UNITS
+from .settings import Recorded as Recorded

@@ -32,7 +32,7 @@ from squealbox.waiting import Progress
 ABOUT = {"branch": "limit cycles over a range of a parameter: stable, unstable, folds, onset"}
 
 if TYPE_CHECKING:
-    from squealbox.designs import Design
+    from squealbox.design import Design
 
 AS_USUAL = BranchSettings()
 

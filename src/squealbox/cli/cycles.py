@@ -18,7 +18,7 @@ from squealbox.transient import simulate
 ABOUT = {"cycle": "what the motion settles to: the limit cycle, its stability, figure and data"}
 
 if TYPE_CHECKING:
-    from squealbox.designs import Design
+    from squealbox.design import Design
 
 SETTLE = 300.0  # periods of the slowest mode
 ALIGNED = 50  # periods run before exponents are counted

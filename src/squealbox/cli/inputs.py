@@ -12,7 +12,7 @@ import numpy as np
 from squealbox.cli.answers import manner
 from squealbox.cli.options import AS_WRITTEN, HowAsked
 from squealbox.cli.running import UsageError
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.family import ParameterAxis
 from squealbox.fe import ReducedBrake
 from squealbox.files import DesignFile, read_file

@@ -22,7 +22,7 @@ ABOUT = {"map_": "stability over two parameters, with the boundary as curves"}
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squealbox.designs import Design
+    from squealbox.design import Design
     from squealbox.files import DesignFile
 
 COARSE = 11  # points along each axis of a reduced brake's map, unless more are asked for

@@ -43,7 +43,7 @@ ABOUT = {
 SPECTRA = 61  # values at which the modes of a reduced brake are drawn
 
 if TYPE_CHECKING:
-    from squealbox.designs import Design
+    from squealbox.design import Design
     from squealbox.files import DesignFile
 
 

@@ -26,6 +26,3 @@ __all__ = [
     "best_absorber",
     "ross_kerwin_ungar",
 ]
-
-# What neighbours may use too; no names of the reference (docs/house.md, Faces).
-from .loss import growth_of as growth_of

@@ -10,7 +10,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.loops import padded_load
 from squealbox.parameters import Choice, Parameter, ParameterError, known_names
 from squealbox.system import Contact, System

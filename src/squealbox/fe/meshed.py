@@ -17,7 +17,7 @@ import numpy as np
 from scipy import sparse
 
 from squealbox.contacts import Contacts, unchanging
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.fe.grids import FacePoints, MeshedBody
 from squealbox.fe.undamped_modes import RealModes, real_modes
 from squealbox.fe.wear import Pressed, Worn, run_in

@@ -58,4 +58,3 @@ __all__ = [
 ]
 
 # What neighbours may use too; no names of the reference (docs/house.md, Faces).
-from .measurements import Recorded as Recorded

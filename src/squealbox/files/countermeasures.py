@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from squealbox.countermeasures import COUNTERMEASURES, Controlled, Countermeasure
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_number, shown, wrong

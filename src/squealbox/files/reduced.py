@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.family import ParameterAxis
 from squealbox.fe import MatrixFileError, ReducedBrake, load_reduced, with_surface
 from squealbox.files.analyses import read_spans

@@ -17,7 +17,6 @@ __all__ = [
 # What neighbours may use too; no names of the reference (docs/house.md, Faces).
 from .driven import Driven as Driven
 from .driven import driven_brake as driven_brake
-from .held import aliased as aliased
 from .held import continued as continued
 from .held import first_order as first_order
 from .held import highest_rate as highest_rate

@@ -5,9 +5,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.designs import DESIGNS, Design, DrawnShape, drawing_of
+from squealbox.design import Design
+from squealbox.designs import DESIGNS
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, drawing, figure_of
+from squealbox.shapes import DrawnShape, drawing_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.designs import Design
-from squealbox.friction import FrictionLaw
+from squealbox.design import Design
 from squealbox.labelled import Labels
+from squealbox.law import FrictionLaw
 from squealbox.limit_cycles import Basin, Branch, PointCurve
 from squealbox.parameters import DataSheet, Parameter
 from squealbox.plots.brakes import has_drawing

@@ -8,15 +8,16 @@ import numpy as np
 
 from squealbox.arguments import public, with_parameters
 from squealbox.control import closed_loop
-from squealbox.countermeasures import Controlled, Countermeasure, Dithered, growth_of
-from squealbox.designs import Design
+from squealbox.countermeasures import Controlled, Countermeasure, Dithered
+from squealbox.design import Design
 from squealbox.fe import ReducedBrake, with_component, with_mass
 from squealbox.parameters import ParameterError
 from squealbox.remedies.candidates import Candidate, candidates_for, more_friction
 from squealbox.remedies.production import ASSUMED, LOT, lot_size, usual_scatter
 from squealbox.remedies.structural import ON_THE_BASIS, structural_candidates
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.studies import Scatter, Scattered, as_scatter
+from squealbox.scatter import Scatter, Scattered, as_scatter
+from squealbox.stability import growth_of
 from squealbox.system import InvalidSystem, equilibrium
 from squealbox.transient import simulate
 

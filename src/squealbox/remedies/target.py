@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.countermeasures import growth_of
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.parameters import ParameterError
 from squealbox.remedies.candidates import laws_of, more_friction
 from squealbox.remedies.production import DAMPERS, SPRINGS, lot_size, usual_scatter
-from squealbox.stability import complex_modes
-from squealbox.studies import Scatter, binomial_interval, sobol_indices
+from squealbox.scatter import Scatter
+from squealbox.stability import complex_modes, growth_of
+from squealbox.studies import binomial_interval, sobol_indices
 
 FRICTIONS = 40  # looked at, from none to the largest; narrower windows of squeal between two of them are not seen
 HALVINGS = 14  # of the step in which a brake is lost

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.family import ParameterAxis, ParameterPlane
 from squealbox.limit_cycles import Cycle, HopfPoint
 from squealbox.matrices import liveliest

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.family import ParameterAxis, ParameterPlane
 from squealbox.fe import ReducedBrake
 from squealbox.limit_cycles import Cycle, hopf_point, shooting

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from squealbox import plots
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.matrices import liveliest
 from squealbox.plots import ARRAYS, array_rows, has_drawing, has_figure, numeric_answers, parameter_rows, setting_rows
 from squealbox.remedies import Remedies

@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.fe import MeshedBrake, ReducedBrake
 from squealbox.files import ONE_WAY, DesignFile, dense, promise, read_file
 from squealbox.report.blocks import Page, ReportError

@@ -76,8 +76,8 @@ __all__ = [
 from .eigenvalues import OneEigenvalue as OneEigenvalue
 from .energy import contact_groups as contact_groups
 from .family import steady_sliding as steady_sliding
-from .in_band import eigenvalues_in_band as eigenvalues_in_band
-from .in_band import worst_in_band as worst_in_band
+from .in_band import growth_about as growth_about
+from .in_band import growth_of as growth_of
 from .mode import modal_assurance as modal_assurance
 from .mode_tables import mode_table as mode_table
 from .mode_tables import table_text as table_text

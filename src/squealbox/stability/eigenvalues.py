@@ -11,9 +11,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.cautions import out_of_range, pulling
+from squealbox.cautions import aliased, out_of_range, pulling
 from squealbox.fe import ReducedBrake
-from squealbox.loops import aliased
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, batched, quantity
 from squealbox.stability.deflation import special_modes, uncertain, vibrating

@@ -1,16 +1,4 @@
-from squealbox.result import batched
-
-from .analysis import StudyError
-from .optimisation.goals import Constraint, Goal
-from .optimisation.optimum import Optimum, optimise
-from .quantity import Quantity, evaluate
-from .refinement import Refined
-from .settings import RefineSettings, SampleSettings, SearchSettings, StudySettings, WorkerSettings
-from .space import Axis, Space, grid, latin_hypercube, sampled, sobol_sequence, zipped
-from .store import ForeignStore, Store, StoreDamaged, StoreError, StoreFull, StoreLocked, StudyChanged
-from .sweeping import Sweep, open_sweep, sweep
-from .uncertainty.chaos import Surrogate, polynomial_chaos
-from .uncertainty.distributions import (
+from squealbox.distributions import (
     DISTRIBUTIONS,
     Beta,
     Distribution,
@@ -22,11 +10,23 @@ from .uncertainty.distributions import (
     Uniform,
     as_distribution,
 )
+from squealbox.result import batched
+from squealbox.scatter import SAMPLINGS, Scatter
+
+from .analysis import StudyError
+from .optimisation.goals import Constraint, Goal
+from .optimisation.optimum import Optimum, optimise
+from .quantity import Quantity, evaluate
+from .refinement import Refined
+from .settings import RefineSettings, SampleSettings, SearchSettings, StudySettings, WorkerSettings
+from .space import Axis, Space, grid, latin_hypercube, sampled, sobol_sequence, zipped
+from .store import ForeignStore, Store, StoreDamaged, StoreError, StoreFull, StoreLocked, StudyChanged
+from .sweeping import Sweep, open_sweep, sweep
+from .uncertainty.chaos import Surrogate, polynomial_chaos
 from .uncertainty.form import DesignPoint, form
 from .uncertainty.intervals import IntervalBounds, interval_bounds
 from .uncertainty.morris import MorrisEffects, morris_effects
 from .uncertainty.probability import SquealProbability, squeal_probability
-from .uncertainty.scatter import SAMPLINGS, Scatter
 from .uncertainty.sobol import SobolIndices, sobol_indices
 from .uncertainty.subset import SubsetProbability, subset_simulation
 from .work import Pace
@@ -98,5 +98,3 @@ from .space import POINT as POINT
 from .store import LOG as LOG
 from .store import RESULT as RESULT
 from .uncertainty.replicates import binomial_interval as binomial_interval
-from .uncertainty.scatter import Scattered as Scattered
-from .uncertainty.scatter import as_scatter as as_scatter

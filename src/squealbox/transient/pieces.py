@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.loops import Driven, aliased, driven_brake, size_and_rate
+from squealbox.cautions import aliased
+from squealbox.loops import Driven, driven_brake, size_and_rate
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Polynomial, Schedule
 from squealbox.start import Start

@@ -13,7 +13,7 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.plots import parameter_rows
 from squealbox.workbench.folder import (
     LARGEST_STATE,

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from squealbox.countermeasures import Countermeasure
-from squealbox.designs import Design
-from squealbox.friction import LAW_NAMES, FrictionLaw
+from squealbox.design import Design
+from squealbox.friction import LAW_NAMES
+from squealbox.law import FrictionLaw
 from squealbox.parameters import DataSheet, Parameter, field_type
 from squealbox.registers import name_of
 from squealbox.schedules import Schedule

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.figure_data import FigureAxis, FigureData, Layer, band, line, points, span
 from squealbox.limit_cycles import (
     NEUTRAL,

@@ -3,7 +3,7 @@
 from typing import Any
 
 from squealbox.calibration import calibrate, from_events
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.parameters import ParameterError
 from squealbox.signals import SignalError
 from squealbox.words import number

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.figure_data import FigureAxis, FigureData, across, line, span
 from squealbox.plots import followed, parameter_rows
 from squealbox.stability import complex_modes, mechanism

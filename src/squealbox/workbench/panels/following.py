@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.fe import ReducedBrake
 from squealbox.system import System
 from squealbox.transient import LARGE, Trajectory, needs_compiling, simulate

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.fe import ReducedBrake
 from squealbox.plots import modes_over_parameter, unstable_stretches
 from squealbox.workbench.panels.declared import OVER, Panel, Place

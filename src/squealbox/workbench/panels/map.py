@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.fe import ReducedBrake
 from squealbox.figure_data import FigureData, heat, path
 from squealbox.stability import StabilityMap, map_boundary, stability_map

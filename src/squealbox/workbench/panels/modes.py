@@ -4,7 +4,7 @@ import functools
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.fe import ReducedBrake
 from squealbox.parameters import ParameterError
 from squealbox.stability import (

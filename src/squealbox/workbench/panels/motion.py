@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.figure_data import FigureAxis, FigureData, across, heat, hull, line, span, text
 from squealbox.plots import unit_at
 from squealbox.signals import SignalError, peaks, spectrogram, spectrum

@@ -6,7 +6,7 @@ import numpy as np
 
 from squealbox import read_recording, squeal_events
 from squealbox.calibration import compare
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.figure_data import FigureAxis, FigureData, heat, line
 from squealbox.plots import shown
 from squealbox.signals import Recording, SignalError, SquealEvents, spectrogram

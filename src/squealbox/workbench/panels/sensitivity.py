@@ -5,10 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design, drawing_of
+from squealbox.design import Design
 from squealbox.figure_data import Bars
 from squealbox.parameters import ParameterError
 from squealbox.remedies import usual_scatter
+from squealbox.shapes import drawing_of
 from squealbox.stability import MERGE, critical_values, sensitivity
 from squealbox.system import InvalidSystem
 from squealbox.workbench.frames import finite

@@ -4,7 +4,7 @@ import dataclasses
 from collections.abc import Callable
 from typing import Any
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.files import NotWritable, design_text
 from squealbox.parameters import ParameterError
 from squealbox.remedies import Candidate, Remedies, candidates_for, more_friction, silence

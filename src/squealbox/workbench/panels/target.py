@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.figure_data import FigureAxis, FigureData, Layer, across, line, points, text, upright
 from squealbox.parameters import ParameterError
 from squealbox.remedies import ASSUMED, Lot, lot_of

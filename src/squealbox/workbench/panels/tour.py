@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design, DrumBrake
+from squealbox.design import Design
+from squealbox.designs import DrumBrake
 from squealbox.friction import LinearSlope
 from squealbox.papers import ALPHA, INFERRED, Case, Record, count, paper, verdicts
 from squealbox.workbench.panels.declared import Panel

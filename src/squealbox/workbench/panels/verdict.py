@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.cautions import pulled, pulling
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.stability import LINEAR, MERGE, growth_in_words, headline, margin_in_words, mechanism
 from squealbox.system import equilibrium
 from squealbox.workbench.panels.declared import OVER, Panel

@@ -5,8 +5,7 @@ from typing import Annotated, Any, ClassVar, get_origin
 
 import numpy as np
 
-from squealbox.designs.shapes import Shapes
-from squealbox.friction import FrictionLaw
+from squealbox.law import FrictionLaw
 from squealbox.parameters import (
     DRAWN_BY,
     Choice,
@@ -17,6 +16,7 @@ from squealbox.parameters import (
     known_names,
     screenful,
 )
+from squealbox.shapes import Shapes
 from squealbox.system import System
 
 
