@@ -53,6 +53,11 @@ class Design(DataSheet):
         """The brake itself, without what a countermeasure adds."""
         return self
 
+    @property
+    def layers(self) -> tuple[Any, ...]:
+        """The countermeasures around the brake, the outermost first."""
+        return ()
+
     def scalars(self) -> dict[str, Parameter]:
         """The scalar parameters that a study can vary, nested ones with dots, aliases included.
 

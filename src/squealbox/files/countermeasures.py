@@ -59,13 +59,8 @@ def wrapped_text(
     refused: type[ValueError],
 ) -> str:  # fmt: skip
     """The file of a brake within its countermeasures: that of the brake, then a table for each, from inside out."""
-    layers: list[Countermeasure] = []
-    held: Design = design
-    while isinstance(held, Countermeasure):
-        layers.append(held)
-        held = held.brake
-    lines = [text_of(held).rstrip("\n")]
-    for layer in reversed(layers):
+    lines = [text_of(design.innermost).rstrip("\n")]
+    for layer in reversed(design.layers):
         if isinstance(layer, Controlled):
             if layer is not design:
                 raise refused("loops stand inside another countermeasure: a file holds them outermost, Controlled(...)")

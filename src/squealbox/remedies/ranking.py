@@ -280,11 +280,10 @@ def _share_cured(each: Candidate, cured: Design, brake: Design, lot: dict[str, A
 
 def _layers(cured: Design, brake: Design) -> list[Countermeasure]:
     """The countermeasures put onto the brake, the outermost first; none where it is not among what they hold."""
-    found, held = [], cured
-    while held is not brake and isinstance(held, Countermeasure):
-        found.append(held)
-        held = held.brake
-    return found if held is brake else []
+    for i, layer in enumerate(cured.layers):
+        if layer.brake is brake:
+            return list(cured.layers[: i + 1])
+    return []
 
 
 def _one_side(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
