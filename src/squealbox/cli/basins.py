@@ -12,9 +12,7 @@ from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.states import States, box_from
 from squealbox.cli.tables import kept, written
-from squealbox.limit_cycles import Basin, BasinSettings, basin, dangerous_push
-from squealbox.limit_cycles.attractors.basins import half_widths
-from squealbox.limit_cycles.attractors.sections import state_names
+from squealbox.limit_cycles import Basin, BasinSettings, basin, dangerous_push, half_widths, state_names
 from squealbox.waiting import Progress
 
 ABOUT = {"basin_": "which starts lead to which motion: shares, a picture, the smallest push"}

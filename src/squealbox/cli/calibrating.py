@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from squealbox.calibration import CalibrateSettings, Comparison, compare, from_events, read_mode_table
+from squealbox.calibration import CalibrateSettings, Comparison, Recorded, compare, from_events, read_mode_table
 from squealbox.calibration import calibrate as fitted
 from squealbox.cli.answers import show
 from squealbox.cli.inputs import NOTHING_SAID, Said, folder, keywords, read
@@ -10,9 +10,7 @@ from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import written
 from squealbox.files import DesignFile, write_design
-from squealbox.files.measurements import Recorded
-from squealbox.signals import EventSettings, Recording, SignalError, SquealEvents, squeal_events
-from squealbox.signals.events import BAND
+from squealbox.signals import BAND, EventSettings, Recording, SignalError, SquealEvents, squeal_events
 from squealbox.stability import ComplexModes, complex_modes
 from squealbox.waiting import Progress
 

@@ -24,15 +24,14 @@ from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import kept, write_csv, written
 from squealbox.family import ParameterAxis
-from squealbox.limit_cycles import BifurcationDiagram, Branch, DiagramSettings, Section, bifurcation_diagram
-from squealbox.limit_cycles.attractors.settling import KINDS
+from squealbox.limit_cycles import KINDS, BifurcationDiagram, Branch, DiagramSettings, Section, bifurcation_diagram
 from squealbox.parameters import known_names
 from squealbox.waiting import Progress
 
 ABOUT = {"diagram": "what transients settle to over a parameter, with a Poincare section"}
 
 if TYPE_CHECKING:
-    from squealbox.designs import Design
+    from squealbox.design import Design
 
 Drawn = Annotated[bool, Parameter(negative="")]
 WAYS = {"rises": 1, "falls": -1, "passes": 0}
@@ -139,7 +138,7 @@ def _said(result: BifurcationDiagram, design: "Design", varied: ParameterAxis) -
 
 def _units(result: BifurcationDiagram) -> dict[str, str]:
     """The unit of each degree of freedom."""
-    from squealbox.plots.facts import unit_at
+    from squealbox.plots import unit_at
 
     return {name: unit_at(result.inputs.get("system"), name) for name in result.dofs}
 

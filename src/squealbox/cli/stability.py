@@ -22,7 +22,7 @@ from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.tables import kept, written
 from squealbox.family import ParameterAxis
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe import ReducedBrake
 from squealbox.stability import (
     ComplexModes,
     CriticalValue,
@@ -43,7 +43,7 @@ ABOUT = {
 SPECTRA = 61  # values at which the modes of a reduced brake are drawn
 
 if TYPE_CHECKING:
-    from squealbox.designs import Design
+    from squealbox.design import Design
     from squealbox.files import DesignFile
 
 

@@ -15,8 +15,7 @@ from squealbox.cli.study_analyses import UNITS, analysis_of
 from squealbox.cli.tables import write_csv, written
 from squealbox.family import ParameterAxis
 from squealbox.files import read_study
-from squealbox.studies import Space, Store, WorkerSettings, open_sweep, sweep
-from squealbox.studies.store import LOG, RESULT
+from squealbox.studies import LOG, RESULT, Space, Store, WorkerSettings, open_sweep, sweep
 from squealbox.waiting import Progress
 
 ABOUT = {

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import unit_at
+from squealbox.plots.key_numbers import unit_at
 from squealbox.plots.style import drawing, figure_of, line, panels
 from squealbox.transient import ContactComparison
 from squealbox.words import quantity_label, scaled

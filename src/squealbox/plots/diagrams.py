@@ -7,7 +7,7 @@ import numpy as np
 
 from squealbox.limit_cycles import BifurcationDiagram, Branch, Coexistence
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import unit_at, unit_of
+from squealbox.plots.key_numbers import unit_at, unit_of
 from squealbox.plots.style import WIDTH, cautioned, drawing, figure_of, note, panels, styled
 from squealbox.words import quantity_label, scaled
 

@@ -4,11 +4,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.limit_cycles import HopfPoint, PointCurve
 from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import unit_of
+from squealbox.plots.key_numbers import unit_of
 from squealbox.plots.style import drawing, figure_of, line, note, power_of_ten
 from squealbox.stability import (
     CriticalValue,

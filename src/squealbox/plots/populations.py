@@ -7,7 +7,7 @@ import numpy as np
 from squealbox.matrices import liveliest
 from squealbox.parameters import known_names
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import unit_of
+from squealbox.plots.key_numbers import unit_of
 from squealbox.plots.maps import amplitude_map
 from squealbox.plots.style import LINES, cautioned, drawing, figure_of
 from squealbox.system import as_system

@@ -6,7 +6,7 @@ import numpy as np
 
 from squealbox import signals
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import unit_at
+from squealbox.plots.key_numbers import unit_at
 from squealbox.plots.style import LINES, drawing, figure_of, line, note, uncertain
 from squealbox.words import number, quantity_label, scaled
 

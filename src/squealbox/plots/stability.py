@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import unit_of
+from squealbox.plots.key_numbers import unit_of
 from squealbox.plots.modes import coalescence
 from squealbox.plots.style import LINES, drawing, figure_of, line, note
 from squealbox.stability import (

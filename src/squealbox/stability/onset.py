@@ -14,7 +14,7 @@ from squealbox.stability.deflation import vibrating
 from squealbox.stability.eigenvalues import ComplexModes, OneEigenvalue, modes_of
 from squealbox.stability.family import SteadyFamily, entry
 from squealbox.stability.in_band import POINTS as POINTS_IN_BAND
-from squealbox.stability.mechanism import Mechanism, mechanism_at
+from squealbox.stability.mechanisms import Mechanism, mechanism_at
 from squealbox.stability.polishing import Polished, polished
 from squealbox.stability.scan import Scan, merging, scan
 from squealbox.stability.state_matrix import spectrum

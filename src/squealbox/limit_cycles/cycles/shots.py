@@ -13,8 +13,7 @@ from squealbox.limit_cycles.cycles.differences import by_differences, derived
 from squealbox.limit_cycles.cycles.field import Autonomous, Field
 from squealbox.limit_cycles.cycles.variation import Flight, fly
 from squealbox.result import COMPLETED, Outcome
-from squealbox.transient import Trajectory
-from squealbox.transient.choosing import is_small
+from squealbox.transient import Trajectory, is_small
 
 HALVINGS = 6
 CLOSE = 1e-6  # mismatch of a derivative that Newton's method may take

@@ -8,8 +8,7 @@ from dataclasses import fields
 from functools import cache
 from pathlib import Path
 
-from squealbox.compiled.kinds import WHOLE, OfAnotherText
-from squealbox.compiled.machine import Compiled
+from squealbox.compiled import WHOLE, Compiled, OfAnotherText
 from squealbox.schedules import SCHEDULES, Constant
 from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta, _sharing
 from squealbox.transient.lanes import alone, crossing, of_a_shape, recording, roots, samples, service, stages_again

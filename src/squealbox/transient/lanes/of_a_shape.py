@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from squealbox.compiled.kinds import FLOAT, WHOLE, OfAnotherText
+from squealbox.compiled import FLOAT, WHOLE, OfAnotherText
 
 DOFS = CONTACTS = FUNCTIONS = 0  # degrees of freedom, contacts, event functions
 GIVEN = ALL_ROWS = 0  # rows that come with a job, and in all

@@ -11,9 +11,8 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any
 
-from squealbox.compiled import vectors
-from squealbox.compiled.in_memory import Group, spread
-from squealbox.compiled.vectors import Lanes, Truth, Wider, fused
+from squealbox import compiled as vectors
+from squealbox.compiled import Group, Lanes, Truth, Wider, fused, spread
 
 LEFT = 1e-15  # of the sizes of what is compared, by which a choice is left
 AHEAD = 1e-9  # by which a choice looks ahead in time, in units of the series: an instant may lie on a kink

@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.figure_data import FigureAxis, FigureData, Layer, band, line, points, span
 from squealbox.limit_cycles import (
+    NEUTRAL,
     Branch,
     Cycle,
     HopfPoint,
@@ -23,9 +24,8 @@ from squealbox.limit_cycles import (
     shooting,
     stable_sliding,
 )
-from squealbox.limit_cycles.branches.stretches import NEUTRAL
 from squealbox.parameters import ParameterError
-from squealbox.plots.facts import unit_at
+from squealbox.plots import unit_at
 from squealbox.stability import complex_modes, critical_values
 from squealbox.system import System
 from squealbox.words import number, scaled
