@@ -16,7 +16,7 @@ from scipy.signal import butter, sosfiltfilt
 
 from squealbox import DrumBrake, LinearSlope, Measured, System, calibrate, complex_modes, simulate
 from squealbox.calibration import from_events
-from squealbox.calibration.calibrate import _Problem
+from squealbox.calibration.calibrating import _Problem
 from squealbox.schedules import Ramp
 from squealbox.signals import a_weighting, rendered, squeal_events
 from squealbox.signals.radiation import HEARING

@@ -34,11 +34,11 @@ from squealbox import (
     simulate_ensemble,
 )
 from squealbox.fe import certificate, full_modes, pencil_of
-from squealbox.fe.certificate import certified_band
+from squealbox.fe.certificates import certified_band
 from squealbox.fe.disc_brake import DiscBrake
 from squealbox.fe.growing_basis import GrowingBasis
 from squealbox.fe.projection import modes_on
-from squealbox.stability.band_modes import known_eigenvalues
+from squealbox.stability.modes_in_band import known_eigenvalues
 
 BAND = (500.0, 10e3)
 FRICTIONS = np.linspace(0.1, 0.6, 50)

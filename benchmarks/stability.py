@@ -19,7 +19,7 @@ if any(name in os.environ for name in UNWANTED) or os.environ.get("OPENBLAS_NUM_
 import numpy as np
 
 from squealbox import DrumBrake, LinearSlope
-from squealbox.compiled.packed import room
+from squealbox.compiled.sixteen import room
 from squealbox.control.poles import Late, late_poles
 from squealbox.stability import compiled_eigenvalues, stability_boundary, stability_map
 from squealbox.stability.spectra import flags_of, parts_of, two_dof_kernels

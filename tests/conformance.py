@@ -26,7 +26,7 @@ from squealbox.stability import complex_modes, critical_value
 from squealbox.system import System, equilibrium, linearise
 from squealbox.transient import _engine
 from squealbox.transient.methods import TABLEAUX, Method, tableau
-from squealbox.transient.verdict import verdict
+from squealbox.transient.verdicts import verdict
 
 SCHEDULES = [
     schedules.Constant(0.7),

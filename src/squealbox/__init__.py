@@ -4,8 +4,8 @@ The public names are listed in ``__init__.pyi``, in the order of the story: laws
 what is asked of them, and pictures. Each is loaded when it is first used, so importing the package is quick.
 """
 
-import lazy_loader
+from squealbox.registers import face
 
 __version__ = "0.2.0"
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = face(__name__)

@@ -1,4 +1,4 @@
-# The public names in the order of the story. `lazy_loader` reads the imports; people, editors and type checkers read both.
+# The public names in the order of the story. `registers.face` reads the imports; people, editors and type checkers read both.
 # A room with more names than the story needs is public as a whole: `squealbox.friction.Table`, `squealbox.schedules.Table`.
 
 from . import (

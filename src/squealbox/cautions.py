@@ -8,6 +8,7 @@ import numpy as np
 
 from squealbox.contacts import numbered
 from squealbox.friction import Table
+from squealbox.loops import Loop, highest_rate
 from squealbox.schedules import value_at
 from squealbox.system import Contact, System
 
@@ -40,6 +41,20 @@ def turned(system: System, q: Any) -> tuple[str, ...]:
         for name, size, unit in zip(system.names, most, system.units, strict=True)
         if unit == "rad" and size > SMALL
     )
+
+
+def aliased(system: System, loops: Sequence[Loop]) -> list[str]:
+    """A sentence for each loop that samples a mode of the system, without friction, less than twice in its period."""
+    said, highest = [], highest_rate(system) / (2.0 * np.pi)
+    for loop in loops:
+        rate = np.inf if loop.sampling is None else float(loop.sampling)
+        if highest > 0.5 * rate:
+            taken = abs(highest - rate * round(highest / rate))
+            said.append(
+                f"the loop on {loop.on} samples at {rate:g} Hz, less than twice the mode at {highest:.6g} Hz, which it "
+                f"takes for {taken:.6g} Hz"
+            )
+    return said
 
 
 DRIVES = "{name}: friction is negative at {speed:.4g} m/s (mu = {mu:.4g}) and drives the sliding: give the law a floor"
@@ -112,7 +127,7 @@ def of_a_run(system: System, lowest: Any, fastest: Any) -> tuple[str, ...]:
     """As :func:`out_of_range`, from the least normal force [N] and the fastest sliding [m/s] of each contact."""
     said: list[str] = []
     for name, contact, least, most in zip(system.contact_names, system.contacts, lowest, fastest, strict=True):
-        if np.isfinite(least):
+        if -np.inf < least < 0.0:
             said += _pulls(name, contact, float(least), _round_off(contact))
         said += _leaves(name, contact, float(most) * SPEEDS, float(most))
     return tuple(said)
@@ -177,7 +192,7 @@ def _leaves(name: str, contact: Contact, looked: Any, fastest: float) -> list[st
     said, mu = [], np.asarray(contact.law.mu(looked), dtype=float)
     least = float(np.fmin.reduce(mu, axis=None))
     if least < 0.0:
-        at = float(np.broadcast_to(looked, mu.shape).flat[int(np.nanargmin(mu))])
+        at = float(np.broadcast_to(looked, mu.shape).flat[int(np.flatnonzero(mu == least)[0])])
         said.append(DRIVES.format(name=name, speed=at, mu=least))
     if isinstance(contact.law, Table) and fastest > _known(contact.law):
         said.append(BEYOND.format(name=name, speed=fastest, known=_known(contact.law)))

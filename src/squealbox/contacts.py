@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 import scipy
 
-from squealbox.friction import FrictionLaw
+from squealbox.law import FrictionLaw
 from squealbox.matrices import InvalidSystem, array, is_sparse
 from squealbox.parameters import DataSheet
 from squealbox.schedules import Schedule, value_at

@@ -13,7 +13,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.friction import LAW_NAMES, FrictionLaw
+from squealbox.friction import LAW_NAMES
+from squealbox.law import FrictionLaw
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 

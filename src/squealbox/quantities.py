@@ -13,10 +13,8 @@ import numpy as np
 
 from squealbox.family import Bounds, Family, Varied
 from squealbox.parameters import ParameterError
-from squealbox.stability.crossings import first_crossings
-from squealbox.stability.family import steady_sliding
-from squealbox.stability.spectra import eigenvalues, largest_growth
-from squealbox.studies.quantity import Quantity
+from squealbox.stability import eigenvalues_of, first_crossings, largest_growth, steady_sliding
+from squealbox.studies import Quantity
 from squealbox.transient import simulate_ensemble
 
 
@@ -51,7 +49,7 @@ def damping_ratio(*, limit: float = 0.0, time: float = 0.0) -> Quantity:
     """
 
     def least(design: Any) -> Any:
-        values = eigenvalues(steady_sliding(design, time))
+        values = eigenvalues_of(steady_sliding(design, time))
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.min(-values.real / np.abs(values), axis=-1)
 

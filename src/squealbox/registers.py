@@ -4,8 +4,10 @@ Classes are found by loading the folder's modules. What must be known before a m
 command's line of help) is read from its text, where it is assigned to one name.
 """
 
+import ast
 import importlib
 import re
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -24,6 +26,34 @@ def name_of(kind: type) -> str:
 def names_in(package: ModuleType) -> list[str]:
     """The modules of a package, by name."""
     return sorted(path.stem for path in Path(package.__path__[0]).glob("*.py") if path.stem != "__init__")
+
+
+def face(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+    """``__getattr__, __dir__, __all__`` of a package whose names are listed in its ``__init__.pyi``.
+
+    Each name is loaded when it is first used. Public are those in the list's `__all__`; what it imports besides is what
+    neighbours may use.
+    """
+    room = sys.modules[package]
+    places: dict[str, str] = {}
+    public: list[str] = []
+    for node in ast.parse(Path(str(room.__file__)).with_suffix(".pyi").read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.ImportFrom):
+            module = f"{package}." * node.level + (node.module or "")
+            places |= {each.name: module for each in node.names}
+        elif isinstance(node, ast.Assign):
+            public = ast.literal_eval(node.value)
+
+    def __getattr__(name: str) -> Any:
+        if name not in places:
+            raise AttributeError(f"{package} has no {name!r}")
+        place = places[name]
+        whole = place.endswith(".")  # a room of the front door
+        found = importlib.import_module(place + name) if whole else getattr(importlib.import_module(place), name)
+        setattr(room, name, found)
+        return found
+
+    return __getattr__, lambda: list(public), public
 
 
 def later(package: str, name: str) -> Callable[..., Any]:
@@ -54,14 +84,16 @@ def kinds_in(package: str, base: type[Kind], first: tuple[type[Kind], ...], havi
 def load_kind(kind: str) -> Any:
     """What a module of this package calls `kind`, loaded; None for the name of no such thing, for the caller to refuse.
 
-    A file names a class by its place in the package, and its module may not have been needed yet. Nothing outside the
-    package is ever loaded.
+    A file names a class by its place in the package. Its module may not have been needed yet, or be called otherwise
+    today: then the face of its room knows it. Nothing outside the package is ever loaded.
     """
     if re.fullmatch(r"[a-z_]+(\.[a-z0-9_]+)*\.[A-Za-z0-9]+", kind):
-        module, _, name = f"squealbox.{kind}".rpartition(".")
-        try:
-            return getattr(importlib.import_module(module), name, None)
-        except ModuleNotFoundError as error:
-            if not module.startswith(str(error.name)):
-                raise  # a module of the package that lacks one of its own dependencies
+        room, *modules, name = kind.split(".")
+        for module in (".".join(("squealbox", room, *modules)), f"squealbox.{room}"):
+            try:
+                if found := getattr(importlib.import_module(module), name, None):
+                    return found
+            except ModuleNotFoundError as error:
+                if not module.startswith(str(error.name)):
+                    raise  # a module of the package that lacks one of its own dependencies
     return None

@@ -236,9 +236,7 @@ class Result(Tabled):
     def from_dataset(cls, dataset: "xarray.Dataset") -> Self:
         """The inverse of `to_dataset`."""
         name = str(dataset.attrs.get("kind", "no result"))
-        if name not in Result.kinds:
-            load_kind(name)
-        kind = Result.kinds.get(name) or _moved(name)
+        kind = _kind(name)
         if kind is None or not issubclass(kind, cls):
             raise ResultFileError(f"holds {name!r}, not a {cls.__name__}")
         if kind is not cls:
@@ -302,13 +300,12 @@ class Result(Tabled):
         return found
 
 
-def _moved(name: str) -> "type[Result] | None":
-    """The one class of that name in its room, for files from before its module moved; None where there is none."""
-    room, _, last = name.partition(".")
-    load_kind(f"{room}.{last.rpartition('.')[2]}")
-    within = [kind for at, kind in Result.kinds.items() if at.startswith(f"{room}.")]
-    alike = [kind for kind in within if kind.__name__ == last.rpartition(".")[2]]
-    return alike[0] if len(alike) == 1 else None
+def _kind(name: str) -> "type[Result] | None":
+    """The class a file calls so, or the one of that name in its room where its module moved since; None without one."""
+    load_kind(name)
+    room, last = name.partition(".")[0], name.rpartition(".")[2]
+    within = [kind for at, kind in Result.kinds.items() if at.startswith(f"{room}.") and kind.__name__ == last]
+    return Result.kinds.get(name) or (within[0] if len(within) == 1 else None)
 
 
 def _folded(value: Any) -> Any:
@@ -323,8 +320,8 @@ def _unfolded(value: Any) -> Any:
     """The inverse of `_folded`."""
     if not (isinstance(value, Mapping) and {"result", "arrays", "outcome"} <= set(value)):
         return value
-    load_kind(value["result"])
-    kind = Result.kinds[value["result"]]
+    if (kind := _kind(value["result"])) is None:
+        raise ResultFileError(f"holds {value['result']!r}, which is no result of this version")
     plain = {name: _unfolded(item) for name, item in value.items() if name not in ("result", "arrays")}
     plain |= {"outcome": Outcome.from_plain(plain["outcome"]), "inputs": from_plain(plain["inputs"])}
     arrays: dict[str, Any] = {name: np.asarray(item) for name, item in value["arrays"].items()}

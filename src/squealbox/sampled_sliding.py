@@ -10,9 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.loops.driven import driven_brake
-from squealbox.loops.held import continued, first_order, step_matrix
-from squealbox.loops.rows import folded
+from squealbox.loops import continued, driven_brake, first_order, folded, step_matrix
 from squealbox.matrices import Equilibrium, Linearised
 from squealbox.members import member
 from squealbox.parameters import ParameterError

@@ -44,7 +44,7 @@ def write(
     ['modes.nc', 'modes.csv', 'modes.png', 'modes.svg']
     """
     from squealbox import plots
-    from squealbox.plots.cards import drawable
+    from squealbox.plots import drawable
 
     stem = made(out) / (name or _words(type(result).__name__))
     written: list[Path] = []

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linear_sum_assignment
 
-from squealbox.compiled.packed import room
+from squealbox.compiled.sixteen import room
 from squealbox.stability import compiled_eigenvalues, spectra
 from squealbox.stability.spectra import parts_of, spectra_kernels
 

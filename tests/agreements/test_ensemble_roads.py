@@ -212,7 +212,7 @@ def test_the_step_is_packed(tmp_path, monkeypatch):
     text = made[0].assembly()
     step = re.search(r"^\w*traced_trial:\n(.*?)\n\.Lfunc_end", text, re.MULTILINE | re.DOTALL).group(1)
     packed, scalar = (re.findall(rf"\tv?(?:add|sub|mul|div|fn?m\w+){kind}\t", step) for kind in ("pd", "sd"))
-    assert len(packed) > 200 > len(scalar) == 0
+    assert len(packed) > 100 > len(scalar) == 0  # 150 in registers of 512 bits, some 300 in those of 256
     put_by = re.findall(r"\tvmov([au])p[ds]\t(?=[^\n]*[yz]mm)[^\n]*\(%rsp\)", step)
     assert set(put_by) == {"a"}  # aligned: no register is put by across two lines of the cache
 

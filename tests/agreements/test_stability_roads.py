@@ -10,8 +10,8 @@ from squealbox.friction import LinearSlope
 from squealbox.parameters import DataSheet, parameter
 from squealbox.stability import complex_modes, critical_value, stability_boundary, stability_map
 from squealbox.stability.family import SteadyFamily, steady_sliding
-from squealbox.stability.mechanism import contributions
-from squealbox.stability.spectra import asymptotically_stable, eigenvalues, largest_growth
+from squealbox.stability.mechanisms import contributions
+from squealbox.stability.spectra import asymptotically_stable, eigenvalues_of, largest_growth
 from squealbox.system import System
 
 # Eigenvalues of well-conditioned matrices of this size agree to some 1e-13; the worst of thousands of random ones have
@@ -54,7 +54,7 @@ def test_compiled_growth_of_a_drum_map_is_that_of_numpy(shared: bool) -> None:
 @pytest.mark.parametrize("size", [2, 6])
 def test_spectrum_in_both_engines(size: int) -> None:
     about = steady_sliding(random_systems(50, size, 2))
-    plain, fast = eigenvalues(about, "numpy"), eigenvalues(about, "compiled")
+    plain, fast = eigenvalues_of(about, "numpy"), eigenvalues_of(about, "compiled")
     assert np.max(np.min(np.abs(plain[:, :, None] - fast[:, None, :]), axis=2)) < 1e-9
 
 

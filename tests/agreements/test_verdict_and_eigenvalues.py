@@ -12,7 +12,7 @@ from squealbox.signals import growth_rate, peaks, spectrum
 from squealbox.stability import complex_modes
 from squealbox.system import linearise
 from squealbox.transient import simulate
-from squealbox.transient.verdict import verdict
+from squealbox.transient.verdicts import verdict
 
 T = np.linspace(0.0, 0.05, 5001)
 READINGS = ("eq3", "eq3_signed", "componentwise", "consistent")

@@ -28,7 +28,7 @@ from squealbox.designs import TiltedBlock, drawing_of
 from squealbox.friction import Gaussian, LAWS, Coulomb
 from squealbox.plots import brake_drawing
 from squealbox.result import Result
-from squealbox.stability.friction_course import friction_course
+from squealbox.stability import friction_course
 from squealbox.workbench.panels import PANELS, Options, Work, function_of
 from squealbox.workbench.sheet import sheet
 from squealbox.workbench.state import design_of
@@ -82,6 +82,10 @@ def used(tmp_path_factory):
     for place, text in FILES:
         assert not (folder / place).exists()
         (folder / place).write_text(text)
+    face = folder / "squealbox/stability/__init__.pyi"
+    names = "FrictionCourse", "friction_course"
+    line = f"from .friction_course import {', '.join(names)}\n"
+    face.write_text(line + face.read_text().replace("__all__ = [", f'__all__ = ["{names[0]}", "{names[1]}",'))
     paths = os.pathsep.join([str(folder), str(PROJECT / "tests")])
     done = subprocess.run([sys.executable, "-c", USED], capture_output=True, text=True, cwd=folder, timeout=300,
                           env={**os.environ, "PYTHONPATH": paths, "SQUEALBOX_TRACEBACK": "1"})  # fmt: skip

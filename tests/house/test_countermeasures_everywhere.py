@@ -39,7 +39,6 @@ from squealbox.cli import main
 from squealbox.cli.inputs import changed
 from squealbox.countermeasures import COUNTERMEASURES
 from squealbox.countermeasures.best import _tuned
-from squealbox.countermeasures.loss import growth_about, growth_of
 from squealbox.designs import DESIGNS
 from squealbox.files import json_schema, read_text
 from squealbox.files.writing import cure_text, design_text
@@ -52,6 +51,7 @@ from squealbox.report.blocks import Table
 from squealbox.report.page import render
 from squealbox.report.results import result_page
 from squealbox.result import Result
+from squealbox.stability import growth_about, growth_of
 from squealbox.studies import Normal
 from squealbox.system import as_system
 

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from squealbox.transient.verdict import verdict
+from squealbox.transient.verdicts import verdict
 
 T = np.linspace(0.0, 0.05, 2001)
 

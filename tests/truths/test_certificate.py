@@ -6,11 +6,11 @@ import pytest
 from fe_brakes import dense, pad_brake
 from squealbox import Coulomb, complex_modes
 from squealbox.fe import certificate, count_below, pencil_of, real_modes
-from squealbox.fe.certificate import certified_band
+from squealbox.fe.certificates import certified_band
 from squealbox.fe.growing_basis import GrowingBasis
 from squealbox.fe.projection import basis_for, modes_on, refined
 from squealbox.stability import certified
-from squealbox.stability.band_modes import known_eigenvalues
+from squealbox.stability.modes_in_band import known_eigenvalues
 
 BAND = (3000.0, 7000.0)
 

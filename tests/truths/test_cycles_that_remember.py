@@ -129,8 +129,10 @@ def test_settled_cycles_of_rows_without_mass():
 def test_one_of_a_family_is_neither_stable_nor_unstable():
     """Sliding throughout without damping, each amplitude below V/w is a cycle of period 2 pi; bent bristles rest."""
     cycle = shooting(MassOnBelt(m=1.0, k=1.0, c=0.0, load=1.0, friction=Dahl(0.3, 300.0), sliding_speed=0.1))
+    assert cycle.outcome == "completed"
     assert cycle.period == pytest.approx(2.0 * np.pi, rel=1e-8)
     assert cycle.stability == "neutral"
+    assert not cycle.caution
     assert not cycle.stable
     assert "neutral cycle" in str(cycle)
 

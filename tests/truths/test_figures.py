@@ -17,7 +17,7 @@ from squealbox.result import Outcome
 from squealbox.signals import SignalError, spectrogram, spectrum
 from squealbox.stability import complex_modes
 from squealbox.transient.trajectory import Trajectory
-from squealbox.transient.verdict import verdict
+from squealbox.transient.verdicts import verdict
 
 T = np.linspace(0.0, 0.05, 2501)
 OMEGA = 2.0 * np.pi * 2000.0

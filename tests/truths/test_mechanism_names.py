@@ -7,7 +7,7 @@ from squealbox.designs import DESIGNS, DrumBrakeShoes, MassOnBelt
 from squealbox.friction import Coulomb, Hyperbolic, LinearSlope
 from squealbox.stability import critical_values, mechanism, mode_energy, stability_boundary
 from squealbox.stability.family import steady_sliding
-from squealbox.stability.mechanism import MIXED, contributions, mechanism_codes
+from squealbox.stability.mechanisms import MIXED, contributions, mechanism_codes
 from squealbox.stability.state_matrix import spectrum
 from squealbox.system import System
 

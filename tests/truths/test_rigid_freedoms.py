@@ -71,7 +71,7 @@ def test_a_force_along_a_rigid_body_motion_leaves_no_steady_sliding() -> None:
     assert "runs away" in complex_modes(pushed).outcome.message
 
 
-@pytest.mark.parametrize("ground", [0.0, 1e-9, 1e-6])
+@pytest.mark.parametrize("ground", [0.0, 1e-9, 1e-6, 1e-4])  # a spring under both, on which they stay undamped
 @pytest.mark.parametrize("damper", [0.0, 0.05])
 def test_onset_of_free_bodies(ground: float, damper: float) -> None:
     """N mu'(V) + c = 0 at static = 0.2 + 0.3 c exp(1/0.3)/N; a ground spring of 1e-9 N/m changes nothing."""
@@ -79,6 +79,7 @@ def test_onset_of_free_bodies(ground: float, damper: float) -> None:
     assert float(onset.value) == pytest.approx(0.2 + 0.3 * damper * np.exp(1.0 / 0.3) / FORCE, rel=1e-9)
     assert onset.direction == "destabilising"
     assert onset.mechanism == "negative_slope"
+    assert onset.eigenvalue.imag == pytest.approx(exact(float(onset.value), damper=damper).imag, rel=1e-8)
     shares = [value for _, value in mode_energy(couple(0.4, ground, damper=damper)).shares]
     assert np.all(np.isfinite(shares))
 

@@ -24,7 +24,7 @@ from squealbox.stability import (
     transient_growth,
 )
 from squealbox.stability.family import steady_sliding
-from squealbox.stability.routh_hurwitz import undamped_squares
+from squealbox.stability.hurwitz import undamped_squares
 from squealbox.stability.state_matrix import spectrum
 from squealbox.system import Contact, System
 

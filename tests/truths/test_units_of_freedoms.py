@@ -5,7 +5,7 @@ import pytest
 
 from squealbox import Contact, Coulomb, System, WobblingDisc, plots, simulate, simulate_ensemble, verdict
 from squealbox.matrices import liveliest
-from squealbox.plots.facts import facts
+from squealbox.plots.key_numbers import facts
 from squealbox.signals import SignalError
 
 

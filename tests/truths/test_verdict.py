@@ -6,7 +6,7 @@ import pytest
 from squealbox import Coulomb, MassOnBelt, simulate
 from squealbox.result import Outcome
 from squealbox.signals import SignalError
-from squealbox.transient.verdict import Verdict, verdict
+from squealbox.transient.verdicts import Verdict, verdict
 
 T = np.linspace(0.0, 0.05, 5001)
 OMEGA = 2.0 * np.pi * 2000.0

@@ -21,7 +21,7 @@ from squealbox.plots.figure_data import (
     unpacked,
 )
 from squealbox.plots.paper import KINDS, NoFigure
-from squealbox.plots.paper import drawn as pdf
+from squealbox.plots.paper import drawn_on_paper as pdf
 from squealbox.workbench.panels import OptionError, Options, Work, function_of
 
 PLAIN = {

@@ -7,11 +7,10 @@ import numpy as np
 
 from squealbox.calibration.mode_tables import ModeTable
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.signals import SignalError, SquealEvents, dominant_frequency, growth_rate, sound_level
-from squealbox.signals.events import BELOW
-from squealbox.stability.mode import modal_assurance
+from squealbox.signals import BELOW, SignalError, SquealEvents, dominant_frequency, growth_rate, sound_level
+from squealbox.stability import modal_assurance
 from squealbox.system import as_system
-from squealbox.transient.verdict import verdict
+from squealbox.transient import verdict
 
 FAR = 10.0  # standard deviations: what is farther away is no error of the measurement
 ONSET = 0.1, 0.02  # of the last amplitude: up to the one it grows freely, below the other it must begin

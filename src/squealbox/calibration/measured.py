@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.parameters import DataSheet, ParameterError, known_names
-from squealbox.signals import SignalError, growth_rate
-from squealbox.signals.growth import LEVEL
+from squealbox.signals import LEVEL, SignalError, growth_rate
 from squealbox.stability import complex_modes, first_crossings
 from squealbox.transient import simulate_ensemble
 

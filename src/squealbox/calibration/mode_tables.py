@@ -14,8 +14,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.cells import cells
-from squealbox.signals import SignalError
-from squealbox.signals.recordings import universal_sets
+from squealbox.signals import SignalError, universal_sets
 
 AXES = "xyz"
 

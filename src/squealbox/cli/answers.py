@@ -110,7 +110,7 @@ def figures(words: Sequence[str]) -> Iterator[str]:
         kinds = tuple((given if equals else next(rest, "")).split(","))
         if not set(kinds) <= set(FIGURES):
             raise UsageError(f"--figures {','.join(kinds)[:60]}: expected {', '.join(FIGURES)}, or several with commas")
-        from squealbox.plots.style import FORMATS
+        from squealbox.plots import FORMATS
 
         FORMATS.set(kinds)
 

@@ -10,8 +10,7 @@ from squealbox.cli.inputs import NOTHING_SAID, Said, folder, in_motion, keywords
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed
 from squealbox.cli.states import States, box_from
-from squealbox.limit_cycles import BasinSettings, basin, dangerous_push
-from squealbox.limit_cycles.attractors.basins import half_widths
+from squealbox.limit_cycles import BasinSettings, basin, dangerous_push, half_widths
 from squealbox.waiting import Progress
 from squealbox.writing import write
 

@@ -19,11 +19,11 @@ from squealbox.limit_cycles import (
     estimate_curves,
     hopf_point,
     isolated_branches,
+    lies_on,
     stable_sliding,
     stretches,
 )
 from squealbox.limit_cycles import branch as followed
-from squealbox.limit_cycles.branches.isolated import lies_on
 from squealbox.matrices import liveliest
 from squealbox.result import Outcome
 from squealbox.waiting import Progress
@@ -32,7 +32,7 @@ from squealbox.writing import write_table
 ABOUT = {"branch": "limit cycles over a range of a parameter: stable, unstable, folds, onset"}
 
 if TYPE_CHECKING:
-    from squealbox.designs import Design
+    from squealbox.design import Design
 
 AS_USUAL = BranchSettings()
 

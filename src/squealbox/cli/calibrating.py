@@ -2,16 +2,14 @@
 
 from pathlib import Path
 
-from squealbox.calibration import CalibrateSettings, Comparison, compare, from_events, read_mode_table
+from squealbox.calibration import CalibrateSettings, Comparison, Recorded, compare, from_events, read_mode_table
 from squealbox.calibration import calibrate as fitted
 from squealbox.cli.answers import show, written
 from squealbox.cli.inputs import NOTHING_SAID, Said, folder, keywords, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.files import DesignFile, write_design
-from squealbox.files.measurements import Recorded
-from squealbox.signals import EventSettings, Recording, SignalError, SquealEvents, squeal_events
-from squealbox.signals.events import BAND
+from squealbox.signals import BAND, EventSettings, Recording, SignalError, SquealEvents, squeal_events
 from squealbox.stability import ComplexModes, complex_modes
 from squealbox.waiting import Progress
 from squealbox.writing import write

@@ -34,8 +34,7 @@ def list_(name: str | None = None) -> None:
 def _overview() -> Iterator[str]:
     from squealbox.files import BRAKES
     from squealbox.schedules import SCHEDULE_NAMES
-    from squealbox.transient import TABLEAUX
-    from squealbox.transient.methods import TAYLOR
+    from squealbox.transient import TABLEAUX, TAYLOR
 
     yield from _section("designs (brake = ...)", {name: sheet.title for name, sheet in BRAKES.items()} | READ_TITLES)
     yield from _section("friction laws (law = ...)", {name: _first_line(sheet) for name, sheet in _laws().items()})

@@ -10,8 +10,7 @@ from squealbox.cli.inputs import NOTHING_SAID, Said, folder, in_motion, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.states import States, start_from
-from squealbox.limit_cycles import Cycle, CycleSettings, lyapunov_exponents, shooting
-from squealbox.limit_cycles.attractors.exponents import LOST
+from squealbox.limit_cycles import LOST, Cycle, CycleSettings, lyapunov_exponents, shooting
 from squealbox.stability import complex_modes
 from squealbox.transient import simulate
 from squealbox.writing import write
@@ -19,7 +18,7 @@ from squealbox.writing import write
 ABOUT = {"cycle": "what the motion settles to: the limit cycle, its stability, figure and data"}
 
 if TYPE_CHECKING:
-    from squealbox.designs import Design
+    from squealbox.design import Design
 
 SETTLE = 300.0  # periods of the slowest mode
 ALIGNED = 50  # periods run before exponents are counted

@@ -32,7 +32,7 @@ from squealbox.writing import write, write_table
 ABOUT = {"diagram": "what transients settle to over a parameter, with a Poincare section"}
 
 if TYPE_CHECKING:
-    from squealbox.designs import Design
+    from squealbox.design import Design
 
 Drawn = Annotated[bool, Parameter(negative="")]
 WAYS = {"rises": 1, "falls": -1, "passes": 0}

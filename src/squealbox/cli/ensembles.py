@@ -10,7 +10,7 @@ from squealbox.cli.inputs import folder, in_motion, number, read
 from squealbox.cli.maps import AS_FILED, Plane, TwoVaried
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe import ReducedBrake
 from squealbox.matrices import liveliest
 from squealbox.system import as_system
 from squealbox.transient import Ensemble, MotionSettings, simulate_ensemble, usual_duration

@@ -9,13 +9,9 @@ import numpy as np
 from squealbox.cli.answers import written
 from squealbox.cli.inputs import small
 from squealbox.family import ParameterAxis
-from squealbox.fe.assembled import AssembledBrake
-from squealbox.fe.meshed import MeshedBrake
-from squealbox.fe.mode_shapes import write_uff, write_vtu
+from squealbox.fe import AssembledBrake, MeshedBrake, write_uff, write_vtu
 from squealbox.files import DesignFile, Reduce, Reduced
-from squealbox.stability import complex_modes, mesh_doubt
-from squealbox.stability.mode_table import mode_table, table_text
-from squealbox.stability.second_mesh import ONE_MESH
+from squealbox.stability import ONE_MESH, complex_modes, mesh_doubt, mode_table, table_text
 from squealbox.waiting import Progress
 from squealbox.writing import write_table
 

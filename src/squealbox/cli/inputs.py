@@ -12,13 +12,13 @@ import numpy as np
 from squealbox.cli.answers import manner
 from squealbox.cli.options import AS_WRITTEN, HowAsked
 from squealbox.cli.running import UsageError
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.family import ParameterAxis
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe import ReducedBrake
 from squealbox.files import DesignFile, read_file
 from squealbox.parameters import DataSheet, Parameter, ParameterError, field_type
 from squealbox.result import ResultFileError
-from squealbox.transient.simulate import TIME_STEPPING
+from squealbox.transient import TIME_STEPPING
 from squealbox.units import UnitError, in_si
 from squealbox.waiting import Progress
 from squealbox.words import as_read

@@ -49,6 +49,6 @@ def lab(
             raise UsageError(f"{file}: the folder of a project cannot be made: {error.strerror}") from error
     elif file is not None:
         path = Path(file)
-    from squealbox.workbench.lab import serve
+    from squealbox.workbench import serve
 
     serve(path, port, allow_code=allow_code, browser=browser, fragment=fragment, folder=folder)

@@ -12,7 +12,7 @@ from squealbox.cli.inputs import Vary, axis, folder, read, readable, small, span
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.family import ParameterAxis
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe import ReducedBrake
 from squealbox.stability import Boundary, StabilityMap, map_boundary, stability_boundary, stability_map
 from squealbox.waiting import Progress
 from squealbox.writing import write, write_table
@@ -22,7 +22,7 @@ ABOUT = {"map_": "stability over two parameters, with the boundary as curves"}
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squealbox.designs import Design
+    from squealbox.design import Design
     from squealbox.files import DesignFile
 
 COARSE = 11  # points along each axis of a reduced brake's map, unless more are asked for

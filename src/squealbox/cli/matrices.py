@@ -3,8 +3,7 @@
 from pathlib import Path
 
 from squealbox.cli.running import UsageError
-from squealbox.fe.describing import described
-from squealbox.fe.readers import MatrixFileError
+from squealbox.fe import MatrixFileError, described
 from squealbox.parameters import ParameterError
 
 ABOUT = {"matrices": "what files of Abaqus, Nastran, Ansys ... hold: matrices, labels, frequencies"}

@@ -12,6 +12,7 @@ from squealbox.cli.answers import show
 from squealbox.cli.inputs import NOTHING_SAID, Said, number
 from squealbox.cli.running import UsageError
 from squealbox.signals import (
+    BAND,
     EventSettings,
     Recording,
     RecordingSettings,
@@ -24,7 +25,6 @@ from squealbox.signals import (
     sound_quality,
     squeal_events,
 )
-from squealbox.signals.events import BAND
 from squealbox.waiting import Progress
 
 ABOUT = {

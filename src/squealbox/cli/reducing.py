@@ -7,8 +7,7 @@ from squealbox.cli.answers import written
 from squealbox.cli.inputs import NOTHING_SAID, Said, free, read
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import UsageError
-from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.fe.reduced_files import save_reduced
+from squealbox.fe import ReducedBrake, save_reduced
 from squealbox.files import Reduce, Reduced, dense, error_table, promise
 from squealbox.waiting import Progress
 

@@ -8,7 +8,7 @@ from squealbox.cli.answers import keep, written
 from squealbox.cli.inputs import NOTHING_SAID, Said, folder, keywords, read, small
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe import ReducedBrake
 from squealbox.files import NotWritable, cure_text
 from squealbox.remedies import Remedies, SilenceSettings
 from squealbox.remedies import silence as silenced

@@ -21,7 +21,7 @@ from squealbox.cli.inputs import (
 from squealbox.cli.options import AS_WRITTEN, Asked
 from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.family import ParameterAxis
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe import ReducedBrake
 from squealbox.stability import (
     ComplexModes,
     CriticalValues,

@@ -13,8 +13,7 @@ from cyclopts import Parameter
 
 from squealbox.cli.inputs import number
 from squealbox.cli.running import UsageError
-from squealbox.limit_cycles.attractors.sections import state_names
-from squealbox.limit_cycles.cycles.starting import VISIBLE
+from squealbox.limit_cycles import VISIBLE, state_names
 from squealbox.parameters import ParameterError, known_names
 from squealbox.start import Start, in_words
 from squealbox.system import InvalidSystem, System, equilibrium

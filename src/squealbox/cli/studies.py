@@ -14,8 +14,7 @@ from squealbox.cli.running import ComputationFailed, UsageError
 from squealbox.cli.study_analyses import UNITS, analysis_of
 from squealbox.family import ParameterAxis
 from squealbox.files import read_study
-from squealbox.studies import Space, Store, WorkerSettings, open_sweep, sweep
-from squealbox.studies.store import LOG, RESULT
+from squealbox.studies import LOG, RESULT, Space, Store, WorkerSettings, open_sweep, sweep
 from squealbox.waiting import Progress
 from squealbox.writing import write, write_table
 

@@ -106,8 +106,7 @@ def _files(motion: "Trajectory", text: str, judged: list["Verdict"], title: str,
 
 def _sound(motion: "Trajectory", dof: int, pitch: float, out: Path) -> list[Path]:
     """The motion that is largest as a WAV file, where people can hear it and its points are close enough in time."""
-    from squealbox.signals import equal_steps, sound
-    from squealbox.signals.radiation import AUDIBLE
+    from squealbox.signals import AUDIBLE, equal_steps, sound
 
     heard = AUDIBLE[0] <= pitch <= AUDIBLE[1] and equal_steps(motion.t)
     heard = heard and SAMPLES_A_PERIOD * pitch * (motion.t[-1] - motion.t[0]) <= len(motion.t)

@@ -20,7 +20,7 @@ from squealbox.writing import write
 ABOUT = {"scatter": "parameters scatter: how probable is squeal, and which matters?"}
 
 if TYPE_CHECKING:
-    from squealbox.designs import Design
+    from squealbox.design import Design
 
 Several = Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=True, show_default=False)]
 LEARNT = 512  # points a surrogate is made from at most

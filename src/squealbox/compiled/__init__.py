@@ -4,3 +4,7 @@
 of the arguments; `arithmetic` writes their operations, `kinds` says what a value is; `machine` optimises the text,
 keeps the machine code on disk and calls it. Depends on: no room.
 """
+
+from squealbox.registers import face
+
+__getattr__, __dir__, __all__ = face(__name__)

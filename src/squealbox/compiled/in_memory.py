@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from squealbox.compiled.arithmetic import written
 from squealbox.compiled.vectors import ALIGNED, WIDTH, WRITER, Lanes, fused, packed, put, reals, truths, whole, wide
 
 
@@ -58,23 +59,28 @@ def load(group: Group, place: int, aligned: int | None = None) -> Lanes:
 
 
 def store(group: Group, place: int, value: Any, aligned: int | None = None) -> None:
-    """Write a row."""
+    """Write a row; None is a coefficient that is zero in every lane."""
     at = group.at(place)
-    WRITER.get().lines.append(f"store {reals()} {packed(value)}, ptr {at}, align {aligned or alignment()}")
+    WRITER.get().lines.append(
+        f"store {reals()} {packed(0.0 if value is None else value)}, ptr {at}, align {aligned or alignment()}"
+    )
 
 
-def store_known(group: Group, place: int, value: Any) -> None:
-    """Write a row, unless there is nothing to write: a coefficient that is zero in every lane."""
-    if value is not None:
-        store(group, place, value)
+def spread(group: Group, place: int) -> Lanes:
+    """The double there, in every lane."""
+    one = put(f"insertelement {reals()} poison, double {put(f'load double, ptr {group.at(place)}')}, i32 0")
+    return Lanes(put(f"shufflevector {reals()} {one}, {reals()} poison, <{WIDTH.get()} x i32> zeroinitializer"))
+
+
+def store_one(group: Group, place: int, value: Any) -> None:
+    """Write the double there, a number or a register."""
+    text = value if isinstance(value, str) else written(value)
+    WRITER.get().lines.append(f"store double {text}, ptr {group.at(place)}")
 
 
 def at_once(group: Group, b: int, since: int, terms: int, breadth: int, count: int, values: int, slopes: int) -> str:
     """Several series and their slopes at one instant, a lane for each: `count` coefficients, `breadth` apart."""
-    x, spread = put(f"load double, ptr {group.at(b + since)}"), "undef"
-    for i in range(WIDTH.get()):
-        spread = put(f"insertelement {reals()} {spread}, double {x}, i32 {i}")
-    at, total, slope = Lanes(spread), None, None
+    at, total, slope = spread(group, b + since), None, None
     for k in range(count - 1, -1, -1):
         term = load(group, b + terms + k * breadth, 8)
         slope = total if slope is None or total is None else fused(slope, at, total)

@@ -9,7 +9,7 @@ code and the lanes. What the kernels of `packed` name are the same functions.
 
 import math
 import operator
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any
@@ -117,6 +117,19 @@ def number(value: float) -> str:
 def whole(value: int) -> str:
     """The same whole number in every lane."""
     return "<" + ", ".join([f"i64 {value}"] * WIDTH.get()) + ">"
+
+
+def each(values: Sequence[float]) -> "Lanes":
+    """Known numbers, one in each lane."""
+    return Lanes("<" + ", ".join(f"double {written(value)}" for value in values) + ">")
+
+
+def over_all(name: str, x: "Lanes") -> str:
+    """The register of the sum ("fadd"), the least ("fmin") or the largest ("fmax") of all lanes."""
+    start = "double -0.0, " if name == "fadd" else ""
+    declared = f"declare double @llvm.vector.reduce.{name}.v{WIDTH.get()}f64("
+    WRITER.get().needed.add(f"{declared}{'double, ' if start else ''}{reals()})")
+    return put(f"call reassoc nnan double @llvm.vector.reduce.{name}.v{WIDTH.get()}f64({start}{reals()} {x.vector})")
 
 
 def packed(x: Any) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.control import sampled
-from squealbox.control.plant import Plant, plant
+from squealbox.control.plants import Plant, plant
 from squealbox.control.poles import Late, late_poles
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity

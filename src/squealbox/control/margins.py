@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.control.plant import Plant
+from squealbox.control.plants import Plant
 
 LARGEST_PRODUCT = 16  # states up to which the Kronecker products are built: 512 rows, at 134 they would take 10 GB
 BESIDE = 41  # frequencies looked at beside each resonance

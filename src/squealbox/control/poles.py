@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.loops.rows import chebyshev
+from squealbox.loops import chebyshev
 
 FIRST_ORDER, LAST_ORDER = 16, 72  # Chebyshev points of the discretisation
 LARGEST = 160  # rows of a discretisation, unless `FIRST_ORDER` points make more

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.control.closed_loop import closed_loop
-from squealbox.control.plant import with_loops
+from squealbox.control.closed_loops import closed_loop
+from squealbox.control.plants import with_loops
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import complex_modes
 from squealbox.system import equilibrium
-from squealbox.transient.simulate import simulate
+from squealbox.transient import simulate
 
 PERIODS, LONGEST = 40, 16  # of the pushed mode in one run, and longer ones before it counts as not dying down
 DEAD, GROWN = 0.3, 1.0 / 0.3  # of the first amplitude: where a motion has clearly died down, or grown

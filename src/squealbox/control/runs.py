@@ -8,12 +8,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.control.plant import with_loops
-from squealbox.loops.driven import Driven
+from squealbox.control.plants import with_loops
+from squealbox.loops import Driven, driven_brake
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.system import System, equilibrium
-from squealbox.transient.pieces import driven_brake, in_pieces, start_of
+from squealbox.transient import in_pieces, start_of_driven
 
 LAST, MOSTLY = 0.25, 0.5  # share of a run, and share of that at a limit beyond which a loop is saturated
 
@@ -66,7 +66,7 @@ def run_loops(design_or_system: Any, duration: float, start: Any = None, *, rtol
     if not (np.isfinite(duration) and duration > 0.0):
         raise ParameterError("run_loops", "duration", duration, "a finite number in (0, inf)")
     driven = driven_brake(system)
-    begins = start_of(driven, _resting(system.replace(loops=())) if start is None else start)
+    begins = start_of_driven(driven, _resting(system.replace(loops=())) if start is None else start)
     found = in_pieces(driven, begins, 0.0, duration, None, ("exact", 1e-3, None, (rtol, None)), weighed=True)
     n, motion, kept = system.size, found.motion, found.marks
     rows, u = found.rows[kept], found.commands[: len(kept)]

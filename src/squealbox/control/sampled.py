@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.control.plant import Plant
-from squealbox.loops.held import step_matrix
+from squealbox.control.plants import Plant
+from squealbox.loops import step_matrix
 from squealbox.parameters import ParameterError
 
 GRID = 3001  # places on the unit circle looked at between two frequencies, and as many even ones

@@ -10,8 +10,8 @@ from typing import Any, Self
 
 import numpy as np
 
-from squealbox.designs import Design
-from squealbox.loops.rows import padded_load
+from squealbox.design import Design
+from squealbox.loops import padded_load
 from squealbox.parameters import Choice, Parameter, ParameterError, known_names
 from squealbox.system import Contact, System
 
@@ -83,10 +83,12 @@ class Countermeasure(Design):
     @property
     def innermost(self) -> Design:
         """The brake itself, without any countermeasure."""
-        held = self.brake
-        while isinstance(held, Countermeasure):
-            held = held.brake
-        return held
+        return self.brake.innermost
+
+    @property
+    def layers(self) -> tuple["Countermeasure", ...]:
+        """Itself, and those around the brake it holds."""
+        return (self, *self.brake.layers)
 
 
 def short_name(design: Design, path: str) -> str:

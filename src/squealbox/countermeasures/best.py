@@ -14,15 +14,13 @@ import numpy as np
 
 from squealbox.arguments import public, with_parameters
 from squealbox.countermeasures.base import outer
-from squealbox.countermeasures.loss import at_the_window, first_loss, growth_about, growth_of
+from squealbox.countermeasures.loss import at_the_window, first_loss
 from squealbox.countermeasures.mechanical import TunedMass
-from squealbox.designs.base import Design
+from squealbox.design import Design
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Array, Result, quantity
-from squealbox.stability import complex_modes
-from squealbox.stability.family import steady_sliding
-from squealbox.stability.state_matrix import spectrum
-from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
+from squealbox.scatter import Scatter, Scattered, as_scatter
+from squealbox.stability import complex_modes, growth_about, growth_of, spectrum, steady_sliding
 from squealbox.system import Equilibrium, Linearised, as_system
 
 AIMS = ("decay", "margin", "probability")

@@ -14,30 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.stability.family import steady_sliding
-from squealbox.stability.in_band import eigenvalues_in_band, worst_in_band
-from squealbox.stability.spectra import largest_growth
-from squealbox.system import Linearised
+from squealbox.stability import growth_of, steady_sliding
 
 MOST_ROWS = 12  # of a state matrix, whose products are 66 then
 NEAR = 2e-3  # share of a margin by which the window below it may lie above the margin of another tuning
 REAL = 1e-6  # imaginary part below which a place is one; beside a window that closes it is the root of round-off
-
-
-def growth_of(design: Any) -> Any:
-    """The largest growth rate [1/s] of a design of arrays, inf without steady sliding; of a reduced one in its band."""
-    if isinstance(design, ReducedBrake):
-        every = [design.entry(at) for at in np.ndindex(design.shape)] if design.shape else [design]
-        found = np.array([worst_in_band(eigenvalues_in_band(one, 0.0))[0] for one in every])
-        return np.where(np.isfinite(found), found, np.inf).reshape(design.shape)
-    return growth_about(steady_sliding(design))
-
-
-def growth_about(sliding: Linearised) -> Any:
-    """As `growth_of`, of what is linearised already."""
-    growth: Any = largest_growth(sliding)[0]
-    return np.where(np.isfinite(growth), growth, np.inf)
 
 
 def first_loss(design: Any, parameter: str, bounds: tuple[float, float]) -> float:

@@ -1,18 +1,21 @@
 """Brakes on paper, each a data sheet with a `system()`. Depends on: system, friction, schedules, parameters."""
 
-from squealbox.designs.base import Design
+from squealbox.design import Design
 from squealbox.designs.damping_paradox import DampingParadox
 from squealbox.designs.drum_brake import DrumBrake, published_matrices
+from squealbox.designs.drum_brake_readings import ASSUMED_SLOPE as ASSUMED_SLOPE
+from squealbox.designs.drum_brake_readings import READINGS as READINGS
+from squealbox.designs.drum_brake_readings import TABLE_SPEED as TABLE_SPEED
 from squealbox.designs.drum_brake_shoes import DrumBrakeShoes
 from squealbox.designs.mass_on_belt import BlockChain, MassOnBelt
 from squealbox.designs.mechanism import Body, OwnMechanism, Spring, Touch
 from squealbox.designs.mode_coupling import InclinedSprings, ModeCoupling
 from squealbox.designs.own_brake import OwnBrake, OwnContact, Part
 from squealbox.designs.pad_on_disc import PadOnDisc
-from squealbox.designs.shapes import DrawnShape, Shapes, drawing_of
 from squealbox.designs.sprag_slip import SpragSlip
 from squealbox.designs.wobbling_disc import WobblingDisc
 from squealbox.registers import kinds_in, name_of
+from squealbox.shapes import DrawnShape, Shapes, drawing_of
 
 _FIRST = (  # in the order of the story; a design in a further file of this folder stands behind them
     DrumBrake, DrumBrakeShoes, MassOnBelt, BlockChain, ModeCoupling, InclinedSprings, DampingParadox, PadOnDisc,

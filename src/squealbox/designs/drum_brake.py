@@ -16,13 +16,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.designs.base import Design
+from squealbox.design import Design
 from squealbox.designs.drum_brake_readings import ASSUMED_SLOPE, READINGS, TABLE_SPEED, Reading
 from squealbox.designs.rows import matrix, vector
-from squealbox.designs.shapes import RIGHT, STILL, UP, Moves, Shapes
-from squealbox.friction import FrictionLaw, LinearSlope
+from squealbox.friction import LinearSlope
+from squealbox.law import FrictionLaw
 from squealbox.parameters import ParameterError, choice, parameter
 from squealbox.schedules import as_schedule
+from squealbox.shapes import RIGHT, STILL, UP, Moves, Shapes
 from squealbox.system import System
 
 TABLE = "nomenclature of the 2011 paper"

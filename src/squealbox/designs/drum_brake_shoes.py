@@ -24,12 +24,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.designs.base import Design
+from squealbox.design import Design
 from squealbox.designs.rows import block, column, diagonal, outer
-from squealbox.designs.shapes import RIGHT, UP, Moves, Shapes
-from squealbox.friction import Coulomb, FrictionLaw
+from squealbox.friction import Coulomb
+from squealbox.law import FrictionLaw
 from squealbox.parameters import ParameterError, choice, parameter
 from squealbox.schedules import value_at
+from squealbox.shapes import RIGHT, UP, Moves, Shapes
 from squealbox.system import Contact, System
 
 OWN = "chosen here, of the size of a car's brake"

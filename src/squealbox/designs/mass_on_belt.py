@@ -16,11 +16,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.designs.base import Design
+from squealbox.design import Design
 from squealbox.designs.rows import block
-from squealbox.designs.shapes import DOWN, RIGHT, STILL, Moves, Shapes
-from squealbox.friction import FrictionLaw, Hyperbolic
+from squealbox.friction import Hyperbolic
+from squealbox.law import FrictionLaw
 from squealbox.parameters import ParameterError, parameter
+from squealbox.shapes import DOWN, RIGHT, STILL, Moves, Shapes
 from squealbox.system import Contact, System
 
 LEINE = "Leine et al. 1998, section 4"

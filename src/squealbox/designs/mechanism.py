@@ -19,8 +19,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.designs.base import Design
-from squealbox.friction import Coulomb, FrictionLaw
+from squealbox.design import Design
+from squealbox.friction import Coulomb
+from squealbox.law import FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, above_zero, choice, known_names, parameter
 from squealbox.system import Contact, System
 

@@ -6,8 +6,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.designs.base import Design
-from squealbox.friction import Coulomb, FrictionLaw
+from squealbox.design import Design
+from squealbox.friction import Coulomb
+from squealbox.law import FrictionLaw
 from squealbox.parameters import DataSheet, Matrix, Parameter, ParameterError, Vector, parameter
 from squealbox.schedules import Schedule, value_at
 from squealbox.system import Contact, System

@@ -12,11 +12,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.designs.base import Design
+from squealbox.design import Design
 from squealbox.designs.rows import diagonal
-from squealbox.designs.shapes import DOWN, RIGHT, STILL, Shapes
-from squealbox.friction import FrictionLaw, LinearSlope
+from squealbox.friction import LinearSlope
+from squealbox.law import FrictionLaw
 from squealbox.parameters import parameter
+from squealbox.shapes import DOWN, RIGHT, STILL, Shapes
 from squealbox.system import Contact, System
 
 OWN = "chosen here"

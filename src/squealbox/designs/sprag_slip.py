@@ -18,12 +18,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.designs.base import Design
+from squealbox.design import Design
 from squealbox.designs.mode_coupling import X, Y
 from squealbox.designs.rows import block, column, diagonal, outer, times, vector
-from squealbox.designs.shapes import DOWN, RIGHT, STILL, Moves, Shapes
-from squealbox.friction import Coulomb, FrictionLaw
+from squealbox.friction import Coulomb
+from squealbox.law import FrictionLaw
 from squealbox.parameters import parameter
+from squealbox.shapes import DOWN, RIGHT, STILL, Moves, Shapes
 from squealbox.system import Contact, System
 
 OWN = "chosen here"

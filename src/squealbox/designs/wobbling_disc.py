@@ -21,11 +21,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from squealbox.designs.base import Design
+from squealbox.design import Design
 from squealbox.designs.rows import block, matrix, vector
-from squealbox.designs.shapes import STILL, Shapes
-from squealbox.friction import Coulomb, FrictionLaw
+from squealbox.friction import Coulomb
+from squealbox.law import FrictionLaw
 from squealbox.parameters import parameter
+from squealbox.shapes import STILL, Shapes
 from squealbox.system import Contact, System
 
 OWN = "chosen here, of the size of a car's brake"

@@ -5,12 +5,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.fe.interfaces import CoordinateSystem, Interface, Rotation, contacts_of
 from squealbox.fe.readers.matrix import MatrixFileError
 from squealbox.fe.structure import Structure, read_structure
 from squealbox.fe.units import unit_system
-from squealbox.friction import Coulomb, FrictionLaw
+from squealbox.friction import Coulomb
+from squealbox.law import FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, above_zero, parameter
 from squealbox.system import InvalidSystem, System
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.fe.pencil import Pencil
-from squealbox.fe.real_modes import RealModes
+from squealbox.fe.undamped_modes import RealModes
 
 NEGLIGIBLE = 1e-13  # share of the largest length below which a direction is round-off
 

@@ -12,7 +12,7 @@ import numpy as np
 from squealbox.factorisation import factor
 from squealbox.fe.basis import joined
 from squealbox.fe.pencil import Pencil
-from squealbox.fe.real_modes import real_modes
+from squealbox.fe.undamped_modes import real_modes
 from squealbox.system import InvalidSystem
 
 MOST = 1500  # freedoms at contacts that a dense system can hold

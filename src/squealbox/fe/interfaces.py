@@ -20,7 +20,7 @@ from squealbox.fe.pairs import Pair, read_pairs
 from squealbox.fe.readers.matrix import MatrixFileError
 from squealbox.fe.structure import Structure
 from squealbox.fe.units import unit_system
-from squealbox.friction import FrictionLaw
+from squealbox.law import FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, choice, parameter
 
 NO_LABELS = (

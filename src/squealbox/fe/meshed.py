@@ -17,9 +17,9 @@ import numpy as np
 from scipy import sparse
 
 from squealbox.contacts import Contacts, unchanging
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.fe.grids import FacePoints, MeshedBody
-from squealbox.fe.real_modes import RealModes, real_modes
+from squealbox.fe.undamped_modes import RealModes, real_modes
 from squealbox.fe.wear import Pressed, Worn, run_in
 from squealbox.parameters import DataSheet, ParameterError, parameter
 from squealbox.system import Equilibrium, System, equilibrium

@@ -35,9 +35,10 @@ from squealbox.fe.meshed import (
     speed_of,
     stiffness_of_contact,
 )
-from squealbox.fe.real_modes import RealModes
+from squealbox.fe.undamped_modes import RealModes
 from squealbox.fe.wear import check_depth, depth_worn, friction_while_wearing
-from squealbox.friction import Coulomb, FrictionLaw
+from squealbox.friction import Coulomb
+from squealbox.law import FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, parameter
 
 MIDDLES = (np.pi, 0.0)  # of the leading and of the trailing shoe [rad]

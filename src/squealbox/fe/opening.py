@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.fe.pencil import SlidingPencil
-from squealbox.fe.real_modes import RealModes
+from squealbox.fe.undamped_modes import RealModes
 
 STEPS = 8  # of the way from the first linearisation to each other one, at each of which a set of contacts is looked at
 REACH = 1.1  # times the end of the band up to which modes are looked at

@@ -19,8 +19,8 @@ from squealbox.fe.band_spectrum import Pairs, band_pairs
 from squealbox.fe.basis import enriched_basis
 from squealbox.fe.growing_basis import GrowingBasis, parts, times
 from squealbox.fe.pencil import Pencil, vibrating
-from squealbox.fe.real_modes import RealModes, real_modes
 from squealbox.fe.small import Small
+from squealbox.fe.undamped_modes import RealModes, real_modes
 
 HEADROOM = 0.7  # modes above this share of the highest real mode of a basis are not shown: there it invents
 REACH = 1.1  # times the end of the band up to which real modes are enriched

@@ -19,7 +19,7 @@ from typing import Any, ClassVar
 import numpy as np
 from scipy import sparse
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.parameters import ParameterError, choice, parameter
 from squealbox.system import System
 

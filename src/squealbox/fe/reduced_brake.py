@@ -14,12 +14,12 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from squealbox.contacts import Contact
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.fe.band_spectrum import Pairs, band_pairs
 from squealbox.fe.full_brake import FullBrake
 from squealbox.fe.reduced_sliding import Sums, steady_small, sums_of, untouched, without_friction
 from squealbox.fe.small import Small
-from squealbox.friction import FrictionLaw
+from squealbox.law import FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, known_names
 from squealbox.system import Equilibrium, InvalidSystem, System, linearise
 

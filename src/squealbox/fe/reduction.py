@@ -23,10 +23,10 @@ from squealbox.fe.opening import opening_directions
 from squealbox.fe.pencil import Pencil, SlidingPencil, pencil_of, vibrating
 from squealbox.fe.projection import HEADROOM, ROUNDS, Projected, basis_for, refined
 from squealbox.fe.quadratic import full_modes
-from squealbox.fe.real_modes import real_modes
 from squealbox.fe.reduced_brake import FIELDS, ChangeAlong, ReducedBrake, Reduction, chebyshev_points, lagrange
 from squealbox.fe.reduced_sliding import steady_small
 from squealbox.fe.small import Small
+from squealbox.fe.undamped_modes import real_modes
 from squealbox.sparse_sliding import Nearby, at_rest
 from squealbox.system import InvalidSystem, System, as_system
 

@@ -8,8 +8,8 @@ Its public names stand in ``__init__.pyi`` and are loaded when they are first us
 a file calls a law reads no meshes and fits no measurements.
 """
 
-import lazy_loader
+from squealbox.registers import face
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = face(__name__)
 
 from squealbox.files.own_law import own_law  # noqa: E402, F401 - the function, whose module has the same name

@@ -56,3 +56,5 @@ __all__ = [
     "read_text",
     "write_design",
 ]
+
+# What neighbours may use too; no names of the reference (docs/house.md, Faces).

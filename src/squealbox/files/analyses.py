@@ -6,7 +6,7 @@ Each section is a data sheet that stands beside its analysis.
 from collections.abc import Mapping
 from typing import Any
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.family import ParameterAxis, ParameterPlane
 from squealbox.files.document import Document
 from squealbox.files.lines import Key

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from squealbox import quantities
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.files.analyses import read_ends
 from squealbox.files.document import Document
 from squealbox.files.lines import Key

@@ -24,9 +24,8 @@ Only files in the folder of the design, or below it, are opened.
 from collections.abc import Mapping
 from typing import Any
 
-from squealbox.designs import Design
-from squealbox.fe.assembled import AssembledBrake, StructureFiles
-from squealbox.fe.interfaces import CoordinateSystem, Interface, Rotation
+from squealbox.design import Design
+from squealbox.fe import AssembledBrake, CoordinateSystem, Interface, Rotation, StructureFiles
 from squealbox.files.arrays import ArrayFileError, path_beside
 from squealbox.files.document import Document
 from squealbox.files.lines import Key

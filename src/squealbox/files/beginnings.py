@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from squealbox.designs import Body, Design, DrumBrake, OwnBrake, OwnContact, OwnMechanism, Spring, Touch
+from squealbox.design import Design
+from squealbox.designs import Body, DrumBrake, OwnBrake, OwnContact, OwnMechanism, Spring, Touch
 from squealbox.files.reading import BRAKES, MESHED
 from squealbox.friction import Coulomb, LinearSlope
 from squealbox.transient import usual_duration

@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from squealbox.countermeasures import COUNTERMEASURES, Controlled, Countermeasure
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, read_number, shown, wrong
@@ -59,13 +59,8 @@ def wrapped_text(
     refused: type[ValueError],
 ) -> str:  # fmt: skip
     """The file of a brake within its countermeasures: that of the brake, then a table for each, from inside out."""
-    layers: list[Countermeasure] = []
-    held: Design = design
-    while isinstance(held, Countermeasure):
-        layers.append(held)
-        held = held.brake
-    lines = [text_of(held).rstrip("\n")]
-    for layer in reversed(layers):
+    lines = [text_of(design.innermost).rstrip("\n")]
+    for layer in reversed(design.layers):
         if isinstance(layer, Controlled):
             if layer is not design:
                 raise refused("loops stand inside another countermeasure: a file holds them outermost, Controlled(...)")

@@ -15,12 +15,11 @@ sd = "20 1/s"
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
-from squealbox.calibration import QUANTITIES, CalibrateSettings, Measured
-from squealbox.calibration.measured import UNITS
-from squealbox.designs import Design
+from squealbox.calibration import QUANTITIES, UNITS, CalibrateSettings, Measured, Recorded
+from squealbox.design import Design
 from squealbox.files.analyses import read_ends, read_spans
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
@@ -28,7 +27,6 @@ from squealbox.files.numbers import WRONG, only, read_choice, read_number, wrong
 from squealbox.files.sheets import read_sheet
 from squealbox.files.varied import flattened, known
 from squealbox.parameters import Parameter, ParameterError
-from squealbox.signals import EventSettings
 
 KEYS = ("quantity", "value", "sd", "mode", "at", "parameter", "range", "speed", "duration")
 
@@ -40,15 +38,6 @@ class Calibrated:
     parameters: dict[str, tuple[float, float]]
     measured: tuple[Measured, ...]
     how: CalibrateSettings
-
-
-class Recorded(EventSettings):
-    """[recording]: a recording beside the design file, what its numbers are worth, and what counts as squeal.
-
-    Without a band squeal is looked for where it is usual, and as far down as half the frequency that is expected.
-    """
-
-    file: str = field(kw_only=True)
 
 
 def read_recorded(document: Document, table: Mapping[str, Any], key: Key, design: Design | None) -> Recorded | None:

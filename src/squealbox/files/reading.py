@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.designs import DESIGNS, Design, OwnBrake, OwnMechanism
+from squealbox.calibration import Recorded
+from squealbox.design import Design
+from squealbox.designs import DESIGNS, OwnBrake, OwnMechanism
 from squealbox.family import ParameterAxis, ParameterPlane
-from squealbox.fe.disc_brake import DiscBrake
-from squealbox.fe.meshed import MeshedBrake
-from squealbox.fe.meshed_drum import MeshedDrumBrake
+from squealbox.fe import DiscBrake, MeshedBrake, MeshedDrumBrake
 from squealbox.files import analyses, countermeasures
 from squealbox.files.assembled import ASSEMBLED, read_assembled
 from squealbox.files.document import Document, document_of, open_document
-from squealbox.files.measurements import Calibrated, Recorded, read_calibrated, read_recorded
+from squealbox.files.measurements import Calibrated, read_calibrated, read_recorded
 from squealbox.files.numbers import WRONG, read_choice, wrong
 from squealbox.files.reduced import REDUCED, Reduced, read_reduce, read_reduced
 from squealbox.files.sheets import read_sheet

@@ -18,12 +18,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.family import ParameterAxis
-from squealbox.fe.readers.matrix import MatrixFileError
-from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.fe.reduced_files import load_reduced
-from squealbox.fe.surface import with_surface
+from squealbox.fe import MatrixFileError, ReducedBrake, load_reduced, with_surface
 from squealbox.files.analyses import read_spans
 from squealbox.files.arrays import ArrayFileError, path_beside
 from squealbox.files.document import Document
@@ -120,7 +117,7 @@ def dense(found: "DesignFile", axes: Iterable[ParameterAxis] = ()) -> "DesignFil
     band = about.how.band if about.how.band is not None else found.modes.band if found.modes else None
     if band is None:
         raise InvalidSystem(f"a finite-element brake is made small for this, which needs a frequency band: {MISSING}")
-    from squealbox.fe.reduction import reduce
+    from squealbox.fe import reduce
 
     varying, how = _ranges(found, axes), about.how
     ends = (float(band[0]), float(band[1]))
@@ -219,7 +216,7 @@ def _ranges(found: "DesignFile", axes: Iterable[ParameterAxis]) -> dict[str, tup
         low, high = max(low, about.low), min(high, about.high)
         before = ranges.get(name, (low, high))
         ranges[name] = min(before[0], low), max(before[1], high)
-    from squealbox.fe.reduction import MOST_AXES
+    from squealbox.fe import MOST_AXES
 
     if len(ranges) > MOST_AXES:
         raise InvalidSystem(

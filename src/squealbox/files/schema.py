@@ -6,20 +6,21 @@ import typing
 from collections.abc import Sequence
 from typing import Any
 
-from squealbox.calibration import CalibrateSettings
+from squealbox.calibration import CalibrateSettings, Recorded
 from squealbox.family import ParameterAxis
-from squealbox.fe.assembled import AssembledBrake
+from squealbox.fe import AssembledBrake
 from squealbox.files import countermeasures
 from squealbox.files.arrays import TRIANGLES
 from squealbox.files.assembled import ASSEMBLED
-from squealbox.files.measurements import Recorded, fitted_schemas
+from squealbox.files.measurements import fitted_schemas
 from squealbox.files.reading import BRAKES, STUDY
 from squealbox.files.reduced import REDUCED, Reduce
 from squealbox.files.sheets import OWN, is_required
 from squealbox.files.study import OTHERS
 from squealbox.files.uncertain_schema import optimise_schema, scatter_schema
 from squealbox.files.varied import VARY
-from squealbox.friction import LAW_NAMES, FrictionLaw, OwnLaw
+from squealbox.friction import LAW_NAMES, OwnLaw
+from squealbox.law import FrictionLaw
 from squealbox.parameters import DataSheet, Parameter, field_type
 from squealbox.schedules import SCHEDULE_NAMES
 from squealbox.stability import ModeSettings

@@ -16,7 +16,8 @@ from squealbox.files.arrays import ArrayFileError, path_beside, read_array
 from squealbox.files.document import Document, read_bytes
 from squealbox.files.lines import Key, dotted
 from squealbox.files.numbers import LONGEST, WRONG, read_choice, read_number, shown, wrong
-from squealbox.friction import LAW_NAMES, FrictionLaw, OwnLaw, own_law
+from squealbox.friction import LAW_NAMES, OwnLaw, own_law
+from squealbox.law import FrictionLaw
 from squealbox.parameters import DataSheet, Parameter, ParameterError, field_type, known_names
 from squealbox.schedules import SCHEDULE_NAMES, Schedule, Sum, as_schedule
 
@@ -196,7 +197,7 @@ def unit_in(sheet: type[DataSheet], about: Parameter, unit: str) -> str:
     what it multiplies. In a schedule it is that of the
     quantity it stands for, and ``/s`` is that per second.
     """
-    from squealbox.studies import Distribution
+    from squealbox.distributions import Distribution
 
     if issubclass(sheet, Distribution) or hasattr(sheet, "unit_for"):
         return about.unit or unit

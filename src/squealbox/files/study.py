@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.files.arrays import path_beside
 from squealbox.files.document import DesignFileError, Document, open_document
 from squealbox.files.numbers import shown, wrong

@@ -5,26 +5,16 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
+from squealbox.distributions import DISTRIBUTIONS
 from squealbox.files.analyses import read_ends
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import WRONG, only, read_choice, read_number, wrong
 from squealbox.files.sheets import read_sheet
 from squealbox.parameters import Choice, Parameter, ParameterError, known_names
-from squealbox.studies import (
-    DISTRIBUTIONS,
-    SAMPLINGS,
-    Axis,
-    Scatter,
-    Space,
-    grid,
-    latin_hypercube,
-    sampled,
-    sobol_sequence,
-    zipped,
-)
-from squealbox.studies.space import POINT
+from squealbox.scatter import SAMPLINGS, Scatter
+from squealbox.studies import POINT, Axis, Space, grid, latin_hypercube, sampled, sobol_sequence, zipped
 
 EXAMPLE = "parameter = 'friction.static', range = [0.2, 0.5], points = 61"
 MOST = 10**8

@@ -15,7 +15,8 @@ from typing import Any, get_args
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
+from squealbox.distributions import DISTRIBUTIONS, Distribution
 from squealbox.files.analyses import read_spans
 from squealbox.files.asked import read_quantity
 from squealbox.files.document import Document
@@ -25,17 +26,8 @@ from squealbox.files.sheets import read_sheet
 from squealbox.files.study_axis import read_correlation
 from squealbox.files.varied import VARY, flattened, known
 from squealbox.parameters import Parameter, ParameterError
-from squealbox.studies import (
-    DISTRIBUTIONS,
-    Constraint,
-    Distribution,
-    Goal,
-    Quantity,
-    SampleSettings,
-    Scatter,
-    SearchSettings,
-)
-from squealbox.studies.optimisation.goals import Over
+from squealbox.scatter import Scatter
+from squealbox.studies import Constraint, Goal, Over, Quantity, SampleSettings, SearchSettings
 
 STUDIES = ("probability", "sobol", "morris", "form", "subset", "surrogate", "bounds")
 SENSES = ("minimise", "maximise")

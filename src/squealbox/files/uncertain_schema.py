@@ -3,10 +3,11 @@
 from collections.abc import Callable
 from typing import Any
 
+from squealbox.distributions import DISTRIBUTIONS
 from squealbox.files.asked import KEYS
 from squealbox.files.uncertain import OVERS, SENSES, STUDIES
 from squealbox.parameters import DataSheet
-from squealbox.studies import DISTRIBUTIONS, SampleSettings, SearchSettings
+from squealbox.studies import SampleSettings, SearchSettings
 
 Schema = dict[str, Any]
 NUMBER: Schema = {"type": ["number", "string"]}

@@ -6,7 +6,7 @@ Bounds or values are a list, an axis is a table of range and points; each stands
 from collections.abc import Mapping
 from typing import Any
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.files.document import Document
 from squealbox.files.lines import Key
 from squealbox.files.numbers import wrong

@@ -13,13 +13,14 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.countermeasures import Countermeasure
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.files.countermeasures import wrapped_text
 from squealbox.files.document import LARGEST
 from squealbox.files.reading import BRAKES
 from squealbox.files.sheets import unit_in
-from squealbox.friction import FrictionLaw, OwnLaw
+from squealbox.friction import OwnLaw
 from squealbox.labelled import whole
+from squealbox.law import FrictionLaw
 from squealbox.parameters import Choice, DataSheet, Parameter, field_type
 from squealbox.registers import name_of
 from squealbox.schedules import SCHEDULE_NAMES, Constant, Schedule, Sum

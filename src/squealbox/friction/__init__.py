@@ -8,7 +8,7 @@ A file of this folder that holds a law makes it one of `LAWS`.
 
 from squealbox.bristles import Dahl, ElastoPlastic, LuGre
 from squealbox.friction import curves
-from squealbox.friction.averaged import Averaged, averaged
+from squealbox.friction.averaging import Averaged, averaged
 from squealbox.friction.curves import Coulomb, Cubic, Hyperbolic, LinearSlope, Stribeck, Table
 from squealbox.friction.own import OwnLaw, allow, law_from_file, own_law
 from squealbox.law import NEVER_STICKS, FrictionLaw

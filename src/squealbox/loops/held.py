@@ -24,20 +24,6 @@ def highest_rate(system: Any) -> float:
     return float(np.sqrt(np.max(np.abs(squares), initial=0.0)))
 
 
-def aliased(system: Any, loops: Any) -> list[str]:
-    """A sentence for each loop that samples a mode of the system, without friction, less than twice in its period."""
-    said, highest = [], highest_rate(system) / (2.0 * np.pi)
-    for loop in loops:
-        rate = np.inf if loop.sampling is None else float(loop.sampling)
-        if highest > 0.5 * rate:
-            taken = abs(highest - rate * round(highest / rate))
-            said.append(
-                f"the loop on {loop.on} samples at {rate:g} Hz, less than twice the mode at {highest:.6g} Hz, which it "
-                f"takes for {taken:.6g} Hz"
-            )
-    return said
-
-
 def first_order(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, Any, Any, Any]:
     """A, the rows that read q and q' from x = (q, q_m'), and what a force (n,) does to x'."""
     n = len(mass)

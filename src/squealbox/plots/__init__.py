@@ -7,6 +7,6 @@ Its public names stand in ``__init__.pyi`` and are loaded when they are first us
 needs none of the figures.
 """
 
-import lazy_loader
+from squealbox.registers import face
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = face(__name__)

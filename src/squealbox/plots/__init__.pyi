@@ -1,3 +1,4 @@
+from .as_data import map_over_two, modes_over_parameter, motion_and_spectrum
 from .basins import basin_picture
 from .brakes import brake_drawing
 from .cards import card
@@ -5,8 +6,8 @@ from .contact import contact_comparison
 from .cycles import branch_diagram, cycle_overview
 from .diagrams import amplitude_and_section, bifurcation_diagram, coexistence_region
 from .dispatch import plot
-from .facts import facts
 from .fits import friction_fit
+from .key_numbers import facts
 from .laws import friction_curve
 from .maps import amplitude_map, stability_map
 from .measured import (
@@ -22,6 +23,7 @@ from .measured import (
 from .modes import coalescence
 from .motion import amplitude_course, energy, motion_overview, phase_plane, time_history
 from .optimisation import optimum
+from .paper import drawn_on_paper
 from .points import birth_of_a_cycle, crossings, damping_split, finite_eigenvalues, merging_points, point_curve
 from .populations import ensemble_overview
 from .reliability import design_point, subset_probability, surrogate
@@ -78,6 +80,7 @@ __all__ = [
     "design_point",
     "detuning_map",
     "drawn",
+    "drawn_on_paper",
     "eigenvalues",
     "energy",
     "ensemble_overview",
@@ -92,12 +95,15 @@ __all__ = [
     "loop_locus",
     "loop_run",
     "loudness",
+    "map_over_two",
     "mechanism_map",
     "merging_points",
     "mesh_doubt",
     "mode_energy",
     "model_beside_measurement",
+    "modes_over_parameter",
     "morris_effects",
+    "motion_and_spectrum",
     "motion_overview",
     "noise_matrix_figure",
     "nyquist_curve",
@@ -128,3 +134,27 @@ __all__ = [
     "tracked_modes",
     "transient_growth",
 ]
+
+# What neighbours may use too; no names of the reference (docs/house.md, Faces).
+from .brakes import has_drawing as has_drawing
+from .cards import ARRAYS as ARRAYS
+from .cards import array_rows as array_rows
+from .cards import drawable as drawable
+from .cards import has_figure as has_figure
+from .cards import parameter_rows as parameter_rows
+from .cards import setting_rows as setting_rows
+from .key_numbers import shown as shown
+from .modes import followed as followed
+from .modes import unstable_stretches as unstable_stretches
+from .modes import upper_branches as upper_branches
+from .paper import KINDS as KINDS
+from .paper import LARGEST as LARGEST
+from .style import FORMATS as FORMATS
+from .style import drawing as drawing
+from .style import figure_of as figure_of
+from .style import styled as styled
+from .surfaces import contact_pressure as contact_pressure
+from .surfaces import largest_motion as largest_motion
+from .surfaces import mode_on_surface as mode_on_surface
+from .surfaces import outline as outline
+from .sweeps import numeric_answers as numeric_answers

@@ -76,7 +76,10 @@ def modes_over_parameter(
 def map_over_two(
     x: FigureAxis, y: FigureAxis, growth: Any, frequency: Any, curves: Sequence[Any], here: tuple[float, float]
 ) -> FigureData:
-    """Growth rate [1/s] over two axes, (ny, nx), read out with its frequency [Hz]; the boundary and the design."""
+    """Growth rate [1/s] over two axes, (ny, nx), read out with its frequency [Hz]; the boundary and the design.
+
+    `here` is the place of the design, in the units of both axes.
+    """
     beside = {"beside": frequency, "besideUnit": "Hz"}
     picture = heat(growth, "diverging", "growth rate", "1/s", words="orange squeals, blue is quiet", **beside)
     place = points([here[0]], [here[1]], "here big", 6.0, column="this design")
@@ -86,7 +89,7 @@ def map_over_two(
 def motion_and_spectrum(
     t: Any, columns: Mapping[str, Any], spectra: Mapping[str, tuple[Any, Any]], upto: float, unit: str = "m"
 ) -> list[FigureData]:
-    """Displacements [unit] over time t (k,) [s]; their spectra (frequency [Hz], amplitude) up to a frequency [Hz]."""
+    """Displacements [unit] over time t (k,) [s]; their spectra (frequency [Hz], amplitude) up to `upto` [Hz]."""
     stride = max(1, int(np.ceil(len(t) / MOST)))
     second, clock = scaled("s", t)
     factor, read = scaled(unit, *columns.values())

@@ -4,10 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.limit_cycles import Basin, DangerousPush
-from squealbox.limit_cycles.attractors.attractor import CYCLE, REST, SLIDING
-from squealbox.limit_cycles.attractors.basins import place
-from squealbox.limit_cycles.attractors.sections import state_names
+from squealbox.limit_cycles import CYCLE, REST, SLIDING, Basin, DangerousPush, place, state_names
 from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import drawing, figure_of

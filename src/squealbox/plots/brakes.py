@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.designs import DESIGNS, Design, DrawnShape, drawing_of
+from squealbox.design import Design
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, drawing, figure_of
+from squealbox.shapes import DrawnShape, drawing_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,8 +31,7 @@ def brake_drawing(design: Design, *, axes: Any = None) -> "Figure":
     itself, or one that stands for a whole map.
     """
     if not draws(type(design)):
-        known = ", ".join(sorted(kind.__name__ for kind in DESIGNS.values() if draws(kind)))
-        raise TypeError(f"no drawing is known for {type(design).__name__}: expected one of {known}")
+        raise TypeError(f"no drawing is known for {type(design).__name__}: expected a design with a `draw`")
     if not has_drawing(design):
         raise TypeError(f"{type(design).__name__} stands for a map of brakes: expected one")
     with drawing(axes, width=1.3 * COLUMN, height=3.2) as panel:

@@ -12,20 +12,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.designs import Design
-from squealbox.friction import FrictionLaw
+from squealbox.design import Design
 from squealbox.labelled import Labels
-from squealbox.limit_cycles import Branch, PointCurve
-from squealbox.limit_cycles.attractors.basins import Basin
+from squealbox.law import FrictionLaw
+from squealbox.limit_cycles import Basin, Branch, PointCurve
 from squealbox.parameters import DataSheet, Parameter
 from squealbox.plots.brakes import has_drawing
 from squealbox.plots.dispatch import drawer_of, plot
-from squealbox.plots.facts import facts
+from squealbox.plots.key_numbers import facts
 from squealbox.plots.style import drawn
 from squealbox.plots.sweeps import numeric_answers
 from squealbox.result import Result
 from squealbox.stability import ComplexModes, finite_spectrum
-from squealbox.stability.modes_text import html as modes_table
+from squealbox.stability import modes_html as modes_table
 from squealbox.studies import Sweep
 from squealbox.system import System
 from squealbox.transient import Trajectory

@@ -6,12 +6,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.limit_cycles import Branch, Cycle, EstimateCurve, ForcedCycle, HopfPoint, estimate_curves
-from squealbox.limit_cycles.estimates.curves import AVERAGED, DESCRIBING
+from squealbox.limit_cycles import (
+    AVERAGED,
+    DESCRIBING,
+    Branch,
+    Cycle,
+    EstimateCurve,
+    ForcedCycle,
+    HopfPoint,
+    estimate_curves,
+)
 from squealbox.matrices import liveliest
 from squealbox.parameters import DataSheet, ParameterError
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import read_of
+from squealbox.plots.key_numbers import read_of
 from squealbox.plots.style import LOOK, WIDTH, cautioned, drawing, figure_of, line, panels
 from squealbox.words import number, quantity_label, scaled, unit_at
 

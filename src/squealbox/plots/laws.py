@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.friction import FrictionLaw
+from squealbox.law import FrictionLaw
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import drawing, figure_of, line
 from squealbox.words import number, quantity_label

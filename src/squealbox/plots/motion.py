@@ -6,13 +6,11 @@ import numpy as np
 
 from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import drawn_by
-from squealbox.plots.facts import read_of
+from squealbox.plots.key_numbers import read_of
 from squealbox.plots.spectra import spectrum
 from squealbox.plots.style import drawing, figure_of, line, note, panels, uncertain
 from squealbox.signals import LEAST, SignalError, column, equal_steps, values
-from squealbox.transient import Trajectory, Verdict, resolved
-from squealbox.transient.envelope import smooth_curve
-from squealbox.transient.verdict import verdict
+from squealbox.transient import Trajectory, Verdict, resolved, smooth_curve, verdict
 from squealbox.words import number, quantity_label, scaled, unit_at
 
 if TYPE_CHECKING:

@@ -32,12 +32,12 @@ class NoFigure(ValueError):
     """What was sent is no figure; the message is one sentence."""
 
 
-def drawn(figure: bytes | FigureData | Bars, kind: str = "pdf") -> bytes:
+def drawn_on_paper(figure: bytes | FigureData | Bars, kind: str = "pdf") -> bytes:
     """The file, one of KINDS, of a figure, or of what `figure_data.whole` makes of it as JSON.
 
     >>> from squealbox.figure_data import FigureAxis, line
     >>> axes = FigureAxis("time", "s", (0.0, 1.0)), FigureAxis("x", "mm", (0.0, 2.0))
-    >>> print(drawn(FigureData("motion", *axes, [line([0.0, 1.0], [0.5, 2.0], name="pad")]), "csv").decode())
+    >>> print(drawn_on_paper(FigureData("motion", *axes, [line([0.0, 1.0], [0.5, 2.0], name="pad")]), "csv").decode())
     "pad: time [s]","pad: x [mm]"
     0,0.5
     1,2
@@ -55,6 +55,9 @@ def drawn(figure: bytes | FigureData | Bars, kind: str = "pdf") -> bytes:
         raise
     except (ValueError, TypeError, LookupError, AttributeError, RecursionError, ArithmeticError) as error:
         raise NoFigure(f"this is no figure that can be drawn: {type(error).__name__}") from error
+
+
+drawn = drawn_on_paper  # its name in former versions
 
 
 def _table(spec: dict[str, Any], between: str) -> str:

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.limit_cycles import HopfPoint, PointCurve
 from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import drawn_by

@@ -23,12 +23,8 @@ ALL = 0.995  # share of a lot that is all of it
 @drawn_by.register(Countermeasure)
 def countermeasure_drawing(design: Countermeasure, *, axes: Any = None) -> "Figure":
     """The drawing of the brake that a countermeasure holds, with what is done to it written above."""
-    layers: list[str] = []
-    held: Any = design
-    while isinstance(held, Countermeasure):
-        layers.append(type(held).title.lower())
-        held = held.brake
-    figure = brake_drawing(held, axes=axes)
+    layers = [type(layer).title.lower() for layer in design.layers]
+    figure = brake_drawing(design.innermost, axes=axes)
     panel = figure.axes[0] if axes is None else axes
     panel.set_title(" on ".join([*layers, "the brake"]), fontsize=8)
     return figure

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.fe.surface import Surface
+from squealbox.fe import Surface
 from squealbox.plots.style import WIDTH, drawing, figure_of
 from squealbox.words import quantity_label
 

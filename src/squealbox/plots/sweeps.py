@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.limit_cycles.attractors.pushes import DangerousPush
+from squealbox.limit_cycles import DangerousPush
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.style import COLUMN, LINES, ROW, drawing, figure_of, line, note
 from squealbox.studies import Sweep

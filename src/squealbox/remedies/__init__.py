@@ -3,6 +3,6 @@
 The names are listed in ``__init__.pyi``; each is loaded when it is first used.
 """
 
-import lazy_loader
+from squealbox.registers import face
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = face(__name__)

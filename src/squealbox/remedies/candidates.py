@@ -18,8 +18,8 @@ from squealbox.countermeasures import (
     TunedMass,
     best_absorber,
 )
-from squealbox.designs import Design
-from squealbox.friction import FrictionLaw
+from squealbox.design import Design
+from squealbox.law import FrictionLaw
 from squealbox.loops import PID, ActiveForce
 from squealbox.parameters import ParameterError
 from squealbox.stability import complex_modes

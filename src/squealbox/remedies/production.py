@@ -1,10 +1,10 @@
 """How parameters scatter in production where nobody says: a stated assumption, not knowledge of this brake."""
 
-from squealbox.designs import Design
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.design import Design
+from squealbox.distributions import Lognormal, TruncatedNormal
+from squealbox.fe import ReducedBrake
 from squealbox.parameters import ParameterError
-from squealbox.studies.uncertainty.distributions import Lognormal, TruncatedNormal
-from squealbox.studies.uncertainty.scatter import Scatter
+from squealbox.scatter import Scatter
 
 FRICTION, SPRINGS, DAMPERS = 0.08, 0.03, 0.20  # coefficients of variation
 REDUCED_LOT = 24  # brakes, each of which costs a spectrum of its band

@@ -7,18 +7,17 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public, with_parameters
-from squealbox.control.closed_loop import closed_loop
+from squealbox.control import closed_loop
 from squealbox.countermeasures import Controlled, Countermeasure, Dithered
-from squealbox.countermeasures.loss import growth_of
-from squealbox.designs.base import Design
-from squealbox.fe.modified import with_component, with_mass
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.design import Design
+from squealbox.fe import ReducedBrake, with_component, with_mass
 from squealbox.parameters import ParameterError
 from squealbox.remedies.candidates import Candidate, candidates_for, more_friction
 from squealbox.remedies.production import ASSUMED, LOT, lot_size, usual_scatter
 from squealbox.remedies.structural import ON_THE_BASIS, structural_candidates
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
+from squealbox.scatter import Scatter, Scattered, as_scatter
+from squealbox.stability import growth_of
 from squealbox.system import InvalidSystem, equilibrium
 from squealbox.transient import simulate
 from squealbox.words import as_read
@@ -285,11 +284,10 @@ def _share_cured(each: Candidate, cured: Design, brake: Design, lot: dict[str, A
 
 def _layers(cured: Design, brake: Design) -> list[Countermeasure]:
     """The countermeasures put onto the brake, the outermost first; none where it is not among what they hold."""
-    found, held = [], cured
-    while held is not brake and isinstance(held, Countermeasure):
-        found.append(held)
-        held = held.brake
-    return found if held is brake else []
+    for i, layer in enumerate(cured.layers):
+        if layer.brake is brake:
+            return list(cured.layers[: i + 1])
+    return []
 
 
 def _one_side(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:

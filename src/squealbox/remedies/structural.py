@@ -10,11 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.fe.modified import changeable, with_component, with_mass
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe import ReducedBrake, changeable, with_component, with_mass
 from squealbox.remedies.candidates import Candidate, parameter_candidate
-from squealbox.stability import LocalSensitivity, Mode
-from squealbox.stability.local_sensitivity import local_sensitivity
+from squealbox.stability import LocalSensitivity, Mode, local_sensitivity
 
 SHARES = np.array([0.02, 0.05, 0.1, 0.2, 0.35, 0.5])  # of a modulus or density, up or down
 FACTORS = np.array([1.2, 1.5, 2.0, 3.0, 5.0, 10.0])  # of damping

@@ -6,15 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.countermeasures.loss import growth_of
-from squealbox.designs.base import Design
+from squealbox.design import Design
 from squealbox.parameters import ParameterError
 from squealbox.remedies.candidates import laws_of, more_friction
 from squealbox.remedies.production import DAMPERS, SPRINGS, lot_size, usual_scatter
-from squealbox.stability import complex_modes
-from squealbox.studies.uncertainty.replicates import binomial_interval
-from squealbox.studies.uncertainty.scatter import Scatter
-from squealbox.studies.uncertainty.sobol import sobol_indices
+from squealbox.scatter import Scatter
+from squealbox.stability import complex_modes, growth_of
+from squealbox.studies import binomial_interval, sobol_indices
 
 FRICTIONS = 40  # looked at, from none to the largest; narrower windows of squeal between two of them are not seen
 HALVINGS = 14  # of the step in which a brake is lost

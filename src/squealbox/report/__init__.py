@@ -9,50 +9,6 @@ be folded away. Pictures are embedded, styles are inside, nothing is fetched, ev
 light and dark, on a narrow screen and on paper.
 """
 
-from squealbox.report.blocks import (
-    Cell,
-    Chart,
-    Code,
-    Drawing,
-    Page,
-    Picture,
-    Points,
-    ReportError,
-    Section,
-    Sound,
-    Table,
-    Text,
-    Tiles,
-    data_uri,
-)
-from squealbox.report.design_page import design_page
-from squealbox.report.examination import Examination
-from squealbox.report.examining import examine
-from squealbox.report.page import render, write_page
-from squealbox.report.results import result_page, result_section
-from squealbox.report.writing import report
+from squealbox.registers import face
 
-__all__ = [
-    "Cell",
-    "Chart",
-    "Code",
-    "Drawing",
-    "Examination",
-    "Page",
-    "Picture",
-    "Points",
-    "ReportError",
-    "Section",
-    "Sound",
-    "Table",
-    "Text",
-    "Tiles",
-    "data_uri",
-    "design_page",
-    "examine",
-    "render",
-    "report",
-    "result_page",
-    "result_section",
-    "write_page",
-]
+__getattr__, __dir__, __all__ = face(__name__)

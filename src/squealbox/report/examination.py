@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.family import ParameterAxis, ParameterPlane
 from squealbox.limit_cycles import Cycle, HopfPoint
 from squealbox.matrices import liveliest
@@ -31,7 +31,7 @@ class Examination:
     """What was computed of one design; a part that could not be is None (or empty), and `missing` says why.
 
     Of a reduced brake `whole` is the full one at the present values, `band` its modes with their error bars and
-    `mode_table` what :func:`squealbox.stability.mode_table.mode_table` tells of them.
+    `mode_table` what :func:`squealbox.stability.mode_tables.mode_table` tells of them.
     """
 
     design: Design

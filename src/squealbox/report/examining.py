@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.family import ParameterAxis, ParameterPlane
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe import ReducedBrake
 from squealbox.limit_cycles import Cycle, hopf_point, shooting
 from squealbox.matrices import liveliest
 from squealbox.parameters import ParameterError
@@ -28,14 +28,13 @@ from squealbox.stability import (
     map_boundary,
     mechanism,
     mode_energy,
+    mode_table,
     sensitivity,
     stability_map,
     tracked_modes,
 )
-from squealbox.stability.mode_table import mode_table
 from squealbox.system import InvalidSystem
-from squealbox.transient import LARGE, MotionSettings, usual_duration, verdict
-from squealbox.transient.simulate import TIME_STEPPING
+from squealbox.transient import LARGE, TIME_STEPPING, MotionSettings, usual_duration, verdict
 from squealbox.words import AUDIBLE
 
 Progress = Callable[[str], None]

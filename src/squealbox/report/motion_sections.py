@@ -7,7 +7,7 @@ import numpy as np
 
 from squealbox import plots
 from squealbox.matrices import liveliest
-from squealbox.plots.as_data import motion_and_spectrum
+from squealbox.plots import motion_and_spectrum
 from squealbox.report import words
 from squealbox.report.blocks import Chart, Points, Sound, Text
 from squealbox.report.examination import Examination

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from squealbox import plots
 from squealbox.report.blocks import Drawing, Text
 from squealbox.report.examination import Examination
-from squealbox.signals.wav import SAMPLING, audible, sixteen_bits
+from squealbox.signals import SAMPLING, audible, sixteen_bits
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,11 +7,9 @@ from typing import Any
 import numpy as np
 
 from squealbox import plots
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.matrices import liveliest
-from squealbox.plots.brakes import has_drawing
-from squealbox.plots.cards import ARRAYS, array_rows, has_figure, parameter_rows, setting_rows
-from squealbox.plots.sweeps import numeric_answers
+from squealbox.plots import ARRAYS, array_rows, has_drawing, has_figure, numeric_answers, parameter_rows, setting_rows
 from squealbox.remedies import Remedies
 from squealbox.report.blocks import Code, Page, Picture, Points, ReportError, Section, Sound, Table, Text
 from squealbox.report.pictures import picture, wav

@@ -8,8 +8,7 @@ import numpy as np
 
 from squealbox import plots
 from squealbox.figure_data import FigureAxis, upright
-from squealbox.plots.as_data import map_over_two, modes_over_parameter
-from squealbox.plots.modes import unstable_stretches, upper_branches
+from squealbox.plots import map_over_two, modes_over_parameter, unstable_stretches, upper_branches
 from squealbox.report import tables, words
 from squealbox.report.blocks import Chart, Section, Text
 from squealbox.report.examination import Examination

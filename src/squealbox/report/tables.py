@@ -4,14 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.plots.cards import parameter_rows
-from squealbox.plots.facts import shown
+from squealbox.plots import parameter_rows, shown
 from squealbox.remedies import Remedies
 from squealbox.report.blocks import Cell, Table
 from squealbox.report.examination import Examination, results_of
 from squealbox.report.words import in_reading_unit, quantity
-from squealbox.stability import ComplexModes, ModeEnergy, Sensitivity
-from squealbox.stability.energy import contact_groups
+from squealbox.stability import ComplexModes, ModeEnergy, Sensitivity, contact_groups
 from squealbox.system import Equilibrium, System, equilibrium
 from squealbox.words import number, plain_unit
 

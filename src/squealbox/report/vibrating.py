@@ -3,17 +3,14 @@
 import numpy as np
 
 from squealbox import plots
-from squealbox.designs import Design, drawing_of
-from squealbox.fe.meshed import MeshedBrake
-from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.fe.surface import Surface, with_surface
-from squealbox.plots.brakes import has_drawing
-from squealbox.plots.surfaces import contact_pressure, largest_motion, mode_on_surface, outline
+from squealbox.design import Design
+from squealbox.fe import MeshedBrake, ReducedBrake, Surface, with_surface
+from squealbox.plots import contact_pressure, has_drawing, largest_motion, mode_on_surface, outline
 from squealbox.report.blocks import Drawing, Vibrating
 from squealbox.report.examination import Examination
 from squealbox.report.pictures import picture
-from squealbox.stability import ComplexModes
-from squealbox.stability.energy import contact_groups
+from squealbox.shapes import drawing_of
+from squealbox.stability import ComplexModes, contact_groups
 from squealbox.system import equilibrium
 from squealbox.words import quantity
 

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from squealbox.cautions import pulling
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe import ReducedBrake
 from squealbox.report.examination import Examination
 from squealbox.signals import SoundLevel
-from squealbox.stability import sentences
+from squealbox.stability import LINEAR, MERGE, growth_in_words, headline, margin_in_words, plain_words
 from squealbox.system import equilibrium
 from squealbox.words import level_told, number, quantity, read_in, sizes_told
 
@@ -32,23 +32,21 @@ def verdict(found: Examination) -> list[str]:
 
 def short_verdict(found: Examination) -> str:
     """One sentence for the head of a page."""
-    said = sentences.headline(found.modes, found.why)
+    said = headline(found.modes, found.why)
     return f"{said}{', and yet a vibration can persist beside it' if found.coexists else ''}."
 
 
 def _stability(found: Examination) -> Iterator[str]:
     yield short_verdict(found)
-    yield sentences.growth(found.modes, found.why)
+    yield growth_in_words(found.modes, found.why)
 
 
 def _margin(found: Examination) -> Iterator[str]:
     if found.varied is None or found.crossings is None:
         return
     name, ends = found.varied.name, (float(found.varied.low), float(found.varied.high))
-    said = sentences.margin(
-        name, found.present, found.crossings, ends, lambda value: value_in_words(found, name, value)
-    )
-    yield sentences.plain(said)
+    said = margin_in_words(name, found.present, found.crossings, ends, lambda value: value_in_words(found, name, value))
+    yield plain_words(said)
 
 
 BEGINS = {
@@ -124,14 +122,14 @@ def caveats(found: Examination) -> list[str]:
     said = [
         f"The model has {size} degrees of freedom and {len(found.system.contacts)} contacts: modes of the "
         "real parts that are not in it, temperature, wear and the scatter of friction are not in the result either.",
-        sentences.LINEAR,
+        LINEAR,
     ]
     if found.cycle is not None:
         said.append(
             f"Limit cycles were looked for from {_listed(found.tried)}. Others may exist that none of these reaches."
         )
     if found.ranking is not None and found.ranking.near_defective:
-        said.append(sentences.MERGE)
+        said.append(MERGE)
     if found.loudness is not None:
         said.append(
             "The sound level is an estimate; differences between two designs can be trusted more than the level itself."

@@ -4,19 +4,17 @@ import os
 from pathlib import Path
 from typing import Any
 
-from squealbox.designs import Design
-from squealbox.fe.meshed import MeshedBrake
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.design import Design
+from squealbox.fe import MeshedBrake, ReducedBrake
 from squealbox.files import ONE_WAY, DesignFile, dense, promise, read_file
 from squealbox.report.blocks import Page, ReportError
-from squealbox.report.design_page import design_page
+from squealbox.report.design_pages import design_page
 from squealbox.report.examination import Examination
 from squealbox.report.examining import OF_LARGE, Progress, examine, usual_friction
 from squealbox.report.page import write_page
 from squealbox.report.results import folder_page, result_page
 from squealbox.result import Result
-from squealbox.stability import complex_modes, mesh_doubt
-from squealbox.stability.second_mesh import ONE_MESH
+from squealbox.stability import ONE_MESH, complex_modes, mesh_doubt
 
 EXPECTED = "a design file (.toml), a result (.nc) or a folder that holds results"
 

@@ -19,7 +19,7 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals.recordings import as_recording
-from squealbox.signals.samples import SignalError
+from squealbox.signals.sampling import SignalError
 
 SURE = 1.959963984540054  # standard deviations of a 95 % interval
 MOST_MODES = 8

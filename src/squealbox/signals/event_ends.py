@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.signals.growth import growth_rate
-from squealbox.signals.samples import SignalError
+from squealbox.signals.sampling import SignalError
 from squealbox.signals.tones import tones
 
 QUIET = 0.05  # share of the plateau from which growth is read, if the noise is below

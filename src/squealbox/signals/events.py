@@ -20,7 +20,7 @@ from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals.event_ends import edges, rate_at, steady_frequency
 from squealbox.signals.radiation import HEARING, a_weighting
 from squealbox.signals.recordings import as_recording
-from squealbox.signals.samples import SignalError
+from squealbox.signals.sampling import SignalError
 from squealbox.signals.tracks import Frames, Track, lines_of, seen, stands_out, tracks
 
 BAND = (2000.0, 16000.0)  # [Hz]

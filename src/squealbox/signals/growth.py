@@ -8,7 +8,7 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.result import Array, Result, quantity
 from squealbox.signals.exponentials import fit_exponentials
-from squealbox.signals.samples import Samples, SignalError, given, unfolded
+from squealbox.signals.sampling import Samples, SignalError, given, unfolded
 from squealbox.signals.spectra import spectrum, window_weights
 from squealbox.signals.tones import SLOW, Tones, tones
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals.events import SquealEvents
-from squealbox.signals.samples import SignalError
+from squealbox.signals.sampling import SignalError
 
 CELLS = 5
 FREQUENCY_WIDTH = 500.0  # Hz of a bin of the histogram

@@ -12,7 +12,7 @@ from squealbox.arguments import public
 from squealbox.extras import extra
 from squealbox.result import Array, Result, quantity
 from squealbox.signals.recordings import as_recording
-from squealbox.signals.samples import SignalError
+from squealbox.signals.sampling import SignalError
 from squealbox.signals.wav import resampled
 
 RATE = 48000  # [Hz] the standards are written for

@@ -21,7 +21,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.signals.samples import SignalError, column, folded, given
+from squealbox.signals.sampling import SignalError, column, folded, given
 from squealbox.signals.spectra import peaks, spectrum
 from squealbox.words import AUDIBLE, level_told
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.cells import cells
-from squealbox.signals.samples import COARSEST, LEAST, SignalError, equal_steps, last_digits
+from squealbox.signals.sampling import COARSEST, LEAST, SignalError, equal_steps, last_digits
 
 LARGEST = 2_000_000_000  # bytes of a file
 LARGEST_TEXT = 200_000_000

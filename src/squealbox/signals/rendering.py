@@ -6,7 +6,7 @@ import numpy as np
 
 from squealbox.signals.radiation import AREA, DENSITY
 from squealbox.signals.recordings import Recording
-from squealbox.signals.samples import SignalError, column, folded, samples
+from squealbox.signals.sampling import SignalError, column, folded, samples
 
 
 def rendered(

@@ -8,7 +8,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.result import Array, Result, quantity
-from squealbox.signals.samples import SignalError, given, samples
+from squealbox.signals.sampling import SignalError, given, samples
 
 LOBE_STEPS = 16
 

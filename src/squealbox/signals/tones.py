@@ -18,7 +18,7 @@ from squealbox.signals.exponentials import (
     matched_energy,
     prediction_filter,
 )
-from squealbox.signals.samples import SignalError
+from squealbox.signals.sampling import SignalError
 
 CHANCE = 1e-4  # of taking noise for a line, per record
 MOST = 8  # components

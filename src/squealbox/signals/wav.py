@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.signals.samples import SignalError, unfolded
+from squealbox.signals.sampling import SignalError, unfolded
 
 SAMPLING = 44100  # [Hz]
 

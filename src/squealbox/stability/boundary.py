@@ -16,7 +16,7 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
 from squealbox.family import Bounds
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe import ReducedBrake
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.cells import Crossing, LevelsAtPoints, crossings
 from squealbox.stability.family import Steady, SteadyFamily

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.stability.indices import squeal_index
+from squealbox.stability.squeal_indices import squeal_index
 
 COLUMNS = {
     "abaqus": ("frequency", "damping_ratio"),

@@ -13,7 +13,7 @@ import numpy as np
 from squealbox.stability.eigenvalues import complex_modes
 from squealbox.stability.family import steady_sliding
 from squealbox.stability.in_band import IDLE, eigenvalues_in_band
-from squealbox.stability.mechanism import mechanism_at
+from squealbox.stability.mechanisms import mechanism_at
 
 CLOSE, ENOUGH = 1e-3, 1e-2  # shares of a step of the scan at which the corrections take over, and at which they end
 APART = 0.02  # of an eigenvalue: so far apart, two are as little alike as two shapes that have nothing in common

@@ -11,9 +11,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.cautions import out_of_range, pulling
-from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.loops.held import aliased
+from squealbox.cautions import aliased, out_of_range, pulling
+from squealbox.fe import ReducedBrake
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, batched, quantity
 from squealbox.stability.deflation import special_modes, uncertain, vibrating
@@ -217,7 +216,7 @@ def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None,
         return quick
     system = as_system(design_or_system, linear=True)
     if system.is_sparse:
-        from squealbox.stability.band_modes import band_modes  # only a large brake needs it
+        from squealbox.stability.modes_in_band import band_modes  # only a large brake needs it
 
         return band_modes(design_or_system, band, time=time, **how)
     if how:

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe import ReducedBrake
 from squealbox.memory_rows import no_memory
 from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import Mode, complex_modes, modes_of

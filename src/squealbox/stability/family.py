@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.family import Family
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe import ReducedBrake
 from squealbox.parameters import ParameterError
 from squealbox.system import Equilibrium, InvalidSystem, Linearised, System, as_system, linearise
 

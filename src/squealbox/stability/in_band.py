@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.fe.band_spectrum import condensed
-from squealbox.fe.pencil import vibrating
-from squealbox.fe.small import Small
+from squealbox.fe import ReducedBrake, Small, condensed, vibrating
 from squealbox.stability.eigenvalues import complex_modes
-from squealbox.stability.family import SteadyFamily
+from squealbox.stability.family import SteadyFamily, steady_sliding
+from squealbox.stability.spectra import largest_growth
+from squealbox.system import Linearised
 
 POINTS = 81  # values of a scan; narrow windows are looked for between them as ever
 IDLE = 1e-9  # share of |lambda| up to which a growth rate is round-off
@@ -55,6 +55,21 @@ def worst_in_band(eigenvalues: Any) -> tuple[float, float, int]:
         return np.nan, np.nan, 0
     worst = known[np.argmax(known.real)]
     return float(worst.real), abs(float(worst.imag)), int(np.sum(known.real > IDLE * np.abs(known)))
+
+
+def growth_of(design: Any) -> Any:
+    """The largest growth rate [1/s] of a design of arrays, inf without steady sliding; of a reduced one in its band."""
+    if isinstance(design, ReducedBrake):
+        every = [design.entry(at) for at in np.ndindex(design.shape)] if design.shape else [design]
+        found = np.array([worst_in_band(eigenvalues_in_band(one, 0.0))[0] for one in every])
+        return np.where(np.isfinite(found), found, np.inf).reshape(design.shape)
+    return growth_about(steady_sliding(design))
+
+
+def growth_about(sliding: Linearised) -> Any:
+    """As `growth_of`, of what is linearised already."""
+    growth: Any = largest_growth(sliding)[0]
+    return np.where(np.isfinite(growth), growth, np.inf)
 
 
 def ranked_in_band(small: Small, band: tuple[float, float], rank: int) -> Any:

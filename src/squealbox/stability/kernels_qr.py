@@ -7,7 +7,7 @@ nothing.
 
 from typing import Any
 
-from squealbox.compiled.packed import inverse_power, larger, largest, load, root, select, signed, some, splat, store
+from squealbox.compiled import inverse_power, larger, largest, load, root, select, signed, some, splat, store
 
 EPS = 2.220446049250313e-16
 TINY = 1e-290  # of a matrix whose largest entry is about 1: nothing

@@ -11,7 +11,7 @@ Plain functions for `compiled`, which `spectra` has translated.
 import math
 from typing import Any
 
-from squealbox.compiled.packed import (
+from squealbox.compiled import (
     LANES,
     inverse_power,
     larger,

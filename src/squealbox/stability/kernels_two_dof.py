@@ -9,7 +9,7 @@ translated.
 
 from typing import Any
 
-from squealbox.compiled.packed import LANES, columns, larger, root, select, signed, smaller, splat, store, word
+from squealbox.compiled import LANES, columns, larger, root, select, signed, smaller, splat, store, word
 
 TINY = 1e-300
 MARGINAL = 1e-12  # growth below this share of the largest |lambda| is round-off, not growth

@@ -16,7 +16,7 @@ from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.eigenvalues import MARGINAL
 from squealbox.stability.family import Steady, SteadyFamily, entry, steady_sliding
 from squealbox.stability.in_band import largest_in_band
-from squealbox.stability.mechanism import NAMES, STEPS, contributions, mechanism_codes
+from squealbox.stability.mechanisms import NAMES, STEPS, contributions, mechanism_codes
 from squealbox.stability.spectra import Engine, largest_growth
 from squealbox.words import growing
 

@@ -28,7 +28,7 @@ def summary(modes: "ComplexModes") -> str:
     return with_cautions(lines, *_cautions(modes, entry))
 
 
-def html(modes: "ComplexModes") -> str:
+def modes_html(modes: "ComplexModes") -> str:
     """The same table as HTML."""
     if not np.any(modes.exists) or not np.any(np.isfinite(modes.eigenvalues)):
         return f"<p>{html_module.escape(summary(modes))}</p>"

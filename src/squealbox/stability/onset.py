@@ -11,10 +11,10 @@ from squealbox.family import Bounds, Varied
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.crossing_in_band import crossings_between
 from squealbox.stability.deflation import vibrating
-from squealbox.stability.eigenvalues import OneEigenvalue, modes_of
+from squealbox.stability.eigenvalues import ComplexModes, OneEigenvalue, modes_of
 from squealbox.stability.family import SteadyFamily, entry
 from squealbox.stability.in_band import POINTS as POINTS_IN_BAND
-from squealbox.stability.mechanism import Mechanism, mechanism_at
+from squealbox.stability.mechanisms import Mechanism, mechanism_at
 from squealbox.stability.polishing import Polished, polished
 from squealbox.stability.scan import Scan, merging, scan
 from squealbox.stability.state_matrix import spectrum
@@ -271,6 +271,23 @@ def _crossing(found: Scan, i: int, k: int, width: float) -> dict[str, Any]:
     return _described(found, value, value, k, rising, i, width)
 
 
+def _modes_at(found: Scan, value: float) -> ComplexModes | None:
+    """The modes at a value, None without steady sliding there."""
+    steady = found.family.at(np.array([value]))
+    return modes_of(steady) if steady.equilibrium.exists[0] else None
+
+
+def _nearest(modes: ComplexModes, eigenvalue: complex) -> int:
+    """Which mode, conjugates counted once, is nearest to an eigenvalue [1/s]."""
+    half = modes.eigenvalues.shape[-1] // 2
+    return int(np.argmin(np.abs(modes.eigenvalues[0, :half] - eigenvalue)))
+
+
+def _rank(modes: ComplexModes, place: int, rigid: Any) -> int:
+    """How many modes, but for `rigid` ones, grow faster than one of them."""
+    return int(np.sum((modes.growth_rate[0, : len(rigid)] > modes.growth_rate[0, place]) & ~rigid))
+
+
 def _described(found: Scan, value: float, beside: float, k: int, rising: bool, i: int, width: float) -> dict[str, Any]:
     """What crosses at `value`, from the modes at `beside`."""
     place_of = beside
@@ -292,14 +309,21 @@ def _described(found: Scan, value: float, beside: float, k: int, rising: bool, i
         rigid = (modes.eigenvalues[0, :half] == 0.0) & (np.cumsum(modes.eigenvalues[0, :half] == 0.0) <= found.undamped)
         here = found.at(place_of)[k] if found.family.band else found.functions_of(steady)[0, k]
         growth = np.where(rigid & (np.sum(~rigid) > 0), np.inf, growth)
-        place = int(np.argmin(np.abs(growth - (0.0 if np.isnan(here) else here))))
+        off = np.abs(growth - (0.0 if np.isnan(here) else here))
+        place = int(np.argmin(off))
+        alike = np.flatnonzero(off <= ROUND_OFF * np.nanmax(np.abs(modes.eigenvalues[0]), initial=0.0))
+        further = value + (BESIDE if rising else -BESIDE) * width
+        if (
+            len(alike) > 1 and (there := _modes_at(found, further)) is not None
+        ):  # some stay undamped: it is the one that leaves
+            followed = [_nearest(there, modes.eigenvalues[0, j]) for j in alike]
+            place = int(alike[np.argmax((1.0 if rising else -1.0) * there.growth_rate[0, followed])])
         eigenvalue = complex(modes.eigenvalues[0, place])
-        rank = int(np.sum((modes.growth_rate[0, :half] > modes.growth_rate[0, place]) & ~rigid))
-        why = mechanism_at(entry(steady, (0,)), eigenvalue.imag, rank=rank)
-        if max(why.circulation, why.slope) <= ROUND_OFF * abs(eigenvalue):  # nothing feeds it here, only beyond
-            further = found.family.at(np.array([value + (BESIDE if rising else -BESIDE) * width]))
-            if further.equilibrium.exists[0]:
-                why = mechanism_at(entry(further, (0,)), eigenvalue.imag, rank=rank)
+        why = mechanism_at(entry(steady, (0,)), eigenvalue.imag, rank=_rank(modes, place, rigid))
+        feeds_beyond = max(why.circulation, why.slope) <= ROUND_OFF * abs(eigenvalue)
+        if feeds_beyond and (there := _modes_at(found, further)) is not None:
+            rank = _rank(there, _nearest(there, eigenvalue), rigid)
+            why = mechanism_at(entry(found.family.at(np.array([further])), (0,)), eigenvalue.imag, rank=rank)
         counts = (k, k + 1) if rising else (k + 1, k)
     exact = _exact(found, value, beside, eigenvalue, k, i)
     return {

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.fe.meshed import MeshedBrake
+from squealbox.fe import MeshedBrake
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.eigenvalues import complex_modes

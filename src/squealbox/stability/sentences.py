@@ -8,7 +8,7 @@
 from collections.abc import Callable
 
 from squealbox.stability.eigenvalues import ComplexModes
-from squealbox.stability.mechanism import Mechanism
+from squealbox.stability.mechanisms import Mechanism
 from squealbox.stability.onset import CriticalValues
 from squealbox.words import AUDIBLE, number, quantity
 
@@ -41,7 +41,7 @@ def headline(modes: ComplexModes, why: Mechanism | None) -> str:
     return f"Unstable: it will {'squeal' if heard else 'vibrate'} at about {quantity(frequency, 'Hz')}"
 
 
-def growth(modes: ComplexModes, why: Mechanism | None) -> str:
+def growth_in_words(modes: ComplexModes, why: Mechanism | None) -> str:
     """How fast the first mode grows or the last one decays, and what feeds it."""
     if not bool(modes.exists):
         return f"{modes.outcome.message}."
@@ -62,7 +62,7 @@ def growth(modes: ComplexModes, why: Mechanism | None) -> str:
     )
 
 
-def margin(
+def margin_in_words(
     parameter: str,
     here: float | None,
     found: CriticalValues,
@@ -91,6 +91,6 @@ def margin(
     return words
 
 
-def plain(words: Words) -> str:
+def plain_words(words: Words) -> str:
     """The words as one text."""
     return "".join(each if isinstance(each, str) else each[0] for each in words)

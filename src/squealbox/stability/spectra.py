@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from squealbox.compiled.packed import LANES, room
+from squealbox.compiled import LANES, room
 from squealbox.stability import kernels_qr, kernels_spectra, kernels_two_dof
 from squealbox.stability.deflation import SLOW
 from squealbox.stability.eigenvalues import MARGINAL, modes_of
@@ -29,7 +29,7 @@ def largest_growth(about: Linearised, engine: Engine = "auto") -> tuple[Any, Any
     special = np.any(entries)
     if about.M.shape[-1] == 2 and compiled(about, engine) and not special:
         return _two_dof(about)
-    values = eigenvalues(about, engine, entries)
+    values = eigenvalues_of(about, engine, entries)
     known = np.isfinite(values.real)
     if special:  # rigid-body motion is no vibration
         known &= (values != 0.0) | (np.asarray(about.equilibrium.floating)[..., None] == 0)
@@ -71,7 +71,7 @@ def flags_of(mass: Any, damping: Any, stiffness: Any) -> Any:
     return np.unpackbits(words.astype("<u2").view(np.uint8), count=number, bitorder="little").view(bool)
 
 
-def eigenvalues(about: Linearised, engine: Engine = "auto", special: Any = None) -> Any:
+def eigenvalues_of(about: Linearised, engine: Engine = "auto", special: Any = None) -> Any:
     """All eigenvalues (..., 2n) [1/s] in no particular order; NaN without a spectrum. special : see `with_special`."""
     if about.M.shape[-1] == 2 and compiled(about, engine):
         return with_special(about, _two_dof_spectrum(about), special)
@@ -120,14 +120,14 @@ def compiled_eigenvalues(matrices: Any) -> Any:
 
 def two_dof_kernels() -> Any:
     """The functions of `kernels_two_dof`, compiled at their first call on a machine."""
-    from squealbox.compiled.machine import translated
+    from squealbox.compiled import translated
 
     return translated(kernels_two_dof)
 
 
 def spectra_kernels() -> Any:
     """Those of `kernels_spectra`."""
-    from squealbox.compiled.machine import translated
+    from squealbox.compiled import translated
 
     return translated(kernels_qr, kernels_spectra)
 

@@ -15,8 +15,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.family import Varied
-from squealbox.fe.band_spectrum import band_pairs
-from squealbox.fe.pencil import MOST_DAMPED, vibrating
+from squealbox.fe import MOST_DAMPED, band_pairs, vibrating
 from squealbox.labelled import Labelled, Labels
 from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import MARGINAL, ComplexModes, modes_of

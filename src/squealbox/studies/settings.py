@@ -1,8 +1,8 @@
 """How much work a study is, for files and the command line: workers, samples, generations."""
 
 from squealbox.parameters import DataSheet, above_zero, choice, parameter
+from squealbox.scatter import SAMPLINGS
 from squealbox.studies.refinement import FINEST
-from squealbox.studies.uncertainty.scatter import SAMPLINGS
 
 ANALYSES = ("modes", "onset", "simulate", "ensemble", "cycle")
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from squealbox.family import values_of
 from squealbox.parameters import ParameterError
-from squealbox.studies.uncertainty.scatter import Sampling, unit_points
+from squealbox.scatter import Sampling, unit_points
 
 POINT = "point"  # the dimension of an axis with several parameters
 

@@ -16,8 +16,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from squealbox.compiled.kinds import OfAnotherText
-from squealbox.compiled.machine import Compiled, cache_folder, kept
+from squealbox.compiled import Compiled, OfAnotherText, cache_folder, kept
 from squealbox.friction import LAWS
 from squealbox.schedules import SCHEDULES
 from squealbox.transient import (

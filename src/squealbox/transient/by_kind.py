@@ -1,6 +1,6 @@
 """Names in the march that its writer, `_engine`, fills in: laws and schedules by their kinds, with events or not."""
 
-from squealbox.compiled.kinds import FLOAT, OfAnotherText
+from squealbox.compiled import FLOAT, OfAnotherText
 
 WITH_EVENTS = False
 law_mu, law_slope = OfAnotherText("law_mu", FLOAT), OfAnotherText("law_slope", FLOAT)

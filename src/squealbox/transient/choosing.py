@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.friction import FrictionLaw
+from squealbox.law import FrictionLaw
 from squealbox.parameters import ParameterError
 from squealbox.system import InvalidSystem, System
 from squealbox.transient.latest import Latest

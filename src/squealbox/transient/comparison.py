@@ -10,7 +10,7 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.system import as_system
-from squealbox.transient.simulate import simulate
+from squealbox.transient.simulating import simulate
 from squealbox.transient.trajectory import Trajectory
 
 SCHEMES = ("exact", "raw", "smooth", "tanh", "time-stepping")

@@ -23,7 +23,7 @@ from squealbox.transient.legs import MESSAGES, SCHEMES
 from squealbox.transient.methods import Method
 from squealbox.transient.observers import as_observers
 from squealbox.transient.one_by_one import OneByOne
-from squealbox.transient.simulate import simulate
+from squealbox.transient.simulating import simulate
 from squealbox.transient.widened import RunApart
 
 if TYPE_CHECKING:

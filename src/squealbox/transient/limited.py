@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.friction import NEVER_STICKS, FrictionLaw
+from squealbox.law import NEVER_STICKS, FrictionLaw
 from squealbox.parameters import parameter
 from squealbox.system import Contact, System
 from squealbox.transient.widened import RunApart, widened

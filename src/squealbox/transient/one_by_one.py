@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.cautions import least_coefficient
-from squealbox.loops.held import highest_rate
+from squealbox.loops import highest_rate
 from squealbox.members import member
 from squealbox.parameters import ParameterError
 from squealbox.system import System, as_system

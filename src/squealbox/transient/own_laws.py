@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.friction import LAWS, FrictionLaw
+from squealbox.friction import LAWS
+from squealbox.law import FrictionLaw
 from squealbox.system import Contact, InvalidSystem
 
 Texts = tuple[str, str]

@@ -15,9 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.loops.driven import Driven, driven_brake
-from squealbox.loops.held import aliased
-from squealbox.loops.rows import size_and_rate
+from squealbox.cautions import aliased
+from squealbox.loops import Driven, driven_brake, size_and_rate
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Polynomial, Schedule
 from squealbox.start import Start
@@ -61,7 +60,7 @@ class Pieces:
     work: Any
 
 
-def start_of(driven: Driven, start: Any, time: float = 0.0, modes_of: Any = None) -> tuple[Any, Any]:
+def start_of_driven(driven: Driven, start: Any, time: float = 0.0, modes_of: Any = None) -> tuple[Any, Any]:
     """q and q' of all rows, from any start of the brake or (q, q') of all rows; sliding is that with ideal loops."""
     system = driven.system
     if isinstance(start, str) and start == "sliding":

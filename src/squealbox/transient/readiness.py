@@ -15,7 +15,7 @@ def needs_compiling(design_or_system: Any) -> bool:
     >>> isinstance(needs_compiling(DrumBrake()), bool)
     True
     """
-    from squealbox.transient.simulate import exact_call
+    from squealbox.transient.simulating import exact_call
 
     march, arguments = exact_call(as_system(design_or_system))
     return not march.ready(*arguments)

@@ -10,7 +10,7 @@ import numpy as np
 
 from squealbox.signals import SignalError, carries
 from squealbox.transient.methods import Method
-from squealbox.transient.simulate import simulate
+from squealbox.transient.simulating import simulate
 from squealbox.transient.trajectory import Trajectory
 
 MOST_STEPS = 500_000  # kept of a run made again: some 100 MB

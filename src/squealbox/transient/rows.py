@@ -11,6 +11,7 @@ other coordinates (`coordinates`). Depends on: system, schedules.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,9 @@ import numpy as np
 from squealbox.memory_rows import remembering
 from squealbox.schedules import Constant, Schedule, value_at
 from squealbox.system import InvalidSystem, System
+from squealbox.transient.latest import Latest
 
+KEPT = Latest(16)
 WITH_MASS, FIRST_ORDER, ALGEBRAIC = 2, 1, 0  # how often a row's displacement is differentiated
 
 
@@ -38,7 +41,7 @@ class EquationRows:
     t: tuple[Any, ...]
     s: tuple[Any, ...]
 
-    @property
+    @cached_property
     def all_have_mass(self) -> bool:
         """True for the usual system."""
         return all(kind == WITH_MASS for kind in self.kinds)
@@ -61,6 +64,11 @@ def row_kinds(system: System) -> tuple[int, ...]:
 
 def rows_of(system: System) -> EquationRows:
     """The rows of a system; `InvalidSystem` in one sentence where they determine no motion."""
+    found: EquationRows = KEPT.of(system, (), lambda: _rows_of(system))
+    return found
+
+
+def _rows_of(system: System) -> EquationRows:
     kinds = row_kinds(system)
     inverse = solved_for(system, kinds)
     stiffness, damping = inverse @ system.K, inverse @ system.C

@@ -48,14 +48,12 @@ def _unclosed(system: System, first: Any, last: Any, size: int) -> tuple[float, 
     Where a motion is small about a large deflection, the springs' energy tells its change to rtol of itself only.
     """
     n, m = system.size, len(system.contacts)
-    stored = []
+    kinetic, strain = [], []
     for row in (first, last):
         q, qd = row[1 : 1 + n], row[1 + size : 1 + size + n]
-        stored.append((0.5 * float(qd @ system.M @ qd), 0.5 * float(q @ system.K @ q)))
-    works = (last - first)[1 + 2 * size : 6 + 2 * size + m]
-    given, dissipated = works.copy(), works[m + 2]
-    given[m + 2] = 0.0
-    change = sum(stored[1]) - sum(stored[0])
-    size_of_all = max(stored[0][0], stored[1][0], abs(change), float(np.max(np.abs(works))))
-    missing = abs(change - float(np.sum(given)) + dissipated)
-    return missing, size_of_all, max(abs(stored[0][1]), abs(stored[1][1]))
+        kinetic.append(0.5 * float(qd @ system.M @ qd))
+        strain.append(0.5 * float(q @ system.K @ q))
+    works = (last - first)[1 + 2 * size : 6 + 2 * size + m].tolist()
+    change = kinetic[1] - kinetic[0] + strain[1] - strain[0]
+    missing = abs(change - sum(works) + 2.0 * works[m + 2])  # what is dissipated is not given
+    return missing, max(*kinetic, abs(change), *map(abs, works)), max(map(abs, strain))

@@ -10,7 +10,7 @@ from squealbox.start import Start, in_words
 from squealbox.system import System, as_system
 from squealbox.transient.legs import SCHEMES
 from squealbox.transient.methods import TABLEAUX, TAYLOR
-from squealbox.transient.simulate import TIME_STEPPING, simulate
+from squealbox.transient.simulating import TIME_STEPPING, simulate
 from squealbox.transient.trajectory import Trajectory
 
 PERIODS = 200.0  # of the worst mode, followed where nobody says how long

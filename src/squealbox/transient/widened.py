@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.loops.rows import delayed, force_per_state, numbered, padded_contacts, padded_load
+from squealbox.loops import delayed, force_per_state, numbered, padded_contacts, padded_load
 from squealbox.schedules import Schedule, value_at
 from squealbox.start import Start
 from squealbox.system import Contact, InvalidSystem, System

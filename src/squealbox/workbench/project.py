@@ -13,8 +13,8 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from squealbox.designs import Design
-from squealbox.plots.cards import parameter_rows
+from squealbox.design import Design
+from squealbox.plots import parameter_rows
 from squealbox.workbench.folder import (
     LARGEST_STATE,
     LARGEST_TEXT,

@@ -9,7 +9,7 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import AoT, Array, InlineTable, Table
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.family import ParameterAxis
 from squealbox.files import SECTIONS, STUDY, VARY, DesignFile, DesignFileError, design_text, read_text
 from squealbox.units import UnitError, in_si, split, unit

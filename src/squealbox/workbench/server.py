@@ -130,7 +130,7 @@ class Workbench:
 
     async def paper(self, request: Request) -> Response:
         """A figure of the page as a file for paper."""
-        from squealbox.plots.paper import KINDS, LARGEST, drawn
+        from squealbox.plots import KINDS, LARGEST, drawn_on_paper
 
         kind = request.path_params["kind"]
         if kind not in KINDS:
@@ -140,7 +140,9 @@ class Workbench:
             content += piece
             if len(content) > LARGEST:
                 return JSONResponse({"message": f"a figure of more than {LARGEST} bytes"}, status_code=413)
-        made = await asyncio.get_running_loop().run_in_executor(self.pools["warming"], drawn, bytes(content), kind)
+        made = await asyncio.get_running_loop().run_in_executor(
+            self.pools["warming"], drawn_on_paper, bytes(content), kind
+        )
         return Response(made, media_type=KINDS[kind])
 
     async def kept(self, request: Request) -> Response:

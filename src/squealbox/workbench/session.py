@@ -24,7 +24,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.designs import DESIGNS, Design
+from squealbox.design import Design
+from squealbox.designs import DESIGNS
 from squealbox.workbench.apart import Died, Processes
 from squealbox.workbench.folder import Project, ProjectError, key_of, standing
 from squealbox.workbench.frames import frame

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.countermeasures import Countermeasure
-from squealbox.designs import Design
-from squealbox.friction import LAW_NAMES, FrictionLaw
+from squealbox.design import Design
+from squealbox.friction import LAW_NAMES
+from squealbox.law import FrictionLaw
 from squealbox.parameters import DataSheet, Parameter, field_type
 from squealbox.registers import name_of
 from squealbox.schedules import Schedule
@@ -23,24 +23,15 @@ STEPS = 500  # of a slider
 def sheet(design: Design) -> dict[str, Any]:
     """The fields of a design in order, the parameters a study can vary, and its aliases."""
     known, brake = design.scalars(), design.innermost
-    title = brake.title or type(brake).__name__
+    title, layers = brake.title or type(brake).__name__, [type(layer).title.lower() for layer in design.layers]
     return {
-        "title": title if brake is design else f"{title}, with {', '.join(_layers(design))}",
+        "title": f"{title}, with {', '.join(layers)}" if layers else title,
         "source": brake.source,
         "about": _first_lines(design),
         "fields": list(_fields(design, "")),
         "varied": list(known),
         "aliases": {alias: list(names) for alias, names in brake.aliases.items() if alias in known},
     }
-
-
-def _layers(design: Design) -> list[str]:
-    """Titles of the countermeasures, from outside in."""
-    found = []
-    while isinstance(design, Countermeasure):
-        found.append(type(design).title.lower())
-        design = design.brake
-    return found
 
 
 def slider(value: float, about: Parameter, whole: bool = False) -> tuple[float, float]:
@@ -65,9 +56,9 @@ def slider(value: float, about: Parameter, whole: bool = False) -> tuple[float, 
 
 def _fields(owner: DataSheet, prefix: str) -> Iterator[dict[str, Any]]:
     parameters, words = owner.parameters(), owner.choices()
-    if isinstance(owner, Countermeasure):
+    if isinstance(owner, Design) and owner.layers:
         own = owner.field_names()
-        for field in _fields(owner.brake, ""):
+        for field in _fields(owner.layers[0].brake, ""):
             yield {**field, "path": f"brake.{field['path']}"} if field["path"] in own else field
     for name in owner.field_names():
         value, path = getattr(owner, name), prefix + name

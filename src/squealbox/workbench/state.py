@@ -12,8 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import DESIGNS, Design
-from squealbox.friction import LAW_NAMES, Coulomb, FrictionLaw
+from squealbox.design import Design
+from squealbox.designs import DESIGNS
+from squealbox.friction import LAW_NAMES, Coulomb
+from squealbox.law import FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, known_names
 from squealbox.registers import name_of
 from squealbox.schedules import Schedule, value_at

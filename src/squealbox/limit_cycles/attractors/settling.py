@@ -26,10 +26,18 @@ from squealbox.parameters import ParameterError
 from squealbox.schedules import value_at
 from squealbox.stability import complex_modes
 from squealbox.system import System, as_system, equilibrium
-from squealbox.transient import Method, Observer, simulate_ensemble
-from squealbox.transient.lanes.batch import first_of, stacked
-from squealbox.transient.observers import amplitude_update, frequency, poincare
-from squealbox.transient.rows import fastest_rate, rows_of
+from squealbox.transient import (
+    Method,
+    Observer,
+    amplitude_update,
+    fastest_rate,
+    first_of,
+    frequency,
+    poincare,
+    rows_of,
+    simulate_ensemble,
+    stacked,
+)
 
 STRETCH = 60.0  # periods of the slowest mode, of the first stretch
 WINDOWS = 5  # in a stretch

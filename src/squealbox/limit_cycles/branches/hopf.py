@@ -27,8 +27,7 @@ from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.starting import steady_state
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.schedules import value_at
-from squealbox.stability import critical_value
-from squealbox.stability.eigenvalues import OneEigenvalue
+from squealbox.stability import OneEigenvalue, critical_value
 from squealbox.system import as_system
 
 

@@ -20,10 +20,7 @@ from squealbox.limit_cycles.cycles.variation import Flight, MotionRows, Moved, f
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import System
-from squealbox.transient.choosing import is_small, usual_method
-from squealbox.transient.methods import TAYLOR
-from squealbox.transient.simulate import system_of
-from squealbox.transient.widened import RunApart
+from squealbox.transient import TAYLOR, RunApart, is_small, system_of, usual_method
 
 KEPT = 8  # equations, runs and flights kept between calls at the same values
 STEP = 1e-5  # of the range of the parameter: of the differences of the equation, which is smooth in it

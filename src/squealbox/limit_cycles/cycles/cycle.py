@@ -16,6 +16,7 @@ from squealbox.system import System
 from squealbox.words import sizes_told
 
 BESIDE = 1e-3  # of a period: where a turning point is looked at once more
+FURTHER = 3.0  # times what the trivial multiplier is off, by which others may be
 NEUTRAL = 1e-8  # how far from the unit circle a multiplier is known not to lie on it
 
 
@@ -91,7 +92,9 @@ class Cycle(Result):
     @property
     def stability(self) -> str:
         """As `stability_of` the multipliers but the trivial one; a neutral cycle is one of a family, or splits."""
-        return stability_of(self.multipliers[1:]) if self.outcome.ok else "unstable"
+        if not self.outcome.ok:
+            return "unstable"
+        return stability_of(self.multipliers[1:], float(np.abs(self.multipliers[0] - 1.0)))
 
     @property
     def sticking_time(self) -> Array:
@@ -115,10 +118,13 @@ class Cycle(Result):
         return self.warned([said])
 
 
-def stability_of(multipliers: Any) -> str:
-    """One of stable, unstable, or neutral where the largest lies on the unit circle as far as it is known."""
-    largest = float(np.max(np.abs(multipliers), initial=0.0))
-    return "stable" if largest < 1.0 - NEUTRAL else "neutral" if largest <= 1.0 + NEUTRAL else "unstable"
+def stability_of(multipliers: Any, error: float = 0.0) -> str:
+    """One of stable, unstable, or neutral where the largest lies on the unit circle as far as it is known.
+
+    `error` is by how much another multiplier, the trivial one, is seen to be off.
+    """
+    largest, known = float(np.max(np.abs(multipliers), initial=0.0)), max(NEUTRAL, FURTHER * error)
+    return "stable" if largest < 1.0 - known else "neutral" if largest <= 1.0 + known else "unstable"
 
 
 def ordered(multipliers: Any) -> Any:

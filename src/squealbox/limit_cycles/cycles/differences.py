@@ -12,7 +12,7 @@ import numpy as np
 
 from squealbox.limit_cycles.cycles.field import Autonomous, Field
 from squealbox.limit_cycles.cycles.variation import Flight, Moved, flight, fly, method_of
-from squealbox.transient.lanes.flows import Ends
+from squealbox.transient import Ends
 
 SHARES = (1e-4, 1e-5, 1e-6, 1e-7)  # of the motion
 WAYS = np.array([[1.0], [-1.0], [2.0], [-2.0], [4.0], [-4.0]])

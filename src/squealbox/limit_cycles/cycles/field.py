@@ -22,14 +22,18 @@ from squealbox.memory_rows import no_memory
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Schedule, value_at
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
-from squealbox.transient import Method, Trajectory
-from squealbox.transient.choosing import usual_method
-from squealbox.transient.lanes.flows import Flows
-from squealbox.transient.legs import SCHEMES
-from squealbox.transient.packing import inverse_mass
-from squealbox.transient.rows import WITH_MASS, row_kinds
-from squealbox.transient.simulate import system_of
-from squealbox.transient.widened import Widened
+from squealbox.transient import (
+    SCHEMES,
+    WITH_MASS,
+    Flows,
+    Method,
+    Trajectory,
+    Widened,
+    inverse_mass,
+    row_kinds,
+    system_of,
+    usual_method,
+)
 
 OPEN = 2
 SMOOTHINGS = ("tanh", "arctan")

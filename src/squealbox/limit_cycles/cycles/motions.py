@@ -17,14 +17,21 @@ from squealbox.limit_cycles.cycles.differences import extrapolated
 from squealbox.limit_cycles.cycles.variation import MotionRows
 from squealbox.parameters import ParameterError
 from squealbox.system import System
-from squealbox.transient import Method
-from squealbox.transient._motion import EXACT, OPEN
-from squealbox.transient.lanes.flows import Ends, Flows, rows_of_all
-from squealbox.transient.lanes.shape import entries, parameter_rows
-from squealbox.transient.lanes.single import Single, difference
-from squealbox.transient.lanes.table import tabulate
-from squealbox.transient.legs import by_step
-from squealbox.transient.widened import RunApart
+from squealbox.transient import (
+    EXACT,
+    OPEN,
+    Ends,
+    Flows,
+    Method,
+    RunApart,
+    Single,
+    by_step,
+    difference,
+    entries,
+    parameter_rows,
+    rows_of_all,
+    tabulate,
+)
 
 TRIED = (0.0, 0.138, 0.618, 1.0)  # shares of the bounds at which numbers that are sums are met
 ROUND_OFF = 1e-13  # of a number

@@ -15,12 +15,20 @@ from squealbox.matrices import Equilibrium
 from squealbox.stability import complex_modes
 from squealbox.start import Start
 from squealbox.system import InvalidSystem, System, as_system, equilibrium
-from squealbox.transient import Trajectory, simulate
-from squealbox.transient.latest import Latest
-from squealbox.transient.limited import in_time
-from squealbox.transient.rows import ALGEBRAIC, WITH_MASS, row_kinds
-from squealbox.transient.simulate import system_of
-from squealbox.transient.widened import Widened, base_of, laid_open, start_of
+from squealbox.transient import (
+    ALGEBRAIC,
+    WITH_MASS,
+    Latest,
+    Trajectory,
+    Widened,
+    base_of,
+    in_time,
+    laid_open,
+    row_kinds,
+    simulate,
+    start_of,
+    system_of,
+)
 
 LATE = Latest(16)
 INSTANT = 1e-5  # of a period over 2 pi: of the differences that give a rate

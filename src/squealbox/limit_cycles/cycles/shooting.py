@@ -109,6 +109,8 @@ def shooting(
         other = reached("rest")
         if other.outcome.ok and other.stable:
             return other
+    if cycle.stability == "neutral":
+        return cycle
     return replace(cycle, caution="; ".join(filter(None, [cycle.caution, NOWHERE])))
 
 

@@ -13,8 +13,7 @@ from squealbox.limit_cycles.cycles.differences import by_differences, derived
 from squealbox.limit_cycles.cycles.field import Autonomous, Field
 from squealbox.limit_cycles.cycles.variation import Flight, fly
 from squealbox.result import COMPLETED, Outcome
-from squealbox.transient import Trajectory
-from squealbox.transient.choosing import is_small
+from squealbox.transient import Trajectory, is_small
 
 HALVINGS = 6
 CLOSE = 1e-6  # mismatch of a derivative that Newton's method may take
@@ -55,8 +54,10 @@ class Newton:
                 break
             self.history.append(now.norm)
             self.flights = self._derivatives(now)
-            step = self._step(now, normal)
-            following = self._damped(now, step, most_halvings=0 if now.norm < tolerance else HALVINGS)
+            halvings = 0 if now.norm < tolerance else HALVINGS
+            following = self._damped(now, self._step(now, normal), halvings)
+            if following is None and halvings:  # one of a family: along it the derivative tells nothing but its error
+                following = self._damped(now, self._step(now, normal, CLOSE), halvings)
             now = now if following is None else following
         self.nodes, self.period, self.size = now.nodes, now.period, now.size
         self.flights = self._derivatives(now, last=True)
@@ -96,8 +97,8 @@ class Newton:
         normal = self.field.rate(self.reference, motion.mode[0]) * self.field.scale
         return normal / np.linalg.norm(normal)
 
-    def _step(self, now: Shots, normal: Any) -> Any:
-        """Newton step (k 2n + 1,), in scaled states and the share of the period."""
+    def _step(self, now: Shots, normal: Any, least: float = 1e-14) -> Any:
+        """Newton step (k 2n + 1,), in scaled states and the share of the period; none along what changes so little."""
         k, size = now.nodes.shape
         scale = self.field.scale
         matrix = np.zeros((k * size + 1, k * size + 1))
@@ -111,7 +112,7 @@ class Newton:
         right = np.append((now.residual * scale).ravel(), normal @ ((now.nodes[0] - self.reference) * scale))
         weight = np.max(np.abs(matrix[:, -1])) or 1.0
         matrix[:, -1] /= weight
-        step = np.linalg.lstsq(matrix, -right, rcond=1e-14)[0]
+        step = np.linalg.lstsq(matrix, -right, rcond=least)[0]
         step[-1] /= weight
         return step
 

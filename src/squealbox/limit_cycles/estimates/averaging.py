@@ -18,7 +18,8 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.family import Family, Varied
-from squealbox.friction import Cubic, FrictionLaw, Stribeck
+from squealbox.friction import Cubic, Stribeck
+from squealbox.law import FrictionLaw
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.limit_cycles.cycles.harmonic_balance import harmonic_balance
 from squealbox.parameters import ParameterError

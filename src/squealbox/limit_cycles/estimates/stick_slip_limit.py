@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.friction import FrictionLaw
+from squealbox.law import FrictionLaw
 from squealbox.parameters import ParameterError
 
 TURNS = 1.5  # periods of the free block in which the swing comes back to its largest velocity

@@ -7,8 +7,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from squealbox.designs import DrumBrake, published_matrices
-from squealbox.designs.drum_brake_readings import ASSUMED_SLOPE, READINGS, TABLE_SPEED
+from squealbox.designs import ASSUMED_SLOPE, READINGS, TABLE_SPEED, DrumBrake, published_matrices
 from squealbox.friction import LinearSlope
 from squealbox.schedules import Ramp
 from squealbox.system import System

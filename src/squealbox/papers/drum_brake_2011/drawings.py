@@ -7,7 +7,7 @@ import numpy as np
 from squealbox import plots
 from squealbox.papers.drum_brake_2011.cases import Case
 from squealbox.papers.drum_brake_2011.figures import Margins
-from squealbox.plots.style import drawing, figure_of
+from squealbox.plots import drawing, figure_of
 from squealbox.words import number
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from squealbox.papers.drum_brake_2011.by_eigenvalues import ZONE
 from squealbox.papers.drum_brake_2011.cases import Case
 from squealbox.papers.drum_brake_2011.ensembles import MEANS, Maxima, SquealMap
 from squealbox.papers.drum_brake_2011.figures import Margins
-from squealbox.plots.style import drawing, figure_of
+from squealbox.plots import drawing, figure_of
 from squealbox.words import quantity_label
 
 if TYPE_CHECKING:

@@ -17,7 +17,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squealbox.designs import Design, DrumBrake
+from squealbox.design import Design
+from squealbox.designs import DrumBrake
 from squealbox.friction import LinearSlope
 from squealbox.parameters import parameter
 from squealbox.system import Contact, System

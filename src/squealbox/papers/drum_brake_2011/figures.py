@@ -15,7 +15,7 @@ from squealbox.papers.drum_brake_2011.by_transients import STRETCH
 from squealbox.papers.drum_brake_2011.cases import AMPLITUDES, DURATION, Case
 from squealbox.papers.drum_brake_2011.motions import BRAKE, Motion, Run, Studies
 from squealbox.papers.drum_brake_2011.steady import PressureMap
-from squealbox.plots.style import drawing
+from squealbox.plots import drawing
 from squealbox.signals import spectrum
 from squealbox.words import scaled
 

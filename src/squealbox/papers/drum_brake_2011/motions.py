@@ -12,8 +12,7 @@ import numpy as np
 
 from squealbox.papers.drum_brake_2011.cases import BRAKING, DURATION, Case
 from squealbox.papers.drum_brake_2011.claims import EXACT, RAW
-from squealbox.transient import Method, Trajectory, Verdict, simulate
-from squealbox.transient.verdict import verdict
+from squealbox.transient import Method, Trajectory, Verdict, simulate, verdict
 
 SAMPLES = 5001  # every 10 us, about 50 in a period
 FEWEST = 64  # samples: fewer say nothing of a motion

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from squealbox.designs.drum_brake_readings import READINGS
+from squealbox.designs import READINGS
 from squealbox.papers.drum_brake_2011 import family_search, theorems
 from squealbox.papers.drum_brake_2011.beside import Extras
 from squealbox.papers.drum_brake_2011.cases import INFERRED, RECONSTRUCTED

@@ -12,7 +12,8 @@ from squealbox.papers.drum_brake_2011.claims import EIGENVALUES, EXACT, RAW, Fin
 from squealbox.papers.drum_brake_2011.motions import FRICTION as FRICTION_RUNS
 from squealbox.papers.drum_brake_2011.motions import LOAD as LOAD_RUNS
 from squealbox.papers.drum_brake_2011.motions import RUNS, Motion, Studies, distance, doubt, studies
-from squealbox.plots import style
+from squealbox.plots import save as saved_figure
+from squealbox.plots import styled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,7 +53,7 @@ def study(case: Case, folder: Path, sizes: ensembles.Sizes = ensembles.USUAL) ->
             drawn |= more
     else:
         found |= {RAW: by_transients.without_contacts(), EXACT: by_transients.without_contacts()}
-    with style.styled(), figures.on_the_same_sheets():
+    with styled(), figures.on_the_same_sheets():
         for name, draw in sorted(drawn.items()):
             save(draw(), folder / name, ("png", "svg") if sizes.vector else ("png",))
     plain = {road: _plain(each) for road, each in found.items()}
@@ -89,10 +90,10 @@ def save(figure: "Figure", path: Path, formats: tuple[str, ...] = ("png", "svg")
         formatter = axis.get_major_formatter()
         if isinstance(formatter, ScalarFormatter):
             formatter.set_useMathText(False)
-    with style.styled():
+    with styled():
         for axes in figure.axes:
             axes.set_title(axes.get_title(), y=1.0)
-    style.save(figure, path, formats, dots=DOTS)
+    saved_figure(figure, path, formats, dots=DOTS)
 
 
 def _plain(found: dict[str, Finding]) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import numpy as np
 from squealbox import plots
 from squealbox.papers.drum_brake_2011.claims import AGREE, claims
 from squealbox.papers.drum_brake_2011.search import ALPHAS, SPEEDS
-from squealbox.plots.style import drawing
+from squealbox.plots import drawing
 from squealbox.report import Cell, Picture, Table, Text
 
 if TYPE_CHECKING:

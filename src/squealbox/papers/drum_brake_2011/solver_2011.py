@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.compiled.machine import translated
+from squealbox.compiled import translated
 from squealbox.designs import DrumBrake
 from squealbox.papers.drum_brake_2011 import marching
 from squealbox.papers.drum_brake_2011.cases import DURATION, Case
@@ -25,8 +25,7 @@ from squealbox.papers.drum_brake_2011.motions import METHODS, SAMPLES, judged
 from squealbox.signals import slope
 from squealbox.stability import complex_modes
 from squealbox.system import as_system, linearise
-from squealbox.transient import simulate
-from squealbox.transient.verdict import verdict
+from squealbox.transient import simulate, verdict
 
 RELATIVE = 1e-3
 SHORTEST = 1e-9  # s: a step that crosses a reversal of sgn is kept once it is this short

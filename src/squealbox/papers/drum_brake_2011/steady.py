@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.papers.drum_brake_2011.cases import FRICTION, MAP_ANGLES, SPEED, Case
-from squealbox.stability import ComplexModes, complex_modes, critical_value, stability_map
-from squealbox.stability.state_matrix import spectrum
+from squealbox.stability import ComplexModes, complex_modes, critical_value, spectrum, stability_map
 from squealbox.system import as_system, linearise
 
 MU_RANGE = (0.01, 1.0)

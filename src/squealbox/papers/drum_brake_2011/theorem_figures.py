@@ -7,7 +7,7 @@ import numpy as np
 from squealbox.papers.drum_brake_2011 import steady, theorems
 from squealbox.papers.drum_brake_2011.cases import PRINTED, RECONSTRUCTED, RESOLUTION, Case
 from squealbox.papers.drum_brake_2011.figures import Margins
-from squealbox.plots.style import drawing, figure_of
+from squealbox.plots import drawing, figure_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -6,10 +6,10 @@ from typing import Any, Literal
 
 import numpy as np
 
+from squealbox.distributions import Distribution, Lognormal
 from squealbox.parameters import ParameterError
+from squealbox.scatter import Scatter
 from squealbox.studies.quantity import Quantity, as_quantity, evaluate
-from squealbox.studies.uncertainty.distributions import Distribution, Lognormal
-from squealbox.studies.uncertainty.scatter import Scatter
 
 Over = Literal["nominal", "mean", "quantile", "probability"]
 

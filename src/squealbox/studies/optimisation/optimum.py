@@ -16,11 +16,11 @@ from squealbox.arguments import public
 from squealbox.family import unit_of
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Array, Outcome, Result, quantity
+from squealbox.scatter import Scatter, Scattered, as_scatter
 from squealbox.studies.optimisation.goals import Candidates, Constraint, Goal
 from squealbox.studies.optimisation.search import FEASIBLE, best_of_one, pareto_front
 from squealbox.studies.quantity import input_of
 from squealbox.studies.uncertainty.intervals import checked_box
-from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
 
 METHODS = ("global", "local")
 NEAR = 1e-4  # share of the range, or of the size of a constraint's limit, within which it is said to bind

@@ -18,12 +18,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.distributions import Lognormal, Normal
 from squealbox.extras import extra
 from squealbox.parameters import ParameterError
 from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
+from squealbox.scatter import Scatter, Scattered, as_scatter
 from squealbox.studies.quantity import Quantity, as_quantity, evaluate, input_of
-from squealbox.studies.uncertainty.distributions import Lognormal, Normal
-from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
 from squealbox.studies.uncertainty.sobol import finite_outcome
 
 FOLDS = 10

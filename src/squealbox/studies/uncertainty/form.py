@@ -21,10 +21,10 @@ from squealbox.extras import extra
 from squealbox.family import unit_of
 from squealbox.parameters import ParameterError
 from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
+from squealbox.scatter import Scatter, Scattered, as_scatter
 from squealbox.studies.quantity import as_quantity, input_of
 from squealbox.studies.uncertainty.importance import wide_sample
 from squealbox.studies.uncertainty.limit_state import LimitState, seeded
-from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
 
 ALONG = 61  # points on the line through the design point
 CLOSE = 1e-4  # |g| at the design point, as a share of its change over one standard deviation

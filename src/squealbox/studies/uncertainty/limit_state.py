@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.extras import extra
+from squealbox.scatter import Scatter
 from squealbox.studies.quantity import Quantity, evaluate
-from squealbox.studies.uncertainty.scatter import Scatter
 
 FAR = 1e30  # stands for an infinite distance, which differences cannot be taken of
 

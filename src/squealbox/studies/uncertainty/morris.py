@@ -15,8 +15,8 @@ from squealbox.arguments import public
 from squealbox.extras import extra
 from squealbox.parameters import ParameterError
 from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
+from squealbox.scatter import Scattered, as_scatter
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
-from squealbox.studies.uncertainty.scatter import Scattered, as_scatter
 from squealbox.studies.uncertainty.sobol import finite_outcome, need_independent
 
 COVERED = 0.99  # central share of each distribution that the trajectories span

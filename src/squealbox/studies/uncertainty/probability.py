@@ -8,9 +8,9 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.parameters import ParameterError
 from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
+from squealbox.scatter import Sampling, Scattered, as_scatter, unit_points
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.replicates import binomial_interval, student_interval
-from squealbox.studies.uncertainty.scatter import Sampling, Scattered, as_scatter, unit_points
 
 ENOUGH = 5  # squealing and quiet points that every replicate must hold before their spread is trusted
 

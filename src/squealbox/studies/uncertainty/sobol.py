@@ -16,9 +16,9 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
+from squealbox.scatter import Scatter, Scattered, as_scatter, unit_points
 from squealbox.studies.quantity import as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.replicates import ratio_interval
-from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter, unit_points
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -16,10 +16,10 @@ from squealbox.arguments import public
 from squealbox.extras import extra
 from squealbox.parameters import ParameterError
 from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
+from squealbox.scatter import Scattered, as_scatter
 from squealbox.studies.quantity import as_quantity, input_of
 from squealbox.studies.uncertainty.form import lognormal_interval
 from squealbox.studies.uncertainty.limit_state import LimitState, seeded
-from squealbox.studies.uncertainty.scatter import Scattered, as_scatter
 
 SHARE = 0.1  # conditional probability of a level
 

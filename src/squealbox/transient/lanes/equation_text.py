@@ -189,6 +189,32 @@ class EquationText:
         for c in group:
             self.put(f"hold{c}_{k} = where(lever{c}_ > 0.0, 1.0, -1.0) * part{c}_{k} * ratio{group[0]}_{k}")
 
+    def powers(
+        self,
+        state: tuple[list[str], list[str]],
+        contact: dict[str, list[str]],
+        load: list[list[str]],
+        opened: list[str],
+    ) -> list[str]:
+        """Powers of each friction, of load, circulation, damping and opening, as `_motion.energy_rates` has them.
+
+        Given are names: of q and q', of the contacts' "force" and "normal" force, the terms of the load on each row,
+        and what is 1 for each contact that is open, else 0; "" comes back where there is nothing.
+        """
+        shape, (q, v) = self.shape, state
+
+        def against(name: str, sign: str, of: list[str]) -> str:
+            rows = [(" + ".join(self.product(f"{name}{i}", of)), x) for i, x in enumerate(v)]
+            return " + ".join(f"{sign}{x} * ({row})" for row, x in rows if row)
+
+        along = [" + ".join(self.product(f"d{c}", v)) for c in range(shape.m)]
+        out = [f"{force} * ({row})" if row else "" for force, row in zip(contact["force"], along, strict=True)]
+        out.append(" + ".join(f"({' + '.join(terms)}) * {x}" for terms, x in zip(load, v, strict=True) if terms))
+        out += [against("ka", "-1.0 * ", q) if shape.audited else "", against("c", "", v)]
+        lifted = [(" + ".join(self.product(f"w{c}", v)), c) for c in range(shape.m) if shape.unilateral[c]]
+        out.append(" + ".join(f"{opened[c]} * {contact['normal'][c]} * ({row})" for row, c in lifted if row))
+        return out
+
     def flag(self, code: str, any_of: str) -> None:
         """`flags`: the lanes that need service; what each needs is written down only when one does."""
         self.put(f"flags = bits(({any_of}) & (alive_ > 0.5))")

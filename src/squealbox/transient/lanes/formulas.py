@@ -102,7 +102,7 @@ class _OfLanes(ast.NodeTransformer):
 
 def tried(text: str) -> str:
     """Why a law's text mu(v, p) cannot be run on a series; empty where it can."""
-    from squealbox.compiled import vectors
+    from squealbox import compiled as vectors
     from squealbox.transient.lanes import series
 
     names: dict[str, Any] = {"np": np, **{name: getattr(series, name) for name in (*VECTOR_FUNCTIONS, "lane_tanh")}}

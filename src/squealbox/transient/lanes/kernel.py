@@ -8,8 +8,7 @@ from dataclasses import fields
 from functools import cache
 from pathlib import Path
 
-from squealbox.compiled.kinds import WHOLE, OfAnotherText
-from squealbox.compiled.machine import Compiled
+from squealbox.compiled import WHOLE, Compiled, OfAnotherText
 from squealbox.schedules import SCHEDULES, Constant
 from squealbox.transient import _engine, _events, _impacts, _march, _modes, _motion, _rigid, _runge_kutta, _sharing
 from squealbox.transient.lanes import alone, crossing, of_a_shape, recording, roots, samples, service, stages_again
@@ -26,9 +25,10 @@ from squealbox.transient.lanes.tracing import take
 HEAD = """
 from collections import namedtuple
 
-from squealbox.compiled.in_memory import Given, at_once, load, store, store_known
+from squealbox.compiled.in_memory import Given, at_once, load, spread, store, store_one
 from squealbox.compiled.vectors import (
-    arctan, bits, cos, exp, forget, if_flagged, lane_tanh, log, maximum, minimum, sin, sqrt, where, with_sign,
+    arctan, bits, cos, each, exp, forget, if_flagged, lane_tanh, log, maximum, minimum, over_all, sin, sqrt, where,
+    with_sign,
 )
 from squealbox.transient.lanes.rough import rough_exp, rough_log
 from squealbox.transient.lanes.tracing import apart, traced, traced_as_written, wide
@@ -42,8 +42,8 @@ State = namedtuple("State", "t, q, qd, qdd")
 """
 SERIES = """
 from squealbox.transient.lanes.series import (
-    Series, arctan, at, constant, cos, deciding, exp, from_zero, integral, lane_tanh, log, maximum, minimum, sin, sqrt,
-    time_series, value, where,
+    Series, arctan, at, constant, cos, deciding, exp, from_zero, integral, lane_tanh, log, maximum, minimum,
+    sin, sqrt, stored, time_series, value, value_and_slope, where,
 )
 from squealbox.transient.lanes.series import derivative as slope_series
 from squealbox.transient.lanes.tables import law_of_points, line_of_points, slope_of_points
@@ -53,6 +53,10 @@ from squealbox.transient.lanes.taylor_events import step_end
 @inner
 def evaluate(A, b, lane):
     return series_at(A, b)
+
+@inner
+def add_works(A, b, lane):
+    return works_at(A, b)
 """
 FEW = 12  # coefficients that are copied one by one
 FROM_THE_MARCH = ("pulled", "chatters", "write_row")
@@ -61,8 +65,8 @@ WRITERS = (*OF_EVERY_KERNEL, "series.py", "tables.py", "taylor.py", "taylor_even
 ROWS = (  # of a lane, by the names that kernels have for them
     "job alive t h t_end tries taken cautious code most first rtol window target tolerance trust resume events "
     "window_start window_events turns low low_phi high high_phi high_rate sample highest close pace t_old span "
-    "since reversals flips eased q v start phi fresh end rate rate_end inner force zero own_g early early_rate "
-    "q_old fastest value noise lowest v_old was done normal_end speed_end friction_end"
+    "since reversals flips eased gain trough peak q v start phi fresh end rate rate_end inner force zero own_g early "
+    "early_rate q_old fastest value noise lowest v_old was done normal_end speed_end friction_end"
 )
 OTHERWISE = {
     "all": "", "acceleration": "a0", "breaks": "break0", "probe": "probe0_0", "slips": "s0", "opened": "open0",
@@ -72,7 +76,7 @@ PLACES = {f"ROW_{name.upper()}": OTHERWISE.get(name, name) for name in (*ROWS.sp
 
 
 COUNTS = (
-    "DOFS", "CONTACTS", "FUNCTIONS", "GIVEN", "ALL_ROWS", "BREAKS", "FOLLOWED", "ROW_OBSERVED", "MEMORY",
+    "DOFS", "CONTACTS", "FUNCTIONS", "GIVEN", "ALL_ROWS", "BREAKS", "ROW_OBSERVED", "MEMORY",
 )  # fmt: skip
 OF_A_SHAPE = {
     **_engine.FORMULAS, **dict.fromkeys((*PLACES, *COUNTS), WHOLE),
@@ -147,8 +151,8 @@ def source(shape: Shape) -> str:
     schedules = {kind for terms in shape.signals for kind, _ in terms} | {SCHEDULES.index(Constant)}
     first = rows.places["o0_0_0"] if shape.observers else 0
     counts = (
-        shape.n, shape.m, shape.functions, len(parameter_rows(shape)), len(rows), shape.breaks, len(shape.followed),
-        first, len(rows) - first if first else 0,
+        shape.n, shape.m, shape.functions, len(parameter_rows(shape)), len(rows), shape.breaks, first,
+        len(rows) - first if first else 0,
     )  # fmt: skip
     places = {name: rows.places.get(row, rows.places.get(f"{row}0", 0)) for name, row in PLACES.items()} | dict(
         zip(COUNTS, counts, strict=True)

@@ -21,7 +21,7 @@ class RecordedText(EventText):
         parts: list[list[str]] = [[] for _ in range(m + 4)]
         for j, weight in enumerate(self.rule.b):
             if weight != 0.0:
-                for k, power in enumerate(self.powers(j, old, contact[j - 1] if j else begun)):
+                for k, power in enumerate(self.powers_at(j, old, contact[j - 1] if j else begun)):
                     parts[k] += [f"{float(weight)!r} * ({power})"] if power else []
         for k, terms in enumerate(parts):
             done = self.row(f"done{k}")
@@ -39,23 +39,12 @@ class RecordedText(EventText):
             for c in range(m):
                 self.keep(f"{row}_end{c}", f"where(accepted, {end[name][c]}, {self.row(f'{row}_end{c}')})")
 
-    def powers(self, stage: int, old: Any, contact: dict[str, list[str]]) -> list[str]:
-        """Powers of each friction, of load, circulation, damping and opening, as `_motion.energy_rates` has them."""
-        n, m, shape = self.shape.n, self.shape.m, self.shape
+    def powers_at(self, stage: int, old: Any, contact: dict[str, list[str]]) -> list[str]:
+        """Powers at a stage, the contacts as they are there."""
+        n, m = self.shape.n, self.shape.m
         q, v = old if stage == 0 else ([f"{x}{i}s{stage}" for i in range(n)] for x in "qv")
         time = "t_" if stage == 0 else "t_ + hh" if stage == self.rule.stages else f"t_ + {self.rule.c[stage]!r} * hh"
-        out = []
-        for c in range(m):
-            along = " + ".join(self.product(f"d{c}", v))
-            out.append(f"{contact['force'][c]} * ({along})" if along else "")
         time = self.within(time)
-        load = [(" + ".join(self.signal(2 * m + n + i, f"F{i}", time)), x) for i, x in enumerate(v)]
-        out.append(" + ".join(f"({force}) * {x}" for force, x in load if force))
-        for name, sign, of in (("ka", "-1.0 * ", q), ("c", "", v)):
-            rows = [(" + ".join(self.product(f"{name}{i}", of)), x) for i, x in enumerate(v)]
-            present = shape.audited or name == "c"
-            out.append(" + ".join(f"{sign}{x} * ({row})" for row, x in rows if row) if present else "")
-        lifted = [(" + ".join(self.product(f"w{c}", v)), c) for c in range(m) if shape.unilateral[c]]
-        normal = contact["normal"]
-        out.append(" + ".join(f"{self.openness(c, normal[c])} * {normal[c]} * ({row})" for row, c in lifted if row))
-        return out
+        load = [self.signal(2 * m + n + i, f"F{i}", time) for i in range(n)]
+        opened = [self.openness(c, contact["normal"][c]) for c in range(m)]
+        return self.powers((q, v), contact, load, opened)

@@ -14,10 +14,10 @@ from squealbox.transient.by_kind import WITH_EVENTS
 from squealbox.transient.lanes.of_a_shape import (
     CONTACTS,
     DOFS,
-    FOLLOWED,
     SHARES,
     STAGED,
     UNIT_OF_WINDOW,
+    add_works,
     evaluate,
 )
 from squealbox.transient.lanes.stages_again import write_within
@@ -119,6 +119,21 @@ def write_end(lane, row, o):
         row[first + 3 * CONTACTS + c] = row_mode(o.p, c, o.s.mode, row[first + c], row[first + CONTACTS + c])
 
 
+def add_up(lane):
+    """Add up the works of the Taylor step just taken, and keep how its contacts ranged."""
+    for k in range(CONTACTS + 4):
+        lane.was[k] = lane.done[k]
+    if not lane.span > 0.0:
+        return
+    lane.since = lane.span / (lane.window * UNIT_OF_WINDOW)
+    add_works(lane)
+    for k in range(CONTACTS + 4):
+        lane.done[k] += lane.gain[k]
+    for c in range(CONTACTS):
+        lane.lowest[c] = min(lane.lowest[c], lane.trough[c])
+        lane.fastest[c] = max(lane.fastest[c], lane.peak[c])
+
+
 def write_from_series(lane, t, since, row, o):
     """One row from the series of the step: time, state, works, then N, v, force and mode of each contact."""
     unit = lane.window * UNIT_OF_WINDOW
@@ -128,12 +143,17 @@ def write_from_series(lane, t, since, row, o):
     for i in range(DOFS):
         row[1 + i] = lane.value[i]
         row[1 + DOFS + i] = lane.slope[i] / unit
-    for j in range(DOFS, DOFS + CONTACTS + 4):
-        row[1 + DOFS + j] = lane.value[j]
-    for j in range(DOFS + CONTACTS + 4, FOLLOWED):
-        row[2 + DOFS + j] = lane.value[j]
+    if since < lane.span:
+        add_works(lane)
+        for k in range(CONTACTS + 4):
+            row[1 + 2 * DOFS + k] = lane.was[k] + lane.gain[k]
+    else:
+        for k in range(CONTACTS + 4):
+            row[1 + 2 * DOFS + k] = lane.done[k]
     row[5 + 2 * DOFS + CONTACTS] = 0.0
     first = 6 + 2 * DOFS + CONTACTS
+    for k in range(3 * CONTACTS):
+        row[first + k] = lane.value[DOFS + k]
     for c in range(CONTACTS):
         if WITH_EVENTS:
             mode = lane.slips[c]
@@ -148,7 +168,7 @@ def series_held(lane, p):
     if int(lane.taken) % SAMPLED != 0 or not span > lane.window:
         return True
     unit = lane.window * UNIT_OF_WINDOW
-    first = DOFS + CONTACTS + 4
+    first = DOFS
     held = True
     for k in range(2 * SHARES):
         lane.since = (k + 0.5) / (2 * SHARES) * span / unit

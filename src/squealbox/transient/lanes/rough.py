@@ -1,6 +1,6 @@
 """Logarithm and exponential to a few per cent, in a handful of operations: for the factors by which steps grow."""
 
-from squealbox.compiled.vectors import Lanes, as_reals, as_whole, number, put, reals, wide
+from squealbox.compiled import Lanes, as_reals, as_whole, number, put, reals, wide
 
 ONE = float(1023 << 52)  # the bits of 1.0 as a whole number
 

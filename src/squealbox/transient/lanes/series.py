@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any
 
-from squealbox.compiled import vectors
-from squealbox.compiled.vectors import Lanes, Truth, Wider, fused
+from squealbox import compiled as vectors
+from squealbox.compiled import Group, Lanes, Truth, Wider, fused, spread
 
 LEFT = 1e-15  # of the sizes of what is compared, by which a choice is left
 AHEAD = 1e-9  # by which a choice looks ahead in time, in units of the series: an instant may lie on a kink
@@ -130,6 +130,11 @@ def above(a: Any, b: Any) -> Truth:
     size: Any = plus(*(None if at(x, 0) is None else abs(at(x, 0)) for x in (a, b)))
     DECISIONS.get().append(difference if size is None else difference + where(here, LEFT * size, -LEFT * size))
     return here
+
+
+def stored(group: Group, place: int, apart: int, count: int) -> Series:
+    """The series of so many coefficients in memory, one double of each, spread over all lanes."""
+    return Series(lambda k: None, tuple(spread(group, place + k * apart) for k in range(count)))
 
 
 def time_series(start: Lanes, unit: Lanes) -> Series:

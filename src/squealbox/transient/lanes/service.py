@@ -60,7 +60,7 @@ from squealbox.transient.lanes.of_a_shape import (
     set_observers,
     step,
 )
-from squealbox.transient.lanes.recording import first_row, log_event, room_left, series_held, write_rows
+from squealbox.transient.lanes.recording import add_up, first_row, log_event, room_left, series_held, write_rows
 from squealbox.transient.lanes.samples import load_state, on_end, on_quintic, on_series, on_step
 from squealbox.transient.lanes.tracing import take
 
@@ -91,6 +91,8 @@ def run(A, live, o):
                         return False
                     busy += 1
                     flags = step(A, g * size)
+                    if RECORDED and SERIES:
+                        add_up(Lane(A, 0, 0))
                     if RECORDED and WITH_EVENTS and not series_held(Lane(A, 0, 0), o.p):
                         finish(Lane(A, 0, 0), MISSED, o.out)
                         return True

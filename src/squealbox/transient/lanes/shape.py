@@ -84,12 +84,10 @@ class Shape:
 
     @property
     def followed(self) -> list[str]:
-        """What a recorded motion is told in, each a series of time in a step: the works first of friction, then of the
-        load, of circulation, of damping and of opening.
-        """
+        """What a recorded motion is told in, each a series of time in a step; the load too where it varies."""
         n, m = self.n, self.m
-        works = [f"work{c}" for c in range(m)] + [f"work_{name}" for name in ("load", "skew", "damping", "opening")]
-        return [f"q{i}" for i in range(n)] + works + [f"{name}{c}" for name in ("n", "v", "f") for c in range(m)]
+        told = [f"q{i}" for i in range(n)] + [f"{name}{c}" for name in ("n", "v", "f") for c in range(m)]
+        return told + [f"F{i}" for i in range(n if self.varying else 0)]
 
     @property
     def breadth(self) -> int:
@@ -219,14 +217,14 @@ def layout(shape: Shape) -> Places:
         else:
             rows.add(*(f"{x}_old{i}" for x in "qva" for i in range(n)))
     if shape.recorded:
-        rows.add("next", "sample", "t_old", "span", "reversals", *(f"done{k}" for k in range(m + 4)))
+        rows.add("next", "sample", "t_old", "span", "reversals")
+        rows.add(*(f"{name}{k}" for name in ("done", "was") for k in range(m + 4)))  # works, at the end and the start
     if shape.recorded and shape.taylor:
-        rows.add(
-            "since", *(f"value{j}" for j in range(shape.breadth)), *(f"slope_value{j}" for j in range(shape.breadth))
-        )
+        rows.add("since", *(f"{name}{j}" for name in ("value", "slope_value") for j in range(shape.breadth)))
+        rows.add(*(f"gain{k}" for k in range(m + 4)), *(f"{name}{c}" for name in ("trough", "peak") for c in range(m)))
         rows.add(*(f"term{k}_{name}" for k in range(ORDER + 2) for name in shape.followed_padded))
     if shape.staged:
-        rows.add("flips", *(f"{x}_old{i}" for x in "qv" for i in range(n)), *(f"was{k}" for k in range(m + 4)))
+        rows.add("flips", *(f"{x}_old{i}" for x in "qv" for i in range(n)))
         rows.add(*(f"{name}_end{c}" for name in ("normal", "speed", "friction") for c in range(m)))
     if any(observer.of == "contact" for observer in shape.observers):
         rows.add(*(f"work{c}" for c in range(m)))

@@ -6,8 +6,7 @@ pieces already, so its choice looks a little ahead.
 
 from typing import Any
 
-from squealbox.compiled.in_memory import Given
-from squealbox.compiled.vectors import Lanes, where
+from squealbox.compiled import Given, Lanes, where
 from squealbox.transient.lanes.series import AHEAD, Series, above, at, plus, times
 
 FAR = 1e300  # where there is no further knot

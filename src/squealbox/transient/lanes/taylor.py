@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from squealbox.compiled.vectors import Lanes, Truth, minimum, where
+from squealbox.compiled import Lanes, Truth, minimum, where
 from squealbox.transient.lanes.rough import rough_exp, rough_log
 from squealbox.transient.lanes.series import Series, above, at, plus_product, times
 

@@ -10,8 +10,8 @@ there. Where either fails, the step ends before that part, and the next one look
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from squealbox.compiled.vectors import Lanes, Truth, if_any, maximum, minimum, sqrt
-from squealbox.compiled.vectors import where as pick
+from squealbox.compiled import Lanes, Truth, if_any, maximum, minimum, sqrt
+from squealbox.compiled import where as pick
 from squealbox.transient.lanes.series import Series, at, constant, value, value_and_slope, where
 from squealbox.transient.lanes.shape import PARTS
 

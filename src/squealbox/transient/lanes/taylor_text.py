@@ -13,6 +13,7 @@ from squealbox.transient._sharing import RISES
 from squealbox.transient.lanes.equation_text import CALLED, EquationText
 from squealbox.transient.lanes.formulas import is_table, law_text, smooth_text
 from squealbox.transient.lanes.shape import ORDER, PARTS, UNIT_OF_WINDOW, WORK_ORDER, Shape
+from squealbox.transient.lanes.works_text import WorksText
 from squealbox.transient.rows import ALGEBRAIC, FIRST_ORDER, WITH_MASS
 
 JUDGED = (0.35, 0.7, 0.999999)  # shares of a step at which laws are compared; the last before a kink that ends it
@@ -42,7 +43,7 @@ class TaylorStep(EquationText):
         self.gliding = False
 
     def text(self) -> str:
-        """The function `step(A, b)`, and `series_at(A, b)` of a recorded motion."""
+        """The function `step(A, b)`, and `series_at(A, b)` and `works_at(A, b)` of a recorded motion."""
         return self.steps() + (self.evaluation() if self.shape.recorded else "")
 
     def evaluation(self) -> str:
@@ -50,13 +51,14 @@ class TaylorStep(EquationText):
         breadth, places = self.shape.breadth, self.rows.places
         first = places[f"term0_{self.shape.followed[0]}"]
         call = f"{places['since']}, {first}, {breadth}, {ORDER + 2}, {places['value0']}, {places['slope_value0']}"
-        return f"\n@wide({breadth})\ndef series_at(A, b):\n    return at_once(A, b, {call})\n"
+        at_once = f"\n@wide({breadth})\ndef series_at(A, b):\n    return at_once(A, b, {call})\n"
+        return at_once + WorksText(self.shape).text()
 
     def steps(self) -> str:
         """Another trial where no lane of the group sticks; not for a single run, which would gain a tenth by it and
         wait for half as much code again.
         """
-        if not self.shape.exact or self.shape.recorded:
+        if not self.shape.exact:
             return self.trial("trial") + CALLED
         parts = [self.trial("trial")]
         self.gliding, self.lines, self.tag = True, [], 0
@@ -94,7 +96,7 @@ class TaylorStep(EquationText):
         self.ending(found)
         self.observe_parts(found, q, v)
         if self.shape.recorded:
-            self.record(found, q, v)
+            self.record(found, q)
         self.finish(found, q, v)
         return "\n".join(["@traced_as_written", f"def {name}(A, b):", *self.lines, "    return flags\n"])
 
@@ -244,7 +246,8 @@ class TaylorStep(EquationText):
         held = self.shape.exact and not self.gliding
         names += [f"hold{c}_{self.tag}" for c in range(self.shape.m)] if held else []
         names += found["force"]  # their works are integrated outside the branch
-        self.put(f"ready({WORK_ORDER}, {', '.join(names)})" if names else "pass")
+        further = self.shape.varying or any(observer.of == "contact" for observer in self.shape.observers)
+        self.put(f"ready({WORK_ORDER if further else ORDER}, {', '.join(names)})" if names else "pass")
 
     def functions_of(self, c: int, found: dict[str, list[str]]) -> tuple[str, str]:
         """Names of both event functions of a contact, which stay positive as long as its mode holds."""
@@ -322,36 +325,20 @@ class TaylorStep(EquationText):
         tuples = ", ".join("(" + "".join(f"{x}{k}p{part}, " for k in range(n)) + ")" for x in "qva")
         return f"State({time}, {tuples})"
 
-    def record(self, found: dict[str, list[str]], q: list[str], v: list[str]) -> None:
-        """Keep the series of all that a recorded motion is told in, and the works done so far."""
+    def record(self, found: dict[str, list[str]], q: list[str]) -> None:
+        """Keep the series of all that a recorded motion is told in."""
         n, m, shape = self.shape.n, self.shape.m, self.shape
-        rates = [f"({found['force'][c]} * ({' + '.join(self.product(f'd{c}', v)) or '0.0'}))" for c in range(m)]
-        load = [(" + ".join(self.signal(2 * m + n + i, f"F{i}", "time")), x) for i, x in enumerate(v)]
-        rates.append(" + ".join(f"({force}) * {x}" for force, x in load if force))
-        turned = [(" + ".join(self.product(f"ka{i}", q)), x) for i, x in enumerate(v)]
-        rates.append(" + ".join(f"(-{x}) * ({row})" for row, x in turned if row) if shape.audited else "")
-        rates.append(
-            " + ".join(f"{x} * ({row})" for i, x in enumerate(v) if (row := " + ".join(self.product(f"c{i}", v))))
-        )
-        lifted = [(" + ".join(self.product(f"w{c}", v)), c) for c in range(m) if shape.unilateral[c]]
-        here = [f"at({normal}, 0)" for normal in found["normal"]]  # the choice was made when the step began
-        off = [(self.openness(c, here[c]), found["normal"][c], row) for row, c in lifted if row]
-        rates.append(" + ".join(f"{share} * {normal} * ({row})" for share, normal, row in off))
-        for k, rate in enumerate(rates):
-            self.put(f"works{k} = integral({rate}) * unit" if rate else f"works{k} = 0.0")
-            done = self.row(f"done{k}")
-            if rate:
-                self.keep(f"done{k}", f"where(moved, {done} + value(works{k}, end, {WORK_ORDER}), {done})")
-        told = [(each, ORDER + 1) for each in q] + [(f"works{k}", ORDER + 1) for k in range(m + 4)]
+        told = [(each, ORDER + 1) for each in q]
         told += [(each, ORDER) for name in ("normal", "speed") for each in found[name]]
         told += [(each, ORDER - 1) for each in found["force"]]
+        for i in range(n if shape.varying else 0):
+            told.append((self.total(f"load{i}", self.signal(2 * m + n + i, f"F{i}", "time")), ORDER))
         for name, (series, order) in zip(shape.followed, told, strict=True):
             for k in range(order + 1):
                 place = self.rows.places[f"term{k}_{name}"] * shape.lanes
-                value = f"at({series}, {k})" if k or not series.startswith("works") else self.row(f"done{series[5:]}")
-                self.put(f"store_known(A, b + {place}, {value})")
+                self.put(f"store(A, b + {place}, at({series}, {k}))")
         self.keep("t_old", "t_")
-        self.keep("span", "end * unit")
+        self.keep("span", "where(moved, end * unit, 0.0)")
         if not shape.exact and m:
             back = [f"((at({x}, 0) > 0.0) ^ (value({x}, end, {ORDER}) > 0.0))" for x in found["speed"]]
             self.keep("reversals", f"{self.row('reversals')} + where(moved & ({' | '.join(back)}), 1.0, 0.0)")
@@ -366,11 +353,11 @@ class TaylorStep(EquationText):
                     self.keep(f"term{i}_{k}", f"constant(at({q[i]}, {k}), unit)")
         for name, series, order in states(q, v, found["a"]):
             self.keep(name, f"where(fine, value({series}, end, {order}), {self.row(name)})")
-        for c in shape.pressed:
+        for c in () if shape.recorded else shape.pressed:
             least, normal = self.row(f"lowest{c}"), found["normal"][c]
             there = f"minimum(value({normal}, 0.5 * end, {ORDER}), value({normal}, end, {ORDER}))"
             self.keep(f"lowest{c}", f"where(fine, minimum({least}, {there}), {least})")
-        for c in shape.ranging:
+        for c in () if shape.recorded else shape.ranging:
             most, speed = self.row(f"fastest{c}"), found["speed"][c]
             there = f"maximum(abs(value({speed}, 0.5 * end, {ORDER})), abs(value({speed}, end, {ORDER})))"
             self.keep(f"fastest{c}", f"where(fine, maximum({most}, {there}), {most})")

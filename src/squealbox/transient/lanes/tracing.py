@@ -4,10 +4,24 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any
 
-from squealbox.compiled.in_memory import Given, Group
-from squealbox.compiled.kinds import WHOLE, Array, Number, Untranslatable
-from squealbox.compiled.translation import Function, Unit
-from squealbox.compiled.vectors import PART, WRITER, Lanes, Writer, packed, put, reals, writing
+from squealbox.compiled import (
+    PART,
+    WHOLE,
+    WRITER,
+    Array,
+    Function,
+    Given,
+    Group,
+    Lanes,
+    Number,
+    Unit,
+    Untranslatable,
+    Writer,
+    packed,
+    put,
+    reals,
+    writing,
+)
 from squealbox.system import InvalidSystem
 
 

@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.figure_data import FigureAxis, FigureData, Layer, band, line, points, span
 from squealbox.limit_cycles import (
+    NEUTRAL,
     Branch,
     Cycle,
     HopfPoint,
@@ -23,7 +24,6 @@ from squealbox.limit_cycles import (
     shooting,
     stable_sliding,
 )
-from squealbox.limit_cycles.branches.stretches import NEUTRAL
 from squealbox.parameters import ParameterError
 from squealbox.stability import complex_modes, critical_values
 from squealbox.system import System

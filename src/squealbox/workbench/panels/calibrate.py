@@ -2,9 +2,8 @@
 
 from typing import Any
 
-from squealbox.calibration import calibrate
-from squealbox.calibration.measured import from_events
-from squealbox.designs import Design
+from squealbox.calibration import calibrate, from_events
+from squealbox.design import Design
 from squealbox.parameters import ParameterError
 from squealbox.signals import SignalError
 from squealbox.words import number

@@ -4,10 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.figure_data import FigureAxis, FigureData, across, line, span
-from squealbox.plots.cards import parameter_rows
-from squealbox.plots.modes import followed
+from squealbox.plots import followed, parameter_rows
 from squealbox.stability import complex_modes, mechanism
 from squealbox.words import number, quantity, scaled
 from squealbox.workbench.frames import finite

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from squealbox.designs import Design, drawing_of
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.design import Design
+from squealbox.fe import ReducedBrake
+from squealbox.shapes import drawing_of
 from squealbox.workbench.panels.declared import Panel
 from squealbox.workbench.panels.panel import Answer, Options, Work
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.figure_data import Bars
 from squealbox.stability import mode_energy
 from squealbox.words import number, quantity

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from squealbox.designs import Design
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.design import Design
+from squealbox.fe import ReducedBrake
 from squealbox.system import System
 from squealbox.transient import LARGE, Trajectory, needs_compiling, simulate
 from squealbox.workbench.panels.panel import Elsewhere, OptionError, Work

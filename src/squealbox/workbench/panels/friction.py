@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.figure_data import FigureAxis, FigureData, line, points, span, upright
 from squealbox.system import linearise
 from squealbox.words import number, quantity

@@ -4,12 +4,20 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.figure_data import FigureAxis, FigureData, heat, line, text
 from squealbox.matrices import liveliest
-from squealbox.signals import SignalError, audible, dominant_frequency, rendered, spectrogram, squeal_events
-from squealbox.signals.radiation import AREA, AUDIBLE
-from squealbox.signals.wav import SAMPLING
+from squealbox.signals import (
+    AREA,
+    AUDIBLE,
+    SAMPLING,
+    SignalError,
+    audible,
+    dominant_frequency,
+    rendered,
+    spectrogram,
+    squeal_events,
+)
 from squealbox.transient import Trajectory
 from squealbox.words import level_told, number, quantity, scaled
 from squealbox.workbench.panels.declared import FREEDOM, Panel, Place, words

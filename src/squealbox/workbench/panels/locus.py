@@ -4,10 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
-from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.plots.as_data import modes_over_parameter
-from squealbox.plots.modes import unstable_stretches
+from squealbox.design import Design
+from squealbox.fe import ReducedBrake
+from squealbox.plots import modes_over_parameter, unstable_stretches
 from squealbox.workbench.panels.declared import OVER, Panel, Place
 from squealbox.workbench.panels.modes import modes_of, ranked, tracks_of
 from squealbox.workbench.panels.panel import Answer, Options, Work, try_value

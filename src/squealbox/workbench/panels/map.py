@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.design import Design
+from squealbox.fe import ReducedBrake
 from squealbox.figure_data import FigureData, heat, path
 from squealbox.stability import StabilityMap, map_boundary, stability_map
 from squealbox.words import number

@@ -1,7 +1,7 @@
 """The surface of a finite-element brake, sent once: where its nodes, faces and contacts are."""
 
-from squealbox.designs import Design
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.design import Design
+from squealbox.fe import ReducedBrake
 from squealbox.workbench.panels.declared import Panel
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
 

@@ -4,8 +4,8 @@ import functools
 
 import numpy as np
 
-from squealbox.designs import Design
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.design import Design
+from squealbox.fe import ReducedBrake
 from squealbox.parameters import ParameterError
 from squealbox.stability import (
     ComplexModes,

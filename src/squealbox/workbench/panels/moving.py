@@ -4,9 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design, drawing_of
-from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.plots.surfaces import largest_motion
+from squealbox.design import Design
+from squealbox.fe import ReducedBrake
+from squealbox.plots import largest_motion
+from squealbox.shapes import drawing_of
 from squealbox.system import equilibrium
 from squealbox.workbench.panels.declared import Panel
 from squealbox.workbench.panels.modes import modes_of, seen

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.figure_data import Bars, FigureAxis, FigureData, packed
 from squealbox.parameters import ParameterError
 from squealbox.words import read_in

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.files import DesignFileError, read_text
 from squealbox.stability import mechanism
 from squealbox.words import number, quantity

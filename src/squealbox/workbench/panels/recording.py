@@ -6,12 +6,10 @@ import numpy as np
 
 from squealbox import read_recording, squeal_events
 from squealbox.calibration import compare
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.figure_data import FigureAxis, FigureData, heat, line
-from squealbox.plots.facts import shown
-from squealbox.signals import SignalError, spectrogram
-from squealbox.signals.events import SquealEvents
-from squealbox.signals.recordings import Recording
+from squealbox.plots import shown
+from squealbox.signals import Recording, SignalError, SquealEvents, spectrogram
 from squealbox.stability import complex_modes
 from squealbox.words import number as digits
 from squealbox.workbench.frames import finite

@@ -1,6 +1,6 @@
 """The report of the present design as one HTML file, the same that `squealbox report` writes."""
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.workbench.panels.declared import Panel
 from squealbox.workbench.panels.panel import Answer, Options, Work
 

@@ -5,11 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design, drawing_of
+from squealbox.design import Design
 from squealbox.figure_data import Bars
 from squealbox.parameters import ParameterError
-from squealbox.remedies.production import usual_scatter
-from squealbox.stability import critical_values, sensitivity, sentences
+from squealbox.remedies import usual_scatter
+from squealbox.shapes import drawing_of
+from squealbox.stability import MERGE, critical_values, sensitivity
 from squealbox.system import InvalidSystem
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import Panel, Place, words
@@ -70,7 +71,7 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
         "condition": finite(found.condition),
         "near": found.near_defective,
         "stable": bool(modes.stable),
-        "words": sentences.MERGE if found.near_defective else _words(bars, step, bool(modes.stable)),
+        "words": MERGE if found.near_defective else _words(bars, step, bool(modes.stable)),
     }
     if places:
         data |= drawn.data()

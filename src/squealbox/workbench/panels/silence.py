@@ -4,11 +4,10 @@ import dataclasses
 from collections.abc import Callable
 from typing import Any
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.files import NotWritable, design_text
 from squealbox.parameters import ParameterError
-from squealbox.remedies import Candidate, Remedies, candidates_for, silence
-from squealbox.remedies.candidates import more_friction
+from squealbox.remedies import Candidate, Remedies, candidates_for, more_friction, silence
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import Panel, number, words
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.stability import complex_modes
 from squealbox.system import equilibrium
 from squealbox.workbench.panels.declared import START

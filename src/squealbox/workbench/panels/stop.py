@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.schedules import Ramp, Table
 from squealbox.workbench.panels.panel import OptionError
 

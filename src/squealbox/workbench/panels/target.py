@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from squealbox.designs import Design
+from squealbox.design import Design
 from squealbox.figure_data import FigureAxis, FigureData, Layer, across, line, points, text, upright
 from squealbox.parameters import ParameterError
-from squealbox.remedies.target import ASSUMED, Lot, lot_of
+from squealbox.remedies import ASSUMED, Lot, lot_of
 from squealbox.workbench.frames import finite
 from squealbox.workbench.panels.declared import Panel, Place, number
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work

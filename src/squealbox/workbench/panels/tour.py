@@ -10,12 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.designs import Design, DrumBrake
+from squealbox.design import Design
+from squealbox.designs import DrumBrake
 from squealbox.friction import LinearSlope
-from squealbox.papers.drum_brake_2011.cases import ALPHA, INFERRED, Case
-from squealbox.papers.drum_brake_2011.claims import paper
-from squealbox.papers.drum_brake_2011.record import Record, count
-from squealbox.papers.drum_brake_2011.verdicts import verdicts
+from squealbox.papers import ALPHA, INFERRED, Case, Record, count, paper, verdicts
 from squealbox.workbench.panels.declared import Panel
 from squealbox.workbench.panels.panel import Answer, OptionError, Options, Work
 

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.cautions import pulled, pulling
-from squealbox.designs import Design
-from squealbox.stability import mechanism, sentences
+from squealbox.design import Design
+from squealbox.stability import LINEAR, MERGE, growth_in_words, headline, margin_in_words, mechanism
 from squealbox.system import equilibrium
 from squealbox.workbench.panels.declared import OVER, Panel
 from squealbox.workbench.panels.modes import crossings_of, modes_of
@@ -23,12 +23,12 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     why = mechanism(design) if exists and not bool(modes.stable) else None
     data: dict[str, Any] = {
         "state": "unknown" if not exists else "unstable" if why else "stable",
-        "headline": sentences.headline(modes, why),
-        "why": [sentences.growth(modes, why)],
+        "headline": headline(modes, why),
+        "why": [growth_in_words(modes, why)],
         "value": value,
     }
     if not exists:
-        return Answer({**data, "caveats": sentences.LINEAR})
+        return Answer({**data, "caveats": LINEAR})
     system = design.system()
     bilateral = np.zeros(len(system.contacts), dtype=bool)  # an open unilateral contact has N = 0
     contacts = (system.contact_names, bilateral, equilibrium(system).normal_force)
@@ -36,9 +36,9 @@ def answer(design: Design, options: Options, work: Work) -> Answer:
     found = crossings_of(design, parameter, ends)
     data["crossings"] = [{"value": float(each.value), "changes": each.changes_stability} for each in found]
     if found.outcome.ok or found.changes:
-        data["why"] += [" ", *sentences.margin(axis.label, value, found, ends, axis.value)]
+        data["why"] += [" ", *margin_in_words(axis.label, value, found, ends, axis.value)]
     else:
         data["why"].append(f" {found.outcome.message}.")
     near = bool(np.any(modes.near_defective))
-    data["caveats"] = " ".join([*map("{}.".format, pulling(*contacts)), sentences.LINEAR, *[sentences.MERGE] * near])
+    data["caveats"] = " ".join([*map("{}.".format, pulling(*contacts)), LINEAR, *[MERGE] * near])
     return Answer(data)

@@ -83,7 +83,7 @@ def simulate(
     if late is not None:
         asked = instants_of("simulate", times, start_time, duration)
         how = contact, width, method, (rtol, atol)
-        start = pieces.start_of(late, start, start_time, design_or_system)
+        start = pieces.start_of_driven(late, start, start_time, design_or_system)
         return pieces.motion_of(late, start, start_time, duration, asked, how, progress)
     system = system_of(design_or_system, plane=plane)
     ways = ways_of(system, contact, width, method, (rtol, atol))

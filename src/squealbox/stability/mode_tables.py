@@ -11,12 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.fe.meshed import MeshedBrake
-from squealbox.fe.pencil import pencil_of
-from squealbox.fe.real_modes import real_modes
-from squealbox.stability.band_modes import BandModes
+from squealbox.fe import MeshedBrake, pencil_of, real_modes
 from squealbox.stability.conventions import as_printed_by
 from squealbox.stability.energy import contact_groups, mode_energy
+from squealbox.stability.modes_in_band import BandModes
 from squealbox.system import as_system
 
 ABOVE = 1.1  # times the band's end up to which uncoupled modes are looked for

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from squealbox import plots
-from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.fe import ReducedBrake
 from squealbox.files import NotWritable, design_text
-from squealbox.plots.brakes import has_drawing
+from squealbox.plots import has_drawing
 from squealbox.report import motion_sections, stability_sections, tables, words
 from squealbox.report.blocks import Code, Page, Points, Section, Text, Tiles
 from squealbox.report.examination import Examination

@@ -7,7 +7,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.control import margins, sampled
-from squealbox.control.plant import Plant, plant
+from squealbox.control.plants import Plant, plant
 from squealbox.control.poles import Late, late_poles
 from squealbox.extras import extra
 from squealbox.parameters import ParameterError, with_cautions

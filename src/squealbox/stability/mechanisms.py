@@ -26,8 +26,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.fe.small import Small
+from squealbox.fe import ReducedBrake, Small
 from squealbox.stability.eigenvalues import MARGINAL
 from squealbox.stability.family import Steady, entry, steady_sliding
 from squealbox.stability.in_band import IDLE, eigenvalues_in_band, ranked_in_band, worst_in_band

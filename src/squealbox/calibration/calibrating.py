@@ -16,10 +16,10 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.calibration.measured import Measured
 from squealbox.calibration.search import WORST, linearised, losses, searched
+from squealbox.distributions import TruncatedNormal
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.studies.uncertainty.distributions import TruncatedNormal
-from squealbox.studies.uncertainty.scatter import Scatter
+from squealbox.scatter import Scatter
 
 LOSSES = ("squares", "robust")
 FIRST = 256  # points of the box from which the best are followed

@@ -11,11 +11,20 @@ from typing import Any, Literal
 
 import numpy as np
 
-from squealbox.fe.certificate import Certificate, certificate, certified_band
-from squealbox.fe.growing_basis import GrowingBasis
-from squealbox.fe.pencil import Pencil, pencil_of
-from squealbox.fe.projection import Projected, basis_for, modes_on, refined, with_shapes
-from squealbox.fe.quadratic import full_modes
+from squealbox.fe import (
+    Certificate,
+    GrowingBasis,
+    Pencil,
+    Projected,
+    basis_for,
+    certificate,
+    certified_band,
+    full_modes,
+    modes_on,
+    pencil_of,
+    refined,
+    with_shapes,
+)
 from squealbox.result import Array, Outcome, quantity
 from squealbox.sparse_sliding import at_rest
 from squealbox.stability.eigenvalues import ComplexModes

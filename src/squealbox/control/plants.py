@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.loops import Loop, folded
-from squealbox.loops.held import first_order
+from squealbox.loops import Loop, first_order, folded
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome
 from squealbox.system import System, linearise

@@ -13,8 +13,8 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
+from squealbox.distributions import Distribution, as_distribution
 from squealbox.parameters import DataSheet, ParameterError, known_names
-from squealbox.studies.uncertainty.distributions import Distribution, as_distribution
 
 Sampling = Literal["random", "latin_hypercube", "sobol"]
 SAMPLINGS: tuple[Sampling, ...] = get_args(Sampling)

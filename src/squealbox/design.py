@@ -5,8 +5,7 @@ from typing import Annotated, Any, ClassVar, get_origin
 
 import numpy as np
 
-from squealbox.designs.shapes import Shapes
-from squealbox.friction import FrictionLaw
+from squealbox.law import FrictionLaw
 from squealbox.parameters import (
     DRAWN_BY,
     Choice,
@@ -17,6 +16,7 @@ from squealbox.parameters import (
     known_names,
     screenful,
 )
+from squealbox.shapes import Shapes
 from squealbox.system import System
 
 
@@ -52,6 +52,11 @@ class Design(DataSheet):
     def innermost(self) -> "Design":
         """The brake itself, without what a countermeasure adds."""
         return self
+
+    @property
+    def layers(self) -> tuple[Any, ...]:
+        """The countermeasures around the brake, the outermost first."""
+        return ()
 
     def scalars(self) -> dict[str, Parameter]:
         """The scalar parameters that a study can vary, nested ones with dots, aliases included.
