@@ -8,12 +8,13 @@ import pytest
 
 from squealbox import Coulomb, DiscBrake, complex_modes, mode_energy, plots, reduce
 from squealbox.family import ParameterAxis
-from squealbox.fe.surface import Surface, surface_of
+from squealbox.fe.surface import surface_of
 from squealbox.plots.surfaces import REACH, contact_pressure, from_side, mode_on_surface, outline
 from squealbox.report import design_page, examine
 from squealbox.report.blocks import Table, Vibrating
 from squealbox.report.page import every, render
 from squealbox.report.vibrating import MOST_FACES, vibrating
+from squealbox.shapes import Surface
 
 BAND = (2500.0, 5000.0)
 

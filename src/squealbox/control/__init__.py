@@ -1,4 +1,4 @@
-"""What a loop does to a brake: poles, margins, runs. Depends on: stability, transient, loops, system, result."""
+"""What a loop does to a brake: poles, margins, runs."""
 
 from squealbox.registers import face
 

@@ -1,4 +1,4 @@
-"""What is done against squeal: designs that hold a design. Depends on: designs, system, friction, loops, stability."""
+"""What is done against squeal: designs that hold a design."""
 
 from squealbox.registers import face
 

@@ -1,4 +1,4 @@
-"""Brakes on paper, each a data sheet with a `system()`. Depends on: system, friction, schedules, parameters."""
+"""Brakes on paper, each a data sheet with a `system()`."""
 
 from squealbox.design import Design
 from squealbox.designs.damping_paradox import DampingParadox

@@ -1,4 +1,4 @@
-"""Finite-element brakes: sparse solvers, modes with an error bar, reduction. Depends on: system, designs."""
+"""Finite-element brakes: sparse solvers, modes with an error bar, reduction."""
 
 from squealbox.registers import face
 

@@ -85,5 +85,4 @@ from .reduced_files import load_reduced as load_reduced
 from .reduced_files import save_reduced as save_reduced
 from .reduction import MOST_AXES as MOST_AXES
 from .small import Small as Small
-from .surface import Surface as Surface
 from .surface import with_surface as with_surface

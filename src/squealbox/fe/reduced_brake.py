@@ -21,6 +21,7 @@ from squealbox.fe.reduced_sliding import Sums, steady_small, sums_of, untouched,
 from squealbox.fe.small import Small
 from squealbox.law import FrictionLaw
 from squealbox.parameters import DataSheet, ParameterError, known_names
+from squealbox.shapes import Surface
 from squealbox.system import Equilibrium, InvalidSystem, System, linearise
 
 FIELDS = ("M", "C", "K", "load", "n", "d", "t", "normal", "across", "N0", "V")
@@ -116,7 +117,7 @@ class ReducedBrake(Design):
     friction: FrictionLaw | None = None
     values: Any = None
     full: Any = None
-    surface: Any = None  # `fe.surface.Surface`, for those who draw it
+    surface: Surface | None = None  # for those who draw it
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", dict(self.values or {}))

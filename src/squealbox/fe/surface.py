@@ -4,8 +4,8 @@ A brake that meshes itself has quadrilaterals between the corners of its element
 of them the nodes are known, and each stands for itself.
 """
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -14,66 +14,9 @@ from squealbox.fe.disc_brake import DiscBrake
 from squealbox.fe.grids import MeshedBody
 from squealbox.fe.meshed import MeshedBrake
 from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.shapes import Surface
 
 MOST_FACES = 5000
-
-
-@dataclass(frozen=True, eq=False)
-class Surface:
-    """Of k nodes their places (k, 3) [m], and faces (f, 4), nodes in a turn; a lone node stands there four times.
-
-    parts (f,) numbers the component of each face in `names`. rows (k, 3) is the freedom along x, y and z, -1 where it
-    is held; of a reduced brake moves (k, 3, m) is what each of its m coordinates does to the nodes instead. touching
-    (contacts, 3) [m] is where the contacts are, empty where that is not known. Every `step`-th line of the mesh, or
-    node, is there.
-    """
-
-    places: Any
-    faces: Any
-    parts: Any
-    names: tuple[str, ...]
-    rows: Any
-    touching: Any
-    step: int
-    moves: Any = None
-
-    left_out_of_files: ClassVar[bool] = True
-
-    @property
-    def lone(self) -> bool:
-        """True where it has no faces, only nodes."""
-        return bool(np.all(self.faces[:, :1] == self.faces))
-
-    @property
-    def size(self) -> float:
-        """Half the diagonal of the box it stands in [m]."""
-        return 0.5 * float(np.linalg.norm(np.ptp(self.places, axis=0)))
-
-    @property
-    def middle(self) -> Any:
-        """Middle of that box, (3,) [m]."""
-        return 0.5 * (self.places.min(axis=0) + self.places.max(axis=0))
-
-    def moved(self, shape: Any) -> Any:
-        """Displacement (k, 3) of the nodes in a shape, turned and scaled so that its largest component is 1.
-
-        The shape is one of all freedoms (n,), of a reduced brake one of its coordinates (m,).
-        """
-        if self.moves is None:
-            moved = np.where(self.rows >= 0, np.asarray(shape)[self.rows], 0.0)
-        else:
-            moved = np.asarray(self.moves, dtype=float) @ shape
-        return moved / moved.flat[np.argmax(np.abs(moved))]
-
-    def shares(self, moved: Any) -> Any:
-        """Of the motion of each face, the share (f,) of that of the node that moves most."""
-        size = np.linalg.norm(np.abs(moved), axis=1)
-        return np.mean(size[self.faces], axis=1) / np.max(size)
-
-    def next_to_contacts(self) -> Any:
-        """The node nearest to each contact (contacts,)."""
-        nearest = [int(np.argmin(np.sum((self.places - at) ** 2, axis=1))) for at in self.touching]
-        return np.array(nearest, dtype=int)
 
 
 def surface_of(brake: Any, most: int = MOST_FACES) -> Surface | None:

@@ -1,4 +1,4 @@
-"""Design files: a brake and what is asked of it, in TOML with units. Depends on: designs, system, friction, schedules.
+"""Design files: a brake and what is asked of it, in TOML with units.
 
     design = read_design("brake.toml")          every problem at once: file, line, key, what is expected
     write_design(design, "copy.toml")           commented, reads back equal

@@ -1,7 +1,4 @@
-"""What does the motion settle to?
-
-Depends on: transient, stability, continuation, system, friction, schedules, result, parameters.
-"""
+"""What does the motion settle to?"""
 
 from squealbox.registers import face
 

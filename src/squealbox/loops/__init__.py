@@ -1,4 +1,4 @@
-"""Loops: what senses a brake and acts on it; their rows stand beside those of the contacts. Depends on: parameters."""
+"""Loops: what senses a brake and acts on it; their rows stand beside those of the contacts."""
 
 from squealbox.registers import face
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealbox.fe import Surface
 from squealbox.plots.style import WIDTH, drawing, figure_of
+from squealbox.shapes import Surface
 from squealbox.words import quantity_label
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""What would silence this brake? Depends on: countermeasures, control, stability, transient, studies, loops, result.
+"""What would silence this brake?
 
 The names are listed in ``__init__.pyi``; each is loaded when it is first used.
 """

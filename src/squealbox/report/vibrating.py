@@ -4,12 +4,12 @@ import numpy as np
 
 from squealbox import plots
 from squealbox.design import Design
-from squealbox.fe import MeshedBrake, ReducedBrake, Surface, with_surface
+from squealbox.fe import MeshedBrake, ReducedBrake, with_surface
 from squealbox.plots import contact_pressure, has_drawing, largest_motion, mode_on_surface, outline
 from squealbox.report.blocks import Drawing, Vibrating
 from squealbox.report.examination import Examination
 from squealbox.report.pictures import picture
-from squealbox.shapes import drawing_of
+from squealbox.shapes import Surface, drawing_of
 from squealbox.stability import ComplexModes, contact_groups
 from squealbox.system import equilibrium
 from squealbox.words import quantity

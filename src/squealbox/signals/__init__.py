@@ -1,8 +1,6 @@
 """What a signal holds: spectrum, peaks, growth rate, sound and how loud; recordings, the squeal events in them, and
 the damping before it squeals.
 
-Depends on: parameters, result.
-
 Every function takes an array with its times ``t`` [s] or its sampling rate [Hz], or anything with ``.t`` and ``.q``,
 such as a trajectory, of which ``dof`` names one column. Fourier methods need equal time steps and refuse others.
 """

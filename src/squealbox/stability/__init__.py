@@ -1,4 +1,4 @@
-"""Is steady sliding stable? Depends on: system, continuation, result, compiled."""
+"""Is steady sliding stable?"""
 
 from squealbox.registers import face
 

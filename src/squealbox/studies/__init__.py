@@ -3,7 +3,6 @@
     table = sweep(brake, {"friction.static": mus, "load": loads}, complex_modes, out="study")
 
 A study imports no analysis: it is handed one, any function of a design. So it can run the user's own as well.
-Depends on: system, result, parameters.
 """
 
 from squealbox.registers import face
