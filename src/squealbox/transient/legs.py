@@ -160,12 +160,11 @@ def by_step(run: Any, end: float, progress: Progress | None = None) -> Leg:
         state = run.out[0, 5 : 5 + n], run.out[0, 5 + n : 5 + 2 * n]
         speed = run.speeds(float(reached[0]), state[1])
         outcome = failed(code, end, float(reached[0]), run.at("h"), (*state, speed), int(reached[1]))
-    lowest, fastest = (np.array([run.at(f"{name}{c}") for c in range(m)]) for name in ("lowest", "fastest"))
+    lowest, fastest = run.several("lowest", m), run.several("fastest", m)
     taken, tried = int(reached[1]), int(reached[2])
     rows, events = run.columns()
     steps = taken, tried - taken, tried * run.evaluations
-    names = ("t", *(f"{x}{i}" for x in "qv" for i in range(n)), *(f"done{k}" for k in range(m + 4)))
-    last = np.array([*map(run.at, names), 0.0])
+    last = np.concatenate([[run.at("t")], run.several("q", n), run.several("v", n), run.several("done", m + 4), [0.0]])
     return Leg(rows, events, outcome, lowest, fastest, steps, run.method, run.atol, last, int(run.at("reversals")))
 
 

@@ -128,6 +128,11 @@ class Single:
         """The number in a row of the state."""
         return float(self.lanes[self.made.rows.places[name]])
 
+    def several(self, name: str, count: int) -> Any:
+        """The numbers in so many rows of the state, name0, name1, ..."""
+        first = self.made.rows.places[f"{name}0"] if count else 0
+        return self.lanes[first : first + count].copy()
+
     @property
     def evaluations(self) -> int:
         """Of the equation in a trial."""
