@@ -28,3 +28,12 @@ def drum():
     from squealbox import DrumBrake
 
     return DrumBrake()
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """One browser for all pages of the workbench and of reports."""
+    from browsers import launched
+
+    with launched() as running:
+        yield running

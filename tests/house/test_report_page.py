@@ -4,14 +4,11 @@ import base64
 import io
 import json
 import re
-import shutil
-import tempfile
 import wave
 
 import numpy as np
 import pytest
 
-from browsers import driven
 from squealbox import Coulomb, DiscBrake, DrumBrake, LinearSlope, Ramp, complex_modes, reduce, simulate
 from squealbox.cli import BAD_INPUT, DONE, main
 from squealbox.files import write_design
@@ -23,10 +20,6 @@ from squealbox.report.vibrating import vibrating
 from squealbox.signals import dominant_frequency, sound_level
 from squealbox.studies import sweep
 
-FLAGS = [
-    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
-    "--disable-background-networking", "--disable-component-update",
-]  # fmt: skip
 SIZE = {"width": 1280, "height": 800}
 SQUEALING = DrumBrake(friction=LinearSlope(0.45, -0.05))
 SECTIONS = """
@@ -46,24 +39,16 @@ def written(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def browser():
-    with driven() as playwright, tempfile.TemporaryDirectory() as profile:
-        context = playwright.chromium.launch_persistent_context(
-            profile,
-            executable_path=shutil.which("chromium"),
-            args=FLAGS,
-            offline=True,
-            viewport={"width": 1280, "height": 800},
-        )
+def offline(browser):
+    with browser.new_context(offline=True, viewport=SIZE) as context:
         yield context
-        context.close()
 
 
 class Opened:
     """A page opened from its file, with every request it made and every error it had."""
 
-    def __init__(self, browser, path):
-        self.page = browser.new_page()
+    def __init__(self, offline, path):
+        self.page = offline.new_page()
         self.errors, self.requests = [], []
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.on(
@@ -74,8 +59,8 @@ class Opened:
         self.page.goto(path.as_uri())
 
 
-def anew(browser, written):
-    reading = Opened(browser, written)
+def anew(offline, written):
+    reading = Opened(offline, written)
     reading.page.wait_for_selector("html[data-charts]")
     yield reading
     reading.page.close()
@@ -92,10 +77,10 @@ def test_it_opens_without_network_request_or_error(untouched, written):
     assert written.stat().st_size < 2e6
 
 
-def test_an_error_and_a_request_are_seen(browser, tmp_path):
+def test_an_error_and_a_request_are_seen(offline, tmp_path):
     bad = tmp_path / "bad.html"
     bad.write_text("<img src='http://example.invalid/x.png'><script>throw new Error('broken')</script>")
-    reading = Opened(browser, bad)
+    reading = Opened(offline, bad)
     reading.page.wait_for_load_state()
     assert any("broken" in error for error in reading.errors)
     assert any("example.invalid" in url for url in reading.requests)
@@ -261,14 +246,14 @@ def paused(page, seen):
     return still
 
 
-def test_the_brake_vibrates_in_its_worst_mode_and_stands_still_on_paper(browser, quiet, tmp_path):
+def test_the_brake_vibrates_in_its_worst_mode_and_stands_still_on_paper(offline, quiet, tmp_path):
     block = vibrating(quiet.design, quiet.modes)
     angles = np.linspace(0.0, 2.0 * np.pi, 3601)[:, None, None]
     swing = np.cos(angles) * block.arrays["re"] - np.sin(angles) * block.arrays["im"]
     height = block.data["box"][3] - block.data["box"][2]
     assert np.max(np.linalg.norm(swing, axis=-1)) == pytest.approx(0.14 * height, rel=1e-6)
     path = write_page(Page("a page", "a lead", (Section("one", (block,)),)), tmp_path / "drawn.html")
-    reading = Opened(browser, path)
+    reading = Opened(offline, path)
     page = reading.page
     seen = "document.querySelector('figure.vibrating circle').getAttribute('cx')"
     paused(page, seen)
@@ -279,12 +264,12 @@ def test_the_brake_vibrates_in_its_worst_mode_and_stands_still_on_paper(browser,
     page.close()
 
 
-def test_a_finite_element_brake_vibrates_and_is_turned_by_hand(browser, tmp_path):
+def test_a_finite_element_brake_vibrates_and_is_turned_by_hand(offline, tmp_path):
     brake = reduce(DiscBrake(element_size=0.05, friction=Coulomb(0.5)), (2500.0, 5000.0))
     solid = vibrating(brake, complex_modes(brake))
     path = write_page(Page("a page", "a lead", (Section("one", (solid,)),)), tmp_path / "solid.html")
     assert path.stat().st_size < 1e6
-    reading = Opened(browser, path)
+    reading = Opened(offline, path)
     page = reading.page
     seen = "document.querySelector('figure.vibrating canvas').toDataURL()"
     page.wait_for_function(f"{seen}.length > 5000")
@@ -311,7 +296,7 @@ def test_what_cannot_be_computed_is_said():
     assert "Not computed, cycle: expected constant loads" in text
 
 
-def test_a_result_and_a_folder_of_results(tmp_path, browser):
+def test_a_result_and_a_folder_of_results(tmp_path, offline):
     brake = DrumBrake()
     complex_modes(brake).save(tmp_path / "modes.nc")
     simulate(brake, 5e-3, times=501).save(tmp_path / "motion.nc")
@@ -321,7 +306,7 @@ def test_a_result_and_a_folder_of_results(tmp_path, browser):
         ("motion", ["Trajectory", "half peak to peak"]),
         ("all", ["ComplexModes", "Trajectory", "Drum brake"]),
     ):
-        reading = Opened(browser, tmp_path / f"{name}.html")
+        reading = Opened(offline, tmp_path / f"{name}.html")
         reading.page.wait_for_load_state()
         assert reading.errors == []
         text = reading.page.inner_text("body")
@@ -329,11 +314,11 @@ def test_a_result_and_a_folder_of_results(tmp_path, browser):
         reading.page.close()
 
 
-def test_a_study_and_its_folder(tmp_path, browser):
+def test_a_study_and_its_folder(tmp_path, offline):
     axes = {"friction.static": np.linspace(0.1, 0.5, 9), "load": np.linspace(500.0, 2000.0, 5)}
     sweep(DrumBrake(), axes, complex_modes, keep=["largest_growth_rate", "stable"], out=tmp_path / "study")
     assert main(["report", str(tmp_path / "study"), "--out", str(tmp_path / "study.html")]) == DONE
-    reading = Opened(browser, tmp_path / "study.html")
+    reading = Opened(offline, tmp_path / "study.html")
     reading.page.wait_for_load_state()
     assert reading.errors == []
     text = reading.page.inner_text("body")
@@ -366,8 +351,8 @@ def test_a_bad_source_is_one_sentence(source, sentence, tmp_path, capsys):
     assert not (tmp_path / "out.html").exists()
 
 
-def test_where_figures_cannot_be_drawn_the_pictures_stay_and_it_says_so(browser, written):
-    reading = browser.new_page()
+def test_where_figures_cannot_be_drawn_the_pictures_stay_and_it_says_so(offline, written):
+    reading = offline.new_page()
     reading.add_init_script("CSS.supports = () => false")
     reading.goto(written.as_uri())
     reading.wait_for_selector("html[data-charts=still]")

@@ -1,15 +1,7 @@
-"""Debian's Chromium through Playwright, and what a test wants to know of a page: what is drawn, and what went wrong."""
+"""What a test wants to know of a page of the workbench: what is drawn, and what went wrong."""
 
-import contextlib
-import shutil
 import time
 
-from browsers import driven
-
-FLAGS = [
-    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync",
-]  # fmt: skip
 LINES = """figure => [...figure.querySelectorAll('g.layer')].map(layer => ({
     cls: layer.getAttribute('class'), d: layer.querySelector('path')?.getAttribute('d') ?? '',
     circles: layer.querySelectorAll('circle').length,
@@ -32,17 +24,6 @@ SPEC = """([name, figure]) => import('/static/app.js').then(({ app }) => {
     const layers = spec.layers.filter(({ kind }) => kind === 'line' || kind === 'points');
     return { x: spec.x, y: spec.y, layers: layers.map(numbers) };
 })"""
-
-
-@contextlib.contextmanager
-def launched():
-    """A headless Chromium with a new profile."""
-    path = shutil.which("chromium")
-    assert path, "chromium is not installed; make test installs it"
-    with driven() as playwright:
-        running = playwright.chromium.launch(executable_path=path, args=FLAGS)
-        yield running
-        running.close()
 
 
 class Page:

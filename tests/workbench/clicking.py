@@ -13,7 +13,8 @@ from pathlib import Path
 
 import psutil
 
-from workbench.browsing import AGAIN, BEGUN, Page, launched
+from browsers import launched
+from workbench.browsing import AGAIN, BEGUN, Page
 from workbench.conftest import Server
 
 LIVING = ("locus", "moving", "energy", "friction", "map", "motion", "sensitivity", "compare")

@@ -1,4 +1,4 @@
-"""A running workbench, a real browser, and a page that fails its test on any error or any request to elsewhere."""
+"""A running workbench, and a page that fails its test on any error or any request to elsewhere."""
 
 import os
 import re
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from workbench.browsing import Page, launched
+from workbench.browsing import Page
 
 COMMAND = Path(sys.executable).with_name("squealbox")
 
@@ -40,12 +40,6 @@ def server(tmp_path_factory):
     running = Server(tmp_path_factory.mktemp("workbench"))
     yield running
     running.stop()
-
-
-@pytest.fixture(scope="session")
-def browser():
-    with launched() as running:
-        yield running
 
 
 @pytest.fixture(scope="session")
