@@ -10,6 +10,7 @@ from squealbox.parameters import DataSheet
 from squealbox.words import as_read, quantity_label, unit_at
 
 MOST_COLUMNS = 100  # that one array gives to a table
+APART = {"parameter": "", "state": "m"}  # rows of which each has a unit of its own in arrays of that unit
 MOTION = {"q": "{}", "qd": "d{}/dt"}  # heads of columns
 
 
@@ -94,11 +95,12 @@ class Tabled:
             unit = "" if named is None else str(named.about.get("units", ""))
             values, unit = as_read(labels if named is not None else labels + 1, unit)
             found[_headed(holds.get(dim, dim), unit or "-", values)] = values
-        if over == ("parameter",) and any(each.unit == "" for each in told):
-            found["unit"] = np.array([self.unit_of(name) or "-" for name in found["parameter"]])
+        rows = "".join(over)
+        if any(each.unit == APART.get(rows) for each in told):
+            found["unit"] = np.array([self._unit_at(rows, name, APART[rows]) or "-" for name in found[rows]])
         for each in told:
             head = holds.get(each.name) or headings.get(each.name) or each.name.replace("_", " ")
-            unit, values = each.unit, each.values
+            unit, values = "" if each.unit == APART.get(rows) else each.unit, each.values
             for dim, label in each.part.items():
                 between = ", " if dim == "contact" else " "
                 head = head.replace("{}", label) if "{}" in head else f"{head}{between}{label}"

@@ -76,6 +76,10 @@ def test_angles_are_told_in_degrees_and_rotations_in_radians():
     turning = EXAMPLES["Trajectory"]()
     system = dataclasses.replace(turning, inputs={"system": turning.system.replace(angles=("y",))})
     assert {"x [m]", "dx/dt [m/s]", "y [rad]", "dy/dt [rad/s]"} <= set(system.table())
+    push = EXAMPLES["DangerousPush"]().table()
+    assert (list(push), list(push["unit"])) == (["state", "unit", "push"], ["m", "m", "m/s", "m/s"])
+    point = EXAMPLES["DesignPoint"]().table()
+    assert list(point)[:4] == ["parameter", "unit", "squeals at", "median"]
 
 
 def test_a_folder_that_is_a_file_is_a_sentence(tmp_path):
