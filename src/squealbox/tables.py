@@ -96,23 +96,24 @@ class Tabled:
             values, unit = as_read(labels if named is not None else labels + 1, unit)
             found[_headed(holds.get(dim, dim), unit or "-", values)] = values
         rows = "".join(over)
-        if any(each.unit == APART.get(rows) for each in told):
-            found["unit"] = np.array([self._unit_at(rows, name, APART[rows]) or "-" for name in found[rows]])
+        apart = APART.get(rows) if rows in found else None
+        if apart is not None and any(each.unit == apart for each in told):
+            found["unit"] = np.array([self._unit_at(rows, name, apart) or "-" for name in found[rows]])
         for each in told:
             head = holds.get(each.name) or headings.get(each.name) or each.name.replace("_", " ")
-            unit, values = "" if each.unit == APART.get(rows) else each.unit, each.values
+            unit, values = "" if each.unit == apart else each.unit, each.values
             for dim, label in each.part.items():
                 between = ", " if dim == "contact" else " "
                 head = head.replace("{}", label) if "{}" in head else f"{head}{between}{label}"
                 unit = self._unit_at(dim, label, unit)
+            head = head.replace("{}", each.name)  # where rows are what labels tell
             if each.name in holds or ("parameter" in each.part and not each.unit):
                 values, unit = as_read(values, unit)
                 unit = unit or "-"
-            if np.iscomplexobj(values):
-                found[_headed(f"{head} real", unit, values)] = values.real
-                found[_headed(f"{head} imaginary", unit, values)] = values.imag
-            else:
-                found[_headed(head, unit, values)] = values
+            parts = {" real": values.real, " imaginary": values.imag} if np.iscomplexobj(values) else {"": values}
+            for which, part in parts.items():
+                whole = _headed(f"{head}{which}", unit, part)
+                found[f"{each.name}: {whole}" if whole in found else whole] = part  # a freedom may be called "mode"
         return found
 
     def unit_of(self, parameter: str) -> str:
