@@ -10,6 +10,7 @@ from squealbox.parameters import DataSheet
 from squealbox.words import as_read, quantity_label, unit_at
 
 MOST_COLUMNS = 100  # that one array gives to a table
+APART = {"parameter": "", "state": "m"}  # rows of which each has a unit of its own in arrays of that unit
 MOTION = {"q": "{}", "qd": "d{}/dt"}  # heads of columns
 
 
@@ -94,23 +95,25 @@ class Tabled:
             unit = "" if named is None else str(named.about.get("units", ""))
             values, unit = as_read(labels if named is not None else labels + 1, unit)
             found[_headed(holds.get(dim, dim), unit or "-", values)] = values
-        if over == ("parameter",) and any(each.unit == "" for each in told):
-            found["unit"] = np.array([self.unit_of(name) or "-" for name in found["parameter"]])
+        rows = "".join(over)
+        apart = APART.get(rows) if rows in found else None
+        if apart is not None and any(each.unit == apart for each in told):
+            found["unit"] = np.array([self._unit_at(rows, name, apart) or "-" for name in found[rows]])
         for each in told:
             head = holds.get(each.name) or headings.get(each.name) or each.name.replace("_", " ")
-            unit, values = each.unit, each.values
+            unit, values = "" if each.unit == apart else each.unit, each.values
             for dim, label in each.part.items():
                 between = ", " if dim == "contact" else " "
                 head = head.replace("{}", label) if "{}" in head else f"{head}{between}{label}"
                 unit = self._unit_at(dim, label, unit)
+            head = head.replace("{}", each.name)  # where rows are what labels tell
             if each.name in holds or ("parameter" in each.part and not each.unit):
                 values, unit = as_read(values, unit)
                 unit = unit or "-"
-            if np.iscomplexobj(values):
-                found[_headed(f"{head} real", unit, values)] = values.real
-                found[_headed(f"{head} imaginary", unit, values)] = values.imag
-            else:
-                found[_headed(head, unit, values)] = values
+            parts = {" real": values.real, " imaginary": values.imag} if np.iscomplexobj(values) else {"": values}
+            for which, part in parts.items():
+                whole = _headed(f"{head}{which}", unit, part)
+                found[f"{each.name}: {whole}" if whole in found else whole] = part  # a freedom may be called "mode"
         return found
 
     def unit_of(self, parameter: str) -> str:

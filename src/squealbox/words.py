@@ -110,10 +110,10 @@ def level_told(level: Any, weighted: Any) -> str:
 
 
 def sizes_told(names: Iterable[str], sizes: Iterable[Any], units: Iterable[str], digits: int = 6) -> str:
-    """What each freedom does, with units that suit: ``x 2.31 µm, y 0.4 mm``; of (least, largest) both.
+    """What each freedom does, with units that suit: ``x 2.31 µm, y 4 mm``; of (least, largest) both.
 
-    >>> sizes_told(("x", "y"), (2.31e-6, (1e-4, 4e-4)), ("m", "m"))
-    'x 2.31 µm, y 0.1 to 0.4 mm'
+    >>> sizes_told(("x", "y"), (2.31e-6, (1e-3, 4e-3)), ("m", "m"))
+    'x 2.31 µm, y 1 to 4 mm'
     """
     told = []
     for name, size, unit in zip(names, sizes, units, strict=True):

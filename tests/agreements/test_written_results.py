@@ -13,7 +13,7 @@ from squealbox import write
 from squealbox.cli import main
 from squealbox.designs import DrumBrake
 from squealbox.files import write_design
-from squealbox.result import Result, ResultFileError
+from squealbox.result import Result, ResultFileError, quantity
 from squealbox.stability import complex_modes, stability_boundary
 from squealbox.writing import made, write_table
 
@@ -76,6 +76,25 @@ def test_angles_are_told_in_degrees_and_rotations_in_radians():
     turning = EXAMPLES["Trajectory"]()
     system = dataclasses.replace(turning, inputs={"system": turning.system.replace(angles=("y",))})
     assert {"x [m]", "dx/dt [m/s]", "y [rad]", "dy/dt [rad/s]"} <= set(system.table())
+    push = EXAMPLES["DangerousPush"]().table()
+    assert (list(push), list(push["unit"])) == (["state", "unit", "push"], ["m", "m", "m/s", "m/s"])
+    point = EXAMPLES["DesignPoint"]().table()
+    assert list(point)[:4] == ["parameter", "unit", "squeals at", "median"]
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
+class Twice(Result):
+    """An array of the name of a freedom."""
+
+    q: np.ndarray = quantity("time dof", "m", "displacement")
+    x: np.ndarray = quantity("time", "m", "something else")
+
+    table_over = ("time",)
+
+
+def test_no_column_takes_the_place_of_another():
+    found = Twice(q=np.zeros((3, 2)), x=np.ones(3), inputs={"system": DrumBrake()}).table()
+    assert {head: values[0] for head, values in found.items()} == {"x [m]": 0.0, "y [m]": 0.0, "x: x [m]": 1.0}
 
 
 def test_a_folder_that_is_a_file_is_a_sentence(tmp_path):

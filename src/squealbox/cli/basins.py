@@ -71,5 +71,5 @@ def basin_(
         from squealbox import plots
 
         figure = plots.basin_picture(result, push=smallest, title=found.path.name)
-        push_file = [] if smallest is None else [smallest.save(out / "push.nc")]
-        print(written(*write(result, out, "basin", figure=figure), *push_file))
+        pushes = [] if smallest is None else write(smallest, out, "push")
+        print(written(*write(result, out, "basin", figure=figure), *pushes))

@@ -13,7 +13,7 @@ from squealbox.fe import AssembledBrake, MeshedBrake, write_uff, write_vtu
 from squealbox.files import DesignFile, Reduce, Reduced
 from squealbox.stability import ONE_MESH, complex_modes, mesh_doubt, mode_table, table_text
 from squealbox.waiting import Progress
-from squealbox.writing import write_table
+from squealbox.writing import write
 
 FRICTION = "friction.static"
 POINTS = 61
@@ -36,8 +36,8 @@ def print_more(
             print(f"Doubt: {doubt}.")
     if out is None:
         return
-    paths = [spectrum.save(out / "modes.nc"), write_table(out / "modes.csv", table)]
-    paths += [] if second is None else [second.save(out / "second_mesh.nc")]
+    paths = write(spectrum, out, "modes", table=table, title=found.path.name)
+    paths += [] if second is None else write(second, out, "second_mesh")
     paths += _shapes(found, spectrum, out) + _coalescence(found, band, out)
     print(written(*paths))
 
@@ -51,9 +51,9 @@ def _shapes(found: DesignFile, spectrum: Any, out: Path) -> list[Path]:
         print('Mode shapes need the places of nodes: nodes = "nodes.csv" under [structure].')
         return []
     paths = []
-    for write, name in ((write_vtu, "modes.vtu"), (write_uff, "modes.uff")):
+    for shape, name in ((write_vtu, "modes.vtu"), (write_uff, "modes.uff")):
         try:
-            paths.append(write(out / name, structure, spectrum.eigenvalues[:half], spectrum.right[:, :half]))
+            paths.append(shape(out / name, structure, spectrum.eigenvalues[:half], spectrum.right[:, :half]))
         except ModuleNotFoundError as error:
             if error.name not in ("meshio", "pyuff"):
                 raise

@@ -68,7 +68,7 @@ def modes(
     found = read(file, asked)
     settings = how.over(found.modes or ModeSettings())
     time = settings.time
-    folder(out, "modes", "mode_energy", "coalescence")
+    folder(out, "modes", "mode_energy", "coalescence", "second_mesh")
     if found.design.system().is_sparse:
         _modes_in_band(found, settings, second_mesh, out)
         return

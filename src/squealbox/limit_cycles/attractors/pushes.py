@@ -28,6 +28,7 @@ from squealbox.limit_cycles.cycles.pinned import at_rest_together
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.system import System
+from squealbox.words import sizes_told
 
 SECTIONS = (12, 8, 8)  # lengths tried at once between two, one round after the other
 FINE = (12, 12, 12, 12)  # of the last search along one direction
@@ -60,10 +61,11 @@ class DangerousPush(Result):
         """Energy, push, what it leads to and what is known below it."""
         if not self.outcome.ok:
             return self.outcome.told
-        parts = [f"{name} {value:+.4g}" for name, value in zip(state_names(self.system), self.push, strict=True)]
-        to = f", to: {self.to.summary()}" if self.to is not None else ""
+        units = (*self.system.units, *(f"{unit}/s" for unit in self.system.units))
+        parts = sizes_told(state_names(self.system), self.push, units, 4)
+        to = f", to: {self.to.summary(self.system)}" if self.to is not None else ""
         return (
-            f"smallest push found: {float(self.energy):.4g} J ({', '.join(parts)}; m, m/s){to}\n"
+            f"smallest push found: {float(self.energy):.4g} J ({parts}){to}\n"
             f"of all pushes of less energy at most {100 * self.share_below[1]:.2g} % vibrate (95 %: "
             f"{int(self.dangerous)} of {int(self.drawn)} drawn); {int(self.runs)} runs"
         )

@@ -54,8 +54,9 @@ class Optimum(Result):
         return {"best": np.arange(len(self.values)) == self.best, **super().table()}
 
     def _unit_at(self, dim: str, label: str, unit: str) -> str:
-        asked = {each["name"]: each["unit"] for each in self.settings.get(f"{dim}s", ())}
-        return str(asked.get(label) or "-") if asked else super()._unit_at(dim, label, unit)
+        if dim not in ("goal", "constraint"):
+            return super()._unit_at(dim, label, unit)
+        return str({each["name"]: each["unit"] for each in self.settings[f"{dim}s"]}.get(label) or "-")
 
     @property
     def changes(self) -> dict[str, float]:
