@@ -255,7 +255,7 @@ class Contacts(DataSheet):
         values = getattr(self, name)
         return np.array([value_at(value, time) for value in values], float) if isinstance(values, tuple) else values
 
-    def friction(self, speed: Any) -> tuple[Any, Any]:
+    def friction(self, speed: np.ndarray) -> tuple[Any, Any]:
         """mu [-] and its slope [s/m] at the sliding speeds (contacts,)."""
         if isinstance(self.law, FrictionLaw):
             pair = self.law.mu(speed), self.law.slope_at(speed)

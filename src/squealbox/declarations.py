@@ -49,7 +49,7 @@ class Parameter:
         """True when a field may hold `value`: every entry is accepted, and of two ends the lower comes first."""
         return self.accepts(value) and (not self.ends or (value.shape == (2,) and bool(value[0] < value[1])))
 
-    def contains(self, value: Any) -> Any:
+    def contains(self, value: float | np.ndarray) -> Any:
         """Where a number, or each of an array, is inside the range."""
         above = value > self.low if self.low_open else value >= self.low
         return above & (value < self.high if self.high_open else value <= self.high)

@@ -11,6 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 import scipy
+from numpy.typing import ArrayLike
 
 Library = Literal["auto", "superlu", "rslab"]
 LIBRARIES = ("auto", "superlu", "rslab")
@@ -48,7 +49,7 @@ class Factor:
         self._matrix, self.symmetric, self.size = matrix, symmetric, int(matrix.shape[0])
         self._lu: Any = None
 
-    def solve(self, right: Any, *, transposed: bool = False) -> Any:
+    def solve(self, right: ArrayLike, *, transposed: bool = False) -> Any:
         """A^-1 b, or A^-T b, for b (n,) or (n, k), real or complex."""
         right = np.asarray(right)
         if right.shape[:1] != (self.size,):
@@ -59,7 +60,7 @@ class Factor:
         right = np.ascontiguousarray(right, dtype=self._matrix.dtype)
         return self._solved(right, transposed and not self.symmetric).astype(kind, copy=False)
 
-    def solve_many(self, right: Any, *, transposed: bool = False, block: int = 64) -> Any:
+    def solve_many(self, right: ArrayLike, *, transposed: bool = False, block: int = 64) -> Any:
         """A^-1 B for B (n, k), in blocks of columns, so that no more than a block is copied at a time."""
         right = np.asarray(right)
         kind = np.result_type(self._matrix.dtype, right.dtype, float)
@@ -97,7 +98,7 @@ class Factor:
             self._lu = _superlu(self._matrix, self.symmetric)
         return self._lu
 
-    def _solved(self, right: Any, transposed: bool) -> Any:
+    def _solved(self, right: np.ndarray, transposed: bool) -> Any:
         return self._superlu().solve(right, trans="T" if transposed else "N")
 
     def _signs(self) -> tuple[int, int, int]:
@@ -152,7 +153,7 @@ class Rslab(Factor):
         known = self.solve(right)
         return light if np.linalg.norm(light.solve(right) - known) <= GOOD * np.linalg.norm(known) else self
 
-    def _solved(self, right: Any, transposed: bool) -> Any:
+    def _solved(self, right: np.ndarray, transposed: bool) -> Any:
         if transposed:
             columns = [self._factors.solve_transpose(column) for column in np.atleast_2d(right.T)]
             return columns[0] if right.ndim == 1 else np.stack(columns, axis=1)
@@ -272,7 +273,7 @@ def _check(solve: Any, matrix: Any) -> None:
         raise SingularMatrix(f"the matrix of {matrix.shape[0]} rows is singular to working precision")
 
 
-def _parity(permutation: Any) -> int:
+def _parity(permutation: np.ndarray) -> int:
     """0 for an even permutation, 1 for an odd one: rows less cycles."""
     size = len(permutation)
     graph = scipy.sparse.csr_array((np.ones(size), (np.arange(size), permutation)), shape=(size, size))

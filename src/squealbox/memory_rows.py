@@ -33,7 +33,7 @@ def no_memory(contacts: Sequence[Contact] | Contacts, what: str) -> None:
 
 
 def with_memory(
-    contacts: Sequence[Contact], matrices: tuple[Any, Any, Any], state: Any, closed: Any
+    contacts: Sequence[Contact], matrices: tuple[Any, Any, Any], state: Any, closed: np.ndarray
 ) -> tuple[tuple[Any, Any, Any], Any]:
     """M, C_eff, K_eff (..., n, n) with the rows of the bristles at their end, and q (..., n) with their deflection.
 

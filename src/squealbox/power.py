@@ -3,13 +3,14 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.matrices import form
 from squealbox.schedules import Schedule
 from squealbox.system import System, contact_state
 
 
-def mechanical_energy(system: System, q: Any, qd: Any) -> Any:
+def mechanical_energy(system: System, q: np.ndarray, qd: np.ndarray) -> Any:
     """Kinetic plus strain energy [J], 1/2 q'.M q' + 1/2 q.Ks q with Ks the symmetric part of K; shape (...)."""
     symmetric = 0.5 * (system.K + np.swapaxes(system.K, -1, -2))
     return 0.5 * form(qd, system.M, qd) + 0.5 * form(q, symmetric, q)
@@ -33,7 +34,7 @@ def power_of_circulation(system: System, q: Any, qd: Any) -> Any:
     return -form(qd, skew, q)
 
 
-def power_of_load(system: System, time: Any, qd: Any) -> Any:
+def power_of_load(system: System, time: ArrayLike, qd: Any) -> Any:
     """Power [W] of the load, q'.f(t), shape (...)."""
     if isinstance(system.load, Schedule):
         load = np.stack([np.asarray(system.load.value(t)) for t in np.ravel(time)])

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from squealbox.labelled import Labelled, Labels, whole
 from squealbox.parameters import DRAWN_BY, from_plain, load_kind, screenful, to_plain, with_cautions
@@ -335,7 +335,7 @@ def _moved(name: str) -> "type[Result] | None":
     return alike[0] if len(alike) == 1 else None
 
 
-def _told(field: dataclasses.Field[Any], value: Any) -> str:
+def _told(field: dataclasses.Field[Any], value: ArrayLike) -> str:
     """One array in a line: a number with its unit, or shape, range and unit."""
     unit, array = field.metadata["unit"], np.asarray(value)
     behind = "" if unit in ("", "1", "-") else f" {unit}"

@@ -17,10 +17,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.parameters import ParameterError
 from squealbox.schedules import value_at
-from squealbox.system import InvalidSystem, System, equilibrium
+from squealbox.system import DesignOrSystem, InvalidSystem, System, equilibrium
 
 SHARE = 0.01  # of the sliding speed
 NO_SLIDING = "there is no steady sliding to start from"
@@ -124,13 +125,13 @@ def in_words(start: Any) -> dict[str, Any] | None:
     return dict(start) if isinstance(start, Mapping) and set(start) - {"amplitude"} == {"mode"} else None
 
 
-def beside(steady: Any, eigenvalue: Any, shape: Any, amplitude: Any) -> tuple[Any, Any]:
+def beside(steady: np.ndarray, eigenvalue: ArrayLike, shape: np.ndarray, amplitude: ArrayLike) -> tuple[Any, Any]:
     """q and q' (..., n) of steady sliding with a mode of that amplitude [m], |u| = 1."""
     turned = np.asarray(amplitude)[..., None] * shape
     return steady + turned.real, (np.asarray(eigenvalue)[..., None] * turned).real
 
 
-def visible(system: System, eigenvalue: Any, shape: Any, share: float = SHARE) -> Any:
+def visible(system: System, eigenvalue: ArrayLike, shape: np.ndarray, share: float = SHARE) -> Any:
     """Amplitude [m] of a mode (..., n) at which the sliding speed of some contact swings by a share of it."""
     found: Any = np.inf
     for contact in system.contacts:
@@ -141,7 +142,9 @@ def visible(system: System, eigenvalue: Any, shape: Any, share: float = SHARE) -
     return np.where(np.isfinite(found), share * found, SMALL)
 
 
-def _in_mode(owner: str, name: str, asked: Mapping[str, Any], design: Any, time: float) -> tuple[Any, Any, Any]:
+def _in_mode(
+    owner: str, name: str, asked: Mapping[str, Any], design: DesignOrSystem, time: float
+) -> tuple[Any, Any, Any]:
     """Eigenvalue (...), shape and steady sliding (..., rows) of the mode asked for."""
     from squealbox.stability import complex_modes
 
@@ -163,7 +166,7 @@ def _in_mode(owner: str, name: str, asked: Mapping[str, Any], design: Any, time:
     return value, np.take_along_axis(modes.right, index[..., None, None], axis=-1)[..., 0], modes.steady
 
 
-def _padded(x: Any, size: int) -> Any:
+def _padded(x: np.ndarray, size: int) -> Any:
     """States (..., k) with zeros behind them, (..., size)."""
     return np.concatenate([x, np.zeros((*x.shape[:-1], size - x.shape[-1]))], axis=-1)
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.calibration.measured import Measured
@@ -255,11 +256,11 @@ class _Problem:
         for ends in (self.low, high):  # a bound outside a parameter's range is told at once
             _made(design, dict(zip(self.names, (float(x) for x in ends), strict=True)))
 
-    def inside(self, values: Any) -> Any:
+    def inside(self, values: ArrayLike) -> Any:
         """Values as a point of the unit box."""
         return np.clip((np.asarray(values) - self.low) / self.width, 0.0, 1.0)
 
-    def __call__(self, u: Any) -> Any:
+    def __call__(self, u: np.ndarray) -> Any:
         values = self.low + np.atleast_2d(u) * self.width
         columns = {name: values[:, i] for i, name in enumerate(self.names)}
         rows: list[Any] = []
@@ -288,7 +289,14 @@ class _Problem:
 
 
 def _profiles(
-    problem: _Problem, u: Any, cost: float, errors: Any, rise: float, robust: bool, low: Any, high: Any
+    problem: _Problem,
+    u: np.ndarray,
+    cost: float,
+    errors: np.ndarray,
+    rise: float,
+    robust: bool,
+    low: np.ndarray,
+    high: np.ndarray,
 ) -> tuple[Any, Any]:
     """Ends of the profile intervals; a bound where chi^2 does not rise so far within it."""
     size = len(u)
@@ -330,7 +338,14 @@ def _profiles(
 
 
 def _words(
-    problem: _Problem, values: Any, errors: Any, singular: Any, rows: Any, unknown: Any, low: Any, high: Any
+    problem: _Problem,
+    values: np.ndarray,
+    errors: np.ndarray,
+    singular: np.ndarray,
+    rows: np.ndarray,
+    unknown: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
 ) -> list[str]:
     """What the data cannot tell apart, a sentence each."""
     told = []

@@ -5,10 +5,12 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.parameters import DataSheet, ParameterError, known_names
 from squealbox.signals import SignalError, growth_rate
 from squealbox.signals.growth import LEVEL
+from squealbox.signals.samples import Signal
 from squealbox.stability import complex_modes, first_crossings
 from squealbox.transient import simulate_ensemble
 
@@ -120,7 +122,9 @@ class Measured(DataSheet):
         return np.take_along_axis(values, place[..., None], axis=-1)[..., 0]
 
 
-def from_signal(signal: Any, t: Any = None, *, mode: str | int = "unstable", **cut: Any) -> list[Measured]:
+def from_signal(
+    signal: Signal, t: ArrayLike | None = None, *, mode: str | int = "unstable", **cut: Any
+) -> list[Measured]:
     """Frequency and growth rate of a time signal as two measured numbers with the errors the noise leaves them.
 
     Raises `SignalError` when the signal cannot tell them.
@@ -137,7 +141,7 @@ def from_signal(signal: Any, t: Any = None, *, mode: str | int = "unstable", **c
     ]
 
 
-def from_friction(speeds: Any, values: Any, sd: float, at: Mapping[str, float] | None = None) -> list[Measured]:
+def from_friction(speeds: ArrayLike, values: Any, sd: float, at: Mapping[str, float] | None = None) -> list[Measured]:
     """A measured friction curve, coefficients at sliding speeds [m/s], as measured numbers.
 
     `sd` [-]: standard deviation of a coefficient.

@@ -17,6 +17,7 @@ small H (i w - A)^-1 B has the size 1, looked for on a grid that is dense at eve
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.control.plant import Plant
 
@@ -137,7 +138,7 @@ def _crossings_by_grid(plant: Plant) -> list[tuple[float, float]]:
     own, shapes = np.linalg.eig(A)
     out, into = H @ shapes, np.linalg.solve(shapes, B.astype(complex))  # near a double pole a little off: a guess
 
-    def gains(x: Any) -> Any:
+    def gains(x: ArrayLike) -> Any:
         values = np.linalg.eigvals((out / (1j * np.asarray(x)[..., None, None] - own)) @ into)
         return np.take_along_axis(values, np.argsort(np.abs(values), axis=-1), axis=-1)
 
@@ -214,7 +215,7 @@ def broken(plant: Plant, a: int) -> tuple[Any, Any, Any]:
     return plant.A + plant.B[:, others] @ plant.H[others], plant.B[:, a], plant.H[a]
 
 
-def loop_gain(A: Any, B: Any, H: Any, w: Any, delay: float = 0.0) -> Any:
+def loop_gain(A: Any, B: Any, H: Any, w: ArrayLike, delay: float = 0.0) -> Any:
     """exp(-i w T) H (i w - A)^-1 B at angular frequencies w (...)."""
     w = np.asarray(w, dtype=float)
     state = np.linalg.solve(1j * w[..., None, None] * np.eye(len(A)) - A, B.astype(complex)[:, None])

@@ -14,7 +14,7 @@ from squealbox.loops import Loop, folded
 from squealbox.loops.held import first_order
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome
-from squealbox.system import System, linearise
+from squealbox.system import DesignOrSystem, System, linearise
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,12 +45,12 @@ class Plant:
         return replace(self, delay=delay)
 
 
-def with_loops(design_or_system: Any) -> System:
+def with_loops(design_or_system: DesignOrSystem) -> System:
     """The system with its loops still apart."""
     return design_or_system if isinstance(design_or_system, System) else design_or_system.system()
 
 
-def plant(design_or_system: Any, time: float = 0.0) -> Plant:
+def plant(design_or_system: DesignOrSystem, time: float = 0.0) -> Plant:
     """The linear form of a brake with loops; `ParameterError` without loops or with leading axes.
 
     `time` [s]: instant at which schedules are taken.

@@ -13,6 +13,7 @@ side on the line is walked; beyond that reach det D = s^d det(I - X/s) with |X/s
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.loops.rows import chebyshev
 
@@ -44,13 +45,13 @@ class Late:
             out = np.vstack([right for _, _, right in self.split]) @ vectors
             self.way = (out.T[:, :, None] * into[:, None, :]).reshape(len(values), -1)  # V (sI - A)^-1 U by modes of A
 
-    def matrix(self, s: Any) -> Any:
+    def matrix(self, s: ArrayLike) -> Any:
         """D(s) for s (...), shape (..., d, d)."""
         s = np.asarray(s, dtype=complex)[..., None, None]
         late = (part * np.exp(np.minimum(-s.real * delay, 600.0) - 1j * s.imag * delay) for delay, part in self.parts)
         return s * np.eye(len(self.A)) - self.A - sum(late)
 
-    def slope(self, s: Any) -> Any:
+    def slope(self, s: ArrayLike) -> Any:
         """dD/ds."""
         s = np.asarray(s, dtype=complex)[..., None, None]
         late = (
@@ -149,7 +150,7 @@ def refined(late: Late, guesses: Any, line: float) -> Any:
     return both[np.lexsort((-both.imag, -both.real))]
 
 
-def newton(late: Late, guesses: Any, most: int = 16) -> Any:
+def newton(late: Late, guesses: ArrayLike, most: int = 16) -> Any:
     """The poles near the guesses (k,): Newton's method on D(s) v = 0, c.v = 1; without those that do not converge."""
     s = np.array(guesses, dtype=complex)
     d, scale = len(late.A), late.reach(0.0)

@@ -15,7 +15,7 @@ from squealbox.control.plant import with_loops
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import complex_modes
-from squealbox.system import equilibrium
+from squealbox.system import DesignOrSystem, equilibrium
 from squealbox.transient.simulate import simulate
 
 PERIODS, LONGEST = 40, 16  # of the pushed mode in one run, and longer ones before it counts as not dying down
@@ -54,7 +54,7 @@ class DefeatingPush(Result):
 
 @public()
 def defeating_push(
-    design_or_system: Any, direction: Any = None, *, precision: float = 1e-3, rtol: float = 1e-9
+    design_or_system: DesignOrSystem, direction: Any = None, *, precision: float = 1e-3, rtol: float = 1e-9
 ) -> DefeatingPush:
     """The smallest push that defeats the limited loops of a brake that is stable with them near steady sliding.
 

@@ -12,7 +12,7 @@ from squealbox.control.plant import with_loops
 from squealbox.loops.driven import Driven
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.system import System, equilibrium
+from squealbox.system import DesignOrSystem, System, equilibrium
 from squealbox.transient.pieces import driven_brake, in_pieces, start_of
 
 LAST, MOSTLY = 0.25, 0.5  # share of a run, and share of that at a limit beyond which a loop is saturated
@@ -41,7 +41,7 @@ class LoopRun(Result):
         )
 
 
-def run_loops(design_or_system: Any, duration: float, start: Any = None, *, rtol: float = 1e-10) -> LoopRun:
+def run_loops(design_or_system: DesignOrSystem, duration: float, start: Any = None, *, rtol: float = 1e-10) -> LoopRun:
     """The motion over `duration` [s] of a brake whose loops are sampled, or late, or both; limits are kept.
 
     Parameters

@@ -8,6 +8,7 @@ one.
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.control.plant import Plant
 from squealbox.loops.held import step_matrix
@@ -125,7 +126,7 @@ def _one_delay_margin(plant: Plant, a: int, known: float) -> float:
     return best
 
 
-def loop_gain(plant: Plant, a: int, frequencies: Any) -> Any:
+def loop_gain(plant: Plant, a: int, frequencies: ArrayLike) -> Any:
     """L(exp(i w h)) of sampled loop a, the others closed, at frequencies [Hz]."""
     return _opened(plant, a)(2.0 * np.pi * np.asarray(frequencies, dtype=float) / np.max(plant.sampling))
 
@@ -140,7 +141,7 @@ def _opened(plant: Plant, a: int) -> Any:
     left, sizes, right = np.linalg.svd(added)
     b, h = left[:, 0] * sizes[0], right[0]
 
-    def gain(angle: Any) -> Any:
+    def gain(angle: ArrayLike) -> Any:
         z = np.exp(1j * np.asarray(angle, dtype=float))[..., None, None]
         with np.errstate(all="ignore"):
             return (h @ np.linalg.solve(z * np.eye(len(open_)) - open_, b.astype(complex)[:, None]))[..., 0]

@@ -138,7 +138,7 @@ class NormalDither(Countermeasure):
         return (*said, *resonances(self.brake, self.frequency), *super().cautions())
 
 
-def resonances(brake: Any, frequency: Any) -> list[str]:
+def resonances(brake: Any, frequency: float | np.ndarray) -> list[str]:
     """A sentence for each eigenfrequency of the brake within 20 % of the dither, or at half of it (parametric)."""
     from squealbox.stability import complex_modes
 

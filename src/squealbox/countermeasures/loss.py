@@ -18,14 +18,14 @@ from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability.family import steady_sliding
 from squealbox.stability.in_band import eigenvalues_in_band, worst_in_band
 from squealbox.stability.spectra import largest_growth
-from squealbox.system import Linearised
+from squealbox.system import DesignOrSystem, Linearised
 
 MOST_ROWS = 12  # of a state matrix, whose products are 66 then
 NEAR = 2e-3  # share of a margin by which the window below it may lie above the margin of another tuning
 REAL = 1e-6  # imaginary part below which a place is one; beside a window that closes it is the root of round-off
 
 
-def growth_of(design: Any) -> Any:
+def growth_of(design: DesignOrSystem) -> Any:
     """The largest growth rate [1/s] of a design of arrays, inf without steady sliding; of a reduced one in its band."""
     if isinstance(design, ReducedBrake):
         every = [design.entry(at) for at in np.ndindex(design.shape)] if design.shape else [design]

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.extras import extra
 from squealbox.fe.grids import MeshedBody
@@ -13,7 +14,7 @@ from squealbox.fe.meshed import MeshedBrake
 FORMATS = (".vtu", ".uff")
 
 
-def write_shape(brake: MeshedBrake, shape: Any, eigenvalue: complex, path: str | os.PathLike[str]) -> Path:
+def write_shape(brake: MeshedBrake, shape: ArrayLike, eigenvalue: complex, path: str | os.PathLike[str]) -> Path:
     """Write one complex mode on the corners of the elements to `path`, which ends in .vtu or .uff.
 
     Parameters

@@ -14,6 +14,7 @@ from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import sparse
 
 from squealbox.contacts import Contacts, unchanging
@@ -69,7 +70,7 @@ class MeshedStructure:
     bodies: tuple[MeshedBody, ...]
     kept: Any
 
-    def by_body(self, values: Any) -> list[Any]:
+    def by_body(self, values: ArrayLike) -> list[Any]:
         """Of values (n, ...) on the freedoms those of each body, with zeros where it is held."""
         sizes = [body.size for body in self.bodies]
         whole = np.zeros((sum(sizes), *np.shape(values)[1:]), dtype=np.asarray(values).dtype)
@@ -92,7 +93,7 @@ def longest_side(where: str) -> Any:
     return parameter("m", 1e-4, default=0.012, meaning=f"longest side of an element {where}", source=OWN)
 
 
-def some_of(inside: Any, sheet: str, chamfer: float) -> Any:
+def some_of(inside: np.ndarray, sheet: str, chamfer: float) -> Any:
     """The places that hold; `ParameterError` where the chamfer of a sheet leaves none."""
     if not np.any(inside):
         raise ParameterError(sheet, "chamfer", chamfer, "an angle that leaves some of the lining to touch")
@@ -195,7 +196,7 @@ class MeshedBrake(Design):
         loads = tuple((name, float(value)) for name, value in self.wearing_under().items())
         return worn_linings(self._sums(made, self.touching(made)), loads, self.followers, friction, depth)
 
-    def _sums(self, made: MeshedStructure, touching: Any) -> tuple[Any, ...]:
+    def _sums(self, made: MeshedStructure, touching: np.ndarray) -> tuple[Any, ...]:
         """What `summed` takes."""
         elastic = tuple((name, *(float(x) for x in vars_of(part))) for name, part in self.materials().items())
         springs = tuple((name, float(value)) for name, value in self.held_by().items())
@@ -209,7 +210,7 @@ class MeshedBrake(Design):
         state = equilibrium(self.system()) if state is None else state
         return Preload(state, *about, np.zeros(len(touching)) if worn is None else worn.depth)
 
-    def shares(self, shape: Any) -> dict[str, tuple[float, float]]:
+    def shares(self, shape: np.ndarray) -> dict[str, tuple[float, float]]:
         """Each component's share of a mode's kinetic and of its strain energy, for a shape (n,)."""
         energies = {
             name: tuple(float(np.real(np.vdot(shape, matrix @ shape))) for matrix in pair)
@@ -331,7 +332,7 @@ class FreedomsOfBodies:
         where = (inside.indices + self.starts[body]).astype(np.int32)
         return sparse.csr_array((inside.data, where, inside.indptr), shape=(inside.shape[0], self.size))
 
-    def pin(self, face: FacePoints, body: int, direction: Any) -> Any:
+    def pin(self, face: FacePoints, body: int, direction: ArrayLike) -> Any:
         """The row (1, n) of a face's mean displacement along a direction (3,)."""
         directions = np.repeat(np.asarray(direction)[:, None], len(face.area), axis=1)
         share = sparse.csr_array((face.area / np.sum(face.area))[None, :])

@@ -105,7 +105,7 @@ class SlidingPencil(Pencil):
         lifted, system = self.sliding.lifted, self.sliding.system
         return symmetric_part(stiffness_of(system.K, system.contacts, 0.0 * lifted, lifted == 0.0))
 
-    def stiffness_on(self, shapes: Any) -> tuple[Any, Any]:
+    def stiffness_on(self, shapes: np.ndarray) -> tuple[Any, Any]:
         system, coupling, lifted = self.sliding.system, self.sliding.coupling[:, None], self.sliding.lifted[:, None]
         table = system.contacts
         felt = table.n @ shapes
@@ -116,7 +116,7 @@ class SlidingPencil(Pencil):
             weight = weight + lifted * (table.normal @ shapes)
         return right, system.K.T @ shapes - table.n.T @ weight
 
-    def damping_on(self, shapes: Any) -> Any:
+    def damping_on(self, shapes: np.ndarray) -> Any:
         table = self.sliding.system.contacts
         found = self.sliding.system.C @ shapes + table.d.T @ (self.sliding.along[:, None] * (table.t @ shapes))
         if table.across is not None:
@@ -153,6 +153,6 @@ def symmetric_part(matrix: Any) -> Any:
     return sparse.csr_array(0.5 * (matrix + matrix.T))
 
 
-def vibrating(values: Any) -> Any:
+def vibrating(values: np.ndarray) -> Any:
     """True for eigenvalues with Im > 0 whose damping ratio is below 0.1 in size."""
     return (values.imag > 0.0) & (np.abs(values.real) < MOST_DAMPED * np.abs(values))

@@ -39,7 +39,7 @@ def modes_near(pencil: Pencil, shift: complex, count: int, base: Factor | None =
     size, scale = pencil.size, abs(shift)
     base = factor(pencil.at(shift)) if base is None else base
 
-    def applied(state: Any) -> Any:
+    def applied(state: np.ndarray) -> Any:
         u, v = state[:size], state[size:] * scale
         p = -base.solve(pencil.C @ u + shift * (pencil.M @ u) + pencil.M @ v)
         return np.concatenate([p, (u + shift * p) / scale])

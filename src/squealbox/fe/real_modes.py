@@ -132,7 +132,7 @@ def _place(columns: list[Any], i: int) -> slice:
     return slice(before, before + columns[i].shape[1])
 
 
-def _orthonormal(vectors: Any, mass: Any) -> tuple[Any, Any, Any]:
+def _orthonormal(vectors: np.ndarray, mass: Any) -> tuple[Any, Any, Any]:
     """Columns W with W' M W = I, M W, and L with W L = `vectors`; columns that depend on others are left out."""
     whole: Any = None
     for _ in range(2):

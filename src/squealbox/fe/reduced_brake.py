@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.contacts import Contact
 from squealbox.designs import Design
@@ -48,7 +49,7 @@ class ChangeAlong(DataSheet):
         super().__post_init__()
         object.__setattr__(self, "change", {name: np.asarray(value) for name, value in self.change.items()})
 
-    def at(self, field: str, value: Any) -> Any:
+    def at(self, field: str, value: ArrayLike) -> Any:
         """The change of a field at `value`, which may carry leading axes; 0.0 where the field does not change."""
         known = self.change.get(field)
         if known is None:
@@ -280,7 +281,7 @@ class ReducedBrake(Design):
         """What was added to C above the band."""
         return self.reduction.arrays.get("high", 0.0)
 
-    def _quickly(self, without: Any) -> tuple[Small, Equilibrium] | None:
+    def _quickly(self, without: float | np.ndarray) -> tuple[Small, Equilibrium] | None:
         """Linearised from tables of contacts, less some damping; None where that road does not go."""
         touching = len(self.reduction.contact_names) > 0
         if (touching and self.friction is None) or any(np.ndim(value) for value in self.values.values()):
@@ -350,7 +351,7 @@ class ReducedBrake(Design):
         return full
 
 
-def _in_range(axis: ChangeAlong, value: Any) -> Any:
+def _in_range(axis: ChangeAlong, value: ArrayLike) -> Any:
     number = np.asarray(value, dtype=float)
     if not np.all((number >= axis.low) & (number <= axis.high)):
         raise ParameterError(
@@ -365,7 +366,7 @@ def chebyshev_points(low: float, high: float, count: int) -> Any:
     return 0.5 * (low + high) - 0.5 * (high - low) * np.cos(angles)
 
 
-def lagrange(points: Any, value: Any) -> Any:
+def lagrange(points: np.ndarray, value: np.ndarray) -> Any:
     """Weights (..., points) of the interpolating polynomial."""
     gaps = value[..., None] - points
     weights = np.ones(gaps.shape)

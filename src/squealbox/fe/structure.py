@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.fe.frequencies import first_frequencies
 from squealbox.fe.nodes import Nodes, read_nodes
@@ -90,7 +91,7 @@ class Structure:
             masses.append(float(ones @ (self.M @ ones)))
         return max(masses)
 
-    def doubts(self, frequencies: Any = None) -> tuple[str, ...]:
+    def doubts(self, frequencies: ArrayLike | None = None) -> tuple[str, ...]:
         """Sentences on what looks wrong for a brake: mass, first elastic frequency, massless and internal rows."""
         found = list(self.notes)
         if self.massless.any():
@@ -259,7 +260,7 @@ def _common(files: dict[str, MatrixFile], found: dict[str, FileMatrix], given: A
     return decoded_labels(union), places
 
 
-def _placed(matrix: Any, places: Any, size: int) -> Any:
+def _placed(matrix: Any, places: np.ndarray | None, size: int) -> Any:
     if places is None or (len(places) == size and np.array_equal(places, np.arange(size))):
         return matrix.tocsr()
     from scipy.sparse import csr_array
@@ -268,7 +269,7 @@ def _placed(matrix: Any, places: Any, size: int) -> Any:
     return csr_array((whole.data, (places[whole.row], places[whole.col])), shape=(size, size))
 
 
-def _scaled(matrix: Any, unit: Any, factor: float) -> Any:
+def _scaled(matrix: Any, unit: np.ndarray, factor: float) -> Any:
     scaled = matrix.tocsr().copy()
     rows = np.repeat(np.arange(matrix.shape[0]), np.diff(scaled.indptr))
     scaled.data = scaled.data * (factor * unit[rows] * unit[scaled.indices])

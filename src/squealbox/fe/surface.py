@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.fe.assembled import AssembledBrake
 from squealbox.fe.disc_brake import DiscBrake
@@ -54,7 +55,7 @@ class Surface:
         """Middle of that box, (3,) [m]."""
         return 0.5 * (self.places.min(axis=0) + self.places.max(axis=0))
 
-    def moved(self, shape: Any) -> Any:
+    def moved(self, shape: ArrayLike) -> Any:
         """Displacement (k, 3) of the nodes in a shape, turned and scaled so that its largest component is 1.
 
         The shape is one of all freedoms (n,), of a reduced brake one of its coordinates (m,).

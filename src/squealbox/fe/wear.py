@@ -22,6 +22,7 @@ gap, and what is left of the depth when they are taken out, g - (R . e_n) c, is 
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import sparse
 
 from squealbox.contacts import Contacts
@@ -66,7 +67,7 @@ def depth_worn() -> Any:
     return parameter("m", 0.0, default=0.0, meaning="mean depth worn off the linings since they were new")
 
 
-def check_depth(brake: str, running_in: Any, thickness: Any) -> None:
+def check_depth(brake: str, running_in: ArrayLike, thickness: float | np.ndarray) -> None:
     """Raise `ParameterError` where more is worn off than the lining is thick [m]."""
     if not np.all(np.asarray(running_in) < thickness):
         raise ParameterError(brake, "running_in", running_in, "less than the thickness of the lining")

@@ -38,7 +38,7 @@ def aliased(system: Any, loops: Any) -> list[str]:
     return said
 
 
-def first_order(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, Any, Any, Any]:
+def first_order(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray) -> tuple[Any, Any, Any, Any]:
     """A, the rows that read q and q' from x = (q, q_m'), and what a force (n,) does to x'."""
     n = len(mass)
     light = ~np.any(mass != 0.0, axis=-1)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.countermeasures.loss import growth_of
 from squealbox.designs.base import Design
@@ -42,7 +43,7 @@ class Lot:
     names: tuple[str, ...] = ()
     share: tuple[float, ...] = ()
 
-    def stable(self, friction: Any) -> Any:
+    def stable(self, friction: ArrayLike) -> Any:
         """Share of the lot that is stable at every friction up to this."""
         return np.mean(self.lost > np.asarray(friction)[..., None], axis=-1)
 

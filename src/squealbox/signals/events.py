@@ -14,12 +14,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals.event_ends import edges, rate_at, steady_frequency
 from squealbox.signals.radiation import HEARING, a_weighting
-from squealbox.signals.recordings import as_recording
+from squealbox.signals.recordings import Recording, as_recording
 from squealbox.signals.samples import SignalError
 from squealbox.signals.tracks import Frames, Track, lines_of, seen, stands_out, tracks
 
@@ -110,7 +111,7 @@ class SquealEvents(Result):
 
 @public()
 def squeal_events(
-    recording: Any,
+    recording: Recording | ArrayLike,
     rate: float | None = None,
     *,
     channel: int | str = 0,
@@ -261,7 +262,7 @@ def _event(track: Track, frames: Frames, weigh: Any, reference: float) -> dict[s
     }  # fmt: skip
 
 
-def _is_steady(frequency: Any, step: float) -> bool:
+def _is_steady(frequency: np.ndarray, step: float) -> bool:
     """Whether the means of an event's four quarters differ by no more than its frames do among each other."""
     whole = _full(frequency)
     if len(whole) < 8:
@@ -282,7 +283,7 @@ def _with_ends(track: Track, frames: Frames) -> tuple[Any, Any, Any]:
     return frames.middle[numbers], np.sqrt(np.maximum(square, 0.0)), np.sqrt(noise)
 
 
-def _of_samples(event: dict[str, Any], x: Any, rate: float, length: int) -> None:
+def _of_samples(event: dict[str, Any], x: np.ndarray, rate: float, length: int) -> None:
     """Frequency and rates of an event from the samples themselves, which tell them better than frames."""
     near, onset, end = event["frequency"], event["onset"], event["end"]
     exact = steady_frequency(x, rate, near, onset, end, length) if event["steady"] else None
@@ -292,6 +293,6 @@ def _of_samples(event: dict[str, Any], x: Any, rate: float, length: int) -> None
     event.update(zip(_OF_SAMPLES, (*grown, *rate_at(x, rate, near, onset, end, length, backwards=True)), strict=False))
 
 
-def _full(weighted: Any) -> Any:
+def _full(weighted: np.ndarray) -> Any:
     """Frames that the event fills: its ends are left out where it is long enough."""
     return weighted[2:-2] if len(weighted) > 8 else weighted

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals.events import SquealEvents
@@ -114,7 +115,7 @@ def noise_matrix(
     )  # fmt: skip
 
 
-def _edges(name: str, given: Any, values: Any) -> Any:
+def _edges(name: str, given: ArrayLike | None, values: Any) -> Any:
     if given is not None:
         edges: Any = np.asarray(given, dtype=float)
         if edges.ndim != 1 or edges.size < 2 or not np.all(np.isfinite(edges)) or np.any(np.diff(edges) <= 0.0):

@@ -13,6 +13,7 @@ from tokenize import TokenError
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.cells import cells
@@ -122,7 +123,7 @@ class Recording:
         return float(np.trapezoid(np.interp(clock, times, values), clock) / (end - begin))
 
 
-def as_recording(signal: Any, rate: float | None, unit: str) -> Recording:
+def as_recording(signal: Recording | ArrayLike, rate: float | None, unit: str) -> Recording:
     """A `Recording` as it is; samples (k,) or (k, channels) with their `rate` [Hz] as one, in `unit`.
 
     Raises `SignalError` when the rate is missing.

@@ -12,10 +12,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
-from squealbox.family import Bounds
+from squealbox.family import Bounds, DesignOrRecipe
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.cells import Crossing, LevelsAtPoints, crossings
@@ -24,7 +25,7 @@ from squealbox.stability.plane_curves import between, onto_side, passed
 from squealbox.stability.scan import coalescence, is_neutral, on_divergence
 from squealbox.stability.sides import lying_on_a_side
 from squealbox.stability.state_matrix import spectrum
-from squealbox.system import InvalidSystem
+from squealbox.system import DesignOrSystem, InvalidSystem
 
 STEPS = tuple(  # ever shorter towards a corner
     StepControl(first=longest / 10.0, smallest=2e-6, largest=longest, tolerance=1e-8, largest_turn=0.2, most_points=60)
@@ -78,7 +79,9 @@ class Boundary(Result):
 
 
 @public()
-def stability_boundary(design: Any, bounds: Mapping[str, Bounds], *, cells: int = 32, time: float = 0.0) -> Boundary:
+def stability_boundary(
+    design: DesignOrSystem, bounds: Mapping[str, Bounds], *, cells: int = 32, time: float = 0.0
+) -> Boundary:
     """Curves on which stability changes, over two parameters.
 
     Parameters
@@ -112,7 +115,7 @@ def stability_boundary(design: Any, bounds: Mapping[str, Bounds], *, cells: int 
 class _Rectangle:
     """Two parameters scaled to the unit square, and the functions on it."""
 
-    def __init__(self, design: Any, bounds: Mapping[str, Bounds], time: float) -> None:
+    def __init__(self, design: DesignOrRecipe, bounds: Mapping[str, Bounds], time: float) -> None:
         self.family = SteadyFamily.within("stability_boundary", design, bounds, count=2, time=time)
         self.low = np.array([low for low, _ in self.family.spans])
         self.width = np.array([high for _, high in self.family.spans]) - self.low
@@ -123,7 +126,7 @@ class _Rectangle:
         self.reference = float(size) if size > 0.0 else 1.0
         self.scale = 1.0
 
-    def level(self, points: Any) -> Any:
+    def level(self, points: ArrayLike) -> Any:
         """Positive where a mode grows, at points (k, 2) of the unit square; outside, the value on its edge."""
         u = np.clip(np.asarray(points), 0.0, 1.0)
         return self._level(self.family.at(*(self.low + self.width * u).T))[0] / self.scale
@@ -274,7 +277,9 @@ def _traced(rectangle: _Rectangle, start: Any, gradient: Any) -> tuple[Any, Any]
     return np.clip(np.array(points), 0.0, 1.0), np.array(tangents)
 
 
-def _walk(rectangle: _Rectangle, start: Any, heading: Any, side: float) -> tuple[list[Any], list[Any], bool]:
+def _walk(
+    rectangle: _Rectangle, start: ArrayLike, heading: ArrayLike, side: float
+) -> tuple[list[Any], list[Any], bool]:
     """Points and tangents from `start` along `heading` until the curve closes, ends, or leaves the square.
 
     `side` is 1 with the unstable side on the left, -1 on the right. Where no detector leads on from a corner either,

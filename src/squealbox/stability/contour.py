@@ -17,12 +17,13 @@ from squealbox.stability.family import SteadyFamily
 from squealbox.stability.in_band import largest_in_band
 from squealbox.stability.maps import CHUNK, StabilityMap
 from squealbox.stability.spectra import Engine, largest_growth
+from squealbox.system import DesignOrSystem
 
 NOTHING = 1e-13  # of the spectrum: the growth rate of an undamped mode, told from zero
 
 
 def map_boundary(
-    found: StabilityMap, *, design: Any = None, close: float = 1e-13, engine: Engine = "compiled"
+    found: StabilityMap, *, design: DesignOrSystem | None = None, close: float = 1e-13, engine: Engine = "compiled"
 ) -> Boundary:
     """Curves on which stability changes, read off a map over two parameters and made exact on the lines of its grid.
 

@@ -91,11 +91,11 @@ def _along(growth: Callable[[Any], Any], values: Any, rows: int) -> Iterator[tup
         yield from zip(some, growth(np.repeat(some[:, None], rows, axis=1)), strict=True)
 
 
-def _roots(growth: Callable[[Any], Any], below: Any, above: Any, places: Any) -> Any:
+def _roots(growth: Callable[[Any], Any], below: np.ndarray, above: np.ndarray, places: np.ndarray) -> Any:
     """Chandrupatla's method on all brackets together; systems that are done are computed along."""
     from scipy.optimize import elementwise
 
-    def at(values: Any, rows: Any) -> Any:
+    def at(values: np.ndarray, rows: Any) -> Any:
         every = np.array(below)
         every[rows.astype(int)] = values
         return growth(every)[rows.astype(int)]

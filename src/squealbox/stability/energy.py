@@ -27,7 +27,7 @@ from squealbox.memory_rows import no_memory
 from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import Mode, complex_modes, modes_of
 from squealbox.stability.family import across_dampers, steady_sliding
-from squealbox.system import System, as_system, linearise
+from squealbox.system import DesignOrSystem, System, as_system, linearise
 
 MOST_DAMPERS = 12  # named one by one; the damping of a larger structure is given by degree of freedom
 
@@ -149,7 +149,7 @@ def contact_groups(names: Sequence[str]) -> dict[str, Any]:
 
 
 @public()
-def mode_energy(design_or_system: Any, mode: Mode | int | None = None, time: float = 0.0) -> ModeEnergy:
+def mode_energy(design_or_system: DesignOrSystem, mode: Mode | int | None = None, time: float = 0.0) -> ModeEnergy:
     """Energies and powers of one mode of one system.
 
     Parameters

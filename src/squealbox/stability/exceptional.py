@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.family import Bounds, Family, Varied
+from squealbox.family import Bounds, DesignOrRecipe, Family, Varied
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.family import SteadyFamily
 from squealbox.stability.onset import critical_value
@@ -39,7 +39,7 @@ class ExceptionalPoints(Result):
 
 @public()
 def exceptional_points(
-    design: Any, bounds: Mapping[str, Bounds], *, points: int = 41, time: float = 0.0
+    design: DesignOrRecipe, bounds: Mapping[str, Bounds], *, points: int = 41, time: float = 0.0
 ) -> ExceptionalPoints:
     """Points of two parameters where two modes merge: least distances on a grid, refined by Newton's method.
 

@@ -15,7 +15,9 @@ import numpy as np
 FELT = 1e-13  # share of the largest entry below which a motion is not felt
 
 
-def free_body_spectra(mass: Any, damping: Any, stiffness: Any, floating: Any) -> tuple[Any, Any]:
+def free_body_spectra(
+    mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray, floating: np.ndarray
+) -> tuple[Any, Any]:
     """Eigenvalues (k, 2n) of k systems in no order, and which of the systems are answered, (k,).
 
     Answered are those in which the common motions of the first system, `floating[0]` of them, are all there are.

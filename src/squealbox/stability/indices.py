@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.stability.eigenvalues import MARGINAL, ComplexModes
 from squealbox.stability.mode import damping_ratio
@@ -16,7 +17,7 @@ from squealbox.stability.mode import damping_ratio
 SQUEAL_BAND = (1e3, 16e3)  # Hz: where brake noise is called squeal
 
 
-def squeal_index(eigenvalues: Any) -> Any:
+def squeal_index(eigenvalues: np.ndarray) -> Any:
     """-2 Re/|Im| [-], as finite-element codes print it; negative grows, NaN where Im = 0. Array in, array out."""
     with np.errstate(invalid="ignore", divide="ignore"):
         index = -2.0 * np.real(eigenvalues) / np.abs(np.imag(eigenvalues))
@@ -36,7 +37,7 @@ def loss_factor(eigenvalues: Any) -> Any:
     return 2.0 * damping_ratio(eigenvalues)
 
 
-def damping_ratio_from(value: Any, convention: str) -> Any:
+def damping_ratio_from(value: ArrayLike, convention: str) -> Any:
     """Damping ratio [-] from another convention: "squeal_index", "logarithmic_decrement", "loss_factor" or "quality".
 
     Array in, array out.

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import named, public
+from squealbox.family import DesignOrRecipe
 from squealbox.labelled import Labelled, Labels
 from squealbox.parameters import DataSheet
 from squealbox.result import Array, Outcome, Result, quantity
@@ -83,7 +84,7 @@ class StabilityMap(Result):
 
 @public(axes=named)
 def stability_map(
-    design: Any,
+    design: DesignOrRecipe,
     axes: Mapping[str, Any],
     *,
     mechanism: bool = True,

@@ -17,6 +17,7 @@ import numpy as np
 
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability.family import steady_sliding
+from squealbox.system import DesignOrSystem
 
 ZERO = 1e-12  # singular values below this share of 1 (all matrices are scaled to 1) count as zero
 
@@ -51,7 +52,7 @@ class FiniteSpectrum(Result):
         return "\n".join([*lines, f"{self.infinite} eigenvalues at infinity"])
 
 
-def finite_spectrum(design_or_system: Any, time: float = 0.0) -> FiniteSpectrum:
+def finite_spectrum(design_or_system: DesignOrSystem, time: float = 0.0) -> FiniteSpectrum:
     """The finite eigenvalues of (lambda^2 M + lambda C_eff + K_eff) u = 0 about steady sliding, M singular or not.
 
     Parameters
@@ -100,7 +101,7 @@ def _pencil(steady: Any) -> tuple[Any, Any, float]:
     return np.block([[one, zero], [zero, inertia]]), np.block([[zero, one], [-spring, -damper]]), rate
 
 
-def reduced(left: Any, right: Any) -> tuple[Any, Any, Any] | None:
+def reduced(left: np.ndarray, right: np.ndarray) -> tuple[Any, Any, Any] | None:
     """A pencil with the same finite eigenvalues whose first matrix can be inverted, and what its states stand for.
 
     None where every number is an eigenvalue.

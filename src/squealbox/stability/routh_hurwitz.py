@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.stability.family import steady_sliding
-from squealbox.system import Linearised
+from squealbox.system import DesignOrSystem, Linearised
 
 
 def characteristic_polynomial(about: Linearised) -> Any:
@@ -35,7 +35,7 @@ def hurwitz_determinants(coefficients: Any) -> Any:
     return np.stack([a3, a1, a0, a1 * (a3 * a2 - a1) - a3**2 * a0], axis=-1)
 
 
-def routh_hurwitz(design_or_system: Any, time: float = 0.0) -> Any:
+def routh_hurwitz(design_or_system: DesignOrSystem, time: float = 0.0) -> Any:
     """True where steady sliding of two degrees of freedom is asymptotically stable, (...); False without equilibrium.
 
     `time` [s]: instant at which schedules are taken.

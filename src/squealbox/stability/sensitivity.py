@@ -21,10 +21,12 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.fe.reduced_brake import ReducedBrake
+from squealbox.parameters import DataSheet
 from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import NEAR_DEFECTIVE, Mode, complex_modes, modes_of
 from squealbox.stability.family import SteadyFamily, steady_sliding
 from squealbox.stability.sentences import MERGE
+from squealbox.system import DesignOrSystem
 
 CENTRAL = np.arange(-3.0, 4.0)
 REPEATED = 1e-9  # distance to the next eigenvalue, as a share of |lambda|, below which the two are one
@@ -127,7 +129,7 @@ def free_parameters(design: Any) -> tuple[str, ...]:
     return tuple(name for name, _, value in design.leaves() if isinstance(value, float))
 
 
-def matrix_derivatives(design: Any, names: Sequence[str], time: float = 0.0) -> Mapping[str, Any]:
+def matrix_derivatives(design: DesignOrSystem, names: Sequence[str], time: float = 0.0) -> Mapping[str, Any]:
     """First (k, n, n) and second (k, k, n, n) derivatives of M, C_eff and K_eff in k parameters, by differences.
 
     Returns {"M": (first, second), "C": ..., "K": ...}.
@@ -166,7 +168,7 @@ class _Lines:
         side = self.sides[i] if self.sides[i] != 0 else turn * self.sides[j]
         return way, CENTRAL if side == 0 else side * np.arange(7.0)
 
-    def derivatives(self, samples: Any) -> tuple[Any, Any]:
+    def derivatives(self, samples: np.ndarray) -> tuple[Any, Any]:
         """First (k, n, n) and second (k, k, n, n) derivatives from the samples at `points`."""
         by_line = np.asarray(samples).reshape(len(self.directions), 7, *samples.shape[1:])
         first = np.empty((self.count, *samples.shape[1:]))
@@ -212,7 +214,7 @@ def _span(value: float, about: Any) -> tuple[float, int]:
     return step, 0
 
 
-def _leaf(design: Any, name: str) -> str:
+def _leaf(design: DataSheet, name: str) -> str:
     """The name of the first field behind an alias."""
     head, dot, rest = name.partition(".")
     return str(design.aliases.get(head, (head,))[0]) + dot + rest

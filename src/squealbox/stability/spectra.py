@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.compiled.packed import LANES, room
 from squealbox.stability import kernels_qr, kernels_spectra, kernels_two_dof
@@ -42,7 +43,7 @@ def largest_growth(about: Linearised, engine: Engine = "auto") -> tuple[Any, Any
     return worst.real, np.abs(worst.imag), pairs
 
 
-def _round_off(about: Linearised, values: Any, doubtful: Any) -> Any:
+def _round_off(about: Linearised, values: np.ndarray, doubtful: np.ndarray) -> Any:
     """True for slow eigenvalues whose growth is less than their own condition leaves sure, (..., 2n)."""
     idle = np.zeros(values.shape, dtype=bool)
     for at in map(tuple, np.argwhere(np.any(doubtful, axis=-1))):
@@ -71,7 +72,7 @@ def flags_of(mass: Any, damping: Any, stiffness: Any) -> Any:
     return np.unpackbits(words.astype("<u2").view(np.uint8), count=number, bitorder="little").view(bool)
 
 
-def eigenvalues(about: Linearised, engine: Engine = "auto", special: Any = None) -> Any:
+def eigenvalues(about: Linearised, engine: Engine = "auto", special: np.ndarray | None = None) -> Any:
     """All eigenvalues (..., 2n) [1/s] in no particular order; NaN without a spectrum. special : see `with_special`."""
     if about.M.shape[-1] == 2 and compiled(about, engine):
         return with_special(about, _two_dof_spectrum(about), special)
@@ -87,7 +88,7 @@ def eigenvalues(about: Linearised, engine: Engine = "auto", special: Any = None)
     return with_special(about, values, special)
 
 
-def compiled_eigenvalues(matrices: Any) -> Any:
+def compiled_eigenvalues(matrices: ArrayLike) -> Any:
     """Eigenvalues (..., n) of many small real matrices (..., n, n), as `numpy.linalg.eigvals`, several times faster.
 
     The steps are LAPACK's (balance, Householder, double-shift QR), taken by sixteen matrices together in packed

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.family import Varied
+from squealbox.family import DesignOrRecipe, Varied
 from squealbox.fe.band_spectrum import band_pairs
 from squealbox.fe.pencil import MOST_DAMPED, vibrating
 from squealbox.labelled import Labelled, Labels
@@ -103,7 +103,9 @@ class TrackedModes(Result):
         )
 
 
-def track(design: Any, parameter: Varied, values: Any = None, *, time: float = 0.0) -> Iterator[TrackedPoint]:
+def track(
+    design: DesignOrRecipe, parameter: Varied, values: Any = None, *, time: float = 0.0
+) -> Iterator[TrackedPoint]:
     """Walk along the values of a parameter with the modes always in the order of the first value.
 
     Parameters
@@ -183,7 +185,7 @@ def _place_in_band(family: SteadyFamily, band: Band, value: float) -> "_Place | 
 
 
 @public()
-def tracked_modes(design: Any, parameter: Varied, values: Any = None, *, time: float = 0.0) -> TrackedModes:
+def tracked_modes(design: DesignOrRecipe, parameter: Varied, values: Any = None, *, time: float = 0.0) -> TrackedModes:
     """The whole of :func:`track` as one result, a labelled dataset by ``to_dataset()``.
 
     `time` [s]: instant at which schedules are taken.

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.family import is_recipe, varied
 from squealbox.parameters import known_names
@@ -165,7 +166,7 @@ def _kept(task: Task, answer: Result) -> dict[str, Column]:
     return kept
 
 
-def _column(task: Task, name: str, value: Any, batch: int | None) -> Column:
+def _column(task: Task, name: str, value: ArrayLike, batch: int | None) -> Column:
     array = np.asarray(value)
     if array.dtype.kind not in "biufcU":
         kind = type(value).__name__

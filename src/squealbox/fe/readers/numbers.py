@@ -138,7 +138,7 @@ def _slow(path: Path, block: list[bytes], line: int, width: int, comma: bool, co
     return np.array(rows, dtype=float).reshape(-1, width)
 
 
-def check_index(path: Path, index: Any, size: int | None, first: int | None = None) -> Any:
+def check_index(path: Path, index: np.ndarray, size: int | None, first: int | None = None) -> Any:
     """Indices from 0 for those from 1, which must be 1 to `size`; `first` is the line of the first."""
     most = MOST_FREEDOMS if size is None else size
     bad = np.flatnonzero((index < 1) | (index > most))

@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.family import Bounds, Family
+from squealbox.family import Bounds, DesignOrRecipe, Family
 from squealbox.limit_cycles.attractors.attractor import linked
 from squealbox.limit_cycles.attractors.basins import unit_starts
 from squealbox.limit_cycles.attractors.settling import FAILED, LOOSE, REPEATS, RESTS, TIGHT, Batch, Scales, settle
@@ -86,7 +86,7 @@ def _edges(name: str, low: float, high: float) -> str:
 
 @public()
 def coexistence(
-    design: Any,
+    design: DesignOrRecipe,
     bounds: Mapping[str, Bounds],
     *,
     columns: int = 24,
@@ -184,7 +184,7 @@ class _Far:
         return settle(batch.take(np.repeat(rows, self.starts)), *start, stretches=STRETCHES, same=LOOSE)
 
 
-def _grid(design: Any, names: Any, x: Any, y: Any, far: _Far, threads: int | None) -> Any:
+def _grid(design: DesignOrRecipe, names: Sequence[str], x: Any, y: Any, far: _Far, threads: int | None) -> Any:
     """Share of far starts that vibrate, and whether sliding is stable, over the grid."""
     plane = dict(zip(names, (v.ravel() for v in np.meshgrid(x, y, indexing="ij")), strict=True))
     count, shape = len(x) * len(y), (len(x), len(y), far.starts)
@@ -201,7 +201,9 @@ def _onset(design: Any, names: Any, ends: tuple[float, float], value: float) -> 
     return float(found.value) if found.outcome.ok else float("nan")
 
 
-def _followed(design: Any, names: Any, ends: Bounds, top: Any, y: Any, far: _Far, threads: int | None) -> Any:
+def _followed(
+    design: DesignOrRecipe, names: Any, ends: Bounds, top: Any, y: Any, far: _Far, threads: int | None
+) -> Any:
     """Vibrations of each row just below its onset, followed down in the first parameter until they end."""
     low, high = ends
     step = (high - low) / STEPS

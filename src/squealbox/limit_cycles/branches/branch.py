@@ -8,6 +8,7 @@ Where a path could not be corrected between two points, the value is their middl
 such cycle.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -16,7 +17,7 @@ import numpy as np
 from squealbox import cautions
 from squealbox.arguments import public
 from squealbox.continuation import PathPoint, StepControl, along
-from squealbox.family import Bounds, Family, Varied, unit_of
+from squealbox.family import Bounds, DesignOrRecipe, Family, Varied, unit_of
 from squealbox.limit_cycles.branches.doubling import doubled
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
 from squealbox.limit_cycles.branches.hopf import HopfPoint
@@ -29,6 +30,7 @@ from squealbox.limit_cycles.cycles.harmonic_balance import Grid, harmonic_balanc
 from squealbox.limit_cycles.cycles.shooting import CONTACTS, shooting
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
+from squealbox.system import System
 
 METHODS = ("harmonic_balance", "shooting")
 METHODS_FROM_HOPF = (("harmonic_balance", "exact"), ("shooting", "exact"))
@@ -96,7 +98,7 @@ class Branch(Result):
 
 @public()
 def branch(
-    design: Any,
+    design: DesignOrRecipe,
     parameter: Varied,
     bounds: Bounds | None = None,
     start: Any = None,
@@ -229,7 +231,13 @@ def _grazing_outcome(specials: list[Special], last: float) -> Outcome:
 
 
 def _harmonic_start(
-    make: Any, start: Any, value: float, contact: str, width: float, harmonics: int, span: float
+    make: Any,
+    start: HopfPoint | Cycle | Mapping[str, Any],
+    value: float,
+    contact: str,
+    width: float,
+    harmonics: int,
+    span: float,
 ) -> Any:
     path = HarmonicPath(make, contact, width, Grid(harmonics), span)
     if isinstance(start, HopfPoint):
@@ -301,7 +309,7 @@ def _shooting_start(family: Family, start: Any, value: float, rtol: float) -> An
 
 def _collect(
     visited: list[PathPoint], seen: list[dict[str, Any]], specials: list[Special], outcome: Outcome, parameter: str,
-    settings: dict[str, Any], system: Any, family_: Any,
+    settings: dict[str, Any], system: System, family_: Any,
 ) -> Branch:  # fmt: skip
     n = system.size
     counted = len(seen[0]["multipliers"]) if seen else 2 * n  # without those of a free common motion

@@ -85,7 +85,7 @@ def beyond(path: ShootingPath, walk: Follower, last: PathPoint) -> Corner | Outc
     return Outcome("jump", message, p=last.p, events_before=str(before), events_after=str(after), **other)
 
 
-def first_other(path: ShootingPath, last: PathPoint, x: Any, p: float) -> dict[str, Any]:
+def first_other(path: ShootingPath, last: PathPoint, x: np.ndarray, p: float) -> dict[str, Any]:
     """The first event of a period that is another at x and p than at the last point, and N there [N].
 
     Empty where one list of events begins like the other and only ends sooner.
@@ -103,19 +103,19 @@ def first_other(path: ShootingPath, last: PathPoint, x: Any, p: float) -> dict[s
             "largest_force": float(np.max(np.abs(forces)))}  # fmt: skip
 
 
-def _ways(y: Any, tangent: Any) -> Iterator[Any]:
+def _ways(y: np.ndarray, tangent: np.ndarray) -> Iterator[Any]:
     """Directions in which the surface is looked for: ahead, then along the parameter."""
     along = np.append(np.zeros(y.size - 1), 1.0)
     yield from (tangent, along, -along)
 
 
-def _derivative(equation: Equation, y: Any) -> Any:
+def _derivative(equation: Equation, y: np.ndarray) -> Any:
     return equation.derivative(y) if np.all(np.isfinite(equation.value(y))) else np.full((1, 1), np.nan)
 
 
 def _start_of(
-    path: ShootingPath, equation: Equation, y: Any, tangent: Any, inside: Any, outside: Any, distance: float,
-    before: Any,
+    path: ShootingPath, equation: Equation, y: np.ndarray, tangent: np.ndarray, inside: np.ndarray, outside: np.ndarray,
+    distance: float, before: Any,
 ) -> tuple[Any, Any] | None:  # fmt: skip
     """(point, tangent) on the branch beyond the corner, with another order of events than before it."""
     normal = np.linalg.svd(outside - inside)[2][0]

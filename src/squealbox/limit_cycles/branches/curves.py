@@ -17,7 +17,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
-from squealbox.family import Bounds, Family
+from squealbox.family import Bounds, DesignOrRecipe, Family
 from squealbox.limit_cycles.branches.hopf import (
     HopfPoint,
     critical_pair,
@@ -55,7 +55,7 @@ class PointCurve(Result):
 
 @public()
 def hopf_curve(
-    design: Any, bounds: Mapping[str, Bounds], *, value: float | None = None, points: int = 100
+    design: DesignOrRecipe, bounds: Mapping[str, Bounds], *, value: float | None = None, points: int = 100
 ) -> PointCurve:
     """Hopf points over two parameters, through the first one found in the first parameter.
 
@@ -174,7 +174,7 @@ def ending(walks: list[Any]) -> Outcome:
 
 
 def curve_of(
-    design: Any, walks: list[Any], describe: Any, names: tuple[str, ...], kind: str, outcome: Outcome
+    design: DesignOrRecipe, walks: list[Any], describe: Any, names: tuple[str, ...], kind: str, outcome: Outcome
 ) -> PointCurve:
     """The result of the walks; a design is kept, since it knows the units of its parameters."""
     line = [at for i, (kept, _) in enumerate(walks) for at in (kept[:0:-1] if i == 0 and len(walks) > 1 else kept)]

@@ -14,7 +14,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from squealbox.family import Bounds, Family
+from squealbox.family import Bounds, DesignOrRecipe, Family
 from squealbox.limit_cycles.branches.curves import PointCurve, both_ways, curve_of, ending
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
 from squealbox.limit_cycles.branches.paths import CyclePath
@@ -29,7 +29,7 @@ TEST_STEP = 1e-5  # in scaled variables: differences of a test function
 
 
 def point_curve(
-    design: Any, bounds: Mapping[str, Bounds], point: BranchPoint, value: float, *, points: int = 60
+    design: DesignOrRecipe, bounds: Mapping[str, Bounds], point: BranchPoint, value: float, *, points: int = 60
 ) -> PointCurve:
     """Special points of cycles over two parameters: folds, grazing, period doubling or Neimark-Sacker.
 

@@ -26,6 +26,7 @@ from squealbox.limit_cycles.cycles.starting import first_guess
 from squealbox.limit_cycles.cycles.variation import Flight, fly
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Outcome
+from squealbox.system import DesignOrSystem
 
 CONTACTS = {"exact": "exact", "smooth": "arctan", "arctan": "arctan", "tanh": "tanh"}
 NOWHERE = "no motion stays on an unstable cycle: another start or a longer `settle` may lead to what it settles to"
@@ -36,7 +37,7 @@ TURNS = (1, 2, 4)  # past a doubling, a run settles on the cycle that closes aft
 
 @public()
 def shooting(
-    design_or_system: Any,
+    design_or_system: DesignOrSystem,
     start: Any = None,
     *,
     contact: str = "exact",
@@ -113,7 +114,7 @@ def shooting(
 
 
 def _solved(
-    field: Autonomous, x: Any, period: float, shots: int, rtol: float, tolerance: float, most: int
+    field: Autonomous, x: np.ndarray, period: float, shots: int, rtol: float, tolerance: float, most: int
 ) -> tuple[Newton, Outcome]:
     """Newton's method from x; where it converged on a cycle wound several times, again for one round of it."""
     for _ in range(2):
@@ -133,7 +134,7 @@ def _flips(cycle: Cycle) -> bool:
 
 
 def cycle_through(
-    field: Autonomous, x: Any, period: float, flights: list[Flight], outcome: Outcome, settings: dict[str, Any],
+    field: Autonomous, x: np.ndarray, period: float, flights: list[Flight], outcome: Outcome, settings: dict[str, Any],
     samples: int, error: float = np.nan,
 ) -> Cycle:  # fmt: skip
     """The cycle through x, sampled at equal instants and at its events; its multipliers are those of its flights."""

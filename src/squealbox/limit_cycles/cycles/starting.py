@@ -64,7 +64,7 @@ def _settled_under_a_delay(field: Autonomous, x: Any, duration: float, slowest: 
     return first_return(field, x, slowest) if outcome.ok else (x, slowest, outcome)
 
 
-def _under_way(field: Autonomous, x: Any, period: float) -> tuple[Any, float, Outcome]:
+def _under_way(field: Autonomous, x: np.ndarray, period: float) -> tuple[Any, float, Outcome]:
     """A known start, with what is then under way in delays, as a period of the motion from it leaves that."""
     if field.late:
         run = fly(field, x, period, GUESS_RTOL)
@@ -75,7 +75,7 @@ def _under_way(field: Autonomous, x: Any, period: float) -> tuple[Any, float, Ou
     return x, period, Outcome(COMPLETED)
 
 
-def first_return(field: Autonomous, x: Any, period: float) -> tuple[Any, float, Outcome]:
+def first_return(field: Autonomous, x: np.ndarray, period: float) -> tuple[Any, float, Outcome]:
     """A state in fast slip on the motion from x, and the time after which the motion comes back to it."""
     run = fly(field, x, 12.0 * period, GUESS_RTOL, most=12 * PERIOD_STEPS)
     if run.outcome.ok and _inside_a_stick(run):  # the belt is slow: look for as long as contacts may stick

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox import plots
 from squealbox.papers.drum_brake_2011.cases import Case
@@ -128,14 +129,14 @@ def _damper(axes: Any, start: Any, end: Any) -> None:
         axes.plot(*_along(start, end, np.array(share), np.array(aside)).T, color=INK, linewidth=0.9)
 
 
-def _along(start: Any, end: Any, share: Any, aside: Any) -> Any:
+def _along(start: ArrayLike, end: ArrayLike, share: Any, aside: Any) -> Any:
     start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
     line = end - start
     across = np.array([-line[1], line[0]]) / np.linalg.norm(line)
     return start + share[:, None] * line + aside[:, None] * across
 
 
-def _wall(axes: Any, middle: Any, along: Any) -> None:
+def _wall(axes: Any, middle: ArrayLike, along: ArrayLike) -> None:
     middle, along = np.asarray(middle), np.asarray(along)
     outwards = middle / np.linalg.norm(middle)
     ends = np.stack([middle - 0.6 * along, middle + 0.6 * along])

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.compiled.machine import translated
 from squealbox.designs import DrumBrake
@@ -24,7 +25,7 @@ from squealbox.papers.drum_brake_2011.claims import EXACT, RAW
 from squealbox.papers.drum_brake_2011.motions import METHODS, SAMPLES, judged
 from squealbox.signals import slope
 from squealbox.stability import complex_modes
-from squealbox.system import as_system, linearise
+from squealbox.system import DesignOrSystem, as_system, linearise
 from squealbox.transient import simulate
 from squealbox.transient.verdict import verdict
 
@@ -77,7 +78,7 @@ class Plain:
         """Accepted steps."""
         return self.t.size - 1
 
-    def at(self, times: Any) -> "Plain":
+    def at(self, times: ArrayLike) -> "Plain":
         """The same at other times, by the cubic through values and rates at both ends of a step."""
         from scipy.interpolate import CubicHermiteSpline
 
@@ -85,7 +86,7 @@ class Plain:
         return Plain(np.asarray(times), spline(times), spline(times, 1))
 
 
-def ode23(design: Any, duration: float = DURATION, rtol: float = RELATIVE) -> Plain:
+def ode23(design: DesignOrSystem, duration: float = DURATION, rtol: float = RELATIVE) -> Plain:
     """The motion from rest as the programs of 2011 integrate it: plain sgn, one error for the worst of all values.
 
     A step is kept when h |e_i| <= rtol max(|y_i|, a_i) for every value, with the absolute tolerance rtol a_i that
@@ -129,7 +130,7 @@ def decays(case: Case, mu: float = MU) -> list[Decay]:
     return found
 
 
-def decay_of_modes(design: Any, motion: Any, begin: float, end: float) -> tuple[float, float]:
+def decay_of_modes(design: DesignOrSystem, motion: Any, begin: float, end: float) -> tuple[float, float]:
     """Decay rates [1/s] of the lower and the upper mode in a motion about steady sliding, from `begin` to `end` [s].
 
     The share of mode j is w_j^H ((lambda_j M + C) (q - q0) + M q'), with its left mode w_j: while nothing reverses it

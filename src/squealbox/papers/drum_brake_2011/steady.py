@@ -9,7 +9,7 @@ import numpy as np
 from squealbox.papers.drum_brake_2011.cases import FRICTION, MAP_ANGLES, SPEED, Case
 from squealbox.stability import ComplexModes, complex_modes, critical_value, stability_map
 from squealbox.stability.state_matrix import spectrum
-from squealbox.system import as_system, linearise
+from squealbox.system import DesignOrSystem, as_system, linearise
 
 MU_RANGE = (0.01, 1.0)
 ROOT_STEPS = 12  # of the Illinois rule on an edge of the map: to the last digits
@@ -120,7 +120,7 @@ def frequencies(modes: ComplexModes) -> Any:
     return modes.angular_frequency[..., :2]
 
 
-def growth(design: Any) -> Any:
+def growth(design: DesignOrSystem) -> Any:
     """The largest growth rate [1/s], shape of the design's arrays."""
     return np.max(spectrum(linearise(as_system(design))).real, axis=-1)
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.designs import DrumBrake
 from squealbox.papers.drum_brake_2011.cases import RESOLUTION
@@ -137,7 +138,7 @@ def damping_difference(at_low: Any, load: Any, c1: float | None = None, c2: floa
     return zero + (at_low - zero) * load / brake.load1
 
 
-def least_decay(at_rest: Any, at_ten: Any, load: float) -> Any:
+def least_decay(at_rest: ArrayLike, at_ten: ArrayLike, load: float) -> Any:
     """The decay rate [1/s] of a mode at `load` [N] in (0, 10 kN), from those without load and at 10 kN.
 
     Theorem (V-1 and N-1 exclude each other at one speed). In Eq. (3) load enters the damping only, in proportion. To

@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.extras import extra
 from squealbox.studies.optimisation.goals import Candidates, Constraint, Goal
@@ -69,7 +70,7 @@ def _polished(candidates: Candidates, goal: Goal, constraints: list[Constraint],
 
     low, width = box[:, 0], np.ptp(box, axis=1)
 
-    def place(u: Any) -> Any:
+    def place(u: ArrayLike) -> Any:
         return np.clip(low + np.atleast_2d(u) * width, box[:, 0], box[:, 1])
 
     size = abs(float(_costs(candidates, [goal], start[None])[0, 0])) or 1.0

@@ -12,6 +12,7 @@ from itertools import product
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.family import bounds_of
@@ -91,7 +92,7 @@ def interval_bounds(
     asked = as_quantity(quantity)
     names, ends = checked_box(box, "interval_bounds")
 
-    def values_at(points: Any) -> Any:
+    def values_at(points: ArrayLike) -> Any:
         return evaluate(design, asked, dict(zip(names, np.asarray(points).T, strict=True)))
 
     middle = values_at(np.mean(ends, axis=1)[None])[0]

@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.extras import extra
 from squealbox.studies.quantity import Quantity, evaluate
@@ -29,7 +30,7 @@ class LimitState:
         """Number of parameters that scatter."""
         return len(self.scatter.names)
 
-    def values(self, z: Any) -> Any:
+    def values(self, z: ArrayLike) -> Any:
         """The quantity at points `z`, shape (n, d): shape (n,)."""
         z = np.atleast_2d(np.asarray(z, dtype=float))
         found = evaluate(self.design, self.quantity, self.scatter.from_normal(z), strict=False)

@@ -79,7 +79,7 @@ class Scatter(DataSheet):
             found[name] = each.support if np.all(np.isfinite(each.support)) else inner
         return found
 
-    def from_uniform(self, u: Any) -> dict[str, Any]:
+    def from_uniform(self, u: np.ndarray) -> dict[str, Any]:
         """Parameters from independent uniform numbers `u` in (0, 1), shape (..., d): name to shape (...)."""
         from scipy.special import ndtri
 
@@ -88,7 +88,7 @@ class Scatter(DataSheet):
             return {name: each.ppf(u[..., i]) for i, (name, each) in enumerate(self.distributions.items())}
         return self.from_normal(ndtri(u))
 
-    def from_normal(self, z: Any) -> dict[str, Any]:
+    def from_normal(self, z: np.ndarray) -> dict[str, Any]:
         """Parameters from independent standard normal numbers `z`, shape (..., d): name to shape (...).
 
         With R = L L', the scores are L z. The upper tail is taken from the survival function, so that it is as exact
@@ -194,7 +194,7 @@ def _pair(pair: Any, names: list[str]) -> tuple[int, int]:
     return names.index(pair[0]), names.index(pair[1])
 
 
-def _coefficient(pair: tuple[str, str], value: Any) -> float:
+def _coefficient(pair: tuple[str, str], value: float | np.ndarray) -> float:
     number = float(value) if isinstance(value, (int, float, np.number)) and not isinstance(value, bool) else np.nan
     if not -1.0 < number < 1.0:
         raise ParameterError("Scatter", f"correlation of {pair[0]} and {pair[1]}", value, "a number in (-1, 1)")
