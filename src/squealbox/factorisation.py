@@ -7,11 +7,14 @@ negative and zero eigenvalues; that of K - w^2 M counts the modes below w (Sturm
 
 import importlib.util
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 Library = Literal["auto", "superlu", "rslab"]
 LIBRARIES = ("auto", "superlu", "rslab")
@@ -45,7 +48,7 @@ class Factor:
     library = ""
     order: Order | None = None
 
-    def __init__(self, matrix: Any, symmetric: bool) -> None:
+    def __init__(self, matrix: "sparray", symmetric: bool) -> None:
         self._matrix, self.symmetric, self.size = matrix, symmetric, int(matrix.shape[0])
         self._lu: Any = None
 
@@ -117,7 +120,7 @@ class SuperLU(Factor):
 
     library = "superlu"
 
-    def __init__(self, matrix: Any, symmetric: bool) -> None:
+    def __init__(self, matrix: "sparray", symmetric: bool) -> None:
         super().__init__(matrix, symmetric)
         self._superlu()
 
@@ -127,7 +130,7 @@ class Rslab(Factor):
 
     library = "rslab"
 
-    def __init__(self, matrix: Any, symmetric: bool, threads: int, order: Order | None) -> None:
+    def __init__(self, matrix: "sparray", symmetric: bool, threads: int, order: Order | None) -> None:
         import rslab
 
         known = order if order is not None and order.symmetric == symmetric else None
@@ -212,7 +215,7 @@ def factor(
     return SuperLU(matrix, symmetric)
 
 
-def _placed(matrix: Any, pattern: Any) -> Any:
+def _placed(matrix: "sparray", pattern: "sparray") -> Any:
     """The matrix with zeros of its own wherever `pattern` has entries; None where it has entries elsewhere."""
     if all(np.array_equal(getattr(matrix, part), getattr(pattern, part)) for part in ("indptr", "indices")):
         return matrix
@@ -230,7 +233,7 @@ def _placed(matrix: Any, pattern: Any) -> Any:
     return scipy.sparse.csc_array((data, pattern.indices, pattern.indptr), shape=pattern.shape)
 
 
-def is_symmetric(matrix: Any) -> bool:
+def is_symmetric(matrix: "sparray") -> bool:
     """True where A = A' to round-off."""
     matrix = scipy.sparse.csc_array(matrix)
     if matrix.shape[0] != matrix.shape[1]:
@@ -245,12 +248,12 @@ def is_symmetric(matrix: Any) -> bool:
     return bool(np.max(np.abs(differences), initial=0.0) <= SYMMETRIC * largest)
 
 
-def _decomposed(matrix: Any, threshold: float) -> Any:
+def _decomposed(matrix: "sparray", threshold: float) -> Any:
     options = {"SymmetricMode": True}
     return scipy.sparse.linalg.splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=threshold, options=options)
 
 
-def _superlu(matrix: Any, symmetric: bool) -> Any:
+def _superlu(matrix: "sparray", symmetric: bool) -> Any:
     """SuperLU in its mode for matrices with (nearly) symmetric pattern, which keeps to the diagonal where it can."""
     threshold = 1e-3 if symmetric else 1e-2
     try:
@@ -261,7 +264,7 @@ def _superlu(matrix: Any, symmetric: bool) -> Any:
     return lu
 
 
-def _check(solve: Any, matrix: Any) -> None:
+def _check(solve: Any, matrix: "sparray") -> None:
     """Solve once for a known vector: factors of a matrix that is singular to round-off give a large residual."""
     known = np.random.default_rng(1).standard_normal(matrix.shape[0]).astype(matrix.dtype)
     right = matrix @ known

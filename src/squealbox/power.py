@@ -23,18 +23,18 @@ def power_of_friction(system: System, time: Any, q: Any, qd: Any) -> Any:
     return np.stack(along, axis=-1) * forces if along else forces
 
 
-def power_dissipated(system: System, qd: Any) -> Any:
+def power_dissipated(system: System, qd: np.ndarray) -> Any:
     """Power [W] the damping takes out, q'.C q', shape (...)."""
     return form(qd, system.C, qd)
 
 
-def power_of_circulation(system: System, q: Any, qd: Any) -> Any:
+def power_of_circulation(system: System, q: np.ndarray, qd: np.ndarray) -> Any:
     """Power [W] fed in by the skew part Ka of the stiffness itself, -q'.Ka q, shape (...); 0 for a symmetric K."""
     skew = 0.5 * (system.K - np.swapaxes(system.K, -1, -2))
     return -form(qd, skew, q)
 
 
-def power_of_load(system: System, time: ArrayLike, qd: Any) -> Any:
+def power_of_load(system: System, time: ArrayLike, qd: np.ndarray) -> Any:
     """Power [W] of the load, q'.f(t), shape (...)."""
     if isinstance(system.load, Schedule):
         load = np.stack([np.asarray(system.load.value(t)) for t in np.ravel(time)])

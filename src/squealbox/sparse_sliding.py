@@ -10,13 +10,16 @@ contacts and friction change K by rows of the contacts alone. Directions tried i
 Where this does not settle, the matrix of the step is factored itself.
 """
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import scipy
 
 from squealbox.contacts import Contacts
 from squealbox.factorisation import Factor, SingularMatrix, factor
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 ROUGH, FINE = 1e-2, 1e-11  # of a step's residual: what is left of it while the set of open contacts changes, and after
 FAIR = 1e-7  # what a fine step leaves at most, however close to balance it begins
@@ -52,7 +55,7 @@ class SlidingState(NamedTuple):
 
 
 def sliding_state(
-    stiffness: Any, load: np.ndarray, contacts: Contacts, time: float, start: Nearby | None = None
+    stiffness: "sparray", load: np.ndarray, contacts: Contacts, time: float, start: Nearby | None = None
 ) -> SlidingState:
     """Steady sliding at `time` [s], looked for from that of a similar brake where it is known.
 
@@ -98,7 +101,7 @@ def _search(steps: "_Steps", q: np.ndarray, load: np.ndarray, time: float, most:
     return SlidingState(q, _pressing(normal, closed), speed, mu, False, False)
 
 
-def at_rest(stiffness: Any) -> Nearby:
+def at_rest(stiffness: "sparray") -> Nearby:
     """No displacement, and the factor of the stiffness with every contact closed."""
     try:
         return Nearby(np.zeros(stiffness.shape[0]), factor(stiffness))
@@ -116,7 +119,7 @@ class _Steps:
     Every direction z = B^-1 r that was tried is kept with K z and N z: for other contacts J z is had from these.
     """
 
-    def __init__(self, stiffness: Any, contacts: Contacts, base: Factor | None) -> None:
+    def __init__(self, stiffness: "sparray", contacts: Contacts, base: Factor | None) -> None:
         self.stiffness, self.contacts, self.base = stiffness, contacts, base
         self.tried: list[tuple[Any, Any, Any]] = []
 
@@ -177,7 +180,7 @@ class _Steps:
         return found
 
 
-def linearised(damping: Any, stiffness: Any, contacts: Contacts, state: Any) -> tuple[Any, Any]:
+def linearised(damping: "sparray", stiffness: "sparray", contacts: Contacts, state: Any) -> tuple[Any, Any]:
     """C_eff and K_eff (n, n) about an `Equilibrium`."""
     closed = (state.normal_force > 0.0) | ~contacts.unilateral
     _, slope = contacts.friction(state.sliding_speed)
@@ -188,7 +191,7 @@ def linearised(damping: Any, stiffness: Any, contacts: Contacts, state: Any) -> 
     return scipy.sparse.csr_array(found), stiffness_of(stiffness, contacts, coupling, closed)
 
 
-def stiffness_of(stiffness: Any, contacts: Contacts, coupling: np.ndarray, closed: np.ndarray) -> Any:
+def stiffness_of(stiffness: "sparray", contacts: Contacts, coupling: np.ndarray, closed: np.ndarray) -> Any:
     """K less D' diag(mu sgn V) N of the closed contacts, and less R' N of the open ones."""
     found, sliding = stiffness, np.where(closed, coupling, 0.0)
     if np.any(sliding):
@@ -210,5 +213,5 @@ def damping_across(contacts: Contacts, weight: np.ndarray) -> Any:
     return scipy.sparse.csr_array(contacts.across.T @ _scaled(contacts.across, weight))
 
 
-def _scaled(rows: Any, factors: np.ndarray) -> Any:
+def _scaled(rows: "sparray", factors: np.ndarray) -> Any:
     return scipy.sparse.diags_array(factors) @ rows

@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +13,10 @@ from squealbox.signals.growth import LEVEL
 from squealbox.signals.samples import Signal
 from squealbox.stability import complex_modes, first_crossings
 from squealbox.transient import simulate_ensemble
+
+if TYPE_CHECKING:
+    from squealbox.signals.events import SquealEvents
+    from squealbox.stability.eigenvalues import ComplexModes
 
 QUANTITIES = (
     "growth_rate", "frequency", "damping_ratio", "critical_value", "amplitude", "cycle_frequency", "friction",
@@ -105,7 +109,7 @@ class Measured(DataSheet):
             kept["modes"] = complex_modes(design)
         return self._of_modes(kept["modes"])
 
-    def _of_modes(self, modes: Any) -> Any:
+    def _of_modes(self, modes: "ComplexModes") -> Any:
         growth, frequency = np.asarray(modes.growth_rate), np.asarray(modes.frequency)
         values = np.asarray(getattr(modes, str(self.quantity)))
         moving = frequency > 0.0
@@ -156,7 +160,7 @@ def from_friction(speeds: ArrayLike, values: Any, sd: float, at: Mapping[str, fl
     ]
 
 
-def from_events(events: Any, index: int = 0, at: Mapping[str, str] | None = None) -> list[Measured]:
+def from_events(events: "SquealEvents", index: int = 0, at: Mapping[str, str] | None = None) -> list[Measured]:
     """Frequency and growth rate of one squeal event, as far as the recording tells them.
 
     Where its growth is told, frequency and rate are those of the onset, of small motion as of modes; the frequency of

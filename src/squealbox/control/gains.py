@@ -1,7 +1,6 @@
 """Which gains hold a brake: the ranges of a common factor on the forces of loops in which every pole decays."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -106,7 +105,7 @@ def stable_gains(design_or_system: DesignOrSystem, loop: int | None = None, *, t
     )
 
 
-def _growth(found: Plant, gains: Any) -> float:
+def _growth(found: Plant, gains: np.ndarray) -> float:
     """Largest growth rate [1/s] with the commands times gains (a,)."""
     if np.any(found.sampling > 0.0):
         matrix, step = sampled.held(found, gains=gains)

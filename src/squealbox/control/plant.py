@@ -40,7 +40,7 @@ class Plant:
         """A + B H: every loop closed at once, without its delay and sampling."""
         return self.A + self.B @ self.H
 
-    def replaced(self, delay: Any) -> "Plant":
+    def replaced(self, delay: np.ndarray) -> "Plant":
         """The same with other delays (a,) [s]."""
         return replace(self, delay=delay)
 

@@ -12,6 +12,7 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.control.closed_loop import closed_loop
 from squealbox.control.plant import with_loops
+from squealbox.loops import Loop
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import complex_modes
@@ -114,7 +115,7 @@ def defeating_push(
     )  # fmt: skip
 
 
-def _gain(loop: Any, names: tuple[str, ...], shape: Any, period: float) -> float:
+def _gain(loop: Loop, names: tuple[str, ...], shape: np.ndarray, period: float) -> float:
     """Force per m/s of a vibration along the shape, near enough to begin with."""
     row = loop.controller(names)
     return float(np.abs(row.R @ shape) + np.abs(row.P @ shape) * period / (2.0 * np.pi)) or 1.0
@@ -123,7 +124,7 @@ def _gain(loop: Any, names: tuple[str, ...], shape: Any, period: float) -> float
 class _Pushed:
     """Runs after pushes of one direction."""
 
-    def __init__(self, brake: Any, rest: Any, shape: Any, period: float, rtol: float) -> None:
+    def __init__(self, brake: DesignOrSystem, rest: np.ndarray, shape: np.ndarray, period: float, rtol: float) -> None:
         self.brake, self.rest, self.shape, self.period, self.rtol = brake, rest, shape, period, rtol
         self.runs, self.amplitude, self.failed = 0, np.zeros(len(rest)), Outcome(COMPLETED)
 

@@ -19,7 +19,9 @@ MOST_STATES = 300  # forces under way up to which further delays of several loop
 FEW = 40  # samples of further delay up to which those of one loop are
 
 
-def held(plant: Plant, rate: float | None = None, delay: Any = None, gains: Any = None) -> Any:
+def held(
+    plant: Plant, rate: float | None = None, delay: np.ndarray | None = None, gains: np.ndarray | None = None
+) -> Any:
     """The matrix of one step of x and the forces still under way; loops without sampling are closed continuously.
 
     rate [Hz], delay (a,) [s] replace those of the loops, gains (a,) [-] multiply their commands. `ParameterError` for
@@ -43,7 +45,7 @@ def held(plant: Plant, rate: float | None = None, delay: Any = None, gains: Any 
     return step_matrix(A, plant.B[:, chosen], H[chosen], delays[chosen], step), step
 
 
-def multipliers(plant: Plant, rate: float | None = None, delay: Any = None) -> tuple[Any, float]:
+def multipliers(plant: Plant, rate: float | None = None, delay: np.ndarray | None = None) -> tuple[Any, float]:
     """The multipliers of one sample, largest first, and its length [s]."""
     matrix, step = held(plant, rate, delay)
     values = np.linalg.eigvals(matrix).astype(complex)

@@ -8,7 +8,7 @@ two pairs meet, (s^2 + a s + g)^2: eigenvalues move there as the root of a detun
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,6 +25,9 @@ from squealbox.stability.family import steady_sliding
 from squealbox.stability.state_matrix import spectrum
 from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
 from squealbox.system import Equilibrium, Linearised, as_system
+
+if TYPE_CHECKING:
+    from squealbox.stability.eigenvalues import ComplexModes
 
 AIMS = ("decay", "margin", "probability")
 FREQUENCIES, DAMPINGS = 21, 14  # of the detuning map
@@ -317,7 +320,7 @@ def _place(start: Any, on: str) -> Any:
     return [names.index(on)] if isinstance(on, str) else [i for i, x in enumerate(on) if x]
 
 
-def _modal_mass(brake: Design, modes: Any) -> float:
+def _modal_mass(brake: Design, modes: "ComplexModes") -> float:
     shape = modes.most_unstable.shape
     mass = brake.system().M
     size = float(np.real(np.conj(shape) @ (mass[: len(shape), : len(shape)] @ shape[: len(mass)])))

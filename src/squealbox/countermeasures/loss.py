@@ -110,7 +110,7 @@ def _products(size: int) -> Any:
     return P
 
 
-def _with(design: Any, parameter: str, values: Any, growth: Any, more: Any) -> tuple[Any, Any]:
+def _with(design: Any, parameter: str, values: np.ndarray, growth: np.ndarray, more: Any) -> tuple[Any, Any]:
     every = np.append(values, more)
     rates = np.append(growth, growth_of(design.replace({parameter: more})))
     every, places = np.unique(every, return_index=True)

@@ -6,12 +6,15 @@ what right and left shapes miss, so all three are added; of their span the direc
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from squealbox.fe.pencil import Pencil
 from squealbox.fe.real_modes import RealModes
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 NEGLIGIBLE = 1e-13  # share of the largest length below which a direction is round-off
 
@@ -49,7 +52,7 @@ def joined(pencil: Pencil, basis: np.ndarray, vectors: np.ndarray) -> Any:
     return np.concatenate([basis, fresh], axis=1)
 
 
-def fresh_directions(mass: Any, basis: Sequence[Any], weighted: Sequence[Any], vectors: np.ndarray) -> Any:
+def fresh_directions(mass: "sparray", basis: Sequence[Any], weighted: Sequence[Any], vectors: np.ndarray) -> Any:
     """What of `vectors` is new to a basis V in blocks (n, m), with M V in `weighted`: W, W' M W = I and W' M V = 0."""
     lengths = np.sqrt(np.maximum(np.einsum("ij,ij->j", vectors, mass @ vectors), 0.0))
     vectors = _without(vectors[:, lengths > 0.0] / lengths[lengths > 0.0], basis, weighted)

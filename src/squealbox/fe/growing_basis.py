@@ -9,7 +9,7 @@ per linearisation are the residuals of the modes looked at, and one solve for ea
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import sparse
@@ -18,6 +18,9 @@ from squealbox.factorisation import is_symmetric
 from squealbox.fe.basis import fresh_directions
 from squealbox.fe.pencil import Pencil
 from squealbox.fe.small import Small
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 ROWS = ("n", "d", "t", "normal", "across")
 
@@ -29,7 +32,7 @@ class _Product:
     as they are. `whole` holds A V in double precision for the matrix that the basis is orthogonal by.
     """
 
-    def __init__(self, matrix: Any) -> None:
+    def __init__(self, matrix: "sparray") -> None:
         self.matrix, self.symmetric = matrix, is_symmetric(matrix)
         self.right: list[Any] = []
         self.left: list[Any] = self.right if self.symmetric else []
@@ -53,7 +56,7 @@ class _Product:
 class _SparseRows:
     """A V of one sparse table A (contacts, n)."""
 
-    def __init__(self, matrix: Any) -> None:
+    def __init__(self, matrix: "sparray") -> None:
         self.matrix, self.dense = matrix, np.zeros((matrix.shape[0], 0))
 
 
@@ -182,7 +185,7 @@ class GrowingBasis:
         tables = {name: getattr(contacts, name, None) for name in ROWS}
         return {n: self._known(self._tables, _SparseRows, table) for n, table in tables.items() if table is not None}
 
-    def _known(self, among: list[Any], kind: type, matrix: Any) -> Any:
+    def _known(self, among: list[Any], kind: type, matrix: "sparray") -> Any:
         for one in among:
             if equal(one.matrix, matrix):
                 return one
@@ -205,7 +208,7 @@ def times(blocks: Sequence[Any], x: np.ndarray, onto: np.ndarray | None = None) 
     return found
 
 
-def equal(one: Any, other: Any) -> bool:
+def equal(one: "sparray", other: "sparray") -> bool:
     """True for two sparse arrays with the same entries in the same places."""
     if one is other:
         return True

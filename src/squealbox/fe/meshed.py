@@ -11,7 +11,7 @@ so each point may lift off; how many do, and what friction adds to the pressure 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,6 +24,9 @@ from squealbox.fe.real_modes import RealModes, real_modes
 from squealbox.fe.wear import Pressed, Worn, run_in
 from squealbox.parameters import DataSheet, ParameterError, parameter
 from squealbox.system import Equilibrium, System, equilibrium
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 OWN = "chosen here"
 
@@ -317,14 +320,14 @@ class FreedomsOfBodies:
         """Where a body's freedoms stand."""
         return np.arange(self.starts[body], self.starts[body + 1])
 
-    def square(self, matrix: Any, body: int) -> Any:
+    def square(self, matrix: "sparray", body: int) -> Any:
         """A body's matrix on all freedoms."""
         inside = self.rows(sparse.csr_array(matrix)[self.inner[body]], body)
         before, after = self.starts[body], self.size - self.starts[body + 1]
         ends = np.concatenate([np.zeros(before), inside.indptr, np.full(after, inside.indptr[-1])]).astype(np.int32)
         return sparse.csr_array((inside.data, inside.indices, ends), shape=(self.size, self.size))
 
-    def rows(self, table: Any, body: int) -> Any:
+    def rows(self, table: "sparray", body: int) -> Any:
         """Rows (k, n of the body) on all freedoms."""
         inside = sparse.csr_array(table)
         if len(self.inner[body]) < inside.shape[1]:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import sparse
@@ -11,6 +11,9 @@ from squealbox.loops import near_sliding
 from squealbox.memory_rows import no_memory
 from squealbox.sparse_sliding import Nearby, damping_across, damping_along, stiffness_of
 from squealbox.system import Equilibrium, InvalidSystem, System, equilibrium
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 MOST_DAMPED = 0.1  # damping ratio above which a pair is no candidate for squeal and is not shown
 
@@ -59,7 +62,7 @@ class Pencil:
         """C_eff V of columns V (n, k)."""
         return self.C @ shapes
 
-    def residual(self, values: Any, shapes: Any) -> Any:
+    def residual(self, values: complex | np.ndarray, shapes: np.ndarray) -> Any:
         """Q(lambda_k) u_k for each column u_k of `shapes` (n, k)."""
         return self.K @ shapes + (self.C @ shapes) * values + (self.M @ shapes) * values**2
 
@@ -148,7 +151,7 @@ def pencil_of(
     return SlidingPencil(sliding, state)
 
 
-def symmetric_part(matrix: Any) -> Any:
+def symmetric_part(matrix: "sparray") -> Any:
     """1/2 (A + A')."""
     return sparse.csr_array(0.5 * (matrix + matrix.T))
 

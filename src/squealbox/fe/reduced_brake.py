@@ -304,7 +304,7 @@ class ReducedBrake(Design):
         arrays = {**self.reduction.arrays, "across": None}
         return self.replace({"reduction": self.reduction.replace(arrays=arrays)})
 
-    def expand(self, shape: Any) -> Any:
+    def expand(self, shape: np.ndarray) -> Any:
         """A displacement or mode of the small system (m,) or (m, k) on all degrees of freedom, without q0."""
         return self.attached().basis @ shape
 
@@ -320,7 +320,7 @@ class ReducedBrake(Design):
         """The full design at the present values, or the full system."""
         return self.attached().at(self.present())
 
-    def missed(self, eigenvalue: complex, x: Any, y: Any) -> complex | None:
+    def missed(self, eigenvalue: complex, x: np.ndarray, y: np.ndarray) -> complex | None:
         """The estimate [1/s] of the full brake's eigenvalue less one found here, with right and left shape (m,).
 
         None where the full brake is not kept, or is another one: without its cross direction, or with another law.

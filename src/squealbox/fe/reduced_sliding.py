@@ -129,7 +129,7 @@ def untouched(rows: dict[str, Any]) -> tuple[Small, Equilibrium] | None:
     return Small(rows["M"], rows["C"], rows["K"]), Equilibrium(q, nothing, nothing, nothing, yes, outcome, np.array(0))
 
 
-def without_friction(rows: dict[str, Any], unilateral: Any, small: Small, state: Equilibrium) -> tuple[Any, Any]:
+def without_friction(rows: dict[str, Any], unilateral: np.ndarray, small: Small, state: Equilibrium) -> tuple[Any, Any]:
     """C with the damping across the sliding direction, and the symmetric part of K less open contacts, (m, m) each.
 
     Of what `steady_small` found; friction's stiffness is in neither.

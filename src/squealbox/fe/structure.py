@@ -10,7 +10,7 @@ import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,6 +32,9 @@ from squealbox.fe.readers.matrix import (
 from squealbox.fe.readers.opening import open_matrices, read_labels
 from squealbox.fe.units import unit_system
 from squealbox.parameters import ParameterError
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 Source = str | os.PathLike[str] | tuple[str | os.PathLike[str], str]
 
@@ -111,7 +114,7 @@ class Structure:
                 found.append(f"the first elastic frequency is {elastic[0]:.3g} Hz with {given}: check the units")
         return tuple(found)
 
-    def _named(self, mask: Any, most: int = 4) -> str:
+    def _named(self, mask: np.ndarray, most: int = 4) -> str:
         rows = np.flatnonzero(mask)
         words = ", ".join(shown_label(self.labels, int(row)) for row in rows[:most])
         return words + (", ..." if len(rows) > most else "")
@@ -260,7 +263,7 @@ def _common(files: dict[str, MatrixFile], found: dict[str, FileMatrix], given: A
     return decoded_labels(union), places
 
 
-def _placed(matrix: Any, places: np.ndarray | None, size: int) -> Any:
+def _placed(matrix: "sparray", places: np.ndarray | None, size: int) -> Any:
     if places is None or (len(places) == size and np.array_equal(places, np.arange(size))):
         return matrix.tocsr()
     from scipy.sparse import csr_array
@@ -269,7 +272,7 @@ def _placed(matrix: Any, places: np.ndarray | None, size: int) -> Any:
     return csr_array((whole.data, (places[whole.row], places[whole.col])), shape=(size, size))
 
 
-def _scaled(matrix: Any, unit: np.ndarray, factor: float) -> Any:
+def _scaled(matrix: "sparray", unit: np.ndarray, factor: float) -> Any:
     scaled = matrix.tocsr().copy()
     rows = np.repeat(np.arange(matrix.shape[0]), np.diff(scaled.indptr))
     scaled.data = scaled.data * (factor * unit[rows] * unit[scaled.indices])

@@ -66,7 +66,7 @@ class Surface:
             moved = np.asarray(self.moves, dtype=float) @ shape
         return moved / moved.flat[np.argmax(np.abs(moved))]
 
-    def shares(self, moved: Any) -> Any:
+    def shares(self, moved: np.ndarray) -> Any:
         """Of the motion of each face, the share (f,) of that of the node that moves most."""
         size = np.linalg.norm(np.abs(moved), axis=1)
         return np.mean(size[self.faces], axis=1) / np.max(size)

@@ -66,10 +66,10 @@ class OwnLaw(FrictionLaw):
         rising = np.where(np.asarray(self.static) == 0.0, NEVER_STICKS, self.static)
         return (rising if np.ndim(rising) else float(rising), *self.numbers)
 
-    def mu(self, velocity: Any) -> Any:
+    def mu(self, velocity: float | np.ndarray) -> Any:
         return _functions(self.source)[0](np.abs(velocity), self.coefficients())
 
-    def slope_at(self, velocity: Any) -> Any:
+    def slope_at(self, velocity: float | np.ndarray) -> Any:
         return _functions(self.source)[1](np.abs(velocity), self.coefficients())
 
     @property

@@ -154,7 +154,13 @@ class ActiveForce(Loop):
     time_constant: float = parameter("s", 0.0, default=1e-4, meaning="of the filter of the estimate")
     outer: Loop | None = None
 
-    def __init__(self, mass: Any = 0.0, time_constant: Any = 1e-4, outer: Loop | None = None, **others: Any) -> None:
+    def __init__(
+        self,
+        mass: float | np.ndarray = 0.0,
+        time_constant: float | np.ndarray = 1e-4,
+        outer: Loop | None = None,
+        **others: Any,
+    ) -> None:
         known = {"on", "sense", "bandwidth", "limit", "delay", "sampling", "computing"}
         for name in others:
             if name not in known:

@@ -11,6 +11,7 @@ from squealbox.transient import ContactComparison
 from squealbox.words import quantity_label, scaled
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -29,7 +30,7 @@ def contact_comparison(comparison: ContactComparison, *, periods: float = 3.0, a
     return figure_of(first)
 
 
-def _motions(panel: Any, comparison: ContactComparison, periods: float) -> None:
+def _motions(panel: "Axes", comparison: ContactComparison, periods: float) -> None:
     dof = comparison.settings["dof"]
     runs = [(i, name, comparison.runs[name]) for i, name in enumerate(comparison.schemes) if name in comparison.runs]
     if not runs:
@@ -48,7 +49,7 @@ def _motions(panel: Any, comparison: ContactComparison, periods: float) -> None:
     panel.legend(loc="best")
 
 
-def _costs(panel: Any, comparison: ContactComparison) -> None:
+def _costs(panel: "Axes", comparison: ContactComparison) -> None:
     for i, name in enumerate(comparison.schemes[1:], start=1):
         if np.isfinite(comparison.error[i]):
             look = {**line(i, marker=True), "linestyle": "none", "markevery": 1}

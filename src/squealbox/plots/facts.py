@@ -8,6 +8,7 @@ import numpy as np
 
 from squealbox.limit_cycles import Branch, Cycle
 from squealbox.parameters import DataSheet
+from squealbox.result import Result
 from squealbox.signals import Spectrum, peaks
 from squealbox.stability import CriticalValue, StabilityMap
 from squealbox.transient import Ensemble, Trajectory, Verdict
@@ -141,7 +142,7 @@ def read_of(names: Any, dof: int) -> str:
     return "displacement" if len(names) < 2 else f"displacement {names[dof]}"
 
 
-def unit_of(result: Any, parameter: str) -> str:
+def unit_of(result: Result, parameter: str) -> str:
     """The unit of a dotted parameter, or of an alias, of the design a result came from; empty where it kept none."""
     design = result.inputs.get("system")
     return design.unit_of(parameter) if isinstance(design, DataSheet) else ""

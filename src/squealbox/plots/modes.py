@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.plots.style import LINES, UNSTABLE, drawing, figure_of, line, note
 from squealbox.stability import TrackedModes
@@ -19,7 +20,7 @@ OTHERS: dict[str, Any] = {"color": "#aaaaaa", "linewidth": 0.6, "linestyle": "-"
 
 
 def coalescence(
-    parameter: Any,
+    parameter: ArrayLike,
     modes: Any,
     *,
     name: str = "friction coefficient",
@@ -72,7 +73,7 @@ def coalescence(
         return figure_of(above)
 
 
-def _told(growth: Any) -> Any:
+def _told(growth: np.ndarray) -> Any:
     """Which modes of (k, n) have a look and a name of their own (n,): all of a few, else those nearest to growing.
 
     Of more modes than looks the others are thin and grey.
@@ -91,7 +92,7 @@ def upper_branches(modes: Any) -> Any:
     return rows[:, np.any(np.isfinite(rows), axis=0)]
 
 
-def followed(eigenvalues: Any) -> Any:
+def followed(eigenvalues: ArrayLike) -> Any:
     """The rows of `eigenvalues` (k, m) reordered so that each column runs on smoothly.
 
     Each row is matched to the straight continuation of the two before it, by the assignment of least total distance.
@@ -108,14 +109,14 @@ def followed(eigenvalues: Any) -> Any:
     return rows
 
 
-def unstable_stretches(values: Any, growth: Any) -> list[tuple[float, float]]:
+def unstable_stretches(values: np.ndarray, growth: np.ndarray) -> list[tuple[float, float]]:
     """Stretches of `values` (k,) where the `growth` (k,) [1/s] is positive, beyond round-off.
 
     They end on straight lines between the points, or half way to a point where nothing is known.
     """
     grows = growth > NONE * np.maximum(1.0, np.abs(growth))
     edges = []
-    for i in np.nonzero(np.diff(np.r_[False, grows, False].astype(int)))[0]:
+    for i in np.nonzero(np.diff(np.r_[False, grows, False].astype(int)))[0].tolist():
         if i in (0, len(values)):
             edges.append(float(values[min(i, len(values) - 1)]))
             continue

@@ -16,6 +16,7 @@ from squealbox.transient.verdict import verdict
 from squealbox.words import number, quantity_label, scaled
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 SMOOTH = 20  # points of a drawn curve between two turning points
@@ -33,7 +34,7 @@ def time_history(
     unit: str | None = None,
     time_unit: str | None = None,
     title: str = "",
-    axes: Any = None,
+    axes: "Axes | None" = None,
 ) -> "Figure":
     """Displacement against time.
 
@@ -81,7 +82,7 @@ def phase_plane(
     unit: str | None = None,
     speed_unit: str | None = None,
     title: str = "",
-    axes: Any = None,
+    axes: "Axes | None" = None,
 ) -> "Figure":
     """Velocity against displacement: the last `part` [-] of the time dark, before it pale, the start as a ring."""
     times, x, velocity = _drawn(motion, dof)
@@ -111,7 +112,7 @@ def _drawn(motion: Any, dof: int | str) -> tuple[Any, Any, Any]:
     return fine, curve.spline(fine), curve.spline(fine, 1)
 
 
-def _extremes(x: Any) -> Any:
+def _extremes(x: np.ndarray) -> Any:
     """Which points of a history are drawn: all, or of too many the least and the largest of each part."""
     width = x.size // (LARGEST // 4)
     if x.size <= LARGEST:
@@ -121,7 +122,7 @@ def _extremes(x: Any) -> Any:
     return np.unique(np.r_[0, first + parts.argmin(axis=1), first + parts.argmax(axis=1), whole : x.size])
 
 
-def _stretches(points: Any) -> list[Any]:
+def _stretches(points: np.ndarray) -> list[Any]:
     """The points of a curve in one piece, or of too many some stretches spread over the whole."""
     if points.size <= LARGEST:
         return [points]
@@ -192,7 +193,9 @@ def motion_overview(trajectory: Trajectory, *, dof: int | str | None = None, tit
 
 
 @drawn_by.register(Verdict)
-def amplitude_course(verdict: Verdict, *, unit: str | None = None, title: str = "", axes: Any = None) -> "Figure":
+def amplitude_course(
+    verdict: Verdict, *, unit: str | None = None, title: str = "", axes: "Axes | None" = None
+) -> "Figure":
     """Course of the amplitude behind a verdict, on a logarithmic scale, with its sentence."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
@@ -212,7 +215,7 @@ def amplitude_course(verdict: Verdict, *, unit: str | None = None, title: str = 
         return figure_of(panel)
 
 
-def _last_periods(motion: Trajectory, begin: float, *, dof: int | str, name: str, axes: Any) -> None:
+def _last_periods(motion: Trajectory, begin: float, *, dof: int | str, name: str, axes: "Axes") -> None:
     """The end of a motion of many periods, close enough to see its shape."""
     times, x, _ = _drawn(motion, dof)
     curve = smooth_curve(motion, dof=dof, begin=begin) if np.sum(motion.t >= begin) >= LEAST else None

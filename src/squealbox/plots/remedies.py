@@ -14,6 +14,7 @@ from squealbox.system import as_system
 from squealbox.words import quantity_label, scaled
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 MOST_BARS = 24
@@ -35,7 +36,7 @@ def countermeasure_drawing(design: Countermeasure, *, axes: Any = None) -> "Figu
 
 
 @drawn_by.register(Remedies)
-def remedies_figure(found: Remedies, *, title: str = "", axes: Any = None) -> "Figure":
+def remedies_figure(found: Remedies, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """The share of the lot that squeals with each cure, ranked, beside that without; hollow where no dose is enough.
 
     Where all of it squeals with any of them, the growth rate tells them apart.
@@ -71,7 +72,7 @@ def remedies_figure(found: Remedies, *, title: str = "", axes: Any = None) -> "F
 
 
 @drawn_by.register(BestAbsorber)
-def detuning_map(found: BestAbsorber, *, title: str = "", axes: Any = None) -> "Figure":
+def detuning_map(found: BestAbsorber, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """What was aimed for over tuning and damping of the absorber, with its best point and, of growth, the edge."""
     names = {"decay": ("growth rate", "1/s"), "margin": ("critical value", ""), "probability": ("P(squeal)", "")}
     with drawing(axes, width=1.5 * COLUMN, height=2.8) as panel:
@@ -86,7 +87,7 @@ def detuning_map(found: BestAbsorber, *, title: str = "", axes: Any = None) -> "
 
 
 @drawn_by.register(ClosedLoop)
-def poles_figure(found: ClosedLoop, *, title: str = "", axes: Any = None) -> "Figure":
+def poles_figure(found: ClosedLoop, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Poles with the loops closed (dots) and without their forces (crosses), over growth rate and frequency."""
     with drawing(axes, width=1.4 * COLUMN, height=2.8) as panel:
         for values, mark, label in ((found.open_loop, "x", "open"), (found.poles, "o", "closed")):
@@ -119,7 +120,7 @@ def loop_locus(
         return figure_of(panel)
 
 
-def nyquist_curve(found: ClosedLoop, loop: int = 0, *, title: str = "", axes: Any = None) -> "Figure":
+def nyquist_curve(found: ClosedLoop, loop: int = 0, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """The open loop -L of one loop, the others closed, over positive frequencies, and the critical point -1."""
     fastest = float(np.max(np.abs(found.open_loop)))
     slowest = max(float(np.min(np.abs(found.open_loop))), 1e-4 * fastest)
@@ -141,7 +142,7 @@ def nyquist_curve(found: ClosedLoop, loop: int = 0, *, title: str = "", axes: An
 
 
 @drawn_by.register(Placement)
-def placement_figure(found: Placement, *, title: str = "", axes: Any = None) -> "Figure":
+def placement_figure(found: Placement, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """What feedback between each pair of freedoms does to the mode that grows most: blue damps it, red drives it."""
     values = found.shift[:, :, found.target].real
     size = float(np.max(np.abs(values))) or 1.0
@@ -156,7 +157,7 @@ def placement_figure(found: Placement, *, title: str = "", axes: Any = None) -> 
 
 
 @drawn_by.register(DefeatingPush)
-def push_figure(found: DefeatingPush, *, title: str = "", axes: Any = None) -> "Figure":
+def push_figure(found: DefeatingPush, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """The pushes that die down and those that do not, and the edge between them."""
     with drawing(axes, width=1.4 * COLUMN, height=1.2) as panel:
         edge = found.push if found.outcome.ok else 1.0
@@ -171,7 +172,7 @@ def push_figure(found: DefeatingPush, *, title: str = "", axes: Any = None) -> "
 
 
 @drawn_by.register(StableGains)
-def gains_figure(found: StableGains, *, title: str = "", axes: Any = None) -> "Figure":
+def gains_figure(found: StableGains, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Growth rate over the factor on the loops' forces, and the ranges in which they hold the brake."""
     with drawing(axes, width=1.4 * COLUMN, height=2.0) as panel:
         panel.plot(found.factor, found.growth, color="#0072B2")

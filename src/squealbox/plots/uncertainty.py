@@ -12,6 +12,7 @@ from squealbox.studies import IntervalBounds, MorrisEffects, SobolIndices, Squea
 from squealbox.words import number, quantity_label
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 QUIET, SQUEAL = "#9ecae1", "#f0b27a"
@@ -54,7 +55,7 @@ def squeal_probability(found: SquealProbability, *, title: str = "", axes: Any =
         return figure_of(first)
 
 
-def _histogram(panel: Any, found: SquealProbability, title: str) -> None:
+def _histogram(panel: "Axes", found: SquealProbability, title: str) -> None:
     about = found.settings["quantity"]
     values = found.values[np.isfinite(found.values)]
     limit = about["limit"]
@@ -104,7 +105,7 @@ def _shares(found: SquealProbability, i: int) -> tuple[Any, Any, Any, Any]:
 
 
 @drawn_by.register(SobolIndices)
-def sobol_indices(found: SobolIndices, *, title: str = "", axes: Any = None) -> "Figure":
+def sobol_indices(found: SobolIndices, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """First-order and total index of each parameter as bars with their intervals, the strongest first."""
     order = np.argsort(-found.total)
     places = np.arange(order.size)
@@ -130,7 +131,7 @@ def sobol_indices(found: SobolIndices, *, title: str = "", axes: Any = None) -> 
 
 
 @drawn_by.register(MorrisEffects)
-def morris_effects(found: MorrisEffects, *, title: str = "", axes: Any = None) -> "Figure":
+def morris_effects(found: MorrisEffects, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Strength mu* against spread sigma; below the line sigma = mu*/2 a parameter acts nearly alone and straight."""
     about = found.settings["quantity"]
     with drawing(axes, width=1.3 * COLUMN, height=2.9) as panel:
@@ -188,7 +189,7 @@ def interval_bounds(found: IntervalBounds, *, title: str = "", axes: Any = None)
         return figure_of(top)
 
 
-def _range(panel: Any, found: IntervalBounds, title: str) -> None:
+def _range(panel: "Axes", found: IntervalBounds, title: str) -> None:
     about = found.settings["quantity"]
     low, high = float(found.low), float(found.high)
     limit = about["limit"]

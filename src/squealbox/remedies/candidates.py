@@ -303,7 +303,7 @@ def _speeds(brake: Design) -> Any:
     return equilibrium(brake.system()).sliding_speed
 
 
-def more_friction(brake: Design, factor: float) -> Design:
+def more_friction(brake: Design, factor: float | np.ndarray) -> Design:
     """The brake with every friction coefficient of its laws times `factor`."""
     laws = list(laws_of(brake))
     if not laws:

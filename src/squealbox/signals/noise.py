@@ -115,7 +115,7 @@ def noise_matrix(
     )  # fmt: skip
 
 
-def _edges(name: str, given: ArrayLike | None, values: Any) -> Any:
+def _edges(name: str, given: ArrayLike | None, values: np.ndarray) -> Any:
     if given is not None:
         edges: Any = np.asarray(given, dtype=float)
         if edges.ndim != 1 or edges.size < 2 or not np.all(np.isfinite(edges)) or np.any(np.diff(edges) <= 0.0):

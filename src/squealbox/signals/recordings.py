@@ -264,7 +264,7 @@ def _csv(path: Path, size: int, rate: float | None) -> Read:
     return table, rate, [name.partition("[")[0].strip() or name for name in names], units, []
 
 
-def _uneven(times: Any, rounding: Any) -> str:
+def _uneven(times: np.ndarray, rounding: np.ndarray) -> str:
     """Why a column of times will not do: too few digits, or which step is unlike the others."""
     steps = np.diff(times)
     usual = float(np.median(steps))
@@ -350,7 +350,7 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def _clipping(x: Any, names: Sequence[str]) -> list[str]:
+def _clipping(x: np.ndarray, names: Sequence[str]) -> list[str]:
     """A sentence for each channel that stands at its largest value for several samples on end, more than once."""
     notes = []
     for i, name in enumerate(names):

@@ -141,7 +141,7 @@ class _Rectangle:
         eigenvalues = np.where(idle, -self.reference, eigenvalues)
         return np.where(on_divergence(about), 0.0, np.max(eigenvalues.real, axis=-1)), eigenvalues
 
-    def sample(self, u: Any, v: Any) -> LevelsAtPoints:
+    def sample(self, u: np.ndarray, v: np.ndarray) -> LevelsAtPoints:
         """Level and detectors at points (u, v) of the unit square."""
         about = self.family.at(self.low[0] + self.width[0] * u, self.low[1] + self.width[1] * v)
         level, eigenvalues = self._level(about)
@@ -149,7 +149,7 @@ class _Rectangle:
             self.scale = max(self.scale, float(np.nanmedian(np.abs(level)))) if not self.neutral else 1.0
         return LevelsAtPoints(level, self._detectors(eigenvalues))
 
-    def _detectors(self, eigenvalues: Any) -> Any:
+    def _detectors(self, eigenvalues: np.ndarray) -> Any:
         """Smooth functions of the parameters (2, points) that vanish on the boundary; see the module `cells`."""
         scaled = eigenvalues / self.reference
         values = scaled
@@ -165,12 +165,12 @@ class _Rectangle:
                 product = product * ((a - b) ** 2 if self.neutral else a + b)
         return np.stack([product.real, np.prod(scaled, axis=-1).real])
 
-    def gradient(self, points: Any) -> Any:
+    def gradient(self, points: np.ndarray) -> Any:
         """Gradient of the level at points (k, 2), by central differences in one call."""
         values = self.level((points[:, None, :] + SHIFTS).reshape(-1, 2)).reshape(-1, 4)
         return np.stack([values[:, 0] - values[:, 1], values[:, 2] - values[:, 3]], axis=-1) / (2.0 * SHIFT)
 
-    def stencil(self, point: Any) -> tuple[Any, Any, Any]:
+    def stencil(self, point: np.ndarray) -> tuple[Any, Any, Any]:
         """Detectors (k,) at one point and their gradients (k, 2), in one call, and where the unstable side lies.
 
         That is the gradient of the level, or zero where stability does not change about the point.
@@ -203,7 +203,7 @@ class _Rectangle:
         order = np.lexsort((-np.array([edge.size for edge in edges]), border))
         return [(points[i], gradients[i]) for i in order if known[i]]
 
-    def polished(self, points: Any) -> Any:
+    def polished(self, points: np.ndarray) -> Any:
         """Points moved along the gradient onto the boundary as far as round-off lets them: Newton, then halving."""
         best, size = points.copy(), np.abs(self.level(points))
         gradient = self.gradient(best)
@@ -266,7 +266,7 @@ class _Rectangle:
         )
 
 
-def _traced(rectangle: _Rectangle, start: Any, gradient: Any) -> tuple[Any, Any]:
+def _traced(rectangle: _Rectangle, start: np.ndarray, gradient: np.ndarray) -> tuple[Any, Any]:
     """The whole curve through `start`, with tangents; unstable on the left; first point repeated when closed."""
     heading = np.array([gradient[1], -gradient[0]]) / np.linalg.norm(gradient)
     points, tangents, closed = _walk(rectangle, start, heading, 1.0)
@@ -320,13 +320,13 @@ def _walk(
     return points, tangents, False
 
 
-def _smooth_part(rectangle: _Rectangle, point: Any, along: Any, side: float) -> Iterator[tuple[Any, Any]]:
+def _smooth_part(rectangle: _Rectangle, point: np.ndarray, along: np.ndarray, side: float) -> Iterator[tuple[Any, Any]]:
     """Points after `point` as far as one detector leads along the boundary, with shorter steps towards the corner."""
     values, gradients, _ = rectangle.stencil(point)
     which = int(np.argmin(np.abs(values) / (np.linalg.norm(gradients, axis=-1) + 1e-300)))
     last: dict[tuple[float, float], Any] = {}
 
-    def at(x: Any, p: float) -> Any:
+    def at(x: np.ndarray, p: float) -> Any:
         key = (float(x[0]), float(p))
         if key not in last:
             last.clear()
@@ -359,7 +359,7 @@ def _smooth_part(rectangle: _Rectangle, point: Any, along: Any, side: float) -> 
 
 
 def _around_corner(
-    rectangle: _Rectangle, point: Any, along: Any, side: float, radius: float = CIRCLE
+    rectangle: _Rectangle, point: np.ndarray, along: np.ndarray, side: float, radius: float = CIRCLE
 ) -> tuple[Any, Any] | None:
     """Where the boundary leaves a small circle about a corner, and the direction.
 

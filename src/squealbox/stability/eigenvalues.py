@@ -348,7 +348,7 @@ def _inverse(states: np.ndarray) -> tuple[Any, Any]:
     return np.linalg.inv(safe), invertible
 
 
-def _left_null(mass: Any, damping: Any, stiffness: Any, eigenvalues: Any) -> Any:
+def _left_null(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray, eigenvalues: np.ndarray) -> Any:
     """Left null vectors of lambda^2 M + lambda C + K by singular values: exact even where modes have merged."""
     value = eigenvalues[..., None, None]
     dynamic = value**2 * mass[..., None, :, :] + value * damping[..., None, :, :] + stiffness[..., None, :, :]

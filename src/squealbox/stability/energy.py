@@ -102,7 +102,7 @@ class ModeEnergy(Result):
         """The same with contacts summed by their name without its number, and all damping in one; no phases."""
         rows = contact_groups(self.contacts)
 
-        def summed(values: Any) -> Any:
+        def summed(values: np.ndarray) -> Any:
             return np.array([np.sum(values[each]) for each in rows.values()])
 
         arrays: dict[str, Any] = {name: summed(getattr(self, name)) for name in ("circulation", "slope", "across")}
@@ -251,7 +251,7 @@ def sparse_energy(system: System, mode: Mode | int | None, time: float) -> ModeE
     )
 
 
-def _dampers(damping: Any, velocity: Any, dofs: tuple[str, ...]) -> tuple[tuple[str, ...], Any]:
+def _dampers(damping: np.ndarray, velocity: np.ndarray, dofs: tuple[str, ...]) -> tuple[tuple[str, ...], Any]:
     """Names and mean powers [W] of the dampers that C is made of: to ground, and between two degrees of freedom."""
     symmetric = 0.5 * (damping + damping.T)  # the skew part does no work
     rest = 1e-14 * np.max(np.abs(symmetric))

@@ -81,13 +81,13 @@ def exceptional_points(
     )
 
 
-def _squared_gaps(values: Any) -> tuple[Any, list[tuple[int, int]]]:
+def _squared_gaps(values: np.ndarray) -> tuple[Any, list[tuple[int, int]]]:
     half = values.shape[-1] // 2
     pairs = [(i, j) for i in range(half) for j in range(i)]
     return np.stack([(values[..., i] - values[..., j]) ** 2 for i, j in pairs], axis=-1), pairs
 
 
-def _local_minima(size: Any) -> Any:
+def _local_minima(size: np.ndarray) -> Any:
     padded = np.pad(np.nan_to_num(size, nan=np.inf), 1, constant_values=np.inf)
     middle = padded[1:-1, 1:-1]
     least = np.isfinite(middle)

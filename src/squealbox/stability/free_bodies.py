@@ -49,7 +49,7 @@ def free_body_spectra(
     return values, unfelt
 
 
-def _largest(matrix: Any) -> Any:
+def _largest(matrix: np.ndarray) -> Any:
     """The largest entry, with axes to divide by; 1 where there is none."""
     size = np.max(np.abs(matrix), axis=(-1, -2), keepdims=True)
     return np.where(size > 0.0, size, 1.0)

@@ -50,7 +50,7 @@ def largest_in_band(family: SteadyFamily, *values: ArrayLike) -> tuple[Any, Any,
     return growth, omega, growing.astype(np.int64)
 
 
-def worst_in_band(eigenvalues: Any) -> tuple[float, float, int]:
+def worst_in_band(eigenvalues: np.ndarray) -> tuple[float, float, int]:
     """The same of the eigenvalues of one brake; NaN, NaN and 0 without a mode."""
     known = eigenvalues[np.isfinite(eigenvalues)]
     if not len(known):

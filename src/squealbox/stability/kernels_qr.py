@@ -7,14 +7,17 @@ nothing.
 
 from typing import Any
 
+import numpy as np
+
 from squealbox.compiled.packed import inverse_power, larger, largest, load, root, select, signed, some, splat, store
+from squealbox.compiled.vectors import Lanes
 
 EPS = 2.220446049250313e-16
 TINY = 1e-290  # of a matrix whose largest entry is about 1: nothing
 SWEEPS = 60  # QR sweeps on one window before the matrix is given up
 
 
-def windows(h: Any, n: int, top: int) -> Any:
+def windows(h: np.ndarray, n: int, top: int) -> Any:
     """Set negligible subdiagonals to zero; last and first row of each matrix's lowest window of three rows or more.
 
     -1 and 0 where there is none. Negligible is what LAPACK's lahqr calls so: |h(i, i-1)| below round-off of its two
@@ -43,7 +46,7 @@ def windows(h: Any, n: int, top: int) -> Any:
     return select(found, size, last), low
 
 
-def shifts(h: Any, n: int, top: int, bottom: int, last: Any, low: Any, sweeps: Any) -> Any:
+def shifts(h: np.ndarray, n: int, top: int, bottom: int, last: Lanes, low: Lanes, sweeps: Lanes) -> Any:
     """First column (p, q, r) of (H - s1)(H - s2), both shifts the eigenvalues of the window's last 2 x 2 block.
 
     After each ten sweeps on one window LAPACK's exceptional shift is taken instead.
@@ -73,7 +76,7 @@ def shifts(h: Any, n: int, top: int, bottom: int, last: Any, low: Any, sweeps: A
     return (a - x) * (a - y) - w + b * c, c * (a + d - x - y), c * e
 
 
-def sweep(h: Any, n: int, top: int, bottom: int, last: Any, low: Any, p: Any, q: Any, r: Any) -> None:
+def sweep(h: np.ndarray, n: int, top: int, bottom: int, last: Lanes, low: Lanes, p: Lanes, q: Lanes, r: Lanes) -> None:
     """One implicit double-shift QR sweep of every matrix over its own window, inside rows bottom to top."""
     zero, one = splat(0.0), splat(1.0)
     row = splat(float(bottom))
@@ -112,7 +115,9 @@ def sweep(h: Any, n: int, top: int, bottom: int, last: Any, low: Any, p: Any, q:
         row = row + one
 
 
-def _turn_three(h: Any, place: int, apart: int, f: Any, g: Any, s: Any, u: Any, q: Any, r: Any) -> None:
+def _turn_three(
+    h: np.ndarray, place: int, apart: int, f: Lanes, g: Lanes, s: Lanes, u: Lanes, q: Lanes, r: Lanes
+) -> None:
     x, y, z = load(h, place), load(h, place + apart), load(h, place + 2 * apart)
     t = f * x + g * y + s * z
     store(h, place, x - t * u)
@@ -120,14 +125,14 @@ def _turn_three(h: Any, place: int, apart: int, f: Any, g: Any, s: Any, u: Any, 
     store(h, place + 2 * apart, z - t * r)
 
 
-def _turn_two(h: Any, place: int, apart: int, f: Any, g: Any, u: Any, q: Any) -> None:
+def _turn_two(h: np.ndarray, place: int, apart: int, f: Lanes, g: Lanes, u: Lanes, q: Lanes) -> None:
     x, y = load(h, place), load(h, place + apart)
     t = f * x + g * y
     store(h, place, x - t * u)
     store(h, place + apart, y - t * q)
 
 
-def iterate(h: Any, n: int) -> Any:
+def iterate(h: np.ndarray, n: int) -> Any:
     """QR sweeps until every matrix has blocks of one and two rows only; returns 1 where that did not come about."""
     zero, one, none = splat(0.0), splat(1.0), splat(-1.0)
     lost, sweeps, last = zero, zero, splat(float(n))

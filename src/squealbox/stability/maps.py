@@ -154,7 +154,13 @@ def _block(steady: Steady, mechanism: bool, steps: int, engine: Engine) -> dict[
 
 
 def _columns(
-    growth: Any, omega: Any, growing: Any, scale: Any, circulation: Any, slope: Any, mechanism: bool
+    growth: np.ndarray,
+    omega: np.ndarray,
+    growing: np.ndarray,
+    scale: np.ndarray,
+    circulation: np.ndarray,
+    slope: np.ndarray,
+    mechanism: bool,
 ) -> dict[str, Any]:
     """The columns of a map; `scale` [rad/s] is the size of the worst eigenvalue, NaN where there is none."""
     unstable = growing > 0

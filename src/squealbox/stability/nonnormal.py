@@ -133,7 +133,7 @@ def _energy_coordinates(steady: Steady) -> tuple[Any, Any]:
     return root @ plain @ np.linalg.inv(root), root
 
 
-def _norms(matrix: Any, instants: Any) -> Any:
+def _norms(matrix: np.ndarray, instants: np.ndarray) -> Any:
     """|exp(A t)| at equally spaced instants, by repeated multiplication."""
     from scipy.linalg import expm
 

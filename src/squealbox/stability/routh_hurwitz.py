@@ -24,7 +24,7 @@ def characteristic_polynomial(about: Linearised) -> Any:
     return np.stack(np.broadcast_arrays(a4, a3, a2, a1, _mixed(k, k)), axis=-1)
 
 
-def hurwitz_determinants(coefficients: Any) -> Any:
+def hurwitz_determinants(coefficients: np.ndarray) -> Any:
     """The quantities a3, a1, a0 and a1 (a3 a2 - a1) - a3^2 a0 of the monic quartic, (..., 4).
 
     All are positive just when every real part is negative. The last vanishes where a pair is on the imaginary axis, or

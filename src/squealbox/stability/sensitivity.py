@@ -185,7 +185,13 @@ class _Lines:
 
 
 def _derivatives(
-    value: complex, u: Any, w: Any, mass: Any, damping: Any, stiffness: Any, parts: Any
+    value: complex,
+    u: np.ndarray,
+    w: np.ndarray,
+    mass: np.ndarray,
+    damping: np.ndarray,
+    stiffness: np.ndarray,
+    parts: Mapping[str, Any],
 ) -> tuple[Any, Any]:
     dynamic = value**2 * mass + value * damping + stiffness
     by_value = 2.0 * value * mass + damping
@@ -220,7 +226,7 @@ def _leaf(design: DataSheet, name: str) -> str:
     return str(design.aliases.get(head, (head,))[0]) + dot + rest
 
 
-def _weights(offsets: Any, order: int) -> Any:
+def _weights(offsets: np.ndarray, order: int) -> Any:
     """Weights of the difference formula of that order on the given offsets."""
     powers = np.vander(offsets, increasing=True).T
     wanted = np.zeros(len(offsets))

@@ -64,7 +64,7 @@ def asymptotically_stable(about: Linearised, engine: Engine = "auto") -> Any:
     return largest_growth(about, engine)[0] < 0.0
 
 
-def flags_of(mass: Any, damping: Any, stiffness: Any) -> Any:
+def flags_of(mass: Any, damping: np.ndarray, stiffness: Any) -> Any:
     """True where every real part is negative, (count,), of flat matrices of 2 x 2; of M one or as many."""
     number = damping.size // 4
     words = np.empty(-(-number // LANES), dtype=np.int64)
@@ -133,12 +133,12 @@ def spectra_kernels() -> Any:
     return translated(kernels_qr, kernels_spectra)
 
 
-def parts_of(values: Any) -> Any:
+def parts_of(values: np.ndarray) -> Any:
     """Real and imaginary parts of complex numbers (...), the same memory, (..., 2)."""
     return values.view(float).reshape(*values.shape, 2)
 
 
-def by_lapack(matrices: Any) -> Any:
+def by_lapack(matrices: np.ndarray) -> Any:
     """What the kernels leave: rows or columns that stand alone, sizes near overflow, QR that does not converge.
 
     NaN for matrices that are not finite, or on which LAPACK fails too.

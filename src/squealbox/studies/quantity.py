@@ -61,7 +61,7 @@ class Quantity:
     def __call__(self, design: Any) -> Any:
         return self.function(design)
 
-    def excess(self, values: Any) -> Any:
+    def excess(self, values: np.ndarray) -> Any:
         """How far `values` are on the side of squeal: positive squeals, zero and below does not; NaN is unknown."""
         return values - self.limit if self.squeals == "above" else self.limit - values
 
@@ -71,7 +71,10 @@ class Quantity:
         return {"name": self.name, "unit": self.unit, "limit": self.limit, "squeals": self.squeals}
 
 
-def as_quantity(given: Any) -> Quantity:
+QuantityLike = Quantity | Callable[[Any], Any]  # a number of a design, or a plain function of one
+
+
+def as_quantity(given: QuantityLike) -> Quantity:
     """`given` as a quantity; a plain function squeals above 0 and is called by its own name."""
     if isinstance(given, Quantity):
         return given
@@ -134,7 +137,7 @@ def _inside(design: Any, arrays: Mapping[str, Any]) -> Any:
     return inside
 
 
-def declared(design: Any, path: str) -> list[Parameter]:
+def declared(design: object, path: str) -> list[Parameter]:
     """What the design declares of the parameter `path`, one entry for each field that an alias sets."""
     if not isinstance(design, DataSheet):
         return []

@@ -305,7 +305,7 @@ def _check(task: Task, points: Space, chunk: int | None) -> None:
         raise StudyError(f"design is a {type(task.design).__name__}: expected a design, or a function that makes one")
 
 
-def _declared(design: Any) -> Iterator[tuple[str, tuple[str, str]]]:
+def _declared(design: object) -> Iterator[tuple[str, tuple[str, str]]]:
     """Dotted name to unit and meaning, aliases included."""
     if not isinstance(design, DataSheet):
         return

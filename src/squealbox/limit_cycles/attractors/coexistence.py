@@ -184,7 +184,7 @@ class _Far:
         return settle(batch.take(np.repeat(rows, self.starts)), *start, stretches=STRETCHES, same=LOOSE)
 
 
-def _grid(design: DesignOrRecipe, names: Sequence[str], x: Any, y: Any, far: _Far, threads: int | None) -> Any:
+def _grid(design: DesignOrRecipe, names: Sequence[str], x: np.ndarray, y: Any, far: _Far, threads: int | None) -> Any:
     """Share of far starts that vibrate, and whether sliding is stable, over the grid."""
     plane = dict(zip(names, (v.ravel() for v in np.meshgrid(x, y, indexing="ij")), strict=True))
     count, shape = len(x) * len(y), (len(x), len(y), far.starts)
@@ -202,7 +202,7 @@ def _onset(design: Any, names: Any, ends: tuple[float, float], value: float) -> 
 
 
 def _followed(
-    design: DesignOrRecipe, names: Any, ends: Bounds, top: Any, y: Any, far: _Far, threads: int | None
+    design: DesignOrRecipe, names: Any, ends: Bounds, top: Any, y: np.ndarray, far: _Far, threads: int | None
 ) -> Any:
     """Vibrations of each row just below its onset, followed down in the first parameter until they end."""
     low, high = ends
@@ -243,7 +243,9 @@ def _different(found: Any, row: Any, rows: int) -> Any:
     return np.array(chosen, dtype=int)
 
 
-def _lowest(rows: int, n: int, low: float, row: Any, at: Any, size: Any, state: Any, amplitude: Any) -> Any:
+def _lowest(
+    rows: int, n: int, low: float, row: np.ndarray, at: Any, size: np.ndarray, state: Any, amplitude: Any
+) -> Any:
     """Of each row the vibration that reached lowest."""
     end, resolution = np.full(rows, np.nan), np.full(rows, np.nan)
     last, large = np.full((rows, 2 * n), np.nan), np.full((rows, n), np.nan)

@@ -112,7 +112,7 @@ class _Hopf:
         steady = steady_state(field)
         return field.jacobian(steady, steady_modes(field, steady)) * (self.units[:, None] / self.units)
 
-    def residual(self, x: Any, b: float) -> Any:
+    def residual(self, x: np.ndarray, b: float) -> Any:
         """Of the extended system, over the frequency at the start; NaN outside the range of a parameter."""
         u, w, omega, a = *np.split(x[:-2], 2), x[-2], x[-1]
         matrix = self.matrix(a, b)
@@ -120,7 +120,7 @@ class _Hopf:
         parts = [(matrix @ u + omega * w) / self.rate, (matrix @ w - omega * u) / self.rate]
         return np.concatenate([*parts, [phase.real, phase.imag]])
 
-    def jacobian(self, x: Any, b: float) -> tuple[Any, Any]:
+    def jacobian(self, x: np.ndarray, b: float) -> tuple[Any, Any]:
         """By the unknowns and by the second parameter; the matrix by both from central differences."""
         u, w, omega, a = *np.split(x[:-2], 2), x[-2], x[-1]
         matrix, one, none = self.matrix(a, b), np.eye(len(u)), np.zeros(1)
@@ -142,7 +142,7 @@ class _Hopf:
 
 
 def both_ways(
-    residual: Any, x: Any, b: float, spans: Sequence[Bounds], scale: Any, points: int, jacobian: Any = None
+    residual: Any, x: np.ndarray, b: float, spans: Sequence[Bounds], scale: Any, points: int, jacobian: Any = None
 ) -> list[Any]:
     """Points (x, b, residual) from one end of the curve to the other, and how the two walks ended."""
     (low, high), (bottom, top) = spans

@@ -67,7 +67,7 @@ def derived(
     return by_differences(field, x, duration, rtol, motion=motion)
 
 
-def change(x: Any, duration: float, rtol: float, beside: tuple[Any, Any, float]) -> Any:
+def change(x: np.ndarray, duration: float, rtol: float, beside: tuple[Any, Any, float]) -> Any:
     """How the end (2n,) changes with a parameter, from fields at two of its values and their distance."""
     ends = []
     for each in beside[:2]:

@@ -13,7 +13,7 @@ series. A series that only has every m-th harmonic goes round m times in its per
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -27,6 +27,9 @@ from squealbox.limit_cycles.cycles.variation import fly, magnus
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
 from squealbox.system import DesignOrSystem, as_system
+
+if TYPE_CHECKING:
+    from squealbox.transient.trajectory import Trajectory
 
 LARGEST = 512  # harmonics; beyond this a smoothed cycle is better found by shooting
 ABSENT = 1e-9  # of the largest harmonic: Newton's method leaves less than its tolerance
@@ -106,7 +109,7 @@ def rounds_of(coefficients: np.ndarray) -> int:
     return int(np.gcd.reduce(1 + np.flatnonzero(sizes > ABSENT * np.max(sizes)))) or 1
 
 
-def once_round(coefficients: Any, rounds: int) -> Any:
+def once_round(coefficients: np.ndarray, rounds: int) -> Any:
     """The series of one of the rounds."""
     pairs = coefficients[1:].reshape(-1, 2, coefficients.shape[1])[rounds - 1 :: rounds]
     return np.concatenate([coefficients[:1], pairs.reshape(-1, coefficients.shape[1])])
@@ -130,7 +133,7 @@ def _guess(field: Field, x: np.ndarray, period: float, found: Outcome) -> tuple[
     return along, found
 
 
-def _closes(run: Any) -> bool:
+def _closes(run: "Trajectory") -> bool:
     """Whether a motion of one period is the cycle, to what a first guess knows."""
     return bool(np.all(np.abs(run.q[-1] - run.q[0]) <= CLOSED * max(float(np.max(np.ptp(run.q, axis=0))), 1e-300)))
 

@@ -53,7 +53,9 @@ def first_guess(field: Autonomous, start: Any, settle: float | None) -> tuple[An
     return first_return(field, x, slowest)
 
 
-def _settled_under_a_delay(field: Autonomous, x: Any, duration: float, slowest: float) -> tuple[Any, float, Outcome]:
+def _settled_under_a_delay(
+    field: Autonomous, x: np.ndarray, duration: float, slowest: float
+) -> tuple[Any, float, Outcome]:
     """As `first_guess`: a long run under the delay itself, and a short one with its rows, which make steps tiny."""
     n, size = field.system.size, field.size
     start = x[:n], x[size : size + n]

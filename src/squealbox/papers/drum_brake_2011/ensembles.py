@@ -191,7 +191,7 @@ def refined(unstable: Any, kind: Any, run: Callable[[Any], None], coarse: int) -
     return made
 
 
-def _differ(values: Any, size: int, step: int) -> Any:
+def _differ(values: np.ndarray, size: int, step: int) -> Any:
     """Whether the values in each square of this size differ; corners alone with `step` = `size`, else every point."""
     rows, columns = ((n - 1) // size for n in values.shape)
     first = values[: rows * size : size, : columns * size : size]
@@ -202,7 +202,7 @@ def _differ(values: Any, size: int, step: int) -> Any:
     return found
 
 
-def _kinds(case: Case, there: dict[str, Any], growth: Any) -> tuple[Any, Any]:
+def _kinds(case: Case, there: dict[str, Any], growth: np.ndarray) -> tuple[Any, Any]:
     """The level after 0.05 s at these points, and their kinds."""
     first = _run(case, there, DURATION)
     short = level(case, first, there.get("sliding_speed"))

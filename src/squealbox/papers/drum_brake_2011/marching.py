@@ -7,7 +7,7 @@ import numpy as np
 
 def march(
     linear: Any, force: Any, sensed: Any, pushed: Any, laws: Any, duration: float, rtol: float, shortest: float,
-    times: Any, states: Any, slopes: Any, room: Any,
+    times: Any, states: np.ndarray, slopes: Any, room: Any,
 ) -> int:  # fmt: skip
     """Count k of the accepted steps of Bogacki and Shampine's method, from rest; one more than there is room for if so.
 
@@ -58,7 +58,7 @@ def march(
     return count
 
 
-def _rate(linear: Any, force: Any, sensed: Any, pushed: Any, laws: Any, y: Any, out: Any) -> None:
+def _rate(linear: Any, force: Any, sensed: Any, pushed: Any, laws: Any, y: np.ndarray, out: Any) -> None:
     """The rate of change of (q, q')."""
     size = len(force)
     for i in range(size):

@@ -93,7 +93,7 @@ def _boundary(design: Any, angles: Any, grown: Any) -> list[Any]:
     index = (np.concatenate(lines) - angles[0]) / (angles[1] - angles[0])  # one of both is whole, the other a half
     low, high = angles[np.floor(index).astype(int)], angles[np.ceil(index).astype(int)]
 
-    def growth_at(points: Any) -> Any:
+    def growth_at(points: np.ndarray) -> Any:
         theta1, theta2 = np.deg2rad(points).T
         return growth(design.replace({"theta1": theta1, "theta2": theta2}))
 

@@ -12,6 +12,7 @@ cross-validation in which the terms are chosen anew in each fold. A growth rate 
 no polynomial follows: use a smooth quantity, such as the margin of friction.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,7 +22,7 @@ from squealbox.arguments import public
 from squealbox.extras import extra
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.studies.quantity import Quantity, as_quantity, evaluate, input_of
+from squealbox.studies.quantity import Quantity, QuantityLike, as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.distributions import Lognormal, Normal
 from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
 from squealbox.studies.uncertainty.sobol import finite_outcome
@@ -50,7 +51,7 @@ class Surrogate(Result):
     held_out: Array = quantity("point", "", "what a surrogate that has not seen the point says there")
     q2: Any = quantity("", "1", "share of the variance explained at points not seen")
 
-    def __call__(self, at: Any) -> Any:
+    def __call__(self, at: Mapping[str, Any]) -> Any:
         """The surrogate at named values (arrays broadcast together), in the unit of the quantity."""
         scatter: Scatter = self.inputs["scatter"]
         columns = np.broadcast_arrays(*(np.asarray(at[name], dtype=float) for name in self.names))
@@ -139,7 +140,7 @@ class Surrogate(Result):
 def polynomial_chaos(
     design: Any,
     scatter: Scattered,
-    quantity: Any,
+    quantity: QuantityLike,
     *,
     samples: int = 256,
     degree: int | None = None,
@@ -191,7 +192,7 @@ def polynomial_chaos(
     )
 
 
-def germs(scatter: Scatter, points: Any) -> Any:
+def germs(scatter: Scatter, points: np.ndarray) -> Any:
     """The germs of points (..., d): independent standard normal or uniform (-1, 1) numbers, the same shape."""
     from scipy.special import ndtr
 
@@ -199,7 +200,7 @@ def germs(scatter: Scatter, points: Any) -> Any:
     return np.where(_hermite(scatter), z, 2.0 * ndtr(z) - 1.0)
 
 
-def terms(germ: Any, hermite: Any, degrees: Any) -> Any:
+def terms(germ: np.ndarray, hermite: np.ndarray, degrees: np.ndarray) -> Any:
     """The polynomials of unit variance at germs (..., d): shape (..., terms)."""
     from math import factorial
 
@@ -229,7 +230,7 @@ def _degrees(size: int) -> list[int]:
 
 
 def _expansion(
-    scatter: Scatter, columns: Any, values: Any, degree: int, folds: int, seed: int
+    scatter: Scatter, columns: np.ndarray, values: np.ndarray, degree: int, folds: int, seed: int
 ) -> tuple[Any, Any, Any, float]:
     """Coefficients, degrees, held-out predictions and Q2 for one total degree."""
     germ, hermite = germs(scatter, columns), _hermite(scatter)
@@ -243,7 +244,7 @@ def _expansion(
     return (*_fit(germ, values, hermite, degree), held_out, q2)
 
 
-def _fit(germ: Any, values: Any, hermite: Any, degree: int) -> tuple[Any, Any]:
+def _fit(germ: np.ndarray, values: np.ndarray, hermite: np.ndarray, degree: int) -> tuple[Any, Any]:
     """Coefficients and degrees of the terms that least angle regression chooses."""
     with extra("studies"):
         import openturns as ot

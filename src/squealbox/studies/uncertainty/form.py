@@ -21,7 +21,7 @@ from squealbox.extras import extra
 from squealbox.family import unit_of
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.studies.quantity import as_quantity, input_of
+from squealbox.studies.quantity import QuantityLike, as_quantity, input_of
 from squealbox.studies.uncertainty.importance import wide_sample
 from squealbox.studies.uncertainty.limit_state import LimitState, seeded
 from squealbox.studies.uncertainty.scatter import Scatter, Scattered, as_scatter
@@ -92,7 +92,7 @@ class DesignPoint(Result):
 def form(
     design: Any,
     scatter: Scattered,
-    quantity: Any,
+    quantity: QuantityLike,
     *,
     samples: int = 4000,
     seed: int = 0,
@@ -163,7 +163,7 @@ def form(
     )
 
 
-def _search(state: LimitState, iterations: int, seed: int, start: Any) -> tuple[Any, Outcome | None]:
+def _search(state: LimitState, iterations: int, seed: int, start: np.ndarray) -> tuple[Any, Outcome | None]:
     """z*, and the outcome when the search broke down."""
     with extra("studies"):
         import openturns as ot
@@ -187,7 +187,7 @@ def _search(state: LimitState, iterations: int, seed: int, start: Any) -> tuple[
         return np.array(algorithm.getResult().getStandardSpaceDesignPoint()), None
 
 
-def _verdict(state: LimitState, z: Any) -> Outcome:
+def _verdict(state: LimitState, z: np.ndarray) -> Outcome:
     """Is z on the boundary of squeal, and nearest to 0 along its own direction?"""
     length = float(np.linalg.norm(z))
     direction = z / length if length > 0.0 else np.eye(state.dimension)[0]
@@ -209,7 +209,7 @@ def lognormal_interval(value: float, variation: float, level: float) -> tuple[fl
     return value * float(np.exp(-half)), min(value * float(np.exp(half)), 1.0)
 
 
-def _row(scatter: Scatter, z: Any) -> Any:
+def _row(scatter: Scatter, z: np.ndarray) -> Any:
     return np.array([float(value) for value in scatter.from_normal(z).values()])
 
 

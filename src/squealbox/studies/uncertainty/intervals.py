@@ -18,7 +18,7 @@ from squealbox.arguments import public
 from squealbox.family import bounds_of
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.studies.quantity import as_quantity, evaluate, input_of
+from squealbox.studies.quantity import QuantityLike, as_quantity, evaluate, input_of
 
 MOST_CORNERS = 12  # parameters up to which every corner of the box is looked at
 
@@ -71,7 +71,7 @@ class IntervalBounds(Result):
 
 @public(design=None)
 def interval_bounds(
-    design: Any, box: Mapping[str, tuple[float, float]], quantity: Any, *, seed: int = 0, runs: int = 3
+    design: Any, box: Mapping[str, tuple[float, float]], quantity: QuantityLike, *, seed: int = 0, runs: int = 3
 ) -> IntervalBounds:
     """Least and largest value of `quantity` while each parameter stays within its interval.
 
@@ -116,7 +116,7 @@ def interval_bounds(
     )
 
 
-def checked_box(box: Any, owner: str) -> tuple[list[str], Any]:
+def checked_box(box: Mapping[str, Any], owner: str) -> tuple[list[str], Any]:
     """Names and ends of a box, shape (d, 2). Raises `ParameterError` when it is none."""
     if not isinstance(box, Mapping) or not box:
         raise ParameterError(owner, "box", box, "names with (low, high) each, at least one")
@@ -141,7 +141,7 @@ def _extremes(values_at: Callable[[Any], Any], ends: Any, seed: int) -> list[tup
 def _least(values_at: Callable[[Any], Any], sign: float, ends: Any, seed: int) -> tuple[float, Any]:
     from scipy.optimize import differential_evolution
 
-    def goal(x: Any) -> Any:
+    def goal(x: np.ndarray) -> Any:
         values = sign * np.atleast_1d(values_at(np.atleast_2d(x.T)))
         values = np.where(np.isnan(values), np.inf, values)
         return values if x.ndim == 2 else float(values[0])

@@ -38,13 +38,13 @@ class LimitState:
         self.unknown += int(np.count_nonzero(np.isnan(found)))
         return found
 
-    def __call__(self, z: Any) -> Any:
+    def __call__(self, z: np.ndarray) -> Any:
         """g at points `z`, shape (n,); a point without an answer counts as far from squeal."""
         g = -self.quantity.excess(self.values(z))
         self.ties += int(np.count_nonzero(g == 0.0))
         return np.clip(np.where(np.isnan(g), FAR, g), -FAR, FAR)
 
-    def _kept(self, z: Any) -> Any:
+    def _kept(self, z: np.ndarray) -> Any:
         try:
             return self(z)
         except Exception as error:

@@ -15,7 +15,7 @@ from squealbox.arguments import public
 from squealbox.extras import extra
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.studies.quantity import as_quantity, evaluate, input_of
+from squealbox.studies.quantity import QuantityLike, as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.scatter import Scattered, as_scatter
 from squealbox.studies.uncertainty.sobol import finite_outcome, need_independent
 
@@ -59,7 +59,13 @@ class MorrisEffects(Result):
 
 @public(design=None)
 def morris_effects(
-    design: Any, scatter: Scattered, quantity: Any, *, trajectories: int = 50, seed: int = 0, level: float = 0.95
+    design: Any,
+    scatter: Scattered,
+    quantity: QuantityLike,
+    *,
+    trajectories: int = 50,
+    seed: int = 0,
+    level: float = 0.95,
 ) -> MorrisEffects:
     """Elementary effects of the independent parameters of `scatter` on `quantity`.
 

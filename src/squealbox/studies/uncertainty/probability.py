@@ -8,7 +8,7 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.studies.quantity import as_quantity, evaluate, input_of
+from squealbox.studies.quantity import QuantityLike, as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.replicates import binomial_interval, student_interval
 from squealbox.studies.uncertainty.scatter import Sampling, Scattered, as_scatter, unit_points
 
@@ -72,7 +72,7 @@ class SquealProbability(Result):
 def squeal_probability(
     design: Any,
     scatter: Scattered,
-    quantity: Any,
+    quantity: QuantityLike,
     *,
     samples: int = 4096,
     method: Sampling = "sobol",
@@ -135,7 +135,9 @@ def squeal_probability(
     )
 
 
-def _interval(hits: Any, unknown: Any, estimates: Any, each: int, level: float) -> tuple[float, float, str]:
+def _interval(
+    hits: np.ndarray, unknown: np.ndarray, estimates: np.ndarray, each: int, level: float
+) -> tuple[float, float, str]:
     fewest = min(float(np.min(estimates)), 1.0 - float(np.max(estimates))) * each
     if estimates.size < 2 or fewest < ENOUGH:
         ends = binomial_interval(int(np.sum(hits)), int(np.sum(unknown)), hits.size, level)
@@ -146,7 +148,7 @@ def _interval(hits: Any, unknown: Any, estimates: Any, each: int, level: float) 
     return max(low, 0.0), min(high, 1.0), "replicates"
 
 
-def _replicates(estimates: Any) -> str:
+def _replicates(estimates: np.ndarray) -> str:
     return f"interval from {estimates.size} independent randomisations"
 
 
@@ -154,7 +156,7 @@ def _span(low: Any, high: Any) -> str:
     return f"{float(low):.4g} to {float(high):.4g}"
 
 
-def _check(samples: Any, level: float, replicates: Any) -> None:
+def _check(samples: int, level: float, replicates: int) -> None:
     for name, value, least in (("samples", samples, 1), ("replicates", replicates, 2)):
         if isinstance(value, bool) or int(value) != value or value < least:
             raise ParameterError("squeal_probability", name, value, f"a whole number of at least {least}")

@@ -139,7 +139,7 @@ def as_scatter(given: Scattered) -> Scatter:
     return Scatter(given) if isinstance(given, Mapping) else given
 
 
-def unit_points(count: int, dimensions: int, method: Sampling, rng: Any) -> Any:
+def unit_points(count: int, dimensions: int, method: Sampling, rng: np.random.Generator) -> Any:
     """`count` points of the open unit cube, shape (count, dimensions); `rng` is a NumPy generator."""
     from scipy.stats import qmc
 

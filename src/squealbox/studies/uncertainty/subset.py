@@ -16,7 +16,7 @@ from squealbox.arguments import public
 from squealbox.extras import extra
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.studies.quantity import as_quantity, input_of
+from squealbox.studies.quantity import QuantityLike, as_quantity, input_of
 from squealbox.studies.uncertainty.form import lognormal_interval
 from squealbox.studies.uncertainty.limit_state import LimitState, seeded
 from squealbox.studies.uncertainty.scatter import Scattered, as_scatter
@@ -65,7 +65,7 @@ class SubsetProbability(Result):
 def subset_simulation(
     design: Any,
     scatter: Scattered,
-    quantity: Any,
+    quantity: QuantityLike,
     *,
     samples: int = 2000,
     runs: int = 4,
@@ -171,7 +171,7 @@ def _run(state: LimitState, samples: int, seed: int, smallest: float) -> tuple[f
         return float(result.getProbabilityEstimate()), float(result.getCoefficientOfVariation()), *levels
 
 
-def _larger(variation: float, estimates: Any) -> float:
+def _larger(variation: float, estimates: np.ndarray) -> float:
     """The variation of the mean as stated, or as the scatter of three or more runs shows it, whichever is larger."""
     if estimates.size < 3 or not np.isfinite(variation):
         return variation
