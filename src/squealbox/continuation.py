@@ -77,10 +77,10 @@ class Path(Protocol):
     scale: Any
     span: float
 
-    def residual(self, x: Any, p: float) -> Any:
+    def residual(self, x: np.ndarray, p: float) -> Any:
         """Zero on the path, shape (n,)."""
 
-    def jacobian(self, x: Any, p: float) -> tuple[Any, Any]:
+    def jacobian(self, x: np.ndarray, p: float) -> tuple[Any, Any]:
         """Its derivatives by x (n, n) and by p (n,)."""
 
 
@@ -138,7 +138,7 @@ class Equation:
         most: int,
         tolerance: float,
         reach: float = np.inf,
-        kept: Any = None,
+        kept: np.ndarray | None = None,
     ) -> Corrected:
         """Newton's method on the plane through `guess` with that normal, to a correction within the tolerance.
 
@@ -330,7 +330,7 @@ def null_vector(matrix: np.ndarray, along: np.ndarray) -> Any:
     return last if last @ along >= 0.0 else -last
 
 
-def follow(residual: Residual, x: Any, p: float, **options: Any) -> Follower:
+def follow(residual: Residual, x: ArrayLike, p: float, **options: Any) -> Follower:
     """Follow the root of residual(x, p) = 0 nearest to x at p; returns a :class:`Follower` to iterate over.
 
     Parameters
@@ -357,6 +357,6 @@ def follow(residual: Residual, x: Any, p: float, **options: Any) -> Follower:
     return Follower(residual, x, p, **options)
 
 
-def along(path: Path, x: np.ndarray, p: float, **options: Any) -> Follower:
+def along(path: Path, x: ArrayLike, p: float, **options: Any) -> Follower:
     """The walk along a path, with the other options of :func:`follow`."""
     return follow(path.residual, x, p, jacobian=path.jacobian, x_scale=path.scale, p_scale=path.span, **options)

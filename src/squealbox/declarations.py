@@ -7,7 +7,7 @@ import math
 import textwrap
 import types
 import typing
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Annotated, Any
 
 import numpy as np
@@ -96,7 +96,7 @@ class Missing(ParameterError, TypeError):
         self.args = (f"{owner}.{name} is missing{f': expected {expected}' if expected else ''}",)
 
 
-def complete(made: Any) -> Any:
+def complete(made: Callable[..., Any]) -> Any:
     """The maker of a sheet that says what is missing with its unit, range and meaning."""
 
     @functools.wraps(made)
@@ -178,7 +178,7 @@ Matrix = Annotated[Any, 2]
 
 
 @functools.cache
-def _hints(sheet: Any) -> dict[str, Any]:
+def _hints(sheet: type) -> dict[str, Any]:
     """Kept: reading them evaluates text, and every slider's move asks."""
     return typing.get_type_hints(sheet, include_extras=True)
 

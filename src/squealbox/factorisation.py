@@ -6,6 +6,7 @@ negative and zero eigenvalues; that of K - w^2 M counts the modes below w (Sturm
 """
 
 import importlib.util
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -264,7 +265,7 @@ def _superlu(matrix: "sparray", symmetric: bool) -> Any:
     return lu
 
 
-def _check(solve: Any, matrix: "sparray") -> None:
+def _check(solve: Callable[[Any], Any], matrix: "sparray") -> None:
     """Solve once for a known vector: factors of a matrix that is singular to round-off give a large residual."""
     known = np.random.default_rng(1).standard_normal(matrix.shape[0]).astype(matrix.dtype)
     right = matrix @ known

@@ -2,6 +2,7 @@
 
 import sys
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +19,7 @@ class InvalidSystem(ValueError):
     """Matrices, vectors or contacts do not make a system; the message names array, shape and what was expected."""
 
 
-def is_sparse(value: Any) -> bool:
+def is_sparse(value: object) -> bool:
     """Whether it is a sparse array of SciPy: nothing is while those are not loaded, which takes a quarter second."""
     asked = getattr(sys.modules.get("scipy.sparse"), "issparse", None)  # None also while another thread loads them
     return asked is not None and bool(asked(value))
@@ -65,7 +66,7 @@ def check_mass(mass: np.ndarray) -> None:
         )
 
 
-def checked_names(names: Any, size: int) -> tuple[str, ...]:
+def checked_names(names: Sequence[str], size: int) -> tuple[str, ...]:
     """Names of the degrees of freedom, by default q1, q2, ...; `InvalidSystem` for a wrong number or one twice."""
     if isinstance(names, str):
         raise InvalidSystem(f"names = {names!r}: expected a name for each degree of freedom, such as ('x', 'y')")
@@ -78,7 +79,7 @@ def checked_names(names: Any, size: int) -> tuple[str, ...]:
     return names
 
 
-def liveliest(sizes: ArrayLike, units: Any) -> int:
+def liveliest(sizes: ArrayLike, units: Sequence[str]) -> int:
     """The degree of freedom that moves most; a rotation only where nothing else moves: rad are no metres."""
     sizes = np.nan_to_num(np.asarray(sizes, dtype=float))
     moves = np.where(np.array([unit == "rad" for unit in units], dtype=bool), 0.0, sizes)

@@ -16,7 +16,7 @@ def mechanical_energy(system: System, q: np.ndarray, qd: np.ndarray) -> Any:
     return 0.5 * form(qd, system.M, qd) + 0.5 * form(q, symmetric, q)
 
 
-def power_of_friction(system: System, time: Any, q: Any, qd: Any) -> Any:
+def power_of_friction(system: System, time: float | np.ndarray, q: np.ndarray, qd: np.ndarray) -> Any:
     """Power [W] each contact feeds into the vibration, (d.q') mu sgn(v) N, shape (..., contacts)."""
     _, _, forces = contact_state(system, time, q, qd)
     along = [np.sum(contact.d * qd, axis=-1) for contact in system.contacts]

@@ -61,7 +61,7 @@ class Schedule(DataSheet):
         """The schedule as a sum of factor times simple schedule."""
         return ((1.0, self),)
 
-    def __mul__(self, factor: Any) -> "Sum":
+    def __mul__(self, factor: "ArrayLike | Schedule") -> "Sum":
         if isinstance(factor, Schedule):
             raise ParameterError(
                 type(self).__name__, "factor", factor, "a number or an array: products of schedules are not compiled"
@@ -71,7 +71,7 @@ class Schedule(DataSheet):
 
     __rmul__ = __mul__
 
-    def __add__(self, other: Any) -> "Sum":
+    def __add__(self, other: "ArrayLike | Schedule") -> "Sum":
         return Sum((*self.terms(), *as_schedule(other).terms()))
 
     __radd__ = __add__
@@ -344,6 +344,6 @@ def swinging(parts: dict[str, list[Any]]) -> list[str]:
     return [name for name, values in parts.items() if any(isinstance(v, Schedule) and never_settles(v) for v in values)]
 
 
-def value_at(value: Any, time: ArrayLike) -> Any:
+def value_at(value: ArrayLike | Schedule, time: ArrayLike) -> Any:
     """The value of a number or a schedule at `time` [s]; array in, array out."""
     return value.value(time) if isinstance(value, Schedule) else value

@@ -17,6 +17,7 @@ import scipy
 
 from squealbox.contacts import Contacts
 from squealbox.factorisation import Factor, SingularMatrix, factor
+from squealbox.matrices import Equilibrium
 
 if TYPE_CHECKING:
     from scipy.sparse import sparray
@@ -180,7 +181,7 @@ class _Steps:
         return found
 
 
-def linearised(damping: "sparray", stiffness: "sparray", contacts: Contacts, state: Any) -> tuple[Any, Any]:
+def linearised(damping: "sparray", stiffness: "sparray", contacts: Contacts, state: Equilibrium) -> tuple[Any, Any]:
     """C_eff and K_eff (n, n) about an `Equilibrium`."""
     closed = (state.normal_force > 0.0) | ~contacts.unilateral
     _, slope = contacts.friction(state.sliding_speed)

@@ -12,9 +12,9 @@ Modes are counted from 1, as tables and figures count them. Where nobody says ho
 swings by `SHARE` of it: small enough for the linear theory. Depends on: parameters, schedules, stability, system.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,6 +27,25 @@ SHARE = 0.01  # of the sliding speed
 NO_SLIDING = "there is no steady sliding to start from"
 SMALL = 1e-6  # m, where no contact slides
 WORDS = '"rest" or "sliding", "mode 1" or {"mode": 1, "amplitude": 1e-6}, a Mode, a Trajectory or a Cycle'
+
+
+class WithStart(Protocol):
+    """A mode or a cycle: it has a state where it begins."""
+
+    @property
+    def start(self) -> Any:
+        """The state, or what makes it of an amplitude."""
+
+
+class WithEnd(Protocol):
+    """A trajectory: it has a state where it ended."""
+
+    @property
+    def end(self) -> Any:
+        """The state."""
+
+
+StartLike = str | Mapping[str, Any] | Sequence[ArrayLike] | WithStart | WithEnd | None  # the spellings above
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +62,7 @@ class Start:
 
     @classmethod
     def of(
-        cls, owner: str, start: Any, system: System, time: float = 0.0, *, modes_of: Any = None,
+        cls, owner: str, start: Any, system: System, time: float = 0.0, *, modes_of: DesignOrSystem | None = None,
         members: tuple[tuple[int, ...], slice] | None = None, rows: int | None = None, name: str = "start",
         share: float = SHARE,
     ) -> "Start":  # fmt: skip
@@ -115,7 +134,7 @@ def sliding(system: System, time: float = 0.0) -> Any:
     return state.q
 
 
-def in_words(start: Any) -> dict[str, Any] | None:
+def in_words(start: StartLike) -> dict[str, Any] | None:
     """A start in a mode, "mode 2" or {"mode": 2, "amplitude": ...}, as the latter; None for any other."""
     if isinstance(start, str):
         word, _, number = start.strip().partition(" ")

@@ -7,7 +7,7 @@ The singular values of J, scaled by the parameters, say which combinations the d
 Source: G. A. F. Seber, C. J. Wild, Nonlinear Regression, 1989, chapters 3 and 5.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from squealbox.arguments import public
 from squealbox.calibration.measured import Measured
 from squealbox.calibration.search import WORST, linearised, losses, searched
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.uncertainty.distributions import TruncatedNormal
@@ -140,7 +141,7 @@ class Calibration(Result):
 
 @public()
 def calibrate(
-    design: Any,
+    design: DesignOrRecipe,
     parameters: Mapping[str, tuple[float, float]],
     measured: Sequence[Measured | Sequence[Measured]],
     *,
@@ -229,7 +230,7 @@ def calibrate(
     )  # fmt: skip
 
 
-def _flat(measured: Any) -> list[Any]:
+def _flat(measured: Iterable[Any]) -> list[Any]:
     """The measured numbers, those of lists among them each for itself."""
     found: list[Any] = []
     for each in measured:
@@ -240,7 +241,9 @@ def _flat(measured: Any) -> list[Any]:
 class _Problem:
     """Residuals (measured - predicted)/sd at points of the unit box, all in one call."""
 
-    def __init__(self, design: Any, names: Sequence[str], bounds: Sequence[Any], measured: Sequence[Measured]) -> None:
+    def __init__(
+        self, design: DesignOrRecipe, names: Sequence[str], bounds: Sequence[Any], measured: Sequence[Measured]
+    ) -> None:
         if not names:
             raise ParameterError("calibrate", "parameters", {}, "one parameter or more with its bounds")
         if not measured or not all(isinstance(each, Measured) for each in measured):

@@ -145,7 +145,9 @@ def from_signal(
     ]
 
 
-def from_friction(speeds: ArrayLike, values: Any, sd: float, at: Mapping[str, float] | None = None) -> list[Measured]:
+def from_friction(
+    speeds: ArrayLike, values: ArrayLike, sd: float, at: Mapping[str, float] | None = None
+) -> list[Measured]:
     """A measured friction curve, coefficients at sliding speeds [m/s], as measured numbers.
 
     `sd` [-]: standard deviation of a coefficient.

@@ -14,6 +14,7 @@ whose order is twice the square of that of A. For larger plants the frequencies 
 small H (i w - A)^-1 B has the size 1, looked for on a grid that is dense at every resonance, open and closed.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -152,7 +153,7 @@ def _crossings_by_grid(plant: Plant) -> list[tuple[float, float]]:
     return [(x * size, phase / (x * size)) for x, phase in found]
 
 
-def _logarithm(x: float, gains: Any, place: int) -> float:
+def _logarithm(x: float, gains: Callable[[Any], Any], place: int) -> float:
     return float(np.log(abs(gains(x)[place])))
 
 
@@ -226,7 +227,7 @@ def _loop(A: np.ndarray, B: np.ndarray, H: np.ndarray, w: float, delay: float = 
     return complex(loop_gain(A, B, H, w, delay))
 
 
-def _grid_roots(plant: Plant, a: int, A: np.ndarray, B: Any, H: Any) -> Any:
+def _grid_roots(plant: Plant, a: int, A: np.ndarray, B: np.ndarray, H: np.ndarray) -> Any:
     delay = float(plant.delay[a])
     own = np.abs(np.linalg.eigvals(A))
     w = np.geomspace(1e-3 * float(np.min(own[own > 0.0], initial=1.0)), 30.0 * float(np.max(own)), GRID)
@@ -238,7 +239,7 @@ def _grid_roots(plant: Plant, a: int, A: np.ndarray, B: Any, H: Any) -> Any:
     return np.array([brentq(lambda x: _loop(A, B, H, x, delay).imag, own_w[i], own_w[i + 1]) for i in places])
 
 
-def _sharpened(function: Any, guesses: np.ndarray) -> Any:
+def _sharpened(function: Callable[[Any], Any], guesses: np.ndarray) -> Any:
     """The roots near the guesses, by the secant method."""
     from scipy.optimize import newton
 

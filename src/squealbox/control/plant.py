@@ -14,7 +14,7 @@ from squealbox.loops import Loop, folded
 from squealbox.loops.held import first_order
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome
-from squealbox.system import DesignOrSystem, System, linearise
+from squealbox.system import DesignOrSystem, Equilibrium, System, linearise
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +107,7 @@ def plant(design_or_system: DesignOrSystem, time: float = 0.0) -> Plant:
     )  # fmt: skip
 
 
-def _about(system: System, steady: Any, time: float) -> Any:
+def _about(system: System, steady: Equilibrium, time: float) -> Any:
     """The brake's own matrices at the steady state of the closed loop, with the loops' static pull on the contacts."""
     shifted = tuple(
         contact.replace(

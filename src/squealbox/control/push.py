@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.control.closed_loop import closed_loop
@@ -55,7 +56,7 @@ class DefeatingPush(Result):
 
 @public()
 def defeating_push(
-    design_or_system: DesignOrSystem, direction: Any = None, *, precision: float = 1e-3, rtol: float = 1e-9
+    design_or_system: DesignOrSystem, direction: ArrayLike | None = None, *, precision: float = 1e-3, rtol: float = 1e-9
 ) -> DefeatingPush:
     """The smallest push that defeats the limited loops of a brake that is stable with them near steady sliding.
 

@@ -83,7 +83,7 @@ def run_loops(design_or_system: DesignOrSystem, duration: float, start: Any = No
     )  # fmt: skip
 
 
-def _outcome(driven: Driven, outcome: Outcome, cuts: Any, at_limit: Any) -> Outcome:
+def _outcome(driven: Driven, outcome: Outcome, cuts: np.ndarray, at_limit: np.ndarray) -> Outcome:
     """That of the motion; "saturated" where it completed with a force that is at its limit most of its last part."""
     last = np.clip(cuts[1:] - np.maximum(cuts[:-1], cuts[-1] - LAST * (cuts[-1] - cuts[0])), 0.0, None)
     shares = last @ at_limit / max(float(np.sum(last)), 1e-300)

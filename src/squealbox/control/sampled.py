@@ -5,6 +5,7 @@ broken, L(z) = h (z I - Phi)^-1 b on the unit circle says its margins of gain an
 one.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -151,7 +152,7 @@ def _opened(plant: Plant, a: int) -> Any:
     return gain
 
 
-def _roots(function: Any) -> Any:
+def _roots(function: Callable[[Any], Any]) -> Any:
     """Angles in (0, pi) at which a function of the angle changes its sign."""
     from scipy.optimize import brentq
 

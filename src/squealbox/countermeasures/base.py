@@ -23,7 +23,7 @@ class Titled:
     def __init__(self, words: str) -> None:
         self.words = words
 
-    def __get__(self, made: Any, kind: Any = None) -> str:
+    def __get__(self, made: Any, kind: object = None) -> str:
         return self.words if made is None else f"{made.brake.title}, {self.words[:1].lower()}{self.words[1:]}"
 
 

@@ -189,7 +189,13 @@ def _tuned(start: TunedMass) -> Callable[[Any, Any], Linearised]:
 
 
 def _judge(
-    start: Any, aim: str, scatter: Scatter | None, parameter: str, bounds: Any, samples: int, seed: int
+    start: TunedMass,
+    aim: str,
+    scatter: Any,
+    parameter: str,
+    bounds: tuple[float, float] | None,
+    samples: int,
+    seed: int,
 ) -> Judge:
     """The number to be made small, of frequencies and damping ratios (k,)."""
     if aim == "decay":
@@ -217,7 +223,7 @@ def _judge(
     return share
 
 
-def _limits(start: Any, parameter: str, bounds: Any) -> tuple[float, float]:
+def _limits(start: Design, parameter: str, bounds: tuple[float, float] | None) -> tuple[float, float]:
     if bounds is not None:
         return float(bounds[0]), float(bounds[1])
     value = float(start.value_of(parameter))
@@ -255,7 +261,7 @@ def _searched(
     return best
 
 
-def _meetings(start: Any, near: tuple[float, float]) -> list[tuple[float, float, float]]:
+def _meetings(start: TunedMass, near: tuple[float, float]) -> list[tuple[float, float, float]]:
     """Tunings near by at which two of the slowest modes meet: (lambda_i - lambda_j)^2 = 0, two real equations."""
     from scipy.optimize import root
 
@@ -307,7 +313,15 @@ def _band(design: TunedMass) -> tuple[float, float]:
     return ends[0], ends[1]
 
 
-def _without(brake: Design, aim: str, scatter: Any, parameter: str, bounds: Any, samples: int, seed: int) -> float:
+def _without(
+    brake: Design,
+    aim: str,
+    scatter: Any,
+    parameter: str,
+    bounds: tuple[float, float] | None,
+    samples: int,
+    seed: int,
+) -> float:
     if aim == "decay":
         return float(growth_of(brake))
     if aim == "margin":
@@ -315,7 +329,7 @@ def _without(brake: Design, aim: str, scatter: Any, parameter: str, bounds: Any,
     return float(np.mean(growth_of(brake.replace(scatter.sample(samples, seed=seed))) > 0.0))
 
 
-def _place(start: Any, on: str) -> Any:
+def _place(start: TunedMass, on: str) -> Any:
     names = start.brake.system().names
     return [names.index(on)] if isinstance(on, str) else [i for i, x in enumerate(on) if x]
 

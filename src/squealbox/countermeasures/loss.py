@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.designs.base import Design
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.stability.family import steady_sliding
 from squealbox.stability.in_band import eigenvalues_in_band, worst_in_band
@@ -40,7 +41,7 @@ def growth_about(sliding: Linearised) -> Any:
     return np.where(np.isfinite(growth), growth, np.inf)
 
 
-def first_loss(design: Any, parameter: str, bounds: tuple[float, float]) -> float:
+def first_loss(design: Design, parameter: str, bounds: tuple[float, float]) -> float:
     """The lowest value of the parameter at which one brake loses its stability, narrow windows included; or the end.
 
     Where the growth rate comes near zero and turns back it is looked at more closely, ever again.
@@ -76,7 +77,7 @@ def first_loss(design: Any, parameter: str, bounds: tuple[float, float]) -> floa
     return found
 
 
-def changes(design: Any, parameter: str, bounds: tuple[float, float]) -> Any:
+def changes(design: Design, parameter: str, bounds: tuple[float, float]) -> Any:
     """Complex x (k,), of low + x (high - low), at which stability may change; None where A is not linear in it."""
     from scipy.linalg import LinAlgError, eigvals
 
@@ -110,7 +111,7 @@ def _products(size: int) -> Any:
     return P
 
 
-def _with(design: Any, parameter: str, values: np.ndarray, growth: np.ndarray, more: Any) -> tuple[Any, Any]:
+def _with(design: Design, parameter: str, values: np.ndarray, growth: np.ndarray, more: Any) -> tuple[Any, Any]:
     every = np.append(values, more)
     rates = np.append(growth, growth_of(design.replace({parameter: more})))
     every, places = np.unique(every, return_index=True)
@@ -118,7 +119,7 @@ def _with(design: Any, parameter: str, values: np.ndarray, growth: np.ndarray, m
 
 
 def at_the_window(
-    start: Any, near: tuple[float, float, float], parameter: str, bounds: tuple[float, float]
+    start: Design, near: tuple[float, float, float], parameter: str, bounds: tuple[float, float]
 ) -> list[tuple[float, float, float]]:
     """The best of the tunings at which the window of instability below the margin just closes.
 

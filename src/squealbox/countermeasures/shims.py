@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from squealbox.countermeasures.base import Countermeasure, added, contact_index, direction, extended, outer
 from squealbox.parameters import ParameterError, above_zero, choice, parameter
-from squealbox.system import System
+from squealbox.system import Contact, System
 
 OWN = "chosen by the user"
 
@@ -121,12 +121,12 @@ def standard_solid(stiffness: float | np.ndarray, loss_factor: ArrayLike, freque
     return k0, k1, k1 / np.sqrt(1.0 + share) / (2.0 * np.pi * np.asarray(frequency))
 
 
-def _reaction(contact: Any, share: ArrayLike, state: np.ndarray) -> Any:
+def _reaction(contact: Contact, share: ArrayLike, state: np.ndarray) -> Any:
     """The direction -normal N acts in, with what the normal force does to the shim's own state."""
     return None if contact.normal is None else contact.normal - np.asarray(share)[..., None] * state
 
 
-def _with(system: System, place: int, contact: Any) -> System:
+def _with(system: System, place: int, contact: Contact) -> System:
     contacts = (*system.contacts[:place], contact, *system.contacts[place + 1 :])
     return system.replace(contacts=contacts)
 

@@ -254,7 +254,7 @@ def _moved(points: np.ndarray, moves: Moves, size: int) -> Any:
     return found
 
 
-def _around(angles: Any) -> Any:
+def _around(angles: Sequence[float] | np.ndarray) -> Any:
     """Points of the unit circle, (k, 2)."""
     return np.stack([np.cos(angles), np.sin(angles)], axis=1)
 

@@ -127,7 +127,7 @@ def band_pairs(small: Small, band: tuple[float, float], *, rough: bool = False) 
     return Pairs(values, x, y, length * dual)
 
 
-def _applied(both: np.ndarray, mass: Any, values: np.ndarray, x: np.ndarray) -> tuple[Any, Any, Any]:
+def _applied(both: np.ndarray, mass: np.ndarray | None, values: np.ndarray, x: np.ndarray) -> tuple[Any, Any, Any]:
     """Q(lambda) x, K x and Q'(lambda) x from K and C stacked and M, None for the unit matrix."""
     product = _times(both, x)
     pulled, damped, heavy = product[: len(x)], product[len(x) :], (x if mass is None else _times(mass, x)) * values

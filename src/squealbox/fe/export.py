@@ -52,7 +52,7 @@ def write_shape(brake: MeshedBrake, shape: ArrayLike, eigenvalue: complex, path:
     return path
 
 
-def _corners(body: MeshedBody, values: Any) -> tuple[Any, Any, Any]:
+def _corners(body: MeshedBody, values: np.ndarray) -> tuple[Any, Any, Any]:
     """Places (k, 3), displacements (k, 3) and corners of the elements (cells, 8) in the order of VTK."""
     corner, cells = body.corners
     local = np.asarray(body.reference_corners).T.astype(int)
@@ -63,7 +63,7 @@ def _corners(body: MeshedBody, values: Any) -> tuple[Any, Any, Any]:
 VTK = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 
 
-def _write_universal(path: Path, places: Any, moved: Any, eigenvalue: complex) -> None:
+def _write_universal(path: Path, places: np.ndarray, moved: np.ndarray, eigenvalue: complex) -> None:
     with extra("fe"):
         import pyuff
 

@@ -43,7 +43,7 @@ def first_frequencies(mass: "sparray", stiffness: "sparray", count: int = 10) ->
     return np.sort(abs(rate.imag)) / (2.0 * np.pi)
 
 
-def _by_iteration(mass: Any, stiffness: Any, shift: float, count: int) -> Any:
+def _by_iteration(mass: "sparray", stiffness: "sparray", shift: float, count: int) -> Any:
     from scipy.sparse.linalg import LinearOperator, eigs, splu
 
     near = (stiffness - shift * mass).tocsc()

@@ -57,7 +57,7 @@ class FullBrake:
         return with_shapes(onto, modes_on(onto, 0, self.base, band)[0])
 
     def missed(
-        self, values: Mapping[str, Any], eigenvalue: complex, x: np.ndarray, y: np.ndarray, like: Any
+        self, values: Mapping[str, Any], eigenvalue: complex, x: np.ndarray, y: np.ndarray, like: tuple[bool, type]
     ) -> complex | None:
         """The estimate [1/s] of the full brake's eigenvalue less this one's, for its right and left shape x and y (m,).
 

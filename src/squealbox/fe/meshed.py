@@ -262,7 +262,11 @@ def vars_of(material: Material) -> tuple[float, float, float]:
 
 @lru_cache(maxsize=2)
 def summed(
-    made: MeshedStructure, elastic: Any, springs: Any, contact: float, touching: bytes
+    made: MeshedStructure,
+    elastic: tuple[tuple[str, float, float, float], ...],
+    springs: tuple[tuple[str, float], ...],
+    contact: float,
+    touching: bytes,
 ) -> tuple[tuple[Any, Any, Any], tuple[Any, ...]]:
     """M, C and K of a structure, and the rows normal, n, along and across of its contacts.
 
@@ -280,7 +284,9 @@ def summed(
 
 
 @lru_cache(maxsize=8)
-def worn_linings(sums: Any, loads: Any, followers: str, friction: float, depth: float) -> Worn:
+def worn_linings(
+    sums: tuple[Any, ...], loads: tuple[tuple[str, float], ...], followers: str, friction: float, depth: float
+) -> Worn:
     """What running in wears off the linings of a brake that `summed` sums up; kept, because sweeps ask for it again."""
     made, _, springs, contact, touching = sums
     some = np.frombuffer(touching, dtype=np.int64)

@@ -37,7 +37,7 @@ class Pencil:
 
     sliding: Sliding | None = None
 
-    def __init__(self, M: Any, C: Any, K: Any, elastic: Any) -> None:
+    def __init__(self, M: "sparray", C: "sparray", K: "sparray", elastic: "sparray") -> None:
         self.M, self.C, self.K, self.elastic = M, C, K, elastic
 
     @property
@@ -54,11 +54,11 @@ class Pencil:
         """Q(lambda), sparse and complex."""
         return sparse.csc_array(value**2 * self.M + value * self.C + self.K)
 
-    def stiffness_on(self, shapes: Any) -> tuple[Any, Any]:
+    def stiffness_on(self, shapes: np.ndarray) -> tuple[Any, Any]:
         """K_eff V and K_eff' V of columns V (n, k)."""
         return self.K @ shapes, self.K.T @ shapes
 
-    def damping_on(self, shapes: Any) -> Any:
+    def damping_on(self, shapes: np.ndarray) -> Any:
         """C_eff V of columns V (n, k)."""
         return self.C @ shapes
 
@@ -66,7 +66,7 @@ class Pencil:
         """Q(lambda_k) u_k for each column u_k of `shapes` (n, k)."""
         return self.K @ shapes + (self.C @ shapes) * values + (self.M @ shapes) * values**2
 
-    def backward_error(self, values: Any, shapes: Any) -> Any:
+    def backward_error(self, values: np.ndarray, shapes: np.ndarray) -> Any:
         """|Q(lambda) u| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |u|) of each mode, norms by the largest row sum."""
         sizes = [float(abs(matrix).sum(axis=1).max()) for matrix in (self.M, self.C, self.K)]
         scale = np.abs(values) ** 2 * sizes[0] + np.abs(values) * sizes[1] + sizes[2]

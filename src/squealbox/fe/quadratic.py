@@ -88,7 +88,7 @@ def full_modes(pencil: Pencil, band: tuple[float, float], count: int = 60) -> Fu
     return FullModes(every, columns, errors, not gaps, made)
 
 
-def _once(values: Any, shapes: Any) -> tuple[Any, Any]:
+def _once(values: np.ndarray, shapes: np.ndarray) -> tuple[Any, Any]:
     """Each mode once: the disks overlap, so an eigenvalue may have been found twice with the same shape."""
     order = np.argsort(values.imag, kind="stable")
     kept: list[int] = []

@@ -288,7 +288,7 @@ class ReducedBrake(Design):
             return None
         rows = {field: self.array(field) for field in FIELDS}
         rows["C"] = rows["C"] - without
-        if not touching:
+        if not touching or self.friction is None:
             return untouched(rows)
         return steady_small(rows, self.friction, np.asarray(self.reduction.unilateral), self.reduction.sums)
 

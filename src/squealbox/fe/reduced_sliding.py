@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.fe.small import Small
-from squealbox.friction import Table
+from squealbox.friction import FrictionLaw, Table
 from squealbox.static_deflection import ended
 from squealbox.system import Equilibrium
 
@@ -68,7 +68,7 @@ def sums_of(rows: dict[str, Any], unilateral: np.ndarray, *, added: bool = True)
 
 
 def steady_small(
-    rows: dict[str, Any], law: Any, unilateral: np.ndarray, sums: Sums | None = None
+    rows: dict[str, Any], law: FrictionLaw, unilateral: np.ndarray, sums: Sums | None = None
 ) -> tuple[Small, Equilibrium] | None:
     """M, C_eff, K_eff and steady sliding; None where there is none that is settled, or the law has memory, is a
     family of laws, or leaves its range: then the general road answers, and says so.

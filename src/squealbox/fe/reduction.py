@@ -182,7 +182,7 @@ def _first_basis(
     return modes, _main_directions(reference, np.concatenate(shapes, axis=1))
 
 
-def _main_directions(pencil: Pencil, shapes: Any, share: float = 1e-5) -> Any:
+def _main_directions(pencil: Pencil, shapes: np.ndarray, share: float = 1e-5) -> Any:
     """The directions of `shapes` whose singular value is above `share` of the largest, V' M V = I."""
     lengths = np.sqrt(np.einsum("ij,ij->j", shapes, pencil.M @ shapes))
     shapes = shapes[:, lengths > 0.0] / lengths[lengths > 0.0]

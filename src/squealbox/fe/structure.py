@@ -123,7 +123,7 @@ class Structure:
 def read_matrices(
     *paths: str | os.PathLike[str],
     units: str | None = None,
-    nodes: Any = None,
+    nodes: str | os.PathLike[str] | None = None,
     labels: str | os.PathLike[str] | None = None,
 ) -> Structure:
     """The structure that these files hold together; a matrix is known by its name in the file, or by the file's.
@@ -161,7 +161,7 @@ def read_structure(
     mass: Source,
     damping: Source | None = None,
     units: str | None,
-    nodes: Any = None,
+    nodes: str | os.PathLike[str] | None = None,
     labels: str | os.PathLike[str] | None = None,
 ) -> Structure:
     """The structure of these files, each named for what it holds, in SI.
@@ -194,7 +194,12 @@ def _chosen(source: Source, kind: str, opened: dict[Path, MatrixFile]) -> tuple[
     return file, matrix
 
 
-def _aligned(chosen: dict[str, tuple[MatrixFile, FileMatrix]], units: str | None, nodes: Any, labels: Any) -> Structure:
+def _aligned(
+    chosen: dict[str, tuple[MatrixFile, FileMatrix]],
+    units: str | None,
+    nodes: str | os.PathLike[str] | None,
+    labels: str | os.PathLike[str] | None,
+) -> Structure:
     files = {kind: file for kind, (file, _) in chosen.items()}
     found = {kind: matrix for kind, (_, matrix) in chosen.items()}
     order, places = _common(files, found, labels)
@@ -233,7 +238,9 @@ def _aligned(chosen: dict[str, tuple[MatrixFile, FileMatrix]], units: str | None
     return Structure(mass, damping, stiffness, order, fixed, units, places_of, digits, tuple(dict.fromkeys(notes)))
 
 
-def _common(files: dict[str, MatrixFile], found: dict[str, FileMatrix], given: Any) -> tuple[Any, dict[str, Any]]:
+def _common(
+    files: dict[str, MatrixFile], found: dict[str, FileMatrix], given: str | os.PathLike[str] | None
+) -> tuple[Any, dict[str, Any]]:
     """Labels of the rows of all matrices, and where the rows of each go."""
     sizes = {kind: matrix.matrix.shape[0] for kind, matrix in found.items()}
     most = max(sizes.values())

@@ -125,7 +125,7 @@ _AVERAGED_SLOPE = """def slope(v, p):
 """
 
 
-def _slow_dither(law: Any, v: np.ndarray, w: np.ndarray, slope: bool) -> Any:
+def _slow_dither(law: Stribeck | Hyperbolic, v: np.ndarray, w: np.ndarray, slope: bool) -> Any:
     """E[h] or E[h'] where the sliding never reverses, w <= v."""
     if isinstance(law, Stribeck):
         from scipy.special import ive

@@ -9,9 +9,12 @@ is exact for any delay (Astrom and Wittenmark 1997, Computer-Controlled Systems,
 ln(z)/h, the eigenvalues of C x' + K x = 0 with K = -ln(Phi)/h; what dies within one sample (z = 0) has none.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+
+from squealbox.loops.kinds import Loop
 
 GONE = 1e-13  # of the largest multiplier: less is none
 
@@ -24,7 +27,7 @@ def highest_rate(system: Any) -> float:
     return float(np.sqrt(np.max(np.abs(squares), initial=0.0)))
 
 
-def aliased(system: Any, loops: Any) -> list[str]:
+def aliased(system: Any, loops: Sequence[Loop]) -> list[str]:
     """A sentence for each loop that samples a mode of the system, without friction, less than twice in its period."""
     said, highest = [], highest_rate(system) / (2.0 * np.pi)
     for loop in loops:

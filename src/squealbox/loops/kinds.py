@@ -8,6 +8,7 @@ A loop senses the degree of freedom `sense` and acts on `on` (a name each). Acti
 Burdess 1981, Mechanism and Machine Theory 16, 535-542.
 """
 
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -210,7 +211,7 @@ LOOPS: dict[str, type[Loop]] = {
 }
 
 
-def check_loops(loops: Any, names: tuple[str, ...], error: type[Exception]) -> tuple[Loop, ...]:
+def check_loops(loops: Sequence[Any], names: tuple[str, ...], error: type[Exception]) -> tuple[Loop, ...]:
     """The loops of a system as a tuple; `error` for what is none, a loop's own error for a name that is not there."""
     kept = tuple(loops) if isinstance(loops, (tuple, list)) else (loops,)
     for i, loop in enumerate(kept):

@@ -4,6 +4,7 @@ A state z becomes a degree of freedom without mass, which every analysis takes. 
 what is under way, at Chebyshev points of it (Breda, Maset and Vermiglio 2005, SIAM J. Sci. Comput. 27, 482-495).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -95,7 +96,7 @@ def delayed(own: Rows, delay: float | np.ndarray, rate: float | np.ndarray, lag:
     return Rows(A, E, F, G, own.P, own.R, S, own.b, size), force
 
 
-def late(own: Rows, delay: Any, rate: Any) -> Rows:
+def late(own: Rows, delay: np.ndarray, rate: np.ndarray) -> Rows:
     """Rows whose force is late: those of `delayed` with the command of the rows themselves."""
     row, force = delayed(own, delay, rate)
     A = row.A + row.G[..., :, None] * row.S[..., None, :]
@@ -218,7 +219,7 @@ def padded(row: np.ndarray, more: int) -> Any:
     return np.pad(row, [(0, 0)] * (np.ndim(row) - 1) + [(0, more)])
 
 
-def padded_contacts(contacts: Any, more: int) -> tuple[Any, ...]:
+def padded_contacts(contacts: Sequence[Any], more: int) -> tuple[Any, ...]:
     """Contacts that neither sense nor act along `more` further rows."""
     out = []
     for contact in contacts:

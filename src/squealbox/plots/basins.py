@@ -94,7 +94,7 @@ def _reach(basin: Basin, axis: _axis) -> tuple[float, float]:
     return (low, high) if within else axis.ends
 
 
-def _seen(states: Any, x: _axis, y: _axis) -> tuple[Any, Any]:
+def _seen(states: np.ndarray, x: _axis, y: _axis) -> tuple[Any, Any]:
     """States (..., 2n) in the plane."""
     return states[..., x.place] / x.factor, states[..., y.place] / y.factor
 

@@ -1,6 +1,7 @@
 """Figure of a comparison of contact schemes: the motions over each other, and error against cost."""
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,7 +17,9 @@ if TYPE_CHECKING:
 
 
 @drawn_by.register(ContactComparison)
-def contact_comparison(comparison: ContactComparison, *, periods: float = 3.0, axes: Any = None) -> "Figure":
+def contact_comparison(
+    comparison: ContactComparison, *, periods: float = 3.0, axes: "Sequence[Axes] | None" = None
+) -> "Figure":
     """The last `periods` [-] of every scheme, and the error of each against its number of evaluations.
 
     `axes` may give the two panels to draw in. A run read from a file has lost its motions: only the second panel is

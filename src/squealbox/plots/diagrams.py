@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from squealbox.plots.style import Panels
+
 # Mark, colour and words of each sweep; open marks, so that what lies beneath is seen.
 SWEPT = {
     "up": ("^", "#0072B2", "swept up"),
@@ -36,7 +38,7 @@ def bifurcation_diagram(
     name: str | None = None,
     scale: float = 1.0,
     title: str = "",
-    axes: Any = None,
+    axes: "Panels | None" = None,
 ) -> "Figure":
     """What sweeps settle to over a parameter, drawn over branches of cycles (stable solid, unstable dashed).
 
@@ -191,6 +193,6 @@ def coexistence_region(
         return figure_of(panel)
 
 
-def _span(values: Any) -> tuple[float, float]:
+def _span(values: np.ndarray) -> tuple[float, float]:
     half = 0.5 * (values[1] - values[0]) if len(values) > 1 else 0.5
     return float(values[0] - half), float(values[-1] + half)

@@ -25,7 +25,7 @@ def drawers() -> None:
 
 
 @singledispatch
-def drawn_by(result: Any, **keywords: Any) -> "Figure":
+def drawn_by(result: object, **keywords: Any) -> "Figure":
     """The figure of a result as its kind is drawn: each drawing module registers its kinds here."""
     known = ", ".join(sorted(kind.__name__ for kind in drawn_by.registry if kind is not object))
     raise TypeError(f"no figure is known for {type(result).__name__}: expected one of {known}")
@@ -33,7 +33,12 @@ def drawn_by(result: Any, **keywords: Any) -> "Figure":
 
 @public(width=INCHES, height=INCHES)
 def plot(
-    result: Any, *, width: float | None = None, height: float | None = None, style: Any = None, **keywords: Any
+    result: object,
+    *,
+    width: float | None = None,
+    height: float | None = None,
+    style: str | None = None,
+    **keywords: Any,
 ) -> "Figure":
     """The figure of a result.
 

@@ -1,6 +1,7 @@
 """The key numbers of each kind of result, for a card, a table of a report or a line of a page."""
 
 import dataclasses
+from collections.abc import Sequence
 from functools import singledispatch
 from typing import Any
 
@@ -129,7 +130,7 @@ def _of_ensemble(found: Ensemble) -> list[Fact]:
             ("observed", ", ".join(found.observed) or "nothing", "")]  # fmt: skip
 
 
-def unit_at(system: Any, dof: int | str, *, moves: bool = False) -> str:
+def unit_at(system: object, dof: int | str, *, moves: bool = False) -> str:
     """The unit of a degree of freedom of a system, m or rad; of its velocity where it `moves`."""
     names, units = getattr(system, "names", ()), getattr(system, "units", ())
     place = list(names).index(dof) if isinstance(dof, str) and dof in names else dof
@@ -137,7 +138,7 @@ def unit_at(system: Any, dof: int | str, *, moves: bool = False) -> str:
     return f"{unit}/s" if moves else unit
 
 
-def read_of(names: Any, dof: int) -> str:
+def read_of(names: Sequence[str], dof: int) -> str:
     """What an axis calls the displacement of a freedom: with its name where there are several."""
     return "displacement" if len(names) < 2 else f"displacement {names[dof]}"
 

@@ -37,7 +37,7 @@ class PlaneLabels:
 
 def stability_map(
     x: Any,
-    y: np.ndarray,
+    y: Any,
     growth: np.ndarray,
     *,
     curves: Iterable[Any] | None = None,
@@ -108,7 +108,9 @@ def _legend(panel: "Axes", unstable: np.ndarray, unknown: np.ndarray) -> None:
     panel.legend(handles=handles, loc=free, handlelength=2.0)
 
 
-def _shade(panel: "Axes", x: np.ndarray, y: np.ndarray, level: Any, top: float, bar: tuple[str, str] | None) -> None:
+def _shade(
+    panel: "Axes", x: np.ndarray, y: np.ndarray, level: np.ndarray, top: float, bar: tuple[str, str] | None
+) -> None:
     from matplotlib.ticker import MaxNLocator
 
     rounded = np.asarray(MaxNLocator(7).tick_values(0.0, top))

@@ -6,11 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from squealbox.plots.style import LINES, UNSTABLE, drawing, figure_of, line, note
-from squealbox.stability import TrackedModes
+from squealbox.stability import ComplexModes, TrackedModes
 from squealbox.words import number, quantity_label, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from squealbox.plots.style import Panels
 
 
 MOST_NAMED = 4  # modes named in the legend where there are more than looks
@@ -21,13 +23,13 @@ OTHERS: dict[str, Any] = {"color": "#aaaaaa", "linewidth": 0.6, "linestyle": "-"
 
 def coalescence(
     parameter: ArrayLike,
-    modes: Any,
+    modes: ComplexModes | TrackedModes | ArrayLike,
     *,
     name: str = "friction coefficient",
     unit: str = "",
     frequency_unit: str | None = None,
     title: str = "",
-    axes: Any = None,
+    axes: "Panels | None" = None,
 ) -> "Figure":
     """Frequency (above) and growth rate (below) of each mode against a parameter, unstable stretches hatched.
 
@@ -84,7 +86,7 @@ def _told(growth: np.ndarray) -> Any:
     return told
 
 
-def upper_branches(modes: Any) -> Any:
+def upper_branches(modes: ComplexModes | TrackedModes | ArrayLike) -> Any:
     """The modes with Im >= 0, or their eigenvalues (k, m), each a column that runs on smoothly; NaN where it is not."""
     rows = np.asarray(getattr(modes, "eigenvalues", modes))
     rows = rows if isinstance(modes, TrackedModes) else followed(rows)

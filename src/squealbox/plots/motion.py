@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import drawn_by
@@ -10,6 +11,7 @@ from squealbox.plots.facts import read_of, unit_at
 from squealbox.plots.spectra import spectrum
 from squealbox.plots.style import drawing, figure_of, line, note, panels, uncertain
 from squealbox.signals import LEAST, SignalError, column, equal_steps, values
+from squealbox.signals.samples import MotionLike
 from squealbox.transient import Trajectory, Verdict, resolved
 from squealbox.transient.envelope import smooth_curve
 from squealbox.transient.verdict import verdict
@@ -19,14 +21,16 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from squealbox.plots.style import Panels
+
 SMOOTH = 20  # points of a drawn curve between two turning points
 LARGEST, STRETCHES = 20_000, 40  # points of a line, beyond which more only blacken it; parts of it that are then drawn
 MANY, LAST = 25.0, 6.0  # periods from which a history is a black block, and those of its end that are drawn apart
 
 
 def time_history(
-    motion: Any,
-    t: Any = None,
+    motion: MotionLike,
+    t: ArrayLike | None = None,
     *,
     dof: Any = 0,
     verdict: Verdict | None = None,
@@ -75,7 +79,7 @@ def time_history(
 
 
 def phase_plane(
-    motion: Any,
+    motion: MotionLike,
     *,
     dof: int | str = 0,
     part: float = 0.25,
@@ -101,7 +105,7 @@ def phase_plane(
         return figure_of(panel)
 
 
-def _drawn(motion: Any, dof: int | str) -> tuple[Any, Any, Any]:
+def _drawn(motion: MotionLike, dof: int | str) -> tuple[Any, Any, Any]:
     """Times, displacement and velocity as they are drawn: through few steps a smooth curve, not a polygon."""
     times, x = values(motion, dof=dof)
     velocity = np.asarray(motion.qd)[:, column(motion, dof)]
@@ -129,7 +133,9 @@ def _stretches(points: np.ndarray) -> list[Any]:
     return [part[: LARGEST // STRETCHES] for part in np.array_split(points, STRETCHES)]
 
 
-def energy(trajectory: Trajectory, *, unit: str | None = None, title: str = "", axes: Any = None) -> "Figure":
+def energy(
+    trajectory: Trajectory, *, unit: str | None = None, title: str = "", axes: "Panels | None" = None
+) -> "Figure":
     """Where the energy went, and by how much the audit fails to close; `axes` is a pair of panels.
 
     Above: work of the friction of each contact, of the load and of the skew stiffness, energy stored and, positive too
@@ -241,7 +247,7 @@ def _verdict_note(verdict: Verdict, unit: str = "m") -> str:
     return text
 
 
-def _dof_name(motion: Any, dof: int | str) -> str:
+def _dof_name(motion: MotionLike, dof: int | str) -> str:
     if isinstance(dof, str):
         return dof
     if isinstance(motion, Trajectory):

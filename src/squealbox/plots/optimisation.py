@@ -15,13 +15,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from squealbox.plots.style import Panels
+
 WRAPPED = 42  # characters of a line of an axis label
 BEFORE, AFTER = "#888888", "#D55E00"
 HOLE = 0.15  # of the range of a goal: a wider gap in the front is said
 
 
 @drawn_by.register(Optimum)
-def optimum(found: Optimum, *, title: str = "", axes: Any = None) -> "Figure":
+def optimum(found: Optimum, *, title: str = "", axes: "Panels | None" = None) -> "Figure":
     """One goal: each parameter within its bounds, before and after. Two: the Pareto front and its parameters.
 
     With three goals or more the front is drawn as a line for each design over the goals, each scaled by its range.

@@ -1,6 +1,6 @@
 """Figures of rare squeal and of surrogates: the way to the design point, levels of a simulation, held-out points."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +14,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from squealbox.plots.style import Panels
+
 
 @drawn_by.register(DesignPoint)
-def design_point(found: DesignPoint, *, title: str = "", axes: Any = None) -> "Figure":
+def design_point(found: DesignPoint, *, title: str = "", axes: "Panels | None" = None) -> "Figure":
     """The quantity on the straight way from the median to the design point and beyond; importance of the parameters.
 
     `axes` is one panel, for the way alone.
@@ -113,5 +115,5 @@ def surrogate(found: Surrogate, *, title: str = "", axes: "Axes | None" = None) 
         return figure_of(panel)
 
 
-def _small(value: Any) -> str:
+def _small(value: float) -> str:
     return f"{float(value):.2e}" if 0.0 < abs(float(value)) < 1e-3 else number(float(value), 3)

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.control import ClosedLoop, DefeatingPush, LoopRun, Placement, StableGains
 from squealbox.countermeasures import BestAbsorber, Countermeasure
@@ -17,12 +18,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from squealbox.plots.style import Panels
+
 MOST_BARS = 24
 ALL = 0.995  # share of a lot that is all of it
 
 
 @drawn_by.register(Countermeasure)
-def countermeasure_drawing(design: Countermeasure, *, axes: Any = None) -> "Figure":
+def countermeasure_drawing(design: Countermeasure, *, axes: "Axes | None" = None) -> "Figure":
     """The drawing of the brake that a countermeasure holds, with what is done to it written above."""
     layers: list[str] = []
     held: Any = design
@@ -100,7 +103,12 @@ def poles_figure(found: ClosedLoop, *, title: str = "", axes: "Axes | None" = No
 
 
 def loop_locus(
-    found: ClosedLoop, gains: Any = None, loop: int | None = None, *, title: str = "", axes: Any = None
+    found: ClosedLoop,
+    gains: ArrayLike | None = None,
+    loop: int | None = None,
+    *,
+    title: str = "",
+    axes: "Panels | None" = None,
 ) -> "Figure":
     """Where the poles go as the gain of one loop, or of all, rises from 0 (crosses) over 1 (circles) to twice that."""
     factors = np.linspace(0.0, 2.0, 401) if gains is None else np.asarray(gains, dtype=float)
@@ -189,7 +197,7 @@ def gains_figure(found: StableGains, *, title: str = "", axes: "Axes | None" = N
 
 
 @drawn_by.register(LoopRun)
-def loop_run(found: LoopRun, *, title: str = "", axes: Any = None) -> "Figure":
+def loop_run(found: LoopRun, *, title: str = "", axes: "Panels | None" = None) -> "Figure":
     """Displacement of each freedom, and below the force of each loop, held until the next instant."""
     names = as_system(found.inputs["system"]).names
     second, clock = scaled("s", found.t)

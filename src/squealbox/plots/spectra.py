@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox import signals
 from squealbox.plots.dispatch import drawn_by
@@ -103,7 +104,7 @@ def _name_peak(panel: "Axes", x: float, y: float, side: str) -> None:
 
 def spectrogram(
     signal: "Spectrogram",
-    t: Any = None,
+    t: ArrayLike | None = None,
     *,
     upto: float | None = None,
     decades: float = 3.0,

@@ -169,7 +169,9 @@ def _nearest_unstable(found: StabilityMap) -> Any:
     return found.mechanism[tuple(nearest)]
 
 
-def _unstable(panel: "Axes", found: StabilityMap, x: Any, y: Any, boundary: Boundary | None, factors: ArrayLike) -> Any:
+def _unstable(
+    panel: "Axes", found: StabilityMap, x: np.ndarray, y: np.ndarray, boundary: Boundary | None, factors: ArrayLike
+) -> Any:
     """The outline of the unstable area: to the traced boundary, else to zero between the points; None without one."""
     from matplotlib.tri import Triangulation
 
@@ -194,7 +196,7 @@ def _unstable(panel: "Axes", found: StabilityMap, x: Any, y: Any, boundary: Boun
     return outline
 
 
-def _dense(points: Any, size: Any) -> Any:
+def _dense(points: np.ndarray, size: np.ndarray) -> Any:
     """A curve (k, 2) with a point in every tenth of a cell, so that triangles do not reach across it."""
     steps = np.maximum(np.ceil(10.0 * np.max(np.abs(np.diff(points, axis=0)) * size, axis=1)), 1.0)
     place = np.append(0.0, np.cumsum(steps))

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from squealbox.plots.style import Panels
+
 MOST_LINES = 8
 MOST_PANELS = 6
 MOST_WORDS = len(LINES)
@@ -29,7 +31,9 @@ def numeric_answers(found: Sweep) -> list[str]:
 
 
 @drawn_by.register(Sweep)
-def sweep_overview(found: Sweep, *, answer: str | None = None, title: str = "", axes: Any = None) -> "Figure":
+def sweep_overview(
+    found: Sweep, *, answer: str | None = None, title: str = "", axes: "Panels | None" = None
+) -> "Figure":
     """An answer of a sweep over its parameters; failed points are crosses, or grey crossed fields.
 
     Parameters
@@ -96,7 +100,7 @@ def _panel(
     panel.set_title(title)
 
 
-def _lines(panel: "Axes", found: Sweep, values: "xarray.DataArray", dim: Any, ended: Any) -> None:
+def _lines(panel: "Axes", found: Sweep, values: "xarray.DataArray", dim: str, ended: np.ndarray) -> None:
     x, label = _along(found[dim])
     if values.dtype.kind in "OU":
         _words_over(panel, x, values)
@@ -118,7 +122,7 @@ def _lines(panel: "Axes", found: Sweep, values: "xarray.DataArray", dim: Any, en
     panel.set_xlabel(label)
 
 
-def _map(panel: "Axes", found: Sweep, values: "xarray.DataArray", dims: list[Any], ended: Any) -> None:
+def _map(panel: "Axes", found: Sweep, values: "xarray.DataArray", dims: list[Any], ended: np.ndarray) -> None:
     (x, x_label), (y, y_label) = (_along(found[dim]) for dim in dims)
     if values.dtype.kind in "OU":
         grid, words = _coded(values)
@@ -142,7 +146,7 @@ def _map(panel: "Axes", found: Sweep, values: "xarray.DataArray", dims: list[Any
     panel.set(xlabel=x_label, ylabel=y_label)
 
 
-def _points(panel: "Axes", found: Sweep, values: "xarray.DataArray", dims: list[Any], ended: Any) -> None:
+def _points(panel: "Axes", found: Sweep, values: "xarray.DataArray", dims: list[Any], ended: np.ndarray) -> None:
     """Points of a sample over the first two parameters, or over the only one; other axes lie on top of each other."""
     if found["outcome"].ndim != ended.ndim or values.dtype.kind in "OU":
         raise ValueError("words, or a sample with more than one further axis: draw them from the dataset")
@@ -171,14 +175,14 @@ def _points(panel: "Axes", found: Sweep, values: "xarray.DataArray", dims: list[
     panel.set_ylabel(labels[1])
 
 
-def _words_over(panel: "Axes", x: Any, values: "xarray.DataArray") -> None:
+def _words_over(panel: "Axes", x: np.ndarray, values: "xarray.DataArray") -> None:
     codes, words = _coded(values)
     panel.plot(x, codes.reshape(len(x), -1), "o", color=LINES[1][0], markersize=3.0)
     panel.set_yticks(range(len(words)), [word.replace("_", " ") or "none" for word in words])
     panel.set_ylim(-0.5, len(words) - 0.5)
 
 
-def _word_map(panel: "Axes", x: Any, y: Any, grid: Any, words: list[str]) -> None:
+def _word_map(panel: "Axes", x: np.ndarray, y: np.ndarray, grid: np.ndarray, words: list[str]) -> None:
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
@@ -191,7 +195,7 @@ def _word_map(panel: "Axes", x: Any, y: Any, grid: Any, words: list[str]) -> Non
     panel.legend(handles=handles, loc="best")
 
 
-def _crossed(panel: "Axes", x: Any, y: Any, ended: Any) -> None:
+def _crossed(panel: "Axes", x: np.ndarray, y: np.ndarray, ended: np.ndarray) -> None:
     if np.all(ended):
         return
     panel.set_facecolor(UNKNOWN)
@@ -225,7 +229,7 @@ def _spaced(panel: "Axes", axis: str, values: "xarray.DataArray") -> None:
         panel.set(**{f"{axis}scale": "log"})
 
 
-def _largest(numbers: Any, ndim: int) -> Any:
+def _largest(numbers: np.ndarray, ndim: int) -> Any:
     if numbers.ndim == ndim:
         return numbers
     flat = numbers.reshape(*numbers.shape[:ndim], -1)

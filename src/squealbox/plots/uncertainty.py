@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from squealbox.plots.style import Panels
+
 QUIET, SQUEAL = "#9ecae1", "#f0b27a"
 SIGMA = "\N{GREEK SMALL LETTER SIGMA}"
 LETTERS = 36  # of a line below an axis in a column of a paper
@@ -23,7 +25,7 @@ BINS = 12  # of equal probability, in which the share of squeal is counted
 
 
 @drawn_by.register(SquealProbability)
-def squeal_probability(found: SquealProbability, *, title: str = "", axes: Any = None) -> "Figure":
+def squeal_probability(found: SquealProbability, *, title: str = "", axes: "Panels | None" = None) -> "Figure":
     """How the quantity is spread, with the part that squeals, and the share of squeal over each parameter.
 
     `axes` is one panel, for the histogram alone; a figure of its own also gets a panel for each of up to four
@@ -77,7 +79,7 @@ def _histogram(panel: "Axes", found: SquealProbability, title: str) -> None:
     panel.set_title(f"{title}\n{text}" if title else text)
 
 
-def _edges(values: Any, limit: float) -> Any:
+def _edges(values: np.ndarray, limit: float) -> Any:
     """Edges of the bars, one of them at the limit where it is within the values; far outliers go to the last bar."""
     low, high = np.quantile(values, (0.001, 0.999))
     if low == high:
@@ -163,7 +165,7 @@ def morris_effects(found: MorrisEffects, *, title: str = "", axes: "Axes | None"
 
 
 @drawn_by.register(IntervalBounds)
-def interval_bounds(found: IntervalBounds, *, title: str = "", axes: Any = None) -> "Figure":
+def interval_bounds(found: IntervalBounds, *, title: str = "", axes: "Panels | None" = None) -> "Figure":
     """The range as a bar with the limit of squeal; a figure of its own also shows where in the box the ends lie."""
     if axes is not None:
         with drawing(axes) as panel:

@@ -9,7 +9,7 @@ Band and threshold follow SAE J2521 as its public summary states them: a peak of
 (from 1.25 kHz on for full corners).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -208,8 +208,8 @@ _OF_SAMPLES = _NAMES[6:12]
 
 
 def _beneath(
-    frames: Frames, low: float, chance: float, events: Sequence[dict[str, Any]], weigh: Any, reference: float,
-    least: float | None,
+    frames: Frames, low: float, chance: float, events: Sequence[dict[str, Any]], weigh: Callable[[Any], Any],
+    reference: float, least: float | None,
 ) -> list[str]:  # fmt: skip
     """A tone below the band that is louder than all in it: what is told may be no more than its harmonic."""
     found = [_event(each, frames, weigh, reference) for each in tracks(frames, chance)
@@ -235,7 +235,7 @@ def _padded(value: Any, longest: int) -> Any:
     return value if np.ndim(value) == 0 else np.append(value, np.full(longest - len(value), np.nan))
 
 
-def _event(track: Track, frames: Frames, weigh: Any, reference: float) -> dict[str, Any]:
+def _event(track: Track, frames: Frames, weigh: Callable[[Any], Any], reference: float) -> dict[str, Any]:
     """What the frames tell of an event; see `_of_samples`."""
     numbers, places = np.array(track.frames), lines_of(track)
     step = frames.frequency[1] - frames.frequency[0]

@@ -113,7 +113,9 @@ class FoldedSamples:
         return offset + waves.ravel()[: self.size]
 
 
-def fit_exponentials(x: Any, guess: ArrayLike, *, offset: bool = True, close: float = CLOSE) -> Exponentials:
+def fit_exponentials(
+    x: FoldedSamples | np.ndarray, guess: ArrayLike, *, offset: bool = True, close: float = CLOSE
+) -> Exponentials:
     """The least-squares components nearest to `guess` (k,), exponents in 1/sample.
 
     A step of less than `close` standard deviations is the last. Without convergence the best that was reached is

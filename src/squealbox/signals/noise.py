@@ -69,8 +69,8 @@ def noise_matrix(
     *,
     x: str = "speed",
     y: str = "pressure",
-    x_edges: Any = None,
-    y_edges: Any = None,
+    x_edges: ArrayLike | None = None,
+    y_edges: ArrayLike | None = None,
 ) -> NoiseMatrix:
     """The noise matrix of a campaign: in which conditions how many stops squeal.
 

@@ -5,7 +5,7 @@ with the probability p. Peaks above it that follow each other are a track.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -75,12 +75,12 @@ class Frames:
         places, middles = np.arange(last - first), 0.5 * (edges[:-1] + edges[1:])
         self.between = np.stack([np.interp(places, middles, row) for row in np.eye(count)]).astype(np.float32)
 
-    def noise(self, frames: Any) -> Any:
+    def noise(self, frames: slice) -> Any:
         """Mean square of the noise in every line of some frames, shape (frames, lines)."""
         louder, least = (np.einsum("ij,jk->ik", each[frames], self.between) for each in (self.louder, self.least))
         return np.maximum(louder * self.floor, least)
 
-    def noise_at(self, frames: Any, places: np.ndarray) -> Any:
+    def noise_at(self, frames: Sequence[int] | np.ndarray, places: np.ndarray) -> Any:
         """Mean square of the noise in one line of each frame."""
         shares = self.between[:, places].T
         louder, least = (np.sum(each[frames] * shares, axis=1) for each in (self.louder, self.least))

@@ -19,7 +19,7 @@ from squealbox.fe.quadratic import full_modes
 from squealbox.result import Array, Outcome, quantity
 from squealbox.sparse_sliding import at_rest
 from squealbox.stability.eigenvalues import ComplexModes
-from squealbox.system import DesignOrSystem, InvalidSystem, System, as_system, equilibrium
+from squealbox.system import DesignOrSystem, Equilibrium, InvalidSystem, System, as_system, equilibrium
 
 Way = Literal["projection", "full"]
 TOLERANCE = 0.05  # [1/s]
@@ -231,7 +231,9 @@ def _full(pencil: Pencil, band: tuple[float, float], count: int, common: dict[st
     )
 
 
-def _nothing(design: DesignOrSystem, system: System, state: Any, band: tuple[float, float], time: float) -> BandModes:
+def _nothing(
+    design: DesignOrSystem, system: System, state: Equilibrium, band: tuple[float, float], time: float
+) -> BandModes:
     none, flat = np.zeros((system.size, 0), dtype=complex), np.zeros(0, dtype=complex)
     return BandModes(
         eigenvalues=flat,

@@ -96,7 +96,9 @@ def _local_minima(size: np.ndarray) -> Any:
     return least
 
 
-def _newton(family: SteadyFamily, low: Any, width: Any, point: Any, pair: Any) -> tuple[Any, complex, float] | None:
+def _newton(
+    family: SteadyFamily, low: np.ndarray, width: np.ndarray, point: np.ndarray, pair: np.ndarray
+) -> tuple[Any, complex, float] | None:
     """Newton's method on (lambda_i - lambda_j)^2 = 0 in two real unknowns."""
     step = 1e-5
     shifts = step * np.array([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])

@@ -24,7 +24,7 @@ def squeal_index(eigenvalues: np.ndarray) -> Any:
     return np.where(np.imag(eigenvalues) == 0.0, np.nan, index)
 
 
-def logarithmic_decrement(eigenvalues: Any) -> Any:
+def logarithmic_decrement(eigenvalues: np.ndarray) -> Any:
     """ln of the ratio of two successive amplitudes, -2 pi Re/|Im| [-]; negative grows, NaN where Im = 0.
 
     Array in, array out.
@@ -32,7 +32,7 @@ def logarithmic_decrement(eigenvalues: Any) -> Any:
     return np.pi * squeal_index(eigenvalues)
 
 
-def loss_factor(eigenvalues: Any) -> Any:
+def loss_factor(eigenvalues: complex | np.ndarray) -> Any:
     """Loss factor 2 zeta [-] of a lightly damped mode; negative grows. Array in, array out."""
     return 2.0 * damping_ratio(eigenvalues)
 

@@ -76,8 +76,14 @@ def shifts(h: np.ndarray, n: int, top: int, bottom: int, last: Lanes, low: Lanes
     return (a - x) * (a - y) - w + b * c, c * (a + d - x - y), c * e
 
 
-def sweep(h: np.ndarray, n: int, top: int, bottom: int, last: Lanes, low: Lanes, p: Lanes, q: Lanes, r: Lanes) -> None:
-    """One implicit double-shift QR sweep of every matrix over its own window, inside rows bottom to top."""
+def sweep(
+    h: np.ndarray, n: int, top: int, bottom: int, last: Lanes, low: Lanes, column: tuple[Lanes, Lanes, Lanes]
+) -> None:
+    """One implicit double-shift QR sweep of every matrix over its own window, inside rows bottom to top.
+
+    column : the first one of both shifts, as `shifts` gives it
+    """
+    p, q, r = column
     zero, one = splat(0.0), splat(1.0)
     row = splat(float(bottom))
     for k in range(bottom, top):
@@ -104,9 +110,9 @@ def sweep(h: np.ndarray, n: int, top: int, bottom: int, last: Lanes, low: Lanes,
         last_row = min(top, k + 3)
         if k < top - 1:
             for j in range(k, top + 1):
-                _turn_three(h, k * n + j, n, f, g, s, u, q, r)
+                _turn_three(h, k * n + j, n, (f, g, s), (u, q, r))
             for i in range(last_row, bottom - 1, -1):  # what the next reflection waits for comes first
-                _turn_three(h, i * n + k, 1, f, g, s, u, q, r)
+                _turn_three(h, i * n + k, 1, (f, g, s), (u, q, r))
         else:
             for j in range(k, top + 1):
                 _turn_two(h, k * n + j, n, f, g, u, q)
@@ -116,9 +122,11 @@ def sweep(h: np.ndarray, n: int, top: int, bottom: int, last: Lanes, low: Lanes,
 
 
 def _turn_three(
-    h: np.ndarray, place: int, apart: int, f: Lanes, g: Lanes, s: Lanes, u: Lanes, q: Lanes, r: Lanes
+    h: np.ndarray, place: int, apart: int, weighted: tuple[Lanes, Lanes, Lanes], normal: tuple[Lanes, Lanes, Lanes]
 ) -> None:
     x, y, z = load(h, place), load(h, place + apart), load(h, place + 2 * apart)
+    f, g, s = weighted
+    u, q, r = normal
     t = f * x + g * y + s * z
     store(h, place, x - t * u)
     store(h, place + apart, y - t * q)
@@ -148,5 +156,4 @@ def iterate(h: np.ndarray, n: int) -> Any:
         if top < 0:
             return lost
         bottom = -int(largest(select(last < zero, splat(-float(n)), -low)))
-        p, q, r = shifts(h, n, top, bottom, last, low, sweeps)
-        sweep(h, n, top, bottom, last, low, p, q, r)
+        sweep(h, n, top, bottom, last, low, shifts(h, n, top, bottom, last, low, sweeps))

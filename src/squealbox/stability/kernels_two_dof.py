@@ -185,10 +185,11 @@ def between(a: tuple[Any, ...], b: tuple[Any, ...], share: Lanes) -> Any:
 
 
 def growth_of_parts(
-    m: np.ndarray, p: np.ndarray, c: np.ndarray, e: np.ndarray, k: np.ndarray, x: float, y: float,
+    m: np.ndarray, p: np.ndarray, c: np.ndarray, e: np.ndarray, k: np.ndarray, shares: tuple[float, float],
     growth: np.ndarray, spare: np.ndarray,
 ) -> None:  # fmt: skip
-    """Largest real part of each system with K = E + x (K - E) and C = P + y (C - P)."""
+    """Largest real part of each system with K = E + x (K - E) and C = P + y (C - P), `shares` x and y."""
+    x, y = shares
     number = len(growth)
     for start in range(0, number, LANES):
         mass = masses(m, start, number, spare)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
-from squealbox.stability.family import steady_sliding
+from squealbox.stability.family import Steady, steady_sliding
 from squealbox.system import DesignOrSystem
 
 ZERO = 1e-12  # singular values below this share of 1 (all matrices are scaled to 1) count as zero
@@ -89,7 +89,7 @@ def finite_spectrum(design_or_system: DesignOrSystem, time: float = 0.0) -> Fini
     )
 
 
-def _pencil(steady: Any) -> tuple[Any, Any, float]:
+def _pencil(steady: Steady) -> tuple[Any, Any, float]:
     """E and A with entries up to about 1, and the time scale s [1/s] they are scaled with."""
     mass, damping, stiffness = (float(np.max(np.abs(matrix))) for matrix in (steady.M, steady.C, steady.K))
     rate = np.sqrt(stiffness / mass) if mass > 0.0 else stiffness / damping if damping > 0.0 else 1.0

@@ -146,7 +146,7 @@ def _norms(matrix: np.ndarray, instants: np.ndarray) -> Any:
     return norms
 
 
-def _largest(matrix: Any, instants: Any, envelope: Any) -> tuple[float, float]:
+def _largest(matrix: np.ndarray, instants: np.ndarray, envelope: np.ndarray) -> tuple[float, float]:
     from scipy.linalg import expm
     from scipy.optimize import minimize_scalar
 

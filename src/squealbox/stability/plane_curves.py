@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 
-def onto_side(inside: np.ndarray, outside: Any) -> Any:
+def onto_side(inside: np.ndarray, outside: np.ndarray) -> Any:
     """Where the way from a point in the square to one beyond it leaves the square."""
     way = outside - inside
     ends = np.where(way > 0.0, 1.0, 0.0)

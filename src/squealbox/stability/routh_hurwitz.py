@@ -60,5 +60,5 @@ def undamped_squares(about: Linearised) -> tuple[Any, Any]:
     return far / a, near
 
 
-def _mixed(a: Any, b: Any) -> Any:
+def _mixed(a: np.ndarray, b: np.ndarray) -> Any:
     return a[..., 0, 0] * b[..., 1, 1] - a[..., 0, 1] * b[..., 1, 0]

@@ -21,7 +21,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.fe.reduced_brake import ReducedBrake
-from squealbox.parameters import DataSheet
+from squealbox.parameters import DataSheet, Parameter
 from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import NEAR_DEFECTIVE, Mode, complex_modes, modes_of
 from squealbox.stability.family import SteadyFamily, steady_sliding
@@ -210,7 +210,7 @@ def _derivatives(
     return first, -(second + own * np.outer(first, first) + cross + cross.T)
 
 
-def _span(value: float, about: Any) -> tuple[float, int]:
+def _span(value: float, about: Parameter | None) -> tuple[float, int]:
     """Step of a parameter and the side its range leaves free: 0 both, 1 upwards, -1 downwards."""
     step = RELATIVE_STEP * abs(value) if value != 0.0 else RELATIVE_STEP
     if about is not None and value - 3.0 * step < about.low:

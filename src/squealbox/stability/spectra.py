@@ -64,7 +64,7 @@ def asymptotically_stable(about: Linearised, engine: Engine = "auto") -> Any:
     return largest_growth(about, engine)[0] < 0.0
 
 
-def flags_of(mass: Any, damping: np.ndarray, stiffness: Any) -> Any:
+def flags_of(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray) -> Any:
     """True where every real part is negative, (count,), of flat matrices of 2 x 2; of M one or as many."""
     number = damping.size // 4
     words = np.empty(-(-number // LANES), dtype=np.int64)
@@ -160,7 +160,7 @@ def compiled(about: Linearised, engine: Engine) -> bool:
     return engine == "compiled" or (engine == "auto" and about.K.size >= WORTH_IT * about.K.shape[-1] ** 2)
 
 
-def growth_of_parts(about: Linearised, passive: Any, elastic: Any) -> Callable[[float, float], Any]:
+def growth_of_parts(about: Linearised, passive: np.ndarray, elastic: np.ndarray) -> Callable[[float, float], Any]:
     """The largest growth rate of E + x (K - E) and P + y (C - P), as a compiled function of x and y.
 
     P is `passive`, E `elastic`. For two degrees of freedom; the matrices are read once, whatever the number of calls.
@@ -174,7 +174,7 @@ def growth_of_parts(about: Linearised, passive: Any, elastic: Any) -> Callable[[
 
     def growth(x: float, y: float) -> Any:
         out = np.empty(damping.size // 4)
-        kernels.growth_of_parts(mass, base, damping, springs, stiffness, float(x), float(y), out, room(4))
+        kernels.growth_of_parts(mass, base, damping, springs, stiffness, (float(x), float(y)), out, room(4))
         return out.reshape(shape)
 
     return growth

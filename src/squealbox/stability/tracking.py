@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.family import DesignOrRecipe, Varied
@@ -104,7 +105,7 @@ class TrackedModes(Result):
 
 
 def track(
-    design: DesignOrRecipe, parameter: Varied, values: Any = None, *, time: float = 0.0
+    design: DesignOrRecipe, parameter: Varied, values: ArrayLike | None = None, *, time: float = 0.0
 ) -> Iterator[TrackedPoint]:
     """Walk along the values of a parameter with the modes always in the order of the first value.
 

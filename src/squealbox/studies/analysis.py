@@ -62,7 +62,7 @@ class Task:
         return varied(self.design, values)
 
 
-def plain_function(analysis: Any) -> Any:
+def plain_function(analysis: object) -> Any:
     """The function behind `functools.partial`."""
     while isinstance(analysis, functools.partial):
         analysis = analysis.func
@@ -119,7 +119,7 @@ def _groups(points: Mapping[str, Any]) -> Iterator[Any]:
         yield np.flatnonzero(group.reshape(-1) == code)
 
 
-def _batch(task: Task, values: Mapping[str, Any], where: Any) -> Answer:
+def _batch(task: Task, values: Mapping[str, Any], where: np.ndarray) -> Answer:
     numbers = {name: str(v[0]) if v.dtype.kind == "U" else np.ascontiguousarray(v) for name, v in values.items()}
     answer = task.analysis(task.design_at(numbers))
     names, said, columns = _read(task, answer, batch=len(where))
@@ -129,7 +129,7 @@ def _batch(task: Task, values: Mapping[str, Any], where: Any) -> Answer:
     return np.broadcast_to(names, len(where)), said, columns
 
 
-def _single(task: Task, start: int, values: Mapping[str, Any], where: Any) -> Answer:
+def _single(task: Task, start: int, values: Mapping[str, Any], where: np.ndarray) -> Answer:
     single = {name: str(v[0]) if v.dtype.kind == "U" else float(v[0]) for name, v in values.items()}
     more = {}
     if task.wants_rng:

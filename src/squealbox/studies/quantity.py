@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from squealbox.family import varied
+from squealbox.family import DesignOrRecipe, varied
 from squealbox.parameters import DataSheet, Parameter, ParameterError
 
 MAKERS = "squealbox.quantities"  # its functions make quantities
@@ -86,7 +86,9 @@ def as_quantity(given: QuantityLike) -> Quantity:
     return Quantity(given, "quantity" if name == "<lambda>" else name.replace("_", " "))
 
 
-def evaluate(design: Any, quantity: Quantity, points: Mapping[str, Any], *, strict: bool = True) -> Any:
+def evaluate(
+    design: DesignOrRecipe | None, quantity: Quantity, points: Mapping[str, Any], *, strict: bool = True
+) -> Any:
     """The quantity at `points` (dotted name to shape (n,)), shape (n,); in blocks of 131,072.
 
     `design` has ``replace``; or is a function of the values in the order of `points`; or is None, when the quantity is
@@ -107,12 +109,12 @@ def evaluate(design: Any, quantity: Quantity, points: Mapping[str, Any], *, stri
     return found
 
 
-def input_of(design: Any) -> Any:
+def input_of(design: object) -> Any:
     """What a result keeps of the design; a function cannot be written to a file and is left out."""
     return design if isinstance(design, DataSheet) else None
 
 
-def _block(design: Any, quantity: Quantity, arrays: Mapping[str, Any]) -> Any:
+def _block(design: DesignOrRecipe | None, quantity: Quantity, arrays: Mapping[str, Any]) -> Any:
     count = next(iter(arrays.values())).size
     if not quantity.batched:
         rows = ({name: float(values[i]) for name, values in arrays.items()} for i in range(count))
@@ -126,7 +128,7 @@ def _block(design: Any, quantity: Quantity, arrays: Mapping[str, Any]) -> Any:
     return values
 
 
-def _inside(design: Any, arrays: Mapping[str, Any]) -> Any:
+def _inside(design: DesignOrRecipe | None, arrays: Mapping[str, Any]) -> Any:
     """True where every value is within the range its parameter declares."""
     inside = np.ones(next(iter(arrays.values())).shape, dtype=bool)
     for name, values in arrays.items():

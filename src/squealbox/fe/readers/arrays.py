@@ -7,7 +7,7 @@ import io
 import zipfile
 from pathlib import Path
 from tokenize import TokenError
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
@@ -36,7 +36,7 @@ def read_npy(path: Path) -> MatrixFile:
     return MatrixFile(path, "NumPy .npy", (_matrix(path, path.stem, array),))
 
 
-def _one(path: Path, stream: Any, length: int, name: str) -> Any:
+def _one(path: Path, stream: IO[bytes], length: int, name: str) -> Any:
     try:
         version = np.lib.format.read_magic(stream)
         head = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0

@@ -1,7 +1,7 @@
 """Numbers from text in blocks, so a file of gigabytes is never held as text; an error names its line."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -28,7 +28,7 @@ def number(word: str) -> float:
     return value
 
 
-def significant_digits(words: Any) -> int | None:
+def significant_digits(words: Sequence[str]) -> int | None:
     """The largest number of digits any of these numbers is written with."""
     counts = [len(re.sub(r"[eEdD].*$", "", word.strip()).strip("+-").replace(".", "").lstrip("0")) for word in words]
     return max(counts, default=None)

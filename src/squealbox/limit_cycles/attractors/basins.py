@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.limit_cycles.attractors.attractor import (
@@ -106,7 +107,7 @@ class Basin(Result):
 @public()
 def basin(
     design_or_system: DesignOrSystem,
-    spread: Any = 1.0,
+    spread: ArrayLike | None = 1.0,
     starts: int = 1000,
     *,
     plane: Sequence[Any] | None = None,
@@ -236,7 +237,7 @@ def half_widths(system: System, spread: float = 1.0) -> Any:
     return _spread(spread, Scales.of(Batch.over(system), 1), system.size)
 
 
-def _spread(spread: Any, scales: Scales, n: int) -> Any:
+def _spread(spread: ArrayLike | None, scales: Scales, n: int) -> Any:
     speed = float(scales.speed[0]) or 1.0
     usual = np.repeat([speed / float(scales.slowest[0]), speed], n)
     given = np.asarray(1.0 if spread is None else spread, dtype=float)

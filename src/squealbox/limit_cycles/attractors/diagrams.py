@@ -34,7 +34,7 @@ from squealbox.matrices import runs_of_true
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import complex_modes
-from squealbox.start import Start
+from squealbox.start import Start, StartLike
 from squealbox.system import System
 
 SWEEPS = ("up", "down", "rest")
@@ -111,7 +111,7 @@ def bifurcation_diagram(
     starts: int = 0,
     section: Section | None = None,
     returns: int = 40,
-    start: Any = None,
+    start: StartLike = None,
     duration: float | None = None,
     seed: int = 0,
     threads: int | None = None,

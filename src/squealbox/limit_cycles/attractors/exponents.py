@@ -15,6 +15,7 @@ from squealbox.arguments import public
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.starting import state_of
 from squealbox.limit_cycles.cycles.variation import quick_flight
+from squealbox.start import StartLike
 from squealbox.system import DesignOrSystem, as_system
 
 LOST = 1e-13  # growth over a span below which a direction is forgotten
@@ -23,7 +24,7 @@ LOST = 1e-13  # growth over a span below which a direction is forgotten
 @public()
 def lyapunov_exponents(
     design_or_system: DesignOrSystem,
-    start: Any,
+    start: StartLike,
     span: float,
     spans: int,
     *,

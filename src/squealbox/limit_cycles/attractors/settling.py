@@ -83,7 +83,7 @@ class Batch:
             return stacked(self.design)
         return as_system(self.design.replace(dict(self.parameters)) if self.parameters else self.design)
 
-    def take(self, which: Any) -> "Batch":
+    def take(self, which: Sequence[int] | np.ndarray) -> "Batch":
         """Some of it."""
         if isinstance(self.design, list):
             return replace(self, design=[self.design[i] for i in which])
@@ -136,7 +136,7 @@ class Scales:
         rest = np.where(np.asarray(state.exists)[..., None], state.q, np.nan)
         return cls(np.broadcast_to(rest, (count, n)), *(np.broadcast_to(x, (count,)) for x in (growth, speed, slowest)))
 
-    def take(self, which: np.ndarray) -> "Scales":
+    def take(self, which: Sequence[int] | np.ndarray) -> "Scales":
         """Those of some systems."""
         return Scales(*(getattr(self, each.name)[which] for each in fields(self)))
 
@@ -179,7 +179,7 @@ class Settled:
     arrived: Any
     scales: Scales
 
-    def take(self, which: np.ndarray) -> "Settled":
+    def take(self, which: Sequence[int] | np.ndarray) -> "Settled":
         """Some of the motions."""
         return Settled(**{each.name: getattr(self, each.name)[which] for each in fields(self) if each.name != "scales"},
                        scales=self.scales.take(which))  # fmt: skip
@@ -254,7 +254,7 @@ def together(ends: Sequence[Settled]) -> Settled:
                    scales=Scales(*scales))  # fmt: skip
 
 
-def settle_on(ends: Settled, batch: Batch, which: Any) -> Settled:
+def settle_on(ends: Settled, batch: Batch, which: np.ndarray) -> Settled:
     """The same with some of the motions run on, from where they ended, until they are surely settled."""
     longer = settle(batch.take(which), ends.q[which], ends.qd[which], duration=float(np.max(ends.time[which])),
                     stretches=STRETCHES - 1)  # fmt: skip

@@ -134,7 +134,7 @@ class _Hopf:
         by_omega = np.concatenate([w / self.rate, -u / self.rate, none, none])
         return np.column_stack([by_motion, by_omega, by[0]]), by[1]
 
-    def describe(self, x: Any, b: float) -> tuple[float, float]:
+    def describe(self, x: np.ndarray, b: float) -> tuple[float, float]:
         """Frequency [Hz] and first Lyapunov coefficient."""
         field = Field(self.make(float(x[-1]), float(b)))
         eigenvalue, q, p, steady = critical_pair(field, float(x[-2]))
@@ -142,7 +142,13 @@ class _Hopf:
 
 
 def both_ways(
-    residual: Any, x: np.ndarray, b: float, spans: Sequence[Bounds], scale: Any, points: int, jacobian: Any = None
+    residual: Callable[[Any, float], Any],
+    x: np.ndarray,
+    b: float,
+    spans: Sequence[Bounds],
+    scale: np.ndarray,
+    points: int,
+    jacobian: Callable[[Any, float], Any] | None = None,
 ) -> list[Any]:
     """Points (x, b, residual) from one end of the curve to the other, and how the two walks ended."""
     (low, high), (bottom, top) = spans
@@ -174,7 +180,12 @@ def ending(walks: list[Any]) -> Outcome:
 
 
 def curve_of(
-    design: DesignOrRecipe, walks: list[Any], describe: Any, names: tuple[str, ...], kind: str, outcome: Outcome
+    design: DesignOrRecipe,
+    walks: list[Any],
+    describe: Callable[[Any, float], Any],
+    names: tuple[str, ...],
+    kind: str,
+    outcome: Outcome,
 ) -> PointCurve:
     """The result of the walks; a design is kept, since it knows the units of its parameters."""
     line = [at for i, (kept, _) in enumerate(walks) for at in (kept[:0:-1] if i == 0 and len(walks) > 1 else kept)]

@@ -39,7 +39,7 @@ def doubled(path: ShootingPath, x: np.ndarray, p: float) -> tuple[Any, Any]:
     return twice + shift * direction[:-1] * path.scale, direction
 
 
-def half_apart(path: ShootingPath, unknowns: Any) -> float:
+def half_apart(path: ShootingPath, unknowns: np.ndarray) -> float:
     """Distance, in the size of the cycle, of the motion after half the period from its start; unknowns end with p."""
     start, period, p = path.start(unknowns[:-1]), float(unknowns[-2]), float(unknowns[-1])
     run = fly(path.field(p), start, 0.5 * period, path.rtol)

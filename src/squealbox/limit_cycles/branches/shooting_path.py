@@ -83,7 +83,7 @@ class ShootingPath:
             other.motions.line, other.motions.known, other.motions.moving = None, [], other._moving
         return other
 
-    def _once(self, what: str, key: Any, made: Callable[[], Any]) -> Any:
+    def _once(self, what: str, key: float | bytes, made: Callable[[], Any]) -> Any:
         """What was made for a key, made at the first time."""
         kept = self.kept.setdefault(what, {})
         if key not in kept:

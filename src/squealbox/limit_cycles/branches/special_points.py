@@ -62,7 +62,7 @@ def torus(multipliers: np.ndarray) -> float:
     return float(np.prod([a * b - 1.0 for a, b in pairs]).real) if len(multipliers) > 2 else 1.0
 
 
-def is_torus(multipliers: Any) -> bool:
+def is_torus(multipliers: np.ndarray) -> bool:
     """True when the pair whose product is nearest to 1 is complex."""
     pairs = list(itertools.combinations(multipliers[1:], 2))
     a, _ = pairs[int(np.argmin([abs(a * b - 1.0) for a, b in pairs]))]

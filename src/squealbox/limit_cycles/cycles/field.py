@@ -110,11 +110,11 @@ class Autonomous:
         """Steady sliding of the rows that results know."""
         return equilibrium(self.held_fast)
 
-    def state(self, q: Any, qd: Any, memory: Any = None) -> Any:
+    def state(self, q: np.ndarray, qd: np.ndarray, memory: np.ndarray | None = None) -> Any:
         """State of displacements and velocities (n,), with what is remembered beside them where that is known."""
         raise NotImplementedError
 
-    def rate(self, x: Any, mode: Any) -> Any:
+    def rate(self, x: np.ndarray, mode: np.ndarray) -> Any:
         """x' at a state, with the contacts in the modes (contacts,)."""
         raise NotImplementedError
 
@@ -126,7 +126,7 @@ class Autonomous:
         """Angular frequencies [rad/s] and shapes (n, modes) of the system without contacts."""
         raise NotImplementedError
 
-    def multipliers(self, monodromy: Any) -> Any:
+    def multipliers(self, monodromy: np.ndarray) -> Any:
         """Floquet multipliers, as `ordered` puts them; NaN where unknown."""
         raise NotImplementedError
 

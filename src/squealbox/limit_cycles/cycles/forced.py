@@ -12,7 +12,7 @@ Source: Leine and Nijmeijer 2004, Dynamics and Bifurcations of Non-Smooth Mechan
 """
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, ClassVar
@@ -37,7 +37,7 @@ from squealbox.limit_cycles.cycles.variation import (
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.schedules import Constant, Schedule, Sinusoid, value_at
-from squealbox.start import Start
+from squealbox.start import Start, StartLike
 from squealbox.system import DesignOrSystem, System, as_system, equilibrium
 from squealbox.transient import Method, Trajectory, simulate
 
@@ -132,7 +132,7 @@ class Moving(Field):
             self.mf = self.inverse @ np.asarray(value_at(self.moving.load, time))
         return self
 
-    def _holding(self, stuck: Any, a: Any) -> Any:
+    def _holding(self, stuck: np.ndarray, a: np.ndarray) -> Any:
         own = self.t[stuck] @ a - (self.rising[stuck] if np.ndim(a) == 1 else 0.0)
         return -np.linalg.lstsq(self.t[stuck] @ self.md[stuck].T, own, rcond=1e-12)[0]
 
@@ -140,7 +140,7 @@ class Moving(Field):
 @public()
 def forced_cycle(
     design_or_system: DesignOrSystem,
-    start: Any = None,
+    start: StartLike = None,
     *,
     rounds: int = 1,
     rtol: float = 1e-12,
@@ -195,7 +195,12 @@ def forced_cycle(
     return _made(design_or_system, settings, period, motion, np.full(x.size, np.nan), history[-1], events, outcome)
 
 
-def forced_branch(family: Any, values: Any, start: Any = None, **keywords: Any) -> Iterator[ForcedCycle]:
+def forced_branch(
+    family: Callable[[float], DesignOrSystem],
+    values: Sequence[float] | np.ndarray,
+    start: StartLike = None,
+    **keywords: Any,
+) -> Iterator[ForcedCycle]:
     """Forced motions over a parameter such as amplitude or frequency: `family(value)` is the brake.
 
     An iterator: each motion starts from the last that was found, and one that is not found does not end it.
@@ -208,8 +213,8 @@ def forced_branch(family: Any, values: Any, start: Any = None, **keywords: Any) 
 
 
 def forced_path(
-    family: Any, bounds: tuple[float, float], begin: float, start: Any = None, *, direction: float = 1.0,
-    first: float = 0.02, largest: float = 0.1, most_points: int = 500, rtol: float = 1e-10,
+    family: Callable[[float], DesignOrSystem], bounds: tuple[float, float], begin: float, start: StartLike = None,
+    *, direction: float = 1.0, first: float = 0.02, largest: float = 0.1, most_points: int = 500, rtol: float = 1e-10,
 ) -> Iterator[tuple[float, ForcedCycle]]:  # fmt: skip
     """Forced motions along a parameter such as amplitude or frequency, by arclength: through folds.
 
@@ -346,7 +351,7 @@ def _frozen(system: System, time: float) -> System:
     return system.replace(contacts=contacts, load=np.asarray(value_at(system.load, time), dtype=float))
 
 
-def _start(system: System, start: Any) -> Any:
+def _start(system: System, start: StartLike) -> Any:
     if start is not None:
         return Start.of("forced_cycle", start, system).state
     steady = equilibrium(_frozen(system, 0.0)) if not any(isinstance(c.V, Schedule) for c in system.contacts) else None

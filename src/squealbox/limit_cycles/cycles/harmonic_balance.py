@@ -26,6 +26,7 @@ from squealbox.limit_cycles.cycles.starting import first_guess
 from squealbox.limit_cycles.cycles.variation import fly, magnus
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
+from squealbox.start import StartLike
 from squealbox.system import DesignOrSystem, as_system
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ Guess: TypeAlias = "Callable[[Grid], Any]"
 @public()
 def harmonic_balance(
     design_or_system: DesignOrSystem,
-    start: Any = None,
+    start: StartLike = None,
     *,
     contact: str = "exact",
     width: float = 1e-3,

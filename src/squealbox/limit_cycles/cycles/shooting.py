@@ -26,6 +26,7 @@ from squealbox.limit_cycles.cycles.starting import first_guess
 from squealbox.limit_cycles.cycles.variation import Flight, fly
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Outcome
+from squealbox.start import StartLike
 from squealbox.system import DesignOrSystem
 
 CONTACTS = {"exact": "exact", "smooth": "arctan", "arctan": "arctan", "tanh": "tanh"}
@@ -38,7 +39,7 @@ TURNS = (1, 2, 4)  # past a doubling, a run settles on the cycle that closes aft
 @public()
 def shooting(
     design_or_system: DesignOrSystem,
-    start: Any = None,
+    start: StartLike = None,
     *,
     contact: str = "exact",
     width: float = 1e-3,
@@ -87,7 +88,7 @@ def shooting(
     settings = {"contact": contact, "width": width, "shots": shots, "rtol": rtol, "tolerance": tolerance}
     known = isinstance(start, Cycle) or (isinstance(start, (tuple, list)) and len(start) == 3)
 
-    def reached(start: Any) -> Cycle:
+    def reached(start: StartLike) -> Cycle:
         x, period, found = first_guess(field, start, settle)
         if not found.ok:
             return cycle_through(field, x, period, [], found, settings, samples)

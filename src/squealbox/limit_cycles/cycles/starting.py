@@ -9,7 +9,7 @@ from squealbox.limit_cycles.cycles.field import Autonomous
 from squealbox.limit_cycles.cycles.variation import PERIOD_STEPS, fly
 from squealbox.result import COMPLETED, Outcome
 from squealbox.stability import Mode, complex_modes
-from squealbox.start import Start
+from squealbox.start import Start, StartLike
 from squealbox.system import equilibrium
 from squealbox.transient import Trajectory, simulate
 
@@ -153,7 +153,7 @@ def _fast_slip(run: Trajectory) -> int:
     return int(np.argmax(np.min(np.abs(run.sliding_velocity[:half]), axis=1)))
 
 
-def state_of(field: Autonomous, start: Any) -> Any:
+def state_of(field: Autonomous, start: StartLike) -> Any:
     """The state (q, qd) in one row, (2n,), that a `Start` means; None is near the mode that grows fastest, or rest."""
     if start is None:
         modes = complex_modes(field.asked)

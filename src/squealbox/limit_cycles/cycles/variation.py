@@ -259,6 +259,6 @@ def _exponential(matrices: np.ndarray) -> Any:
     return total
 
 
-def _relative(field: Field, difference: Any, states: np.ndarray) -> float:
+def _relative(field: Field, difference: Sequence[np.ndarray], states: np.ndarray) -> float:
     scaled = field.scale * difference
     return float(np.max(np.abs(scaled)) / (np.max(np.abs(field.scale * states)) + 1e-300))

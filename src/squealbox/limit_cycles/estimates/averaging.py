@@ -24,6 +24,7 @@ from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.limit_cycles.cycles.harmonic_balance import harmonic_balance
 from squealbox.parameters import ParameterError
 from squealbox.schedules import value_at
+from squealbox.start import StartLike
 from squealbox.system import DesignOrSystem
 
 POINTS = 256  # of the average; exponentially accurate for a smooth law
@@ -32,7 +33,7 @@ FINE = 8192  # of the touching cycle, whose law may fall steeply near v = 0
 
 
 @public()
-def describing_function(design_or_system: DesignOrSystem, start: Any = None, **options: Any) -> Cycle:
+def describing_function(design_or_system: DesignOrSystem, start: StartLike = None, **options: Any) -> Cycle:
     """The cycle with one harmonic and a mean: :func:`harmonic_balance` with ``harmonics=1``.
 
     Parameters are those of :func:`harmonic_balance`. Accuracy: `error` of the result says nothing here; compare with
@@ -89,7 +90,7 @@ def averaged_swings(law: FrictionLaw, sliding_speed: float, normal_force: float,
 
 
 @public()
-def averaged_curve(design: DesignOrRecipe, parameter: Varied, values: Any = None) -> tuple[Any, Any]:
+def averaged_curve(design: DesignOrRecipe, parameter: Varied, values: ArrayLike | None = None) -> tuple[Any, Any]:
     """(values, amplitudes [m]) of the averaged cycles over a parameter, for a figure; empty unless it is one block.
 
     Parameters

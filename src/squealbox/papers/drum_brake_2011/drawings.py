@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from squealbox import plots
+from squealbox.designs import DrumBrake
 from squealbox.papers.drum_brake_2011.cases import Case
 from squealbox.papers.drum_brake_2011.figures import Margins
 from squealbox.plots.style import drawing, figure_of
@@ -51,7 +52,7 @@ def friction(case: Case) -> "Figure":
         return figure_of(axes)
 
 
-def _supports(axes: "Axes", brake: Any) -> None:
+def _supports(axes: "Axes", brake: DrumBrake) -> None:
     """k1 and c1 to the left, k2 and c2 below."""
     for offset, kind, name in (
         (0.32, _spring, f"$k_1$ = {brake.k1 / 1e6:g} N/µm"),
@@ -130,7 +131,7 @@ def _damper(axes: "Axes", start: ArrayLike, end: ArrayLike) -> None:
         axes.plot(*_along(start, end, np.array(share), np.array(aside)).T, color=INK, linewidth=0.9)
 
 
-def _along(start: ArrayLike, end: ArrayLike, share: Any, aside: Any) -> Any:
+def _along(start: ArrayLike, end: ArrayLike, share: np.ndarray, aside: np.ndarray) -> Any:
     start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
     line = end - start
     across = np.array([-line[1], line[0]]) / np.linalg.norm(line)

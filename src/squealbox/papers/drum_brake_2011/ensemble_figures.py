@@ -1,6 +1,6 @@
 """What tens of thousands of transients show, beside the eigenvalues: maps, and the maxima over friction."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -105,7 +105,7 @@ def _transients(panel: "Axes", found: SquealMap, x: Axis, y: Axis) -> None:
         panel.set(xlabel=quantity_label(x[0], x[1]), ylabel=quantity_label(y[0], y[1]))
 
 
-def _legend(figure: Any, maps: list[SquealMap]) -> None:
+def _legend(figure: "Figure", maps: list[SquealMap]) -> None:
     """The kinds that occur, below the panels."""
     from matplotlib.patches import Patch
 

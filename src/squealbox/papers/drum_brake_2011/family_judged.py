@@ -37,7 +37,13 @@ class MemberCase:
         """The same with other choices."""
         return dataclasses.replace(self, **changes)
 
-    def design(self, mu: Any = FRICTION, load: Any = LOAD, speed: Any = None, **changes: Any) -> Variant:
+    def design(
+        self,
+        mu: Any = FRICTION,
+        load: Any = LOAD,
+        speed: Any = None,
+        **changes: Any,
+    ) -> Variant:
         """The brake; `mu`, `load` [N] and angles [rad] may be arrays, `speed` [m/s] a schedule."""
         return Variant(
             front=float(self.front),

@@ -24,9 +24,10 @@ from squealbox.papers.drum_brake_2011.cases import DURATION, Case
 from squealbox.papers.drum_brake_2011.claims import EXACT, RAW
 from squealbox.papers.drum_brake_2011.motions import METHODS, SAMPLES, judged
 from squealbox.signals import slope
+from squealbox.signals.samples import MotionLike
 from squealbox.stability import complex_modes
 from squealbox.system import DesignOrSystem, as_system, linearise
-from squealbox.transient import simulate
+from squealbox.transient import Trajectory, simulate
 from squealbox.transient.verdict import verdict
 
 RELATIVE = 1e-3
@@ -100,10 +101,10 @@ def ode23(design: DesignOrSystem, duration: float = DURATION, rtol: float = RELA
     sensed = np.array([np.concatenate([each.n, each.t]) for each in contacts])
     pushed = np.array([inverse @ each.d for each in contacts])
     laws = np.array([[each.N0, each.V, each.law.static, each.law.slope] for each in contacts], dtype=float)
-    given = linear, inverse @ system.load, sensed, pushed, laws, float(duration), float(rtol), SHORTEST
+    equation, given = (linear, inverse @ system.load, sensed, pushed, laws), (float(duration), float(rtol), SHORTEST)
     while True:
         t, y = np.empty(room), np.empty((room, 2 * size))
-        count = march(*given, t, y, np.zeros((4, 2 * size)), np.zeros((3, 2 * size)))
+        count = march(equation, *given, t, y, np.zeros((4, 2 * size)), np.zeros((3, 2 * size)))
         if count <= room:
             return Plain(t[:count], y[:count, :size], y[:count, size:])
         room *= 4
@@ -130,7 +131,7 @@ def decays(case: Case, mu: float = MU) -> list[Decay]:
     return found
 
 
-def decay_of_modes(design: DesignOrSystem, motion: Any, begin: float, end: float) -> tuple[float, float]:
+def decay_of_modes(design: DesignOrSystem, motion: MotionLike, begin: float, end: float) -> tuple[float, float]:
     """Decay rates [1/s] of the lower and the upper mode in a motion about steady sliding, from `begin` to `end` [s].
 
     The share of mode j is w_j^H ((lambda_j M + C) (q - q0) + M q'), with its left mode w_j: while nothing reverses it
@@ -178,7 +179,7 @@ def damping_of_the_table() -> dict[str, tuple[float, float]]:
     }
 
 
-def _persists(motion: Any) -> bool | None:
+def _persists(motion: Trajectory) -> bool | None:
     if not isinstance(motion, Plain):
         return judged(motion).persists
     found = verdict(motion.at(np.linspace(0.0, DURATION, SAMPLES)), dof=0)

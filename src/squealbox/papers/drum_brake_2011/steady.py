@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.designs import DrumBrake
 from squealbox.papers.drum_brake_2011.cases import FRICTION, MAP_ANGLES, SPEED, Case
 from squealbox.stability import ComplexModes, complex_modes, critical_value, stability_map
 from squealbox.stability.state_matrix import spectrum
@@ -79,7 +80,7 @@ def pressure_map(case: Case, step: float = 1.0, mu: float = FRICTION, traced: bo
     return PressureMap(angles, grown, _boundary(design, angles, grown))
 
 
-def _boundary(design: Any, angles: Any, grown: Any) -> list[Any]:
+def _boundary(design: DrumBrake, angles: np.ndarray, grown: np.ndarray) -> list[Any]:
     """The curves of zero growth through the map, each (k, 2) [deg].
 
     Every point lies on an edge of the grid whose ends differ in sign, and is found there by the rule of Illinois.
@@ -125,7 +126,7 @@ def growth(design: DesignOrSystem) -> Any:
     return np.max(spectrum(linearise(as_system(design))).real, axis=-1)
 
 
-def _onset(design: Any, parameter: str, bounds: tuple[float, float]) -> Onset:
+def _onset(design: DrumBrake, parameter: str, bounds: tuple[float, float]) -> Onset:
     found = critical_value(design, parameter, bounds)
     if not found.outcome.ok:
         return Onset()

@@ -86,7 +86,7 @@ def trace_bounds() -> dict[str, Band]:
     }
 
 
-def which_mode_decays_more(difference: Any, a: float, d: float) -> Any:
+def which_mode_decays_more(difference: np.ndarray, a: float, d: float) -> Any:
     """The sign of p_upper - p_lower: which of two modes is damped more, by the difference c22 - c11 of the damping.
 
     Lemma. From the four equations of this module, with D = c22 - c11, E = p_lower - p_upper and S = c11 + c22,
@@ -120,7 +120,9 @@ def growing_mode_at_onset() -> str:
     return "lower" if published + RESOLUTION < middle else "either"
 
 
-def damping_difference(at_low: Any, load: Any, c1: float | None = None, c2: float | None = None) -> Any:
+def damping_difference(
+    at_low: float | np.ndarray, load: float | np.ndarray, c1: float | None = None, c2: float | None = None
+) -> Any:
     """C22 - c11 [N s/m] at `load` [N], given what it is `at_low`, at the table's 1 kN.
 
     Theorem (mu-5 and N-2 exclude each other in the form of Eq. (3)). There c11 and c22 are the table's c1 and c2 plus

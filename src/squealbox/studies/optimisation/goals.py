@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import ParameterError
 from squealbox.studies.quantity import Quantity, as_quantity, evaluate
 from squealbox.studies.uncertainty.distributions import Distribution, Lognormal
@@ -110,7 +111,9 @@ class Candidates:
     and not samples.
     """
 
-    def __init__(self, design: Any, names: list[str], scatter: Scatter | None, samples: int, seed: int) -> None:
+    def __init__(
+        self, design: DesignOrRecipe | None, names: list[str], scatter: Scatter | None, samples: int, seed: int
+    ) -> None:
         self.design, self.names = design, names
         self.sample = {} if scatter is None else scatter.sample(samples, "sobol", seed)
         self.given: Mapping[str, Distribution] = {} if scatter is None else scatter.distributions

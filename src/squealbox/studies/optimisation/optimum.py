@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.family import unit_of
+from squealbox.family import DesignOrRecipe, unit_of
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.optimisation.goals import Candidates, Constraint, Goal
@@ -102,7 +102,7 @@ class Optimum(Result):
 
 @public(design=None)
 def optimise(
-    design: Any,
+    design: DesignOrRecipe | None,
     variables: Mapping[str, tuple[float, float]],
     goals: Goal | Sequence[Goal],
     constraints: Sequence[Constraint] = (),

@@ -1,5 +1,6 @@
 """The searches behind `optimise`: SciPy for one goal, pymoo for several."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -99,7 +100,7 @@ def _polished(
     return place(found.x)[0] if np.all(np.isfinite(found.x)) else start
 
 
-def _slopes(function: Any, u: np.ndarray, step: float = 1e-6) -> Any:
+def _slopes(function: Callable[[Any], Any], u: np.ndarray, step: float = 1e-6) -> Any:
     """Central differences of a batched function (one-sided at the bounds): ([outputs,] variables)."""
     shifts = step * np.eye(u.size)
     up, down = np.minimum(u + shifts, 1.0), np.maximum(u - shifts, 0.0)

@@ -20,6 +20,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.extras import extra
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import Quantity, QuantityLike, as_quantity, evaluate, input_of
@@ -138,7 +139,7 @@ class Surrogate(Result):
 
 @public(design=None)
 def polynomial_chaos(
-    design: Any,
+    design: DesignOrRecipe | None,
     scatter: Scattered,
     quantity: QuantityLike,
     *,

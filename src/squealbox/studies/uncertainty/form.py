@@ -18,7 +18,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.extras import extra
-from squealbox.family import unit_of
+from squealbox.family import DesignOrRecipe, unit_of
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import QuantityLike, as_quantity, input_of
@@ -90,7 +90,7 @@ class DesignPoint(Result):
 
 @public(design=None)
 def form(
-    design: Any,
+    design: DesignOrRecipe | None,
     scatter: Scattered,
     quantity: QuantityLike,
     *,

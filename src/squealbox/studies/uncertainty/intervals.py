@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
-from squealbox.family import bounds_of
+from squealbox.family import DesignOrRecipe, bounds_of
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import QuantityLike, as_quantity, evaluate, input_of
@@ -71,7 +71,12 @@ class IntervalBounds(Result):
 
 @public(design=None)
 def interval_bounds(
-    design: Any, box: Mapping[str, tuple[float, float]], quantity: QuantityLike, *, seed: int = 0, runs: int = 3
+    design: DesignOrRecipe | None,
+    box: Mapping[str, tuple[float, float]],
+    quantity: QuantityLike,
+    *,
+    seed: int = 0,
+    runs: int = 3,
 ) -> IntervalBounds:
     """Least and largest value of `quantity` while each parameter stays within its interval.
 
@@ -123,7 +128,7 @@ def checked_box(box: Mapping[str, Any], owner: str) -> tuple[list[str], Any]:
     return [str(name) for name in box], np.array([bounds_of(owner, str(name), ends) for name, ends in box.items()])
 
 
-def _extremes(values_at: Callable[[Any], Any], ends: Any, seed: int) -> list[tuple[float, Any]]:
+def _extremes(values_at: Callable[[Any], Any], ends: np.ndarray, seed: int) -> list[tuple[float, Any]]:
     """(value, place) of the least and of the largest value that one run finds."""
     corners = np.array(list(product(*ends))) if len(ends) <= MOST_CORNERS else np.mean(ends, axis=1)[None]
     at_corners = values_at(corners)
@@ -138,7 +143,7 @@ def _extremes(values_at: Callable[[Any], Any], ends: Any, seed: int) -> list[tup
     return found
 
 
-def _least(values_at: Callable[[Any], Any], sign: float, ends: Any, seed: int) -> tuple[float, Any]:
+def _least(values_at: Callable[[Any], Any], sign: float, ends: np.ndarray, seed: int) -> tuple[float, Any]:
     from scipy.optimize import differential_evolution
 
     def goal(x: np.ndarray) -> Any:

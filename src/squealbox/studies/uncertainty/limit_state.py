@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from squealbox.extras import extra
+from squealbox.family import DesignOrRecipe
 from squealbox.studies.quantity import Quantity, evaluate
 from squealbox.studies.uncertainty.scatter import Scatter
 
@@ -17,7 +18,7 @@ FAR = 1e30  # stands for an infinite distance, which differences cannot be taken
 class LimitState:
     """g(z) = -excess(quantity at x(z)): negative squeals; counts its evaluations and those without an answer."""
 
-    def __init__(self, design: Any, scatter: Scatter, quantity: Quantity) -> None:
+    def __init__(self, design: DesignOrRecipe | None, scatter: Scatter, quantity: Quantity) -> None:
         self.design, self.scatter, self.quantity = design, scatter, quantity
         self.evaluations = 0
         self.unknown = 0

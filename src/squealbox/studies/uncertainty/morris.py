@@ -13,6 +13,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.extras import extra
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import QuantityLike, as_quantity, evaluate, input_of
@@ -59,7 +60,7 @@ class MorrisEffects(Result):
 
 @public(design=None)
 def morris_effects(
-    design: Any,
+    design: DesignOrRecipe | None,
     scatter: Scattered,
     quantity: QuantityLike,
     *,

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import QuantityLike, as_quantity, evaluate, input_of
@@ -70,7 +71,7 @@ class SquealProbability(Result):
 
 @public(design=None)
 def squeal_probability(
-    design: Any,
+    design: DesignOrRecipe | None,
     scatter: Scattered,
     quantity: QuantityLike,
     *,
@@ -152,7 +153,7 @@ def _replicates(estimates: np.ndarray) -> str:
     return f"interval from {estimates.size} independent randomisations"
 
 
-def _span(low: Any, high: Any) -> str:
+def _span(low: float | np.ndarray, high: float | np.ndarray) -> str:
     return f"{float(low):.4g} to {float(high):.4g}"
 
 

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from typing import Any, Literal, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.parameters import DataSheet, ParameterError, known_names
 from squealbox.studies.uncertainty.distributions import Distribution, as_distribution
@@ -156,7 +157,7 @@ def unit_points(count: int, dimensions: int, method: Sampling, rng: np.random.Ge
     return points + 0.5 ** (BITS + 1)  # the middle of each cell, never 0
 
 
-def _matrix(given: Any, names: list[str]) -> Any:
+def _matrix(given: Mapping[tuple[str, str], float] | ArrayLike | None, names: list[str]) -> Any:
     """The correlation matrix from pairs or from itself, read-only."""
     size = len(names)
     matrix = np.eye(size)
@@ -183,7 +184,7 @@ def _matrix(given: Any, names: list[str]) -> Any:
     return matrix
 
 
-def _pair(pair: Any, names: list[str]) -> tuple[int, int]:
+def _pair(pair: object, names: list[str]) -> tuple[int, int]:
     if not isinstance(pair, tuple) or len(pair) != 2:
         raise ParameterError("Scatter", "correlation", pair, "pairs of names such as ('k1', 'k2')")
     for name in pair:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import QuantityLike, as_quantity, evaluate, input_of
@@ -64,7 +65,7 @@ class SobolIndices(Result):
 
 @public(design=None)
 def sobol_indices(
-    design: Any,
+    design: DesignOrRecipe | None,
     scatter: Scattered,
     quantity: QuantityLike,
     *,

@@ -14,6 +14,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.extras import extra
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.studies.quantity import QuantityLike, as_quantity, input_of
@@ -63,7 +64,7 @@ class SubsetProbability(Result):
 
 @public(design=None)
 def subset_simulation(
-    design: Any,
+    design: DesignOrRecipe | None,
     scatter: Scattered,
     quantity: QuantityLike,
     *,
