@@ -293,7 +293,7 @@ def _each(name: str, values: Any, count: int) -> Any:
     return np.broadcast_to(found, (count,))
 
 
-def _rows(name: str, rows: "sparray") -> Any:
+def _rows(name: str, rows: "np.ndarray | sparray") -> Any:
     """A table of rows in compressed sparse rows, whose values are real and finite."""
     if is_sparse(rows):
         return _finite(name, rows if isinstance(rows, scipy.sparse.csr_array) else scipy.sparse.csr_array(rows))

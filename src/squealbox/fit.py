@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.friction import LAW_NAMES, FrictionLaw
@@ -88,7 +89,7 @@ class FrictionFit(Result):
 
 @public()
 def fit_friction(
-    speeds: np.ndarray, values: np.ndarray, law: str | Sequence[str] | None = None, *, level: float = 0.95
+    speeds: ArrayLike, values: ArrayLike, law: str | Sequence[str] | None = None, *, level: float = 0.95
 ) -> FrictionFit:
     """Fit friction laws to measured points mu(v).
 
@@ -126,7 +127,7 @@ def fit_friction(
     return FrictionFit(speeds=v, values=mu, curve_speeds=along, settings=settings, outcome=outcome, **arrays)
 
 
-def _points(speeds: np.ndarray, values: np.ndarray) -> tuple[Any, Any]:
+def _points(speeds: ArrayLike, values: ArrayLike) -> tuple[Any, Any]:
     try:
         v, mu = np.asarray(speeds, dtype=float), np.asarray(values, dtype=float)
     except (TypeError, ValueError) as error:

@@ -173,7 +173,7 @@ def _tuned(start: TunedMass) -> Callable[[Any, Any], Linearised]:
     row[: base.size + 1] = start.stretch(base)
     before = start.spring_and_damper
 
-    def tuned(frequency: np.ndarray, damping: np.ndarray) -> Linearised:
+    def tuned(frequency: float | np.ndarray, damping: float | np.ndarray) -> Linearised:
         spring, damper = start.tuned_to(frequency, damping)
         stiffness = about.K + outer(spring - before[0], row, row)
         losses = about.C + outer(damper - before[1], row, row)

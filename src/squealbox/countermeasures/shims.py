@@ -71,7 +71,7 @@ class Shim(Countermeasure):
                 "Shim", "at", self.at, "a contact with a stiffness, n not 0: a shim acts on its spring"
             )
         unit = contact.n / size[..., None] if contact.normal is None else np.asarray(contact.normal)
-        spring = np.sum(contact.n * unit, axis=-1) / np.sum(unit * unit, axis=-1)
+        spring = np.asarray(np.sum(contact.n * unit, axis=-1) / np.sum(unit * unit, axis=-1))
         if np.any(np.abs(contact.n - spring[..., None] * unit) > 1e-9 * size[..., None]):
             raise ParameterError("Shim", "at", self.at, "a contact whose n lies along its normal")
         return place, unit, spring

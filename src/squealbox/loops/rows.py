@@ -96,7 +96,7 @@ def delayed(own: Rows, delay: float | np.ndarray, rate: float | np.ndarray, lag:
     return Rows(A, E, F, G, own.P, own.R, S, own.b, size), force
 
 
-def late(own: Rows, delay: np.ndarray, rate: np.ndarray) -> Rows:
+def late(own: Rows, delay: np.ndarray, rate: np.float64 | np.ndarray) -> Rows:
     """Rows whose force is late: those of `delayed` with the command of the rows themselves."""
     row, force = delayed(own, delay, rate)
     A = row.A + row.G[..., :, None] * row.S[..., None, :]

@@ -2,6 +2,7 @@
 
 import importlib
 import inspect
+from collections.abc import Mapping, Sequence
 from functools import cache, singledispatch
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -37,7 +38,7 @@ def plot(
     *,
     width: float | None = None,
     height: float | None = None,
-    style: str | None = None,
+    style: str | Mapping[str, Any] | Sequence[Any] | None = None,
     **keywords: Any,
 ) -> "Figure":
     """The figure of a result.

@@ -38,7 +38,7 @@ class PlaneLabels:
 def stability_map(
     x: Any,
     y: Any,
-    growth: np.ndarray,
+    growth: ArrayLike,
     *,
     curves: Iterable[Any] | None = None,
     title: str = "",
@@ -80,7 +80,7 @@ def stability_map(
         return figure_of(panel)
 
 
-def _checked(name: str, x: ArrayLike, y: np.ndarray, grid: np.ndarray) -> tuple[Any, Any, Any]:
+def _checked(name: str, x: ArrayLike, y: ArrayLike, grid: ArrayLike) -> tuple[Any, Any, Any]:
     """Axes and grid as arrays; `ValueError` unless the grid has one row for each y."""
     x, y, grid = np.asarray(x, dtype=float), np.asarray(y, dtype=float), np.asarray(grid)
     if grid.shape != (np.size(y), np.size(x)):

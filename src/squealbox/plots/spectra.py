@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 def spectrum(
     signal: Any,
-    t: np.ndarray | None = None,
+    t: ArrayLike | None = None,
     *,
     peaks: int = 3,
     upto: float | None = None,

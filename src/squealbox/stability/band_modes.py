@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.fe.certificate import Certificate, certificate, certified_band
 from squealbox.fe.growing_basis import GrowingBasis
@@ -139,7 +140,7 @@ def band_modes(
 
 def certified(
     design_or_system: DesignOrSystem,
-    eigenvalues: np.ndarray,
+    eigenvalues: ArrayLike,
     band: tuple[float, float],
     *,
     time: float = 0.0,

@@ -291,7 +291,7 @@ def modes_of(
     scaled = np.take_along_axis(scaled.astype(complex), order, axis=-1)
     states = np.take_along_axis(states.astype(complex), order[..., None, :], axis=-1)
     eigenvalues = scaled * rate[..., None]
-    right, left, condition = _modes(about, eigenvalues, states, usable)
+    right, left, condition = _modes(about, eigenvalues, states, np.asarray(usable))
     eigenvalues, right, left, condition, usable = map(np.array, (eigenvalues, right, left, condition, usable))
     for at in map(tuple, np.argwhere(special)):
         found = special_modes(about.M[at], about.C[at], about.K[at])

@@ -17,14 +17,14 @@ from squealbox.stability.mode import damping_ratio
 SQUEAL_BAND = (1e3, 16e3)  # Hz: where brake noise is called squeal
 
 
-def squeal_index(eigenvalues: np.ndarray) -> Any:
+def squeal_index(eigenvalues: ArrayLike) -> Any:
     """-2 Re/|Im| [-], as finite-element codes print it; negative grows, NaN where Im = 0. Array in, array out."""
     with np.errstate(invalid="ignore", divide="ignore"):
         index = -2.0 * np.real(eigenvalues) / np.abs(np.imag(eigenvalues))
     return np.where(np.imag(eigenvalues) == 0.0, np.nan, index)
 
 
-def logarithmic_decrement(eigenvalues: np.ndarray) -> Any:
+def logarithmic_decrement(eigenvalues: ArrayLike) -> Any:
     """ln of the ratio of two successive amplitudes, -2 pi Re/|Im| [-]; negative grows, NaN where Im = 0.
 
     Array in, array out.
@@ -32,7 +32,7 @@ def logarithmic_decrement(eigenvalues: np.ndarray) -> Any:
     return np.pi * squeal_index(eigenvalues)
 
 
-def loss_factor(eigenvalues: complex | np.ndarray) -> Any:
+def loss_factor(eigenvalues: ArrayLike) -> Any:
     """Loss factor 2 zeta [-] of a lightly damped mode; negative grows. Array in, array out."""
     return 2.0 * damping_ratio(eigenvalues)
 

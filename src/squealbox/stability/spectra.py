@@ -72,7 +72,7 @@ def flags_of(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray) -> An
     return np.unpackbits(words.astype("<u2").view(np.uint8), count=number, bitorder="little").view(bool)
 
 
-def eigenvalues(about: Linearised, engine: Engine = "auto", special: np.ndarray | None = None) -> Any:
+def eigenvalues(about: Linearised, engine: Engine = "auto", special: np.bool_ | np.ndarray | None = None) -> Any:
     """All eigenvalues (..., 2n) [1/s] in no particular order; NaN without a spectrum. special : see `with_special`."""
     if about.M.shape[-1] == 2 and compiled(about, engine):
         return with_special(about, _two_dof_spectrum(about), special)

@@ -32,7 +32,7 @@ def special_entries(about: Linearised) -> Any:
     return exists & (~known | (np.asarray(about.equilibrium.floating) > 0))
 
 
-def with_special(about: Linearised, eigenvalues: np.ndarray, special: np.ndarray | None = None) -> Any:
+def with_special(about: Linearised, eigenvalues: np.ndarray, special: np.bool_ | np.ndarray | None = None) -> Any:
     """Eigenvalues (..., 2n) with those entries solved exactly whose pencil is singular; see `deflation`.
 
     special : what `special_entries` says, where it was asked

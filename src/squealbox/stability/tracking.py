@@ -187,7 +187,7 @@ def _place_in_band(family: SteadyFamily, band: Band, value: float) -> "_Place | 
 
 @public()
 def tracked_modes(
-    design: DesignOrRecipe, parameter: Varied, values: np.ndarray | None = None, *, time: float = 0.0
+    design: DesignOrRecipe, parameter: Varied, values: ArrayLike | None = None, *, time: float = 0.0
 ) -> TrackedModes:
     """The whole of :func:`track` as one result, a labelled dataset by ``to_dataset()``.
 

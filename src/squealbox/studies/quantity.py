@@ -61,7 +61,7 @@ class Quantity:
     def __call__(self, design: Any) -> Any:
         return self.function(design)
 
-    def excess(self, values: np.ndarray) -> Any:
+    def excess(self, values: float | np.ndarray) -> Any:
         """How far `values` are on the side of squeal: positive squeals, zero and below does not; NaN is unknown."""
         return values - self.limit if self.squeals == "above" else self.limit - values
 

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.family import Bounds, DesignOrRecipe, Family, Varied
@@ -29,7 +30,7 @@ SWINGS = (0.3, 6.0)  # largest speeds of the starts, in sliding speeds
 
 @public()
 def settled_cycles(
-    design_or_system: DesignOrSystem, starts: int | np.ndarray = 16, *, settle: float | None = None, seed: int = 0
+    design_or_system: DesignOrSystem, starts: ArrayLike = 16, *, settle: float | None = None, seed: int = 0
 ) -> tuple[Cycle, ...]:
     """The stable cycles that runs from many states settle to, each once, the largest first.
 
@@ -53,7 +54,8 @@ def settled_cycles(
     [True]
     """
     field = field_of(design_or_system)
-    states = drawn_states(field, int(starts), seed) if np.ndim(starts) == 0 else np.asarray(starts, dtype=float)
+    given = np.asarray(starts, dtype=float)
+    states = drawn_states(field, int(given), seed) if given.ndim == 0 else given
     if states.ndim != 2 or states.shape[1] != 2 * field.system.size or not np.all(np.isfinite(states)):
         raise ParameterError(
             "settled_cycles", "starts", np.shape(starts), f"finite states, shape (k, {2 * field.system.size})"

@@ -70,7 +70,7 @@ class ShootingPath:
         """Whether the system itself is what moves."""
         return isinstance(self.first, Field) and self.first.held_fast is self.first.system
 
-    def _moving(self, p: float) -> System:
+    def _moving(self, p: Any) -> System:
         """What moves at a parameter value, or at several."""
         return system_of(self.make(p)) if self._alone else self.field(p).held_fast
 
